@@ -1,0 +1,17 @@
+# Every third-party library, found once. Packages: cmake/packages.txt (traps: DESIGN section 10).
+find_package(Threads REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(TBB REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(PROJ CONFIG REQUIRED)
+find_package(GEOS CONFIG REQUIRED)
+find_package(CGAL 5.5 REQUIRED)
+find_package(GDAL CONFIG REQUIRED)
+find_package(LibXml2 REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(TinyGLTF CONFIG REQUIRED)
+find_package(Osmium REQUIRED)
+# CGAL marks its flags on its own target; -frounding-math is needed by its interval arithmetic and stays there.
