@@ -1,0 +1,83 @@
+// The one list of coded reasons: the report, the documentation and the tests share it.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace blockrand::model {
+
+/// What kind of statement a code makes.
+enum class IssueClass : std::uint8_t {
+  reported,  ///< the object was not modelled, for this reason: its final state
+  fallback,  ///< modelled, but simpler than asked
+  notice,    ///< modelled as asked; something in the input was mended, ignored or unreadable
+};
+
+// X(code, text, class, what it means and what the mapper or user can do)
+#define BLOCKRAND_ISSUE_CODES(X)                                                                                     \
+  X(none, "NONE", notice, "No issue.")                                                                               \
+  /* objects that end as a row in the report */                                                                      \
+  X(node_only, "NODE_ONLY", reported, "A building mapped as a point has no outline to build from.")                  \
+  X(open_way, "OPEN_WAY", reported, "The way is not closed; close it in an editor.")                                 \
+  X(ring_broken, "RING_BROKEN", reported, "The relation's members do not form closed rings.")                        \
+  X(missing_members, "MISSING_MEMBERS", reported, "Ways or nodes of the outline are not in the extract.")            \
+  X(too_few_points, "TOO_FEW_POINTS", reported, "The outline has fewer than three distinct points.")                 \
+  X(zero_area, "ZERO_AREA", reported, "The outline encloses no area.")                                               \
+  X(invalid_location, "INVALID_LOCATION", reported, "A node lies outside the range of longitude and latitude.")      \
+  X(underground, "UNDERGROUND", reported, "The building lies below the ground (location or layer tags).")            \
+  X(lifecycle, "LIFECYCLE", reported, "The building is planned, under construction, ruined or gone.")                \
+  X(relation_type, "RELATION_TYPE", reported, "A relation of this type carries no outline of its own.")              \
+  X(no_solid, "NO_SOLID", reported, "No valid solid could be made, not even a block.")                               \
+  /* simpler than asked */                                                                                           \
+  X(roof_shape_unsupported, "ROOF_SHAPE_UNSUPPORTED", fallback, "This roof shape is built as its nearest relative.") \
+  X(roof_shape_unknown, "ROOF_SHAPE_UNKNOWN", fallback, "The value of roof:shape is in no list; flat was built.")    \
+  X(roof_failed, "ROOF_FAILED", fallback, "The roof's solid failed its check; a flat roof was built.")               \
+  X(roof_simplified, "ROOF_SIMPLIFIED", fallback, "The roof stands on a plan simplified by up to 0.5 m.")            \
+  X(gable_as_hip, "GABLE_AS_HIP", fallback, "No gable end fits this plan; hips were built.")                         \
+  X(pyramid_as_hip, "PYRAMID_AS_HIP", fallback, "No apex sees every eaves edge; hips were built.")                   \
+  X(roof_height_clamped, "ROOF_HEIGHT_CLAMPED", fallback, "The roof was higher than the building allows.")           \
+  X(lod1_only, "LOD1_ONLY", fallback, "No valid LoD2 solid; a block was built.")                                     \
+  X(plan_simplified, "PLAN_SIMPLIFIED", fallback, "The plan was simplified to get a valid solid.")                   \
+  X(rest_failed, "REST_FAILED", fallback, "The part of the outline that its parts leave free could not be built.")   \
+  /* mended, ignored, unreadable */                                                                                  \
+  X(value_unreadable, "VALUE_UNREADABLE", notice, "A tag's value cannot be parsed; it is kept as text.")             \
+  X(value_clamped, "VALUE_CLAMPED", notice, "A tag's value is out of range and was limited.")                        \
+  X(values_conflict, "VALUES_CONFLICT", notice, "Two tags contradict each other; the stronger one was used.")        \
+  X(members_missing, "MEMBERS_MISSING", notice, "Some members are not in the extract; the rest was built.")          \
+  X(relation_repaired, "RELATION_REPAIRED", notice, "The relation's rings were assembled despite errors.")           \
+  X(old_style_multipolygon, "OLD_STYLE_MULTIPOLYGON", notice, "The tags stand on the outer way, not the relation.")  \
+  X(duplicate_points, "DUPLICATE_POINTS", notice, "Repeated points were removed.")                                   \
+  X(spike_removed, "SPIKE_REMOVED", notice, "A spike was removed.")                                                  \
+  X(ring_repaired, "RING_REPAIRED", notice, "A self-intersecting outline was made valid.")                           \
+  X(split_outline, "SPLIT_OUTLINE", notice, "The valid outline consists of several pieces.")                         \
+  X(touching_rings, "TOUCHING_RINGS", notice, "Rings that touched were moved apart by a few millimetres.")           \
+  X(sliver_dropped, "SLIVER_DROPPED", notice, "A piece below the smallest area was dropped.")                        \
+  X(part_without_outline, "PART_WITHOUT_OUTLINE", notice, "A building part lies in no building; it stands alone.")   \
+  X(parts_incomplete, "PARTS_INCOMPLETE", notice, "The parts leave some of the outline free; the rest was built.")   \
+  X(antimeridian, "ANTIMERIDIAN", notice, "The outline crosses longitude 180 degrees.")                              \
+  X(reach_cut, "REACH_CUT", notice, "A row or block larger than the halo was cut at the grid.")                      \
+  X(terrain_missing, "TERRAIN_MISSING", notice, "The terrain has no value here; the ground height was used.")        \
+  X(text_cleaned, "TEXT_CLEANED", notice, "Characters that no XML file may hold were replaced in a tag.")
+
+enum class IssueCode : std::uint8_t {
+#define X(code, text, klass, meaning) code,
+  BLOCKRAND_ISSUE_CODES(X)
+#undef X
+};
+
+struct IssueInfo {
+  std::string_view text;     ///< as written in reports, upper case
+  IssueClass issue_class;
+  std::string_view meaning;  ///< one sentence for documentation and report
+};
+
+inline constexpr IssueInfo kIssueInfo[] = {
+#define X(code, text, klass, meaning) {text, IssueClass::klass, meaning},
+    BLOCKRAND_ISSUE_CODES(X)
+#undef X
+};
+inline constexpr int kIssueCodeCount = sizeof(kIssueInfo) / sizeof(kIssueInfo[0]);
+
+constexpr const IssueInfo& info(IssueCode code) { return kIssueInfo[static_cast<int>(code)]; }
+
+}  // namespace blockrand::model

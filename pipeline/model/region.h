@@ -1,0 +1,29 @@
+// One tile's worth of buildings: the unit of work. Exists while its tile is in flight only.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/model/building.h"
+#include "pipeline/model/report.h"
+#include "pipeline/model/sourced.h"
+
+namespace blockrand::model {
+
+/// Tile of the geodetic quadtree: at level L the globe is 2^(L+1) x 2^L tiles; x counts from 180 W, y from 90 S.
+struct TileId {
+  int level = 15;
+  std::uint32_t x = 0, y = 0;
+  friend auto operator<=>(const TileId&, const TileId&) = default;
+};
+
+struct Region {
+  TileId tile;
+  const Extract* extract = nullptr;      ///< for tags; outlives the region
+  std::vector<Building> buildings;       ///< sorted by OSM id
+  std::vector<MaterialClass> materials;  ///< what Face::material indexes
+  EvidenceTable evidence;
+  Report report;
+};
+
+}  // namespace blockrand::model
