@@ -1,0 +1,19 @@
+// The one parallel loop of the program: items are worked on in any order, results are consumed in item order.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace blockrand::base {
+
+/// Number of worker threads for `jobs` as given by the user: 0 means one per core.
+int worker_count(int jobs);
+
+/// Calls `work(i)` for i in [0, count) on `workers` threads and `consume(i)` for each, one at a time and in increasing
+/// order of i, after its work is done. At most `in_flight` items are between the start of their work and the end of
+/// their consumption, which bounds memory. The first exception (of the lowest i that was reached) is rethrown after all
+/// running items have ended; nothing is consumed after it.
+void ordered_parallel(std::size_t count, int workers, std::size_t in_flight,
+                      const std::function<void(std::size_t)>& work, const std::function<void(std::size_t)>& consume);
+
+}  // namespace blockrand::base

@@ -1,0 +1,50 @@
+// Located TOML: every value that is read knows file, line and column; every key that nobody asks for is an error.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace blockrand::base {
+
+/// A table of a TOML file. Errors are InputErrors that name file, line, column, the key, and the nearest known key.
+class TomlTable {
+ public:
+  /// \throws InputError when the file cannot be read or is not TOML
+  static TomlTable read(const std::string& path);
+  static TomlTable parse(std::string_view text, const std::string& name);
+
+  TomlTable(const TomlTable&);
+  TomlTable(TomlTable&&) noexcept;
+  ~TomlTable();
+
+  bool has(std::string_view key) const;
+  std::optional<double> number(std::string_view key, double minimum, double maximum);  ///< integers are taken too
+  std::optional<std::int64_t> integer(std::string_view key, std::int64_t minimum, std::int64_t maximum);
+  std::optional<bool> boolean(std::string_view key);
+  std::optional<std::string> text(std::string_view key);
+  std::optional<std::vector<std::string>> texts(std::string_view key);
+  std::optional<std::vector<double>> numbers(std::string_view key);
+  std::optional<TomlTable> table(std::string_view key);
+  /// Keys of this table in alphabetical order.
+  std::vector<std::string> keys() const;
+
+  /// Call when all known keys were asked for: an InputError for the first key that was not, with the nearest that was.
+  void finish() const;
+  /// An InputError at the place of `key` (or of the table).
+  [[noreturn]] void fail(std::string_view key, const std::string& what, const std::string& remedy) const;
+
+ private:
+  struct Data;
+  explicit TomlTable(std::unique_ptr<Data> data);
+  std::unique_ptr<Data> data_;
+};
+
+/// The entry of `known` nearest to `word` (edit distance, at most a third of its length), or empty.
+std::string nearest(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace blockrand::base

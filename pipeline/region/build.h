@@ -1,0 +1,57 @@
+// The main job: one extract in, a published build out.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/base/progress.h"
+#include "pipeline/generate/options.h"
+#include "pipeline/repair/options.h"
+
+namespace blockrand::region {
+
+/// What the user asked for. Defaults are those of `blockrand build`.
+struct BuildOptions {
+  std::string input;                          ///< .osm, .osm.pbf, .osm.gz, .osm.bz2
+  std::string output;                         ///< folder that the build becomes
+  std::string configs;                        ///< folder with defaults/ and materials/; empty: found by the program
+  std::optional<std::array<double, 4>> bbox;  ///< west, south, east, north in degrees
+  std::string crs;                            ///< "EPSG:…"; empty: chosen from the extent
+  int lod = 2;                                ///< highest level of detail, 0 to 2
+  bool gltf = true;                           ///< tileset.json and tiles/
+  bool citygml = true;                        ///< citygml/
+  bool gzip = false;                          ///< CityGML as .gml.gz
+  bool single_glb = false;                    ///< also model.glb: the whole build in one frame
+  bool force = false;                         ///< replace an existing build
+  bool strict = false;                        ///< exit code 3 when a building is below the asked quality
+  int jobs = 0;                               ///< worker threads; 0: one per core
+  std::uint64_t seed = 1;                     ///< of all random choices
+  std::string terrain;                        ///< raster with ground heights, or empty
+  std::optional<double> ground_height;        ///< m above sea level for every base where there is no terrain
+  repair::RepairOptions repair;
+  generate::GenerateOptions generate;
+};
+
+/// What a build ended with.
+struct BuildSummary {
+  std::uint64_t buildings_in = 0, parts_in = 0;
+  std::uint64_t models = 0, represented = 0, duplicates = 0, reported = 0;
+  std::array<std::uint64_t, 3> models_by_lod{};   ///< objects whose best solid is LoD 0, 1, 2
+  std::map<std::string, std::uint64_t> issues;    ///< rows by code
+  std::uint64_t files = 0, bytes = 0;             ///< written
+  double seconds = 0;
+  std::uint64_t peak_rss_bytes = 0;
+  bool below_quality = false;                     ///< a building is simpler than asked, or has no solid
+};
+
+/// Builds and publishes. An existing output folder stays untouched until the new one is complete.
+/// \throws base::InputError   unreadable or invalid input
+/// \throws base::UsageError   options that contradict each other; an output place that cannot be used
+/// \throws base::OutputError  the disk is full or cannot be written
+BuildSummary build(const BuildOptions& options, base::Progress& progress);
+
+}  // namespace blockrand::region
