@@ -1,0 +1,157 @@
+#include "pipeline/geometry/triangulate.h"
+
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace blockrand::geometry {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>;
+using FaceInfoBase = CGAL::Triangulation_face_base_with_info_2<int, Kernel>;
+using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel, FaceInfoBase>;
+using DataStructure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
+using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, DataStructure, CGAL::No_constraint_intersection_tag>;
+
+constexpr int kUnvisited = -1;
+
+/// Marks each face with how many constraints separate it from the outside.
+void mark_nesting(Cdt& cdt) {
+  for (auto f = cdt.all_faces_begin(); f != cdt.all_faces_end(); ++f) f->info() = kUnvisited;
+  std::vector<Cdt::Face_handle> layer{cdt.infinite_face()}, next_layer;
+  for (int level = 0; !layer.empty(); ++level) {
+    while (!layer.empty()) {
+      const Cdt::Face_handle face = layer.back();
+      layer.pop_back();
+      if (face->info() != kUnvisited) continue;
+      face->info() = level;
+      for (int i = 0; i < 3; ++i) {
+        const Cdt::Face_handle other = face->neighbor(i);
+        if (other->info() != kUnvisited) continue;
+        (cdt.is_constrained({face, i}) ? next_layer : layer).push_back(other);
+      }
+    }
+    layer.swap(next_layer);
+  }
+}
+
+/// Two triangles of a convex quadrilateral along the diagonal that leaves the larger smallest area; none when the
+/// quadrilateral is not strictly convex.
+std::optional<std::array<Triangle, 2>> split_convex(std::span<const Grid2> p, const std::vector<std::uint32_t>& q) {
+  const auto twice_area = [&](int a, int b, int c) {
+    const Grid2 u = p[q[b]] - p[q[a]], v = p[q[c]] - p[q[a]];
+    return static_cast<Int128>(u.x) * v.y - static_cast<Int128>(u.y) * v.x;
+  };
+  const Int128 a = twice_area(0, 1, 2), b = twice_area(0, 2, 3), c = twice_area(1, 2, 3), d = twice_area(1, 3, 0);
+  if (a <= 0 || b <= 0 || c <= 0 || d <= 0) return std::nullopt;
+  if (std::min(a, b) >= std::min(c, d))
+    return std::array<Triangle, 2>{Triangle{q[0], q[1], q[2]}, Triangle{q[0], q[2], q[3]}};
+  return std::array<Triangle, 2>{Triangle{q[1], q[2], q[3]}, Triangle{q[1], q[3], q[0]}};
+}
+
+}  // namespace
+
+std::optional<std::vector<Triangle>> triangulate(std::span<const Grid2> points,
+                                                 std::span<const std::vector<std::uint32_t>> loops) {
+  std::vector<Triangle> out;
+  if (loops.size() == 1 && loops[0].size() == 3) {
+    const auto& t = loops[0];
+    if (orientation(points[t[0]], points[t[1]], points[t[2]]) <= 0) return std::nullopt;
+    out.push_back({t[0], t[1], t[2]});
+    return out;
+  }
+  if (loops.size() == 1 && loops[0].size() == 4) {
+    if (const auto two = split_convex(points, loops[0])) {
+      out.assign(two->begin(), two->end());
+      return out;
+    }
+  }
+  Cdt cdt;
+  std::size_t expected = 0;
+  // CGAL sees coordinates relative to the first point: small integers keep its filters fast and exact.
+  const Grid2 origin = points[loops[0][0]];
+  try {
+    std::vector<Cdt::Vertex_handle> handles;
+    for (const auto& loop : loops) {
+      handles.clear();
+      for (const std::uint32_t i : loop) {
+        const Grid2 p = points[i] - origin;
+        const auto handle = cdt.insert(Kernel::Point_2(static_cast<double>(p.x), static_cast<double>(p.y)),
+                                       handles.empty() ? Cdt::Face_handle() : handles.back()->face());
+        handle->info() = i;
+        handles.push_back(handle);
+      }
+      expected += loop.size();
+      if (cdt.number_of_vertices() != expected) return std::nullopt;  // a point is repeated
+      for (std::size_t k = 0; k < handles.size(); ++k)
+        cdt.insert_constraint(handles[k], handles[(k + 1) % handles.size()]);
+    }
+  } catch (const Cdt::Intersection_of_constraints_exception&) {
+    return std::nullopt;
+  }
+  mark_nesting(cdt);
+  for (auto f = cdt.finite_faces_begin(); f != cdt.finite_faces_end(); ++f) {
+    if (f->info() % 2 == 0) continue;
+    out.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
+  }
+  // Euler: n vertices in h + 1 loops give n + 2h - 2 triangles; anything else means that loops touch or nest wrongly.
+  if (out.size() != expected + 2 * (loops.size() - 1) - 2) return std::nullopt;
+  return out;
+}
+
+std::optional<model::SolidTriangles> triangulate(const model::Solid& solid) {
+  model::SolidTriangles out;
+  out.first.reserve(solid.faces.size() + 1);
+  std::vector<Grid3> grid(solid.vertices.size());
+  for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = to_grid(solid.vertices[i]);
+  std::vector<Grid2> flat(solid.vertices.size());
+  std::vector<std::vector<std::uint32_t>> loops;
+  for (const model::Face& face : solid.faces) {
+    out.first.push_back(static_cast<std::uint32_t>(out.triangles.size()));
+    const auto face_loops = solid.loops_of(face);
+    loops.resize(face_loops.size());
+    for (std::size_t l = 0; l < face_loops.size(); ++l) {
+      const auto indices = solid.indices_of(face_loops[l]);
+      loops[l].assign(indices.begin(), indices.end());
+      if (loops[l].size() < 3) return std::nullopt;
+    }
+    // Newell's normal of the outer loop, exact.
+    Int128 nx = 0, ny = 0, nz = 0;
+    const Grid3 origin = grid[loops[0][0]];
+    for (std::size_t k = 0; k < loops[0].size(); ++k) {
+      const Grid3 a = grid[loops[0][k]] - origin, b = grid[loops[0][(k + 1) % loops[0].size()]] - origin;
+      nx += static_cast<Int128>(a.y) * b.z - static_cast<Int128>(a.z) * b.y;
+      ny += static_cast<Int128>(a.z) * b.x - static_cast<Int128>(a.x) * b.z;
+      nz += static_cast<Int128>(a.x) * b.y - static_cast<Int128>(a.y) * b.x;
+    }
+    const auto magnitude = [](Int128 v) { return v < 0 ? -v : v; };
+    const bool use_z = magnitude(nz) >= magnitude(nx) && magnitude(nz) >= magnitude(ny);
+    const bool use_x = !use_z && magnitude(nx) >= magnitude(ny);
+    if (nx == 0 && ny == 0 && nz == 0) return std::nullopt;
+    for (const auto& loop : loops) {
+      for (const std::uint32_t i : loop) {
+        const Grid3 p = grid[i];
+        // Looked at from outside, against the normal, so that counter-clockwise stays counter-clockwise.
+        if (use_z)
+          flat[i] = nz > 0 ? Grid2{p.x, p.y} : Grid2{p.y, p.x};
+        else if (use_x)
+          flat[i] = nx > 0 ? Grid2{p.y, p.z} : Grid2{p.z, p.y};
+        else
+          flat[i] = ny > 0 ? Grid2{p.z, p.x} : Grid2{p.x, p.z};
+      }
+    }
+    const auto triangles = triangulate(flat, loops);
+    if (!triangles) return std::nullopt;
+    out.triangles.insert(out.triangles.end(), triangles->begin(), triangles->end());
+  }
+  out.first.push_back(static_cast<std::uint32_t>(out.triangles.size()));
+  return out;
+}
+
+}  // namespace blockrand::geometry

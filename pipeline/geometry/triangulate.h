@@ -1,0 +1,27 @@
+// Triangles of planar faces.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pipeline/geometry/grid.h"
+#include "pipeline/model/solid.h"
+
+namespace blockrand::geometry {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// Constrained Delaunay triangulation of a polygon given as loops of indices into `points` (outer counter-clockwise,
+/// holes clockwise or either). Triangles are counter-clockwise and use the loops' vertices only.
+/// Empty optional when the loops cross, touch or repeat a point: the polygon is not simple.
+std::optional<std::vector<Triangle>> triangulate(std::span<const Grid2> points,
+                                                 std::span<const std::vector<std::uint32_t>> loops);
+
+/// Triangulates every face of a solid in the projection along its dominant normal axis. Empty when a face is not a
+/// simple polygon there.
+std::optional<model::SolidTriangles> triangulate(const model::Solid& solid);
+
+}  // namespace blockrand::geometry
