@@ -77,12 +77,21 @@ struct FacadeEdge {
   EdgeKind kind = EdgeKind::unknown;
 };
 
+/// Rings as mapped, projected, before repair. An inner ring belongs to the last outer ring before it.
+struct MappedRings {
+  std::vector<Ring> rings;
+  std::vector<bool> inner;  ///< parallel to `rings`
+};
+
 /// One body of a building: a mapped part, what the parts leave of the outline, or the building itself.
 struct BuildingPart {
   std::string id;          ///< "w123", "w123.w456", "w123.rest", "w123.2" for the second piece of an outline
   OsmId osm;               ///< whose tags it carries
   Range tags;              ///< into Extract::tags
+  MappedAttributes mapped; ///< what its tags say
+  MappedRings rings;       ///< of a mapped part, until repair
   Polygon plan;            ///< repaired
+  bool rest = false;       ///< what mapped parts leave of the outline
   Attributes attributes;
   bool canopy = false;     ///< building=roof: a closed slab without walls
   RoofShape built_roof = RoofShape::flat;
@@ -95,14 +104,15 @@ struct BuildingPart {
 struct Building {
   OsmId osm;
   Range tags;                        ///< into Extract::tags
-  std::vector<Ring> rings;           ///< as mapped, projected, before repair: outer rings and inner rings
-  std::vector<bool> ring_is_inner;   ///< parallel to `rings`
+  MappedAttributes mapped;           ///< what its tags say
+  MappedRings rings;                 ///< empty for a part without outline that stands alone
   std::vector<Polygon> outline;      ///< repaired; usually one
   std::vector<FacadeEdge> edges;     ///< of the outline, ring by ring, polygon by polygon
   Attributes attributes;             ///< of the whole building
   std::vector<BuildingPart> parts;   ///< at least one after `generate` unless nothing could be built
   bool has_mapped_parts = false;
   bool owned = true;                 ///< false: halo only, never exported
+  IssueCode failure = IssueCode::none;  ///< why nothing could be built, when `parts` is empty or has no solid
   std::string id() const { return osm.text(); }
 };
 
