@@ -17,12 +17,19 @@ struct TileId {
   friend auto operator<=>(const TileId&, const TileId&) = default;
 };
 
+/// A mapped part that could not be built.
+struct PartFailure {
+  OsmId part;
+  IssueCode code = IssueCode::none;
+};
+
 struct Region {
   TileId tile;
   const Extract* extract = nullptr;      ///< for tags; outlives the region
   std::vector<Building> buildings;       ///< sorted by OSM id
   std::vector<MaterialClass> materials;  ///< what Face::material indexes
   EvidenceTable evidence;
+  std::vector<PartFailure> part_failures;
   Report report;
 };
 

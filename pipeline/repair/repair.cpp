@@ -101,7 +101,8 @@ BuildingPart whole(const Building& building) {
   return part;
 }
 
-void repair_building(Building& building, const RepairOptions& options, model::Report& report) {
+void repair_building(Building& building, const RepairOptions& options, Region& region) {
+  model::Report& report = region.report;
   if (!building.rings.rings.empty()) {
     Repaired outline = repair_rings(std::move(building.rings), building.osm, options, report);
     building.rings = {};
@@ -120,7 +121,7 @@ void repair_building(Building& building, const RepairOptions& options, model::Re
   for (BuildingPart& part : building.parts) {
     Repaired repaired = repair_rings(std::move(part.rings), part.osm, options, report);
     part.rings = {};
-    if (repaired.failure != IssueCode::none) report.add(part.osm, repaired.failure);
+    if (repaired.failure != IssueCode::none) region.part_failures.push_back({part.osm, repaired.failure});
     covered.insert(covered.end(), repaired.polygons.begin(), repaired.polygons.end());
     add_pieces(parts, part, std::move(repaired.polygons));
   }
@@ -154,7 +155,7 @@ void repair_building(Building& building, const RepairOptions& options, model::Re
 }  // namespace
 
 void repair(Region& region, const RepairOptions& options) {
-  for (Building& building : region.buildings) repair_building(building, options, region.report);
+  for (Building& building : region.buildings) repair_building(building, options, region);
 }
 
 }  // namespace blockrand::repair

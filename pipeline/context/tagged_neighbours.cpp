@@ -1,0 +1,69 @@
+#include "pipeline/context/tagged_neighbours.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace blockrand::context {
+
+TaggedNeighbours::Cell TaggedNeighbours::cell_of(model::Point2 p) const {
+  return {static_cast<std::int64_t>(std::floor(p.x / reach_)), static_cast<std::int64_t>(std::floor(p.y / reach_))};
+}
+
+TaggedNeighbours::TaggedNeighbours(std::vector<TaggedBuilding> buildings, double reach)
+    : reach_(reach), buildings_(std::move(buildings)) {
+  std::sort(buildings_.begin(), buildings_.end(), [&](const TaggedBuilding& a, const TaggedBuilding& b) {
+    const Cell ca = cell_of(a.place), cb = cell_of(b.place);
+    return ca != cb ? ca < cb : a.id < b.id;
+  });
+  cells_.reserve(buildings_.size());
+  for (const TaggedBuilding& b : buildings_) cells_.push_back(cell_of(b.place));
+}
+
+template <class Visit>
+void TaggedNeighbours::for_each_near(model::Point2 place, std::uint8_t group, model::OsmId self, Visit&& visit) const {
+  const Cell home = cell_of(place);
+  for (std::int64_t x = home.x - 1; x <= home.x + 1; ++x) {
+    // Cells of one column are consecutive in the sorted order.
+    const auto first = std::lower_bound(cells_.begin(), cells_.end(), Cell{x, home.y - 1});
+    const auto last = std::upper_bound(first, cells_.end(), Cell{x, home.y + 1});
+    for (auto c = first; c != last; ++c) {
+      const TaggedBuilding& b = buildings_[static_cast<std::size_t>(c - cells_.begin())];
+      if (b.group != group || b.id == self) continue;
+      const double dx = b.place.x - place.x, dy = b.place.y - place.y;
+      if (dx * dx + dy * dy <= reach_ * reach_) visit(b);
+    }
+  }
+}
+
+std::optional<NeighbourOpinion<double>> TaggedNeighbours::storeys(model::Point2 place, std::uint8_t group,
+                                                                  model::OsmId self, int minimum) const {
+  std::vector<float> values;
+  for_each_near(place, group, self, [&](const TaggedBuilding& b) {
+    if (b.storeys) values.push_back(*b.storeys);
+  });
+  if (static_cast<int>(values.size()) < minimum || values.empty()) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  const float median = values[(values.size() - 1) / 2];
+  const auto agree = std::count_if(values.begin(), values.end(), [&](float v) { return std::fabs(v - median) <= 0.5f; });
+  return NeighbourOpinion<double>{median, static_cast<int>(values.size()),
+                                  static_cast<double>(agree) / static_cast<double>(values.size())};
+}
+
+std::optional<NeighbourOpinion<model::RoofShape>> TaggedNeighbours::roof_shape(model::Point2 place, std::uint8_t group,
+                                                                               model::OsmId self, int minimum) const {
+  std::array<int, std::size(model::kRoofShapeNames)> votes{};
+  int voices = 0;
+  for_each_near(place, group, self, [&](const TaggedBuilding& b) {
+    if (!b.roof_shape) return;
+    ++votes[static_cast<std::size_t>(*b.roof_shape)];
+    ++voices;
+  });
+  if (voices < minimum || voices == 0) return std::nullopt;
+  const auto best = std::max_element(votes.begin(), votes.end());
+  return NeighbourOpinion<model::RoofShape>{static_cast<model::RoofShape>(best - votes.begin()), voices,
+                                            static_cast<double>(*best) / voices};
+}
+
+}  // namespace blockrand::context

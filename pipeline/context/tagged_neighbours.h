@@ -1,0 +1,62 @@
+// What the tagged buildings around a place say about those that are not tagged.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/model/osm_id.h"
+#include "pipeline/model/point.h"
+#include "pipeline/model/roof_shape.h"
+
+namespace blockrand::context {
+
+/// A building whose mapper noted storeys, or its roof. Inferred values never enter, so that what a building looks like
+/// depends on data within the reach alone (DESIGN law 4).
+struct TaggedBuilding {
+  model::OsmId id;
+  model::Point2 place;                         ///< m, any point of it
+  std::uint8_t group = 0;                      ///< only buildings of one group speak for each other
+  std::optional<float> storeys;
+  std::optional<model::RoofShape> roof_shape;
+};
+
+/// A statement of neighbours.
+template <class T>
+struct NeighbourOpinion {
+  T value{};
+  int voices = 0;      ///< neighbours that were asked
+  double share = 0;    ///< of them that agree: same roof shape, or storeys within half a storey
+};
+
+/// A grid index over the tagged buildings of an extract; read-only after construction, safe to share.
+class TaggedNeighbours {
+ public:
+  /// \param reach  m; fixes the cell size
+  TaggedNeighbours(std::vector<TaggedBuilding> buildings, double reach);
+
+  /// Median storeys of the neighbours of `group` within the reach of `place`, other than `self`; empty when fewer than
+  /// `minimum` are tagged. With an even number the lower of the middle two, so that the value is one that was mapped.
+  std::optional<NeighbourOpinion<double>> storeys(model::Point2 place, std::uint8_t group, model::OsmId self,
+                                                  int minimum) const;
+  /// The most frequent roof shape (ties: the first in the list of shapes).
+  std::optional<NeighbourOpinion<model::RoofShape>> roof_shape(model::Point2 place, std::uint8_t group,
+                                                               model::OsmId self, int minimum) const;
+  double reach() const { return reach_; }
+
+ private:
+  struct Cell {
+    std::int64_t x = 0, y = 0;
+    friend auto operator<=>(const Cell&, const Cell&) = default;
+  };
+  Cell cell_of(model::Point2 p) const;
+  template <class Visit>
+  void for_each_near(model::Point2 place, std::uint8_t group, model::OsmId self, Visit&& visit) const;
+
+  double reach_;
+  std::vector<TaggedBuilding> buildings_;  ///< sorted by cell, then id
+  std::vector<Cell> cells_;                ///< parallel to buildings_
+};
+
+}  // namespace blockrand::context
