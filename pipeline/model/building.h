@@ -69,6 +69,8 @@ void for_each_attribute(A& a, Visit&& visit, Absent&& absent) {
   visit("roof_material", "", a.roof_material);
 }
 
+inline constexpr std::uint32_t kNoIndex = 0xffffffff;
+
 /// What one edge of a footprint faces. First version: walls shared node by node; `context` refines it.
 enum class EdgeKind : std::uint8_t { unknown, party_wall };
 
@@ -87,6 +89,7 @@ struct MappedRings {
 struct BuildingPart {
   std::string id;          ///< "w123", "w123.w456", "w123.rest", "w123.2" for the second piece of an outline
   OsmId osm;               ///< whose tags it carries
+  std::uint32_t mapped_index = kNoIndex;  ///< into Extract::buildings
   Range tags;              ///< into Extract::tags
   MappedAttributes mapped; ///< what its tags say
   MappedRings rings;       ///< of a mapped part, until repair
@@ -103,6 +106,7 @@ struct BuildingPart {
 
 struct Building {
   OsmId osm;
+  std::uint32_t mapped_index = kNoIndex;  ///< into Extract::buildings
   Range tags;                        ///< into Extract::tags
   MappedAttributes mapped;           ///< what its tags say
   MappedRings rings;                 ///< empty for a part without outline that stands alone

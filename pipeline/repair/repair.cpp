@@ -96,6 +96,7 @@ BuildingPart whole(const Building& building) {
   BuildingPart part;
   part.id = building.id();
   part.osm = building.osm;
+  part.mapped_index = building.mapped_index;
   part.tags = building.tags;
   part.mapped = building.mapped;
   return part;

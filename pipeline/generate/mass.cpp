@@ -1,0 +1,336 @@
+#include "pipeline/generate/mass.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/solid_builder.h"
+#include "pipeline/geometry/triangulate.h"
+#include "pipeline/geometry/valid_polygon.h"
+#include "styles/roofs/roof.h"
+
+namespace blockrand::generate {
+
+namespace {
+
+using model::BuildingPart;
+using model::Face;
+using model::IssueCode;
+using model::Point2;
+using model::Point3;
+using model::Polygon;
+using model::Region;
+using model::Ring;
+using model::RoofOrientation;
+using model::RoofShape;
+using model::Solid;
+using model::SolidTriangles;
+using model::SurfaceKind;
+
+/// Looks of the kinds of faces of one part.
+struct Looks {
+  Face wall, roof, under;
+};
+
+/// Vertical extent of a mass, all z above the build's height reference.
+struct Levels {
+  double bottom = 0, eaves = 0, top = 0;
+};
+
+struct Checked {
+  Solid solid;
+  SolidTriangles triangles;
+};
+
+/// Plan → closed solid below a roof: underside, walls, roof surfaces.
+Solid assemble(const Polygon& plan, double bottom, const roofs::Roof& roof, const Looks& looks) {
+  geometry::SolidBuilder builder;
+  std::vector<std::vector<Point3>> underside;
+  const auto loop_below = [&](const Ring& ring) {
+    std::vector<Point3> loop;
+    for (auto p = ring.points.rbegin(); p != ring.points.rend(); ++p) loop.push_back({p->x, p->y, bottom});
+    underside.push_back(std::move(loop));
+  };
+  loop_below(plan.outer);
+  for (const Ring& hole : plan.holes) loop_below(hole);
+  builder.add_face(underside, looks.under);
+
+  std::int32_t edge = 0;
+  const auto walls = [&](const Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i, ++edge) {
+      const Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
+      std::vector<Point3> loop{{a.x, a.y, bottom}, {b.x, b.y, bottom}};
+      const auto& top = roof.wall_tops[static_cast<std::size_t>(edge)];
+      loop.insert(loop.end(), top.begin(), top.end());
+      Face face = looks.wall;
+      face.edge = edge;
+      builder.add_face(loop, face);
+    }
+  };
+  walls(plan.outer);
+  for (const Ring& hole : plan.holes) walls(hole);
+
+  for (const auto& surface : roof.surfaces) {
+    Face face = looks.roof;
+    face.edge = surface.edge;
+    builder.add_face(surface.loops, face);
+  }
+  return builder.take();
+}
+
+std::optional<Checked> checked(Solid solid) {
+  auto triangles = geometry::triangulate(solid);
+  if (!triangles) return std::nullopt;
+  if (!geometry::check_solid(solid, *triangles).valid()) return std::nullopt;
+  return Checked{std::move(solid), std::move(*triangles)};
+}
+
+/// The plan without points that bend no wall. Empty when the simpler plan is no simple polygon any more.
+std::optional<Polygon> simpler(const Polygon& plan, double tolerance) {
+  Polygon out = plan;
+  geometry::remove_collinear(out.outer, tolerance);
+  for (Ring& hole : out.holes) geometry::remove_collinear(hole, tolerance);
+  if (!geometry::strictly_simple(out)) return std::nullopt;
+  return out;
+}
+
+/// The shape that stands for one that later work will build as it is.
+RoofShape nearest_built_shape(RoofShape shape) {
+  switch (shape) {
+    case RoofShape::flat:
+    case RoofShape::gabled:
+    case RoofShape::hipped:
+    case RoofShape::pyramidal:
+    case RoofShape::skillion:
+      return shape;
+    case RoofShape::gabled_height_moved:
+    case RoofShape::gambrel:
+    case RoofShape::round:
+    case RoofShape::saltbox:
+    case RoofShape::double_saltbox:
+    case RoofShape::quadruple_saltbox:
+    case RoofShape::half_hipped:
+    case RoofShape::side_half_hipped:
+    case RoofShape::crosspitched:
+      return RoofShape::gabled;
+    case RoofShape::mansard:
+    case RoofShape::side_hipped:
+    case RoofShape::hipped_and_gabled:
+      return RoofShape::hipped;
+    case RoofShape::cone:
+    case RoofShape::dome:
+    case RoofShape::onion:
+    case RoofShape::spire:
+      return RoofShape::pyramidal;
+    case RoofShape::sawtooth:
+    case RoofShape::butterfly:
+    case RoofShape::many:
+    case RoofShape::other:
+      return RoofShape::flat;
+  }
+  return RoofShape::flat;
+}
+
+/// Which of the first two edges of a four-cornered plan carries the eaves.
+int eaves_edge(const Polygon& plan, const model::Attributes& attributes) {
+  const auto length = [&](int i) {
+    const Point2 a = plan.outer.points[static_cast<std::size_t>(i)], b = plan.outer.points[static_cast<std::size_t>((i + 1) % 4)];
+    return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+  };
+  if (attributes.roof_direction) {
+    // The direction points down the slope: the eaves are the edges it crosses most squarely.
+    const Point2 down = roofs::compass_vector(attributes.roof_direction->value);
+    const auto squareness = [&](int i) {
+      const Point2 a = plan.outer.points[static_cast<std::size_t>(i)], b = plan.outer.points[static_cast<std::size_t>((i + 1) % 4)];
+      return std::fabs((b.y - a.y) * down.x - (b.x - a.x) * down.y) / std::max(length(i), 1e-9);
+    };
+    return squareness(0) >= squareness(1) ? 0 : 1;
+  }
+  const bool first_is_longer = length(0) + length(2) >= length(1) + length(3);
+  const bool along = attributes.roof_orientation.value == RoofOrientation::along;
+  return first_is_longer == along ? 0 : 1;
+}
+
+/// What came out of one try at a roof.
+struct RoofTry {
+  std::optional<roofs::Roof> roof;
+  RoofShape built = RoofShape::flat;
+  IssueCode note = IssueCode::none;
+};
+
+RoofTry try_roof(const Polygon& plan, RoofShape shape, roofs::RoofMeasures measures, const model::Attributes& attributes) {
+  switch (shape) {
+    case RoofShape::skillion: {
+      const Point2 down = attributes.roof_direction ? roofs::compass_vector(attributes.roof_direction->value)
+                                                    : roofs::default_slope(plan);
+      return {roofs::skillion_roof(plan, measures, down), shape};
+    }
+    case RoofShape::pyramidal:
+      if (auto roof = roofs::pyramidal_roof(plan, measures)) return {std::move(roof), shape};
+      return {roofs::hipped_roof(plan, measures), RoofShape::hipped, IssueCode::pyramid_as_hip};
+    case RoofShape::gabled: {
+      if (plan.outer.size() == 4 && plan.holes.empty())
+        if (auto roof = roofs::gabled_quadrilateral(plan, measures, eaves_edge(plan, attributes)))
+          return {std::move(roof), shape};
+      auto gabled = roofs::gabled_roof(plan, measures);
+      if (!gabled) return {};
+      const bool ring = !plan.holes.empty();
+      return {std::move(gabled->roof), gabled->gables > 0 || ring ? shape : RoofShape::hipped,
+              gabled->gables > 0 || ring ? IssueCode::none : IssueCode::gable_as_hip};
+    }
+    case RoofShape::hipped:
+      return {roofs::hipped_roof(plan, measures), shape};
+    default:
+      return {roofs::flat_roof(plan, measures.eaves + measures.height), RoofShape::flat};
+  }
+}
+
+class MassBuilder {
+ public:
+  MassBuilder(Region& region, const Defaults& defaults, const GenerateOptions& options)
+      : region_(region), defaults_(defaults), options_(options) {}
+
+  void build(BuildingPart& part, int lod) {
+    if (part.plan.outer.size() < 3) return;
+    part.lod = 0;
+    const Looks looks = looks_of(part);
+    const Levels levels = levels_of(part);
+    std::optional<Polygon> plan = simpler(part.plan, options_.collinear_tolerance);
+    if (!plan) plan = part.plan;
+    if (lod >= 1) build_lod1(part, *plan, levels, looks);
+    if (lod >= 2) build_lod2(part, *plan, levels, looks);
+    if (part.lod < lod)
+      note(part, part.lod == 1 ? IssueCode::lod1_only : IssueCode::no_solid);
+  }
+
+ private:
+  void note(BuildingPart& part, IssueCode code, std::string detail = {}) {
+    part.fallbacks.push_back(code);
+    region_.report.add(part.osm, code, detail.empty() ? part.id : part.id + ": " + detail);
+  }
+
+  Looks looks_of(const BuildingPart& part) const {
+    const auto face = [&](SurfaceKind kind, const std::string& material, model::Colour colour) {
+      Face f;
+      f.kind = kind;
+      f.material = static_cast<std::uint8_t>(std::max(defaults_.material(material), 0));
+      f.colour = colour;
+      return f;
+    };
+    const auto& a = part.attributes;
+    const bool on_ground = a.min_height.value <= 0 && !part.canopy;
+    Looks looks;
+    looks.wall = face(SurfaceKind::wall, a.wall_material.value, a.wall_colour.value);
+    looks.roof = face(SurfaceKind::roof, a.roof_material.value, a.roof_colour.value);
+    looks.under = face(on_ground ? SurfaceKind::ground : SurfaceKind::outer_ceiling, a.wall_material.value, a.wall_colour.value);
+    return looks;
+  }
+
+  Levels levels_of(BuildingPart& part) {
+    auto& a = part.attributes;
+    const double ground = a.ground_height.value;
+    double top = a.height.value, bottom = std::max(a.min_height.value, 0.0);
+    if (bottom > 0 && bottom > top - options_.min_wall_height) {
+      note(part, IssueCode::values_conflict, fmt::format("min_height {:.2f} m under height {:.2f} m", bottom, top));
+      bottom = std::max(0.0, top - std::max(options_.min_wall_height, a.storey_height.value));
+    }
+    if (top < bottom + options_.min_wall_height) top = bottom + options_.min_wall_height;
+    double roof = a.roof_shape.value == RoofShape::flat ? 0 : a.roof_height.value;
+    if (part.canopy) {
+      // A slab without walls: all that is below the roof's own thickness is air.
+      const double thickness = std::min(options_.canopy_thickness, (top - bottom) / 2);
+      if (a.min_height.source != model::Source::tag) bottom = std::max(bottom, top - roof - thickness);
+    }
+    const double room = top - bottom - (part.canopy ? std::min(options_.canopy_thickness, (top - bottom) / 2) : options_.min_wall_height);
+    if (roof > room) {
+      if (a.roof_height.source == model::Source::tag)
+        note(part, IssueCode::roof_height_clamped, fmt::format("{:.2f} m of {:.2f} m", std::max(room, 0.0), roof));
+      roof = std::max(room, 0.0);
+    }
+    if (roof < options_.min_roof_height) roof = 0;
+    return {model::snap(ground + bottom), model::snap(ground + top - roof), model::snap(ground + top)};
+  }
+
+  void build_lod1(BuildingPart& part, const Polygon& plan, const Levels& levels, const Looks& looks) {
+    const double top = model::snap((levels.eaves + levels.top) / 2);
+    for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, &part.plan}) {
+      if (auto block = checked(assemble(*p, levels.bottom, roofs::flat_roof(*p, top), looks))) {
+        part.lod1 = std::move(block->solid);
+        part.lod1_triangles = std::move(block->triangles);
+        part.lod = 1;
+        return;
+      }
+    }
+  }
+
+  bool accept(BuildingPart& part, const Polygon& plan, const Levels& levels, const Looks& looks, const roofs::Roof& roof,
+              RoofShape built) {
+    auto result = checked(assemble(plan, levels.bottom, roof, looks));
+    if (!result) return false;
+    part.lod2 = std::move(result->solid);
+    part.lod2_triangles = std::move(result->triangles);
+    part.built_roof = built;
+    part.lod = 2;
+    return true;
+  }
+
+  void build_lod2(BuildingPart& part, const Polygon& plan, const Levels& levels, const Looks& looks) {
+    const RoofShape asked = part.attributes.roof_shape.value;
+    const roofs::RoofMeasures measures{levels.eaves, levels.top - levels.eaves};
+    if (asked != RoofShape::flat && measures.height > 0) {
+      const RoofShape shape = nearest_built_shape(asked);
+      if (asked == RoofShape::other)
+        note(part, IssueCode::roof_shape_unknown);
+      else if (shape != asked)
+        note(part, IssueCode::roof_shape_unsupported, std::string(model::name(asked)) + " as " + std::string(model::name(shape)));
+      const std::optional<Polygon> simplified = simpler(plan, options_.simplify_tolerance);
+      for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, simplified ? &*simplified : nullptr}) {
+        if (!p) continue;
+        RoofTry attempt = try_roof(*p, shape, measures, part.attributes);
+        if (attempt.roof && accept(part, *p, levels, looks, *attempt.roof, attempt.built)) {
+          if (attempt.note != IssueCode::none) note(part, attempt.note);
+          if (p != &plan) note(part, IssueCode::roof_simplified);
+          return;
+        }
+        // A lopsided gable can cut into another wing; the plain hips of the same plan do not.
+        if (shape != RoofShape::gabled) continue;
+        attempt = try_roof(*p, RoofShape::hipped, measures, part.attributes);
+        if (attempt.roof && accept(part, *p, levels, looks, *attempt.roof, attempt.built)) {
+          note(part, IssueCode::gable_as_hip);
+          if (p != &plan) note(part, IssueCode::roof_simplified);
+          return;
+        }
+      }
+      if (shape != RoofShape::flat) note(part, IssueCode::roof_failed, std::string(model::name(shape)));
+    }
+    // A flat roof in place of a pitched one ends at half its height, so that the volume stays.
+    const double top = asked == RoofShape::flat ? levels.top : model::snap((levels.eaves + levels.top) / 2);
+    if (accept(part, plan, levels, looks, roofs::flat_roof(plan, top), RoofShape::flat)) return;
+    for (const double tolerance : {options_.simplify_tolerance, 2 * options_.simplify_tolerance}) {
+      const std::optional<Polygon> simplified = simpler(part.plan, tolerance);
+      if (simplified && accept(part, *simplified, levels, looks, roofs::flat_roof(*simplified, top), RoofShape::flat)) {
+        note(part, IssueCode::plan_simplified);
+        return;
+      }
+    }
+  }
+
+  Region& region_;
+  const Defaults& defaults_;
+  const GenerateOptions& options_;
+};
+
+}  // namespace
+
+void build_masses(Region& region, const Defaults& defaults, const GenerateOptions& options, int lod) {
+  MassBuilder builder(region, defaults, options);
+  for (model::Building& building : region.buildings) {
+    if (!building.owned) continue;
+    for (BuildingPart& part : building.parts) builder.build(part, lod);
+  }
+}
+
+}  // namespace blockrand::generate

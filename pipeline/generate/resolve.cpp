@@ -1,0 +1,299 @@
+#include "pipeline/generate/resolve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/base/portable_math.h"
+#include "pipeline/base/random.h"
+#include "pipeline/geometry/polygon.h"
+
+namespace blockrand::generate {
+
+namespace {
+
+using model::Attributes;
+using model::Building;
+using model::BuildingPart;
+using model::Colour;
+using model::MappedAttributes;
+using model::Region;
+using model::RoofShape;
+using model::Source;
+using model::Sourced;
+
+// How far each kind of source is trusted. Own tags may be wrong, too; the rest is experience, to be replaced by measured
+// hit rates when the classifier is fitted.
+constexpr float kTagConfidence = 0.95f;
+constexpr float kImpliedConfidence = 0.8f;
+constexpr float kOutlineConfidence = 0.7f;
+constexpr float kGeometryConfidence = 0.4f;
+constexpr float kPresetConfidence = 0.3f;
+constexpr float kDefaultConfidence = 0.1f;
+
+/// m. No inhabited storey is lower; a roof gives way before its storeys do.
+constexpr double kLowestStorey = 2.2;
+
+double tangent(double degrees) { return base::tan(degrees * (3.14159265358979323846 / 180)); }
+
+/// What is asked while one building or part is resolved.
+struct Resolver {
+  Region& region;
+  const ResolveInputs& in;
+  const GenerateOptions& options;
+  const Building& building;
+  const BuildingPart* part;             ///< null when the building as a whole is resolved
+  const MappedAttributes& own;          ///< tags of the part, or of the building
+  const MappedAttributes* outline;      ///< tags of the outline when a part is resolved
+  const UseDefaults& preset;
+  std::uint8_t group;
+  const std::vector<model::Polygon>& plans;
+  model::OsmId id;
+
+  template <class T>
+  Sourced<T> make(T value, Source source, double confidence, std::string why, std::vector<model::Candidate> lost = {}) {
+    return {std::move(value), source, static_cast<float>(confidence),
+            region.evidence.add({std::move(why), std::move(lost)})};
+  }
+  std::string_view text(base::StringId id_) const { return region.extract->strings.view(id_); }
+
+  model::Point2 place() const { return plans.empty() || plans[0].outer.points.empty() ? model::Point2{} : plans[0].outer.points[0]; }
+
+  Source preset_source() const { return preset.name == "default" ? Source::default_ : Source::preset; }
+  double preset_confidence() const { return preset.name == "default" ? kDefaultConfidence : kPresetConfidence; }
+  std::string preset_name() const { return preset.name == "default" ? "default for all buildings" : "usual for building=" + preset.name; }
+
+  bool has_own_height() const { return own.height || own.storeys; }
+
+  Sourced<double> storeys() {
+    if (own.storeys) return make<double>(*own.storeys, Source::tag, kTagConfidence, "tagged");
+    if (outline && !own.height && outline->storeys)
+      return make<double>(*outline->storeys, Source::implied, kOutlineConfidence, "the outline's storeys");
+    std::vector<model::Candidate> lost{{preset_source(), static_cast<float>(preset_confidence()), fmt::format("{}", preset.storeys)}};
+    if (const auto opinion = in.neighbours.storeys(place(), group, id, options.neighbour_minimum))
+      return make<double>(opinion->value, Source::neighbours, 0.3 + 0.4 * opinion->share,
+                          fmt::format("median of {} neighbours within {:.0f} m", opinion->voices, in.neighbours.reach()),
+                          std::move(lost));
+    return make<double>(preset.storeys, preset_source(), preset_confidence(), preset_name());
+  }
+
+  /// True when the tags speak of a roof with a slope without naming its shape.
+  bool tags_speak_of_slope() const {
+    return (own.roof_storeys && *own.roof_storeys >= 1) || (own.roof_angle && *own.roof_angle >= 10) ||
+           (own.roof_height && *own.roof_height >= 1);
+  }
+
+  double width() const { return plans.empty() ? 0 : geometry::equivalent_width(plans[0]); }
+
+  Sourced<RoofShape> roof_shape() {
+    if (own.roof_shape) return make(*own.roof_shape, Source::tag, kTagConfidence, "tagged");
+    if (own.roof_orientation || own.roof_direction || tags_speak_of_slope()) {
+      // A direction alone means one slope, storeys or an angle mean two.
+      const bool one_slope = own.roof_direction && !own.roof_orientation && !tags_speak_of_slope();
+      return make(one_slope ? RoofShape::skillion : RoofShape::gabled, Source::implied, kImpliedConfidence,
+                  "other roof tags speak of a slope");
+    }
+    if (outline && outline->roof_shape && !has_own_height())
+      return make(*outline->roof_shape, Source::implied, kOutlineConfidence, "the outline's roof");
+    if (outline && has_own_height())
+      return make(RoofShape::flat, Source::implied, kGeometryConfidence, "a part with a height and no roof tags ends flat");
+    const bool wide = width() > preset.pitched_width;
+    if (const auto opinion = in.neighbours.roof_shape(place(), group, id, options.neighbour_minimum);
+        opinion && opinion->share >= 0.5) {
+      const bool fits = opinion->value == RoofShape::flat || !wide;
+      if (fits)
+        return make(opinion->value, Source::neighbours, 0.2 + 0.5 * opinion->share,
+                    fmt::format("{:.0f} % of {} neighbours within {:.0f} m", 100 * opinion->share, opinion->voices,
+                                in.neighbours.reach()),
+                    {{preset_source(), static_cast<float>(preset_confidence()), std::string(model::name(preset.roof_shape))}});
+    }
+    if (preset.roof_shape != RoofShape::flat && wide)
+      return make(RoofShape::flat, Source::geometry, kGeometryConfidence,
+                  fmt::format("the plan is {:.0f} m wide, too wide for rafters", width()),
+                  {{preset_source(), static_cast<float>(preset_confidence()), std::string(model::name(preset.roof_shape))}});
+    return make(preset.roof_shape, preset_source(), preset_confidence(), preset_name());
+  }
+
+  /// Horizontal run of the roof's slope: half the plan's width, or all of it for one slope.
+  double run(RoofShape shape) const {
+    const double w = width();
+    if (shape != RoofShape::skillion) return w / 2;
+    return w;
+  }
+
+  Sourced<double> roof_height(RoofShape shape, double storey_height) {
+    if (shape == RoofShape::flat) return make<double>(0, Source::implied, kImpliedConfidence, "flat roof");
+    if (own.roof_height) return make<double>(*own.roof_height, Source::tag, kTagConfidence, "tagged");
+    if (own.roof_angle)
+      return make<double>(run(shape) * tangent(std::clamp<double>(*own.roof_angle, 0, 80)), Source::implied,
+                          kImpliedConfidence, fmt::format("roof:angle={:g}", *own.roof_angle));
+    if (own.roof_storeys && *own.roof_storeys > 0)
+      return make<double>(*own.roof_storeys * storey_height, Source::implied, kImpliedConfidence,
+                          fmt::format("roof:levels={:g}", *own.roof_storeys));
+    // Lean-to roofs are flatter than ridged ones; towers' pyramids and cones are steeper.
+    double pitch = preset.roof_pitch;
+    if (shape == RoofShape::skillion) pitch = std::min(pitch, 15.0);
+    if (shape == RoofShape::onion || shape == RoofShape::dome) pitch = 45;
+    pitch = std::min(pitch, options.max_roof_pitch);
+    return make<double>(run(shape) * tangent(pitch), preset_source(), preset_confidence(),
+                        fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, run(shape)));
+  }
+
+  /// Storeys, heights and roof, which hang together.
+  void heights(Attributes& a) {
+    a.roof_shape = roof_shape();
+    a.storeys = storeys();
+    a.storey_height = make<double>(preset.storey_height, preset_source(), preset_confidence(), preset_name());
+    a.roof_storeys = own.roof_storeys ? make<double>(*own.roof_storeys, Source::tag, kTagConfidence, "tagged")
+                                      : make<double>(0, Source::default_, kDefaultConfidence, "none tagged");
+    a.roof_height = roof_height(a.roof_shape.value, std::min(preset.storey_height, 3.0));
+    const bool roof_is_tagged = a.roof_height.source == Source::tag;
+
+    const MappedAttributes* height_from = own.height ? &own : outline && !has_own_height() && outline->height ? outline : nullptr;
+    if (height_from) {
+      a.height = height_from == &own ? make<double>(*own.height, Source::tag, kTagConfidence, "tagged")
+                                     : make<double>(*outline->height, Source::implied, kOutlineConfidence, "the outline's height");
+      const bool storeys_known = a.storeys.source == Source::tag || a.storeys.source == Source::implied;
+      if (a.roof_shape.value != RoofShape::flat && !roof_is_tagged) {
+        const double wanted = a.roof_height.value;
+        double roof = std::min(wanted, 0.6 * a.height.value);
+        if (storeys_known && a.storeys.value > 0) {
+          const double left = a.height.value - a.storeys.value * preset.storey_height;
+          roof = std::clamp(left, wanted * 2 / 3, wanted * 4 / 3);
+          roof = std::min(roof, std::max(a.height.value - a.storeys.value * kLowestStorey, 0.1 * a.height.value));
+        }
+        if (roof != wanted)
+          a.roof_height = make<double>(std::max(roof, 0.0), Source::implied, kImpliedConfidence, "what height and storeys leave",
+                                       {{a.roof_height.source, a.roof_height.confidence, fmt::format("{:.2f}", wanted)}});
+      }
+      const double walls = std::max(a.height.value - a.roof_height.value, 0.0);
+      if (storeys_known && a.storeys.value > 0) {
+        a.storey_height = make<double>(walls / a.storeys.value, Source::implied, kImpliedConfidence, "height over storeys");
+      } else {
+        const double count = std::max(1.0, std::floor(walls / preset.storey_height + 0.5));
+        a.storeys = make<double>(count, Source::implied, 0.6, fmt::format("{:.1f} m of wall at {:.1f} m a storey", walls, preset.storey_height),
+                                 {{a.storeys.source, a.storeys.confidence, fmt::format("{:g}", a.storeys.value)}});
+        a.storey_height = make<double>(walls / count, Source::implied, 0.6, "height over storeys");
+      }
+    } else {
+      double walls = a.storeys.value * a.storey_height.value;
+      // On a flat roof the tagged roof storeys stand as a set-back upper floor; until set-backs are built they add to
+      // the walls, so that the height is right.
+      if (a.roof_shape.value == RoofShape::flat) walls += a.roof_storeys.value * a.storey_height.value;
+      if (walls <= 0 && a.roof_height.value <= 0) walls = a.storey_height.value;
+      const bool from_tags = a.storeys.source == Source::tag;
+      a.height = make<double>(walls + a.roof_height.value, from_tags ? Source::implied : a.storeys.source,
+                              from_tags ? 0.6 : a.storeys.confidence,
+                              fmt::format("{:g} storeys of {:.1f} m and a roof of {:.1f} m", a.storeys.value,
+                                          a.storey_height.value, a.roof_height.value));
+    }
+
+    if (own.min_height) {
+      a.min_height = make<double>(*own.min_height, Source::tag, kTagConfidence, "tagged");
+    } else if (own.min_storey && *own.min_storey > 0) {
+      a.min_height = make<double>(*own.min_storey * a.storey_height.value, Source::implied, kImpliedConfidence,
+                                  fmt::format("{:g} storeys skipped", *own.min_storey));
+    } else {
+      a.min_height = make<double>(0, Source::default_, 0.9, "stands on the ground");
+    }
+  }
+
+  template <class Pick>
+  Sourced<Colour> colour(std::optional<Colour> tagged, std::optional<Colour> outline_tagged, const Sourced<std::string>& material,
+                         const std::vector<Colour>& palette, const char* choice, Pick&& preset_applies) {
+    if (tagged) return make(*tagged, Source::tag, kTagConfidence, "tagged");
+    if (outline_tagged) return make(*outline_tagged, Source::implied, kOutlineConfidence, "the outline's colour");
+    const int index = in.defaults.material(material.value);
+    if (!preset_applies() && index >= 0)
+      return make(in.defaults.materials[static_cast<std::size_t>(index)].colour, Source::implied, 0.5, "colour of " + material.value);
+    // All parts of a building are painted alike: the key is the building's.
+    const std::uint64_t bits = base::random_bits(in.seed, building.osm.key(), choice);
+    return make(palette[bits % palette.size()], preset_source(), kDefaultConfidence, "drawn from the palette, " + preset_name());
+  }
+
+  Sourced<std::string> material(base::StringId tagged, base::StringId outline_tagged, const std::string& preset_material) {
+    const auto known = [&](base::StringId value) -> int {
+      return value == 0 ? -1 : in.defaults.material(text(value));
+    };
+    const auto class_name = [&](int index) { return in.defaults.materials[static_cast<std::size_t>(index)].looks.name; };
+    if (const int m = known(tagged); m >= 0) return make(class_name(m), Source::tag, kTagConfidence, "tagged " + std::string(text(tagged)));
+    if (const int m = known(outline_tagged); m >= 0)
+      return make(class_name(m), Source::implied, kOutlineConfidence, "the outline's material");
+    return make(preset_material, preset_source(), kDefaultConfidence, preset_name());
+  }
+
+  void looks(Attributes& a) {
+    const base::StringId outline_wall = outline ? outline->wall_material : 0, outline_roof = outline ? outline->roof_material : 0;
+    a.wall_material = material(own.wall_material, outline_wall, preset.wall_material);
+    const bool flat = a.roof_shape.value == RoofShape::flat;
+    a.roof_material = material(own.roof_material, outline_roof, flat ? preset.flat_roof_material : preset.roof_material);
+    a.wall_colour = colour(own.wall_colour, outline ? outline->wall_colour : std::nullopt, a.wall_material, preset.wall_colours,
+                           "wall_colour", [&] { return a.wall_material.source != Source::tag && a.wall_material.source != Source::implied; });
+    a.roof_colour = colour(own.roof_colour, outline ? outline->roof_colour : std::nullopt, a.roof_material, preset.roof_colours,
+                           "roof_colour", [&] { return !flat && a.roof_material.source != Source::tag && a.roof_material.source != Source::implied; });
+  }
+
+  Attributes resolve(Sourced<double> ground) {
+    Attributes a;
+    a.use = own.use != 0 ? make(std::string(text(own.use)), Source::tag, kTagConfidence, "tagged")
+                         : make(std::string("yes"), Source::default_, kDefaultConfidence, "not tagged");
+    a.ground_height = ground;
+    heights(a);
+    a.roof_orientation = own.roof_orientation
+                             ? make(*own.roof_orientation, Source::tag, kTagConfidence, "tagged")
+                             : make(model::RoofOrientation::along, Source::default_, kDefaultConfidence, "along the longer side");
+    if (own.roof_direction) a.roof_direction = make<double>(*own.roof_direction, Source::tag, kTagConfidence, "tagged");
+    looks(a);
+    return a;
+  }
+};
+
+double area_of(const std::vector<model::Polygon>& plans) {
+  double sum = 0;
+  for (const auto& p : plans) sum += geometry::area(p);
+  return sum;
+}
+
+}  // namespace
+
+std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, double area) {
+  return area < defaults.small_area && use == "yes" ? defaults.small.group : defaults.use(use).group;
+}
+
+void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateOptions& options) {
+  const auto use_text = [&](const MappedAttributes& mapped) { return region.extract->strings.view(mapped.use); };
+  for (Building& building : region.buildings) {
+    const Sourced<double> ground = in.ground_height(building);
+    const std::string_view use = use_text(building.mapped);
+    const double area = area_of(building.outline);
+    // An outline of a few square metres that says nothing but `yes` is no house.
+    const bool small = use == "yes" && !building.outline.empty() && area < in.defaults.small_area;
+    const UseDefaults& preset = small ? in.defaults.small : in.defaults.use(use);
+    const std::uint8_t group = neighbour_group(in.defaults, use, area);
+
+    for (BuildingPart& part : building.parts) {
+      const bool own_tags = building.has_mapped_parts && !part.rest;
+      const std::string_view part_use = use_text(part.mapped);
+      // building:part=yes says nothing; a use of its own does.
+      const bool own_use = own_tags && in.defaults.uses.contains(part_use) && part_use != "yes";
+      const std::vector<model::Polygon> plan{part.plan};
+      Resolver r{region, in, options, building, &part, part.mapped,
+                 own_tags && building.osm != part.osm ? &building.mapped : nullptr, own_use ? in.defaults.use(part_use) : preset,
+                 group, plan, building.osm};
+      part.attributes = r.resolve(ground);
+      part.canopy = part_use == "roof" || (own_tags && part_use == "yes" && use == "roof");
+    }
+    Resolver whole{region, in, options, building, nullptr, building.mapped, nullptr, preset, group, building.outline, building.osm};
+    building.attributes = whole.resolve(ground);
+    if (building.parts.size() == 1 && !building.has_mapped_parts) {
+      building.attributes = building.parts[0].attributes;
+    } else if (building.has_mapped_parts && !building.parts.empty() && !building.mapped.height) {
+      double top = 0;
+      for (const BuildingPart& p : building.parts) top = std::max(top, p.attributes.height.value);
+      building.attributes.height = whole.make<double>(top, Source::part, 0.9, "highest of its parts");
+    }
+  }
+}
+
+}  // namespace blockrand::generate

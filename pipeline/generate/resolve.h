@@ -1,0 +1,36 @@
+// Missing values, first version: every attribute of every building and part gets a value, a source and a reason.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "pipeline/context/tagged_neighbours.h"
+#include "pipeline/generate/defaults.h"
+#include "pipeline/generate/options.h"
+#include "pipeline/model/region.h"
+
+namespace blockrand::generate {
+
+/// What resolve_attributes reads besides the region.
+struct ResolveInputs {
+  const Defaults& defaults;
+  const context::TaggedNeighbours& neighbours;
+  std::uint64_t seed = 1;
+  /// Ground under a building: height above the build's reference, with its source.
+  std::function<model::Sourced<double>(const model::Building&)> ground_height;
+};
+
+/// Which group's neighbours speak for a building whose use is `use` and whose footprint measures `area` m².
+std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, double area);
+
+/// Fills `attributes` of all buildings and parts. Per value, strongest first: the part's or building's own tag; what
+/// follows from another tag; the outline's tag (for parts); the median or majority of at least `neighbour_minimum`
+/// tagged neighbours; the defaults of the building's use; the defaults of all. Conventions: `MappedAttributes`.
+///
+/// Heights hang together: height = storeys x storey height + roof height. Where `height` and `storeys` are both tagged,
+/// the roof takes what the storeys leave, within a third of its preset pitch; where only `height` is, storeys follow.
+/// Reach: GenerateOptions::neighbour_reach.
+void resolve_attributes(model::Region& region, const ResolveInputs& inputs, const GenerateOptions& options);
+
+}  // namespace blockrand::generate
