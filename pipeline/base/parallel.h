@@ -6,13 +6,16 @@
 
 namespace blockrand::base {
 
-/// Number of worker threads for `jobs` as given by the user: 0 means one per core.
+/// Number of worker threads for `jobs` as given by the user: 0 means one per core that this process may use.
 int worker_count(int jobs);
 
 /// Calls `work(i)` for i in [0, count) on `workers` threads and `consume(i)` for each, one at a time and in increasing
-/// order of i, after its work is done. At most `in_flight` items are between the start of their work and the end of
-/// their consumption, which bounds memory. The first exception (of the lowest i that was reached) is rethrown after all
-/// running items have ended; nothing is consumed after it.
+/// order of i, after its work is done. At most `in_flight` items (at least 1) are between the start of their work and
+/// the end of their consumption, which bounds memory.
+///
+/// Work starts in increasing order of i. `consume` runs on whichever thread is free: the calling thread or a worker.
+/// Exceptions end the loop as they would end a serial one: everything below the lowest i whose work or consumption
+/// throws is consumed, nothing from it on, and that exception is rethrown after all running items have ended.
 void ordered_parallel(std::size_t count, int workers, std::size_t in_flight,
                       const std::function<void(std::size_t)>& work, const std::function<void(std::size_t)>& consume);
 

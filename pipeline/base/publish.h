@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,36 +15,73 @@ struct PublishedFile {
   std::string sha256;
 };
 
+/// A file of a StagedFolder that is written piece by piece. One thread at a time.
+class StagedFile {
+ public:
+  StagedFile(StagedFile&&) noexcept;
+  /// A file that was not closed is removed.
+  ~StagedFile();
+
+  /// \throws OutputError (disk full, file too large, permission) naming path and remedy
+  void append(std::string_view bytes);
+  /// Ends the file. \throws OutputError as append
+  PublishedFile close();
+
+ private:
+  friend class StagedFolder;
+  struct State;
+  explicit StagedFile(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
 /// A folder in the making. Files go to a staging folder `.<name>.part-<pid>` beside the target; publish() swaps it in.
-/// The destructor of an unpublished one removes the staging folder. Stale staging folders of dead processes are removed
-/// when a new one for the same target is made.
+/// The destructor of an unpublished one removes the staging folder and the parents that were made for it. Stale staging
+/// folders of dead processes are removed when a new one for the same target is made; an old build that a process set
+/// aside and died over is put back.
 class StagedFolder {
  public:
-  /// \param target  the folder to be; its parent must exist or be creatable
+  /// \param target  the folder to be; its parent must exist or be creatable. A link to a folder stands for the folder.
   /// \param force   replace an existing, non-empty folder. Without it such a target is a UsageError. Even with `force`
   ///                a folder that is neither empty nor an earlier build (no build.json in it) is refused.
   /// \throws UsageError when the target's place cannot be used (parent is a file, target is a file, no permission)
+  /// \throws OutputError when the disk is full
   StagedFolder(std::string target, bool force);
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
 
-  /// Writes a whole file and notes its hash. Safe from several threads for distinct paths.
+  /// Writes a whole file and notes its hash. Folders on the way are made. Safe from several threads for distinct paths.
   /// \throws OutputError (disk full, file too large, permission) naming path and remedy
   PublishedFile write(const std::string& relative_path, std::string_view bytes);
+
+  /// Starts a file that is written piece by piece. Safe as write(). The folder must outlive it.
+  StagedFile create(const std::string& relative_path);
 
   /// Bytes free for the user where the folder lies.
   std::uint64_t free_bytes() const;
 
-  /// Makes the build visible under its name: renames the old folder away, the new one in, then removes the old one.
+  /// Makes the build visible under its name: exchanges the old folder and the new one in one step where the file system
+  /// can, else renames the old one away and the new one in; then removes the old one.
+  /// \returns the path of the old build where it could not be removed, else empty
   /// \throws OutputError; the old build is then back in its place
-  void publish();
+  std::string publish();
 
   const std::string& staging_path() const { return staging_; }
+  /// The folder to be, as an absolute path without links.
+  const std::string& target_path() const { return target_; }
 
  private:
+  void remove_stale() const;
+
   std::string target_, staging_;
-  bool published_ = false;
+  std::vector<std::string> made_parents_;  ///< outermost first
+  bool force_ = false, published_ = false;
+  int lock_ = -1;  ///< descriptor of the locked staging folder: others see that its process lives
 };
+
+/// For a signal handler's thread that ends the process next: removes the staging folders of all StagedFolders of this
+/// process and stops every further write (writers then wait for the end of the process). A publish() that is already
+/// moving folders is waited for, so that a target is always the whole old build or the whole new one.
+void abandon_staged_folders() noexcept;
 
 }  // namespace blockrand::base

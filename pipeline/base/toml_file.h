@@ -12,14 +12,18 @@
 namespace blockrand::base {
 
 /// A table of a TOML file. Errors are InputErrors that name file, line, column, the key, and the nearest known key.
+/// The readers return nothing where the key is absent.
 class TomlTable {
  public:
   /// \throws InputError when the file cannot be read or is not TOML
   static TomlTable read(const std::string& path);
+  /// \param name  what messages call the text
   static TomlTable parse(std::string_view text, const std::string& name);
 
+  /// A copy remembers which keys were asked for, but learns nothing from the original afterwards.
   TomlTable(const TomlTable&);
   TomlTable(TomlTable&&) noexcept;
+  TomlTable& operator=(TomlTable&&) noexcept;
   ~TomlTable();
 
   bool has(std::string_view key) const;
@@ -32,6 +36,9 @@ class TomlTable {
   std::optional<TomlTable> table(std::string_view key);
   /// Keys of this table in alphabetical order.
   std::vector<std::string> keys() const;
+  /// The value of `key` as the user would write it on a command line: text without quotes, numbers and booleans as
+  /// text, arrays as their elements joined by commas.
+  std::optional<std::string> plain(std::string_view key);
 
   /// Call when all known keys were asked for: an InputError for the first key that was not, with the nearest that was.
   void finish() const;
@@ -44,7 +51,8 @@ class TomlTable {
   std::unique_ptr<Data> data_;
 };
 
-/// The entry of `known` nearest to `word` (edit distance, at most a third of its length), or empty.
+/// The entry of `known` nearest to `word` (edit distance with swaps of neighbours, at most a third of the word's
+/// length, upper and lower case and `-` and `_` being the same), or empty. Of equally near ones the first.
 std::string nearest(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace blockrand::base
