@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/generate/envelope.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon.h"
-#include "pipeline/geometry/solid_builder.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "styles/roofs/roof.h"
@@ -30,11 +30,6 @@ using model::Solid;
 using model::SolidTriangles;
 using model::SurfaceKind;
 
-/// Looks of the kinds of faces of one part.
-struct Looks {
-  Face wall, roof, under;
-};
-
 /// Vertical extent of a mass, all z above the build's height reference.
 struct Levels {
   double bottom = 0, eaves = 0, top = 0;
@@ -44,42 +39,6 @@ struct Checked {
   Solid solid;
   SolidTriangles triangles;
 };
-
-/// Plan → closed solid below a roof: underside, walls, roof surfaces.
-Solid assemble(const Polygon& plan, double bottom, const roofs::Roof& roof, const Looks& looks) {
-  geometry::SolidBuilder builder;
-  std::vector<std::vector<Point3>> underside;
-  const auto loop_below = [&](const Ring& ring) {
-    std::vector<Point3> loop;
-    for (auto p = ring.points.rbegin(); p != ring.points.rend(); ++p) loop.push_back({p->x, p->y, bottom});
-    underside.push_back(std::move(loop));
-  };
-  loop_below(plan.outer);
-  for (const Ring& hole : plan.holes) loop_below(hole);
-  builder.add_face(underside, looks.under);
-
-  std::int32_t edge = 0;
-  const auto walls = [&](const Ring& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i, ++edge) {
-      const Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
-      std::vector<Point3> loop{{a.x, a.y, bottom}, {b.x, b.y, bottom}};
-      const auto& top = roof.wall_tops[static_cast<std::size_t>(edge)];
-      loop.insert(loop.end(), top.begin(), top.end());
-      Face face = looks.wall;
-      face.edge = edge;
-      builder.add_face(loop, face);
-    }
-  };
-  walls(plan.outer);
-  for (const Ring& hole : plan.holes) walls(hole);
-
-  for (const auto& surface : roof.surfaces) {
-    Face face = looks.roof;
-    face.edge = surface.edge;
-    builder.add_face(surface.loops, face);
-  }
-  return builder.take();
-}
 
 std::optional<Checked> checked(Solid solid) {
   auto triangles = geometry::triangulate(solid);
@@ -196,7 +155,7 @@ class MassBuilder {
   void build(BuildingPart& part, int lod) {
     if (part.plan.outer.size() < 3) return;
     part.lod = 0;
-    const Looks looks = looks_of(part);
+    const EnvelopeLooks looks = looks_of(part);
     const Levels levels = levels_of(part);
     std::optional<Polygon> plan = simpler(part.plan, options_.collinear_tolerance);
     if (!plan) plan = part.plan;
@@ -212,7 +171,7 @@ class MassBuilder {
     region_.report.add(part.osm, code, detail.empty() ? part.id : part.id + ": " + detail);
   }
 
-  Looks looks_of(const BuildingPart& part) const {
+  EnvelopeLooks looks_of(const BuildingPart& part) const {
     const auto face = [&](SurfaceKind kind, const std::string& material, model::Colour colour) {
       Face f;
       f.kind = kind;
@@ -222,7 +181,7 @@ class MassBuilder {
     };
     const auto& a = part.attributes;
     const bool on_ground = a.min_height.value <= 0 && !part.canopy;
-    Looks looks;
+    EnvelopeLooks looks;
     looks.wall = face(SurfaceKind::wall, a.wall_material.value, a.wall_colour.value);
     looks.roof = face(SurfaceKind::roof, a.roof_material.value, a.roof_colour.value);
     looks.under = face(on_ground ? SurfaceKind::ground : SurfaceKind::outer_ceiling, a.wall_material.value, a.wall_colour.value);
@@ -254,10 +213,10 @@ class MassBuilder {
     return {model::snap(ground + bottom), model::snap(ground + top - roof), model::snap(ground + top)};
   }
 
-  void build_lod1(BuildingPart& part, const Polygon& plan, const Levels& levels, const Looks& looks) {
+  void build_lod1(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks) {
     const double top = model::snap((levels.eaves + levels.top) / 2);
     for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, &part.plan}) {
-      if (auto block = checked(assemble(*p, levels.bottom, roofs::flat_roof(*p, top), looks))) {
+      if (auto block = checked(envelope(*p, levels.bottom, roofs::flat_roof(*p, top), looks))) {
         part.lod1 = std::move(block->solid);
         part.lod1_triangles = std::move(block->triangles);
         part.lod = 1;
@@ -266,9 +225,9 @@ class MassBuilder {
     }
   }
 
-  bool accept(BuildingPart& part, const Polygon& plan, const Levels& levels, const Looks& looks, const roofs::Roof& roof,
+  bool accept(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks, const roofs::Roof& roof,
               RoofShape built) {
-    auto result = checked(assemble(plan, levels.bottom, roof, looks));
+    auto result = checked(envelope(plan, levels.bottom, roof, looks));
     if (!result) return false;
     part.lod2 = std::move(result->solid);
     part.lod2_triangles = std::move(result->triangles);
@@ -277,7 +236,7 @@ class MassBuilder {
     return true;
   }
 
-  void build_lod2(BuildingPart& part, const Polygon& plan, const Levels& levels, const Looks& looks) {
+  void build_lod2(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks) {
     const RoofShape asked = part.attributes.roof_shape.value;
     const roofs::RoofMeasures measures{levels.eaves, levels.top - levels.eaves};
     if (asked != RoofShape::flat && measures.height > 0) {

@@ -1,0 +1,13 @@
+// From the extract's raw rings to a tile's buildings in the build CRS.
+#pragma once
+
+#include "pipeline/georef/projection.h"
+#include "pipeline/model/region.h"
+#include "pipeline/region/shard.h"
+
+namespace blockrand::region {
+
+/// The buildings of a shard with their rings projected and rounded to the 1/1024 m grid. Notes ANTIMERIDIAN.
+model::Region load_region(const model::Extract& extract, const Shard& shard, const georef::Projection& projection);
+
+}  // namespace blockrand::region

@@ -1,0 +1,38 @@
+// Which buildings there are, which parts belong to them, and which tile each is in.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/model/extract.h"
+#include "pipeline/model/region.h"
+
+namespace blockrand::region {
+
+/// An outline with its parts, or a part that stands alone. Indices into Extract::buildings.
+struct Seed {
+  std::uint32_t outline = model::kNoIndex;  ///< kNoIndex for a part without outline
+  std::vector<std::uint32_t> parts;         ///< in id order
+  std::uint32_t lead() const { return outline != model::kNoIndex ? outline : parts.front(); }
+};
+
+/// The buildings of one tile, in id order of their leads.
+struct Shard {
+  model::TileId tile;
+  std::vector<Seed> seeds;
+};
+
+/// Level of the tiles that are the unit of work and of output files (DESIGN section 6).
+inline constexpr int kTileLevel = 15;
+
+/// Centre of the raw bounding box of an object's rings; longitudes are unwrapped around its first vertex, so that an
+/// object across 180 degrees has its centre there. The object must have a ring.
+model::Location box_centre(const model::Extract& extract, const model::MappedBuilding& object);
+
+/// Assigns parts to outlines and both to tiles. A part belongs to the outline that a type=building relation names, else
+/// to the smallest outline that holds at least half of its corners (boundary included) and whose box holds the middle of
+/// the part's. A part that no outline holds stands alone (PART_WITHOUT_OUTLINE in `report`). A building belongs to the
+/// tile of the centre of its lead's raw box. Shards come in tile order; nothing depends on the order of the input.
+std::vector<Shard> make_shards(const model::Extract& extract, model::Report& report);
+
+}  // namespace blockrand::region
