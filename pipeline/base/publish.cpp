@@ -1,6 +1,7 @@
 #include "pipeline/base/publish.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <linux/fs.h>
 #include <signal.h>
 #include <sys/file.h>
@@ -134,7 +135,8 @@ pid_t pid_after(std::string_view name, std::string_view prefix) {
 
 std::string sibling(const std::string& target, const std::string& suffix) {
   const fs::path path(target);
-  return (path.parent_path() / ("." + path.filename().string() + suffix)).string();
+  return fmt::format("{}/.{}{}", path.parent_path() == "/" ? "" : path.parent_path().string(), path.filename().string(),
+                     suffix);
 }
 
 int lock_folder(const std::string& path) {
@@ -290,7 +292,8 @@ StagedFolder::~StagedFolder() {
 
 void StagedFolder::remove_stale() const {
   const fs::path path(target_);
-  const std::string part = "." + path.filename().string() + ".part-", old = "." + path.filename().string() + ".old-";
+  const std::string part = fs::path(sibling(target_, ".part-")).filename().string();
+  const std::string old = fs::path(sibling(target_, ".old-")).filename().string();
   std::error_code error;
   std::vector<std::string> aside, stale;
   for (fs::directory_iterator entry(path.parent_path(), error), end; !error && entry != end; entry.increment(error)) {

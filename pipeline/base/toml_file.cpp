@@ -81,9 +81,14 @@ TomlTable TomlTable::read(const std::string& path) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   std::string text;
-  if (file) text.assign(std::istreambuf_iterator<char>(file), {});
-  // Opening a folder succeeds; reading it does not.
-  if (!file || file.bad() || errno == EISDIR)
+  bool readable = file.is_open();
+  try {
+    if (readable) text.assign(std::istreambuf_iterator<char>(file), {});
+  } catch (const std::ios_base::failure&) {
+    // libstdc++ throws from the buffer itself for a folder, which can be opened but not read.
+    readable = false;
+  }
+  if (!readable)
     throw InputError(path, "", errno != 0 ? std::strerror(errno) : "cannot be read",
                      "Check the path and the file's permissions.");
   return parse(text, path);

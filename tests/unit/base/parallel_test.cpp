@@ -1,0 +1,127 @@
+#include "pipeline/base/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "pipeline/base/random.h"
+
+namespace blockrand::base {
+namespace {
+
+void jitter(std::size_t i) {
+  std::this_thread::sleep_for(std::chrono::microseconds(random_bits(7, i, "jitter") % 300));
+}
+
+struct Case {
+  int workers;
+  std::size_t in_flight;
+};
+
+class OrderedParallel : public testing::TestWithParam<Case> {};
+
+TEST_P(OrderedParallel, ConsumesEveryItemOnceAndInOrder) {
+  constexpr std::size_t count = 500;
+  std::vector<int> worked(count);
+  std::vector<std::size_t> consumed;
+  ordered_parallel(
+      count, GetParam().workers, GetParam().in_flight,
+      [&](std::size_t i) {
+        jitter(i);
+        ++worked[i];
+      },
+      [&](std::size_t i) {
+        EXPECT_EQ(worked[i], 1);
+        consumed.push_back(i);
+      });
+  std::vector<std::size_t> expected(count);
+  std::iota(expected.begin(), expected.end(), 0);
+  EXPECT_EQ(consumed, expected);
+}
+
+TEST_P(OrderedParallel, NeverHasMoreItemsInFlightThanAllowed) {
+  std::atomic<std::size_t> now = 0, most = 0;
+  ordered_parallel(
+      300, GetParam().workers, GetParam().in_flight,
+      [&](std::size_t i) {
+        const std::size_t n = ++now;
+        for (std::size_t seen = most; n > seen && !most.compare_exchange_weak(seen, n);) {
+        }
+        jitter(i);
+      },
+      [&](std::size_t) { --now; });
+  EXPECT_LE(most, std::max<std::size_t>(1, GetParam().in_flight));
+  EXPECT_EQ(now, 0u);
+}
+
+TEST_P(OrderedParallel, TheLowestFailureEndsTheLoopAsInASerialOne) {
+  std::vector<std::size_t> consumed;
+  const auto run = [&] {
+    ordered_parallel(
+        200, GetParam().workers, GetParam().in_flight,
+        [&](std::size_t i) {
+          // The later item fails first.
+          if (i == 60) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+          if (i == 60 || i == 61) throw std::runtime_error(std::to_string(i));
+        },
+        [&](std::size_t i) { consumed.push_back(i); });
+  };
+  try {
+    run();
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "60");
+  }
+  ASSERT_EQ(consumed.size(), 60u);
+  EXPECT_EQ(consumed.back(), 59u);
+}
+
+TEST_P(OrderedParallel, AFailedConsumptionIsTheLast) {
+  std::vector<std::size_t> consumed;
+  EXPECT_THROW(ordered_parallel(100, GetParam().workers, GetParam().in_flight, jitter,
+                                [&](std::size_t i) {
+                                  consumed.push_back(i);
+                                  if (i == 10) throw std::logic_error("stop");
+                                }),
+               std::logic_error);
+  EXPECT_EQ(consumed.size(), 11u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, OrderedParallel,
+                         testing::Values(Case{1, 1}, Case{1, 8}, Case{2, 1}, Case{2, 3}, Case{4, 4}, Case{8, 64},
+                                         Case{3, 1000}, Case{4, 0}),
+                         [](const auto& info) {
+                           return std::to_string(info.param.workers) + "Workers" +
+                                  std::to_string(info.param.in_flight) + "InFlight";
+                         });
+
+TEST(OrderedParallelEdge, NoItemsCallNothing) {
+  const auto never = [](std::size_t) { FAIL(); };
+  ordered_parallel(0, 4, 4, never, never);
+}
+
+TEST(OrderedParallelEdge, ConsumersNeverOverlap) {
+  std::mutex mutex;
+  ordered_parallel(
+      2000, 4, 16, [](std::size_t) {},
+      [&](std::size_t) {
+        const std::unique_lock lock(mutex, std::try_to_lock);
+        EXPECT_TRUE(lock.owns_lock());
+      });
+}
+
+TEST(WorkerCount, ZeroMeansOnePerCore) {
+  EXPECT_GE(worker_count(0), 1);
+  EXPECT_EQ(worker_count(3), 3);
+}
+
+}  // namespace
+}  // namespace blockrand::base
