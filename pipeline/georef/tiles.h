@@ -1,0 +1,35 @@
+// The geodetic quadtree that cuts the world into units of work (DESIGN section 6).
+#pragma once
+
+#include <array>
+
+#include "pipeline/georef/lon_lat.h"
+#include "pipeline/model/point.h"
+#include "pipeline/model/region.h"
+
+namespace blockrand::georef {
+
+inline constexpr int kMaxTileLevel = 30;  ///< tiles of 4 cm; x still fits 32 bits
+
+/// The tile that holds a location: west and south edges belong to a tile, 180 E and 90 N to the last one.
+///
+/// Integer arithmetic on OSM's own 1e-7 degrees; places outside of the globe go to the nearest tile.
+/// Requires 0 <= level <= kMaxTileLevel.
+model::TileId tile_of(model::Location location, int level);
+
+/// Degrees; exact in doubles at every level.
+GeoBox bounds(const model::TileId& tile);
+
+/// Degrees; exact in doubles at every level.
+LonLat centre(const model::TileId& tile);
+
+/// Requires level > 0.
+model::TileId parent(const model::TileId& tile);
+
+/// South-west, south-east, north-west, north-east: the Morton order of implicit 3D Tiles.
+std::array<model::TileId, 4> children(const model::TileId& tile);
+
+/// Whether `tile` is `ancestor` or lies in it.
+bool contains(const model::TileId& ancestor, const model::TileId& tile);
+
+}  // namespace blockrand::georef
