@@ -13,7 +13,7 @@ struct Crs {
   std::string authority_code;  ///< "EPSG:25833"
   std::string name;            ///< "ETRS89 / UTM zone 33N"
   std::string operation;       ///< PROJ's name of the operation from WGS 84
-  double accuracy_m = -1;      ///< metres, as PROJ states it; -1 unknown
+  double accuracy_m = -1;      ///< metres, as PROJ states it; 0 without a change of datum, -1 unknown
   std::string pipeline;  ///< the operation as a PROJ pipeline, longitude and latitude in degrees to easting, northing
 };
 

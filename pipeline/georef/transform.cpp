@@ -91,6 +91,11 @@ Pj horizontal_crs(PJ_CONTEXT* context, const std::string& definition) {
   return crs;
 }
 
+std::string code_of(const PJ* crs) {
+  const std::string authority = detail::text(proj_get_id_auth_name(crs, 0));
+  return authority.empty() ? authority : authority + ":" + detail::text(proj_get_id_code(crs, 0));
+}
+
 std::string shorten(const std::string& definition) {
   return definition.size() > 60 ? definition.substr(0, 57) + "..." : definition;
 }
@@ -122,6 +127,9 @@ struct Transform::Impl {
   std::string operation, pipeline;
   double accuracy = -1;
   bool identity = false;
+  // A datum shift through earth-centred coordinates that forgets the height it causes (push/pop v_3) is not inverted by
+  // its inverse: 1.3 mm are missing in Switzerland. One correction brings that to nanometres.
+  bool drops_height = false;
   std::optional<TransverseMercator> series;
 
   std::mutex mutex;
@@ -145,8 +153,14 @@ struct Transform::Impl {
 
   model::Point2 through_proj(model::Point2 p, PJ_DIRECTION direction) {
     auto worker = borrow();
-    const PJ_COORD out = proj_trans(worker->operation.get(), direction, proj_coord(p.x, p.y, 0, 0));
-    if (!std::isfinite(out.xy.x)) proj_errno_reset(worker->operation.get());
+    PJ* pj = worker->operation.get();
+    PJ_COORD out = proj_trans(pj, direction, proj_coord(p.x, p.y, 0, 0));
+    if (drops_height && direction == PJ_INV && std::isfinite(out.xy.x)) {
+      const PJ_COORD again = proj_trans(pj, PJ_FWD, proj_coord(out.xy.x, out.xy.y, 0, 0));
+      const double dx = p.x - again.xy.x, dy = p.y - again.xy.y;
+      out = proj_trans(pj, PJ_INV, proj_coord(p.x + dx, p.y + dy, 0, 0));
+    }
+    if (!std::isfinite(out.xy.x)) proj_errno_reset(pj);
     const std::lock_guard lock(mutex);
     idle.push_back(std::move(worker));
     return {out.xy.x, out.xy.y};
@@ -176,6 +190,7 @@ struct Transform::Impl {
 
   void finish(const std::optional<GeoBox>& area) {
     identity = pipeline == "+proj=noop";
+    drops_height = pipeline.find("+proj=push") != std::string::npos;
     auto worker = borrow();  // throws now rather than at the first point
     idle.push_back(std::move(worker));
     if (const auto parameters = transverse_mercator_of(pipeline)) {
@@ -204,7 +219,9 @@ Transform::Transform(const std::string& from, const std::string& to, const std::
         ". Choose another coordinate reference system, or install the grid that this one needs (package proj-data)");
   }
   impl_->operation = detail::text(proj_get_name(operation.get()));
-  impl_->accuracy = proj_coordoperation_get_accuracy(context.get(), operation.get());
+  impl_->accuracy = proj_get_type(operation.get()) == PJ_TYPE_CONVERSION
+                        ? 0
+                        : proj_coordoperation_get_accuracy(context.get(), operation.get());
   const Pj normal(proj_normalize_for_visualization(context.get(), operation.get()));
   const char* pipeline = normal ? proj_as_proj_string(context.get(), normal.get(), PJ_PROJ_5, nullptr) : nullptr;
   if (pipeline == nullptr) throw base::UsageError("PROJ cannot write its operation from " + pair + " as a pipeline");
@@ -242,6 +259,30 @@ bool Transform::portable() const { return impl_->identity || impl_->series.has_v
 std::optional<double> Transform::own_scale(LonLat p) const {
   if (!impl_->series) return std::nullopt;
   return impl_->series->scale(p);
+}
+
+VerticalCrs vertical_crs_of(const std::string& definition) {
+  const Context context = detail::make_context();
+  VerticalCrs result;
+  const Pj crs(proj_create(context.get(), definition.c_str()));
+  if (!crs || proj_get_type(crs.get()) != PJ_TYPE_COMPOUND_CRS) return result;
+  const Pj vertical(proj_crs_get_sub_crs(context.get(), crs.get(), 1));
+  if (!vertical) return result;
+  result.name = detail::text(proj_get_name(vertical.get()));
+  result.authority_code = code_of(vertical.get());
+  const Pj axes(proj_crs_get_coordinate_system(context.get(), vertical.get()));
+  if (axes) {
+    proj_cs_get_axis_info(context.get(), axes.get(), 0, nullptr, nullptr, nullptr, &result.metres_per_unit, nullptr,
+                          nullptr, nullptr);
+  }
+  return result;
+}
+
+CrsName name_of_crs(const std::string& definition) {
+  const Context context = detail::make_context();
+  const Pj crs = horizontal_crs(context.get(), definition);
+  if (!crs) return {};
+  return {detail::text(proj_get_name(crs.get())), code_of(crs.get())};
 }
 
 }  // namespace blockrand::georef

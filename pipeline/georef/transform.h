@@ -31,7 +31,7 @@ class Transform {
 
   /// Name that PROJ gives the operation; empty for from_pipeline.
   const std::string& operation() const;
-  /// Metres as PROJ states it; -1 when unknown.
+  /// Metres as PROJ states it; 0 for a projection on the same datum, -1 when unknown.
   double accuracy_m() const;
   const std::string& pipeline() const;
   /// Whether results are bit-identical on every x86-64. True for transverse Mercator (agreement with PROJ within 1e-6 m
@@ -45,5 +45,21 @@ class Transform {
   explicit Transform(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
   std::shared_ptr<Impl> impl_;
 };
+
+/// What a CRS definition says about heights.
+struct VerticalCrs {
+  std::string name;            ///< "DHHN2016 height"; empty when there is none
+  std::string authority_code;  ///< "EPSG:7837"; empty when the definition has no code
+  double metres_per_unit = 1;
+};
+
+/// The vertical part of a compound CRS; empty name for any other.
+VerticalCrs vertical_crs_of(const std::string& definition);
+
+/// Name and "EPSG:code" (or "") of a CRS definition's horizontal part; both empty when PROJ does not know it.
+struct CrsName {
+  std::string name, authority_code;
+};
+CrsName name_of_crs(const std::string& definition);
 
 }  // namespace blockrand::georef

@@ -1,0 +1,361 @@
+#include "importers/elevation/terrain.h"
+
+#include <cpl_conv.h>
+#include <cpl_error.h>
+#include <gdal.h>
+#include <ogr_srs_api.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <list>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+#include "pipeline/base/error.h"
+#include "pipeline/georef/transform.h"
+
+namespace blockrand::importers::elevation {
+namespace {
+
+constexpr int kBlockSize = 256;  // pixels along each side
+constexpr std::size_t kBlockBytes = sizeof(double) * kBlockSize * kBlockSize;
+constexpr std::size_t kMaxBlocks = (32U << 20) / kBlockBytes;
+constexpr GIntBig kMaxGdalCache = 32 << 20;  // bytes; GDAL's default is a twentieth of the machine
+
+/// Pixel positions are rounded to this fraction, so that the last bits of a projection decide nothing.
+constexpr double kPixelSteps = 65536;
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+using Block = std::vector<double>;  // row by row, kMissing where there is no value
+
+struct DatasetCloser {
+  void operator()(void* dataset) const { GDALClose(dataset); }
+};
+
+/// Silences GDAL on this thread while it lives; the last message goes into our own error.
+class Quiet {
+ public:
+  Quiet() {
+    CPLPushErrorHandler(CPLQuietErrorHandler);
+    CPLErrorReset();
+  }
+  ~Quiet() { CPLPopErrorHandler(); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+  static std::string message() {
+    const std::string text = CPLGetLastErrorMsg();
+    return text.empty() ? "" : " (GDAL: " + text + ")";
+  }
+};
+
+/// Position in the raster: column and row, pixel centres at .5.
+struct Pixel {
+  double column = 0, row = 0;
+};
+
+std::optional<double> metres_per_unit(std::string unit) {
+  std::transform(unit.begin(), unit.end(), unit.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" || unit == "meters") return 1.0;
+  if (unit == "cm" || unit == "centimetre" || unit == "centimeter") return 0.01;
+  if (unit == "dm" || unit == "decimetre" || unit == "decimeter") return 0.1;
+  if (unit == "ft" || unit == "foot" || unit == "feet") return 0.3048;
+  if (unit == "us-ft" || unit == "ftus" || unit == "us survey foot" || unit == "foot_us") return 1200.0 / 3937.0;
+  return std::nullopt;
+}
+
+}  // namespace
+
+struct Terrain::Impl {
+  TerrainDescription description;
+  std::array<double, 6> to_pixel{};  // from CRS coordinates
+  std::optional<georef::Transform> transform;
+  bool geographic = false;
+  double west = -180;  // of a raster in degrees: longitudes are counted from here, which covers rasters of 0 to 360
+  double factor = 1, shift = 0;  // stored value to metres
+  long long columns = 0, rows = 0;
+
+  // GDAL's datasets are for one thread at a time.
+  std::mutex reading;
+  std::unique_ptr<void, DatasetCloser> dataset;
+  GDALRasterBandH band = nullptr;
+  GDALRasterBandH mask = nullptr;
+
+  std::mutex caching;
+  struct Entry {
+    std::shared_ptr<const Block> block;
+    std::list<std::uint64_t>::iterator place;
+  };
+  std::unordered_map<std::uint64_t, Entry> blocks;
+  std::list<std::uint64_t> recent;  // newest first
+
+  std::shared_ptr<const Block> read(long long block_column, long long block_row);
+  std::shared_ptr<const Block> block_at(long long block_column, long long block_row);
+  Pixel pixel_of(model::Location location) const;
+};
+
+namespace {
+
+/// Looks up pixels, keeping the last block at hand.
+template <typename Source>
+class PixelReader {
+ public:
+  explicit PixelReader(Source& source) : source_(source) {}
+
+  /// Metres, or kMissing; requires a pixel of the raster.
+  double operator()(long long column, long long row) {
+    const long long block_column = column / kBlockSize, block_row = row / kBlockSize;
+    if (!block_ || block_column != block_column_ || block_row != block_row_) {
+      block_ = source_.block_at(block_column, block_row);
+      block_column_ = block_column, block_row_ = block_row;
+    }
+    return (*block_)[static_cast<std::size_t>((row % kBlockSize) * kBlockSize + column % kBlockSize)];
+  }
+
+ private:
+  Source& source_;
+  std::shared_ptr<const Block> block_;
+  long long block_column_ = -1, block_row_ = -1;
+};
+
+}  // namespace
+
+std::shared_ptr<const Block> Terrain::Impl::read(long long block_column, long long block_row) {
+  const int x = static_cast<int>(block_column * kBlockSize), y = static_cast<int>(block_row * kBlockSize);
+  const int width = static_cast<int>(std::min<long long>(kBlockSize, columns - x));
+  const int height = static_cast<int>(std::min<long long>(kBlockSize, rows - y));
+  auto block = std::make_shared<Block>(static_cast<std::size_t>(kBlockSize) * kBlockSize, kMissing);
+  std::vector<std::uint8_t> valid(block->size(), 255);
+  const std::lock_guard lock(reading);
+  const Quiet quiet;
+  CPLErr error = GDALRasterIO(band, GF_Read, x, y, width, height, block->data(), width, height, GDT_Float64, 0,
+                              kBlockSize * static_cast<int>(sizeof(double)));
+  if (error < CE_Failure && mask != nullptr) {
+    error = GDALRasterIO(mask, GF_Read, x, y, width, height, valid.data(), width, height, GDT_Byte, 0, kBlockSize);
+  }
+  if (error >= CE_Failure) {
+    throw base::InputError(description.path, "pixel " + std::to_string(x) + "," + std::to_string(y),
+                           "the terrain raster cannot be read" + Quiet::message(),
+                           "The file is damaged or was cut short; fetch it again");
+  }
+  for (std::size_t i = 0; i < block->size(); ++i) {
+    double& value = (*block)[i];
+    value = valid[i] == 0 || !std::isfinite(value) ? kMissing : value * factor + shift;
+  }
+  return block;
+}
+
+std::shared_ptr<const Block> Terrain::Impl::block_at(long long block_column, long long block_row) {
+  const std::uint64_t key = static_cast<std::uint64_t>(block_row) << 32 | static_cast<std::uint64_t>(block_column);
+  {
+    const std::lock_guard lock(caching);
+    if (const auto found = blocks.find(key); found != blocks.end()) {
+      recent.splice(recent.begin(), recent, found->second.place);
+      return found->second.block;
+    }
+  }
+  // Two threads may read the same block; that costs time, not correctness.
+  auto block = read(block_column, block_row);
+  const std::lock_guard lock(caching);
+  if (blocks.find(key) == blocks.end()) {
+    recent.push_front(key);
+    blocks[key] = {block, recent.begin()};
+    if (blocks.size() > kMaxBlocks) {
+      blocks.erase(recent.back());
+      recent.pop_back();
+    }
+  }
+  return block;
+}
+
+Pixel Terrain::Impl::pixel_of(model::Location location) const {
+  model::Point2 p = transform->forward({location.lon_degrees(), location.lat_degrees()});
+  if (geographic && p.x < west) p.x += 360;
+  const auto rounded = [](double value) { return std::nearbyint(value * kPixelSteps) / kPixelSteps; };
+  return {rounded(to_pixel[0] + to_pixel[1] * p.x + to_pixel[2] * p.y),
+          rounded(to_pixel[3] + to_pixel[4] * p.x + to_pixel[5] * p.y)};
+}
+
+Terrain::Terrain(const std::string& path) : impl_(std::make_unique<Impl>()) {
+  Impl& impl = *impl_;
+  impl.description.path = path;
+  const auto refuse = [&path](const std::string& what, const std::string& remedy) {
+    throw base::InputError(path, "", what, remedy);
+  };
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  // GDAL's own names (/vsizip/..., connection strings) are no files here and are left to GDAL.
+  const bool virtual_file = path.starts_with("/vsi");
+  if (!virtual_file && !std::filesystem::exists(status)) {
+    refuse("no such terrain raster", "Check the path given to --terrain");
+  }
+  if (std::filesystem::is_directory(status)) {
+    refuse("is a directory, not a terrain raster",
+           "Name one raster file; several tiles can be joined without copying: gdalbuildvrt terrain.vrt " + path +
+               "/*.tif");
+  }
+  GDALAllRegister();
+  if (GDALGetCacheMax64() > kMaxGdalCache) GDALSetCacheMax64(kMaxGdalCache);
+  const Quiet quiet;
+  impl.dataset.reset(GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+  if (!impl.dataset) {
+    refuse("is no raster that GDAL can read" + Quiet::message(),
+           "Check with gdalinfo; the file may be damaged or of another kind");
+  }
+  GDALDatasetH dataset = impl.dataset.get();
+  if (GDALGetRasterCount(dataset) < 1) {
+    refuse("has no raster band", "Name one of its sub-datasets (gdalinfo lists them)");
+  }
+  impl.band = GDALGetRasterBand(dataset, 1);
+  if ((GDALGetMaskFlags(impl.band) & GMF_ALL_VALID) == 0) impl.mask = GDALGetMaskBand(impl.band);
+  impl.columns = GDALGetRasterXSize(dataset);
+  impl.rows = GDALGetRasterYSize(dataset);
+
+  std::array<double, 6> from_pixel{};
+  if (GDALGetGeoTransform(dataset, from_pixel.data()) != CE_None ||
+      GDALInvGeoTransform(from_pixel.data(), impl.to_pixel.data()) == 0) {
+    refuse("has no georeference",
+           "Put a world file beside it or set one with gdal_edit.py -a_ullr; rasters with control "
+           "points: gdalwarp first");
+  }
+  char* wkt = nullptr;
+  static constexpr std::array<const char*, 2> kFormat{"FORMAT=WKT2_2019", nullptr};
+  const OGRSpatialReferenceH reference = GDALGetSpatialRef(dataset);
+  if (reference == nullptr || OSRExportToWktEx(reference, &wkt, kFormat.data()) != OGRERR_NONE || wkt == nullptr ||
+      *wkt == '\0') {
+    CPLFree(wkt);
+    refuse("has no coordinate reference system",
+           "Set it with gdal_edit.py -a_srs EPSG:..., or put a .prj file beside it");
+  }
+  const std::string definition = wkt;
+  CPLFree(wkt);
+  impl.geographic = OSRIsGeographic(reference) != 0;
+
+  const auto corner = [&](double column, double row) {
+    return model::Point2{from_pixel[0] + from_pixel[1] * column + from_pixel[2] * row,
+                         from_pixel[3] + from_pixel[4] * column + from_pixel[5] * row};
+  };
+  const auto columns = static_cast<double>(impl.columns), rows = static_cast<double>(impl.rows);
+  const std::array<model::Point2, 4> corners{corner(0, 0), corner(columns, 0), corner(columns, rows), corner(0, rows)};
+  if (impl.geographic) {
+    impl.west = corners[0].x;
+    for (const model::Point2& p : corners) impl.west = std::min(impl.west, p.x);
+  }
+  try {
+    // Which operation is best depends on the place, and the place is known through an operation: twice, then.
+    impl.transform.emplace("EPSG:4326", definition);
+    georef::GeoBox area{180, 90, -180, -90};
+    for (const model::Point2& p : corners) {
+      const model::Point2 g = impl.transform->inverse(p);
+      area.west = std::min(area.west, g.x), area.east = std::max(area.east, g.x);
+      area.south = std::min(area.south, g.y), area.north = std::max(area.north, g.y);
+    }
+    const bool sensible = area.west >= -180 && area.east <= 180 && area.south >= -90 && area.north <= 90 &&
+                          area.west <= area.east && area.south <= area.north;
+    if (sensible) impl.transform.emplace("EPSG:4326", definition, area);
+  } catch (const base::UsageError& error) {
+    refuse("its coordinate reference system cannot be used: " + std::string(error.what()),
+           "Reproject it: gdalwarp -t_srs EPSG:... ");
+  }
+
+  const georef::CrsName name = georef::name_of_crs(definition);
+  const georef::VerticalCrs vertical = georef::vertical_crs_of(definition);
+  TerrainDescription& d = impl.description;
+  d.crs_name = name.name, d.crs_code = name.authority_code;
+  d.vertical_name = vertical.name, d.vertical_code = vertical.authority_code;
+  d.operation = impl.transform->operation();
+  d.accuracy_m = impl.transform->accuracy_m();
+  d.pixel_width = std::sqrt(from_pixel[1] * from_pixel[1] + from_pixel[4] * from_pixel[4]);
+  d.pixel_height = std::sqrt(from_pixel[2] * from_pixel[2] + from_pixel[5] * from_pixel[5]);
+  d.columns = impl.columns, d.rows = impl.rows;
+  int has = 0;
+  const double nodata = GDALGetRasterNoDataValue(impl.band, &has);
+  if (has != 0) d.nodata = nodata;
+
+  const std::string unit = GDALGetRasterUnitType(impl.band);
+  const auto metres = unit.empty() ? std::optional(vertical.metres_per_unit) : metres_per_unit(unit);
+  if (!metres) {
+    refuse("counts heights in \"" + unit + "\", which is no unit of length known here",
+           "Set it with gdal_edit.py -units metre when the values are metres");
+  }
+  impl.factor = GDALGetRasterScale(impl.band, &has) * *metres;
+  impl.shift = GDALGetRasterOffset(impl.band, &has) * *metres;
+}
+
+Terrain::~Terrain() = default;
+Terrain::Terrain(Terrain&&) noexcept = default;
+Terrain& Terrain::operator=(Terrain&&) noexcept = default;
+
+const TerrainDescription& Terrain::describe() const { return impl_->description; }
+
+std::optional<double> Terrain::minimum_under(std::span<const model::Location> ring) const {
+  Impl& impl = *impl_;
+  const auto columns = static_cast<double>(impl.columns), rows = static_cast<double>(impl.rows);
+  PixelReader read(impl);
+  double minimum = std::numeric_limits<double>::infinity();
+
+  std::vector<Pixel> pixels;
+  pixels.reserve(ring.size());
+  for (const model::Location& location : ring) pixels.push_back(impl.pixel_of(location));
+  bool defined = true;
+  double top = rows, bottom = 0;
+  for (const Pixel& p : pixels) {
+    if (!std::isfinite(p.column) || !std::isfinite(p.row)) {
+      defined = false;
+      continue;
+    }
+    top = std::min(top, p.row), bottom = std::max(bottom, p.row);
+    if (p.column < 0 || p.row < 0 || p.column > columns || p.row > rows) continue;
+    // Bilinear between pixel centres; beyond the outermost centres their value goes on.
+    const double c = std::clamp(p.column - 0.5, 0.0, columns - 1), r = std::clamp(p.row - 0.5, 0.0, rows - 1);
+    const auto column = static_cast<long long>(c), row = static_cast<long long>(r);
+    const double u = c - static_cast<double>(column), v = r - static_cast<double>(row);
+    double sum = 0, weights = 0;
+    for (const int j : {0, 1}) {
+      for (const int i : {0, 1}) {
+        const double weight = (i == 0 ? 1 - u : u) * (j == 0 ? 1 - v : v);
+        if (weight == 0) continue;  // also keeps the right and lower neighbour inside of the raster
+        const double value = read(column + i, row + j);
+        if (std::isnan(value)) continue;
+        sum += weight * value, weights += weight;
+      }
+    }
+    if (weights > 0) minimum = std::min(minimum, sum / weights);
+  }
+
+  // Pixel centres inside: row by row, where the ring crosses the row's middle.
+  if (defined && pixels.size() >= 3) {
+    const auto first = static_cast<long long>(std::max(0.0, std::ceil(top - 0.5)));
+    const auto last = static_cast<long long>(std::min(rows - 1, std::floor(bottom - 0.5)));
+    std::vector<double> crossings;
+    for (long long row = first; row <= last; ++row) {
+      const double y = static_cast<double>(row) + 0.5;
+      crossings.clear();
+      for (std::size_t i = 0, j = pixels.size() - 1; i < pixels.size(); j = i++) {
+        const Pixel& a = pixels[i];
+        const Pixel& b = pixels[j];
+        if ((a.row > y) == (b.row > y)) continue;
+        crossings.push_back(a.column + (y - a.row) / (b.row - a.row) * (b.column - a.column));
+      }
+      std::sort(crossings.begin(), crossings.end());
+      for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) {
+        const auto from = static_cast<long long>(std::clamp(std::ceil(crossings[k] - 0.5), 0.0, columns));
+        const auto to = static_cast<long long>(std::clamp(std::floor(crossings[k + 1] - 0.5), -1.0, columns - 1));
+        for (long long column = from; column <= to; ++column) {
+          const double value = read(column, row);
+          if (value < minimum) minimum = value;  // false for NaN
+        }
+      }
+    }
+  }
+  if (!std::isfinite(minimum)) return std::nullopt;
+  return model::snap(minimum);
+}
+
+}  // namespace blockrand::importers::elevation
