@@ -6,6 +6,7 @@
 
 # Bit-for-bit reproducible floating point on every x86-64 (DESIGN law 3): no contraction, no fast-math, no -march.
 add_library(blockrand_options INTERFACE)
+target_compile_definitions(blockrand_options INTERFACE BLOCKRAND_VERSION="${PROJECT_VERSION}")
 target_compile_options(blockrand_options INTERFACE -Wall -Wextra -ffp-contract=off
                        $<$<BOOL:${BLOCKRAND_WERROR}>:-Werror>)
 if(BLOCKRAND_SANITIZE)

@@ -19,7 +19,7 @@ struct TileId {
 
 /// A mapped part that could not be built.
 struct PartFailure {
-  OsmId part;
+  std::uint32_t mapped_index = kNoIndex;  ///< into Extract::buildings
   IssueCode code = IssueCode::none;
 };
 

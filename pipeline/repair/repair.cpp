@@ -122,7 +122,7 @@ void repair_building(Building& building, const RepairOptions& options, Region& r
   for (BuildingPart& part : building.parts) {
     Repaired repaired = repair_rings(std::move(part.rings), part.osm, options, report);
     part.rings = {};
-    if (repaired.failure != IssueCode::none) region.part_failures.push_back({part.osm, repaired.failure});
+    if (repaired.failure != IssueCode::none) region.part_failures.push_back({part.mapped_index, repaired.failure});
     covered.insert(covered.end(), repaired.polygons.begin(), repaired.polygons.end());
     add_pieces(parts, part, std::move(repaired.polygons));
   }

@@ -1,0 +1,483 @@
+// The way of a build: read, choose the frame, cut into tiles, work on tiles in parallel, write documents, publish.
+#include "pipeline/region/build.h"
+
+#include <malloc.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "importers/elevation/terrain.h"
+#include "importers/osm/read_extract.h"
+#include "pipeline/base/error.h"
+#include "pipeline/base/parallel.h"
+#include "pipeline/base/publish.h"
+#include "pipeline/base/sha256.h"
+#include "pipeline/base/text.h"
+#include "pipeline/context/party_walls.h"
+#include "pipeline/context/tagged_neighbours.h"
+#include "pipeline/generate/defaults.h"
+#include "pipeline/generate/mass.h"
+#include "pipeline/generate/resolve.h"
+#include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/polygon.h"
+#include "pipeline/georef/heights.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/georef/round_trip.h"
+#include "pipeline/georef/tiles.h"
+#include "pipeline/region/documents.h"
+#include "pipeline/region/load.h"
+#include "pipeline/region/shard.h"
+#include "pipeline/region/tile_output.h"
+#include "pipeline/repair/repair.h"
+
+namespace blockrand::region {
+
+namespace {
+
+using model::Extract;
+using model::IssueCode;
+using model::MappedBuilding;
+using model::ObjectKind;
+using model::ObjectState;
+using model::Region;
+
+std::uint64_t peak_rss_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::uint64_t current_rss_bytes() {
+  std::ifstream statm("/proc/self/statm");
+  std::uint64_t total = 0, resident = 0;
+  statm >> total >> resident;
+  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+// ---- the place ------------------------------------------------------------------------------------------------------
+
+/// The median place of all buildings, and the box of those within 5 degrees of it: one stray object at 0/0 must not
+/// choose the CRS. Longitudes are unwrapped around the first building.
+struct Area {
+  georef::GeoBox box;
+  georef::LonLat centre;
+};
+
+std::optional<Area> area_of(const Extract& extract) {
+  std::vector<std::int64_t> xs, ys;
+  constexpr std::int64_t kTurn = 3'600'000'000;
+  for (const MappedBuilding& b : extract.buildings) {
+    if (b.rings.count == 0 || b.state != ObjectState::pending) continue;
+    const model::Location c = box_centre(extract, b);
+    std::int64_t x = c.lon;
+    if (!xs.empty() && x - xs[0] > kTurn / 2) x -= kTurn;
+    if (!xs.empty() && xs[0] - x > kTurn / 2) x += kTurn;
+    xs.push_back(x);
+    ys.push_back(c.lat);
+  }
+  if (xs.empty()) return std::nullopt;
+  const auto median = [](std::vector<std::int64_t> v) {
+    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+    return v[v.size() / 2];
+  };
+  const std::int64_t mx = median(xs), my = median(ys);
+  constexpr std::int64_t kNear = 50'000'000;  // 5 degrees
+  std::int64_t west = mx, east = mx, south = my, north = my;
+  for (std::size_t i = 0; i < xs.size(); ++i) {
+    if (std::llabs(xs[i] - mx) > kNear || std::llabs(ys[i] - my) > kNear) continue;
+    west = std::min(west, xs[i]);
+    east = std::max(east, xs[i]);
+    south = std::min(south, ys[i]);
+    north = std::max(north, ys[i]);
+  }
+  const auto degrees = [](std::int64_t v) { return static_cast<double>(v) * 1e-7; };
+  const auto wrapped = [&](std::int64_t v) {
+    if (v > kTurn / 2) v -= kTurn;
+    if (v < -kTurn / 2) v += kTurn;
+    return degrees(v);
+  };
+  Area area;
+  area.box = {wrapped(west), degrees(south), wrapped(east), degrees(north)};
+  area.centre = {wrapped(mx), degrees(my)};
+  return area;
+}
+
+// ---- region-wide tables ---------------------------------------------------------------------------------------------
+
+std::vector<context::TaggedBuilding> tagged_buildings(const Extract& extract, const generate::Defaults& defaults,
+                                                      const georef::Projection& projection) {
+  std::vector<context::TaggedBuilding> out;
+  for (const MappedBuilding& b : extract.buildings) {
+    if (b.kind != ObjectKind::building || b.state != ObjectState::pending || b.rings.count == 0) continue;
+    if (!b.attributes.storeys && !b.attributes.roof_shape) continue;
+    std::vector<model::Point2> ring;
+    for (const model::Location v : extract.vertices_of(extract.rings[b.rings.first]))
+      ring.push_back(model::snap(projection.forward(v)));
+    context::TaggedBuilding t;
+    t.id = b.id;
+    t.place = ring.front();
+    t.group = generate::neighbour_group(defaults, extract.strings.view(b.attributes.use),
+                                        std::fabs(geometry::signed_area(ring)));
+    t.storeys = b.attributes.storeys;
+    t.roof_shape = b.attributes.roof_shape;
+    out.push_back(t);
+  }
+  return out;
+}
+
+// ---- one tile -------------------------------------------------------------------------------------------------------
+
+/// What becomes of one object.
+struct Outcome {
+  std::uint32_t index = 0;  ///< into Extract::buildings
+  ObjectState state = ObjectState::modelled;
+  IssueCode code = IssueCode::none;
+  model::OsmId related;
+  int lod = -1;
+};
+
+/// One building's side of a shared wall.
+struct PartySide {
+  std::int64_t edge = 0;
+  double length = 0, height = 0;
+};
+
+struct TileResult {
+  std::vector<Outcome> outcomes;
+  std::vector<model::ReportRow> rows;
+  std::vector<base::PublishedFile> files;
+  std::optional<export_::TileEntry> tile;
+  std::vector<PartySide> party_sides;
+  Statistics statistics;
+  bool below_quality = false;
+  Region region;  ///< kept only for --single-glb
+};
+
+double edge_length(const model::Ring& ring, std::size_t i) {
+  const model::Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
+  return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+}
+
+/// Lowest level of detail among the parts that have a solid (or, where only footprints were asked for, a plan).
+int achieved_lod(const std::vector<const model::BuildingPart*>& parts, int asked) {
+  int lod = -1;
+  for (const model::BuildingPart* p : parts) {
+    if (p->lod < std::min(asked, 1)) continue;
+    lod = lod < 0 ? p->lod : std::min(lod, p->lod);
+  }
+  return lod;
+}
+
+void decide_outcomes(const Region& region, int asked, TileResult& out) {
+  const auto decide = [&](std::uint32_t index, const std::vector<const model::BuildingPart*>& own, IssueCode failure) {
+    const int lod = achieved_lod(own, asked);
+    if (lod >= 0) {
+      out.outcomes.push_back({index, ObjectState::modelled, IssueCode::none, {}, lod});
+      if (lod < asked) out.below_quality = true;
+      return true;
+    }
+    out.outcomes.push_back({index, ObjectState::reported, failure == IssueCode::none ? IssueCode::no_solid : failure, {}, -1});
+    out.below_quality = true;
+    return false;
+  };
+  for (const model::Building& building : region.buildings) {
+    std::vector<const model::BuildingPart*> own;
+    std::map<std::uint32_t, std::vector<const model::BuildingPart*>> of_part;
+    for (const model::BuildingPart& part : building.parts)
+      (part.mapped_index == building.mapped_index ? own : of_part[part.mapped_index]).push_back(&part);
+    std::optional<model::OsmId> representative;
+    for (const auto& [index, parts] : of_part)
+      if (decide(index, parts, IssueCode::none) && !representative) representative = parts.front()->osm;
+    if (own.empty() && representative)
+      out.outcomes.push_back({building.mapped_index, ObjectState::represented, IssueCode::none, *representative, -1});
+    else
+      decide(building.mapped_index, own, building.failure);
+  }
+  for (const model::PartFailure& failure : region.part_failures) {
+    out.outcomes.push_back({failure.mapped_index, ObjectState::reported, failure.code, {}, -1});
+    out.below_quality = true;
+  }
+}
+
+void count_statistics(const Region& region, const context::SharedEdges& shared, TileResult& out) {
+  Statistics& s = out.statistics;
+  for (const model::Building& building : region.buildings) {
+    const auto& a = building.attributes;
+    const double wall_height = std::max(0.0, a.height.value - a.roof_height.value - a.min_height.value);
+    std::size_t edge = 0;
+    const auto count_ring = [&](const model::Ring& ring) {
+      for (std::size_t i = 0; i < ring.size(); ++i, ++edge) {
+        const double length = edge_length(ring, i);
+        const model::FacadeEdge& e = building.edges[edge];
+        if (e.kind == model::EdgeKind::party_wall)
+          out.party_sides.push_back({shared.find(e.from_node, e.to_node), length, wall_height});
+        else
+          s.outer_wall_area += length * wall_height;
+      }
+    };
+    for (const model::Polygon& p : building.outline) {
+      s.footprint_area += geometry::area(p);
+      count_ring(p.outer);
+      for (const model::Ring& hole : p.holes) count_ring(hole);
+    }
+    for (const model::BuildingPart& part : building.parts) {
+      if (part.lod >= 2) {
+        s.volume += geometry::volume(part.lod2, part.lod2_triangles);
+        ++s.solids_lod2;
+      } else if (part.lod == 1) {
+        s.volume += geometry::volume(part.lod1, part.lod1_triangles);
+      }
+      s.solids_lod1 += !part.lod1.empty();
+      ++s.roofs[std::string(model::name(part.built_roof))];
+      model::for_each_attribute(
+          part.attributes,
+          [&](const char* name, const char*, const auto& value) { ++s.sources[name][std::string(model::name(value.source))]; },
+          [](const char*, const char*) {});
+    }
+  }
+}
+
+void add(Statistics& sum, const Statistics& s) {
+  sum.footprint_area += s.footprint_area;
+  sum.outer_wall_area += s.outer_wall_area;
+  sum.volume += s.volume;
+  sum.solids_lod1 += s.solids_lod1;
+  sum.solids_lod2 += s.solids_lod2;
+  for (const auto& [attribute, sources] : s.sources)
+    for (const auto& [source, count] : sources) sum.sources[attribute][source] += count;
+  for (const auto& [shape, count] : s.roofs) sum.roofs[shape] += count;
+}
+
+/// Pairs up the sides of shared walls: the lower one is covered whole, the higher one shows what rises above it.
+void settle_party_walls(std::vector<PartySide> sides, Statistics& sum) {
+  std::sort(sides.begin(), sides.end(), [](const PartySide& a, const PartySide& b) {
+    return a.edge != b.edge ? a.edge < b.edge : a.height < b.height;
+  });
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t j = i;
+    while (j < sides.size() && sides[j].edge == sides[i].edge) ++j;
+    if (j - i < 2) {
+      // The neighbour was not built: the wall stands free.
+      sum.outer_wall_area += sides[i].length * sides[i].height;
+    } else {
+      const double covered = sides[j - 2].height;  // the second highest meets the highest
+      sum.party_wall_area += sides[i].length * covered;
+      sum.party_wall_length += sides[i].length;
+      sum.outer_wall_area += sides[i].length * (sides[j - 1].height - covered);
+      ++sum.party_walls;
+    }
+    i = j;
+  }
+}
+
+/// Rough size of the output, from builds of whole cities; with a reserve of a quarter.
+std::uint64_t estimated_bytes(const BuildOptions& options, std::uint64_t buildings) {
+  constexpr double kGmlBytes[] = {2500, 5500, 12500};  // per building and level of detail
+  constexpr double kGlbBytes = 3000;
+  const auto lod = static_cast<std::size_t>(std::clamp(options.lod, 0, 2));
+  double each = 300;
+  if (options.citygml) each += options.gzip ? kGmlBytes[lod] / 7 : kGmlBytes[lod];
+  if (options.gltf) each += kGlbBytes;
+  if (options.single_glb) each += kGlbBytes;
+  return static_cast<std::uint64_t>(1.25 * each * static_cast<double>(buildings)) + 1'000'000;
+}
+
+InputFile input_file(std::string role, const std::string& path) {
+  InputFile f{std::move(role), path, 0, base::sha256_file(path)};
+  f.bytes = std::filesystem::file_size(path);
+  return f;
+}
+
+}  // namespace
+
+BuildSummary build(const BuildOptions& options, base::Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  BuildRecord record;
+  BuildSummary& summary = record.summary;
+
+  // Everything that can be refused without reading the extract is refused first.
+  base::StagedFolder folder(options.output, options.force);
+  const generate::Defaults defaults = generate::read_defaults(options.configs);
+  std::optional<importers::elevation::Terrain> terrain;
+  if (!options.terrain.empty()) terrain.emplace(options.terrain);
+
+  progress.begin("read");
+  importers::osm::ReadOptions read_options;
+  read_options.bbox = options.bbox;
+  Extract extract = importers::osm::read_extract(options.input, read_options);
+  malloc_trim(0);  // libosmium's buffers go back to the system before tiles need the room
+  record.inputs.push_back(input_file("extract", options.input));
+  if (terrain) record.inputs.push_back(input_file("terrain", options.terrain));
+  record.inputs.push_back(input_file("config", options.configs + "/defaults/uses.toml"));
+  record.inputs.push_back(input_file("config", options.configs + "/materials/materials.toml"));
+  // Where configs lie differs between installations; what they say does not.
+  record.inputs[record.inputs.size() - 2].path = "defaults/uses.toml";
+  record.inputs.back().path = "materials/materials.toml";
+  record.data_time = extract.data_time;
+  record.counts = extract.counts;
+  summary.buildings_in = extract.counts.buildings();
+  summary.parts_in = extract.counts.parts();
+
+  progress.begin("locate");
+  const std::optional<Area> area = area_of(extract);
+  if (!area)
+    progress.warn(fmt::format("{}: no building with an outline{}; the outputs are valid but empty", options.input,
+                              options.bbox ? " in the given --bbox" : ""));
+  const georef::GeoBox box = area ? area->box : georef::GeoBox{0, 0, 0, 0};
+  const georef::LonLat centre = area ? area->centre : georef::LonLat{0, 0};
+  record.crs = georef::open_crs(options.crs.empty() ? georef::choose_crs(centre.lon, centre.lat) : options.crs, box);
+  const georef::Projection projection(record.crs, box);
+  record.portable = projection.portable();
+  record.round_trip = georef::measure_round_trip(projection, box);
+  if (!record.round_trip.ok())
+    throw base::UsageError(fmt::format("{}: positions do not come back within 1 mm here (error {:.4f} m, {} of {} sample points undefined). "
+                                       "Choose another --crs, or leave it out",
+                                       record.crs.authority_code, record.round_trip.projection_m, record.round_trip.undefined,
+                                       record.round_trip.points));
+  const georef::Geoid geoid;
+  const bool has_heights = terrain || options.ground_height;
+  if (terrain)
+    record.height_reference = "heights of the terrain raster";
+  else if (options.ground_height)
+    record.height_reference = "heights above sea level, one ground height for all";
+  else
+    record.height_reference = "heights above local ground";
+  if (terrain) record.vertical_crs = terrain->describe().vertical_crs;
+  if (area && !has_heights)
+    progress.warn("no --terrain and no --ground-height: the model lies at ellipsoid height 0");
+  if (area && has_heights && !geoid.available())
+    progress.warn("heights above sea level are taken for ellipsoidal ones in 3D Tiles: " + georef::Geoid::remedy());
+
+  model::Report region_report;
+  std::vector<Shard> shards = make_shards(extract, region_report);
+  const context::SharedEdges shared(extract);
+  const context::TaggedNeighbours neighbours(tagged_buildings(extract, defaults, projection), options.generate.neighbour_reach);
+
+  std::uint64_t to_build = 0;
+  for (const Shard& shard : shards) to_build += shard.seeds.size();
+  const std::uint64_t wanted = estimated_bytes(options, to_build), free = folder.free_bytes();
+  if (wanted > free)
+    throw base::OutputError(fmt::format("{}: about {} needed, {} free. Free some space, choose another disk with -o, fewer --formats or --gzip",
+                                        options.output, base::with_byte_unit(wanted), base::with_byte_unit(free)));
+
+  const std::uint64_t store_bytes = current_rss_bytes();
+  const int workers = base::worker_count(options.jobs);
+  const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2;
+  const OutputContext output{options, projection, geoid, has_heights, record, defaults};
+
+  progress.begin("tiles", to_build, "buildings");
+  std::vector<TileResult> slots(in_flight);
+  std::vector<model::ReportRow> rows = std::move(region_report.rows);
+  rows.insert(rows.end(), std::make_move_iterator(extract.report.rows.begin()), std::make_move_iterator(extract.report.rows.end()));
+  std::vector<export_::TileEntry> tiles;
+  std::vector<PartySide> party_sides;
+  Region whole;  // for --single-glb
+  std::uint64_t done = 0;
+
+  const auto ground_height = [&](const model::Building& building) -> model::Sourced<double> {
+    if (terrain) {
+      std::optional<double> lowest;
+      const MappedBuilding& mapped = extract.buildings[building.mapped_index];
+      for (const auto& ring : extract.rings_of(mapped.rings)) {
+        if (ring.inner) continue;
+        const auto z = terrain->minimum_under(extract.vertices_of(ring));
+        if (z && (!lowest || *z < *lowest)) lowest = z;
+      }
+      if (lowest) return {model::snap(*lowest), model::Source::terrain, 0.9f, 0};
+    }
+    if (options.ground_height) return {model::snap(*options.ground_height), model::Source::override_, 0.5f, 0};
+    return {0, model::Source::default_, 0.1f, 0};
+  };
+
+  const auto work = [&](std::size_t i) {
+    TileResult result;
+    Region region = load_region(extract, shards[i], projection);
+    for (const generate::Material& m : defaults.materials) region.materials.push_back(m.looks);
+    repair::repair(region, options.repair);
+    context::mark_party_walls(region, shared);
+    generate::resolve_attributes(region, {defaults, neighbours, options.seed, ground_height}, options.generate);
+    if (terrain)
+      for (const model::Building& b : region.buildings)
+        if (b.attributes.ground_height.source != model::Source::terrain) region.report.add(b.osm, IssueCode::terrain_missing);
+    generate::build_masses(region, defaults, options.generate, options.lod);
+    decide_outcomes(region, options.lod, result);
+    count_statistics(region, shared, result);
+    write_tile(region, output, folder, result.files, result.tile);
+    result.rows = std::move(region.report.rows);
+    if (options.single_glb) result.region = std::move(region);
+    slots[i % in_flight] = std::move(result);
+  };
+  const auto consume = [&](std::size_t i) {
+    TileResult result = std::move(slots[i % in_flight]);
+    for (const Outcome& o : result.outcomes) {
+      MappedBuilding& object = extract.buildings[o.index];
+      object.state = o.state;
+      object.code = o.code;
+      object.related = o.related;
+      if (o.state == ObjectState::modelled) ++summary.models_by_lod[static_cast<std::size_t>(std::clamp(o.lod, 0, 2))];
+    }
+    std::move(result.rows.begin(), result.rows.end(), std::back_inserter(rows));
+    std::move(result.files.begin(), result.files.end(), std::back_inserter(record.files));
+    if (result.tile) tiles.push_back(*result.tile);
+    party_sides.insert(party_sides.end(), result.party_sides.begin(), result.party_sides.end());
+    add(record.statistics, result.statistics);
+    summary.below_quality = summary.below_quality || result.below_quality;
+    if (options.single_glb) {
+      whole.extract = &extract;
+      whole.materials = std::move(result.region.materials);
+      std::move(result.region.buildings.begin(), result.region.buildings.end(), std::back_inserter(whole.buildings));
+    }
+    done += shards[i].seeds.size();
+    progress.advance_to(done);
+  };
+  base::ordered_parallel(shards.size(), workers, in_flight, work, consume);
+  settle_party_walls(std::move(party_sides), record.statistics);
+
+  progress.begin("documents");
+  write_whole(whole, tiles, centre, box, output, folder, record.files);
+  for (const MappedBuilding& b : extract.buildings) {
+    switch (b.state) {
+      case ObjectState::modelled: ++summary.models; break;
+      case ObjectState::duplicate: ++summary.duplicates; [[fallthrough]];
+      case ObjectState::represented: ++summary.represented; break;
+      default: ++summary.reported;
+    }
+    if (b.state == ObjectState::reported) ++summary.issues[std::string(info(b.code).text)];
+  }
+  std::sort(rows.begin(), rows.end());
+  for (const model::ReportRow& row : rows)
+    if (info(row.code).issue_class != model::IssueClass::reported) ++summary.issues[std::string(info(row.code).text)];
+  record.files.push_back(folder.write("report.json", report_json(extract, rows)));
+  std::sort(record.files.begin(), record.files.end(),
+            [](const base::PublishedFile& a, const base::PublishedFile& b) { return a.path < b.path; });
+  folder.write("build.json", build_json(options, record));
+  for (const base::PublishedFile& f : record.files) summary.bytes += f.bytes;
+  summary.files = record.files.size() + 2;
+  progress.end();
+
+  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  summary.peak_rss_bytes = peak_rss_bytes();
+  RunRecord run;
+  run.timings = progress.times();
+  run.seconds = summary.seconds;
+  run.peak_rss_bytes = summary.peak_rss_bytes;
+  run.store_bytes = store_bytes;
+  run.tiles_in_flight = std::min<std::uint64_t>(in_flight, shards.size());
+  run.jobs = workers;
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  run.host = host;
+  folder.write("run.json", run_json(run, summary));
+  if (const std::string left = folder.publish(); !left.empty()) progress.warn("the old build could not be removed: " + left);
+  return summary;
+}
+
+}  // namespace blockrand::region

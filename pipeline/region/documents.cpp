@@ -1,0 +1,154 @@
+#include "pipeline/region/documents.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+#include "pipeline/base/version.h"
+
+namespace blockrand::region {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Rounded for people; also keeps the last bits of long sums out of the file.
+double rounded(double value, double steps = 100) { return std::nearbyint(value * steps) / steps; }
+
+std::string_view name(model::ObjectState state) {
+  constexpr std::string_view names[] = {"pending", "modelled", "represented", "duplicate", "reported"};
+  return names[static_cast<int>(state)];
+}
+
+}  // namespace
+
+std::string build_json(const BuildOptions& options, const BuildRecord& r) {
+  Json j;
+  j["program"] = {{"name", "blockrand"}, {"version", base::kVersion}};
+  j["inputs"] = Json::array();
+  for (const InputFile& f : r.inputs)
+    j["inputs"].push_back({{"role", f.role}, {"path", f.path}, {"bytes", f.bytes}, {"sha256", f.sha256}});
+  j["data_time"] = r.data_time;
+  Json& c = j["configuration"];
+  c["lod"] = options.lod;
+  c["formats"] = Json::array();
+  if (options.gltf) c["formats"].push_back("gltf");
+  if (options.citygml) c["formats"].push_back("citygml");
+  c["gzip"] = options.gzip;
+  c["single_glb"] = options.single_glb;
+  c["seed"] = options.seed;
+  c["bbox"] = options.bbox ? Json(*options.bbox) : Json(nullptr);
+  c["terrain"] = options.terrain;
+  c["ground_height"] = options.ground_height ? Json(*options.ground_height) : Json(nullptr);
+  const auto& p = options.repair;
+  c["repair"] = {{"duplicate_distance", p.duplicate_distance}, {"spike_width", p.spike_width},
+                 {"min_piece_area", p.min_piece_area},         {"ring_clearance", p.ring_clearance},
+                 {"parts_free_area", p.parts_free_area},       {"parts_free_width", p.parts_free_width}};
+  const auto& g = options.generate;
+  c["generate"] = {{"neighbour_reach", g.neighbour_reach},         {"neighbour_minimum", g.neighbour_minimum},
+                   {"min_wall_height", g.min_wall_height},         {"min_roof_height", g.min_roof_height},
+                   {"max_roof_pitch", g.max_roof_pitch},           {"canopy_thickness", g.canopy_thickness},
+                   {"collinear_tolerance", g.collinear_tolerance}, {"simplify_tolerance", g.simplify_tolerance}};
+  j["crs"] = {{"code", r.crs.authority_code},
+              {"name", r.crs.name},
+              {"operation", r.crs.operation},
+              {"accuracy_m", r.crs.accuracy_m},
+              {"portable", r.portable},
+              // Rounded up to 10 nm: the last bits of an error say nothing.
+              {"round_trip_error_m", std::ceil(r.round_trip.projection_m * 1e8) / 1e8},
+              {"frame_round_trip_error_m", std::ceil(r.round_trip.frame_m * 1e8) / 1e8},
+              {"height_reference", r.height_reference},
+              {"vertical_crs", r.vertical_crs}};
+  const BuildSummary& s = r.summary;
+  j["counts"] = {{"buildings_in", s.buildings_in},
+                 {"parts_in", s.parts_in},
+                 {"models", s.models},
+                 {"represented", s.represented},
+                 {"reported", s.reported},
+                 {"represented_as_duplicates", s.duplicates},
+                 {"models_lod0", s.models_by_lod[0]},
+                 {"models_lod1", s.models_by_lod[1]},
+                 {"models_lod2", s.models_by_lod[2]},
+                 {"solids_lod1", r.statistics.solids_lod1},
+                 {"solids_lod2", r.statistics.solids_lod2},
+                 {"old_style_multipolygons", r.counts.old_style_multipolygons},
+                 {"areas_with_holes", r.counts.areas_with_holes},
+                 {"missing_nodes", r.counts.missing_nodes},
+                 {"missing_ways", r.counts.missing_ways}};
+  j["issues"] = Json::object();
+  for (const auto& [code, count] : s.issues) j["issues"][code] = count;
+  const Statistics& t = r.statistics;
+  j["statistics"] = {{"footprint_area_m2", rounded(t.footprint_area)},
+                     {"volume_m3", rounded(t.volume)},
+                     {"outer_wall_area_m2", rounded(t.outer_wall_area)},
+                     {"party_walls", t.party_walls},
+                     {"party_wall_length_m", rounded(t.party_wall_length)},
+                     {"party_wall_area_m2", rounded(t.party_wall_area)}};
+  j["statistics"]["roofs"] = Json::object();
+  for (const auto& [shape, count] : t.roofs) j["statistics"]["roofs"][shape] = count;
+  j["statistics"]["sources"] = Json::object();
+  for (const auto& [attribute, sources] : t.sources) {
+    Json& row = j["statistics"]["sources"][attribute] = Json::object();
+    for (const auto& [source, count] : sources) row[source] = count;
+  }
+  j["files"] = Json::object();
+  for (const base::PublishedFile& f : r.files) j["files"][f.path] = {{"bytes", f.bytes}, {"sha256", f.sha256}};
+  return j.dump(1) + "\n";
+}
+
+std::string run_json(const RunRecord& run, const BuildSummary& summary) {
+  Json j;
+  j["timings"] = Json::object();
+  for (const auto& t : run.timings) j["timings"][t.name] = rounded(t.seconds, 1000);
+  j["seconds"] = rounded(run.seconds, 1000);
+  const double objects = static_cast<double>(summary.buildings_in + summary.parts_in);
+  j["buildings_per_second"] = run.seconds > 0 ? rounded(objects / run.seconds, 10) : 0;
+  j["peak_rss_bytes"] = run.peak_rss_bytes;
+  j["store_bytes"] = run.store_bytes;
+  j["tiles_in_flight"] = run.tiles_in_flight;
+  j["jobs"] = run.jobs;
+  j["host"] = run.host;
+  return j.dump(1) + "\n";
+}
+
+std::string report_json(const model::Extract& extract, const std::vector<model::ReportRow>& rows) {
+  // Details that the importer noted about objects that end as reported stand with the object.
+  std::map<std::pair<model::OsmId, model::IssueCode>, std::string> details;
+  Json fallbacks = Json::array(), notices = Json::array();
+  for (const model::ReportRow& row : rows) {
+    const auto& about = info(row.code);
+    if (about.issue_class == model::IssueClass::reported) {
+      details.emplace(std::pair(row.object, row.code), row.detail);
+      continue;
+    }
+    Json entry = {{"id", row.object.text()}, {"code", about.text}};
+    if (!row.detail.empty()) entry["detail"] = row.detail;
+    (about.issue_class == model::IssueClass::fallback ? fallbacks : notices).push_back(std::move(entry));
+  }
+  Json objects = Json::array();
+  for (const model::MappedBuilding& b : extract.buildings) {
+    if (b.state == model::ObjectState::modelled) continue;
+    Json entry = {{"id", b.id.text()},
+                  {"kind", b.kind == model::ObjectKind::building ? "building" : "building_part"},
+                  {"state", name(b.state)}};
+    if (b.state == model::ObjectState::reported) {
+      entry["code"] = info(b.code).text;
+      if (const auto found = details.find({b.id, b.code}); found != details.end() && !found->second.empty())
+        entry["detail"] = found->second;
+    } else {
+      entry["related"] = b.related.text();
+    }
+    objects.push_back(std::move(entry));
+  }
+  Json codes = Json::object();
+  for (int i = 1; i < model::kIssueCodeCount; ++i)
+    codes[std::string(model::kIssueInfo[i].text)] = model::kIssueInfo[i].meaning;
+  Json j;
+  j["objects"] = std::move(objects);
+  j["fallbacks"] = std::move(fallbacks);
+  j["notices"] = std::move(notices);
+  j["codes"] = std::move(codes);
+  return j.dump(1) + "\n";
+}
+
+}  // namespace blockrand::region

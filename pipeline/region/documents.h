@@ -1,0 +1,72 @@
+// build.json, run.json and report.json: what a build tells about itself.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipeline/base/progress.h"
+#include "pipeline/base/publish.h"
+#include "pipeline/georef/crs.h"
+#include "pipeline/georef/round_trip.h"
+#include "pipeline/model/extract.h"
+#include "pipeline/region/build.h"
+
+namespace blockrand::region {
+
+/// A file that went into the build.
+struct InputFile {
+  std::string role;  ///< "extract", "terrain", "config"
+  std::string path;  ///< as given
+  std::uint64_t bytes = 0;
+  std::string sha256;
+};
+
+/// Sums over the whole build, with every shared wall counted once.
+struct Statistics {
+  double footprint_area = 0;    ///< m²
+  double outer_wall_area = 0;   ///< m², without what neighbours cover
+  double party_wall_area = 0;   ///< m², each wall between two buildings once
+  double party_wall_length = 0; ///< m
+  std::uint64_t party_walls = 0;
+  double volume = 0;            ///< m³ of the best solids
+  std::uint64_t solids_lod1 = 0, solids_lod2 = 0;
+  std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → parts
+  std::map<std::string, std::uint64_t> roofs;                           ///< built roof shape → parts
+};
+
+/// Everything that the same call writes again byte for byte.
+struct BuildRecord {
+  std::vector<InputFile> inputs;
+  std::string data_time;
+  georef::Crs crs;
+  bool portable = true;
+  georef::RoundTrip round_trip;
+  std::string height_reference;
+  std::string vertical_crs;  ///< empty: none claimed
+  BuildSummary summary;
+  Statistics statistics;
+  model::ExtractCounts counts;
+  std::vector<base::PublishedFile> files;  ///< in path order
+};
+
+/// What differs from run to run.
+struct RunRecord {
+  std::vector<base::Progress::PhaseTime> timings;
+  double seconds = 0;
+  std::uint64_t peak_rss_bytes = 0;
+  std::uint64_t store_bytes = 0;      ///< the object store with its indices
+  std::uint64_t tiles_in_flight = 0;
+  int jobs = 0;
+  std::string host;
+};
+
+std::string build_json(const BuildOptions& options, const BuildRecord& record);
+std::string run_json(const RunRecord& run, const BuildSummary& summary);
+/// Every object that is not modelled itself, every fallback and every notice, sorted by object; and what codes mean.
+std::string report_json(const model::Extract& extract, const std::vector<model::ReportRow>& rows);
+
+}  // namespace blockrand::region

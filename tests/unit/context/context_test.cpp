@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include "pipeline/context/party_walls.h"
+#include "pipeline/context/tagged_neighbours.h"
+
+namespace blockrand::context {
+namespace {
+
+using model::OsmId;
+using model::OsmType;
+using model::RoofShape;
+
+TaggedBuilding tagged(std::int64_t number, double x, double y, float storeys, std::uint8_t group = 0) {
+  return {{OsmType::way, number}, {x, y}, group, storeys, std::nullopt};
+}
+
+const OsmId kNobody{OsmType::way, 999};
+
+TEST(TaggedNeighbours, MedianWithinTheReachOnly) {
+  const TaggedNeighbours n({tagged(1, 0, 0, 3), tagged(2, 50, 0, 5), tagged(3, -60, 20, 4), tagged(4, 101, 0, 20)}, 100);
+  const auto opinion = n.storeys({0, 0}, 0, kNobody, 3);
+  ASSERT_TRUE(opinion);
+  EXPECT_DOUBLE_EQ(opinion->value, 4);
+  EXPECT_EQ(opinion->voices, 3);
+}
+
+TEST(TaggedNeighbours, AnEvenNumberGivesAMappedValue) {
+  const TaggedNeighbours n({tagged(1, 0, 0, 3), tagged(2, 1, 0, 4), tagged(3, 2, 0, 6), tagged(4, 3, 0, 7)}, 100);
+  EXPECT_DOUBLE_EQ(n.storeys({0, 0}, 0, kNobody, 3)->value, 4);
+}
+
+TEST(TaggedNeighbours, OneselfAndOtherGroupsHaveNoVoice) {
+  const TaggedNeighbours n({tagged(1, 0, 0, 3), tagged(2, 1, 0, 4), tagged(3, 2, 0, 5), tagged(4, 3, 0, 9, 1)}, 100);
+  EXPECT_FALSE(n.storeys({0, 0}, 0, {OsmType::way, 1}, 3));
+  EXPECT_TRUE(n.storeys({0, 0}, 0, kNobody, 3));
+  EXPECT_FALSE(n.storeys({0, 0}, 1, kNobody, 2));
+}
+
+TEST(TaggedNeighbours, AcrossCellBordersAndNegativeCoordinates) {
+  const TaggedNeighbours n({tagged(1, -1, -1, 3), tagged(2, 1, 1, 3), tagged(3, -99, 1, 3)}, 100);
+  EXPECT_TRUE(n.storeys({0, 0}, 0, kNobody, 3));
+  EXPECT_FALSE(n.storeys({1e7, 1e7}, 0, kNobody, 1));
+}
+
+TEST(TaggedNeighbours, MajorityOfRoofs) {
+  std::vector<TaggedBuilding> b;
+  for (int i = 0; i < 5; ++i) {
+    b.push_back({{OsmType::way, i}, {i * 1.0, 0}, 0, std::nullopt, i < 3 ? RoofShape::hipped : RoofShape::flat});
+  }
+  const TaggedNeighbours n(b, 100);
+  const auto opinion = n.roof_shape({0, 0}, 0, kNobody, 3);
+  ASSERT_TRUE(opinion);
+  EXPECT_EQ(opinion->value, RoofShape::hipped);
+  EXPECT_DOUBLE_EQ(opinion->share, 0.6);
+  EXPECT_FALSE(n.storeys({0, 0}, 0, kNobody, 1)) << "nobody tagged storeys";
+}
+
+model::Extract two_houses_with_one_wall() {
+  model::Extract e;
+  const auto add = [&](std::int64_t id, std::vector<std::int64_t> nodes) {
+    model::MappedBuilding b;
+    b.id = {OsmType::way, id};
+    b.rings = {static_cast<std::uint32_t>(e.rings.size()), 1};
+    e.rings.push_back({{static_cast<std::uint32_t>(e.vertices.size()), static_cast<std::uint32_t>(nodes.size())}, false});
+    for (const auto n : nodes) {
+      e.vertices.push_back({static_cast<std::int32_t>(n), 0});
+      e.vertex_nodes.push_back(n);
+    }
+    e.buildings.push_back(b);
+  };
+  add(1, {1, 2, 3, 4});
+  add(2, {2, 5, 6, 3});
+  return e;
+}
+
+TEST(SharedEdges, TheCommonWallAndNothingElse) {
+  const model::Extract e = two_houses_with_one_wall();
+  const SharedEdges shared(e);
+  EXPECT_EQ(shared.size(), 1u);
+  EXPECT_GE(shared.find(2, 3), 0);
+  EXPECT_EQ(shared.find(2, 3), shared.find(3, 2));
+  EXPECT_EQ(shared.find(1, 2), -1);
+  EXPECT_EQ(shared.find(0, 3), -1);
+}
+
+TEST(SharedEdges, ADuplicateSharesNoWallsWithItsOriginal) {
+  model::Extract e = two_houses_with_one_wall();
+  e.buildings[1].state = model::ObjectState::duplicate;
+  EXPECT_EQ(SharedEdges(e).size(), 0u);
+}
+
+}  // namespace
+}  // namespace blockrand::context
