@@ -77,7 +77,7 @@ struct Terrain::Impl {
   std::array<double, 6> to_pixel{};  // from CRS coordinates
   std::optional<georef::Transform> transform;
   bool geographic = false;
-  double west = -180;  // of a raster in degrees: longitudes are counted from here, which covers rasters of 0 to 360
+  double middle = 0;  // longitude of a raster in degrees; half a turn to each side of it covers rasters of 0 to 360 too
   double factor = 1, shift = 0;  // stored value to metres
   long long columns = 0, rows = 0;
 
@@ -176,7 +176,8 @@ std::shared_ptr<const Block> Terrain::Impl::block_at(long long block_column, lon
 
 Pixel Terrain::Impl::pixel_of(model::Location location) const {
   model::Point2 p = transform->forward({location.lon_degrees(), location.lat_degrees()});
-  if (geographic && p.x < west) p.x += 360;
+  if (geographic && p.x < middle - 180) p.x += 360;
+  if (geographic && p.x > middle + 180) p.x -= 360;
   const auto rounded = [](double value) { return std::nearbyint(value * kPixelSteps) / kPixelSteps; };
   return {rounded(to_pixel[0] + to_pixel[1] * p.x + to_pixel[2] * p.y),
           rounded(to_pixel[3] + to_pixel[4] * p.x + to_pixel[5] * p.y)};
@@ -243,10 +244,7 @@ Terrain::Terrain(const std::string& path) : impl_(std::make_unique<Impl>()) {
   };
   const auto columns = static_cast<double>(impl.columns), rows = static_cast<double>(impl.rows);
   const std::array<model::Point2, 4> corners{corner(0, 0), corner(columns, 0), corner(columns, rows), corner(0, rows)};
-  if (impl.geographic) {
-    impl.west = corners[0].x;
-    for (const model::Point2& p : corners) impl.west = std::min(impl.west, p.x);
-  }
+  if (impl.geographic) impl.middle = corner(0.5 * columns, 0.5 * rows).x;
   try {
     // Which operation is best depends on the place, and the place is known through an operation: twice, then.
     impl.transform.emplace("EPSG:4326", definition);

@@ -14,15 +14,15 @@ namespace blockrand::georef {
 namespace {
 
 /// Around Europe as choose_crs means it, from the Atlantic anticlockwise. Straight lines in degrees.
-constexpr std::array<LonLat, 25> kEurope{{
+constexpr std::array<LonLat, 30> kEurope{{
     {-16.1, 35.93}, {-5.2, 35.93},  // Strait of Gibraltar
-    {-1.0, 36.3},   {5.0, 37.8},   {9.5, 37.9},   {11.3, 37.3},
-    {11.5, 36.2},   {12.0, 35.2},                                 // Lampedusa inside, Tunisia out
-    {23.0, 34.3},   {34.9, 34.3},  {34.9, 35.8},  {32.0, 35.85},  // Crete, Cyprus
-    {28.3, 36.0},   {27.5, 36.8},  {26.6, 38.0},  {26.2, 38.7},
-    {26.7, 39.4},   {26.0, 40.6},                                // Aegean islands
-    {26.6, 41.7},   {28.1, 41.95}, {40.2, 42.5},  {40.2, 84.7},  // Black Sea, eastern limit
-    {-12.5, 84.7},  {-12.5, 60.0}, {-16.1, 60.0},                // Iceland outside
+    {-1.0, 36.3},   {5.0, 37.8},   {9.5, 37.9},   {11.3, 37.3},  {11.5, 36.2},
+    {12.0, 35.2},                                                                // Lampedusa in, Tunisia out
+    {23.0, 34.3},   {34.9, 34.3},  {34.9, 35.8},  {32.0, 35.85},                 // Crete, Cyprus
+    {28.4, 36.0},   {28.35, 36.5}, {27.5, 36.75}, {27.2, 37.3},  {27.06, 37.8},  // Rhodes, Kos, Samos
+    {26.2, 38.2},   {26.2, 38.7},  {26.65, 39.0}, {26.5, 39.4},  {26.0, 40.6},   // Chios, Lesbos
+    {26.6, 41.7},   {28.1, 41.95}, {40.2, 42.5},  {40.2, 84.7},                  // Thrace, Black Sea, eastern limit
+    {-12.5, 84.7},  {-12.5, 60.0}, {-16.1, 60.0}, {-16.1, 36.0},                 // Iceland out
 }};
 
 int utm_zone(double lon, double lat) {

@@ -23,7 +23,7 @@ struct Geodetic {
 model::Point3 to_ecef(const Geodetic& p);
 
 /// Inverse of to_ecef: B. R. Bowring, Transformation from spatial to geographical coordinates, Survey Review 23 (1976),
-/// iterated. For heights from -100 km to 10,000 km the error is a few nanometres.
+/// iterated four times. Near the ground (-10 to 100 km) the error is below 1e-8 m, the last bit of degrees as doubles.
 Geodetic from_ecef(const model::Point3& p);
 
 /// Right-handed frame that touches the ellipsoid's normal at an origin: x east, y north, z up. Metres.
