@@ -1,0 +1,449 @@
+#include "pipeline/export/citygml/citygml_writer.h"
+
+#include <libxml/xmlwriter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <new>
+
+#include "pipeline/export/citygml/codes.h"
+#include "pipeline/export/citygml/geometry_text.h"
+#include "pipeline/export/text.h"
+
+namespace blockrand::export_ {
+namespace {
+
+/// The smallest box around everything that is written.
+struct Envelope {
+  bool empty = true;
+  model::Point3 min, max;
+  void add(const model::Point3& p) {
+    if (empty) min = max = p;
+    empty = false;
+    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+  }
+};
+
+double footprint_height(const model::Attributes& attributes) {
+  const double z = attributes.ground_height.value;
+  return std::isfinite(z) ? model::snap(z) : 0;
+}
+
+Envelope envelope(const model::Region& region, int lod) {
+  Envelope box;
+  const auto add_plan = [&](const model::Polygon& plan, double z) {
+    for (const model::Point2& p : plan.outer.points) box.add({p.x, p.y, z});
+  };
+  for (const model::Building& building : region.buildings) {
+    if (!building.owned) continue;
+    for (const model::BuildingPart& part : building.parts) {
+      add_plan(part.plan, footprint_height(part.attributes));
+      if (lod >= 1)
+        for (const model::Point3& p : part.lod1.vertices) box.add(p);
+      if (lod >= 2)
+        for (const model::Point3& p : part.lod2.vertices) box.add(p);
+    }
+    if (building.parts.empty())
+      for (const model::Polygon& plan : building.outline) add_plan(plan, footprint_height(building.attributes));
+  }
+  return box;
+}
+
+bool is_year(std::string_view text) {
+  return text.size() == 4 && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }) &&
+         text != "0000";
+}
+
+/// Writes the text of one building after the other. Buildings are put together by hand from fixed pieces: an element at
+/// a time through the XML library costs several times as much.
+class BuildingText {
+ public:
+  BuildingText(const model::Region& region, const CityGmlOptions& options)
+      : region_(region), options_(options), tags_(region.extract), geometry_(out_) {}
+
+  /// The text of one cityObjectMember; valid until the next call.
+  std::string_view member(const model::Building& building) {
+    out_.clear();
+    const std::string id = building.id();
+    const bool single = building.parts.size() == 1 && building.parts.front().id == id;
+    out_ += "<cityObjectMember><bldg:Building gml:id=\"";
+    out_ += id;
+    out_ += "\">\n";
+    head(building.osm, building.tags);
+    if (single) {
+      const model::BuildingPart& part = building.parts.front();
+      attributes(part.attributes, building.tags, &part);
+      geometry(part, id);
+    } else {
+      attributes(building.attributes, building.tags, nullptr);
+      if (building.parts.empty()) footprints(building);
+      for (const model::BuildingPart& part : building.parts) {
+        const std::string part_id = part.id == id ? id + ".1" : part.id;
+        out_ += "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id=\"";
+        out_ += part_id;
+        out_ += "\">\n";
+        // A remainder or a piece of the outline carries the building's tags, which stand above.
+        const bool own_tags = part.osm != building.osm;
+        head(part.osm, own_tags ? part.tags : model::Range{});
+        attributes(part.attributes, own_tags ? part.tags : model::Range{}, &part);
+        geometry(part, part_id);
+        if (own_tags) address(part.tags);
+        out_ += "</bldg:BuildingPart></bldg:consistsOfBuildingPart>\n";
+      }
+    }
+    address(building.tags);
+    out_ += "</bldg:Building></cityObjectMember>\n";
+    return out_;
+  }
+
+ private:
+  /// What every city object starts with: its name and where it comes from.
+  void head(const model::OsmId& osm, model::Range tags) {
+    if (const std::string_view name = tags_.name(tags); !name.empty()) element("gml:name", name);
+    out_ +=
+        "<externalReference><informationSystem>https://www.openstreetmap.org</informationSystem><externalObject><uri>"
+        "https://www.openstreetmap.org/";
+    out_ += osm.type == model::OsmType::node ? "node/" : osm.type == model::OsmType::way ? "way/" : "relation/";
+    append_number(out_, osm.number);
+    out_ += "</uri></externalObject></externalReference>\n";
+  }
+
+  void element(std::string_view name, std::string_view text) {
+    out_ += '<';
+    out_ += name;
+    out_ += '>';
+    append_xml(out_, text);
+    out_ += "</";
+    out_ += name;
+    out_ += ">\n";
+  }
+
+  void open_generic(const char* type, std::string_view name, const char* suffix = "") {
+    out_ += "<gen:";
+    out_ += type;
+    out_ += " name=\"";
+    append_xml(out_, name);
+    out_ += suffix;
+    out_ += "\"><gen:value>";
+  }
+  void close_generic(const char* type) {
+    out_ += "</gen:value></gen:";
+    out_ += type;
+    out_ += ">\n";
+  }
+  void generic_text(std::string_view name, std::string_view text, const char* suffix = "") {
+    if (text.empty()) return;
+    open_generic("stringAttribute", name, suffix);
+    append_xml(out_, text);
+    close_generic("stringAttribute");
+  }
+
+  // One overload per type of attribute value.
+  void generic(std::string_view name, std::string_view, const std::string& value) { generic_text(name, value); }
+  void generic(std::string_view name, std::string_view, model::Colour value) { generic_text(name, model::text(value)); }
+  void generic(std::string_view name, std::string_view, model::RoofShape value) {
+    generic_text(name, model::name(value));
+  }
+  void generic(std::string_view name, std::string_view, model::RoofOrientation value) {
+    generic_text(name, value == model::RoofOrientation::along ? "along" : "across");
+  }
+  void generic(std::string_view name, std::string_view unit, double value) {
+    if (!std::isfinite(value)) return;
+    if (unit.empty()) {
+      open_generic("doubleAttribute", name);
+      append_number(out_, value);
+      close_generic("doubleAttribute");
+      return;
+    }
+    out_ += "<gen:measureAttribute name=\"";
+    out_ += name;
+    out_ += "\"><gen:value uom=\"";
+    out_ += unit;
+    out_ += "\">";
+    append_number(out_, value);
+    close_generic("measureAttribute");
+  }
+
+  /// Generic attributes, then the elements of bldg:_AbstractBuilding up to the storeys' heights.
+  void attributes(const model::Attributes& a, model::Range tags, const model::BuildingPart* part) {
+    constexpr double kMostStoreys = 1000;  // longer lists of heights would be nonsense
+    const bool whole_storeys =
+        a.storeys.value >= 0 && a.storeys.value <= kMostStoreys && a.storeys.value == std::floor(a.storeys.value);
+    const bool storey_list = whole_storeys && a.storeys.value >= 1 && std::isfinite(a.storey_height.value);
+    model::for_each_attribute(
+        a,
+        [&](std::string_view name, std::string_view unit, const auto& sourced) {
+          const bool has_element = name == "use" || name == "height" || (name == "storeys" && whole_storeys) ||
+                                   (name == "storey_height" && storey_list);
+          if (!has_element) generic(name, unit, sourced.value);
+          if (sourced.source == model::Source::tag) return;
+          generic_text(name, model::name(sourced.source), "_source");
+          open_generic("doubleAttribute", name, "_confidence");
+          append_number(out_, sourced.confidence);
+          close_generic("doubleAttribute");
+          if (options_.evidence && sourced.evidence != 0)
+            generic_text(name, region_.evidence[sourced.evidence].text, "_evidence");
+        },
+        [](std::string_view, std::string_view) {});
+    if (part) {
+      generic_text("built_roof", model::name(part->built_roof));
+      open_generic("intAttribute", "lod");
+      append_number(out_, static_cast<std::int64_t>(part->lod));
+      close_generic("intAttribute");
+      if (!part->fallbacks.empty()) {
+        open_generic("stringAttribute", "fallbacks");
+        for (std::size_t i = 0; i < part->fallbacks.size(); ++i) {
+          if (i) out_ += ' ';
+          out_ += model::info(part->fallbacks[i]).text;
+        }
+        close_generic("stringAttribute");
+      }
+    }
+    osm_tags(tags);
+
+    if (const std::string_view code = class_code(a.use.value); !code.empty()) coded("class", kClassCodeSpace, code);
+    if (!a.use.value.empty()) coded("function", kUseCodeSpace, a.use.value);
+    if (const std::string_view use = tags_.building_use(tags); !use.empty()) coded("usage", {}, use);
+    if (const std::string_view date = tags_.start_date(tags); is_year(date)) element("bldg:yearOfConstruction", date);
+    if (part)
+      if (const std::string_view code = roof_type_code(part->built_roof); !code.empty())
+        coded("roofType", kRoofTypeCodeSpace, code);
+    if (std::isfinite(a.height.value)) {
+      out_ += "<bldg:measuredHeight uom=\"m\">";
+      append_number(out_, a.height.value);
+      out_ += "</bldg:measuredHeight>\n";
+    }
+    if (whole_storeys) {
+      out_ += "<bldg:storeysAboveGround>";
+      append_number(out_, a.storeys.value);
+      out_ += "</bldg:storeysAboveGround>\n";
+    }
+    if (storey_list) {
+      out_ += "<bldg:storeyHeightsAboveGround uom=\"m\">";
+      for (int i = 0; i < static_cast<int>(a.storeys.value); ++i) {
+        if (i) out_ += ' ';
+        append_number(out_, a.storey_height.value);
+      }
+      out_ += "</bldg:storeyHeightsAboveGround>\n";
+    }
+  }
+
+  void coded(std::string_view name, std::string_view code_space, std::string_view code) {
+    out_ += "<bldg:";
+    out_ += name;
+    if (!code_space.empty()) {
+      out_ += " codeSpace=\"";
+      out_ += code_space;
+      out_ += '"';
+    }
+    out_ += '>';
+    append_xml(out_, code);
+    out_ += "</bldg:";
+    out_ += name;
+    out_ += ">\n";
+  }
+
+  void osm_tags(model::Range tags) {
+    if (!region_.extract) return;
+    for (const model::Tag& tag : region_.extract->tags_of(tags)) {
+      out_ += "<gen:stringAttribute name=\"osm.";
+      append_xml(out_, region_.extract->strings.view(tag.key));
+      out_ += "\"><gen:value>";
+      append_xml(out_, region_.extract->strings.view(tag.value));
+      close_generic("stringAttribute");
+    }
+  }
+
+  void footprints(const model::Building& building) {
+    if (building.outline.empty()) return;
+    out_ += "<bldg:lod0FootPrint><gml:MultiSurface>";
+    for (const model::Polygon& plan : building.outline) footprint(plan, building.attributes);
+    out_ += "</gml:MultiSurface></bldg:lod0FootPrint>\n";
+  }
+  void footprint(const model::Polygon& plan, const model::Attributes& a) {
+    out_ += "<gml:surfaceMember>";
+    geometry_.footprint(plan, footprint_height(a));
+    out_ += "</gml:surfaceMember>";
+  }
+
+  void geometry(const model::BuildingPart& part, const std::string& id) {
+    if (part.plan.outer.size() >= 3) {
+      out_ += "<bldg:lod0FootPrint><gml:MultiSurface>";
+      footprint(part.plan, part.attributes);
+      out_ += "</gml:MultiSurface></bldg:lod0FootPrint>\n";
+    }
+    if (options_.lod >= 1 && part.lod >= 1 && !part.lod1.empty()) {
+      out_ += "<bldg:lod1Solid>";
+      geometry_.solid(part.lod1, id + "_lod1");
+      out_ += "</bldg:lod1Solid>\n";
+    }
+    if (options_.lod >= 2 && part.lod >= 2 && !part.lod2.empty()) {
+      out_ += "<bldg:lod2Solid>";
+      geometry_.solid_of_references(part.lod2, id + "_lod2", id);
+      out_ += "</bldg:lod2Solid>\n";
+      geometry_.surfaces(part.lod2, id);
+    }
+  }
+
+  void address(model::Range tags) {
+    const Address a = tags_.address(tags);
+    const bool locality = !(a.city.empty() && a.suburb.empty() && a.postcode.empty() && a.street.empty() &&
+                            a.place.empty() && a.house_number.empty() && a.house_name.empty());
+    if (!locality) return;
+    out_ += "<bldg:address><Address><xalAddress><xAL:AddressDetails>";
+    if (!a.country.empty()) {
+      out_ += "<xAL:Country>";
+      element(a.country.size() == 2 ? "xAL:CountryNameCode" : "xAL:CountryName", a.country);
+    }
+    out_ += "<xAL:Locality Type=\"Town\">";
+    if (!a.city.empty()) element("xAL:LocalityName", a.city);
+    const std::string_view street = a.street.empty() ? a.place : a.street;
+    const std::string_view number = a.house_number.empty() ? a.house_name : a.house_number;
+    if (!street.empty() || !number.empty()) {
+      out_ += "<xAL:Thoroughfare Type=\"Street\">";
+      if (!number.empty()) element("xAL:ThoroughfareNumber", number);
+      if (!street.empty()) element("xAL:ThoroughfareName", street);
+      out_ += "</xAL:Thoroughfare>";
+    }
+    if (!a.suburb.empty()) {
+      out_ += "<xAL:DependentLocality>";
+      element("xAL:DependentLocalityName", a.suburb);
+      out_ += "</xAL:DependentLocality>";
+    }
+    if (!a.postcode.empty()) {
+      out_ += "<xAL:PostalCode>";
+      element("xAL:PostalCodeNumber", a.postcode);
+      out_ += "</xAL:PostalCode>";
+    }
+    out_ += "</xAL:Locality>";
+    if (!a.country.empty()) out_ += "</xAL:Country>";
+    out_ += "</xAL:AddressDetails></xalAddress></Address></bldg:address>\n";
+  }
+
+  const model::Region& region_;
+  const CityGmlOptions& options_;
+  TagReader tags_;
+  std::string out_;
+  GeometryText geometry_;
+};
+
+/// What the callbacks of libxml2 see: exceptions must not pass through C code.
+struct SinkState {
+  const Sink* sink = nullptr;
+  std::exception_ptr error;
+};
+
+int write_to_sink(void* context, const char* bytes, int size) {
+  auto& state = *static_cast<SinkState*>(context);
+  if (state.error) return -1;
+  try {
+    (*state.sink)(std::string_view(bytes, static_cast<std::size_t>(size)));
+  } catch (...) {
+    state.error = std::current_exception();
+    return -1;
+  }
+  return size;
+}
+
+const xmlChar* xml(const char* text) { return reinterpret_cast<const xmlChar*>(text); }
+
+std::string description(const CityGmlOptions& options) {
+  std::string text;
+  const auto add = [&](std::string_view label, std::string_view value) {
+    if (value.empty()) return;
+    if (!text.empty()) text += "; ";
+    text += label;
+    append_clean(text, value);
+  };
+  add("CRS: ", options.srs_name);
+  add("heights: ", options.height_reference);
+  add("data: ", options.attribution);
+  return text;
+}
+
+void write_envelope(xmlTextWriterPtr writer, const Envelope& box, const std::string& srs_name) {
+  if (box.empty) return;
+  const auto corner = [&](const char* name, const model::Point3& p) {
+    std::string text;
+    append_grid(text, p.x);
+    text += ' ';
+    append_grid(text, p.y);
+    text += ' ';
+    append_grid(text, p.z);
+    xmlTextWriterWriteElement(writer, xml(name), xml(text.c_str()));
+  };
+  xmlTextWriterStartElement(writer, xml("gml:boundedBy"));
+  xmlTextWriterStartElement(writer, xml("gml:Envelope"));
+  if (!srs_name.empty()) xmlTextWriterWriteAttribute(writer, xml("srsName"), xml(srs_name.c_str()));
+  xmlTextWriterWriteAttribute(writer, xml("srsDimension"), xml("3"));
+  corner("gml:lowerCorner", box.min);
+  corner("gml:upperCorner", box.max);
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterWriteRaw(writer, xml("\n"));
+}
+
+}  // namespace
+
+void write_citygml(const model::Region& region, const CityGmlOptions& options, const Sink& sink) {
+  SinkState state{&sink, nullptr};
+  xmlOutputBufferPtr output = xmlOutputBufferCreateIO(write_to_sink, nullptr, &state, nullptr);
+  if (!output) throw std::bad_alloc();
+  const std::unique_ptr<xmlTextWriter, void (*)(xmlTextWriterPtr)> owner(xmlNewTextWriter(output), xmlFreeTextWriter);
+  xmlTextWriterPtr writer = owner.get();
+  if (!writer) {
+    xmlOutputBufferClose(output);
+    throw std::bad_alloc();
+  }
+
+  xmlTextWriterWriteRaw(writer, xml("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"));
+  xmlTextWriterStartElement(writer, xml("CityModel"));
+  const std::pair<const char*, const char*> namespaces[] = {
+      {"xmlns", "http://www.opengis.net/citygml/2.0"},
+      {"xmlns:bldg", "http://www.opengis.net/citygml/building/2.0"},
+      {"xmlns:gen", "http://www.opengis.net/citygml/generics/2.0"},
+      {"xmlns:gml", "http://www.opengis.net/gml"},
+      {"xmlns:xAL", "urn:oasis:names:tc:ciq:xsdschema:xAL:2.0"},
+      {"xmlns:xlink", "http://www.w3.org/1999/xlink"},
+      {"xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance"},
+      {"xsi:schemaLocation",
+       "http://www.opengis.net/citygml/building/2.0 http://schemas.opengis.net/citygml/building/2.0/building.xsd "
+       "http://www.opengis.net/citygml/generics/2.0 http://schemas.opengis.net/citygml/generics/2.0/generics.xsd"},
+  };
+  for (const auto& [name, value] : namespaces) xmlTextWriterWriteAttribute(writer, xml(name), xml(value));
+  xmlTextWriterWriteRaw(writer, xml("\n"));
+  // The description comes before the name in GML's sequence.
+  if (const std::string text = description(options); !text.empty()) {
+    xmlTextWriterWriteElement(writer, xml("gml:description"), xml(text.c_str()));
+    xmlTextWriterWriteRaw(writer, xml("\n"));
+  }
+  if (!options.name.empty()) {
+    std::string clean;
+    append_clean(clean, options.name);
+    xmlTextWriterWriteElement(writer, xml("gml:name"), xml(clean.c_str()));
+    xmlTextWriterWriteRaw(writer, xml("\n"));
+  }
+  write_envelope(writer, envelope(region, options.lod), options.srs_name);
+
+  BuildingText text(region, options);
+  for (const model::Building& building : region.buildings) {
+    if (!building.owned) continue;
+    if (state.error) break;
+    const std::string_view member = text.member(building);
+    xmlTextWriterWriteRawLen(writer, xml(member.data()), static_cast<int>(member.size()));
+  }
+  xmlTextWriterEndDocument(writer);
+  xmlTextWriterFlush(writer);
+  if (state.error) std::rethrow_exception(state.error);
+}
+
+std::string write_citygml(const model::Region& region, const CityGmlOptions& options) {
+  std::string out;
+  write_citygml(region, options, [&](std::string_view bytes) { out += bytes; });
+  return out;
+}
+
+}  // namespace blockrand::export_

@@ -1,0 +1,40 @@
+// A tile as binary glTF.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "pipeline/export/frame.h"
+#include "pipeline/model/region.h"
+
+namespace blockrand::export_ {
+
+struct GlbOptions {
+  int lod = 2;                   ///< highest level of detail: 1 or 2; with 0 the file has properties but no mesh
+  std::string crs;               ///< of the build, for example "EPSG:25833"
+  std::string height_reference;  ///< in words: "ellipsoidal heights (EGM96 + terrain)", "heights above local ground"
+  std::string generator;         ///< program and version, for asset.generator
+  std::string attribution;       ///< asset.copyright: "© OpenStreetMap contributors, ODbL 1.0"
+  Frame frame;
+  bool evidence = false;  ///< also why each attribute has its value
+};
+
+struct Glb {
+  std::string bytes;
+  std::size_t rows = 0;       ///< of the property table: parts of owned buildings
+  std::size_t triangles = 0;  ///< 0: the file is valid, but shows nothing; a tileset should leave it out
+  model::Point3 min, max;     ///< of the mesh in east, north, up; zero without triangles
+};
+
+/// The owned buildings of `region` as one GLB.
+///
+/// One mesh with a primitive per material class, indexed, y up. Vertices are interleaved: POSITION (float, or 16-bit
+/// integers in steps of 1/1024 m where the whole mesh is smaller than 64 m), NORMAL (8 bits), COLOR_0 (16 bits, linear
+/// light) and _FEATURE_ID_0, the row of the part in the property table. Extensions: KHR_mesh_quantization (required),
+/// EXT_mesh_features, EXT_structural_metadata. `asset.extras.georeference` says where on the Earth the mesh stands.
+///
+/// The same region gives the same bytes. A region without parts gives a valid file with an empty scene.
+/// \throws std::length_error when the tile has more than 2^24 parts or 4 GB of data
+Glb write_glb(const model::Region& region, const GlbOptions& options);
+
+}  // namespace blockrand::export_

@@ -1,0 +1,169 @@
+#include "pipeline/export/gltf/mesh.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "pipeline/export/gltf/linear_light.h"
+
+namespace blockrand::export_ {
+namespace {
+
+struct SolidRef {
+  const model::Solid* solid = nullptr;
+  const model::SolidTriangles* triangles = nullptr;
+  std::uint32_t feature = 0;
+  std::uint32_t first_position = 0;
+};
+
+/// The best solid of the part at or below `lod`, or nullptr.
+std::pair<const model::Solid*, const model::SolidTriangles*> solid_of(const model::BuildingPart& part, int lod) {
+  if (lod >= 2 && part.lod >= 2 && !part.lod2.empty()) return {&part.lod2, &part.lod2_triangles};
+  if (lod >= 1 && part.lod >= 1 && !part.lod1.empty()) return {&part.lod1, &part.lod1_triangles};
+  return {nullptr, nullptr};
+}
+
+std::array<std::int8_t, 3> face_normal(const model::Solid& solid, const model::Face& face,
+                                       const model::Point3* positions) {
+  const model::Solid::Loop& outer = solid.loops[face.first_loop];
+  const std::span<const std::uint32_t> indices = solid.indices_of(outer);
+  // Relative to a corner of the face: products of coordinates far from the origin would cancel badly.
+  const model::Point3 origin = positions[indices[0]];
+  double x = 0, y = 0, z = 0;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const model::Point3& p = positions[indices[i]];
+    const model::Point3& q = positions[indices[i + 1 == indices.size() ? 0 : i + 1]];
+    const double px = p.x - origin.x, py = p.y - origin.y, pz = p.z - origin.z;
+    const double qx = q.x - origin.x, qy = q.y - origin.y, qz = q.z - origin.z;
+    x += py * qz - pz * qy;
+    y += pz * qx - px * qz;
+    z += px * qy - py * qx;
+  }
+  const double length = std::sqrt(x * x + y * y + z * z);
+  if (!(length > 0)) return {0, 0, 127};
+  const auto quantise = [&](double v) { return static_cast<std::int8_t>(std::nearbyint(v / length * 127)); };
+  return {quantise(x), quantise(y), quantise(z)};
+}
+
+/// Finds equal vertices of one part: open addressing, cleared by a stamp.
+class Welder {
+ public:
+  void start(std::size_t corners) {
+    std::size_t size = 64;
+    while (size < corners * 2) size *= 2;
+    if (size > slots_.size()) slots_.assign(size, {});
+    mask_ = slots_.size() - 1;
+    ++stamp_;
+  }
+  std::uint32_t index(MeshPrimitive& primitive, const MeshVertex& vertex) {
+    std::uint64_t h = vertex.position * 0x9E3779B97F4A7C15u;
+    h ^= (static_cast<std::uint64_t>(static_cast<std::uint8_t>(vertex.normal[0])) << 16 |
+          static_cast<std::uint64_t>(static_cast<std::uint8_t>(vertex.normal[1])) << 8 |
+          static_cast<std::uint8_t>(vertex.normal[2])) *
+         0xC2B2AE3D27D4EB4Fu;
+    h ^= h >> 29;
+    for (std::size_t i = h & mask_;; i = (i + 1) & mask_) {
+      Slot& slot = slots_[i];
+      if (slot.stamp != stamp_) {
+        slot = {stamp_, static_cast<std::uint32_t>(primitive.vertices.size()), &primitive};
+        primitive.vertices.push_back(vertex);
+        return slot.index;
+      }
+      if (slot.primitive == &primitive && primitive.vertices[slot.index] == vertex) return slot.index;
+    }
+  }
+
+ private:
+  struct Slot {
+    std::uint32_t stamp = 0, index = 0;
+    const MeshPrimitive* primitive = nullptr;
+  };
+  std::vector<Slot> slots_;
+  std::size_t mask_ = 0;
+  std::uint32_t stamp_ = 0;
+};
+
+/// Makes positions that are equal within a solid one index, so that welding by index is welding by position.
+void unify_equal_points(const std::vector<model::Point3>& points, std::uint32_t first, std::uint32_t count,
+                        std::vector<std::uint32_t>& representative, std::vector<std::uint32_t>& order) {
+  order.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) order[i] = first + i;
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return points[a] < points[b] || (points[a] == points[b] && a < b);
+  });
+  for (std::uint32_t i = 0; i < count; ++i)
+    representative[order[i]] =
+        i > 0 && points[order[i]] == points[order[i - 1]] ? representative[order[i - 1]] : order[i];
+}
+
+}  // namespace
+
+Mesh build_mesh(const model::Region& region, int lod, const Frame& frame) {
+  std::vector<SolidRef> solids;
+  std::vector<model::Point3> source;
+  std::uint32_t feature = 0;
+  for (const model::Building& building : region.buildings) {
+    if (!building.owned) continue;
+    for (const model::BuildingPart& part : building.parts) {
+      const auto [solid, triangles] = solid_of(part, lod);
+      if (solid) {
+        solids.push_back({solid, triangles, feature, static_cast<std::uint32_t>(source.size())});
+        source.insert(source.end(), solid->vertices.begin(), solid->vertices.end());
+      }
+      ++feature;
+    }
+  }
+
+  Mesh mesh;
+  mesh.positions.resize(source.size());
+  if (frame.to_enu)
+    frame.to_enu(source, mesh.positions);
+  else
+    mesh.positions = source;
+
+  std::vector<MeshPrimitive> primitives(256);
+  std::vector<std::uint32_t> representative(source.size()), order;
+  Welder welder;
+  for (const SolidRef& ref : solids) {
+    const model::Solid& solid = *ref.solid;
+    assert(ref.triangles->first.size() == solid.faces.size() + 1);
+    const auto count = static_cast<std::uint32_t>(solid.vertices.size());
+    unify_equal_points(source, ref.first_position, count, representative, order);
+    welder.start(ref.triangles->triangles.size() * 3);
+    for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+      const model::Face& face = solid.faces[f];
+      MeshPrimitive& primitive = primitives[face.material];
+      MeshVertex vertex;
+      vertex.feature = ref.feature;
+      vertex.normal = face_normal(solid, face, mesh.positions.data() + ref.first_position);
+      vertex.colour = {kLinearLight[face.colour.r], kLinearLight[face.colour.g], kLinearLight[face.colour.b]};
+      for (std::uint32_t t = ref.triangles->first[f]; t < ref.triangles->first[f + 1]; ++t) {
+        for (const std::uint32_t corner : ref.triangles->triangles[t]) {
+          vertex.position = representative[ref.first_position + corner];
+          primitive.indices.push_back(welder.index(primitive, vertex));
+        }
+        ++mesh.triangles;
+      }
+    }
+  }
+
+  for (std::size_t m = 0; m < primitives.size(); ++m) {
+    if (primitives[m].indices.empty()) continue;
+    primitives[m].material = static_cast<std::uint8_t>(m);
+    mesh.primitives.push_back(std::move(primitives[m]));
+  }
+  bool first = true;
+  for (const MeshPrimitive& primitive : mesh.primitives) {
+    for (const MeshVertex& v : primitive.vertices) {
+      const model::Point3& p = mesh.positions[v.position];
+      if (first) mesh.min = mesh.max = p;
+      first = false;
+      mesh.min = {std::min(mesh.min.x, p.x), std::min(mesh.min.y, p.y), std::min(mesh.min.z, p.z)};
+      mesh.max = {std::max(mesh.max.x, p.x), std::max(mesh.max.y, p.y), std::max(mesh.max.z, p.z)};
+    }
+  }
+  return mesh;
+}
+
+}  // namespace blockrand::export_

@@ -1,0 +1,234 @@
+#include "pipeline/export/text.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "pipeline/model/point.h"
+
+namespace blockrand::export_ {
+namespace {
+
+template <class T>
+void append_shortest(std::string& out, T value) {
+  if (value == 0) value = 0;  // to_chars would print the sign of -0
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof(buffer), value).ptr;
+  out.append(buffer, end);
+}
+
+/// Length of the valid UTF-8 sequence at `p` that XML 1.0 allows, or 0.
+std::size_t allowed_sequence(const unsigned char* p, const unsigned char* end) {
+  const auto continuation = [&](int i) { return p + i < end && (p[i] & 0xC0) == 0x80; };
+  const unsigned char c = *p;
+  if (c < 0x80) return c >= 0x20 || c == '\t' || c == '\n' || c == '\r' ? 1 : 0;
+  if (c >= 0xC2 && c <= 0xDF) return continuation(1) ? 2 : 0;
+  if (c >= 0xE0 && c <= 0xEF) {
+    if (!continuation(1) || !continuation(2)) return 0;
+    const unsigned code = (c & 0x0Fu) << 12 | (p[1] & 0x3Fu) << 6 | (p[2] & 0x3Fu);
+    return code >= 0x800 && !(code >= 0xD800 && code <= 0xDFFF) && code < 0xFFFE ? 3 : 0;
+  }
+  if (c >= 0xF0 && c <= 0xF4) {
+    if (!continuation(1) || !continuation(2) || !continuation(3)) return 0;
+    const unsigned code = (c & 0x07u) << 18 | (p[1] & 0x3Fu) << 12 | (p[2] & 0x3Fu) << 6 | (p[3] & 0x3Fu);
+    return code >= 0x10000 && code <= 0x10FFFF ? 4 : 0;
+  }
+  return 0;
+}
+
+/// Appends cleaned text; `escape` says which ASCII characters it writes in another way. Runs of the others are copied
+/// in one go.
+template <class Escape>
+void append_escaped(std::string& out, std::string_view text, const Escape& escape) {
+  const auto* p = reinterpret_cast<const unsigned char*>(text.data());
+  const auto* const end = p + text.size();
+  const auto* plain = p;  // start of what can be copied as it is
+  const auto flush = [&] { out.append(reinterpret_cast<const char*>(plain), static_cast<std::size_t>(p - plain)); };
+  while (p < end) {
+    const std::size_t length = allowed_sequence(p, end);
+    if (length == 0) {
+      flush();
+      out += "\xEF\xBF\xBD";
+      plain = ++p;
+    } else if (length == 1) {
+      if (escape.needs(*p)) {
+        flush();
+        escape.write(out, *p);
+        plain = p + 1;
+      }
+      ++p;
+    } else {
+      p += length;
+    }
+  }
+  flush();
+}
+
+struct NoEscape {
+  static bool needs(unsigned char) { return false; }
+  static void write(std::string&, unsigned char) {}
+};
+
+struct XmlEscape {
+  static bool needs(unsigned char c) { return c < 0x20 || c == '&' || c == '<' || c == '>' || c == '"'; }
+  static void write(std::string& out, unsigned char c) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\t':
+        out += "&#9;";
+        break;
+      case '\n':
+        out += "&#10;";
+        break;
+      default:
+        out += "&#13;";
+        break;
+    }
+  }
+};
+
+struct JsonEscape {
+  static bool needs(unsigned char c) { return c < 0x20 || c == '"' || c == '\\'; }
+  static void write(std::string& out, unsigned char c) {
+    switch (c) {
+      case '"':
+        out += "\\\"";
+        break;
+      case '\\':
+        out += "\\\\";
+        break;
+      case '\t':
+        out += "\\t";
+        break;
+      case '\n':
+        out += "\\n";
+        break;
+      default:
+        out += "\\r";
+        break;
+    }
+  }
+};
+
+}  // namespace
+
+void append_number(std::string& out, double value) { append_shortest(out, value); }
+void append_number(std::string& out, float value) { append_shortest(out, value); }
+void append_number(std::string& out, std::int64_t value) { append_shortest(out, value); }
+
+void append_grid(std::string& out, double metres) {
+  const auto steps = static_cast<std::int64_t>(std::nearbyint(metres * model::kGridStepsPerMetre));
+  const std::uint64_t magnitude = steps < 0 ? static_cast<std::uint64_t>(-steps) : static_cast<std::uint64_t>(steps);
+  // 1/1024 m = 10000/1024 = 625/64 tenths of a millimetre, rounded half up.
+  std::uint64_t rest = (magnitude * 625 + 32) / 64;
+  char buffer[24];
+  char* p = buffer + sizeof(buffer);
+  auto fraction = static_cast<unsigned>(rest % 10000);
+  rest /= 10000;
+  if (fraction != 0) {
+    int digits = 4;
+    while (fraction % 10 == 0) {
+      fraction /= 10;
+      --digits;
+    }
+    for (; digits > 0; --digits) {
+      *--p = static_cast<char>('0' + fraction % 10);
+      fraction /= 10;
+    }
+    *--p = '.';
+  }
+  do {
+    *--p = static_cast<char>('0' + rest % 10);
+    rest /= 10;
+  } while (rest != 0);
+  if (steps < 0) *--p = '-';
+  out.append(p, static_cast<std::size_t>(buffer + sizeof(buffer) - p));
+}
+
+void append_clean(std::string& out, std::string_view text) { append_escaped(out, text, NoEscape{}); }
+void append_xml(std::string& out, std::string_view text) { append_escaped(out, text, XmlEscape{}); }
+void append_json(std::string& out, std::string_view text) {
+  out += '"';
+  append_escaped(out, text, JsonEscape{});
+  out += '"';
+}
+
+void append_tags_json(std::string& out, const model::Extract& extract, model::Range tags) {
+  out += '{';
+  bool first = true;
+  for (const model::Tag& tag : extract.tags_of(tags)) {
+    if (!first) out += ',';
+    first = false;
+    append_json(out, extract.strings.view(tag.key));
+    out += ':';
+    append_json(out, extract.strings.view(tag.value));
+  }
+  out += '}';
+}
+
+bool Address::empty() const {
+  return country.empty() && city.empty() && suburb.empty() && postcode.empty() && street.empty() && place.empty() &&
+         house_number.empty() && house_name.empty();
+}
+
+std::string Address::line() const {
+  std::string out;
+  const auto add = [&](std::string_view text, std::string_view separator) {
+    if (text.empty()) return;
+    if (!out.empty()) out += separator;
+    out += text;
+  };
+  add(street.empty() ? place : street, "");
+  add(house_number.empty() ? house_name : house_number, " ");
+  add(postcode, ", ");
+  add(city, postcode.empty() ? ", " : " ");
+  return out;
+}
+
+TagReader::TagReader(const model::Extract* extract) : extract_(extract) {
+  if (!extract) return;
+  const auto key = [&](std::string_view text) { return extract->strings.find(text); };
+  name_ = key("name");
+  start_date_ = key("start_date");
+  building_use_ = key("building:use");
+  country_ = key("addr:country");
+  city_ = key("addr:city");
+  suburb_ = key("addr:suburb");
+  postcode_ = key("addr:postcode");
+  street_ = key("addr:street");
+  place_ = key("addr:place");
+  house_number_ = key("addr:housenumber");
+  house_name_ = key("addr:housename");
+}
+
+Address TagReader::address(model::Range tags) const {
+  Address found;
+  if (!extract_) return found;
+  // One pass over the tags instead of eight searches: most objects have few tags, and many have none of these.
+  for (const model::Tag& tag : extract_->tags_of(tags)) {
+    if (tag.key == 0) continue;
+    std::string_view* field = tag.key == country_        ? &found.country
+                              : tag.key == city_         ? &found.city
+                              : tag.key == suburb_       ? &found.suburb
+                              : tag.key == postcode_     ? &found.postcode
+                              : tag.key == street_       ? &found.street
+                              : tag.key == place_        ? &found.place
+                              : tag.key == house_number_ ? &found.house_number
+                              : tag.key == house_name_   ? &found.house_name
+                                                         : nullptr;
+    if (field) *field = extract_->strings.view(tag.value);
+  }
+  return found;
+}
+
+}  // namespace blockrand::export_

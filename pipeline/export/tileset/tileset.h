@@ -1,0 +1,42 @@
+// The tileset that places a build's tiles on the globe.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+
+#include "pipeline/model/region.h"
+
+namespace blockrand::export_ {
+
+/// A tile with content.
+struct TileEntry {
+  model::TileId id;
+  std::string uri;                                  ///< relative to the tileset: "tiles/15/x/y.glb"
+  std::array<double, 16> enu_to_ecef{};             ///< column-major
+  model::Point3 min, max;                           ///< of the mesh: m east, north, up of the tile's origin
+  double west = 0, south = 0, east = 0, north = 0;  ///< degrees; west > east where the mesh crosses 180°
+  double min_height = 0, max_height = 0;            ///< m above the ellipsoid
+};
+
+struct TilesetOptions {
+  std::string crs;               ///< of the build
+  std::string height_reference;  ///< in words
+  std::string generator;
+  std::string attribution;
+  /// m. Geometric error of the parents of the leaves; it doubles with every level above. A viewer with the usual 16
+  /// pixels of tolerance and 1080 lines then loads buildings within about 6 km.
+  double parent_error = 100;
+};
+
+/// A 3D Tiles 1.1 tileset.json: leaves with content in boxes (in the tile's frame, z up), above them their parents in
+/// the geodetic quadtree as regions without content, where a parent with a single child is left out but for the root.
+///
+/// Regions are widened by what a box corner can lie outside the bounds of its vertices: 5 cm, and 10 r²/R horizontally
+/// and r²/R vertically for a mesh of radius r around its origin (R: the Earth's), from the convergence of meridians up
+/// to 79° of latitude and from the curvature. Angles are degrees times a constant; no other maths enters.
+/// Without tiles the root is an empty box.
+/// \param tiles  in any order; no two with the same id, all of one level
+std::string write_tileset(std::span<const TileEntry> tiles, const TilesetOptions& options);
+
+}  // namespace blockrand::export_
