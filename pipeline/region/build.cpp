@@ -350,7 +350,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     record.height_reference = "heights above sea level, one ground height for all";
   else
     record.height_reference = "heights above local ground";
-  if (terrain) record.vertical_crs = terrain->describe().vertical_crs;
+  if (terrain) record.vertical_crs = terrain->describe().vertical_code;
   if (area && !has_heights)
     progress.warn("no --terrain and no --ground-height: the model lies at ellipsoid height 0");
   if (area && has_heights && !geoid.available())

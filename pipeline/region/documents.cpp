@@ -52,6 +52,7 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   j["crs"] = {{"code", r.crs.authority_code},
               {"name", r.crs.name},
               {"operation", r.crs.operation},
+              {"pipeline", r.crs.pipeline},
               {"accuracy_m", r.crs.accuracy_m},
               {"portable", r.portable},
               // Rounded up to 10 nm: the last bits of an error say nothing.

@@ -1,0 +1,200 @@
+#include "pipeline/region/tile_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/base/version.h"
+#include "pipeline/export/citygml/citygml_writer.h"
+#include "pipeline/export/gltf/glb_writer.h"
+#include "pipeline/export/gzip.h"
+#include "pipeline/georef/frames.h"
+#include "pipeline/georef/tile_frame.h"
+#include "pipeline/georef/tiles.h"
+
+namespace blockrand::region {
+
+namespace {
+
+using model::Point3;
+
+constexpr const char* kAttribution = "\u00a9 OpenStreetMap contributors, ODbL 1.0";
+
+std::string generator() { return "Blockrand " + std::string(base::kVersion); }
+
+/// Ellipsoid minus sea level as a plane in the build CRS: the geoid's grid is so wide that over a tile it is plane to
+/// well below a millimetre, and a plane gives neighbouring tiles the same height at their border to a fraction of that.
+struct GeoidPlane {
+  double x0 = 0, y0 = 0, at = 0, per_x = 0, per_y = 0;
+  double operator()(double x, double y) const { return at + (x - x0) * per_x + (y - y0) * per_y; }
+};
+
+GeoidPlane geoid_plane(const OutputContext& context, georef::LonLat centre) {
+  GeoidPlane plane;
+  if (!context.heights_above_sea || !context.geoid.available()) return plane;
+  const model::Point2 o = context.projection.forward(centre.lon, centre.lat);
+  constexpr double kStep = 1000;  // m
+  const auto undulation = [&](double x, double y) {
+    const georef::LonLat p = context.projection.inverse({x, y});
+    return context.geoid.undulation(p.lon, p.lat).value_or(0);
+  };
+  plane.x0 = o.x;
+  plane.y0 = o.y;
+  plane.at = undulation(o.x, o.y);
+  plane.per_x = (undulation(o.x + kStep, o.y) - undulation(o.x - kStep, o.y)) / (2 * kStep);
+  plane.per_y = (undulation(o.x, o.y + kStep) - undulation(o.x, o.y - kStep)) / (2 * kStep);
+  return plane;
+}
+
+export_::GlbOptions glb_options(const OutputContext& context, const georef::EnuFrame& frame) {
+  export_::GlbOptions o;
+  o.lod = context.options.lod;
+  o.crs = context.record.crs.authority_code;
+  o.height_reference = context.heights_above_sea && context.geoid.available()
+                           ? context.record.height_reference + ", raised to the ellipsoid by EGM96"
+                           : context.record.height_reference + ", ground at ellipsoid height 0";
+  if (context.heights_above_sea && !context.geoid.available())
+    o.height_reference = context.record.height_reference + ", taken for ellipsoidal";
+  o.generator = generator();
+  o.attribution = kAttribution;
+  o.frame.longitude = frame.origin().lon;
+  o.frame.latitude = frame.origin().lat;
+  o.frame.height = frame.origin().height;
+  o.frame.enu_to_ecef = frame.local_to_ecef();
+  return o;
+}
+
+/// Geodetic bounds of a box in a local frame, from its corners and the middle of its underside, which lies deepest.
+void set_bounds(export_::TileEntry& entry, const georef::EnuFrame& frame) {
+  bool first = true;
+  const double reference = frame.origin().lon;
+  double west = 0, east = 0;
+  for (int i = 0; i < 9; ++i) {
+    const Point3 p = i == 8 ? Point3{(entry.min.x + entry.max.x) / 2, (entry.min.y + entry.max.y) / 2, entry.min.z}
+                            : Point3{i & 1 ? entry.max.x : entry.min.x, i & 2 ? entry.max.y : entry.min.y,
+                                     i & 4 ? entry.max.z : entry.min.z};
+    const georef::Geodetic g = georef::from_ecef(frame.to_ecef(p));
+    double lon = g.lon;
+    if (lon - reference > 180) lon -= 360;
+    if (reference - lon > 180) lon += 360;
+    if (first) {
+      west = east = lon;
+      entry.south = entry.north = g.lat;
+      entry.min_height = entry.max_height = g.height;
+      first = false;
+    }
+    west = std::min(west, lon);
+    east = std::max(east, lon);
+    entry.south = std::min(entry.south, g.lat);
+    entry.north = std::max(entry.north, g.lat);
+    entry.min_height = std::min(entry.min_height, g.height);
+    entry.max_height = std::max(entry.max_height, g.height);
+  }
+  entry.west = west < -180 ? west + 360 : west;
+  entry.east = east > 180 ? east - 360 : east;
+}
+
+/// Height of the frame's origin: the lowest ground of the buildings, so that meshes start near zero.
+double lowest_ground(const model::Region& region) {
+  double lowest = 0;
+  bool first = true;
+  for (const model::Building& b : region.buildings) {
+    const double z = b.attributes.ground_height.value;
+    lowest = first ? z : std::min(lowest, z);
+    first = false;
+  }
+  return lowest;
+}
+
+export_::CityGmlOptions citygml_options(const model::Region& region, const OutputContext& context) {
+  export_::CityGmlOptions o;
+  o.lod = context.options.lod;
+  const std::string& code = context.record.crs.authority_code;
+  const std::string number = code.substr(code.find(':') + 1);
+  o.srs_name = context.record.vertical_crs.empty()
+                   ? "urn:ogc:def:crs:EPSG::" + number
+                   : "urn:ogc:def:crs,crs:EPSG::" + number + ",crs:EPSG::" +
+                         context.record.vertical_crs.substr(context.record.vertical_crs.find(':') + 1);
+  o.height_reference = context.record.height_reference;
+  o.attribution = kAttribution;
+  o.name = fmt::format("Blockrand {}/{}/{}", region.tile.level, region.tile.x, region.tile.y);
+  return o;
+}
+
+void write_citygml_file(const model::Region& region, const std::string& path, const OutputContext& context,
+                        base::StagedFolder& folder, std::vector<base::PublishedFile>& files) {
+  std::string bytes = export_::write_citygml(region, citygml_options(region, context));
+  if (context.options.gzip)
+    files.push_back(folder.write(path + ".gz", export_::gzip(bytes)));
+  else
+    files.push_back(folder.write(path, bytes));
+}
+
+}  // namespace
+
+void write_tile(const model::Region& region, const OutputContext& context, base::StagedFolder& folder,
+                std::vector<base::PublishedFile>& files, std::optional<export_::TileEntry>& tile) {
+  const model::TileId id = region.tile;
+  const bool has_parts = std::any_of(region.buildings.begin(), region.buildings.end(),
+                                     [](const model::Building& b) { return !b.parts.empty(); });
+  if (context.options.gltf && has_parts) {
+    const GeoidPlane plane = geoid_plane(context, georef::centre(id));
+    const double origin_height = model::snap(lowest_ground(region) + plane.at);
+    const georef::TileFrame frame(context.projection, id, origin_height);
+    export_::GlbOptions options = glb_options(context, frame.frame());
+    options.frame.to_enu = [&](std::span<const Point3> in, std::span<Point3> out) {
+      for (std::size_t i = 0; i < in.size(); ++i)
+        out[i] = frame.to_local({in[i].x, in[i].y, in[i].z + plane(in[i].x, in[i].y)});
+    };
+    const export_::Glb glb = export_::write_glb(region, options);
+    if (glb.triangles > 0) {
+      export_::TileEntry entry;
+      entry.id = id;
+      entry.uri = fmt::format("tiles/{}/{}/{}.glb", id.level, id.x, id.y);
+      files.push_back(folder.write(entry.uri, glb.bytes));
+      entry.enu_to_ecef = options.frame.enu_to_ecef;
+      entry.min = glb.min;
+      entry.max = glb.max;
+      set_bounds(entry, frame.frame());
+      tile = std::move(entry);
+    }
+  }
+  if (context.options.citygml && has_parts)
+    write_citygml_file(region, fmt::format("citygml/{}_{}_{}.gml", id.level, id.x, id.y), context, folder, files);
+}
+
+void write_whole(const model::Region& whole, std::span<const export_::TileEntry> tiles, georef::LonLat centre,
+                 const georef::GeoBox&, const OutputContext& context, base::StagedFolder& folder,
+                 std::vector<base::PublishedFile>& files) {
+  if (context.options.gltf) {
+    export_::TilesetOptions options;
+    options.crs = context.record.crs.authority_code;
+    options.height_reference = context.record.height_reference;
+    options.generator = generator();
+    options.attribution = kAttribution;
+    files.push_back(folder.write("tileset.json", export_::write_tileset(tiles, options)));
+  }
+  if (context.options.single_glb) {
+    const double origin_height = model::snap(lowest_ground(whole));
+    const GeoidPlane plane = geoid_plane(context, centre);
+    const georef::EnuFrame frame({centre.lon, centre.lat, origin_height + plane.at});
+    export_::GlbOptions o = glb_options(context, frame);
+    // One frame for a whole city: every point takes the exact way, and the geoid is asked for each.
+    o.frame.to_enu = [&](std::span<const Point3> in, std::span<Point3> out) {
+      for (std::size_t i = 0; i < in.size(); ++i) {
+        const georef::LonLat g = context.projection.inverse(in[i].xy());
+        const double n = context.heights_above_sea ? context.geoid.undulation(g.lon, g.lat).value_or(0) : 0;
+        out[i] = frame.to_local(g.lon, g.lat, in[i].z + n);
+      }
+    };
+    files.push_back(folder.write("model.glb", export_::write_glb(whole, o).bytes));
+  }
+  // A file without city objects is a valid CityModel and says more than no file.
+  if (context.options.citygml && std::none_of(files.begin(), files.end(), [](const base::PublishedFile& f) {
+        return f.path.rfind("citygml/", 0) == 0;
+      }))
+    write_citygml_file(model::Region{}, "citygml/empty.gml", context, folder, files);
+}
+
+}  // namespace blockrand::region

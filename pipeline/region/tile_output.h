@@ -1,0 +1,40 @@
+// A finished tile becomes files; the whole build gets its tileset.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pipeline/base/publish.h"
+#include "pipeline/export/tileset/tileset.h"
+#include "pipeline/generate/defaults.h"
+#include "pipeline/georef/heights.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/model/region.h"
+#include "pipeline/region/build.h"
+#include "pipeline/region/documents.h"
+
+namespace blockrand::region {
+
+/// What all tiles of a build have in common.
+struct OutputContext {
+  const BuildOptions& options;
+  const georef::Projection& projection;
+  const georef::Geoid& geoid;
+  bool heights_above_sea;        ///< z values are heights above sea level; 3D Tiles want ellipsoidal ones
+  const BuildRecord& record;
+  const generate::Defaults& defaults;
+};
+
+/// Writes tiles/15/x/y.glb and citygml/15_x_y.gml[.gz] as asked for. `tile` is set when the GLB shows something.
+/// Safe for different tiles at the same time. \throws base::OutputError
+void write_tile(const model::Region& region, const OutputContext& context, base::StagedFolder& folder,
+                std::vector<base::PublishedFile>& files, std::optional<export_::TileEntry>& tile);
+
+/// Writes tileset.json, with --single-glb model.glb from `whole`, and for a build without buildings an empty CityGML
+/// file, so that every asked format is there.
+void write_whole(const model::Region& whole, std::span<const export_::TileEntry> tiles, georef::LonLat centre,
+                 const georef::GeoBox& box, const OutputContext& context, base::StagedFolder& folder,
+                 std::vector<base::PublishedFile>& files);
+
+}  // namespace blockrand::region
