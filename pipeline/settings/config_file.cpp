@@ -1,0 +1,84 @@
+#include "pipeline/settings/config_file.h"
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+
+#include "pipeline/base/text.h"
+#include "pipeline/base/toml_file.h"
+
+namespace blockrand::settings {
+namespace {
+
+/// The value of an option's key as Option::set wants it.
+std::optional<std::string> value_text(base::TomlTable& table, const Option& option) {
+  switch (option.type) {
+    case OptionType::flag:
+      if (const auto v = table.boolean(option.key)) return *v ? "true" : "false";
+      return std::nullopt;
+    case OptionType::integer: {
+      constexpr double most = 9.2e18;
+      const auto maximum =
+          option.maximum > most ? std::numeric_limits<std::int64_t>::max() : static_cast<std::int64_t>(option.maximum);
+      if (const auto v = table.integer(option.key, static_cast<std::int64_t>(option.minimum), maximum))
+        return std::to_string(*v);
+      return std::nullopt;
+    }
+    case OptionType::number:
+      if (const auto v = table.number(option.key, option.minimum, option.maximum)) return base::shortest(*v);
+      return std::nullopt;
+    case OptionType::list:
+      return table.plain(option.key);
+    case OptionType::text:
+    case OptionType::path:
+      return table.text(option.key);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void read_config(const std::string& path, Settings& settings) {
+  base::TomlTable root = base::TomlTable::read(path);
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  for (const Section section : {Section::build, Section::repair, Section::generate}) {
+    std::optional<base::TomlTable> table = root.table(name(section));
+    if (!table) continue;
+    for (const Option& option : options()) {
+      if (option.section != section || option.key.empty()) continue;
+      std::optional<std::string> text = value_text(*table, option);
+      if (!text) continue;
+      if (option.type == OptionType::path && !text->empty()) *text = (folder / *text).lexically_normal().string();
+      try {
+        option.set(settings, *text);
+      } catch (const ValueError& error) {
+        table->fail(option.key, std::string("is wrong: ") + error.what(), error.remedy);
+      }
+    }
+    table->finish();
+  }
+  root.finish();
+}
+
+std::string config_template() {
+  std::string text =
+      "# Options of `blockrand build`, read with --config FILE.toml; the command line is stronger.\n"
+      "# Every key stands here with its default. Relative paths start at this file's folder.\n";
+  for (const Section section : {Section::build, Section::repair, Section::generate}) {
+    text += "\n[" + std::string(name(section)) + "]\n";
+    for (const Option& option : options()) {
+      if (option.section != section || option.key.empty()) continue;
+      const Settings fresh;
+      std::string value = option.show(fresh);
+      const bool bare =
+          option.type == OptionType::flag || option.type == OptionType::integer || option.type == OptionType::number;
+      if (!bare || value.empty()) value = "\"" + value + "\"";
+      text += "# " + std::string(option.help) + "\n# " + std::string(option.key) + " = " + value + "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace blockrand::settings

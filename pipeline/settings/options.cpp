@@ -1,0 +1,450 @@
+#include "pipeline/settings/options.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+#include "pipeline/base/text.h"
+#include "pipeline/base/toml_file.h"
+
+namespace blockrand::settings {
+namespace {
+
+using base::shortest;
+
+constexpr double kMaxSeed = 9223372036854774784.0;  // the largest double below 2^63: TOML's integers end there
+
+std::string quoted(std::string_view text) { return fmt::format("'{}'", text); }
+
+std::string range_remedy(const Option& o, const char* kind) {
+  std::string text = std::string("Write a ") + kind;
+  if (o.maximum < 1e15) return text + " from " + shortest(o.minimum) + " to " + shortest(o.maximum) + ".";
+  return text + " of at least " + shortest(o.minimum) + ".";
+}
+
+double parse_number(std::string_view text, const std::string& remedy) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    throw ValueError(quoted(text) + " is not a number", remedy);
+  return value;
+}
+
+double parse_in_range(const Option& o, const std::string& text, const char* kind) {
+  const std::string remedy = range_remedy(o, kind);
+  const double value = parse_number(text, remedy);
+  if (value < o.minimum || value > o.maximum) throw ValueError(text + " is out of range", remedy);
+  return value;
+}
+
+std::vector<std::string> split(std::string_view text, char at) {
+  std::vector<std::string> parts;
+  for (;;) {
+    const std::size_t end = text.find(at);
+    std::string_view part = text.substr(0, end);
+    while (part.starts_with(' ')) part.remove_prefix(1);
+    while (part.ends_with(' ')) part.remove_suffix(1);
+    parts.emplace_back(part);
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+template <class T>
+T choose(const std::string& text, const std::vector<std::pair<std::string, T>>& choices) {
+  std::vector<std::string> known;
+  for (const auto& [name, value] : choices) {
+    if (name == text) return value;
+    known.push_back(name);
+  }
+  const std::string near = base::nearest(text, known);
+  std::string all;
+  for (const std::string& name : known) all += fmt::format("{}{}", all.empty() ? "" : ", ", name);
+  throw ValueError(quoted(text) + " is unknown",
+                   (near.empty() ? "" : "Did you mean " + near + "? ") + "Known: " + all + ".");
+}
+
+// ---- values with a grammar of their own
+
+std::array<double, 4> parse_bbox(const std::string& text) {
+  const std::string remedy = "Write west,south,east,north in degrees, for example 12.36,51.33,12.40,51.35.";
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != 4) throw ValueError(quoted(text) + " does not have four numbers", remedy);
+  std::array<double, 4> box{};
+  for (std::size_t i = 0; i < 4; ++i) box[i] = parse_number(parts[i], remedy);
+  const auto [west, south, east, north] = box;
+  if (std::abs(west) > 180 || std::abs(east) > 180) throw ValueError("a longitude lies outside of -180 to 180", remedy);
+  if (std::abs(south) > 90 || std::abs(north) > 90)
+    throw ValueError("a latitude lies outside of -90 to 90", "Longitude comes first. " + remedy);
+  if (south >= north) throw ValueError("south is not below north", remedy);
+  if (west >= east)
+    throw ValueError("west is not left of east",
+                     remedy + " A box across 180 degrees cannot be given: build its two sides one after the other.");
+  return box;
+}
+
+std::string show_bbox(const std::optional<std::array<double, 4>>& box) {
+  if (!box) return {};
+  std::string text;
+  for (const double v : *box) text += fmt::format("{}{}", text.empty() ? "" : ",", shortest(v));
+  return text;
+}
+
+void set_formats(Settings& s, const std::string& text) {
+  bool gltf = false, citygml = false;
+  for (const std::string& part : split(text, ','))
+    choose<bool*>(part, {{"gltf", &gltf}, {"citygml", &citygml}, {"tileset", &gltf}, {"3dtiles", &gltf}})[0] = true;
+  s.build.gltf = gltf;
+  s.build.citygml = citygml;
+}
+
+std::string show_formats(const Settings& s) {
+  return std::string(s.build.gltf ? "gltf" : "") + (s.build.gltf && s.build.citygml ? "," : "") +
+         (s.build.citygml ? "citygml" : "");
+}
+
+void set_crs(Settings& s, const std::string& text) {
+  // Whether the code exists and suits the place is for georef to say; here only what cannot be one.
+  std::string_view code = text;
+  if (code.size() > 5 && (code.starts_with("EPSG:") || code.starts_with("epsg:"))) code.remove_prefix(5);
+  if (code.size() < 4 || code.size() > 6 || code.find_first_not_of("0123456789") != std::string_view::npos)
+    throw ValueError(quoted(text) + " is not an EPSG code", "Write for example EPSG:25833.");
+  s.build.crs = "EPSG:" + std::string(code);
+}
+
+const std::vector<std::pair<std::string, base::ProgressStyle>> kProgressStyles = {
+    {"auto", base::ProgressStyle::automatic},
+    {"bar", base::ProgressStyle::bar},
+    {"plain", base::ProgressStyle::plain},
+    {"none", base::ProgressStyle::none}};
+const std::vector<std::pair<std::string, base::LogFormat>> kLogFormats = {{"text", base::LogFormat::text},
+                                                                          {"json", base::LogFormat::json}};
+
+template <class T>
+std::string name_of(const std::vector<std::pair<std::string, T>>& choices, T value) {
+  for (const auto& [name, v] : choices)
+    if (v == value) return name;
+  return {};
+}
+
+// ---- the table
+
+/// Adds options one by one; `field` gives the place of a value in Settings.
+class Table {
+ public:
+  template <class Field>
+  void text(Option o, Field field) {
+    o.set = [field](Settings& s, const std::string& text) { field(s) = text; };
+    o.show = [field](const Settings& s) { return std::string(field(s)); };
+    rows_.push_back(std::move(o));
+  }
+  template <class Field>
+  void flag(Option o, Field field) {
+    o.type = OptionType::flag;
+    o.set = [field](Settings& s, const std::string& text) { field(s) = text == "true"; };
+    o.show = [field](const Settings& s) { return field(s) ? "true" : "false"; };
+    rows_.push_back(std::move(o));
+  }
+  template <class Field>
+  void integer(Option o, Field field) {
+    o.type = OptionType::integer;
+    const Option range = o;
+    o.set = [field, range](Settings& s, const std::string& text) {
+      using T = std::remove_reference_t<decltype(field(s))>;
+      T value{};
+      parse_in_range(range, text, "whole number");
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (error != std::errc() || end != text.data() + text.size())
+        throw ValueError(quoted(text) + " is not a whole number", range_remedy(range, "whole number"));
+      field(s) = value;
+    };
+    o.show = [field](const Settings& s) { return std::to_string(field(s)); };
+    rows_.push_back(std::move(o));
+  }
+  template <class Field>
+  void number(Option o, Field field) {
+    o.type = OptionType::number;
+    const Option range = o;
+    o.set = [field, range](Settings& s, const std::string& text) { field(s) = parse_in_range(range, text, "number"); };
+    o.show = [field](const Settings& s) -> std::string {
+      const auto& value = field(s);
+      if constexpr (std::same_as<std::remove_cvref_t<decltype(value)>, std::optional<double>>)
+        return value ? shortest(*value) : "";
+      else
+        return shortest(value);
+    };
+    rows_.push_back(std::move(o));
+  }
+  void other(Option o, std::function<void(Settings&, const std::string&)> set,
+             std::function<std::string(const Settings&)> show) {
+    o.set = std::move(set);
+    o.show = std::move(show);
+    rows_.push_back(std::move(o));
+  }
+  std::vector<Option> take() { return std::move(rows_); }
+
+ private:
+  std::vector<Option> rows_;
+};
+
+#define FIELD(path) \
+  [](auto& s) -> auto& { return s.path; }
+
+void add_build(Table& t) {
+  constexpr auto S = Section::build;
+  constexpr unsigned both = kBuild | kInfo;
+  t.text({.name = "INPUT",
+          .key = "input",
+          .argument = "FILE",
+          .type = OptionType::path,
+          .section = S,
+          .commands = both,
+          .help = "OSM extract: .osm, .osm.pbf, .osm.gz or .osm.bz2"},
+         FIELD(build.input));
+  t.text({.name = "output",
+          .letter = "o",
+          .key = "output",
+          .argument = "FOLDER",
+          .type = OptionType::path,
+          .section = S,
+          .help = "folder that the build becomes; it appears when everything in it is complete"},
+         FIELD(build.output));
+  t.other(
+      {.name = "formats",
+       .key = "formats",
+       .argument = "LIST",
+       .type = OptionType::list,
+       .section = S,
+       .help = "what is written, separated by commas: gltf (3D Tiles with GLB; also called tileset, 3dtiles), citygml"},
+      set_formats, show_formats);
+  t.integer({.name = "lod",
+             .key = "lod",
+             .argument = "N",
+             .section = S,
+             .minimum = 0,
+             .maximum = 2,
+             .help = "highest level of detail: 0 footprints, 1 blocks, 2 roofs"},
+            FIELD(build.lod));
+  t.other(
+      {.name = "bbox",
+       .key = "bbox",
+       .argument = "W,S,E,N",
+       .type = OptionType::list,
+       .section = S,
+       .commands = both,
+       .help = "only what lies in this box: west,south,east,north in degrees"},
+      [](Settings& s, const std::string& text) { s.build.bbox = parse_bbox(text); },
+      [](const Settings& s) { return show_bbox(s.build.bbox); });
+  t.other({.name = "crs",
+           .key = "crs",
+           .argument = "EPSG:CODE",
+           .section = S,
+           .commands = both,
+           .help = "projected coordinate system in metres; else ETRS89/UTM in Europe and WGS 84/UTM elsewhere"},
+          set_crs, [](const Settings& s) { return s.build.crs; });
+  t.text({.name = "terrain",
+          .key = "terrain",
+          .argument = "RASTER",
+          .type = OptionType::path,
+          .section = S,
+          .help = "ground heights: any raster that GDAL reads"},
+         FIELD(build.terrain));
+  t.number({.name = "ground-height",
+            .key = "ground_height",
+            .argument = "METRES",
+            .section = S,
+            .minimum = -500,
+            .maximum = 9000,
+            .help = "height above sea level of the ground where there is no terrain, in m"},
+           FIELD(build.ground_height));
+  t.flag({.name = "gzip", .key = "gzip", .section = S, .help = "compress the CityGML files (.gml.gz)"},
+         FIELD(build.gzip));
+  t.flag({.name = "single-glb",
+          .key = "single_glb",
+          .section = S,
+          .help = "also write model.glb: the whole build in one frame"},
+         FIELD(build.single_glb));
+  t.integer({.name = "seed",
+             .key = "seed",
+             .argument = "N",
+             .section = S,
+             .minimum = 0,
+             .maximum = kMaxSeed,
+             .help = "of all random choices; the same seed gives the same bytes"},
+            FIELD(build.seed));
+  t.integer({.name = "jobs",
+             .letter = "j",
+             .key = "jobs",
+             .argument = "N",
+             .section = S,
+             .commands = both,
+             .minimum = 0,
+             .maximum = 1024,
+             .help = "worker threads; 0 is one per core"},
+            FIELD(build.jobs));
+  t.flag({.name = "strict",
+          .key = "strict",
+          .section = S,
+          .help = "exit with code 3 when a building is simpler than asked or has no solid"},
+         FIELD(build.strict));
+  t.text({.name = "presets",
+          .key = "presets",
+          .argument = "FOLDER",
+          .type = OptionType::path,
+          .section = S,
+          .help = "folder with defaults/ and materials/; else the configs/ that came with the program"},
+         FIELD(build.configs));
+  t.flag({.name = "force", .section = S, .help = "replace an existing build"}, FIELD(build.force));
+  t.text({.name = "config",
+          .argument = "FILE.toml",
+          .type = OptionType::path,
+          .section = S,
+          .help = "read options from this file; the command line is stronger"},
+         FIELD(config));
+  t.flag({.name = "json", .section = S, .commands = kInfo, .help = "print JSON"}, FIELD(json));
+}
+
+void add_repair(Table& t) {
+  constexpr auto S = Section::repair;
+  const auto metres = [&t](std::string_view name, std::string_view key, double minimum, double maximum,
+                           std::string_view help, auto field) {
+    t.number({.name = name,
+              .key = key,
+              .argument = "METRES",
+              .section = S,
+              .minimum = minimum,
+              .maximum = maximum,
+              .help = help},
+             field);
+  };
+  metres("repair-duplicate-distance", "duplicate_distance", 0, 0.5, "nearer neighbours on a ring are one point, in m",
+         FIELD(build.repair.duplicate_distance));
+  metres("repair-spike-width", "spike_width", 0, 1, "a tip narrower than this is removed, in m",
+         FIELD(build.repair.spike_width));
+  t.number({.name = "repair-min-piece-area",
+            .key = "min_piece_area",
+            .argument = "M2",
+            .section = S,
+            .minimum = 0,
+            .maximum = 100,
+            .help = "smaller pieces of a repaired outline are dropped and reported, in m2"},
+           FIELD(build.repair.min_piece_area));
+  metres("repair-ring-clearance", "ring_clearance", 0.002, 0.5, "rings that touch are moved apart by this, in m",
+         FIELD(build.repair.ring_clearance));
+  t.number({.name = "repair-parts-free-area",
+            .key = "parts_free_area",
+            .argument = "M2",
+            .section = S,
+            .minimum = 0,
+            .maximum = 100000,
+            .help = "what parts leave of an outline is built when it is larger than this, in m2"},
+           FIELD(build.repair.parts_free_area));
+  metres("repair-parts-free-width", "parts_free_width", 0, 100, "... and wider than this, in m",
+         FIELD(build.repair.parts_free_width));
+}
+
+void add_generate(Table& t) {
+  constexpr auto S = Section::generate;
+  const auto metres = [&t](std::string_view name, std::string_view key, double minimum, double maximum,
+                           std::string_view help, auto field) {
+    t.number({.name = name,
+              .key = key,
+              .argument = "METRES",
+              .section = S,
+              .minimum = minimum,
+              .maximum = maximum,
+              .help = help},
+             field);
+  };
+  metres("generate-neighbour-reach", "neighbour_reach", 0, 1000,
+         "tagged neighbours within this speak for an untagged building, in m", FIELD(build.generate.neighbour_reach));
+  t.integer({.name = "generate-neighbour-minimum",
+             .key = "neighbour_minimum",
+             .argument = "N",
+             .section = S,
+             .minimum = 1,
+             .maximum = 1000,
+             .help = "fewer tagged neighbours say nothing"},
+            FIELD(build.generate.neighbour_minimum));
+  metres("generate-min-wall-height", "min_wall_height", 0.05, 10,
+         "a roof never comes nearer to the building's underside, in m", FIELD(build.generate.min_wall_height));
+  metres("generate-min-roof-height", "min_roof_height", 0.01, 10, "a lower pitched roof is a flat one, in m",
+         FIELD(build.generate.min_roof_height));
+  t.number({.name = "generate-max-roof-pitch",
+            .key = "max_roof_pitch",
+            .argument = "DEGREES",
+            .section = S,
+            .minimum = 5,
+            .maximum = 89,
+            .help = "steeper inferred roofs are limited to this, in degrees"},
+           FIELD(build.generate.max_roof_pitch));
+  metres("generate-canopy-thickness", "canopy_thickness", 0.05, 5,
+         "slab of building=roof where no roof height is tagged, in m", FIELD(build.generate.canopy_thickness));
+  metres("generate-collinear-tolerance", "collinear_tolerance", 0, 0.5,
+         "plan points nearer to the line of their neighbours do not make a wall, in m",
+         FIELD(build.generate.collinear_tolerance));
+  metres("generate-simplify-tolerance", "simplify_tolerance", 0, 2,
+         "second try for a plan whose solid fails its check, in m", FIELD(build.generate.simplify_tolerance));
+}
+
+void add_messages(Table& t) {
+  constexpr auto S = Section::messages;
+  constexpr unsigned both = kBuild | kInfo;
+  t.other(
+      {.name = "progress",
+       .argument = "STYLE",
+       .section = S,
+       .commands = both,
+       .help = "auto (bar on a terminal, else plain), bar, plain (lines) or none"},
+      [](Settings& s, const std::string& text) { s.progress = choose(text, kProgressStyles); },
+      [](const Settings& s) { return name_of(kProgressStyles, s.progress); });
+  t.other(
+      {.name = "log-format",
+       .argument = "FORMAT",
+       .section = S,
+       .commands = both,
+       .help = "messages, progress and the summary as text or as json lines"},
+      [](Settings& s, const std::string& text) { s.log_format = choose(text, kLogFormats); },
+      [](const Settings& s) { return name_of(kLogFormats, s.log_format); });
+  t.flag({.name = "quiet", .letter = "q", .section = S, .commands = both, .help = "warnings and errors only"},
+         FIELD(quiet));
+}
+
+#undef FIELD
+
+}  // namespace
+
+std::string_view name(Section section) {
+  constexpr std::string_view names[] = {"build", "repair", "generate", "messages"};
+  return names[static_cast<int>(section)];
+}
+
+std::string_view title(Section section) {
+  constexpr std::string_view titles[] = {"What is built", "How far repair may go", "What generation assumes",
+                                         "Messages"};
+  return titles[static_cast<int>(section)];
+}
+
+const std::vector<Option>& options() {
+  static const std::vector<Option> all = [] {
+    Table table;
+    add_build(table);
+    add_repair(table);
+    add_generate(table);
+    add_messages(table);
+    return table.take();
+  }();
+  return all;
+}
+
+std::string default_text(const Option& option) {
+  static const Settings fresh;
+  const std::string text = option.show(fresh);
+  return option.type == OptionType::flag ? (text == "true" ? "yes" : "no") : text;
+}
+
+}  // namespace blockrand::settings

@@ -1,0 +1,55 @@
+#include "pipeline/settings/reference.h"
+
+#include <fmt/format.h>
+
+#include "pipeline/settings/options.h"
+
+namespace blockrand::settings {
+namespace {
+
+std::string range_text(const Option& o) {
+  if (o.type != OptionType::integer && o.type != OptionType::number) return "";
+  if (o.maximum >= 1e15) return fmt::format("from {}", o.minimum);
+  return fmt::format("{} to {}", o.minimum, o.maximum);
+}
+
+std::string commands_text(unsigned commands) {
+  if (commands == (kBuild | kInfo)) return "build, info";
+  return commands == kBuild ? "build" : "info";
+}
+
+}  // namespace
+
+std::string options_markdown() {
+  std::string text =
+      "# Options\n"
+      "\n"
+      "Printed by `blockrand help options --markdown`; do not edit: a test compares this file with the program.\n"
+      "\n"
+      "Every option with a key can stand in a file that `--config FILE.toml` names, in the section given here; "
+      "the command line is stronger than the file. Relative paths in the file start at the file's folder. "
+      "`blockrand help options --toml` prints such a file with every default. "
+      "Every flag can be taken back with `--no-` before its name.\n";
+  for (const Section section : {Section::build, Section::repair, Section::generate, Section::messages}) {
+    text += fmt::format("\n## {}{}\n\n", title(section),
+                        section == Section::messages ? "" : fmt::format(" (`[{}]`)", name(section)));
+    text += "| option | key | commands | default | range | meaning |\n|---|---|---|---|---|---|\n";
+    for (const Option& o : options()) {
+      if (o.section != section) continue;
+      std::string names;
+      if (o.positional()) {
+        names = fmt::format("`{}`", o.name);
+      } else {
+        if (!o.letter.empty()) names = fmt::format("`-{}`, ", o.letter);
+        names += fmt::format("`--{}{}{}`", o.name, o.argument.empty() ? "" : " ", o.argument);
+      }
+      const std::string value = default_text(o);
+      text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", names, o.key.empty() ? "" : fmt::format("`{}`", o.key),
+                          commands_text(o.commands), value.empty() ? "" : fmt::format("`{}`", value), range_text(o),
+                          o.help);
+    }
+  }
+  return text;
+}
+
+}  // namespace blockrand::settings
