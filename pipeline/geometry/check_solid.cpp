@@ -159,6 +159,20 @@ bool triangles_conflict(const std::array<std::uint32_t, 3>& ia, const Corners& a
     const Grid2 e0 = project(a.p[(only_a + 1) % 3], axis), e1 = project(a.p[(only_a + 2) % 3], axis);
     return orientation(e0, e1, project(a.p[only_a], axis)) == orientation(e0, e1, project(b.p[only_b], axis));
   }
+  // Corners that are not shared and lie strictly on one side of the other triangle's plane end the question; this is
+  // how nearly all neighbouring walls are told apart.
+  const auto apart = [](const std::array<std::uint32_t, 3>& ip, const Corners& plane,
+                        const std::array<std::uint32_t, 3>& iq, const Corners& other) {
+    int side = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (iq[k] == ip[0] || iq[k] == ip[1] || iq[k] == ip[2]) continue;
+      const int s = orientation(plane.p[0], plane.p[1], plane.p[2], other.p[k]);
+      if (s == 0 || s == -side) return false;
+      side = s;
+    }
+    return true;
+  };
+  if (apart(ia, a, ib, b) || apart(ib, b, ia, a)) return false;
   if (shared == 1) {
     return segment_meets_triangle(a.p[(common_a + 1) % 3], a.p[(common_a + 2) % 3], b) ||
            segment_meets_triangle(b.p[(common_b + 1) % 3], b.p[(common_b + 2) % 3], a);

@@ -24,7 +24,7 @@ double StraightSkeleton::height() const {
   return most;
 }
 
-std::optional<StraightSkeleton> straight_skeleton(const model::Polygon& polygon) {
+std::optional<StraightSkeleton> straight_skeleton_by_cgal(const model::Polygon& polygon) {
   if (polygon.outer.size() < 3) return std::nullopt;
   const model::Point2 origin = polygon.outer.points[0];
   StraightSkeleton out;
