@@ -330,7 +330,8 @@ class BuildingText {
   GeometryText geometry_;
 };
 
-/// What the callbacks of libxml2 see: exceptions must not pass through C code.
+/// What the callback of libxml2 sees: exceptions must not pass through C code. After an error the rest is swallowed;
+/// to report it to libxml2 would only make it print a message.
 struct SinkState {
   const Sink* sink = nullptr;
   std::exception_ptr error;
@@ -338,12 +339,11 @@ struct SinkState {
 
 int write_to_sink(void* context, const char* bytes, int size) {
   auto& state = *static_cast<SinkState*>(context);
-  if (state.error) return -1;
+  if (state.error) return size;
   try {
     (*state.sink)(std::string_view(bytes, static_cast<std::size_t>(size)));
   } catch (...) {
     state.error = std::current_exception();
-    return -1;
   }
   return size;
 }

@@ -63,9 +63,9 @@ int main(int argc, char** argv) {
     entry.west = entry.south = entry.min_height = 1e9;
     entry.east = entry.north = entry.max_height = -1e9;
     for (int corner = 0; corner < 8; ++corner) {
-      const georef::Geodetic g = georef::from_ecef(enu.to_ecef({corner & 1 ? glb.max.x : glb.min.x,
-                                                                corner & 2 ? glb.max.y : glb.min.y,
-                                                                corner & 4 ? glb.max.z : glb.min.z}));
+      const georef::Geodetic g =
+          georef::from_ecef(enu.to_ecef({corner & 1 ? glb.max.x : glb.min.x, corner & 2 ? glb.max.y : glb.min.y,
+                                         corner & 4 ? glb.max.z : glb.min.z}));
       entry.west = std::min(entry.west, g.lon);
       entry.east = std::max(entry.east, g.lon);
       entry.south = std::min(entry.south, g.lat);

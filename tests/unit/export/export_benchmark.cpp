@@ -1,0 +1,62 @@
+// Speed of the writers on invented settlements: buildings and bytes per second, for tiles of 60 and of 1000 houses.
+#include <benchmark/benchmark.h>
+
+#include "pipeline/export/citygml/citygml_writer.h"
+#include "pipeline/export/gltf/building_table.h"
+#include "pipeline/export/gltf/glb_writer.h"
+#include "pipeline/export/gltf/mesh.h"
+#include "tests/unit/export/sample_region.h"
+
+namespace {
+
+using namespace blockrand;
+using export_::test::SampleRegion;
+
+void count(benchmark::State& state, std::size_t bytes) {
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+  state.SetBytesProcessed(static_cast<std::int64_t>(bytes));
+}
+
+export_::GlbOptions options() {
+  export_::GlbOptions o;
+  o.frame.to_enu = [](std::span<const model::Point3> in, std::span<model::Point3> out) {
+    for (std::size_t i = 0; i < in.size(); ++i) out[i] = {in[i].x - 391250.1, in[i].y - 5819300.3, in[i].z - 34};
+  };
+  return o;
+}
+
+void write_glb(benchmark::State& state) {
+  const SampleRegion sample = SampleRegion::settlement(static_cast<int>(state.range(0)), state.range(1) != 0);
+  const export_::GlbOptions o = options();
+  std::size_t bytes = 0;
+  for (auto _ : state) bytes += export_::write_glb(sample.region(), o).bytes.size();
+  count(state, bytes);
+}
+BENCHMARK(write_glb)->ArgsProduct({{60, 1000}, {0, 1}});
+
+void build_mesh(benchmark::State& state) {
+  const SampleRegion sample = SampleRegion::settlement(static_cast<int>(state.range(0)), true);
+  const export_::GlbOptions o = options();
+  for (auto _ : state) benchmark::DoNotOptimize(export_::build_mesh(sample.region(), 2, o.frame));
+  count(state, 0);
+}
+BENCHMARK(build_mesh)->Arg(60)->Arg(1000);
+
+void building_table(benchmark::State& state) {
+  const SampleRegion sample = SampleRegion::settlement(static_cast<int>(state.range(0)), true);
+  for (auto _ : state) benchmark::DoNotOptimize(export_::building_table(sample.region(), false));
+  count(state, 0);
+}
+BENCHMARK(building_table)->Arg(60)->Arg(1000);
+
+void write_citygml(benchmark::State& state) {
+  const SampleRegion sample = SampleRegion::settlement(static_cast<int>(state.range(0)), state.range(1) != 0);
+  std::size_t bytes = 0;
+  for (auto _ : state) bytes += export_::write_citygml(sample.region(), {}).size();
+  count(state, bytes);
+}
+BENCHMARK(write_citygml)->ArgsProduct({{60, 1000}, {0, 1}});
+
+}  // namespace
+
+BENCHMARK_MAIN();
