@@ -1,0 +1,116 @@
+#include "importers/osm/attributes.h"
+
+#include <initializer_list>
+#include <string>
+
+#include "importers/osm/tag_values.h"
+
+namespace blockrand::importers::osm {
+namespace {
+
+using model::IssueCode;
+using Tags = std::span<const std::pair<std::string_view, std::string_view>>;
+using Keys = std::initializer_list<std::string_view>;
+
+class AttributeReader {
+ public:
+  AttributeReader(model::OsmId id, Tags tags, model::Report& report) : id_(id), tags_(tags), report_(report) {}
+
+  std::string_view value(std::string_view key) const {
+    for (const auto& [k, v] : tags_)
+      if (k == key) return v;
+    return {};
+  }
+
+  /// The first of `keys` that `parse` can read and that lies in [low, high], or (low, high] when `open_below`.
+  template <class Parse>
+  std::optional<float> number(Keys keys, double low, double high, bool open_below, Parse parse) {
+    for (const std::string_view key : keys) {
+      const std::string_view text = value(key);
+      if (text.empty()) continue;
+      const std::optional<double> read = parse(text);
+      if (!read) {
+        note(IssueCode::value_unreadable, key, text);
+      } else if (*read > high || *read < low || (open_below && *read <= low)) {
+        note(IssueCode::value_clamped, key, text);
+      } else {
+        return static_cast<float>(*read);
+      }
+    }
+    return std::nullopt;
+  }
+
+  template <class Parse>
+  auto first(Keys keys, Parse parse) -> decltype(parse(std::string_view())) {
+    for (const std::string_view key : keys) {
+      const std::string_view text = value(key);
+      if (text.empty()) continue;
+      if (const auto read = parse(text)) return read;
+      note(IssueCode::value_unreadable, key, text);
+    }
+    return std::nullopt;
+  }
+
+  std::string_view first_text(Keys keys) const {
+    for (const std::string_view key : keys)
+      if (const std::string_view text = value(key); !text.empty()) return text;
+    return {};
+  }
+
+ private:
+  void note(IssueCode code, std::string_view key, std::string_view text) {
+    report_.add(id_, code, std::string(key) + "=" + std::string(text));
+  }
+
+  model::OsmId id_;
+  Tags tags_;
+  model::Report& report_;
+};
+
+bool any_key_of_the_scheme(Tags tags) {
+  for (const auto& [k, v] : tags)
+    if (k.starts_with("building:") || k.starts_with("roof:") || k.ends_with("height") || k.ends_with("level") ||
+        k == "levels" || k == "building" || k.starts_with("facade:"))
+      if (k != "building") return true;
+  return false;
+}
+
+}  // namespace
+
+model::MappedAttributes read_attributes(model::OsmId id, model::ObjectKind kind, Tags tags, base::StringPool& strings,
+                                        model::Report& report) {
+  model::MappedAttributes a;
+  AttributeReader read(id, tags, report);
+  a.use = strings.intern(read.value(kind == model::ObjectKind::building ? "building" : "building:part"));
+  if (!any_key_of_the_scheme(tags)) return a;  // four of five buildings
+
+  const auto length = [](std::string_view t) { return parse_length(t); };
+  const auto lowest_length = [](std::string_view t) { return parse_length(t, Pick::lowest); };
+  const auto storeys = [](std::string_view t) { return parse_storeys(t); };
+  const auto lowest_storey = [](std::string_view t) { return parse_storeys(t, Pick::lowest); };
+  a.height = read.number({"height", "building:height", "est_height"}, 0, 1000, true, length);
+  a.min_height = read.number({"min_height", "building:min_height"}, 0, 1000, false, lowest_length);
+  a.storeys = read.number({"building:levels", "levels"}, 0, 200, false, storeys);
+  a.min_storey = read.number({"building:min_level", "min_level"}, 0, 200, false, lowest_storey);
+  a.roof_storeys = read.number({"roof:levels", "building:roof:levels"}, 0, 20, false, storeys);
+  a.storeys_underground = read.number({"building:levels:underground"}, 0, 50, false, storeys);
+  a.roof_height = read.number({"roof:height", "building:roof:height"}, 0, 300, false, length);
+  a.roof_angle = read.number({"roof:angle", "building:roof:angle"}, 0, 89.9, false, parse_angle);
+  a.roof_direction = read.number({"roof:direction", "roof:slope:direction"}, 0, 360, false, parse_direction);
+  a.roof_orientation = read.first({"roof:orientation", "building:roof:orientation"}, parse_roof_orientation);
+  a.roof_shape = read.first({"roof:shape", "building:roof:shape"}, parse_roof_shape);
+  if (!a.roof_shape) {
+    // building:roof holds shapes, materials or nothing of the kind; only a shape is meant for us.
+    const auto shape = parse_roof_shape(read.value("building:roof"));
+    if (shape && *shape != model::RoofShape::other) a.roof_shape = shape;
+  }
+  a.wall_colour =
+      read.first({"building:colour", "building:color", "building:facade:colour", "facade:colour"}, parse_colour);
+  a.roof_colour = read.first({"roof:colour", "roof:color", "building:roof:colour"}, parse_colour);
+  a.wall_material =
+      strings.intern(read.first_text({"building:material", "building:facade:material", "facade:material"}));
+  a.roof_material = strings.intern(read.first_text({"roof:material", "building:roof:material"}));
+  return a;
+}
+
+}  // namespace blockrand::importers::osm
