@@ -14,15 +14,16 @@ using model::OsmType;
 
 class Planner {
  public:
-  Planner(const RawData& data, const Accounts& accounts, std::vector<model::ReportRow>& notices)
-      : data_(data), accounts_(accounts), notices_(notices) {}
+  Planner(const RawData& data, const Accounts& accounts, std::vector<model::ReportRow>& notices,
+          const std::function<void(const PlannedFeature&)>& visit)
+      : data_(data), accounts_(accounts), notices_(notices), visit_(visit) {}
 
-  std::vector<PlannedFeature> run() {
+  void run() {
     for (const RawNode& node : data_.nodes)
       if (node.interest.kinds != 0 && is_known(node.location)) {
         PlannedFeature f = feature(OsmType::node, node);
         f.rings.push_back({{{node.id, node.location}}, false});
-        out_.push_back(std::move(f));
+        visit_(f);
       }
     std::vector<PlannedFeature> of_relations;
     for (const RawRelation& relation : data_.relations) {
@@ -35,8 +36,7 @@ class Planner {
     }
     for (const RawWay& way : data_.ways)
       if (way.interest.kinds != 0 && is_free({OsmType::way, way.id}) && !left_out_.contains(way.id)) plan_way(way);
-    for (PlannedFeature& f : of_relations) out_.push_back(std::move(f));
-    return std::move(out_);
+    for (const PlannedFeature& f : of_relations) visit_(f);
   }
 
  private:
@@ -140,7 +140,7 @@ class Planner {
       f.rings = std::move(area.rings);
     }
     if (!f.area) add_lines(way, f.rings);
-    if (!f.rings.empty()) out_.push_back(std::move(f));
+    if (!f.rings.empty()) visit_(f);
   }
 
   void add_lines(const RawWay& way, std::vector<AreaRing>& rings) const {
@@ -160,16 +160,16 @@ class Planner {
   const RawData& data_;
   const Accounts& accounts_;
   std::vector<model::ReportRow>& notices_;
-  std::vector<PlannedFeature> out_;
+  const std::function<void(const PlannedFeature&)>& visit_;
   std::unordered_map<std::int64_t, std::vector<AreaRing>> area_of_;  ///< rings of old-style ways
   std::unordered_set<std::int64_t> left_out_;                        ///< ways
 };
 
 }  // namespace
 
-std::vector<PlannedFeature> plan_features(const RawData& data, const Accounts& accounts,
-                                          std::vector<model::ReportRow>& notices) {
-  return Planner(data, accounts, notices).run();
+void for_each_feature(const RawData& data, const Accounts& accounts, std::vector<model::ReportRow>& notices,
+                      const std::function<void(const PlannedFeature&)>& visit) {
+  Planner(data, accounts, notices, visit).run();
 }
 
 }  // namespace blockrand::importers::osm

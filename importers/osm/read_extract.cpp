@@ -52,6 +52,10 @@ class ExtractWriter {
     std::vector<bool> kept(accounts.list.size(), true);
     if (clip_) decide_clip(accounts, kept);
     out_.buildings.reserve(accounts.list.size());
+    // Nearly everything read is written: growing by doubling would cost half as much again.
+    out_.tags.reserve(data_.tags.size());
+    out_.vertices.reserve(data_.refs.size());
+    out_.vertex_nodes.reserve(data_.refs.size());
     for (std::size_t i = 0; i < accounts.list.size(); ++i)
       if (kept[i]) write_building(accounts, accounts.list[i]);
     const auto is_kept = [&](model::OsmId id) {
@@ -73,8 +77,8 @@ class ExtractWriter {
 
   void write_features(const Accounts& accounts) {
     std::vector<model::ReportRow> notices;
-    for (const PlannedFeature& f : plan_features(data_, accounts, notices)) {
-      if (clip_ && !touches(f)) continue;
+    for_each_feature(data_, accounts, notices, [&](const PlannedFeature& f) {
+      if (clip_ && !touches(f)) return;
       model::Feature feature;
       feature.id = f.id;
       feature.kinds = f.kinds;
@@ -82,7 +86,7 @@ class ExtractWriter {
       feature.rings = write_rings(f.rings);
       feature.tags = write_tags(f.id, *f.raw, nullptr);
       out_.features.push_back(feature);
-    }
+    });
     for (model::ReportRow& row : notices) {
       const auto found = std::lower_bound(out_.features.begin(), out_.features.end(), row.object,
                                           [](const model::Feature& f, model::OsmId id) { return f.id < id; });
