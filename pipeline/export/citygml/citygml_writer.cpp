@@ -1,5 +1,6 @@
 #include "pipeline/export/citygml/citygml_writer.h"
 
+#include <libxml/parser.h>
 #include <libxml/xmlwriter.h>
 
 #include <algorithm>
@@ -389,6 +390,8 @@ void write_envelope(xmlTextWriterPtr writer, const Envelope& box, const std::str
 }  // namespace
 
 void write_citygml(const model::Region& region, const CityGmlOptions& options, const Sink& sink) {
+  // Once, before several threads are in the library.
+  [[maybe_unused]] static const bool initialised = (xmlInitParser(), true);
   SinkState state{&sink, nullptr};
   xmlOutputBufferPtr output = xmlOutputBufferCreateIO(write_to_sink, nullptr, &state, nullptr);
   if (!output) throw std::bad_alloc();
