@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kBarInterval = std::chrono::milliseconds(100);  // faster than this nobody reads
 constexpr auto kPlainInterval = std::chrono::seconds(5);       // a log of an hour stays below 1,000 lines
 constexpr auto kJsonInterval = std::chrono::seconds(1);
-constexpr int kBarCells = 24;
+constexpr int kBarCells = 16;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -30,9 +30,8 @@ int terminal_width() {
 
 std::string time_stamp() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
-std::string rate_text(double rate, const std::string& unit) {
-  if (rate >= 10) return with_thousands(static_cast<std::uint64_t>(rate)) + " " + unit + "/s";
-  return fmt::format("{:.1f} {}/s", rate, unit);
+std::string rate_text(double rate) {
+  return rate >= 10 ? with_thousands(static_cast<std::uint64_t>(rate)) + "/s" : fmt::format("{:.1f}/s", rate);
 }
 
 }  // namespace
@@ -101,14 +100,14 @@ void Progress::show(bool final_line) {
     sink_(line + fmt::format("\"seconds\":{:.3f},\"ended\":{}}}\n", elapsed, final_line));
     return;
   }
-  std::string line = fmt::format("{:<20}", phase_);
-  const std::string unit = unit_.empty() ? "" : " " + unit_;
+  std::string line = fmt::format("{:<10}", phase_);
+  const bool counts = done_ > 0 && !unit_.empty();  // without a unit the total is a mere scale
   if (final_line) {
-    if (done_ > 0) {
-      line += fmt::format(" {}{}", with_thousands(done_), unit);
-      if (elapsed >= 0.05 && !unit_.empty()) line += ", " + rate_text(rate, unit_);
+    if (counts) {
+      line += fmt::format(" {} {}", with_thousands(done_), unit_);
+      if (elapsed >= 0.05) line += ", " + rate_text(rate);
     }
-    line += fmt::format("{} {}", done_ > 0 ? "," : "", with_time_unit(elapsed));
+    line += fmt::format("{} {}", counts ? "," : "", with_time_unit(elapsed));
   } else {
     if (total_ > 0) {
       const double part = std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_));
@@ -117,12 +116,13 @@ void Progress::show(bool final_line) {
         line += " [" + std::string(cells, '#') + std::string(kBarCells - cells, '.') + "]";
       }
       line += fmt::format(" {:3.0f} %", 100 * part);
-    }
-    if (done_ > 0) {
-      line += total_ > 0 ? fmt::format(" {} of {}{}", with_thousands(done_), with_thousands(total_), unit)
-                         : fmt::format(" {}{}", with_thousands(done_), unit);
-      if (!unit_.empty()) line += ", " + rate_text(rate, unit_);
+      // What a narrow terminal cuts off comes last.
       if (knows_left) line += ", " + with_time_unit(left) + " left";
+    }
+    if (counts) {
+      line += fmt::format("{} {}", total_ > 0 ? "," : "", with_thousands(done_));
+      if (total_ > 0) line += " of " + with_thousands(total_);
+      line += fmt::format(" {}, {}", unit_, rate_text(rate));
     }
   }
   if (style_ == ProgressStyle::bar) {

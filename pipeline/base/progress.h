@@ -35,7 +35,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Starts a phase; `total` units of `unit` are expected (0: unknown). Ends the one before.
+  /// Starts a phase; `total` units of `unit` are expected (0: unknown). Ends the one before. Without a unit only the part
+  /// of the total that is done is shown, as a percentage.
   void begin(std::string_view phase, std::uint64_t total = 0, std::string_view unit = "");
   /// Units done in this phase so far, in all. Calls may come out of order: the largest counts.
   void advance_to(std::uint64_t done);

@@ -12,10 +12,14 @@
 namespace blockrand::settings {
 namespace {
 
-constexpr std::size_t kHelpColumn = 26, kHelpWidth = 100;
+constexpr std::size_t kHelpColumn = 28, kHelpWidth = 100;
 
 std::string shown(const Option& option) {
   return option.positional() ? std::string(option.name) : "--" + std::string(option.name);
+}
+
+[[noreturn]] void wrong_usage(const std::string& what, Commands command) {
+  throw base::UsageError(fmt::format("{} Try 'blockrand {} --help'.", what, command == kBuild ? "build" : "info"));
 }
 
 [[noreturn]] void unknown_option(const std::string& given, Commands command) {
@@ -28,8 +32,9 @@ std::string shown(const Option& option) {
   std::string word = given.substr(given.find_first_not_of('-') == std::string::npos ? 0 : given.find_first_not_of('-'));
   word = word.substr(0, word.find('='));
   const std::string near = given.starts_with("--") ? base::nearest(word, known) : "";
-  throw base::UsageError("unknown option " + given.substr(0, given.find('=')) + "." +
-                         (near.empty() ? "" : " Did you mean --" + near + "?"));
+  wrong_usage(fmt::format("unknown option {}.{}", given.substr(0, given.find('=')),
+                          near.empty() ? "" : " Did you mean --" + near + "?"),
+              command);
 }
 
 void set(const Option& option, Settings& settings, const std::string& value) {
@@ -85,7 +90,7 @@ CommandLine read_command_line(Commands command, const std::vector<std::string>& 
     line.help = true;
     return line;
   } catch (const CLI::ParseError& error) {
-    throw base::UsageError(error.what());
+    wrong_usage(std::string(error.what()) + ".", command);
   }
   std::string input;
   for (const auto& [o, option] : parsed)
@@ -93,8 +98,9 @@ CommandLine read_command_line(Commands command, const std::vector<std::string>& 
   for (const std::string& extra : app.remaining()) {
     if (extra == "--") continue;
     if (extra.size() > 1 && extra.starts_with('-')) unknown_option(extra, command);
-    throw base::UsageError("unexpected argument " + extra + ": one input at a time" +
-                           (input.empty() ? "." : " (it is " + input + ")."));
+    wrong_usage(fmt::format("unexpected argument {}: one input at a time{}.", extra,
+                            input.empty() ? "" : " (it is " + input + ")"),
+                command);
   }
   // The file first, so that the command line is stronger.
   for (const auto& [o, option] : parsed) {
@@ -104,9 +110,9 @@ CommandLine read_command_line(Commands command, const std::vector<std::string>& 
   }
   for (const auto& [o, option] : parsed)
     if (option->count() > 0) set(*o, line.settings, option->results().back());
-  if (line.settings.build.input.empty()) throw base::UsageError("no INPUT is given. Name an OSM extract.");
+  if (line.settings.build.input.empty()) wrong_usage("no INPUT is given: name an OSM extract.", command);
   if (command == kBuild && line.settings.build.output.empty())
-    throw base::UsageError("no output folder is given. Name one with --output FOLDER.");
+    wrong_usage("no output folder is given: name one with --output FOLDER.", command);
   return line;
 }
 

@@ -1,0 +1,71 @@
+#include "pipeline/cli/build.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/progress.h"
+#include "pipeline/cli/build_report.h"
+#include "pipeline/cli/errors.h"
+#include "pipeline/cli/exit_codes.h"
+#include "pipeline/cli/presets_folder.h"
+#include "pipeline/cli/signals.h"
+#include "pipeline/region/build.h"
+#include "pipeline/settings/command_line.h"
+
+namespace blockrand::cli {
+
+std::string build_help() {
+  return "Usage: blockrand build INPUT -o FOLDER [options]\n"
+         "\n"
+         "Rebuilds the buildings of an OpenStreetMap extract in 3D: georeferenced 3D Tiles (GLB) and CityGML.\n"
+         "Missing heights, storeys and roofs are inferred, and every value says where it came from.\n" +
+         settings::option_help(settings::kBuild) +
+         "\n"
+         "Options that tune repair and inference: blockrand help options\n"
+         "\n"
+         "Examples:\n"
+         "  blockrand build leipzig.osm.pbf -o out/leipzig\n"
+         "      everything, as 3D Tiles and CityGML with roofs (LoD 2)\n"
+         "  blockrand build berlin.osm.pbf -o out/mitte --bbox 13.37,52.51,13.41,52.53 --formats gltf\n"
+         "      one quarter of a city, 3D Tiles only\n"
+         "  blockrand build town.osm -o out/town --terrain dem.tif --crs EPSG:25833 --force\n"
+         "      on real ground, in a given coordinate system, in place of an earlier build\n"
+         "  blockrand build --config town.toml --lod 1\n"
+         "      options from a file; blocks instead of roofs\n"
+         "\n"
+         "Exit codes: 0 all well, 1 wrong usage, 2 unreadable or invalid input, 3 buildings below the asked\n"
+         "quality (only with --strict), 4 output could not be written or internal error, 128 + signal.\n"
+         "The output folder appears, or is replaced, when everything in it is complete; never before.\n";
+}
+
+int run_build(const std::vector<std::string>& arguments) {
+  settings::CommandLine line = settings::read_command_line(settings::kBuild, arguments);
+  if (line.help) {
+    std::fputs(build_help().c_str(), stdout);
+    return kSuccess;
+  }
+  settings::Settings& s = line.settings;
+  s.build.configs = presets_folder(s.build.configs);
+  clean_up_on_signals(s.log_format);
+  base::Progress progress(s.progress, s.log_format, s.quiet);
+  const region::BuildSummary summary = region::build(s.build, progress);
+  progress.end();
+  if (s.log_format == base::LogFormat::json)
+    std::fputs(build_report_json(s.build, summary).c_str(), stdout);
+  else if (!s.quiet)
+    std::fputs(build_report(s.build, summary).c_str(), stdout);
+  if (const std::int64_t lost = unaccounted(summary); lost != 0) {
+    progress.error(fmt::format(
+        "internal error: {} objects of the extract are in no state. This is a bug: please report it.", lost));
+    return kInternalError;
+  }
+  if (summary.below_quality && s.build.strict) {
+    progress.error("some buildings are below the asked quality (--strict); report.json lists them");
+    return kBelowQuality;
+  }
+  return kSuccess;
+}
+
+}  // namespace blockrand::cli

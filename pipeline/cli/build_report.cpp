@@ -1,0 +1,111 @@
+#include "pipeline/cli/build_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "pipeline/base/text.h"
+#include "pipeline/model/issue_codes.h"
+
+namespace blockrand::cli {
+namespace {
+
+using base::with_byte_unit;
+using base::with_thousands;
+using model::IssueClass;
+
+const model::IssueInfo* find_code(const std::string& text) {
+  for (const model::IssueInfo& info : model::kIssueInfo)
+    if (info.text == text) return &info;
+  return nullptr;
+}
+
+std::string row(const std::string& name, std::uint64_t count, const std::string& remark) {
+  std::string line = fmt::format("  {:<24}{:>12}  {}", name, with_thousands(count), remark);
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + "\n";
+}
+
+/// Rows of one class of codes, most frequent first.
+std::string code_rows(const region::BuildSummary& summary, IssueClass wanted, const std::string& title) {
+  std::vector<std::pair<std::string, std::uint64_t>> codes;
+  for (const auto& [code, count] : summary.issues) {
+    const model::IssueInfo* info = find_code(code);
+    if (count > 0 && (info ? info->issue_class : IssueClass::notice) == wanted) codes.emplace_back(code, count);
+  }
+  if (codes.empty()) return {};
+  std::stable_sort(codes.begin(), codes.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string text = "\n" + title + "\n";
+  for (const auto& [code, count] : codes) {
+    const model::IssueInfo* info = find_code(code);
+    text += row(code, count, info ? std::string(info->meaning) : "");
+  }
+  return text;
+}
+
+double rate(const region::BuildSummary& s) {
+  return s.seconds > 0 ? static_cast<double>(s.buildings_in + s.parts_in) / s.seconds : 0;
+}
+
+}  // namespace
+
+std::int64_t unaccounted(const region::BuildSummary& s) {
+  return static_cast<std::int64_t>(s.buildings_in + s.parts_in) -
+         static_cast<std::int64_t>(s.models + s.represented + s.duplicates + s.reported);
+}
+
+std::string build_report(const region::BuildOptions& options, const region::BuildSummary& s) {
+  std::string text = "Objects\n";
+  text += row("in", s.buildings_in + s.parts_in,
+              fmt::format("{} buildings, {} parts", with_thousands(s.buildings_in), with_thousands(s.parts_in)));
+  text += row("modelled", s.models, "");
+  text += row("represented", s.represented, "by their parts or by another object");
+  text += row("duplicate", s.duplicates, "the same object mapped twice");
+  text += row("reported", s.reported, "not modelled; reasons below, objects in report.json");
+  text += "\nModels by level of detail\n";
+  for (std::size_t lod = s.models_by_lod.size(); lod-- > 0;)
+    if (static_cast<int>(lod) <= options.lod || s.models_by_lod[lod] > 0)
+      text += row(fmt::format("LoD {}", lod), s.models_by_lod[lod], "");
+  text += code_rows(s, IssueClass::reported, "Not modelled, because");
+  text += code_rows(s, IssueClass::fallback, "Simpler than asked");
+  text += code_rows(s, IssueClass::notice, "Notices");
+  text += fmt::format("\n{}, {} buildings and parts/s, peak memory {}\n", base::with_time_unit(s.seconds),
+                      with_thousands(static_cast<std::uint64_t>(rate(s))), with_byte_unit(s.peak_rss_bytes));
+  text += fmt::format("{} in {} files:\n", with_byte_unit(s.bytes), with_thousands(s.files));
+  const std::filesystem::path out(options.output);
+  const auto place = [&](const char* name, const char* what) {
+    text += fmt::format("  {:<40}  {}\n", (out / name).string(), what);
+  };
+  if (options.gltf)
+    place("tileset.json", "3D Tiles, for CesiumJS, QGIS 3.34+, Unreal, ...; single tiles are in tiles/");
+  if (options.single_glb) place("model.glb", "the whole build in one file, for Blender and other editors");
+  if (options.citygml) place("citygml/", "CityGML 2.0, one file per tile");
+  place("report.json", "every object that is not modelled as asked, with its reason");
+  place("build.json", "inputs, coordinate system, counts, hashes");
+  return text;
+}
+
+std::string build_report_json(const region::BuildOptions& options, const region::BuildSummary& s) {
+  nlohmann::ordered_json j;
+  j["output"] = options.output;
+  j["buildings_in"] = s.buildings_in;
+  j["parts_in"] = s.parts_in;
+  j["models"] = s.models;
+  j["represented"] = s.represented;
+  j["duplicates"] = s.duplicates;
+  j["reported"] = s.reported;
+  j["models_by_lod"] = s.models_by_lod;
+  j["issues"] = s.issues;
+  j["files"] = s.files;
+  j["bytes"] = s.bytes;
+  j["seconds"] = s.seconds;
+  j["objects_per_second"] = rate(s);
+  j["peak_rss_bytes"] = s.peak_rss_bytes;
+  j["below_quality"] = s.below_quality;
+  return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace blockrand::cli

@@ -1,0 +1,15 @@
+// What the program's exit code says (DESIGN section 8).
+#pragma once
+
+namespace blockrand::cli {
+
+enum ExitCode : int {
+  kSuccess = 0,
+  kWrongUsage = 1,     ///< options, or an output place that cannot be used
+  kInvalidInput = 2,   ///< an input that is unreadable or invalid
+  kBelowQuality = 3,   ///< finished with buildings below the asked quality; only with --strict
+  kInternalError = 4,  ///< the output could not be written, or a bug
+  kSignalBase = 128,   ///< ended by a signal: 128 plus its number
+};
+
+}  // namespace blockrand::cli

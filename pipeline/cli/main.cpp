@@ -1,0 +1,48 @@
+// The program: finds the command and turns errors into exit codes.
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/toml_file.h"
+#include "pipeline/cli/build.h"
+#include "pipeline/cli/errors.h"
+#include "pipeline/cli/exit_codes.h"
+#include "pipeline/cli/help.h"
+#include "pipeline/cli/info.h"
+
+namespace {
+
+using namespace blockrand;
+
+int run(const std::string& command, const std::vector<std::string>& arguments) {
+  if (command == "build") return cli::run_build(arguments);
+  if (command == "info") return cli::run_info(arguments);
+  if (command == "help") return cli::run_help(arguments);
+  if (command == "--help" || command == "-h") return cli::run_help({});
+  if (command == "--version" || command == "-V") {
+    std::fputs(cli::version_text().c_str(), stdout);
+    return cli::kSuccess;
+  }
+  if (command.empty()) throw base::UsageError("no command is given. Try 'blockrand --help'.");
+  const std::string near = base::nearest(command, cli::command_names());
+  throw base::UsageError("unknown command " + command + "." + (near.empty() ? "" : " Did you mean " + near + "?") +
+                         " Try 'blockrand --help'.");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string command = argc > 1 ? argv[1] : "";
+  const std::vector<std::string> arguments(argv + std::min(argc, 2), argv + argc);
+  int code = cli::guarded(cli::early_log_format(arguments), [&] { return run(command, arguments); });
+  // A full disk behind a redirection shows here.
+  if (std::fflush(stdout) != 0 && code == cli::kSuccess) {
+    std::fprintf(stderr, "blockrand: error: cannot write to standard output: %s\n", std::strerror(errno));
+    code = cli::kInternalError;
+  }
+  return code;
+}

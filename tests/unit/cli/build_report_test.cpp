@@ -1,0 +1,99 @@
+#include "pipeline/cli/build_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace blockrand::cli {
+namespace {
+
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+
+region::BuildSummary summary() {
+  region::BuildSummary s;
+  s.buildings_in = 12345;
+  s.parts_in = 678;
+  s.models = 12800;
+  s.represented = 120;
+  s.duplicates = 3;
+  s.reported = 100;
+  s.models_by_lod = {2, 8, 12790};
+  s.issues = {{"GABLE_AS_HIP", 7}, {"NODE_ONLY", 10}, {"OPEN_WAY", 90}, {"VALUE_UNREADABLE", 1234}};
+  s.files = 45;
+  s.bytes = 123'456'789;
+  s.seconds = 2;
+  s.peak_rss_bytes = 512'300'000;
+  return s;
+}
+
+region::BuildOptions options() {
+  region::BuildOptions o;
+  o.output = "out/leipzig";
+  return o;
+}
+
+TEST(BuildReport, AccountsForEveryObject) {
+  EXPECT_EQ(unaccounted(summary()), 0);
+  region::BuildSummary lost = summary();
+  lost.models -= 2;
+  EXPECT_EQ(unaccounted(lost), 2);
+  lost.models += 3;
+  EXPECT_EQ(unaccounted(lost), -1);
+}
+
+TEST(BuildReport, SaysWhatBecameOfTheObjects) {
+  const std::string text = build_report(options(), summary());
+  EXPECT_THAT(text, ContainsRegex("in +13,023  12,345 buildings, 678 parts\n"));
+  EXPECT_THAT(text, ContainsRegex("modelled +12,800\n"));
+  EXPECT_THAT(text, ContainsRegex("represented +120 "));
+  EXPECT_THAT(text, ContainsRegex("duplicate +3 "));
+  EXPECT_THAT(text, ContainsRegex("reported +100 "));
+  EXPECT_THAT(text, ContainsRegex("LoD 2 +12,790\n  LoD 1 +8\n  LoD 0 +2\n"));
+  EXPECT_THAT(text, HasSubstr("6,511 buildings and parts/s, peak memory 512.3 MB"));
+  EXPECT_THAT(text, HasSubstr("123.5 MB in 45 files"));
+}
+
+TEST(BuildReport, GroupsCodesByWhatTheyMean) {
+  const std::string text = build_report(options(), summary());
+  EXPECT_THAT(text, ContainsRegex("Not modelled, because\n  OPEN_WAY +90  The way is not closed.*\n  NODE_ONLY +10 "))
+      << "most frequent first";
+  EXPECT_THAT(text, ContainsRegex("Simpler than asked\n  GABLE_AS_HIP +7 "));
+  EXPECT_THAT(text, ContainsRegex("Notices\n  VALUE_UNREADABLE +1,234 "));
+  region::BuildSummary clean = summary();
+  clean.issues.clear();
+  EXPECT_THAT(build_report(options(), clean), Not(HasSubstr("because\n")));
+}
+
+TEST(BuildReport, NamesTheFilesThatWereAskedFor) {
+  region::BuildOptions o = options();
+  o.citygml = false;
+  o.single_glb = true;
+  const std::string text = build_report(o, summary());
+  EXPECT_THAT(text, HasSubstr("out/leipzig/tileset.json"));
+  EXPECT_THAT(text, HasSubstr("out/leipzig/model.glb"));
+  EXPECT_THAT(text, Not(HasSubstr("citygml")));
+}
+
+TEST(BuildReport, ALowerLevelHidesTheRowsAboveIt) {
+  region::BuildOptions o = options();
+  o.lod = 1;
+  region::BuildSummary s = summary();
+  s.models_by_lod = {2, 12798, 0};
+  EXPECT_THAT(build_report(o, s), Not(HasSubstr("LoD 2")));
+}
+
+TEST(BuildReport, JsonIsOneLineWithTheSameNumbers) {
+  const std::string text = build_report_json(options(), summary());
+  EXPECT_EQ(text.find('\n'), text.size() - 1);
+  const auto j = nlohmann::json::parse(text);
+  EXPECT_EQ(j["buildings_in"], 12345);
+  EXPECT_EQ(j["models_by_lod"][2], 12790);
+  EXPECT_EQ(j["issues"]["OPEN_WAY"], 90);
+  EXPECT_EQ(j["output"], "out/leipzig");
+}
+
+}  // namespace
+}  // namespace blockrand::cli

@@ -1,0 +1,163 @@
+// Errors, signals, presets and help: the parts of the program around its commands.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <new>
+#include <thread>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/publish.h"
+#include "pipeline/cli/build.h"
+#include "pipeline/cli/errors.h"
+#include "pipeline/cli/help.h"
+#include "pipeline/cli/info.h"
+#include "pipeline/cli/presets_folder.h"
+#include "pipeline/cli/signals.h"
+
+namespace blockrand::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+struct Outcome {
+  int code = 0;
+  std::string out, err;
+};
+
+template <class F>
+Outcome outcome(F&& f, base::LogFormat format = base::LogFormat::text) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  Outcome o;
+  o.code = guarded(format, f);
+  std::fflush(stdout);
+  o.out = testing::internal::GetCapturedStdout();
+  o.err = testing::internal::GetCapturedStderr();
+  return o;
+}
+
+TEST(Errors, BecomeMessagesAndExitCodes) {
+  const auto run = [](auto error) { return outcome([&]() -> int { throw error; }); };
+  Outcome o = run(base::UsageError("bad option."));
+  EXPECT_EQ(o.code, 1);
+  EXPECT_EQ(o.err, "blockrand: error: bad option.\n");
+  o = run(base::InputError("a.osm", "3", "broken", "Mend it."));
+  EXPECT_EQ(o.code, 2);
+  EXPECT_EQ(o.err, "blockrand: error: a.osm:3: broken. Mend it.\n");
+  EXPECT_EQ(run(base::OutputError("disk full")).code, 4);
+  o = run(std::bad_alloc());
+  EXPECT_EQ(o.code, 4);
+  EXPECT_THAT(o.err, HasSubstr("--jobs"));
+  o = run(std::logic_error("index"));
+  EXPECT_EQ(o.code, 4);
+  EXPECT_THAT(o.err, HasSubstr("internal error: index"));
+}
+
+TEST(Errors, AreJsonWhereLogsAre) {
+  EXPECT_EQ(early_log_format({"in.osm", "--log-format", "json", "--bogus"}), base::LogFormat::json);
+  EXPECT_EQ(early_log_format({"--log-format=json"}), base::LogFormat::json);
+  EXPECT_EQ(early_log_format({"--log-format"}), base::LogFormat::text);
+  const Outcome o = outcome([]() -> int { throw base::UsageError("x"); }, base::LogFormat::json);
+  EXPECT_THAT(o.err, AllOf(StartsWith("{\"time\":"), HasSubstr("\"level\":\"error\",\"message\":\"x\"}\n")));
+}
+
+TEST(Help, EveryCommandHasExamplesAndExitCodes) {
+  for (const std::string& text : {general_help(), build_help(), info_help()}) {
+    EXPECT_THAT(text, StartsWith("Usage: blockrand"));
+    EXPECT_THAT(text, HasSubstr("Examples:\n  blockrand "));
+    EXPECT_THAT(text, HasSubstr("Exit codes: 0 all well"));
+  }
+  for (const std::string& command : command_names()) {
+    EXPECT_THAT(general_help(), HasSubstr("\n  " + command + " "));
+    EXPECT_EQ(outcome([&] { return run_help({command}); }).code, 0);
+  }
+  EXPECT_THAT(outcome([] { return run_build({"--help"}); }).out, build_help());
+  EXPECT_THAT(outcome([] { return run_info({"-h"}); }).out, info_help());
+  EXPECT_THAT(version_text(), StartsWith("blockrand "));
+}
+
+TEST(Help, KnowsItsTopics) {
+  EXPECT_THAT(outcome([] { return run_help({"codes"}); }).out, HasSubstr("OPEN_WAY"));
+  EXPECT_THAT(outcome([] { return run_help({"options", "--toml"}); }).out, HasSubstr("[build]"));
+  EXPECT_THAT(outcome([] { return run_help({"options", "--markdown"}); }).out, StartsWith("# Options"));
+  const Outcome o = outcome([] { return run_help({"optoins"}); });
+  EXPECT_EQ(o.code, 1);
+  EXPECT_THAT(o.err, HasSubstr("Did you mean options?"));
+  EXPECT_EQ(outcome([] { return run_help({"build", "x"}); }).code, 1);
+}
+
+TEST(Info, AMissingFileIsInvalidInput) {
+  const Outcome o = outcome([] { return run_info({"/nowhere/x.osm.pbf", "--progress=none"}); });
+  EXPECT_EQ(o.code, 2);
+  EXPECT_THAT(o.err, HasSubstr("/nowhere/x.osm.pbf"));
+}
+
+TEST(Presets, AreFoundOrNamed) {
+  EXPECT_TRUE(fs::exists(fs::path(presets_folder("")) / "defaults" / "uses.toml"));
+  EXPECT_EQ(presets_folder(BLOCKRAND_SOURCE_DIR "/configs"), BLOCKRAND_SOURCE_DIR "/configs");
+  EXPECT_THROW(presets_folder("/nowhere"), base::UsageError);
+}
+
+class Signals : public testing::TestWithParam<int> {};
+
+TEST_P(Signals, RemoveTheUnfinishedBuildAndKeepTheOldOne) {
+  std::string pattern = testing::TempDir() + "signals.XXXXXX";
+  const fs::path here = mkdtemp(pattern.data()), target = here / "out";
+  {
+    base::StagedFolder old(target, false);
+    old.write("build.json", "old");
+    old.publish();
+  }
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    if (!freopen("/dev/null", "w", stderr)) _exit(99);
+    signal(GetParam(), SIG_DFL);
+    clean_up_on_signals(base::LogFormat::text);
+    base::StagedFolder folder(target, true);
+    folder.write("half", "x");
+    if (write(ready[1], "r", 1) != 1) _exit(98);
+    for (int i = 0;; ++i) folder.write(std::to_string(i % 100), "y");
+  }
+  char c = 0;
+  ASSERT_EQ(read(ready[0], &c, 1), 1);
+  kill(child, GetParam());
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 128 + GetParam());
+  EXPECT_EQ(std::distance(fs::directory_iterator(here), {}), 1);
+  EXPECT_TRUE(fs::exists(target / "build.json"));
+  fs::remove_all(here);
+  close(ready[0]);
+  close(ready[1]);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Signals, testing::Values(SIGINT, SIGTERM, SIGHUP));
+
+TEST(IgnoredSignals, ThatTheEnvironmentIgnoresStayIgnored) {
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGHUP, SIG_IGN);  // nohup
+    clean_up_on_signals(base::LogFormat::text);
+    raise(SIGHUP);
+    kill(getpid(), SIGHUP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    _exit(7);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 7);
+}
+
+}  // namespace
+}  // namespace blockrand::cli
