@@ -1,0 +1,116 @@
+"""Readers of what a build wrote, in plain Python: enough of CityGML, GLB and 3D Tiles to ask where things stand."""
+import gzip
+import json
+import os
+import struct
+import xml.etree.ElementTree as ElementTree
+
+from blockrand_run import files_of, read_json
+
+NAMES = {'gml': 'http://www.opengis.net/gml', 'core': 'http://www.opengis.net/citygml/2.0',
+         'bldg': 'http://www.opengis.net/citygml/building/2.0', 'gen': 'http://www.opengis.net/citygml/generics/2.0'}
+GML_ID = '{%s}id' % NAMES['gml']
+
+
+# ---- CityGML
+
+def citygml_trees(folder):
+    """(relative path, root element) of every CityGML file."""
+    for name in files_of(os.path.join(folder, 'citygml'), '.gml', '.gml.gz'):
+        path = os.path.join(folder, 'citygml', name)
+        with (gzip.open if name.endswith('.gz') else open)(path, 'rb') as f:
+            yield name, ElementTree.parse(f).getroot()
+
+
+def buildings(folder):
+    """{gml:id: element} of every Building, parts left inside."""
+    found = {}
+    for _, root in citygml_trees(folder):
+        for element in root.iterfind('core:cityObjectMember/bldg:Building', NAMES):
+            found[element.get(GML_ID)] = element
+    return found
+
+
+def points(element):
+    """Every (x, y, z) of the posLists below."""
+    for pos in element.iterfind('.//gml:posList', NAMES):
+        n = [float(t) for t in pos.text.split()]
+        yield from zip(n[0::3], n[1::3], n[2::3])
+
+
+def attributes(element):
+    """{name: text} of the generic attributes of one building or part."""
+    return {a.get('name'): a.findtext('gen:value', '', NAMES) for a in element if a.tag.startswith('{%s}' % NAMES['gen'])}
+
+
+# ---- GLB
+
+class Glb:
+    """A GLB with its first property table."""
+    FORMATS = {5120: ('b', 127), 5121: ('B', 255), 5122: ('h', 32767), 5123: ('H', 65535), 5125: ('I', 1), 5126: ('f', 1)}
+    WIDTHS = {'SCALAR': 1, 'VEC2': 2, 'VEC3': 3, 'VEC4': 4}
+    OFFSETS = {'UINT8': 'B', 'UINT16': 'H', 'UINT32': 'I', 'UINT64': 'Q'}
+
+    def __init__(self, path):
+        with open(path, 'rb') as f:
+            data = f.read()
+        magic, version, length = struct.unpack_from('<4sII', data)
+        assert (magic, version, length) == (b'glTF', 2, len(data)), path
+        self.json, self.bin, at = None, b'', 12
+        while at < len(data):
+            size, kind = struct.unpack_from('<I4s', data, at)
+            chunk = data[at + 8:at + 8 + size]
+            if kind == b'JSON':
+                self.json = json.loads(chunk)
+            elif kind == b'BIN\0':
+                self.bin = chunk
+            at += 8 + size
+
+    def accessor(self, index):
+        a = self.json['accessors'][index]
+        view = self.json['bufferViews'][a['bufferView']]
+        code, scale = self.FORMATS[a['componentType']]
+        width = self.WIDTHS[a['type']]
+        stride = view.get('byteStride') or width * struct.calcsize(code)
+        start = view.get('byteOffset', 0) + a.get('byteOffset', 0)
+        values = [struct.unpack_from(f'<{width}{code}', self.bin, start + i * stride) for i in range(a['count'])]
+        return [tuple(v / scale for v in value) for value in values] if a.get('normalized') else values
+
+    def texts(self, name):
+        """A STRING column of the property table."""
+        table = self.json['extensions']['EXT_structural_metadata']['propertyTables'][0]
+        column = table['properties'][name]
+        values, offsets = (self.json['bufferViews'][column[k]] for k in ('values', 'stringOffsets'))
+        code = self.OFFSETS[column.get('stringOffsetType', 'UINT32')]
+        ends = struct.unpack_from(f'<{table["count"] + 1}{code}', self.bin, offsets.get('byteOffset', 0))
+        start = values.get('byteOffset', 0)
+        return [self.bin[start + a:start + b].decode('utf-8') for a, b in zip(ends, ends[1:])]
+
+    def vertices(self):
+        """(row of the property table, (x, y, z)) of every vertex, in the file's frame with z up."""
+        for node in self.json.get('nodes', []):
+            move, scale = node.get('translation', (0, 0, 0)), node.get('scale', (1, 1, 1))
+            for primitive in self.json['meshes'][node['mesh']]['primitives']:
+                rows = self.accessor(primitive['attributes']['_FEATURE_ID_0'])
+                places = self.accessor(primitive['attributes']['POSITION'])
+                for (row,), p in zip(rows, places):
+                    x, y, z = (c * s + m for c, s, m in zip(p, scale, move))
+                    yield int(row), (x, -z, y)
+
+
+def tile_contents(folder):
+    """(column-major transform, path of the content) of every tile of tileset.json."""
+    identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+
+    def walk(tile, matrix):
+        own = tile.get('transform', identity)
+        matrix = [sum(matrix[k * 4 + r] * own[c * 4 + k] for k in range(4)) for c in range(4) for r in range(4)]
+        if 'content' in tile:
+            yield matrix, os.path.join(folder, tile['content']['uri'])
+        for child in tile.get('children', []):
+            yield from walk(child, matrix)
+    return list(walk(read_json(folder, 'tileset.json')['root'], identity))
+
+
+def placed(matrix, p):
+    return tuple(matrix[r] * p[0] + matrix[4 + r] * p[1] + matrix[8 + r] * p[2] + matrix[12 + r] for r in range(3))
