@@ -446,7 +446,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   for (const MappedBuilding& b : extract.buildings) {
     switch (b.state) {
       case ObjectState::modelled: ++summary.models; break;
-      case ObjectState::duplicate: ++summary.duplicates; [[fallthrough]];
+      case ObjectState::duplicate: ++summary.duplicates; break;
       case ObjectState::represented: ++summary.represented; break;
       default: ++summary.reported;
     }

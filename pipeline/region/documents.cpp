@@ -64,7 +64,8 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   j["counts"] = {{"buildings_in", s.buildings_in},
                  {"parts_in", s.parts_in},
                  {"models", s.models},
-                 {"represented", s.represented},
+                 // Represented by its parts or by the object it duplicates.
+                 {"represented", s.represented + s.duplicates},
                  {"reported", s.reported},
                  {"represented_as_duplicates", s.duplicates},
                  {"models_lod0", s.models_by_lod[0]},

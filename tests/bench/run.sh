@@ -1,10 +1,10 @@
 #!/bin/sh
 # Whole runs on the extracts of ../shared/data/osm: the table of objects, models, fallbacks, speed, memory and size.
-#   tests/bench/run.sh [--program build/release/bin/blockrand] [--out DIR] [--jobs N] [NAME-PART …]
+#   tests/bench/run.sh [--program build/release/blockrand] [--out DIR] [--jobs N] [NAME-PART …]
 # Prints Markdown to stdout. Times are of this machine on this day: compare rows of one run with each other only.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
-program=$root/build/release/bin/blockrand
+program=$root/build/release/blockrand
 out=$root/build/bench
 jobs=0
 names=
