@@ -173,6 +173,17 @@ std::vector<Ring> link_rings(const std::vector<const MemberLine*>& lines) {
   return rings;
 }
 
+/// Of rings through the same positions (a way drawn twice) the first.
+void drop_repeated(std::vector<Ring>& rings) {
+  std::set<std::vector<model::Location>> seen;
+  std::erase_if(rings, [&](const Ring& ring) {
+    std::vector<model::Location> positions;
+    for (const Vertex& v : ring.vertices) positions.push_back(v.location);
+    std::sort(positions.begin(), positions.end());
+    return !seen.insert(std::move(positions)).second;
+  });
+}
+
 /// Outer rings each followed by its inner ones, by role; an inner ring in no outer ring is left out.
 std::vector<AreaRing> rings_by_role(std::vector<Ring> rings) {
   std::vector<AreaRing> out;
@@ -318,7 +329,10 @@ Area assemble_members(const RawData& data, std::int64_t relation_id, const std::
     for (const MemberLine* line : all)
       if (whole.contains(line)) rest.push_back(line);
     if (!rest.empty() && rest.size() < all.size()) area.rings = assemble_by_osmium(relation_id, rest);
-    if (area.rings.empty()) area.rings = rings_by_role(std::move(rings));
+    if (area.rings.empty()) {
+      drop_repeated(rings);
+      area.rings = rings_by_role(std::move(rings));
+    }
     if (!area.rings.empty()) {
       const std::size_t left_out = all.size() - rest.size();
       area.code = incomplete ? IssueCode::members_missing : IssueCode::relation_repaired;

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
-#include <osmium/io/bzip2_compression.hpp>
 #include <osmium/io/gzip_compression.hpp>
 #include <osmium/io/pbf_input.hpp>
 #include <osmium/io/reader.hpp>
@@ -14,6 +13,7 @@
 #include <osmium/thread/pool.hpp>
 #include <type_traits>
 
+#include "importers/osm/bzip2_stream.h"
 #include "importers/osm/pbf_blobs.h"
 #include "pipeline/base/error.h"
 
@@ -103,6 +103,7 @@ struct OsmFile::Workers {
 OsmFile::~OsmFile() = default;
 
 OsmFile::OsmFile(const std::string& path) : path_(path), workers_(std::make_unique<Workers>()) {
+  use_own_bzip2();
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
