@@ -1,3 +1,4 @@
+# shellcheck shell=sh
 # Sourced by quickstart.sh and tests/run.sh in the repository's root: sets `jobs` for the compiler, and a place for caches.
 
 # A CGAL source takes up to 1.7 GB to compile: as many at a time as memory holds, at most one per core.

@@ -9,7 +9,8 @@ case ${1:-} in
   -h | --help) sed -n '2,4p' "$0"; exit 0 ;;
   *) echo "quickstart: unknown argument $1" >&2; exit 1 ;;
 esac
-trap 'code=$?; [ $code -eq 0 ] || echo "quickstart: FAILED with code $code; the reason stands above" >&2' EXIT
+# shellcheck disable=SC2154
+trap 'code=$?; [ "$code" -eq 0 ] || echo "quickstart: FAILED with code $code; the reason stands above" >&2' EXIT
 
 sh "$root/samples/setup.sh" build
 

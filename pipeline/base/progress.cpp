@@ -39,6 +39,7 @@ std::string rate_text(double rate) {
 Progress::Progress(ProgressStyle style, LogFormat format, bool quiet, Sink sink)
     : style_(style), format_(format), quiet_(quiet), sink_(std::move(sink)) {
   if (style_ == ProgressStyle::automatic) style_ = isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::plain;
+  if (quiet_) style_ = ProgressStyle::none;
   if (format_ == LogFormat::json && style_ == ProgressStyle::bar) style_ = ProgressStyle::plain;
   // One write per text, so that lines of several processes do not mix.
   if (!sink_) sink_ = [](std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); };
@@ -100,7 +101,7 @@ void Progress::show(bool final_line) {
     sink_(line + fmt::format("\"seconds\":{:.3f},\"ended\":{}}}\n", elapsed, final_line));
     return;
   }
-  std::string line = fmt::format("{:<10}", phase_);
+  std::string line = fmt::format("{:<18}", phase_);
   const bool counts = done_ > 0 && !unit_.empty();  // without a unit the total is a mere scale
   if (final_line) {
     if (counts) {

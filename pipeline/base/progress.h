@@ -26,7 +26,7 @@ class Progress {
   /// Where text goes: whole lines, or a bar that is redrawn with a carriage return.
   using Sink = std::function<void(std::string_view)>;
 
-  /// \param quiet  info messages are dropped too; warnings and errors never are
+  /// \param quiet  no progress and no info messages; warnings and errors always
   /// \param sink   for tests; empty: stderr
   explicit Progress(ProgressStyle style = ProgressStyle::none, LogFormat format = LogFormat::text, bool quiet = false,
                     Sink sink = {});
@@ -35,8 +35,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Starts a phase; `total` units of `unit` are expected (0: unknown). Ends the one before. Without a unit only the part
-  /// of the total that is done is shown, as a percentage.
+  /// Starts a phase; `total` units of `unit` are expected (0: unknown). Ends the one before. Without a unit only the
+  /// part of the total that is done is shown, as a percentage.
   void begin(std::string_view phase, std::uint64_t total = 0, std::string_view unit = "");
   /// Units done in this phase so far, in all. Calls may come out of order: the largest counts.
   void advance_to(std::uint64_t done);

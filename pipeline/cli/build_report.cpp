@@ -75,9 +75,9 @@ std::string build_report(const region::BuildOptions& options, const region::Buil
   text += fmt::format("\n{}, {} buildings and parts/s, peak memory {}\n", base::with_time_unit(s.seconds),
                       with_thousands(static_cast<std::uint64_t>(rate(s))), with_byte_unit(s.peak_rss_bytes));
   text += fmt::format("{} in {} files:\n", with_byte_unit(s.bytes), with_thousands(s.files));
-  const std::filesystem::path out(options.output);
+  std::vector<std::pair<std::string, const char*>> places;
   const auto place = [&](const char* name, const char* what) {
-    text += fmt::format("  {:<40}  {}\n", (out / name).string(), what);
+    places.emplace_back((std::filesystem::path(options.output) / name).string(), what);
   };
   if (options.gltf)
     place("tileset.json", "3D Tiles, for CesiumJS, QGIS 3.34+, Unreal, ...; single tiles are in tiles/");
@@ -85,6 +85,9 @@ std::string build_report(const region::BuildOptions& options, const region::Buil
   if (options.citygml) place("citygml/", "CityGML 2.0, one file per tile");
   place("report.json", "every object that is not modelled as asked, with its reason");
   place("build.json", "inputs, coordinate system, counts, hashes");
+  std::size_t width = 0;
+  for (const auto& [path, what] : places) width = std::max(width, path.size());
+  for (const auto& [path, what] : places) text += fmt::format("  {:<{}}  {}\n", path, width, what);
   return text;
 }
 

@@ -184,17 +184,18 @@ ExtractSummary summarise(const model::Extract& extract) {
 
 BuildEstimate estimate(const ExtractSummary& summary, const region::BuildOptions& options, double read_seconds,
                        std::uint64_t store_bytes) {
-  // Measured on whole extracts, tests/bench/RESULTS.md; within a factor of two on other machines.
-  constexpr double kObjectsPerSecondAndCore = 2000;
-  constexpr double kFixedSeconds = 0.2, kFixedBytes = 40e6, kBytesPerJob = 25e6;
-  constexpr double kDiskPerObject[3] = {3'000, 6'500, 12'000};  // CityGML and GLB together, by level of detail
+  // Measured on Monaco, Helsinki, Liechtenstein and Berlin; right within a factor of two on other machines and towns.
+  constexpr double kObjectsPerSecondAndCore[3] = {20'000, 8'000, 2'500};
+  constexpr double kFixedSeconds = 0.2, kFixedBytes = 5e6, kBytesPerJob = 10e6;
+  constexpr double kGmlBytes[3] = {5'700, 9'100, 17'000}, kGlbBytes[3] = {10, 2'300, 2'900};  // per object
+  const auto lod = static_cast<std::size_t>(std::clamp(options.lod, 0, 2));
   const double objects = static_cast<double>(summary.to_build);
   const int jobs = base::worker_count(options.jobs);
   BuildEstimate e;
-  e.seconds = kFixedSeconds + read_seconds + objects / (kObjectsPerSecondAndCore * jobs);
-  e.memory_bytes =
-      static_cast<std::uint64_t>(1.2 * static_cast<double>(store_bytes) + kFixedBytes + kBytesPerJob * jobs);
-  e.disk_bytes = static_cast<std::uint64_t>(objects * kDiskPerObject[std::clamp(options.lod, 0, 2)]);
+  e.seconds = kFixedSeconds + read_seconds + objects / (kObjectsPerSecondAndCore[lod] * jobs);
+  e.memory_bytes = static_cast<std::uint64_t>(static_cast<double>(store_bytes) + kFixedBytes + kBytesPerJob * jobs);
+  e.disk_bytes = static_cast<std::uint64_t>(
+      objects * ((options.citygml ? kGmlBytes[lod] : 0) + (options.gltf ? kGlbBytes[lod] : 0)));
   return e;
 }
 
@@ -219,9 +220,9 @@ std::string summary_text(const ExtractSummary& s, const std::optional<CrsChoice>
   text += codes_text("Cannot be built, because", s.reported);
   text += codes_text("Notices", s.notices);
   if (c.buildings() + c.parts() > 0) {
-    text += fmt::format("\n{:<28}{:>14}{:>14}\n", "Tagged", "buildings", "parts");
+    text += fmt::format("\n{:<30}{:>12}{:>12}\n", "Tagged", "buildings", "parts");
     for (const KeyUse& k : s.keys)
-      text += fmt::format("  {:<26}{:>14}{:>14}\n", k.key, percent(k.buildings, c.buildings()),
+      text += fmt::format("  {:<28}{:>12}{:>12}\n", k.key, percent(k.buildings, c.buildings()),
                           percent(k.parts, c.parts()));
   }
   text += frequencies_text("building=", s.building_values);
