@@ -10,7 +10,7 @@
 namespace blockrand::export_ {
 
 struct GlbOptions {
-  int lod = 2;                   ///< highest level of detail: 1 or 2; with 0 the file has properties but no mesh
+  int lod = 2;                   ///< highest level of detail: 0 to 2; with 0 the mesh is the footprints
   std::string crs;               ///< of the build, for example "EPSG:25833"
   std::string height_reference;  ///< in words: "ellipsoidal heights (EGM96 + terrain)", "heights above local ground"
   std::string generator;         ///< program and version, for asset.generator

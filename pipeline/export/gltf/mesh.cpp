@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <deque>
+#include <optional>
 #include <utility>
 
 #include "pipeline/export/gltf/linear_light.h"
+#include "pipeline/geometry/solid_builder.h"
+#include "pipeline/geometry/triangulate.h"
 
 namespace blockrand::export_ {
 namespace {
@@ -22,6 +26,36 @@ std::pair<const model::Solid*, const model::SolidTriangles*> solid_of(const mode
   if (lod >= 2 && part.lod >= 2 && !part.lod2.empty()) return {&part.lod2, &part.lod2_triangles};
   if (lod >= 1 && part.lod >= 1 && !part.lod1.empty()) return {&part.lod1, &part.lod1_triangles};
   return {nullptr, nullptr};
+}
+
+/// A footprint as a mesh: one horizontal face on the ground in the roof's looks. No solid, only what LoD0 shows.
+struct Footprint {
+  model::Solid surface;
+  model::SolidTriangles triangles;
+};
+
+std::optional<Footprint> footprint_of(const model::BuildingPart& part, const model::Region& region) {
+  if (part.lod < 0 || part.plan.outer.size() < 3) return std::nullopt;
+  const double z = part.attributes.ground_height.value;
+  std::vector<std::vector<model::Point3>> loops;
+  const auto add = [&](const model::Ring& ring) {
+    auto& loop = loops.emplace_back();
+    for (const model::Point2& p : ring.points) loop.push_back({p.x, p.y, z});
+  };
+  add(part.plan.outer);
+  for (const model::Ring& hole : part.plan.holes) add(hole);
+  model::Face looks;
+  looks.kind = model::SurfaceKind::roof;
+  looks.colour = part.attributes.roof_colour.value;
+  for (std::size_t m = 0; m < region.materials.size(); ++m)
+    if (region.materials[m].name == part.attributes.roof_material.value) looks.material = static_cast<std::uint8_t>(m);
+  geometry::SolidBuilder builder;
+  builder.add_face(loops, looks);
+  Footprint out{builder.take(), {}};
+  auto triangles = geometry::triangulate(out.surface);
+  if (out.surface.empty() || !triangles) return std::nullopt;
+  out.triangles = std::move(*triangles);
+  return out;
 }
 
 std::array<std::int8_t, 3> face_normal(const model::Solid& solid, const model::Face& face,
@@ -101,12 +135,19 @@ void unify_equal_points(const std::vector<model::Point3>& points, std::uint32_t 
 
 Mesh build_mesh(const model::Region& region, int lod, const Frame& frame) {
   std::vector<SolidRef> solids;
+  std::deque<Footprint> footprints;  // a deque keeps its elements in place
   std::vector<model::Point3> source;
   std::uint32_t feature = 0;
   for (const model::Building& building : region.buildings) {
     if (!building.owned) continue;
     for (const model::BuildingPart& part : building.parts) {
-      const auto [solid, triangles] = solid_of(part, lod);
+      auto [solid, triangles] = solid_of(part, lod);
+      if (lod == 0) {
+        if (auto footprint = footprint_of(part, region)) {
+          solid = &footprints.emplace_back(std::move(*footprint)).surface;
+          triangles = &footprints.back().triangles;
+        }
+      }
       if (solid) {
         solids.push_back({solid, triangles, feature, static_cast<std::uint32_t>(source.size())});
         source.insert(source.end(), solid->vertices.begin(), solid->vertices.end());

@@ -35,7 +35,7 @@ struct Mesh {
 };
 
 /// The solids of all parts of owned buildings, each at level of detail `lod` or, where it was not reached, the best
-/// one below. Features count the parts, with or without a solid, in the order of building_table().
+/// one below; with `lod` 0 their footprints. Features count the parts, with or without a solid, in the order of building_table().
 ///
 /// Shading is flat: a face's vertices share the normal of its plane (Newell's method in the local frame). Corners of a
 /// part with equal position, normal, colour and material become one vertex.
