@@ -184,7 +184,7 @@ TEST(Glb, LowerLevelsOfDetail) {
   const auto& house = feature(ground, "w12");
   ASSERT_EQ(house.triangles.size(), 2u);
   for (const auto& triangle : house.triangles)
-    for (const auto& corner : triangle) EXPECT_NEAR(corner.z, house.triangles[0][0].z, 1e-3);
+    for (const auto& corner : triangle.corners) EXPECT_NEAR(corner.z, house.triangles[0].corners[0].z, 1e-3);
 }
 
 TEST(Glb, NoDataPropertiesAreLeftOut) {
