@@ -115,9 +115,15 @@ class BadExtracts(BuildTest):
             with self.subTest(name):
                 self.refuse(self.place(name + '.osm', data))
 
+    def test_endless_tag(self):
+        """OSM allows 255 characters; no editor writes more."""
+        objects = house(1, 11, 51.5, {'name': 'x' * 60000})
+        self.refuse(write_xml(self.path('endless.osm'), objects), 'long')
+        self.refuse(write_pbf(self.path('endless.osm.pbf'), objects), 'long')
+
     def test_message_has_a_line_number_for_xml(self):
         run = self.refuse(self.place('line.osm', "<?xml version='1.0'?>\n<osm version='0.6'>\n<node id='1'\n</osm>\n"))
-        self.assertRegex(run.err, r'line\.osm:[34]\b')
+        self.assertRegex(run.err, r'line\.osm:line [34]\b')
 
 
 class EmptyExtracts(BuildTest):

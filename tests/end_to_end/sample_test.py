@@ -141,7 +141,7 @@ class Sample(BuildTest):
                     self.assertTrue(0 <= float(a['height_confidence']) <= 1, a)
                 else:
                     tagged += 1
-                    self.assertIn('osm.height', a, building.get(GML_ID))
+                    self.assertTrue({'osm.height', 'osm.est_height'} & a.keys(), building.get(GML_ID))
         self.assertGreater(tagged, 5)
         self.assertGreater(inferred, 50)
 
@@ -214,8 +214,8 @@ class Sample(BuildTest):
 
     def test_judges_notice_a_lost_building(self):
         def drop(data):
-            a, b = data.index(b'<core:cityObjectMember>'), data.index(b'</core:cityObjectMember>')
-            return data[:a] + data[b + len(b'</core:cityObjectMember>'):]
+            a, b = data.index(b'<cityObjectMember>'), data.index(b'</cityObjectMember>')
+            return data[:a] + data[b + len(b'</cityObjectMember>'):]
         self.assertIn('build.json', judges.solids(self.damaged('lost', self.some_file('.gml'), drop)))
 
     def test_judges_notice_a_wrong_element(self):

@@ -44,6 +44,7 @@ struct Findings {
   std::map<std::string, Tally> by_kind;     ///< "CityGML LoD1", "CityGML LoD2", "GLB"
   std::set<std::string> buildings;          ///< gml:id of bldg:Building
   std::set<std::string> modelled_gml, modelled_glb;  ///< objects that own a solid
+  std::set<std::string> footprints_glb;     ///< objects that the tiles show as a flat plan
   std::set<std::string> solid_bodies_gml;   ///< Building or BuildingPart with a solid
   std::size_t glb_rows = 0;
   std::vector<std::string> errors;          ///< unreadable files, wrong coordinates
@@ -186,6 +187,11 @@ void judge_glb(const fs::path& path, const std::string& name, bool tile, Finding
   if (tile) out.glb_rows += file.features.size();
   for (const validators::GlbFeature& feature : file.features) {
     if (feature.triangles.empty()) continue;  // a part without a solid has its row all the same
+    const auto lod = feature.numbers.find("lod");
+    if (lod == feature.numbers.end() || lod->second < 1) {
+      if (tile) out.footprints_glb.insert(owner(feature.id));  // a plan laid on the ground, not a solid
+      continue;
+    }
     const std::string own = said_by([&] { return own_verdict(feature); });
     const std::string cgal = said_by([&] { return cgal_verdict(feature); });
     note(out, tile ? "GLB tiles" : "model.glb", name + " " + feature.id, own, cgal);
@@ -234,6 +240,7 @@ void merge(Findings& sum, Findings&& one) {
   unite(sum.solid_bodies_gml, one.solid_bodies_gml, "CityGML");
   sum.modelled_gml.merge(one.modelled_gml);
   sum.modelled_glb.merge(one.modelled_glb);
+  sum.footprints_glb.merge(one.footprints_glb);
   sum.glb_rows += one.glb_rows;
   std::move(one.errors.begin(), one.errors.end(), std::back_inserter(sum.errors));
 }
@@ -285,6 +292,7 @@ void compare_counts(const nlohmann::json& build, Findings& f) {
     if (formats.count("citygml") && f.solid_bodies_gml.size() != f.by_kind["GLB tiles"].checked)
       f.errors.push_back(fmt::format("{} bodies with a solid in CityGML, {} with a mesh in the tiles", f.solid_bodies_gml.size(), f.by_kind["GLB tiles"].checked));
   }
+  if (formats.count("gltf") && lod == 0) expect("objects with a plan in the tiles", f.footprints_glb.size(), "models");
   if (configuration.at("single_glb").get<bool>() && lod >= 1 && formats.count("gltf") &&
       f.by_kind["model.glb"].checked != f.by_kind["GLB tiles"].checked)
     f.errors.push_back(fmt::format("{} features with a mesh in model.glb, {} in the tiles", f.by_kind["model.glb"].checked, f.by_kind["GLB tiles"].checked));
