@@ -72,8 +72,9 @@ std::string build_report(const region::BuildOptions& options, const region::Buil
   text += code_rows(s, IssueClass::reported, "Not modelled, because");
   text += code_rows(s, IssueClass::fallback, "Simpler than asked");
   text += code_rows(s, IssueClass::notice, "Notices");
-  text += fmt::format("\n{}, {} buildings and parts/s, peak memory {}\n", base::with_time_unit(s.seconds),
-                      with_thousands(static_cast<std::uint64_t>(rate(s))), with_byte_unit(s.peak_rss_bytes));
+  text += fmt::format("\n{}, {} buildings and parts/s, peak memory {} ({} store, the rest {} tiles in flight)\n",
+                      base::with_time_unit(s.seconds), with_thousands(static_cast<std::uint64_t>(rate(s))),
+                      with_byte_unit(s.peak_rss_bytes), with_byte_unit(s.store_bytes), s.tiles_in_flight);
   text += fmt::format("{} in {} files:\n", with_byte_unit(s.bytes), with_thousands(s.files));
   std::vector<std::pair<std::string, const char*>> places;
   const auto place = [&](const char* name, const char* what) {

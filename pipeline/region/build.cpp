@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -368,7 +369,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     throw base::OutputError(fmt::format("{}: about {} needed, {} free. Free some space, choose another disk with -o, fewer --formats or --gzip",
                                         options.output, base::with_byte_unit(wanted), base::with_byte_unit(free)));
 
-  const std::uint64_t store_bytes = current_rss_bytes();
+  summary.store_bytes = current_rss_bytes();
   const int workers = base::worker_count(options.jobs);
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2;
   const OutputContext output{options, projection, geoid, has_heights, record, defaults};
@@ -377,6 +378,10 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   std::vector<TileResult> slots(in_flight);
   std::vector<model::ReportRow> rows = std::move(region_report.rows);
   rows.insert(rows.end(), std::make_move_iterator(extract.report.rows.begin()), std::make_move_iterator(extract.report.rows.end()));
+  // Objects whose outline lacks members: where the rest encloses nothing, that is the reason.
+  std::set<model::OsmId> incomplete;
+  for (const model::ReportRow& row : rows)
+    if (row.code == IssueCode::members_missing) incomplete.insert(row.object);
   std::vector<export_::TileEntry> tiles;
   std::vector<PartySide> party_sides;
   Region whole;  // for --single-glb
@@ -420,7 +425,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     for (const Outcome& o : result.outcomes) {
       MappedBuilding& object = extract.buildings[o.index];
       object.state = o.state;
-      object.code = o.code;
+      const bool no_area = o.code == IssueCode::zero_area || o.code == IssueCode::too_few_points;
+      object.code = no_area && incomplete.contains(object.id) ? IssueCode::missing_members : o.code;
       object.related = o.related;
       if (o.state == ObjectState::modelled) ++summary.models_by_lod[static_cast<std::size_t>(std::clamp(o.lod, 0, 2))];
     }
@@ -469,8 +475,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   run.timings = progress.times();
   run.seconds = summary.seconds;
   run.peak_rss_bytes = summary.peak_rss_bytes;
-  run.store_bytes = store_bytes;
-  run.tiles_in_flight = std::min<std::uint64_t>(in_flight, shards.size());
+  run.store_bytes = summary.store_bytes;
+  run.tiles_in_flight = summary.tiles_in_flight = std::min<std::uint64_t>(in_flight, shards.size());
   run.jobs = workers;
   char host[256] = "";
   gethostname(host, sizeof host - 1);
