@@ -320,6 +320,7 @@ class Bookkeeper {
       Account* outline = nullptr;
       bool absent = false;
       std::vector<RawMember> shape;
+      std::vector<OsmId> without_role;
       for (const RawMember& m : data_.members_of(relation)) {
         if (m.type == OsmType::node) continue;
         Account* const account = account_of(m);
@@ -333,23 +334,32 @@ class Bookkeeper {
           outline = account;
         else if (m.role == Role::part || account->kind == ObjectKind::building_part)
           entry.parts.push_back(account->id);
+        else if (m.role == Role::none)
+          without_role.push_back(account->id);
       }
+      std::sort(without_role.begin(), without_role.end());
+      without_role.erase(std::unique(without_role.begin(), without_role.end()), without_role.end());
+      // One building among members without roles is the outline; several together are the building.
+      if (outline == nullptr && shape.empty() && without_role.size() == 1) outline = out_.find(without_role.front());
       std::sort(entry.parts.begin(), entry.parts.end());
       entry.parts.erase(std::unique(entry.parts.begin(), entry.parts.end()), entry.parts.end());
-      if (outline != nullptr) entry.outline = outline->id;
-      if (own != nullptr) settle_own_tags(relation, *own, outline, shape, absent, entry);
+      if (outline != nullptr)
+        entry.outline = outline->state == ObjectState::represented ? outline->related : outline->id;
+      if (own != nullptr) settle_own_tags(relation, *own, outline, shape, absent, entry.parts, without_role);
       if (own != nullptr && own->state == ObjectState::pending) entry.outline = own->id;
       if (entry.outline.number != 0 || !entry.parts.empty()) out_.building_relations.push_back(std::move(entry));
     }
   }
 
   void settle_own_tags(const RawRelation& relation, Account& own, const Account* outline,
-                       const std::vector<RawMember>& shape, bool absent, const model::BuildingRelation& entry) {
+                       const std::vector<RawMember>& shape, bool absent, const std::vector<OsmId>& parts,
+                       const std::vector<OsmId>& without_role) {
     const auto represent = [&](OsmId by) {
       own.state = ObjectState::represented;
       own.related = by;
     };
     if (outline != nullptr && outline->state == ObjectState::pending) return represent(outline->id);
+    if (outline != nullptr && outline->state == ObjectState::represented) return represent(outline->related);
     Area area;
     OsmId from = own.id;
     if (outline == nullptr && !shape.empty()) {
@@ -361,8 +371,12 @@ class Bookkeeper {
       }
     }
     if (!area.rings.empty()) return give_area(own, std::move(area), from);
-    for (const OsmId part : entry.parts)
-      if (const Account* a = out_.find(part); a != nullptr && a->state == ObjectState::pending) return represent(part);
+    for (const auto* members : {&parts, &without_role})
+      for (const OsmId member : *members) {
+        const Account* a = out_.find(member);
+        if (a != nullptr && a->state == ObjectState::represented) a = out_.find(a->related);
+        if (a != nullptr && a != &own && a->state == ObjectState::pending) return represent(a->id);
+      }
     if (outline != nullptr && outline->state == ObjectState::reported)
       return reject(own, outline->code, "so is its outline " + outline->id.text());
     if (absent || area.code == IssueCode::missing_members)

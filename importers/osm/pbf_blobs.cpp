@@ -53,9 +53,10 @@ void for_each_blob(const std::string& path, Visit&& visit) {
     try {
       protozero::pbf_reader reader(header);
       while (reader.next()) {
-        if (reader.tag() == 1)
+        using Wire = protozero::pbf_wire_type;
+        if (reader.tag() == 1 && reader.has_wire_type(Wire::length_delimited))
           place.type = reader.get_string();
-        else if (reader.tag() == 3)
+        else if (reader.tag() == 3 && reader.has_wire_type(Wire::varint))
           place.size = reader.get_int32();
         else
           reader.skip();
@@ -63,7 +64,8 @@ void for_each_blob(const std::string& path, Visit&& visit) {
     } catch (const std::exception&) {
       fail(path, place.begin, "the header of a blob is damaged");
     }
-    if (place.size <= 0 || place.size > kMaxBlob) fail(path, place.begin, "the header of a blob is damaged");
+    if (place.type.empty() || place.size <= 0 || place.size > kMaxBlob)
+      fail(path, place.begin, "the header of a blob is damaged");
     if (end - at < static_cast<std::uint64_t>(place.size)) fail(path, place.begin, "the file ends within a blob");
     place.blob = at;
     visit(in, place);
@@ -82,7 +84,7 @@ std::string clean_block(std::string_view block, std::unordered_set<std::string>&
     if (reader.tag() == 1 && reader.wire_type() == protozero::pbf_wire_type::length_delimited) {
       protozero::pbf_writer table(writer, 1);
       protozero::pbf_reader strings = reader.get_message();
-      while (strings.next()) {
+      while (strings.next(1, protozero::pbf_wire_type::length_delimited)) {
         std::string text = strings.get_string();
         bool hit = false;
         for (std::size_t nul = text.find('\0'); nul != std::string::npos; nul = text.find('\0', nul)) {
@@ -95,8 +97,10 @@ std::string clean_block(std::string_view block, std::unordered_set<std::string>&
       }
     } else if (reader.wire_type() == protozero::pbf_wire_type::length_delimited) {
       writer.add_bytes(reader.tag(), reader.get_string());
-    } else {
+    } else if (reader.wire_type() == protozero::pbf_wire_type::varint) {
       writer.add_int64(reader.tag(), reader.get_int64());
+    } else {
+      reader.skip();
     }
   }
   return dirty ? out : std::string();

@@ -311,6 +311,22 @@ TEST(Accounts, ABuildingRelationWithoutOutlineIsRepresentedByItsParts) {
   EXPECT_EQ(state(e, "r3"), "RELATION_TYPE");
 }
 
+TEST(Accounts, ABuildingRelationWithoutRolesIsRepresentedByItsBuildings) {
+  const auto e = OsmText()
+                     .square(1, 10, 0, 0, 10, kHouse)
+                     .square(2, 20, 20, 0, 10, kHouse)
+                     .relation(1, {"w2", "w1"}, {{"type", "building"}, {"building", "yes"}})
+                     .relation(2, {"r1"}, {{"type", "building"}, {"building", "yes"}})
+                     .relation(3, {"w2"}, {{"type", "building"}})
+                     .read();
+  expect_books_balance(e);
+  EXPECT_EQ(state(e, "r1"), "represented by w1");
+  EXPECT_EQ(state(e, "r2"), "represented by w1");
+  ASSERT_EQ(e.building_relations.size(), 2u);
+  EXPECT_EQ(e.building_relations.back().id.text(), "r3");
+  EXPECT_EQ(e.building_relations.back().outline.text(), "w2");
+}
+
 TEST(Accounts, ABuildingRelationWhoseOutlineHasNoTagsIsTheBuilding) {
   const auto e = OsmText()
                      .square(1, 10, 0, 0, 10)

@@ -52,10 +52,13 @@ TEST(RealExtracts, EveryObjectHasOneAccount) {
     for (const auto& b : e.buildings) {
       EXPECT_EQ(b.state == model::ObjectState::pending, b.rings.count > 0) << b.id.text();
       reported += b.state == model::ObjectState::reported;
-      if (b.state == model::ObjectState::duplicate || b.state == model::ObjectState::represented)
-        EXPECT_TRUE(std::binary_search(e.buildings.begin(), e.buildings.end(), model::MappedBuilding{.id = b.related},
-                                       [](auto& x, auto& y) { return x.id < y.id; }))
-            << b.id.text();
+      if (b.state == model::ObjectState::duplicate || b.state == model::ObjectState::represented) {
+        model::MappedBuilding related;
+        related.id = b.related;
+        EXPECT_TRUE(std::binary_search(e.buildings.begin(), e.buildings.end(), related, [](auto& x, auto& y) {
+          return x.id < y.id;
+        })) << b.id.text();
+      }
       for (const auto& ring : e.rings_of(b.rings)) EXPECT_GE(ring.vertices.count, 3u) << b.id.text();
     }
     EXPECT_EQ(static_cast<std::uint64_t>(std::count_if(
