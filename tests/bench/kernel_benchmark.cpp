@@ -1,0 +1,68 @@
+// Kernels of a build on typical plans: skeletons, roofs, triangulation, the solid check.
+#include <benchmark/benchmark.h>
+
+#include "pipeline/generate/envelope.h"
+#include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/straight_skeleton.h"
+#include "pipeline/geometry/triangulate.h"
+#include "pipeline/geometry/valid_polygon.h"
+#include "styles/roofs/roof.h"
+#include "tests/unit/geometry/shapes.h"
+
+namespace {
+
+using namespace blockrand;
+
+model::Polygon plan(int kind) {
+  using testing_shapes::polygon;
+  switch (kind) {
+    case 0: return testing_shapes::turned(polygon({{0, 0}, {14.2, 0.03}, {14.15, 10.1}, {0.02, 10}}));
+    case 1: return testing_shapes::turned(polygon({{0, 0}, {20, 0.02}, {20, 8}, {8.03, 8}, {8, 18}, {0, 18.01}}));
+    default: {
+      auto court = testing_shapes::turned(polygon({{0, 0}, {40, 0.1}, {40.05, 30}, {0, 30.1}}));
+      const auto hole = testing_shapes::turned(polygon({{11, 11}, {11.1, 19}, {29, 19.05}, {29, 11}}));
+      court.holes.push_back(hole.outer);
+      return court;
+    }
+  }
+}
+
+void skeleton(benchmark::State& state) {
+  const auto p = plan(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(geometry::straight_skeleton(p));
+}
+void skeleton_by_cgal(benchmark::State& state) {
+  const auto p = plan(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(geometry::straight_skeleton_by_cgal(p));
+}
+void envelope_of_hips(benchmark::State& state) {
+  const auto p = plan(static_cast<int>(state.range(0)));
+  const auto roof = roofs::hipped_roof(p, {36, 4});
+  for (auto _ : state) benchmark::DoNotOptimize(generate::envelope(p, 30, *roof, {}));
+}
+void triangulate(benchmark::State& state) {
+  const auto p = plan(static_cast<int>(state.range(0)));
+  const auto solid = generate::envelope(p, 30, *roofs::hipped_roof(p, {36, 4}), {});
+  for (auto _ : state) benchmark::DoNotOptimize(geometry::triangulate(solid));
+}
+void check(benchmark::State& state) {
+  const auto p = plan(static_cast<int>(state.range(0)));
+  const auto solid = generate::envelope(p, 30, *roofs::hipped_roof(p, {36, 4}), {});
+  const auto triangles = geometry::triangulate(solid);
+  for (auto _ : state) benchmark::DoNotOptimize(geometry::check_solid(solid, *triangles));
+}
+void strictly_simple(benchmark::State& state) {
+  const auto p = plan(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(geometry::strictly_simple(p));
+}
+
+}  // namespace
+
+// 0: four corners, 1: L, 2: courtyard.
+BENCHMARK(skeleton)->DenseRange(0, 2);
+BENCHMARK(skeleton_by_cgal)->DenseRange(0, 2);
+BENCHMARK(envelope_of_hips)->DenseRange(0, 2);
+BENCHMARK(triangulate)->DenseRange(0, 2);
+BENCHMARK(check)->DenseRange(0, 2);
+BENCHMARK(strictly_simple)->DenseRange(0, 2);
+BENCHMARK_MAIN();
