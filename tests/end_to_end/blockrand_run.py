@@ -75,7 +75,7 @@ class Run:
         self.command, self.code, self.out, self.err = command, code, out, err
 
     def __str__(self):
-        return f'$ {shlex.join(self.command)}\nexit code {self.code}\n{self.out[-2000:]}{self.err[-4000:]}'
+        return f'$ {shlex.join(self.command)}\nexit code {self.code}\n{self.out[-8000:]}{self.err[-4000:]}'
 
 
 def call(command, timeout=900, env=None, cwd=None, preexec=None):
