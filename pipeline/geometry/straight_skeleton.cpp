@@ -25,7 +25,9 @@ double StraightSkeleton::height() const {
 }
 
 std::optional<StraightSkeleton> straight_skeleton_by_cgal(const model::Polygon& polygon) {
-  if (polygon.outer.size() < 3) return std::nullopt;
+  std::size_t all_corners = polygon.outer.size();
+  for (const model::Ring& hole : polygon.holes) all_corners += hole.size();
+  if (polygon.outer.size() < 3 || all_corners > kMostSkeletonCorners) return std::nullopt;
   const model::Point2 origin = polygon.outer.points[0];
   StraightSkeleton out;
   std::map<model::Point2, std::uint32_t> corner_at;

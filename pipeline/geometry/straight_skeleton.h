@@ -1,6 +1,7 @@
 // The straight skeleton of a polygon with holes, as plain data.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -28,11 +29,15 @@ struct StraightSkeleton {
   double height() const;            ///< the largest time
 };
 
+/// CGAL's events grow with the square of the corners: beyond this number a plan has no skeleton here, so that one
+/// footprint of 20,000 points cannot fill the memory (measured: 4 GB). Callers simplify the plan or build it flat.
+inline constexpr std::size_t kMostSkeletonCorners = 700;
+
 /// Straight skeleton of a valid polygon (outer counter-clockwise, holes clockwise, coordinates on the grid), all edges
 /// moving at unit speed. Convex plans of three and four corners, two thirds of all houses, have a closed form; for the
 /// others CGAL computes it (Create_straight_skeleton_2, exact predicates, EPICK). Coordinates are relative to the first
 /// corner on the way; node positions are not rounded.
-/// Empty when CGAL gives up or its faces do not match the edges one to one.
+/// Empty beyond kMostSkeletonCorners, and when CGAL gives up or its faces do not match the edges one to one.
 /// Typical cost 0.1 to 0.5 ms where CGAL works (references/feasibility.md, section 2), below 1 us for the closed form.
 std::optional<StraightSkeleton> straight_skeleton(const model::Polygon& polygon);
 

@@ -79,5 +79,15 @@ TEST(StraightSkeleton, AFaceForEveryEdgeInOrder) {
   EXPECT_NEAR(s->height(), 5.5, 1e-9);
 }
 
+TEST(StraightSkeleton, RefusesPlansBeyondItsBudget) {
+  std::vector<Point2> points;
+  const int n = static_cast<int>(kMostSkeletonCorners) + 1;
+  for (int i = 0; i < n; ++i) {
+    const double radius = i % 2 ? 200 : 190;
+    points.push_back(model::snap(Point2{radius * std::cos(2 * M_PI * i / n), radius * std::sin(2 * M_PI * i / n)}));
+  }
+  EXPECT_FALSE(straight_skeleton(polygon(points)));
+}
+
 }  // namespace
 }  // namespace blockrand::geometry
