@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::geometry {
@@ -308,7 +309,29 @@ bool simple_along_normal(const Solid& solid, const Face& face) {
     else
       flat.holes.push_back(std::move(ring));
   }
-  return strictly_simple(flat);
+  if (!strictly_simple(flat)) return false;
+  // A tip narrower than rounding can move its sides is simple in one view and not in the next. Horizontal faces are
+  // exempt: every view of them is exact.
+  if (nx == 0 && ny == 0) return true;
+  constexpr double kNarrowest = 2 / model::kGridStepsPerMetre * kEnlarge;
+  constexpr std::size_t kMostCorners = 500;  // the test is quadratic; larger inclined faces are lean-to roofs
+  std::vector<const model::Ring*> rings{&flat.outer};
+  std::size_t corners = flat.outer.size();
+  for (const model::Ring& hole : flat.holes) {
+    rings.push_back(&hole);
+    corners += hole.size();
+  }
+  if (corners > kMostCorners) return true;
+  for (const model::Ring* ring : rings)
+    for (std::size_t i = 0; i < ring->size(); ++i) {
+      const std::size_t j = (i + 1) % ring->size();
+      for (const model::Ring* other : rings)
+        for (std::size_t k = 0; k < other->size(); ++k) {
+          if (other == ring && (k == i || k == j)) continue;
+          if (distance_to_segment(other->points[k], ring->points[i], ring->points[j]) < kNarrowest) return false;
+        }
+    }
+  return true;
 }
 
 SolidCheck check_places(std::span<const Grid3> vertices) {

@@ -108,8 +108,12 @@ Pj best_operation(PJ_CONTEXT* context, const PJ* from, const PJ* to, const std::
   proj_operation_factory_context_set_spatial_criterion(context, factory.get(),
                                                        PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
   if (area) {
-    proj_operation_factory_context_set_area_of_interest(context, factory.get(), area->west, area->south, area->east,
-                                                        area->north);
+    // PROJ 9.1 recurses without end on an area without width at +180: give every area some.
+    constexpr double kLeast = 1e-6;  // degrees
+    const double west = area->west >= 180 - kLeast ? 180 - 2 * kLeast : area->west;
+    double east = area->east;
+    if (east >= west && east - west < kLeast) east = west + kLeast;
+    proj_operation_factory_context_set_area_of_interest(context, factory.get(), west, area->south, east, area->north);
   }
   detail::PjList list(proj_create_operations(context, from, to, factory.get()));
   for (int i = 0; list && i < proj_list_get_count(list.get()); ++i) {
