@@ -336,6 +336,18 @@ PublishedFile StagedFolder::write(const std::string& relative_path, std::string_
   return file.close();
 }
 
+PublishedFile StagedFolder::adopt(const std::string& relative_path) const {
+  const std::string path = staging_ + "/" + relative_path;
+  std::error_code error;
+  const std::uint64_t bytes = fs::file_size(path, error);
+  if (error) throw output_error(path, error.value(), staging_);
+  try {
+    return {relative_path, bytes, sha256_file(path)};
+  } catch (const InputError& unreadable) {
+    throw OutputError(unreadable.what());
+  }
+}
+
 std::uint64_t StagedFolder::free_bytes() const {
   struct statvfs info {};
   if (::statvfs(staging_.c_str(), &info) != 0) return 0;

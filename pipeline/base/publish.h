@@ -57,6 +57,10 @@ class StagedFolder {
   /// Starts a file that is written piece by piece. Safe as write(). The folder must outlive it.
   StagedFile create(const std::string& relative_path);
 
+  /// Takes in a file that a library wrote itself below staging_path(): notes its size and hash.
+  /// \throws OutputError when it cannot be read
+  PublishedFile adopt(const std::string& relative_path) const;
+
   /// Bytes free for the user where the folder lies.
   std::uint64_t free_bytes() const;
 

@@ -24,8 +24,13 @@ struct BuildOptions {
   int lod = 2;                                ///< highest level of detail, 0 to 2
   bool gltf = true;                           ///< tileset.json and tiles/
   bool citygml = true;                        ///< citygml/
-  bool gzip = false;                          ///< CityGML as .gml.gz
+  bool cityjson = true;                       ///< cityjson/
+  bool geopackage = true;                     ///< buildings.gpkg
+  bool report = true;                         ///< report.html
+  bool explain = true;                        ///< explain/: what `blockrand explain` reads
+  bool gzip = false;                          ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
   bool single_glb = false;                    ///< also model.glb: the whole build in one frame
+  bool single_cityjson = false;               ///< also model.city.json: the whole build as one CityJSON object
   bool force = false;                         ///< replace an existing build
   bool strict = false;                        ///< exit code 3 when a building is below the asked quality
   int jobs = 0;                               ///< worker threads; 0: one per core

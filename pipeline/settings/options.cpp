@@ -94,17 +94,30 @@ std::string show_bbox(const std::optional<std::array<double, 4>>& box) {
   return text;
 }
 
+/// The formats in the order of all listings, by their names and other names people use.
+struct Format {
+  const char* name;
+  bool region::BuildOptions::*field;
+};
+constexpr Format kFormats[] = {{"gltf", &region::BuildOptions::gltf},         {"citygml", &region::BuildOptions::citygml},
+                               {"cityjson", &region::BuildOptions::cityjson}, {"gpkg", &region::BuildOptions::geopackage}};
+
 void set_formats(Settings& s, const std::string& text) {
-  bool gltf = false, citygml = false;
-  for (const std::string& part : split(text, ','))
-    choose<bool*>(part, {{"gltf", &gltf}, {"citygml", &citygml}, {"tileset", &gltf}, {"3dtiles", &gltf}})[0] = true;
-  s.build.gltf = gltf;
-  s.build.citygml = citygml;
+  std::vector<std::pair<std::string, bool region::BuildOptions::*>> names;
+  for (const Format& f : kFormats) names.emplace_back(f.name, f.field);
+  for (const char* other : {"tileset", "3dtiles"}) names.emplace_back(other, &region::BuildOptions::gltf);
+  names.emplace_back("geopackage", &region::BuildOptions::geopackage);
+  std::vector<bool region::BuildOptions::*> wanted;
+  for (const std::string& part : split(text, ',')) wanted.push_back(choose(part, names));
+  for (const Format& f : kFormats) s.build.*f.field = false;
+  for (const auto field : wanted) s.build.*field = true;
 }
 
 std::string show_formats(const Settings& s) {
-  return std::string(s.build.gltf ? "gltf" : "") + (s.build.gltf && s.build.citygml ? "," : "") +
-         (s.build.citygml ? "citygml" : "");
+  std::string text;
+  for (const Format& f : kFormats)
+    if (s.build.*f.field) text += (text.empty() ? "" : ",") + std::string(f.name);
+  return text;
 }
 
 void set_crs(Settings& s, const std::string& text) {
@@ -219,7 +232,8 @@ void add_build(Table& t) {
        .argument = "LIST",
        .type = OptionType::list,
        .section = S,
-       .help = "what is written, separated by commas: gltf (3D Tiles with GLB; also called tileset, 3dtiles), citygml"},
+       .help = "what is written, separated by commas: gltf (3D Tiles with GLB; also called tileset, 3dtiles), citygml, cityjson, "
+               "gpkg (GeoPackage; also called geopackage)"},
       set_formats, show_formats);
   t.integer({.name = "lod",
              .key = "lod",
@@ -261,13 +275,28 @@ void add_build(Table& t) {
             .maximum = 9000,
             .help = "height above sea level of the ground where there is no terrain, in m"},
            FIELD(build.ground_height));
-  t.flag({.name = "gzip", .key = "gzip", .section = S, .help = "compress the CityGML files (.gml.gz)"},
+  t.flag({.name = "gzip", .key = "gzip", .section = S, .help = "compress the CityGML and CityJSON files (.gml.gz, .city.jsonl.gz)"},
          FIELD(build.gzip));
   t.flag({.name = "single-glb",
           .key = "single_glb",
           .section = S,
           .help = "also write model.glb: the whole build in one frame"},
          FIELD(build.single_glb));
+  t.flag({.name = "single-cityjson",
+          .key = "single_cityjson",
+          .section = S,
+          .help = "also write model.city.json: the whole build as one CityJSON object"},
+         FIELD(build.single_cityjson));
+  t.flag({.name = "report",
+          .key = "report",
+          .section = S,
+          .help = "write report.html: what was built, where values come from, a map and pictures"},
+         FIELD(build.report));
+  t.flag({.name = "explain",
+          .key = "explain",
+          .section = S,
+          .help = "write explain/, from which 'blockrand explain' tells why a building looks as it does"},
+         FIELD(build.explain));
   t.integer({.name = "seed",
              .key = "seed",
              .argument = "N",

@@ -79,7 +79,7 @@ TEST(Options, EveryOneSetsAFieldOfItsOwn) {
     else if (o.name == "log-format")
       value = "json";
     else if (o.type == OptionType::flag)
-      value = "true";
+      value = o.show(s) == "true" ? "false" : "true";
     else if (o.type == OptionType::integer)
       value = o.show(s) == "1" ? "2" : "1";
     else if (o.type == OptionType::number)
