@@ -25,9 +25,12 @@ SharedEdges::SharedEdges(const model::Extract& extract) {
   std::sort(entries.begin(), entries.end());
   for (std::size_t i = 1; i < entries.size(); ++i)
     if (entries[i].key == entries[i - 1].key && entries[i].building != entries[i - 1].building &&
-        (keys_.empty() || keys_.back() != entries[i].key))
+        (keys_.empty() || keys_.back() != entries[i].key)) {
       keys_.push_back(entries[i].key);
+      owners_.emplace_back(entries[i - 1].building, entries[i].building);
+    }
   keys_.shrink_to_fit();
+  owners_.shrink_to_fit();
 }
 
 std::int64_t SharedEdges::find(std::int64_t from_node, std::int64_t to_node) const {

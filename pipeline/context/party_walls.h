@@ -23,10 +23,13 @@ class SharedEdges {
 
   /// Index of the shared edge, or -1.
   std::int64_t find(std::int64_t from_node, std::int64_t to_node) const;
+  /// The buildings of shared edge `index`: the first two of Extract::buildings that have it.
+  std::pair<std::uint32_t, std::uint32_t> owners(std::int64_t index) const { return owners_[static_cast<std::size_t>(index)]; }
   std::size_t size() const { return keys_.size(); }
 
  private:
   std::vector<Key> keys_;  ///< sorted
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> owners_;  ///< parallel to keys_
 };
 
 /// Marks the party walls among `Building::edges`.

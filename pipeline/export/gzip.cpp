@@ -6,6 +6,7 @@
 #include <cassert>
 #include <limits>
 #include <new>
+#include <stdexcept>
 
 namespace blockrand::export_ {
 
@@ -38,6 +39,31 @@ std::string gzip(std::string_view bytes, int level) {
   deflateEnd(&stream);
   assert(status == Z_STREAM_END);
   out.resize(produced);
+  return out;
+}
+
+std::string gunzip(std::string_view bytes) {
+  z_stream stream{};
+  constexpr int kGzipHeader = 16;
+  if (inflateInit2(&stream, MAX_WBITS + kGzipHeader) != Z_OK) throw std::bad_alloc();
+  std::string out;
+  std::size_t consumed = 0;
+  int status = Z_OK;
+  constexpr std::size_t kPiece = 1 << 16;
+  while (status == Z_OK) {
+    const std::size_t input = std::min<std::size_t>(std::numeric_limits<uInt>::max(), bytes.size() - consumed);
+    const std::size_t produced = out.size();
+    out.resize(produced + kPiece);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + consumed));
+    stream.avail_in = static_cast<uInt>(input);
+    stream.next_out = reinterpret_cast<Bytef*>(out.data() + produced);
+    stream.avail_out = kPiece;
+    status = inflate(&stream, Z_NO_FLUSH);
+    consumed += input - stream.avail_in;
+    out.resize(produced + kPiece - stream.avail_out);
+  }
+  inflateEnd(&stream);
+  if (status != Z_STREAM_END) throw std::runtime_error("the gzip data are damaged or cut off");
   return out;
 }
 

@@ -12,4 +12,7 @@ namespace blockrand::export_ {
 /// \throws std::bad_alloc when zlib cannot allocate
 std::string gzip(std::string_view bytes, int level = 6);
 
+/// The content of a gzip file of one member. \throws std::runtime_error when it is damaged or cut off
+std::string gunzip(std::string_view bytes);
+
 }  // namespace blockrand::export_

@@ -37,6 +37,20 @@ constexpr double kLowestStorey = 2.2;
 
 double tangent(double degrees) { return base::tan(degrees * (3.14159265358979323846 / 180)); }
 
+/// One thing that an attribute could be.
+template <class T>
+struct Choice {
+  T value{};
+  Source source = Source::default_;
+  double confidence = 0;
+  std::string why;
+};
+
+std::string text_of(double value) { return fmt::format("{:g}", value); }
+std::string text_of(RoofShape value) { return std::string(model::name(value)); }
+std::string text_of(const Colour& value) { return model::text(value); }
+std::string text_of(const std::string& value) { return value; }
+
 /// What is asked while one building or part is resolved.
 struct Resolver {
   Region& region;
@@ -56,6 +70,19 @@ struct Resolver {
     return {std::move(value), source, static_cast<float>(confidence),
             region.evidence.add({std::move(why), std::move(lost)})};
   }
+  template <class T>
+  model::Candidate lost(const Choice<T>& choice) {
+    return {choice.source, static_cast<float>(choice.confidence), text_of(choice.value), choice.why};
+  }
+  /// The first of `choices`, which stand in the order of their strength; the others are noted as what lost.
+  template <class T>
+  Sourced<T> first(std::vector<Choice<T>> choices) {
+    std::vector<model::Candidate> others;
+    others.reserve(choices.size() - 1);
+    for (std::size_t i = 1; i < choices.size(); ++i) others.push_back(lost(choices[i]));
+    Choice<T>& won = choices.front();
+    return make<T>(std::move(won.value), won.source, won.confidence, std::move(won.why), std::move(others));
+  }
   std::string_view text(base::StringId id_) const { return region.extract->strings.view(id_); }
 
   model::Point2 place() const { return plans.empty() || plans[0].outer.points.empty() ? model::Point2{} : plans[0].outer.points[0]; }
@@ -67,15 +94,15 @@ struct Resolver {
   bool has_own_height() const { return own.height || own.storeys; }
 
   Sourced<double> storeys() {
-    if (own.storeys) return make<double>(*own.storeys, Source::tag, kTagConfidence, "tagged");
+    std::vector<Choice<double>> choices;
+    if (own.storeys) choices.push_back({*own.storeys, Source::tag, kTagConfidence, "tagged"});
     if (outline && !own.height && outline->storeys)
-      return make<double>(*outline->storeys, Source::implied, kOutlineConfidence, "the outline's storeys");
-    std::vector<model::Candidate> lost{{preset_source(), static_cast<float>(preset_confidence()), fmt::format("{}", preset.storeys)}};
+      choices.push_back({*outline->storeys, Source::implied, kOutlineConfidence, "the outline's storeys"});
     if (const auto opinion = in.neighbours.storeys(place(), group, id, options.neighbour_minimum))
-      return make<double>(opinion->value, Source::neighbours, 0.3 + 0.4 * opinion->share,
-                          fmt::format("median of {} neighbours within {:.0f} m", opinion->voices, in.neighbours.reach()),
-                          std::move(lost));
-    return make<double>(preset.storeys, preset_source(), preset_confidence(), preset_name());
+      choices.push_back({opinion->value, Source::neighbours, 0.3 + 0.4 * opinion->share,
+                         fmt::format("median of {} neighbours within {:.0f} m", opinion->voices, in.neighbours.reach())});
+    choices.push_back({preset.storeys, preset_source(), preset_confidence(), preset_name()});
+    return first(std::move(choices));
   }
 
   /// True when the tags speak of a roof with a slope without naming its shape.
@@ -87,32 +114,29 @@ struct Resolver {
   double width() const { return plans.empty() ? 0 : geometry::equivalent_width(plans[0]); }
 
   Sourced<RoofShape> roof_shape() {
-    if (own.roof_shape) return make(*own.roof_shape, Source::tag, kTagConfidence, "tagged");
+    std::vector<Choice<RoofShape>> choices;
+    if (own.roof_shape) choices.push_back({*own.roof_shape, Source::tag, kTagConfidence, "tagged"});
     if (own.roof_orientation || own.roof_direction || tags_speak_of_slope()) {
       // A direction alone means one slope, storeys or an angle mean two.
       const bool one_slope = own.roof_direction && !own.roof_orientation && !tags_speak_of_slope();
-      return make(one_slope ? RoofShape::skillion : RoofShape::gabled, Source::implied, kImpliedConfidence,
-                  "other roof tags speak of a slope");
+      choices.push_back({one_slope ? RoofShape::skillion : RoofShape::gabled, Source::implied, kImpliedConfidence,
+                         "other roof tags speak of a slope"});
     }
     if (outline && outline->roof_shape && !has_own_height())
-      return make(*outline->roof_shape, Source::implied, kOutlineConfidence, "the outline's roof");
+      choices.push_back({*outline->roof_shape, Source::implied, kOutlineConfidence, "the outline's roof"});
     if (outline && has_own_height())
-      return make(RoofShape::flat, Source::implied, kGeometryConfidence, "a part with a height and no roof tags ends flat");
+      choices.push_back({RoofShape::flat, Source::implied, kGeometryConfidence, "a part with a height and no roof tags ends flat"});
     const bool wide = width() > preset.pitched_width;
-    if (const auto opinion = in.neighbours.roof_shape(place(), group, id, options.neighbour_minimum);
-        opinion && opinion->share >= 0.5) {
-      const bool fits = opinion->value == RoofShape::flat || !wide;
-      if (fits)
-        return make(opinion->value, Source::neighbours, 0.2 + 0.5 * opinion->share,
-                    fmt::format("{:.0f} % of {} neighbours within {:.0f} m", 100 * opinion->share, opinion->voices,
-                                in.neighbours.reach()),
-                    {{preset_source(), static_cast<float>(preset_confidence()), std::string(model::name(preset.roof_shape))}});
-    }
+    const auto opinion = in.neighbours.roof_shape(place(), group, id, options.neighbour_minimum);
+    if (opinion && opinion->share >= 0.5 && (opinion->value == RoofShape::flat || !wide))
+      choices.push_back({opinion->value, Source::neighbours, 0.2 + 0.5 * opinion->share,
+                         fmt::format("{:.0f} % of {} neighbours within {:.0f} m", 100 * opinion->share, opinion->voices,
+                                     in.neighbours.reach())});
     if (preset.roof_shape != RoofShape::flat && wide)
-      return make(RoofShape::flat, Source::geometry, kGeometryConfidence,
-                  fmt::format("the plan is {:.0f} m wide, too wide for rafters", width()),
-                  {{preset_source(), static_cast<float>(preset_confidence()), std::string(model::name(preset.roof_shape))}});
-    return make(preset.roof_shape, preset_source(), preset_confidence(), preset_name());
+      choices.push_back({RoofShape::flat, Source::geometry, kGeometryConfidence,
+                         fmt::format("the plan is {:.0f} m wide, too wide for rafters", width())});
+    choices.push_back({preset.roof_shape, preset_source(), preset_confidence(), preset_name()});
+    return first(std::move(choices));
   }
 
   /// Horizontal run of the roof's slope: half the plan's width, or all of it for one slope.
@@ -124,20 +148,22 @@ struct Resolver {
 
   Sourced<double> roof_height(RoofShape shape, double storey_height) {
     if (shape == RoofShape::flat) return make<double>(0, Source::implied, kImpliedConfidence, "flat roof");
-    if (own.roof_height) return make<double>(*own.roof_height, Source::tag, kTagConfidence, "tagged");
+    std::vector<Choice<double>> choices;
+    if (own.roof_height) choices.push_back({*own.roof_height, Source::tag, kTagConfidence, "tagged"});
     if (own.roof_angle)
-      return make<double>(run(shape) * tangent(std::clamp<double>(*own.roof_angle, 0, 80)), Source::implied,
-                          kImpliedConfidence, fmt::format("roof:angle={:g}", *own.roof_angle));
+      choices.push_back({run(shape) * tangent(std::clamp<double>(*own.roof_angle, 0, 80)), Source::implied, kImpliedConfidence,
+                         fmt::format("a tagged pitch of {:g} degrees over a run of {:.1f} m", *own.roof_angle, run(shape))});
     if (own.roof_storeys && *own.roof_storeys > 0)
-      return make<double>(*own.roof_storeys * storey_height, Source::implied, kImpliedConfidence,
-                          fmt::format("roof:levels={:g}", *own.roof_storeys));
+      choices.push_back({*own.roof_storeys * storey_height, Source::implied, kImpliedConfidence,
+                         fmt::format("{:g} tagged storeys in the roof", *own.roof_storeys)});
     // Lean-to roofs are flatter than ridged ones; towers' pyramids and cones are steeper.
     double pitch = preset.roof_pitch;
     if (shape == RoofShape::skillion) pitch = std::min(pitch, 15.0);
     if (shape == RoofShape::onion || shape == RoofShape::dome) pitch = 45;
     pitch = std::min(pitch, options.max_roof_pitch);
-    return make<double>(run(shape) * tangent(pitch), preset_source(), preset_confidence(),
-                        fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, run(shape)));
+    choices.push_back({run(shape) * tangent(pitch), preset_source(), preset_confidence(),
+                       fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, run(shape))});
+    return first(std::move(choices));
   }
 
   /// Storeys, heights and roof, which hang together.
@@ -152,8 +178,13 @@ struct Resolver {
 
     const MappedAttributes* height_from = own.height ? &own : outline && !has_own_height() && outline->height ? outline : nullptr;
     if (height_from) {
-      a.height = height_from == &own ? make<double>(*own.height, Source::tag, kTagConfidence, "tagged")
-                                     : make<double>(*outline->height, Source::implied, kOutlineConfidence, "the outline's height");
+      const Choice<double> from_storeys{a.storeys.value * a.storey_height.value + a.roof_height.value, a.storeys.source,
+                                        a.storeys.confidence,
+                                        fmt::format("{:g} storeys of {:.1f} m and a roof of {:.1f} m", a.storeys.value,
+                                                    a.storey_height.value, a.roof_height.value)};
+      a.height = height_from == &own
+                     ? first<double>({{*own.height, Source::tag, kTagConfidence, "tagged"}, from_storeys})
+                     : first<double>({{*outline->height, Source::implied, kOutlineConfidence, "the outline's height"}, from_storeys});
       const bool storeys_known = a.storeys.source == Source::tag || a.storeys.source == Source::implied;
       if (a.roof_shape.value != RoofShape::flat && !roof_is_tagged) {
         const double wanted = a.roof_height.value;
@@ -165,16 +196,20 @@ struct Resolver {
         }
         if (roof != wanted)
           a.roof_height = make<double>(std::max(roof, 0.0), Source::implied, kImpliedConfidence, "what height and storeys leave",
-                                       {{a.roof_height.source, a.roof_height.confidence, fmt::format("{:.2f}", wanted)}});
+                                       {{a.roof_height.source, a.roof_height.confidence, fmt::format("{:.2f}", wanted),
+                                         region.evidence[a.roof_height.evidence].text}});
       }
       const double walls = std::max(a.height.value - a.roof_height.value, 0.0);
       if (storeys_known && a.storeys.value > 0) {
-        a.storey_height = make<double>(walls / a.storeys.value, Source::implied, kImpliedConfidence, "height over storeys");
+        a.storey_height = first<double>({{walls / a.storeys.value, Source::implied, kImpliedConfidence, "height over storeys"},
+                                         {preset.storey_height, preset_source(), preset_confidence(), preset_name()}});
       } else {
         const double count = std::max(1.0, std::floor(walls / preset.storey_height + 0.5));
         a.storeys = make<double>(count, Source::implied, 0.6, fmt::format("{:.1f} m of wall at {:.1f} m a storey", walls, preset.storey_height),
-                                 {{a.storeys.source, a.storeys.confidence, fmt::format("{:g}", a.storeys.value)}});
-        a.storey_height = make<double>(walls / count, Source::implied, 0.6, "height over storeys");
+                                 {{a.storeys.source, a.storeys.confidence, text_of(a.storeys.value),
+                                   region.evidence[a.storeys.evidence].text}});
+        a.storey_height = first<double>({{walls / count, Source::implied, 0.6, "height over storeys"},
+                                         {preset.storey_height, preset_source(), preset_confidence(), preset_name()}});
       }
     } else {
       double walls = a.storeys.value * a.storey_height.value;
@@ -202,14 +237,16 @@ struct Resolver {
   template <class Pick>
   Sourced<Colour> colour(std::optional<Colour> tagged, std::optional<Colour> outline_tagged, const Sourced<std::string>& material,
                          const std::vector<Colour>& palette, const char* choice, Pick&& preset_applies) {
-    if (tagged) return make(*tagged, Source::tag, kTagConfidence, "tagged");
-    if (outline_tagged) return make(*outline_tagged, Source::implied, kOutlineConfidence, "the outline's colour");
+    std::vector<Choice<Colour>> choices;
+    if (tagged) choices.push_back({*tagged, Source::tag, kTagConfidence, "tagged"});
+    if (outline_tagged) choices.push_back({*outline_tagged, Source::implied, kOutlineConfidence, "the outline's colour"});
     const int index = in.defaults.material(material.value);
     if (!preset_applies() && index >= 0)
-      return make(in.defaults.materials[static_cast<std::size_t>(index)].colour, Source::implied, 0.5, "colour of " + material.value);
+      choices.push_back({in.defaults.materials[static_cast<std::size_t>(index)].colour, Source::implied, 0.5, "colour of " + material.value});
     // All parts of a building are painted alike: the key is the building's.
     const std::uint64_t bits = base::random_bits(in.seed, building.osm.key(), choice);
-    return make(palette[bits % palette.size()], preset_source(), kDefaultConfidence, "drawn from the palette, " + preset_name());
+    choices.push_back({palette[bits % palette.size()], preset_source(), kDefaultConfidence, "drawn from the palette, " + preset_name()});
+    return first(std::move(choices));
   }
 
   Sourced<std::string> material(base::StringId tagged, base::StringId outline_tagged, const std::string& preset_material) {
@@ -217,10 +254,13 @@ struct Resolver {
       return value == 0 ? -1 : in.defaults.material(text(value));
     };
     const auto class_name = [&](int index) { return in.defaults.materials[static_cast<std::size_t>(index)].looks.name; };
-    if (const int m = known(tagged); m >= 0) return make(class_name(m), Source::tag, kTagConfidence, "tagged " + std::string(text(tagged)));
+    std::vector<Choice<std::string>> choices;
+    if (const int m = known(tagged); m >= 0)
+      choices.push_back({class_name(m), Source::tag, kTagConfidence, "tagged " + std::string(text(tagged))});
     if (const int m = known(outline_tagged); m >= 0)
-      return make(class_name(m), Source::implied, kOutlineConfidence, "the outline's material");
-    return make(preset_material, preset_source(), kDefaultConfidence, preset_name());
+      choices.push_back({class_name(m), Source::implied, kOutlineConfidence, "the outline's material"});
+    choices.push_back({preset_material, preset_source(), kDefaultConfidence, preset_name()});
+    return first(std::move(choices));
   }
 
   void looks(Attributes& a) {
@@ -249,6 +289,14 @@ struct Resolver {
   }
 };
 
+std::string ground_reason(Source source) {
+  switch (source) {
+    case Source::terrain: return "lowest terrain under the outline";
+    case Source::override_: return "one ground height for all, as given";
+    default: return "no terrain and no ground height given";
+  }
+}
+
 double area_of(const std::vector<model::Polygon>& plans) {
   double sum = 0;
   for (const auto& p : plans) sum += geometry::area(p);
@@ -264,7 +312,8 @@ std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, dou
 void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateOptions& options) {
   const auto use_text = [&](const MappedAttributes& mapped) { return region.extract->strings.view(mapped.use); };
   for (Building& building : region.buildings) {
-    const Sourced<double> ground = in.ground_height(building);
+    Sourced<double> ground = in.ground_height(building);
+    ground.evidence = region.evidence.add({ground_reason(ground.source), {}});
     const std::string_view use = use_text(building.mapped);
     const double area = area_of(building.outline);
     // An outline of a few square metres that says nothing but `yes` is no house.

@@ -50,6 +50,7 @@ struct Candidate {
   Source source = Source::default_;
   float confidence = 0;
   std::string value;
+  std::string text;  ///< why it was considered, as Evidence::text
 };
 
 /// Why a value was chosen: a sentence a layman can read ("median of 7 neighbours within 100 m"), and what lost.

@@ -145,6 +145,21 @@ struct Outcome {
   int lod = -1;
 };
 
+/// Where the line stands that explains an object.
+struct ExplainedObject {
+  model::OsmId object, building;
+  model::TileId tile;
+  friend auto operator<=>(const ExplainedObject&, const ExplainedObject&) = default;
+};
+
+std::string explain_index(std::vector<ExplainedObject> objects) {
+  std::sort(objects.begin(), objects.end());
+  std::string text;
+  for (const ExplainedObject& o : objects)
+    text += export_::index_line(o.object, fmt::format("{}_{}_{}", o.tile.level, o.tile.x, o.tile.y), o.building);
+  return text;
+}
+
 /// One building's side of a shared wall.
 struct PartySide {
   std::int64_t edge = 0;
@@ -154,8 +169,7 @@ struct PartySide {
 struct TileResult {
   std::vector<Outcome> outcomes;
   std::vector<model::ReportRow> rows;
-  std::vector<base::PublishedFile> files;
-  std::optional<export_::TileEntry> tile;
+  TileOutput output;
   std::vector<PartySide> party_sides;
   Statistics statistics;
   bool below_quality = false;
@@ -382,7 +396,10 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   std::set<model::OsmId> incomplete;
   for (const model::ReportRow& row : rows)
     if (row.code == IssueCode::members_missing) incomplete.insert(row.object);
+  std::sort(rows.begin(), rows.end());
+  const std::vector<model::ReportRow> earlier = rows;
   std::vector<export_::TileEntry> tiles;
+  std::vector<ExplainedObject> explained;
   std::vector<PartySide> party_sides;
   Region whole;  // for --single-glb
   std::uint64_t done = 0;
@@ -402,6 +419,31 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     return {0, model::Source::default_, 0.1f, 0};
   };
 
+  const auto fate_of = [&](const Outcome& o) {
+    // Where members of a relation are missing, that is why nothing is enclosed.
+    const bool no_area = o.code == IssueCode::zero_area || o.code == IssueCode::too_few_points;
+    const bool lacks_members = no_area && incomplete.contains(extract.buildings[o.index].id);
+    return export_::Fate{o.state, lacks_members ? IssueCode::missing_members : o.code, o.related};
+  };
+  const auto explain_options = [&](const std::vector<Outcome>& outcomes) {
+    export_::ExplainOptions explain;
+    explain.lod = options.lod;
+    explain.earlier = earlier;
+    std::map<std::uint32_t, export_::Fate> fates;
+    for (const Outcome& o : outcomes) fates[o.index] = fate_of(o);
+    explain.fate = [fates = std::move(fates)](std::uint32_t index) {
+      const auto found = fates.find(index);
+      return found == fates.end() ? export_::Fate{} : found->second;
+    };
+    explain.sharers = [&](std::int64_t from, std::int64_t to) -> std::vector<model::OsmId> {
+      const std::int64_t edge = shared.find(from, to);
+      if (edge < 0) return {};
+      const auto [a, b] = shared.owners(edge);
+      return {extract.buildings[a].id, extract.buildings[b].id};
+    };
+    return explain;
+  };
+
   const auto work = [&](std::size_t i) {
     TileResult result;
     Region region = load_region(extract, shards[i], projection);
@@ -415,7 +457,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     generate::build_masses(region, defaults, options.generate, options.lod);
     decide_outcomes(region, options.lod, result);
     count_statistics(region, shared, result);
-    write_tile(region, output, folder, result.files, result.tile);
+    result.output = write_tile(region, output, explain_options(result.outcomes), folder);
     result.rows = std::move(region.report.rows);
     if (options.single_glb) result.region = std::move(region);
     slots[i % in_flight] = std::move(result);
@@ -424,15 +466,16 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     TileResult result = std::move(slots[i % in_flight]);
     for (const Outcome& o : result.outcomes) {
       MappedBuilding& object = extract.buildings[o.index];
-      object.state = o.state;
-      const bool no_area = o.code == IssueCode::zero_area || o.code == IssueCode::too_few_points;
-      object.code = no_area && incomplete.contains(object.id) ? IssueCode::missing_members : o.code;
-      object.related = o.related;
+      const export_::Fate fate = fate_of(o);
+      object.state = fate.state;
+      object.code = fate.code;
+      object.related = fate.related;
       if (o.state == ObjectState::modelled) ++summary.models_by_lod[static_cast<std::size_t>(std::clamp(o.lod, 0, 2))];
     }
     std::move(result.rows.begin(), result.rows.end(), std::back_inserter(rows));
-    std::move(result.files.begin(), result.files.end(), std::back_inserter(record.files));
-    if (result.tile) tiles.push_back(*result.tile);
+    std::move(result.output.files.begin(), result.output.files.end(), std::back_inserter(record.files));
+    if (result.output.tile) tiles.push_back(*result.output.tile);
+    for (const auto& [object, building] : result.output.explained) explained.push_back({object, building, shards[i].tile});
     party_sides.insert(party_sides.end(), result.party_sides.begin(), result.party_sides.end());
     add(record.statistics, result.statistics);
     summary.below_quality = summary.below_quality || result.below_quality;
@@ -449,6 +492,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
 
   progress.begin("documents");
   write_whole(whole, tiles, centre, box, output, folder, record.files);
+  if (options.explain) record.files.push_back(folder.write("explain/index.txt", explain_index(std::move(explained))));
   for (const MappedBuilding& b : extract.buildings) {
     switch (b.state) {
       case ObjectState::modelled: ++summary.models; break;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/base/publish.h"
+#include "pipeline/export/explain/explanation.h"
 #include "pipeline/export/tileset/tileset.h"
 #include "pipeline/generate/defaults.h"
 #include "pipeline/georef/heights.h"
@@ -26,10 +27,18 @@ struct OutputContext {
   const generate::Defaults& defaults;
 };
 
-/// Writes tiles/15/x/y.glb and citygml/15_x_y.gml[.gz] as asked for. `tile` is set when the GLB shows something.
+/// What a tile leaves behind besides its files.
+struct TileOutput {
+  std::vector<base::PublishedFile> files;
+  std::optional<export_::TileEntry> tile;  ///< set when the GLB shows something
+  std::vector<std::pair<model::OsmId, model::OsmId>> explained;  ///< object, building whose line explains it
+};
+
+/// Writes tiles/15/x/y.glb, citygml/15_x_y.gml[.gz], cityjson/15_x_y.city.jsonl[.gz] and explain/15_x_y.jsonl.gz as asked
+/// for. `explain` lacks tile and files: they are filled in here.
 /// Safe for different tiles at the same time. \throws base::OutputError
-void write_tile(const model::Region& region, const OutputContext& context, base::StagedFolder& folder,
-                std::vector<base::PublishedFile>& files, std::optional<export_::TileEntry>& tile);
+TileOutput write_tile(const model::Region& region, const OutputContext& context, export_::ExplainOptions explain,
+                      base::StagedFolder& folder);
 
 /// Writes tileset.json, with --single-glb model.glb from `whole`, and for a build without buildings an empty CityGML
 /// file, so that every asked format is there.

@@ -1,0 +1,474 @@
+#include "pipeline/export/explain/explanation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "pipeline/export/text.h"
+#include "pipeline/geometry/polygon.h"
+
+namespace blockrand::export_ {
+namespace {
+
+using model::Building;
+using model::BuildingPart;
+using model::ObjectState;
+using model::Region;
+using model::ReportRow;
+using model::Sourced;
+
+std::string_view name(ObjectState state) {
+  constexpr std::string_view names[] = {"pending", "modelled", "represented", "duplicate", "reported"};
+  return names[static_cast<int>(state)];
+}
+
+std::string_view name(model::IssueClass issue_class) {
+  constexpr std::string_view names[] = {"reported", "fallback", "notice"};
+  return names[static_cast<int>(issue_class)];
+}
+
+/// "1 wall", "3 walls".
+std::string counted(std::size_t n, const char* noun) { return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s"); }
+
+/// "a", "a and b", "a, b and 3 more".
+std::string listed(const std::vector<std::string>& names, std::size_t most) {
+  std::string text;
+  const std::size_t shown = std::min(names.size(), most);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const bool last = i + 1 == shown && shown == names.size();
+    text += (i == 0 ? "" : last ? " and " : ", ") + names[i];
+  }
+  if (shown < names.size()) text += fmt::format(" and {} more", names.size() - shown);
+  return text;
+}
+
+class Writer {
+ public:
+  Writer(const Region& region, const ExplainOptions& options) : region_(region), options_(options), tags_(region.extract) {
+    rows_.reserve(region.report.rows.size());
+    for (const ReportRow& row : region.report.rows) rows_.push_back(&row);
+    std::stable_sort(rows_.begin(), rows_.end(), [](const ReportRow* a, const ReportRow* b) { return a->object < b->object; });
+  }
+
+  void line(const Building& building, Explanations& out) {
+    text_ = &out.lines;
+    const Fate fate = options_.fate(building.mapped_index);
+    open('{');
+    string("id", building.id());
+    string("tile", options_.tile);
+    string("state", name(fate.state));
+    if (fate.state == ObjectState::reported) {
+      string("code", model::info(fate.code).text);
+      string("meaning", model::info(fate.code).meaning);
+    }
+    int lod = -1;
+    for (const BuildingPart& part : building.parts)
+      if (part.lod >= 0) lod = lod < 0 ? part.lod : std::min(lod, part.lod);
+    if (lod >= 0) number("lod", lod);
+    identity(building);
+    outline(building.mapped_index);
+    stages(building, fate);
+    attributes(building.attributes);
+    bodies(building);
+    notes(building);
+    key("files");
+    open('[');
+    if (!building.parts.empty())
+      for (const std::string& file : options_.files) element(file);
+    close(']');
+    close('}');
+    *text_ += '\n';
+
+    out.objects.emplace_back(building.osm, building.osm);
+    for (const BuildingPart& part : building.parts)
+      if (part.osm != building.osm) out.objects.emplace_back(part.osm, building.osm);
+  }
+
+ private:
+  // ---- JSON by hand: one string, no tree
+  void comma() {
+    const char last = text_->empty() ? '\n' : text_->back();
+    if (last != '{' && last != '[' && last != ':' && last != '\n') *text_ += ',';
+  }
+  void key(std::string_view k) {
+    comma();
+    append_json(*text_, k);
+    *text_ += ':';
+  }
+  void open(char bracket) {
+    comma();
+    *text_ += bracket;
+  }
+  void close(char bracket) { *text_ += bracket; }
+  void string(std::string_view k, std::string_view value) {
+    key(k);
+    append_json(*text_, value);
+  }
+  void element(std::string_view value) {
+    comma();
+    append_json(*text_, value);
+  }
+  void number(std::string_view k, double value) {
+    key(k);
+    append_number(*text_, value);
+  }
+  void integers(std::string_view k, std::size_t count, const std::function<std::int64_t(std::size_t)>& at) {
+    key(k);
+    open('[');
+    for (std::size_t i = 0; i < count; ++i) {
+      comma();
+      append_number(*text_, at(i));
+    }
+    close(']');
+  }
+
+  // ---- who it is
+  void identity(const Building& building) {
+    if (const auto name = tags_.name(building.tags); !name.empty()) string("name", name);
+    if (const std::string address = tags_.address(building.tags).line(); !address.empty()) string("address", address);
+    key("tags");
+    if (tags_.extract())
+      append_tags_json(*text_, *tags_.extract(), building.tags);
+    else
+      *text_ += "{}";
+  }
+
+  void outline(std::uint32_t mapped_index) {
+    if (!region_.extract || mapped_index == model::kNoIndex) return;
+    const model::Extract& extract = *region_.extract;
+    const auto rings = extract.rings_of(extract.buildings[mapped_index].rings);
+    if (rings.empty()) return;
+    // The vertices of an object's rings follow each other in the extract or not: go by ring.
+    std::vector<std::int64_t> nodes, lon, lat;
+    std::int64_t west = 0, east = 0, south = 0, north = 0;
+    for (const model::MappedRing& ring : rings) {
+      const auto ids = extract.nodes_of(ring);
+      nodes.insert(nodes.end(), ids.begin(), ids.end());
+      for (const model::Location v : extract.vertices_of(ring)) {
+        if (lon.empty()) west = east = v.lon, south = north = v.lat;
+        west = std::min<std::int64_t>(west, v.lon), east = std::max<std::int64_t>(east, v.lon);
+        south = std::min<std::int64_t>(south, v.lat), north = std::max<std::int64_t>(north, v.lat);
+        lon.push_back(v.lon);
+        lat.push_back(v.lat);
+      }
+    }
+    key("place");
+    open('{');
+    number("lon", static_cast<double>(west + (east - west) / 2) / 1e7);
+    number("lat", static_cast<double>(south + (north - south) / 2) / 1e7);
+    close('}');
+    key("outline");
+    open('{');
+    integers("nodes", nodes.size(), [&](std::size_t i) { return nodes[i]; });
+    integers("lon", lon.size(), [&](std::size_t i) { return lon[i]; });
+    integers("lat", lat.size(), [&](std::size_t i) { return lat[i]; });
+    integers("rings", rings.size(), [&](std::size_t i) { return static_cast<std::int64_t>(rings[i].vertices.count); });
+    close('}');
+  }
+
+  // ---- what each stage did
+  void stage(std::string_view name, std::string_view text) {
+    open('{');
+    string("stage", name);
+    string("text", text);
+    close('}');
+  }
+
+  /// Notices of one building and its parts with a code of `codes`, as "meaning (detail)".
+  std::string said(const Building& building, std::initializer_list<model::IssueCode> codes) {
+    std::string text;
+    for_each_row(building, [&](const ReportRow& row) {
+      if (std::find(codes.begin(), codes.end(), row.code) == codes.end()) return;
+      std::string_view meaning = model::info(row.code).meaning;
+      if (meaning.ends_with('.')) meaning.remove_suffix(1);
+      text += (text.empty() ? "" : "; ") + std::string(meaning);
+      if (!row.detail.empty()) text += " (" + row.detail + ")";
+      if (row.object != building.osm) text += " in part " + row.object.text();
+    });
+    return text;
+  }
+
+  void stages(const Building& building, const Fate& fate) {
+    key("stages");
+    open('[');
+    stage("read", read_text(building));
+    stage("repair", repair_text(building));
+    if (!building.parts.empty()) {
+      stage("context", context_text(building));
+      stage("resolve", resolve_text(building));
+    }
+    stage("build", build_text(building, fate));
+    if (!building.parts.empty()) stage("check", check_text(building));
+    close(']');
+  }
+
+  std::string mapped_text(const Building& building) const {
+    if (!region_.extract || building.mapped_index == model::kNoIndex) return "made by the program";
+    const model::Extract& extract = *region_.extract;
+    const model::MappedBuilding& mapped = extract.buildings[building.mapped_index];
+    const auto rings = extract.rings_of(mapped.rings);
+    std::size_t points = 0, holes = 0;
+    for (const model::MappedRing& ring : rings) {
+      points += ring.vertices.count;
+      holes += ring.inner;
+    }
+    std::string text = fmt::format("{} in OpenStreetMap with {} and {}",
+                                   mapped.id.type == model::OsmType::way ? "a closed way" : mapped.id.type == model::OsmType::relation ? "a relation" : "a node",
+                                   counted(building.tags.count, "tag"), counted(points, "point"));
+    if (holes > 0) text += ", " + counted(holes, "courtyard");
+    if (mapped.geometry_from != mapped.id && mapped.geometry_from.number != 0) text += "; its outline comes from " + mapped.geometry_from.text();
+    if (building.has_mapped_parts) {
+      std::size_t parts = 0;
+      for (const BuildingPart& part : building.parts) parts += !part.rest;
+      text += "; mapped in " + counted(parts, "part");
+    }
+    return text;
+  }
+
+  std::string read_text(const Building& building) {
+    const std::string text = mapped_text(building);
+    const std::string noted = said(building, {model::IssueCode::value_unreadable, model::IssueCode::value_clamped, model::IssueCode::values_conflict,
+                                              model::IssueCode::members_missing, model::IssueCode::relation_repaired,
+                                              model::IssueCode::old_style_multipolygon, model::IssueCode::text_cleaned,
+                                              model::IssueCode::part_without_outline, model::IssueCode::antimeridian});
+    return noted.empty() ? text : text + ". " + noted;
+  }
+
+  std::string repair_text(const Building& building) {
+    const std::string mended = said(building, {model::IssueCode::duplicate_points, model::IssueCode::spike_removed, model::IssueCode::ring_repaired,
+                                               model::IssueCode::split_outline, model::IssueCode::touching_rings, model::IssueCode::sliver_dropped,
+                                               model::IssueCode::parts_incomplete});
+    double area = 0;
+    std::size_t points = 0;
+    const auto add = [&](const model::Polygon& p) {
+      area += geometry::area(p);
+      points += p.outer.size();
+      for (const model::Ring& hole : p.holes) points += hole.size();
+    };
+    for (const model::Polygon& p : building.outline) add(p);
+    std::string text = mended.empty() ? "nothing to mend" : mended;
+    if (points > 0) text += fmt::format("; the footprint has {} points and {:.1f} m2", points, area);
+    return text;
+  }
+
+  std::string context_text(const Building& building) {
+    std::size_t edge = 0, shared = 0;
+    double length = 0;
+    std::set<model::OsmId> neighbours;
+    const auto add = [&](const model::Ring& ring) {
+      for (std::size_t i = 0; i < ring.size(); ++i, ++edge) {
+        if (edge >= building.edges.size()) return;
+        const model::FacadeEdge& e = building.edges[edge];
+        if (e.kind != model::EdgeKind::party_wall) continue;
+        const model::Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
+        length += std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+        ++shared;
+        if (options_.sharers)
+          for (const model::OsmId id : options_.sharers(e.from_node, e.to_node))
+            if (id != building.osm) neighbours.insert(id);
+      }
+    };
+    for (const model::Polygon& p : building.outline) {
+      add(p.outer);
+      for (const model::Ring& hole : p.holes) add(hole);
+    }
+    if (shared == 0) return "no wall is shared with a neighbour";
+    std::vector<std::string> names;
+    for (const model::OsmId id : neighbours) names.push_back(id.text());
+    std::string text = fmt::format("{} of {} walls ({:.1f} m) {} shared", shared, building.edges.size(), length, shared == 1 ? "is" : "are");
+    if (!names.empty()) text += " with " + listed(names, 6);
+    return text;
+  }
+
+  std::string resolve_text(const Building& building) {
+    int tagged = 0, followed = 0, around = 0, assumed = 0;
+    const auto count = [&](std::string_view, std::string_view, const auto& sourced) {
+      switch (sourced.source) {
+        case model::Source::override_:
+        case model::Source::tag: ++tagged; break;
+        case model::Source::preset:
+        case model::Source::default_: ++assumed; break;
+        case model::Source::neighbours:
+        case model::Source::block:
+        case model::Source::cell:
+        case model::Source::district:
+        case model::Source::region: ++around; break;
+        default: ++followed;
+      }
+    };
+    model::for_each_attribute(building.attributes, count, [](std::string_view, std::string_view) {});
+    return fmt::format("of {} values {} are tagged, {} follow from others, from parts or the plan, {} come from the surroundings and {} are assumed",
+                       tagged + followed + around + assumed, tagged, followed, around, assumed);
+  }
+
+  std::string build_text(const Building& building, const Fate& fate) {
+    if (building.parts.empty())
+      return fmt::format("nothing was built: {}", model::info(fate.code).meaning);
+    std::string text;
+    for (const BuildingPart& part : building.parts) {
+      if (!text.empty()) text += "; ";
+      if (building.parts.size() > 1) text += part.id + ": ";
+      text += body_text(part);
+      if (text.size() > 2000) {
+        text += "; …";
+        break;
+      }
+    }
+    return text;
+  }
+
+  std::string body_text(const BuildingPart& part) const {
+    if (part.lod < 0) return "no solid could be made";
+    std::string text;
+    if (part.lod == 0) text = "a footprint on the ground";
+    if (part.lod == 1) text = "a block without a roof";
+    if (part.lod >= 2)
+      text = part.canopy ? "a canopy" : fmt::format("walls to {:.1f} m under a {} roof", part.attributes.height.value - part.attributes.roof_height.value,
+                                                     model::name(part.built_roof));
+    if (options_.lod >= 2 && part.built_roof != part.attributes.roof_shape.value && !part.canopy)
+      text += fmt::format(" where {} was wanted", model::name(part.attributes.roof_shape.value));
+    for (const model::IssueCode code : part.fallbacks) {
+      std::string_view meaning = model::info(code).meaning;
+      if (meaning.ends_with('.')) meaning.remove_suffix(1);
+      text += fmt::format(" ({}: {})", model::info(code).text, meaning);
+    }
+    return text;
+  }
+
+  std::string check_text(const Building& building) const {
+    std::size_t solids = 0, faces = 0;
+    for (const BuildingPart& part : building.parts)
+      for (const model::Solid* solid : {&part.lod1, &part.lod2}) {
+        solids += !solid->empty();
+        faces += solid->faces.size();
+      }
+    if (solids == 0) return "there is no solid to check";
+    return fmt::format("{} with {} faces: closed, outward, without self-intersections", counted(solids, "solid"), faces);
+  }
+
+  // ---- values
+  void value(double v) { append_number(*text_, std::isfinite(v) ? v : 0.0); }
+  void value(const std::string& v) { append_json(*text_, v); }
+  void value(model::Colour v) { append_json(*text_, model::text(v)); }
+  void value(model::RoofShape v) { append_json(*text_, model::name(v)); }
+  void value(model::RoofOrientation v) { append_json(*text_, v == model::RoofOrientation::along ? "along" : "across"); }
+
+  void attributes(const model::Attributes& a) {
+    key("attributes");
+    open('[');
+    model::for_each_attribute(
+        a,
+        [&](std::string_view attribute, std::string_view unit, const auto& sourced) {
+          open('{');
+          string("name", attribute);
+          key("value");
+          value(sourced.value);
+          if (!unit.empty()) string("unit", unit);
+          string("source", model::name(sourced.source));
+          key("confidence");
+          append_number(*text_, sourced.confidence);
+          const model::Evidence& evidence = region_.evidence[sourced.evidence];
+          if (!evidence.text.empty()) string("why", evidence.text);
+          if (!evidence.lost.empty()) {
+            key("lost");
+            open('[');
+            for (const model::Candidate& c : evidence.lost) {
+              open('{');
+              string("value", c.value);
+              string("source", model::name(c.source));
+              key("confidence");
+              append_number(*text_, c.confidence);
+              if (!c.text.empty()) string("why", c.text);
+              close('}');
+            }
+            close(']');
+          }
+          close('}');
+        },
+        [](std::string_view, std::string_view) {});
+    close(']');
+  }
+
+  void bodies(const Building& building) {
+    key("bodies");
+    open('[');
+    for (const BuildingPart& part : building.parts) {
+      open('{');
+      string("id", part.id);
+      if (part.osm != building.osm) {
+        key("tags");
+        if (tags_.extract())
+          append_tags_json(*text_, *tags_.extract(), part.tags);
+        else
+          *text_ += "{}";
+      }
+      number("lod", part.lod);
+      string("asked_roof", model::name(part.attributes.roof_shape.value));
+      string("built_roof", model::name(part.built_roof));
+      key("fallbacks");
+      open('[');
+      for (const model::IssueCode code : part.fallbacks) element(model::info(code).text);
+      close(']');
+      // A single body has the building's attributes: said once.
+      if (building.has_mapped_parts || building.parts.size() > 1) attributes(part.attributes);
+      close('}');
+    }
+    close(']');
+  }
+
+  template <class Visit>
+  void for_each_row(const Building& building, Visit&& visit) {
+    const auto of_object = [&](model::OsmId id) {
+      auto early = std::lower_bound(options_.earlier.begin(), options_.earlier.end(), id,
+                                    [](const ReportRow& row, model::OsmId o) { return row.object < o; });
+      for (; early != options_.earlier.end() && early->object == id; ++early) visit(*early);
+      auto late = std::lower_bound(rows_.begin(), rows_.end(), id, [](const ReportRow* row, model::OsmId o) { return row->object < o; });
+      for (; late != rows_.end() && (*late)->object == id; ++late) visit(**late);
+    };
+    of_object(building.osm);
+    std::vector<model::OsmId> parts;
+    for (const BuildingPart& part : building.parts)
+      if (part.osm != building.osm && std::find(parts.begin(), parts.end(), part.osm) == parts.end()) parts.push_back(part.osm);
+    for (const model::OsmId id : parts) of_object(id);
+  }
+
+  void notes(const Building& building) {
+    key("notes");
+    open('[');
+    for_each_row(building, [&](const ReportRow& row) {
+      const model::IssueInfo& about = model::info(row.code);
+      open('{');
+      if (row.object != building.osm) string("object", row.object.text());
+      string("code", about.text);
+      string("class", name(about.issue_class));
+      string("meaning", about.meaning);
+      if (!row.detail.empty()) string("detail", row.detail);
+      close('}');
+    });
+    close(']');
+  }
+
+  const Region& region_;
+  const ExplainOptions& options_;
+  TagReader tags_;
+  std::vector<const ReportRow*> rows_;
+  std::string* text_ = nullptr;
+};
+
+}  // namespace
+
+Explanations explain(const Region& region, const ExplainOptions& options) {
+  Explanations out;
+  Writer writer(region, options);
+  for (const Building& building : region.buildings)
+    if (building.owned) writer.line(building, out);
+  return out;
+}
+
+std::string index_line(model::OsmId object, std::string_view tile, model::OsmId building) {
+  return fmt::format("{} {} {}\n", object.text(), tile, building.text());
+}
+
+}  // namespace blockrand::export_

@@ -1,0 +1,59 @@
+// Why each building looks as it does: what `blockrand explain` reads.
+//
+// A tile's explanations are lines of JSON, one per building, in the order of the region:
+//
+//   {"id":"w1","tile":"15_1_2","state":"modelled","lod":2,        what became of it; "code" and "meaning" when reported
+//    "place":{"lon":12.37,"lat":51.34},"name":…,"address":…,      middle of the mapped outline
+//    "tags":{…},                                                  all OSM tags
+//    "outline":{"nodes":[…],"lon":[…],"lat":[…],"rings":[…]},     as mapped: node ids, 1e-7 degrees; points per ring
+//    "stages":[{"stage":"read","text":…},…],                      what each stage did, in the order of the flow
+//    "attributes":[{"name":"storeys","value":5,"unit":"","source":"neighbours","confidence":0.6,"why":…,
+//                   "lost":[{"value":"4","source":"preset","confidence":0.3,"why":…}]},…],
+//    "bodies":[{"id":"w1","lod":2,"asked_roof":"gabled","built_roof":"hipped","fallbacks":["GABLE_AS_HIP"],…}],
+//    "notes":[{"code":"SPIKE_REMOVED","class":"notice","meaning":…,"detail":"1 points"}],
+//    "files":["tiles/15/1/2.glb",…]}
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipeline/model/region.h"
+
+namespace blockrand::export_ {
+
+/// What became of an object of the extract.
+struct Fate {
+  model::ObjectState state = model::ObjectState::pending;
+  model::IssueCode code = model::IssueCode::none;
+  model::OsmId related;
+};
+
+struct ExplainOptions {
+  std::string tile;                ///< "15_17600_12900"
+  std::vector<std::string> files;  ///< of the tile, relative to the build
+  int lod = 2;                     ///< asked for
+  /// What becomes of object `mapped_index` of the extract.
+  std::function<Fate(std::uint32_t)> fate;
+  /// Rows about the tile's objects from before the tile was worked on, sorted by object.
+  std::span<const model::ReportRow> earlier;
+  /// Ids of the buildings that share edge `from_node`–`to_node`; empty where none does.
+  std::function<std::vector<model::OsmId>(std::int64_t, std::int64_t)> sharers;
+};
+
+struct Explanations {
+  std::string lines;
+  /// Every object that a line speaks of, building or part, with the building whose line it is.
+  std::vector<std::pair<model::OsmId, model::OsmId>> objects;
+};
+
+/// Explains the owned buildings of a region after its masses were built; also those that ended as reported.
+/// The same region gives the same bytes.
+Explanations explain(const model::Region& region, const ExplainOptions& options);
+
+/// "w123 15_1_2 w123": object, tile, building whose line explains it.
+std::string index_line(model::OsmId object, std::string_view tile, model::OsmId building);
+
+}  // namespace blockrand::export_
