@@ -1,0 +1,24 @@
+// A finished picture.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace blockrand::picture {
+
+/// 8-bit sRGB, rows from the top, three bytes a pixel.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;
+  const std::uint8_t* pixel(int x, int y) const {
+    return &rgb[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3];
+  }
+  friend bool operator==(const Image&, const Image&) = default;
+};
+
+/// The picture as a PNG file: 8-bit RGB marked as sRGB, no time chunk, the same bytes each time (with the same zlib).
+/// \throws std::runtime_error  the image has no pixels, or its buffer does not fit its size
+std::string png(const Image& image);
+
+}  // namespace blockrand::picture

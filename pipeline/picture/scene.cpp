@@ -1,0 +1,105 @@
+#include "pipeline/picture/scene.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "pipeline/picture/vector.h"
+
+namespace blockrand::picture {
+
+void Box::include(Point3 p) {
+  if (empty) min = max = p;
+  empty = false;
+  min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+  max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+}
+
+std::array<Point3, 8> Box::corners() const {
+  std::array<Point3, 8> out;
+  for (unsigned i = 0; i < 8; ++i) out[i] = {i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z};
+  return out;
+}
+
+Point3 Box::centre() const { return times(plus(min, max), 0.5); }
+
+Scene::Vector Scene::local(Point3 p) const {
+  return {static_cast<float>(p.x - origin_.x), static_cast<float>(p.y - origin_.y), static_cast<float>(p.z - origin_.z)};
+}
+
+void Scene::push(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours, std::uint32_t object,
+                 bool closed) {
+  const Point3 normal = unit(cross(minus(corners[1], corners[0]), minus(corners[2], corners[0])));
+  if (!(dot(normal, normal) > 0)) return;  // also what is not a number
+  Triangle t;
+  for (std::size_t i = 0; i < 3; ++i) t.corners[i] = local(corners[i]);
+  t.normal = {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)};
+  t.colours = colours;
+  t.closed = closed;
+  t.blended = colours[0] != colours[1] || colours[1] != colours[2];
+  t.object = object;
+  triangles_.push_back(t);
+}
+
+void Scene::add(const model::Solid& solid, const model::SolidTriangles& triangles, std::uint32_t object, Point3 offset) {
+  assert(solid.empty() || triangles.first.size() == solid.faces.size() + 1);
+  for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+    const Colour c = solid.faces[f].colour;
+    for (std::uint32_t t = triangles.first[f]; t < triangles.first[f + 1]; ++t) {
+      const auto& corners = triangles.triangles[t];
+      push({plus(solid.vertices[corners[0]], offset), plus(solid.vertices[corners[1]], offset),
+            plus(solid.vertices[corners[2]], offset)},
+           {c, c, c}, object, true);
+    }
+  }
+}
+
+void Scene::add(const model::Solid& solid, const model::SolidTriangles& triangles, std::uint32_t object, Point3 offset,
+                Colour colour) {
+  const std::size_t first = triangles_.size();
+  add(solid, triangles, object, offset);
+  for (std::size_t i = first; i < triangles_.size(); ++i) triangles_[i].colours = {colour, colour, colour};
+}
+
+void Scene::add_triangle(const std::array<Point3, 3>& corners, Colour colour, std::uint32_t object) {
+  push(corners, {colour, colour, colour}, object, false);
+}
+
+void Scene::add_blended_triangle(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours,
+                                 std::uint32_t object) {
+  push(corners, colours, object, false);
+}
+
+void Scene::add_line(Point3 from, Point3 to, Colour colour) { lines_.push_back({local(from), local(to), colour}); }
+
+void Scene::set_ground(double z, Colour colour) { ground_ = Ground{z - origin_.z, colour}; }
+
+void Scene::append(const Scene& other, std::uint32_t first_object) {
+  assert(origin_ == other.origin_);
+  const std::size_t first = triangles_.size();
+  triangles_.insert(triangles_.end(), other.triangles_.begin(), other.triangles_.end());
+  for (std::size_t i = first; i < triangles_.size(); ++i) triangles_[i].object += first_object;
+  lines_.insert(lines_.end(), other.lines_.begin(), other.lines_.end());
+  if (!ground_) ground_ = other.ground_;
+}
+
+Box Scene::bounds() const {
+  Box box;
+  const auto add = [&](const Vector& v) { box.include({origin_.x + v.x, origin_.y + v.y, origin_.z + v.z}); };
+  for (const Triangle& t : triangles_)
+    for (const Vector& v : t.corners) add(v);
+  for (const Line& l : lines_) {
+    add(l.from);
+    add(l.to);
+  }
+  return box;
+}
+
+std::vector<Point3> Scene::points() const {
+  std::vector<Point3> out;
+  out.reserve(triangles_.size() * 3);
+  for (const Triangle& t : triangles_)
+    for (const Vector& v : t.corners) out.push_back({origin_.x + v.x, origin_.y + v.y, origin_.z + v.z});
+  return out;
+}
+
+}  // namespace blockrand::picture

@@ -1,0 +1,96 @@
+// What is to be seen: triangles, lines and the ground they stand on.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pipeline/model/colour.h"
+#include "pipeline/model/point.h"
+#include "pipeline/model/solid.h"
+
+namespace blockrand::picture {
+
+using model::Colour;
+using model::Point3;
+
+/// Axis-parallel box in the scene's coordinates.
+struct Box {
+  Point3 min, max;
+  bool empty = true;
+  void include(Point3 p);
+  std::array<Point3, 8> corners() const;
+  Point3 centre() const;
+};
+
+/// A collection of surfaces in metres, x east, y north, z up. Positions are kept relative to `origin` in single
+/// precision: within 8 km of it they are exact to half a millimetre.
+class Scene {
+ public:
+  /// \param origin  near the middle of what will be added, in the coordinates of what will be added
+  explicit Scene(Point3 origin = {}) : origin_(origin) {}
+
+  /// The faces of a closed solid in their own colours, moved by `offset`.
+  /// \param object  faces of different objects are told apart by a line, where lines are drawn
+  void add(const model::Solid& solid, const model::SolidTriangles& triangles, std::uint32_t object, Point3 offset = {});
+  /// As above, all faces in one colour.
+  void add(const model::Solid& solid, const model::SolidTriangles& triangles, std::uint32_t object, Point3 offset,
+           Colour colour);
+  /// A triangle that is seen from both sides. Degenerate triangles are left out.
+  void add_triangle(const std::array<Point3, 3>& corners, Colour colour, std::uint32_t object);
+  /// As above with a colour per corner, blended in between (heat maps).
+  void add_blended_triangle(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours,
+                            std::uint32_t object);
+  /// A line one pixel wide, hidden by what is in front of it (annotations, sharp edges).
+  void add_line(Point3 from, Point3 to, Colour colour);
+  /// A horizontal plane without end, that receives shadows. Seen from above only.
+  void set_ground(double z, Colour colour);
+  /// Everything of `other`, whose origin must be the same, its objects renumbered by adding `first_object`.
+  void append(const Scene& other, std::uint32_t first_object = 0);
+
+  Point3 origin() const { return origin_; }
+  /// Of triangles and lines, in the coordinates of what was added.
+  Box bounds() const;
+  bool empty() const { return triangles_.empty() && lines_.empty(); }
+  std::size_t triangle_count() const { return triangles_.size(); }
+  /// Every corner of every triangle, in the coordinates of what was added: fits cameras tighter than bounds().
+  std::vector<Point3> points() const;
+
+  // ---- for the renderer: positions relative to the origin
+
+  struct Vector {
+    float x = 0, y = 0, z = 0;
+  };
+  struct Triangle {
+    std::array<Vector, 3> corners;
+    Vector normal;  ///< unit, towards the side from which the corners run counter-clockwise
+    std::array<Colour, 3> colours;
+    bool closed = false;  ///< of a solid: never seen from behind
+    bool blended = false; ///< its corners differ in colour
+    std::uint32_t object = 0;
+  };
+  struct Line {
+    Vector from, to;
+    Colour colour;
+  };
+  struct Ground {
+    double z = 0;  ///< relative to the origin
+    Colour colour;
+  };
+  std::span<const Triangle> triangles() const { return triangles_; }
+  std::span<const Line> lines() const { return lines_; }
+  const std::optional<Ground>& ground() const { return ground_; }
+
+ private:
+  Vector local(Point3 p) const;
+  void push(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours, std::uint32_t object, bool closed);
+
+  Point3 origin_;
+  std::vector<Triangle> triangles_;
+  std::vector<Line> lines_;
+  std::optional<Ground> ground_;
+};
+
+}  // namespace blockrand::picture
