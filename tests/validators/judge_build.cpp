@@ -24,7 +24,7 @@
 #include "pipeline/geometry/triangulate.h"
 #include "tests/validators/citygml_reader.h"
 #include "tests/validators/glb_reader.h"
-#include "tests/validators/second_judge.h"
+#include "pipeline/geometry/second_judge.h"
 
 namespace {
 
@@ -121,9 +121,9 @@ std::string own_verdict(const validators::GmlSolid& read, double& off) {
 }
 
 std::string cgal_verdict(const validators::GmlSolid& read) {
-  std::vector<validators::PolygonRings> polygons;
+  std::vector<geometry::PolygonRings> polygons;
   for (const validators::GmlPolygon& p : read.polygons) polygons.push_back(p.rings);
-  return validators::judge_solid(polygons);
+  return geometry::judge_solid(polygons);
 }
 
 bool inside_envelope(const validators::GmlFile& file, const validators::GmlSolid& solid) {
@@ -179,7 +179,7 @@ std::string own_verdict(const validators::GlbFeature& feature) {
 std::string cgal_verdict(const validators::GlbFeature& feature) {
   std::vector<std::vector<Point3>> triangles;
   for (const validators::GlbTriangle& t : feature.triangles) triangles.emplace_back(t.corners.begin(), t.corners.end());
-  return validators::judge_triangles(triangles);
+  return geometry::judge_triangles(triangles);
 }
 
 void judge_glb(const fs::path& path, const std::string& name, bool tile, Findings& out) {

@@ -1,11 +1,11 @@
 // The second judge agrees with our own checker on sound and on broken solids.
-#include "tests/validators/second_judge.h"
+#include "pipeline/geometry/second_judge.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/unit/geometry/broken_solids.h"
 
-namespace blockrand::validators {
+namespace blockrand::geometry {
 namespace {
 
 /// Faces as polygons of points. Loops whose indices are nonsense give an empty ring, which the judge refuses.
@@ -42,4 +42,4 @@ TEST(SecondJudge, FindsEveryBrokenSolidButTheOnesItCannotSee) {
 }
 
 }  // namespace
-}  // namespace blockrand::validators
+}  // namespace blockrand::geometry

@@ -1,4 +1,4 @@
-#include "tests/validators/second_judge.h"
+#include "pipeline/geometry/second_judge.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -12,7 +12,7 @@
 #include <map>
 #include <utility>
 
-namespace blockrand::validators {
+namespace blockrand::geometry {
 
 namespace {
 
@@ -130,4 +130,4 @@ std::string judge_triangles(const std::vector<std::vector<model::Point3>>& trian
   return judge_soup(points, soup);
 }
 
-}  // namespace blockrand::validators
+}  // namespace blockrand::geometry

@@ -6,7 +6,7 @@
 
 #include "pipeline/model/point.h"
 
-namespace blockrand::validators {
+namespace blockrand::geometry {
 
 /// One planar polygon with holes; rings without a repeated last point, outer counter-clockwise from outside.
 using PolygonRings = std::vector<std::vector<model::Point3>>;
@@ -18,4 +18,4 @@ std::string judge_solid(const std::vector<PolygonRings>& polygons);
 /// The same for triangles.
 std::string judge_triangles(const std::vector<std::vector<model::Point3>>& triangles);
 
-}  // namespace blockrand::validators
+}  // namespace blockrand::geometry

@@ -1,0 +1,35 @@
+#include "pipeline/validate/attribute_names.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "pipeline/base/text.h"
+#include "pipeline/model/building.h"
+
+namespace blockrand::validate {
+
+const std::vector<std::string>& attribute_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out;
+    const model::Attributes attributes;
+    const auto note = [&](std::string_view name, std::string_view, const auto&...) { out.emplace_back(name); };
+    model::for_each_attribute(attributes, note, note);
+    return out;
+  }();
+  return names;
+}
+
+bool is_source(std::string_view name) {
+  for (int i = 0; i < model::kSourceCount; ++i)
+    if (model::name(static_cast<model::Source>(i)) == name) return true;
+  return false;
+}
+
+std::string number_text(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return base::shortest(value);
+}
+
+}  // namespace blockrand::validate

@@ -1,0 +1,308 @@
+#include "pipeline/validate/glb.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "pipeline/validate/glb_container.h"
+#include "pipeline/validate/property_table.h"
+
+namespace blockrand::validate {
+namespace {
+
+using model::Point3;
+using Accessor = GlbContainer::Accessor;
+
+constexpr double kLargestCoordinate = 1e7;  // m; nothing of a tile is that far from its origin
+constexpr std::size_t kNoted = 20;          // breaches of one rule in one primitive: a damaged file could have millions
+
+/// sRGB byte of a linear intensity: the transfer function of IEC 61966-2-1.
+std::uint8_t srgb(double linear) {
+  const double c = std::clamp(linear, 0.0, 1.0);
+  const double s = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(s * 255));
+}
+
+Point3 cross(const Point3& o, const Point3& a, const Point3& b) {
+  const double ux = a.x - o.x, uy = a.y - o.y, uz = a.z - o.z, vx = b.x - o.x, vy = b.y - o.y, vz = b.z - o.z;
+  return {uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
+}
+double length(const Point3& p) { return std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z); }
+
+class Reader {
+ public:
+  Reader(const GlbContainer& glb, Glb& out) : glb_(glb), out_(out) {}
+
+  void read() {
+    read_georeference();
+    read_rows();
+    read_scene();
+  }
+
+ private:
+  void rule(std::string what) { glb_.found(Check::glb_rule, std::move(what)); }
+  void metadata(std::string what) { glb_.found(Check::metadata_rule, std::move(what)); }
+
+  void read_georeference() {
+    const auto wrong = [&](std::string what) { glb_.found(Check::georeference, std::move(what)); };
+    const Json* g = member(member(member(glb_.json(), "asset"), "extras"), "georeference");
+    if (!g) return wrong("no asset.extras.georeference");
+    GlbGeoreference& geo = out_.georeference;
+    geo.crs = text(member(g, "crs"));
+    geo.height_reference = text(member(g, "height_reference"));
+    const Json* origin = member(g, "origin");
+    const auto lon = number(member(origin, "longitude")), lat = number(member(origin, "latitude")),
+               height = number(member(origin, "height"));
+    const auto matrix = numbers(member(g, "local_to_ecef"), 16);
+    if (geo.crs.empty() || geo.height_reference.empty()) wrong("crs or height_reference is missing");
+    if (!lon || !lat || !height || !matrix) return wrong("the origin or local_to_ecef is incomplete");
+    geo.longitude = *lon;
+    geo.latitude = *lat;
+    geo.height = *height;
+    std::copy(matrix->begin(), matrix->end(), geo.local_to_ecef.begin());
+    geo.present = true;
+    const Matrix expected = east_north_up({*lon * kRadians, *lat * kRadians, *height});
+    double metres = 0, turn = 0;
+    for (std::size_t i = 0; i < 16; ++i)
+      (i >= 12 ? metres : turn) = std::max(i >= 12 ? metres : turn, std::fabs(expected[i] - geo.local_to_ecef[i]));
+    if (!(metres < 1e-3 && turn < 1e-9))
+      wrong(fmt::format("local_to_ecef is not the frame of the origin: {:.4f} m and {:.2g} off", metres, turn));
+  }
+
+  void read_rows() {
+    std::vector<TableRow> rows = read_property_table(glb_);
+    std::map<std::string, int> rows_of;
+    for (TableRow& row : rows) ++rows_of[row["building"]];
+    Contents& c = out_.contents;
+    for (TableRow& row : rows) {
+      ReadBody body;
+      body.building = row["building"];
+      body.id = row["id"];
+      if (body.id == body.building && rows_of[body.building] > 1) body.id += ".1";
+      body.attributes = std::move(row);
+      if (c.buildings.empty() || c.buildings.back() != body.building) c.buildings.push_back(body.building);
+      c.bodies.push_back(std::move(body));
+    }
+    out_.triangles.resize(c.bodies.size());
+  }
+
+  void read_scene() {
+    const Json& json = glb_.json();
+    const Json* scenes = member(json, "scenes");
+    if (!scenes) return;  // nothing is drawn
+    const Json* scene = element(scenes, member(json, "scene") ? whole(member(json, "scene")).value_or(~0ull) : 0);
+    const Json* roots = member(scene, "nodes");
+    if (!roots || !roots->is_array() || roots->empty()) return rule("the scene has no nodes");
+    std::set<std::uint64_t> seen;
+    for (const Json& root : *roots) read_node(whole(&root).value_or(~0ull), kIdentity, seen);
+  }
+
+  void read_node(std::uint64_t index, const Matrix& parent, std::set<std::uint64_t>& seen) {
+    const Json* node = element(member(glb_.json(), "nodes"), index);
+    if (!node) return rule(fmt::format("node {} does not exist", index));
+    if (!seen.insert(index).second) return rule(fmt::format("node {} has two parents", index));
+    if (seen.size() > 1000) return;  // Blockrand writes one
+    const auto matrix = node_matrix(*node);
+    if (!matrix) return rule(fmt::format("node {} has a transform that is none", index));
+    const Matrix own = parent * *matrix;
+    if (member(node, "mesh")) {
+      const Json* mesh = element(member(glb_.json(), "meshes"), whole(member(node, "mesh")).value_or(~0ull));
+      const Json* primitives = member(mesh, "primitives");
+      if (!primitives || !primitives->is_array() || primitives->empty()) return rule("a mesh without primitives");
+      for (std::size_t p = 0; p < primitives->size(); ++p) read_primitive((*primitives)[p], own, fmt::format("primitive {}", p));
+    }
+    if (const Json* children = member(node, "children"); children && children->is_array())
+      for (const Json& child : *children) read_node(whole(&child).value_or(~0ull), own, seen);
+  }
+
+  static std::optional<Matrix> node_matrix(const Json& node) {
+    if (const Json* m = member(node, "matrix")) {
+      const auto values = numbers(m, 16);
+      if (!values) return std::nullopt;
+      Matrix out{};
+      std::copy(values->begin(), values->end(), out.begin());
+      return out;
+    }
+    const auto part = [&](const char* key, std::vector<double> otherwise) {
+      const Json* value = member(node, key);
+      return value ? numbers(value, otherwise.size()) : std::optional(std::move(otherwise));
+    };
+    const auto t = part("translation", {0, 0, 0}), s = part("scale", {1, 1, 1}), r = part("rotation", {0, 0, 0, 1});
+    if (!t || !s || !r) return std::nullopt;
+    const double x = (*r)[0], y = (*r)[1], z = (*r)[2], w = (*r)[3];
+    if (std::fabs(x * x + y * y + z * z + w * w - 1) > 1e-6) return std::nullopt;
+    return Matrix{(1 - 2 * (y * y + z * z)) * (*s)[0], 2 * (x * y + z * w) * (*s)[0], 2 * (x * z - y * w) * (*s)[0], 0,
+                  2 * (x * y - z * w) * (*s)[1], (1 - 2 * (x * x + z * z)) * (*s)[1], 2 * (y * z + x * w) * (*s)[1], 0,
+                  2 * (x * z + y * w) * (*s)[2], 2 * (y * z - x * w) * (*s)[2], (1 - 2 * (x * x + y * y)) * (*s)[2], 0,
+                  (*t)[0], (*t)[1], (*t)[2], 1};
+  }
+
+  const Accessor* attribute(const Json& primitive, const char* name, std::size_t count, const std::string& where) {
+    const Json* attributes = member(primitive, "attributes");
+    const Accessor* a = glb_.accessor(member(attributes, name));
+    if (!a)
+      rule(fmt::format("{} has no {}", where, name));
+    else if (count != 0 && a->count != count) {
+      rule(fmt::format("{}: {} elements of {} for {} vertices", where, a->count, name, count));
+      return nullptr;
+    }
+    return a;
+  }
+
+  void read_primitive(const Json& primitive, const Matrix& matrix, const std::string& where) {
+    if (const Json* mode = member(primitive, "mode"); mode && whole(mode) != 4u) return rule(where + " is no list of triangles");
+    const Accessor* position = attribute(primitive, "POSITION", 0, where);
+    if (!position) return;
+    if (position->type != "VEC3") return rule(where + ": POSITION is no VEC3");
+    const Json* position_json = element(member(glb_.json(), "accessors"), *whole(member(member(primitive, "attributes"), "POSITION")));
+    if (!member(position_json, "min") || !member(position_json, "max")) rule(where + ": POSITION without min and max");
+    if (!position->is_float() && !required("KHR_mesh_quantization")) rule(where + ": POSITION needs KHR_mesh_quantization");
+    const std::size_t count = position->count;
+    const Accessor* normal = attribute(primitive, "NORMAL", count, where);
+    const Accessor* colour = attribute(primitive, "COLOR_0", count, where);
+    const Accessor* feature = attribute(primitive, "_FEATURE_ID_0", count, where);
+    if (normal && normal->type != "VEC3") rule(where + ": NORMAL is no VEC3"), normal = nullptr;
+    if (colour && colour->type != "VEC3" && colour->type != "VEC4") rule(where + ": COLOR_0 is no colour"), colour = nullptr;
+    if (colour && !colour->is_float() && !colour->normalised) rule(where + ": COLOR_0 is not normalised");
+    if (feature && (feature->type != "SCALAR" || feature->normalised)) metadata(where + ": feature ids are no plain numbers"), feature = nullptr;
+    if (!element(member(glb_.json(), "materials"), whole(member(primitive, "material")).value_or(~0ull)))
+      rule(where + ": its material does not exist");
+    if (feature) check_features(primitive, *feature, where);
+    if (normal) check_normals(*normal, where);
+    const Accessor* indices = glb_.accessor(member(primitive, "indices"));
+    if (!indices) return rule(where + " has no indices");
+    if (indices->type != "SCALAR" || indices->is_float() || indices->normalised || indices->component_type == 5120 ||
+        indices->component_type == 5122)
+      return rule(where + ": its indices are no unsigned numbers");
+    if (indices->count % 3 != 0) rule(fmt::format("{}: {} indices make no triangles", where, indices->count));
+    read_triangles({*position, normal, colour, feature, *indices}, matrix, where);
+  }
+
+  bool required(const char* extension) const {
+    const Json* list = member(glb_.json(), "extensionsRequired");
+    return list && list->is_array() &&
+           std::any_of(list->begin(), list->end(), [&](const Json& name) { return text(&name) == extension; });
+  }
+
+  void check_normals(const Accessor& normal, const std::string& where) {
+    // Of 8-bit components each is off by half a step at most.
+    const double tolerance = normal.is_float() ? 1e-4 : normal.size == 1 ? 0.8 / 127 : 0.8 / 32767;
+    std::size_t off = 0;
+    for (std::size_t i = 0; i < normal.count; ++i) {
+      const double l = length({glb_.value(normal, i, 0), glb_.value(normal, i, 1), glb_.value(normal, i, 2)});
+      if (!(std::fabs(l - 1) <= tolerance) && ++off == 1) rule(fmt::format("{}: normal {} has length {:.4f}", where, i, l));
+    }
+    if (off > 1) rule(fmt::format("{}: {} normals are not of unit length", where, off));
+  }
+
+  void check_features(const Json& primitive, const Accessor& feature, const std::string& where) {
+    const Json* sets = member(member(member(primitive, "extensions"), "EXT_mesh_features"), "featureIds");
+    const Json* set = element(sets, 0);
+    if (!set) return metadata(where + ": no EXT_mesh_features");
+    if (whole(member(set, "attribute")) != 0u) metadata(where + ": its feature ids are not those of _FEATURE_ID_0");
+    const Json* tables = member(member(member(glb_.json(), "extensions"), "EXT_structural_metadata"), "propertyTables");
+    if (!element(tables, whole(member(set, "propertyTable")).value_or(~0ull))) metadata(where + ": its property table does not exist");
+    std::set<double> different;
+    const std::size_t rows = out_.contents.bodies.size();
+    for (std::size_t i = 0; i < feature.count; ++i) {
+      const double id = glb_.value(feature, i);
+      if (!(id >= 0) || id != std::floor(id) || id >= static_cast<double>(rows))
+        return metadata(fmt::format("{}: feature id {} of vertex {} in a table of {} rows", where, id, i, rows));
+      different.insert(id);
+    }
+    const auto said = whole(member(set, "featureCount"));
+    if (said != different.size())
+      metadata(fmt::format("{}: featureCount {}, but {} different features", where, said.value_or(0), different.size()));
+  }
+
+  struct Streams {
+    const Accessor& position;
+    const Accessor *normal, *colour, *feature;
+    const Accessor& indices;
+  };
+
+  void read_triangles(const Streams& s, const Matrix& matrix, const std::string& where) {
+    std::size_t bad_index = 0, two_features = 0, flat = 0, turned = 0, far = 0;
+    const auto first = [&](std::size_t& counter, const std::string& what) {
+      if (++counter <= kNoted) rule(where + ": " + what);
+    };
+    // Vertices first: most are used by several triangles.
+    std::vector<Point3> points(s.position.count);
+    std::vector<bool> usable(s.position.count, true);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Point3 p = apply(matrix, {glb_.value(s.position, i, 0), glb_.value(s.position, i, 1), glb_.value(s.position, i, 2)});
+      points[i] = {p.x, 0.0 - p.z, p.y};  // y up becomes z up
+      if (!(std::fabs(p.x) < kLargestCoordinate && std::fabs(p.y) < kLargestCoordinate && std::fabs(p.z) < kLargestCoordinate)) {
+        usable[i] = false;
+        first(far, fmt::format("vertex {} lies nowhere", i));
+      }
+    }
+    std::map<std::array<double, 3>, std::array<std::uint8_t, 3>> known_colours;
+    for (std::size_t t = 0; t + 2 < s.indices.count; t += 3) {
+      std::array<std::size_t, 3> corner{};
+      bool good = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        corner[k] = static_cast<std::size_t>(glb_.value(s.indices, t + k));
+        if (corner[k] >= points.size()) {
+          first(bad_index, fmt::format("index {} of {} vertices", corner[k], points.size()));
+          good = false;
+        } else {
+          good = good && usable[corner[k]];
+        }
+      }
+      if (!good) continue;
+      GlbTriangle triangle;
+      for (std::size_t k = 0; k < 3; ++k) triangle.corners[k] = points[corner[k]];
+      const auto& c = triangle.corners;
+      const Point3 n = cross(c[0], c[1], c[2]);
+      const double area = length(n);
+      if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0] || !(area > 0)) {
+        first(flat, fmt::format("triangle {} has no area", t / 3));
+        continue;
+      }
+      if (s.normal) {
+        // A sliver's own normal is rounding; others must look where their vertices say.
+        const Point3 said{glb_.value(*s.normal, corner[0], 0), 0.0 - glb_.value(*s.normal, corner[0], 2), glb_.value(*s.normal, corner[0], 1)};
+        const double longest = std::max({length({c[1].x - c[0].x, c[1].y - c[0].y, c[1].z - c[0].z}),
+                                         length({c[2].x - c[1].x, c[2].y - c[1].y, c[2].z - c[1].z}),
+                                         length({c[0].x - c[2].x, c[0].y - c[2].y, c[0].z - c[2].z})});
+        if (area / longest > 0.1 && n.x * said.x + n.y * said.y + n.z * said.z <= 0.5 * area)
+          first(turned, fmt::format("triangle {} does not look where its normal points", t / 3));
+      }
+      if (s.colour) {
+        const std::array<double, 3> linear{glb_.value(*s.colour, corner[0], 0), glb_.value(*s.colour, corner[0], 1), glb_.value(*s.colour, corner[0], 2)};
+        auto found = known_colours.find(linear);
+        if (found == known_colours.end())
+          found = known_colours.emplace(linear, std::array{srgb(linear[0]), srgb(linear[1]), srgb(linear[2])}).first;
+        triangle.colour = found->second;
+      }
+      out_.vertices.insert(out_.vertices.end(), c.begin(), c.end());
+      if (!s.feature) continue;
+      const double row = glb_.value(*s.feature, corner[0]);
+      if (glb_.value(*s.feature, corner[1]) != row || glb_.value(*s.feature, corner[2]) != row) {
+        if (++two_features <= kNoted) metadata(fmt::format("{}: triangle {} belongs to two features", where, t / 3));
+        continue;
+      }
+      if (row >= 0 && row < static_cast<double>(out_.triangles.size())) out_.triangles[static_cast<std::size_t>(row)].push_back(triangle);
+    }
+  }
+
+  const GlbContainer& glb_;
+  Glb& out_;
+};
+
+}  // namespace
+
+Glb read_glb(std::string_view bytes, const std::string& name) {
+  Glb out;
+  const GlbContainer container(bytes, name, out.contents.findings);
+  out.readable = container.readable();
+  if (out.readable) Reader(container, out).read();
+  return out;
+}
+
+}  // namespace blockrand::validate

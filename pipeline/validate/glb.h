@@ -1,0 +1,43 @@
+// A GLB read back: who is in it, what is drawn for whom, where it stands, and whether it keeps the rules.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/validate/contents.h"
+#include "pipeline/validate/earth.h"
+
+namespace blockrand::validate {
+
+struct GlbTriangle {
+  std::array<model::Point3, 3> corners;  ///< dequantised; m in the tile's frame, z up; counter-clockwise from outside
+  std::array<std::uint8_t, 3> colour{};  ///< sRGB
+};
+
+/// asset.extras.georeference.
+struct GlbGeoreference {
+  bool present = false;
+  std::string crs, height_reference;
+  double longitude = 0, latitude = 0, height = 0;  ///< of the origin: degrees, m above the ellipsoid
+  Matrix local_to_ecef = kIdentity;
+};
+
+struct Glb {
+  bool readable = false;  ///< false: there is one finding, and nothing else
+  /// Bodies are the rows of the property table, without geometry. A row with its building's id beside other rows of the
+  /// building has "<id>.1" as its id, as in CityGML. Findings: GLB_RULE, METADATA_RULE, GEOREFERENCE.
+  Contents contents;
+  std::vector<std::vector<GlbTriangle>> triangles;  ///< parallel to contents.bodies
+  GlbGeoreference georeference;
+  std::vector<model::Point3> vertices;  ///< of all triangles, z up, repeated ones included; empty when nothing is drawn
+};
+
+/// Reads a GLB and checks what it can without other files: glTF 2.0, EXT_mesh_features, EXT_structural_metadata,
+/// KHR_mesh_quantization, and that the georeference is the frame of its origin. Never throws on account of the bytes.
+/// \param name  of the file, for findings
+Glb read_glb(std::string_view bytes, const std::string& name);
+
+}  // namespace blockrand::validate
