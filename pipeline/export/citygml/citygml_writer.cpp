@@ -11,10 +11,14 @@
 
 #include "pipeline/export/citygml/codes.h"
 #include "pipeline/export/citygml/geometry_text.h"
+#include "pipeline/export/materials.h"
 #include "pipeline/export/text.h"
 
 namespace blockrand::export_ {
 namespace {
+
+/// Whether the model has this building: it is owned by the tile and something of it could be built.
+bool is_written(const model::Building& building) { return building.owned && !building.parts.empty(); }
 
 /// The smallest box around everything that is written.
 struct Envelope {
@@ -39,7 +43,7 @@ Envelope envelope(const model::Region& region, int lod) {
     for (const model::Point2& p : plan.outer.points) box.add({p.x, p.y, z});
   };
   for (const model::Building& building : region.buildings) {
-    if (!building.owned) continue;
+    if (!is_written(building)) continue;
     for (const model::BuildingPart& part : building.parts) {
       add_plan(part.plan, footprint_height(part.attributes));
       if (lod >= 1)
@@ -47,8 +51,6 @@ Envelope envelope(const model::Region& region, int lod) {
       if (lod >= 2)
         for (const model::Point3& p : part.lod2.vertices) box.add(p);
     }
-    if (building.parts.empty())
-      for (const model::Polygon& plan : building.outline) add_plan(plan, footprint_height(building.attributes));
   }
   return box;
 }
@@ -58,12 +60,58 @@ bool is_year(std::string_view text) {
          text != "0000";
 }
 
+/// Which polygons have which material. Kept until all buildings are written: about 40 bytes a face.
+class Looks {
+ public:
+  void add(const model::Solid& solid, std::string_view id) {
+    for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+      const model::Face& face = solid.faces[f];
+      const std::uint32_t n = numbers_.number(MaterialNumbers::key(face.material, face.colour));
+      if (n == targets_.size()) targets_.emplace_back();
+      targets_[n] += "<app:target>#";
+      append_polygon_id(targets_[n], id, f);
+      targets_[n] += "</app:target>\n";
+    }
+  }
+
+  /// Hands the appearanceMember to `write` in pieces; nothing when nothing was added.
+  template <class Write>
+  void write(const std::vector<model::MaterialClass>& classes, const Write& write) const {
+    if (targets_.empty()) return;
+    std::string out = "<app:appearanceMember><app:Appearance><app:theme>";
+    out += kVisualTheme;
+    out += "</app:theme>\n";
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+      const std::uint32_t key = numbers_.keys()[i];
+      const X3dMaterial look = x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
+      out += "<app:surfaceDataMember><app:X3DMaterial><gml:name>";
+      append_xml(out, look.name);
+      out += "</gml:name><app:diffuseColor>";
+      append_ten_thousandths(out, look.diffuse, ' ');
+      out += "</app:diffuseColor><app:specularColor>";
+      append_ten_thousandths(out, look.specular, ' ');
+      out += "</app:specularColor><app:shininess>";
+      append_ten_thousandths(out, look.shininess);
+      out += "</app:shininess>\n";
+      write(out);
+      write(targets_[i]);
+      out = "</app:X3DMaterial></app:surfaceDataMember>\n";
+    }
+    out += "</app:Appearance></app:appearanceMember>\n";
+    write(out);
+  }
+
+ private:
+  MaterialNumbers numbers_;
+  std::vector<std::string> targets_;  // by number of the material
+};
+
 /// Writes the text of one building after the other. Buildings are put together by hand from fixed pieces: an element at
 /// a time through the XML library costs several times as much.
 class BuildingText {
  public:
-  BuildingText(const model::Region& region, const CityGmlOptions& options)
-      : region_(region), options_(options), tags_(region.extract), geometry_(out_) {}
+  BuildingText(const model::Region& region, const CityGmlOptions& options, Looks& looks)
+      : region_(region), options_(options), tags_(region.extract), geometry_(out_), looks_(looks) {}
 
   /// The text of one cityObjectMember; valid until the next call.
   std::string_view member(const model::Building& building) {
@@ -80,7 +128,6 @@ class BuildingText {
       geometry(part, id);
     } else {
       attributes(building.attributes, building.tags, nullptr);
-      if (building.parts.empty()) footprints(building);
       for (const model::BuildingPart& part : building.parts) {
         const std::string part_id = part.id == id ? id + ".1" : part.id;
         out_ += "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id=\"";
@@ -258,34 +305,26 @@ class BuildingText {
     }
   }
 
-  void footprints(const model::Building& building) {
-    if (building.outline.empty()) return;
-    out_ += "<bldg:lod0FootPrint><gml:MultiSurface>";
-    for (const model::Polygon& plan : building.outline) footprint(plan, building.attributes);
-    out_ += "</gml:MultiSurface></bldg:lod0FootPrint>\n";
-  }
-  void footprint(const model::Polygon& plan, const model::Attributes& a) {
-    out_ += "<gml:surfaceMember>";
-    geometry_.footprint(plan, footprint_height(a));
-    out_ += "</gml:surfaceMember>";
-  }
-
   void geometry(const model::BuildingPart& part, const std::string& id) {
     if (part.plan.outer.size() >= 3) {
-      out_ += "<bldg:lod0FootPrint><gml:MultiSurface>";
-      footprint(part.plan, part.attributes);
-      out_ += "</gml:MultiSurface></bldg:lod0FootPrint>\n";
+      out_ += "<bldg:lod0FootPrint><gml:MultiSurface><gml:surfaceMember>";
+      geometry_.footprint(part.plan, footprint_height(part.attributes));
+      out_ += "</gml:surfaceMember></gml:MultiSurface></bldg:lod0FootPrint>\n";
     }
+    const bool lod2 = options_.lod >= 2 && part.lod >= 2 && !part.lod2.empty();
     if (options_.lod >= 1 && part.lod >= 1 && !part.lod1.empty()) {
+      const std::string solid_id = id + "_lod1";
       out_ += "<bldg:lod1Solid>";
-      geometry_.solid(part.lod1, id + "_lod1");
+      geometry_.solid(part.lod1, solid_id, !lod2);
       out_ += "</bldg:lod1Solid>\n";
+      if (!lod2) looks_.add(part.lod1, solid_id);
     }
-    if (options_.lod >= 2 && part.lod >= 2 && !part.lod2.empty()) {
+    if (lod2) {
       out_ += "<bldg:lod2Solid>";
       geometry_.solid_of_references(part.lod2, id + "_lod2", id);
       out_ += "</bldg:lod2Solid>\n";
       geometry_.surfaces(part.lod2, id);
+      looks_.add(part.lod2, id);
     }
   }
 
@@ -329,6 +368,7 @@ class BuildingText {
   TagReader tags_;
   std::string out_;
   GeometryText geometry_;
+  Looks& looks_;
 };
 
 /// What the callback of libxml2 sees: exceptions must not pass through C code. After an error the rest is swallowed;
@@ -406,6 +446,7 @@ void write_citygml(const model::Region& region, const CityGmlOptions& options, c
   xmlTextWriterStartElement(writer, xml("CityModel"));
   const std::pair<const char*, const char*> namespaces[] = {
       {"xmlns", "http://www.opengis.net/citygml/2.0"},
+      {"xmlns:app", "http://www.opengis.net/citygml/appearance/2.0"},
       {"xmlns:bldg", "http://www.opengis.net/citygml/building/2.0"},
       {"xmlns:gen", "http://www.opengis.net/citygml/generics/2.0"},
       {"xmlns:gml", "http://www.opengis.net/gml"},
@@ -413,6 +454,8 @@ void write_citygml(const model::Region& region, const CityGmlOptions& options, c
       {"xmlns:xlink", "http://www.w3.org/1999/xlink"},
       {"xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance"},
       {"xsi:schemaLocation",
+       "http://www.opengis.net/citygml/appearance/2.0 "
+       "http://schemas.opengis.net/citygml/appearance/2.0/appearance.xsd "
        "http://www.opengis.net/citygml/building/2.0 http://schemas.opengis.net/citygml/building/2.0/building.xsd "
        "http://www.opengis.net/citygml/generics/2.0 http://schemas.opengis.net/citygml/generics/2.0/generics.xsd"},
   };
@@ -431,13 +474,17 @@ void write_citygml(const model::Region& region, const CityGmlOptions& options, c
   }
   write_envelope(writer, envelope(region, options.lod), options.srs_name);
 
-  BuildingText text(region, options);
+  const auto write_raw = [&](std::string_view piece) {
+    if (!state.error) xmlTextWriterWriteRawLen(writer, xml(piece.data()), static_cast<int>(piece.size()));
+  };
+  Looks looks;
+  BuildingText text(region, options, looks);
   for (const model::Building& building : region.buildings) {
-    if (!building.owned) continue;
+    if (!is_written(building)) continue;
     if (state.error) break;
-    const std::string_view member = text.member(building);
-    xmlTextWriterWriteRawLen(writer, xml(member.data()), static_cast<int>(member.size()));
+    write_raw(text.member(building));
   }
+  looks.write(region.materials, write_raw);
   xmlTextWriterEndDocument(writer);
   xmlTextWriterFlush(writer);
   if (state.error) std::rethrow_exception(state.error);

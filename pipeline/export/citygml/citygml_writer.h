@@ -1,10 +1,9 @@
 // A tile as CityGML 2.0.
 #pragma once
 
-#include <functional>
 #include <string>
-#include <string_view>
 
+#include "pipeline/export/sink.h"
 #include "pipeline/model/region.h"
 
 namespace blockrand::export_ {
@@ -18,10 +17,7 @@ struct CityGmlOptions {
   bool evidence = false;         ///< also `<attribute>_evidence`: why each attribute has its value
 };
 
-/// Takes the next bytes of a file.
-using Sink = std::function<void(std::string_view)>;
-
-/// Writes the owned buildings of `region`, in their order, to `sink` in pieces.
+/// Writes the owned buildings of `region` that have a part, in their order, to `sink` in pieces.
 ///
 /// A building is a bldg:Building with gml:id = its id. One whose single part has the building's id carries the geometry
 /// itself; otherwise each part is a bldg:BuildingPart with gml:id = the part's id (a part that has the building's id
@@ -29,6 +25,10 @@ using Sink = std::function<void(std::string_view)>;
 /// lod0FootPrint at ground height, lod1Solid, lod2Solid referring to the polygons of its boundary surfaces. Attributes
 /// without an element of their own are generic attributes named as in model::for_each_attribute; each attribute not
 /// taken from a tag also has `<attribute>_source` and `<attribute>_confidence`; OSM tags are `osm.<key>`.
+///
+/// After the city objects stands one app:Appearance of the theme "visual" with an app:X3DMaterial per pair of material
+/// class and colour (see materials.h). Its targets are the gml:Polygons of each part's highest solid: polygons, since
+/// those have ids already and every reader resolves them.
 ///
 /// Coordinates have four decimals (see append_grid). The same region gives the same bytes; no date is written, since an
 /// update may only touch the tiles whose data changed. An empty region gives a valid CityModel without members.

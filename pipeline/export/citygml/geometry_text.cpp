@@ -16,6 +16,8 @@ void append_id(std::string& out, std::string_view id, const char* kind, std::siz
 
 }  // namespace
 
+void append_polygon_id(std::string& out, std::string_view id, std::size_t face) { append_id(out, id, "_p", face); }
+
 void GeometryText::ring(const model::Ring& ring, std::string_view z) {
   out_ += "<gml:LinearRing><gml:posList>";
   for (std::size_t i = 0; i <= ring.points.size(); ++i) {
@@ -62,7 +64,7 @@ void GeometryText::polygon(const model::Solid& solid, const model::Face& face, s
   out_ += "<gml:Polygon";
   if (!id.empty()) {
     out_ += " gml:id=\"";
-    append_id(out_, id, "_p", number);
+    append_polygon_id(out_, id, number);
     out_ += '"';
   }
   out_ += '>';
@@ -81,14 +83,14 @@ void GeometryText::polygon(const model::Solid& solid, const model::Face& face, s
   out_ += "</gml:Polygon>";
 }
 
-void GeometryText::solid(const model::Solid& solid, std::string_view solid_id) {
+void GeometryText::solid(const model::Solid& solid, std::string_view solid_id, bool polygon_ids) {
   load_vertices(solid);
   out_ += "<gml:Solid gml:id=\"";
   out_ += solid_id;
   out_ += "\"><gml:exterior><gml:CompositeSurface>\n";
-  for (const model::Face& face : solid.faces) {
+  for (std::size_t f = 0; f < solid.faces.size(); ++f) {
     out_ += "<gml:surfaceMember>";
-    polygon(solid, face, {}, 0);
+    polygon(solid, solid.faces[f], polygon_ids ? solid_id : std::string_view{}, f);
     out_ += "</gml:surfaceMember>\n";
   }
   out_ += "</gml:CompositeSurface></gml:exterior></gml:Solid>";
@@ -100,7 +102,7 @@ void GeometryText::solid_of_references(const model::Solid& solid, std::string_vi
   out_ += "\"><gml:exterior><gml:CompositeSurface>\n";
   for (std::size_t f = 0; f < solid.faces.size(); ++f) {
     out_ += "<gml:surfaceMember xlink:href=\"#";
-    append_id(out_, id, "_p", f);
+    append_polygon_id(out_, id, f);
     out_ += "\"/>\n";
   }
   out_ += "</gml:CompositeSurface></gml:exterior></gml:Solid>";

@@ -10,6 +10,9 @@
 
 namespace blockrand::export_ {
 
+/// Appends "<id>_p<face>", the gml:id of a polygon.
+void append_polygon_id(std::string& out, std::string_view id, std::size_t face);
+
 /// Appends GML 3.1.1 geometry. Keeps the text of a solid's vertices while its faces are written: each vertex is
 /// formatted once and copied into every ring that uses it, so that equal vertices have equal text.
 class GeometryText {
@@ -19,8 +22,8 @@ class GeometryText {
   /// gml:Polygon of a footprint at height z, facing up.
   void footprint(const model::Polygon& plan, double z);
 
-  /// gml:Solid with its polygons inside.
-  void solid(const model::Solid& solid, std::string_view solid_id);
+  /// gml:Solid with its polygons inside; with `polygon_ids` these are "<solid_id>_p<face>".
+  void solid(const model::Solid& solid, std::string_view solid_id, bool polygon_ids);
 
   /// gml:Solid whose members refer to the polygons "<id>_p<face>" of surfaces().
   void solid_of_references(const model::Solid& solid, std::string_view solid_id, std::string_view id);

@@ -4,7 +4,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
+#include <sstream>
 
 #include "pipeline/export/citygml/citygml_writer.h"
 #include "pipeline/export/citygml/codes.h"
@@ -139,6 +141,60 @@ TEST(CityGml, HalfStoreysAreGenericAttributes) {
   EXPECT_EQ(file.buildings[0].text("storeysAboveGround"), "");
   EXPECT_EQ(file.buildings[0].text("storeys"), "2.5");
   EXPECT_EQ(file.buildings[0].text("storey_height"), "2.8");
+}
+
+/// The colours of X3DMaterials by the gml:id of their targets, out of the text.
+std::map<std::string, model::Colour> colours(const std::string& gml) {
+  std::map<std::string, model::Colour> out;
+  const auto between = [&](std::size_t from, const std::string& open, const std::string& close) {
+    const std::size_t begin = gml.find(open, from) + open.size();
+    return gml.substr(begin, gml.find(close, begin) - begin);
+  };
+  for (std::size_t at = gml.find("<app:X3DMaterial>"); at != std::string::npos;
+       at = gml.find("<app:X3DMaterial>", at + 1)) {
+    std::istringstream numbers(between(at, "<app:diffuseColor>", "</app:diffuseColor>"));
+    double channel[3];
+    numbers >> channel[0] >> channel[1] >> channel[2];
+    const auto byte = [&](int i) { return static_cast<std::uint8_t>(channel[i] * 255 + 0.5); };
+    const std::size_t end = gml.find("</app:X3DMaterial>", at);
+    for (std::size_t t = gml.find("<app:target>", at); t < end; t = gml.find("<app:target>", t + 1)) {
+      const std::string id = between(t, "<app:target>#", "</app:target>");
+      EXPECT_TRUE(out.emplace(id, model::Colour{byte(0), byte(1), byte(2)}).second) << id << " has two materials";
+      EXPECT_NE(gml.find("<gml:Polygon gml:id=\"" + id + "\">"), std::string::npos) << id;
+    }
+  }
+  return out;
+}
+
+TEST(CityGml, EveryFaceOfTheHighestSolidHasItsColour) {
+  const SampleRegion zoo = SampleRegion::zoo();
+  const std::string text = write_citygml(zoo.region(), options());
+  std::map<std::string, model::Colour> left = colours(text);
+  for (const model::Building& b : zoo.region().buildings) {
+    if (!b.owned) continue;
+    for (const model::BuildingPart& part : b.parts) {
+      std::string id = part.id == b.id() && b.parts.size() > 1 ? part.id + ".1" : part.id;
+      if (part.lod2.empty()) id += "_lod1";
+      const model::Solid& solid = part.lod2.empty() ? part.lod1 : part.lod2;
+      for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+        const auto found = left.find(id + "_p" + std::to_string(f));
+        ASSERT_NE(found, left.end()) << id << " face " << f;
+        EXPECT_EQ(found->second, solid.faces[f].colour);
+        left.erase(found);
+      }
+    }
+  }
+  EXPECT_TRUE(left.empty()) << left.begin()->first;
+  EXPECT_NE(text.find("<app:theme>visual</app:theme>"), std::string::npos);
+}
+
+TEST(CityGml, BuildingsWithoutPartsAreNotInTheModel) {
+  SampleRegion s;
+  s.add_building(1, {{"building", "yes"}});
+  model::Building& b = s.add_building(2, {});
+  s.add_box(b, b.id(), 0, 0, 10, 8, 0, 6);
+  s.region().buildings.front().outline.push_back(s.region().buildings.back().parts.front().plan);
+  EXPECT_EQ(validators::read_citygml_text(write_citygml(s.region(), options())).buildings.size(), 1u);
 }
 
 TEST(CityGml, OnlyTheLevelsAskedFor) {

@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "pipeline/export/citygml/citygml_writer.h"
+#include "pipeline/export/cityjson/cityjson_writer.h"
 #include "pipeline/export/gltf/building_table.h"
 #include "pipeline/export/gltf/glb_writer.h"
 #include "pipeline/export/gltf/mesh.h"
@@ -56,6 +57,26 @@ void write_citygml(benchmark::State& state) {
   count(state, bytes);
 }
 BENCHMARK(write_citygml)->ArgsProduct({{60, 1000}, {0, 1}});
+
+void write_cityjson_sequence(benchmark::State& state) {
+  const SampleRegion sample = SampleRegion::settlement(static_cast<int>(state.range(0)), state.range(1) != 0);
+  std::size_t bytes = 0;
+  for (auto _ : state) bytes += export_::write_cityjson_sequence(sample.region(), {}).size();
+  count(state, bytes);
+}
+BENCHMARK(write_cityjson_sequence)->ArgsProduct({{60, 1000}, {0, 1}});
+
+void single_cityjson(benchmark::State& state) {
+  const SampleRegion sample = SampleRegion::settlement(static_cast<int>(state.range(0)), true);
+  std::size_t bytes = 0;
+  for (auto _ : state) {
+    export_::SingleCityJson writer({}, [&](std::string_view piece) { bytes += piece.size(); });
+    writer.add(sample.region());
+    writer.finish();
+  }
+  count(state, bytes);
+}
+BENCHMARK(single_cityjson)->Arg(1000);
 
 }  // namespace
 
