@@ -30,7 +30,8 @@ double as_written(float value) {
 /// Areas and volumes are sums; their last bits say nothing.
 double rounded(double value) { return std::nearbyint(value * 1000) / 1000; }
 
-// ---- well-known binary (OGC 06-103r4, clause 8), little-endian --------------------------------------------------------
+// ---- well-known binary (OGC 06-103r4, clause 8), little-endian
+// --------------------------------------------------------
 
 static_assert(std::endian::native == std::endian::little, "well-known binary is written as memory holds it");
 
@@ -65,7 +66,8 @@ void append_polygon(std::string& out, const model::Polygon& polygon) {
   for (const model::Ring& hole : polygon.holes) append_ring(out, hole);
 }
 
-// ---- cells ------------------------------------------------------------------------------------------------------------
+// ---- cells
+// ------------------------------------------------------------------------------------------------------------
 
 /// Fills a table cell by cell, in the order of its columns.
 class RowWriter {
@@ -148,7 +150,8 @@ double volume_of(const model::BuildingPart& part) {
   return 0;
 }
 
-// ---- what a building is as a whole ------------------------------------------------------------------------------------
+// ---- what a building is as a whole
+// ------------------------------------------------------------------------------------
 
 struct Whole {
   std::string_view state;

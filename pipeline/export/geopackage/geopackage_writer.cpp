@@ -1,10 +1,14 @@
 #include "pipeline/export/geopackage/geopackage_writer.h"
 
+#include <fcntl.h>
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <mutex>
 
@@ -26,13 +30,39 @@ std::string geopackage_time(const std::string& data_time) {
   return fits ? data_time.substr(0, 19) + ".000Z" : "1970-01-01T00:00:00.000Z";
 }
 
-std::string remedy(const std::string& failure) {
-  if (failure.find("full") != std::string::npos)
-    return "The disk is full: free some space, or choose an output folder on another disk.";
-  if (failure.find("permission") != std::string::npos || failure.find("readonly") != std::string::npos ||
-      failure.find("read-only") != std::string::npos)
-    return "You may not write there: change the folder's permissions, or choose another output folder.";
-  return "Check the disk, or choose an output folder on another one; --formats without geopackage leaves the file out.";
+/// What the system says to more bytes in `path`; SQLite only says "disk I/O error". 0 when they can be written.
+int error_of_writing(const std::string& path) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0644);
+  if (file < 0) return errno;
+  const std::vector<char> bytes(1 << 16);
+  std::size_t written = 0;
+  int error = 0;
+  while (written < bytes.size() && error == 0) {
+    const ssize_t n = ::write(file, bytes.data() + written, bytes.size() - written);
+    if (n > 0)
+      written += static_cast<std::size_t>(n);
+    else if (errno != EINTR)
+      error = errno;
+  }
+  if (error == 0 && ::fsync(file) != 0) error = errno;
+  ::close(file);
+  return error;
+}
+
+std::string remedy(int error) {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "The disk is full: free some space, or choose an output folder on another disk.";
+    case EFBIG:
+      return "The file is larger than the limit allows: raise it (ulimit -f), or choose another file system.";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "You may not write there: change the folder's permissions, or choose an output folder elsewhere.";
+    default:
+      return "Check the disk and the path, or choose an output folder on another disk.";
+  }
 }
 
 std::string sql_text(std::string_view text) {
@@ -70,11 +100,23 @@ struct GeoPackageWriter::Impl {
   GeoPackageOptions options;
   std::unique_ptr<GDALDataset, DatasetCloser> dataset;
   Layer buildings, parts, reported, tiles;
-  bool closed = false;
+  bool made = false, closed = false;
+
+  ~Impl() {
+    if (closed) return;
+    // What is left of a file that failed is of no use to anyone.
+    const GdalScope scope(settings());
+    for (Layer* l : {&buildings, &parts, &reported, &tiles}) l->feature.reset();
+    if (dataset) dataset->RollbackTransaction();
+    dataset.reset();
+    if (made) std::remove(path.c_str());
+  }
 
   [[noreturn]] void fail(const GdalScope& scope) const {
-    const std::string what = scope.failed() ? scope.failure() : "the GeoPackage could not be written";
-    throw base::OutputError(path + ": cannot write: " + what + ". " + remedy(what));
+    const int error = error_of_writing(path);
+    throw base::OutputError(
+        path + ": cannot write: " + (scope.failed() ? scope.failure() : std::string("GDAL does not say why")) +
+        (error != 0 ? " (" + std::string(std::strerror(error)) + ")" : "") + ". " + remedy(error));
   }
   void check(const GdalScope& scope, bool good) const {
     if (!good || scope.failed()) fail(scope);
@@ -137,15 +179,15 @@ struct GeoPackageWriter::Impl {
       }
       sql(scope,
           "INSERT INTO gpkg_data_columns (table_name, column_name, name, title, description, mime_type, "
-          "constraint_name) VALUES " + values);
+          "constraint_name) VALUES " +
+              values);
     }
   }
 
   /// The table as QGIS makes it when it saves a style itself.
   void write_styles(const GdalScope& scope) {
     const std::array<const char*, 2> creation{"FID=id", nullptr};
-    OGRLayer* const layer =
-        dataset->CreateLayer("layer_styles", nullptr, wkbNone, const_cast<char**>(creation.data()));
+    OGRLayer* const layer = dataset->CreateLayer("layer_styles", nullptr, wkbNone, const_cast<char**>(creation.data()));
     check(scope, layer != nullptr);
     const auto add = [&](const char* column, OGRFieldType type, int width = 0, OGRFieldSubType sub = OFSTNone) {
       OGRFieldDefn field(column, type);
@@ -195,6 +237,7 @@ struct GeoPackageWriter::Impl {
       throw base::OutputError(path +
                               ": cannot write: GDAL was built without GeoPackage. Install GDAL with SQLite, or leave "
                               "geopackage out of --formats.");
+    made = true;
     const std::array<const char*, 2> creation{"VERSION=1.3", nullptr};
     dataset.reset(driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation.data())));
     check(scope, dataset != nullptr);
@@ -207,9 +250,11 @@ struct GeoPackageWriter::Impl {
       if (!options.attribution.empty()) what += ". " + options.attribution;
       return what;
     };
-    buildings = make_layer(scope, "buildings", wkbMultiPolygon, building_columns(), text("Buildings with every attribute, its source and its confidence"), srs);
+    buildings = make_layer(scope, "buildings", wkbMultiPolygon, building_columns(),
+                           text("Buildings with every attribute, its source and its confidence"), srs);
     parts = make_layer(scope, "parts", wkbPolygon, part_columns(), text("Bodies of the buildings"), srs);
-    reported = make_layer(scope, "reported", wkbPoint, reported_columns(), text("Mapped objects that are not modelled themselves, and why"), srs);
+    reported = make_layer(scope, "reported", wkbPoint, reported_columns(),
+                          text("Mapped objects that are not modelled themselves, and why"), srs);
     tiles = make_layer(scope, "tiles", wkbPolygon, tile_columns(), text("Tiles with content"), srs);
     describe_columns(scope);
     write_styles(scope);
@@ -223,10 +268,18 @@ struct GeoPackageWriter::Impl {
       feature.SetFID(OGRNullFID);
       for (int i = 0; i < static_cast<int>(rows.width); ++i, ++cell) {
         switch (cell->kind) {
-          case Cell::Kind::null: feature.SetFieldNull(i); break;
-          case Cell::Kind::integer: feature.SetField(i, static_cast<GIntBig>(cell->integer)); break;
-          case Cell::Kind::real: feature.SetField(i, cell->real); break;
-          case Cell::Kind::text: feature.SetField(i, rows.texts.c_str() + cell->text); break;
+          case Cell::Kind::null:
+            feature.SetFieldNull(i);
+            break;
+          case Cell::Kind::integer:
+            feature.SetField(i, static_cast<GIntBig>(cell->integer));
+            break;
+          case Cell::Kind::real:
+            feature.SetField(i, cell->real);
+            break;
+          case Cell::Kind::text:
+            feature.SetField(i, rows.texts.c_str() + cell->text);
+            break;
         }
       }
       const std::string_view wkb = rows.geometry(row);
@@ -244,15 +297,7 @@ GeoPackageWriter::GeoPackageWriter(std::string path, GeoPackageOptions options) 
   impl_->create();
 }
 
-GeoPackageWriter::~GeoPackageWriter() {
-  if (impl_->closed) return;
-  const GdalScope scope(impl_->settings());
-  for (Impl::Layer* l : {&impl_->buildings, &impl_->parts, &impl_->reported, &impl_->tiles}) l->feature.reset();
-  if (!impl_->dataset) return;
-  impl_->dataset->RollbackTransaction();
-  impl_->dataset.reset();
-  std::remove(impl_->path.c_str());
-}
+GeoPackageWriter::~GeoPackageWriter() = default;
 
 void GeoPackageWriter::add(const GeoPackageRows& rows) {
   const GdalScope scope(impl_->settings());
@@ -328,11 +373,8 @@ void GeoPackageWriter::close() {
   }
   impl.check(scope, impl.dataset->CommitTransaction() == OGRERR_NONE);
   impl.dataset.reset();
-  impl.closed = !scope.failed();
-  if (scope.failed()) {
-    std::remove(impl.path.c_str());
-    impl.fail(scope);
-  }
+  impl.check(scope, true);
+  impl.closed = true;
 }
 
 }  // namespace blockrand::export_

@@ -27,7 +27,7 @@ struct GeoPackageReported {
   model::ObjectKind kind = model::ObjectKind::building;
   model::ObjectState state = model::ObjectState::reported;
   model::IssueCode code = model::IssueCode::none;
-  std::string detail;                 ///< may be empty
+  std::string detail;                   ///< may be empty
   std::optional<model::OsmId> related;  ///< of whom it is a duplicate, or who represents it
   std::optional<model::Point2> place;   ///< in the build CRS, where one is known
 };
@@ -35,15 +35,15 @@ struct GeoPackageReported {
 /// A tile with content.
 struct GeoPackageTile {
   model::TileId id;
-  std::string uri;                     ///< of its GLB, relative to the build; empty where there is none
+  std::string uri;  ///< of its GLB, relative to the build; empty where there is none
   std::uint64_t buildings = 0, parts = 0;
   std::uint64_t bytes = 0;             ///< of the GLB
   std::vector<model::Point2> outline;  ///< in the build CRS, counter-clockwise, first point not repeated
 };
 
-/// Writes one file with the layers `buildings` (MultiPolygon), `parts` (Polygon), `reported` (Point, NULL where no place
-/// is known) and `tiles` (Polygon); columns in columns.h, their meaning and unit in the file's gpkg_data_columns. The
-/// table `layer_styles` holds QGIS styles, one default for each layer.
+/// Writes one file with the layers `buildings` (MultiPolygon), `parts` (Polygon), `reported` (Point, NULL where no
+/// place is known) and `tiles` (Polygon); columns in columns.h, their meaning and unit in the file's gpkg_data_columns.
+/// The table `layer_styles` holds QGIS styles, one default for each layer.
 ///
 /// The same calls give the same bytes: the file holds no clock and no UUID. One thread at a time, any thread; no GDAL
 /// setting of the process is changed and GDAL prints nothing. Rows reach the disk as they come; memory is SQLite's page

@@ -20,12 +20,18 @@ Colour class_colour(int i) {
   const int rise = low + (top - low) * (hue % 60) / 60, fall = top + low - rise;
   const auto c = [](int v) { return static_cast<std::uint8_t>(v); };
   switch (hue / 60) {
-    case 0: return {c(top), c(rise), c(low)};
-    case 1: return {c(fall), c(top), c(low)};
-    case 2: return {c(low), c(top), c(rise)};
-    case 3: return {c(low), c(fall), c(top)};
-    case 4: return {c(rise), c(low), c(top)};
-    default: return {c(top), c(low), c(fall)};
+    case 0:
+      return {c(top), c(rise), c(low)};
+    case 1:
+      return {c(fall), c(top), c(low)};
+    case 2:
+      return {c(low), c(top), c(rise)};
+    case 3:
+      return {c(low), c(fall), c(top)};
+    case 4:
+      return {c(rise), c(low), c(top)};
+    default:
+      return {c(top), c(low), c(fall)};
   }
 }
 
@@ -91,7 +97,8 @@ class Qml {
   std::string done() && {
     out_ += classes_ + end_of_classes_ + "<symbols>\n" + symbol_list_ + "</symbols>\n</renderer-v2>\n" + labelling_;
     // QGIS counts points, lines, polygons as 0, 1, 2.
-    out_ += std::string("<layerGeometryType>") + (shape_ == Shape::marker ? "0" : "2") + "</layerGeometryType>\n</qgis>\n";
+    out_ +=
+        std::string("<layerGeometryType>") + (shape_ == Shape::marker ? "0" : "2") + "</layerGeometryType>\n</qgis>\n";
     return std::move(out_);
   }
 
@@ -107,7 +114,8 @@ class Qml {
     const bool marker = shape_ == Shape::marker;
     symbol_list_ += "<symbol type=\"";
     symbol_list_ += marker ? "marker" : "fill";
-    symbol_list_ += "\" name=\"" + std::to_string(symbols_++) + "\" alpha=\"1\" clip_to_extent=\"1\" force_rhr=\"0\">\n";
+    symbol_list_ +=
+        "\" name=\"" + std::to_string(symbols_++) + "\" alpha=\"1\" clip_to_extent=\"1\" force_rhr=\"0\">\n";
     symbol_list_ += "<layer class=\"";
     symbol_list_ += marker ? "SimpleMarker" : "SimpleFill";
     symbol_list_ += "\" enabled=\"1\" locked=\"0\" pass=\"0\">\n<Option type=\"Map\">\n";
@@ -171,8 +179,20 @@ std::string built_roof() {
 /// What mappers said is blue and green, what was concluded yellow and orange, what is assumed grey.
 std::string source_of(std::string_view attribute) {
   constexpr std::array<Colour, model::kSourceCount> kColours{{
-      {84, 39, 136}, {33, 102, 172}, {90, 160, 205}, {120, 190, 200}, {27, 120, 55}, {100, 175, 90}, {160, 205, 120},
-      {250, 215, 90}, {250, 190, 80}, {245, 165, 75}, {235, 140, 70}, {225, 115, 70}, {205, 185, 170}, {190, 190, 190},
+      {84, 39, 136},
+      {33, 102, 172},
+      {90, 160, 205},
+      {120, 190, 200},
+      {27, 120, 55},
+      {100, 175, 90},
+      {160, 205, 120},
+      {250, 215, 90},
+      {250, 190, 80},
+      {245, 165, 75},
+      {235, 140, 70},
+      {225, 115, 70},
+      {205, 185, 170},
+      {190, 190, 190},
   }};
   Qml qml(Shape::fill);
   qml.categories(std::string(attribute) + "_source");

@@ -1,6 +1,5 @@
 // Speed of the GeoPackage writer on invented settlements: the rows made on worker threads, and the part that is serial.
 #include <benchmark/benchmark.h>
-
 #include <unistd.h>
 
 #include <cstdio>
