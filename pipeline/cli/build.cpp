@@ -7,47 +7,48 @@
 #include "pipeline/base/error.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/cli/build_report.h"
+#include "pipeline/cli/configs_folder.h"
 #include "pipeline/cli/errors.h"
 #include "pipeline/cli/exit_codes.h"
-#include "pipeline/cli/presets_folder.h"
 #include "pipeline/cli/signals.h"
 #include "pipeline/region/build.h"
 #include "pipeline/settings/command_line.h"
 
 namespace blockrand::cli {
 
-std::string build_help() {
-  return "Usage: blockrand build INPUT -o FOLDER [options]\n"
-         "\n"
-         "Rebuilds the buildings of an OpenStreetMap extract in 3D: georeferenced 3D Tiles (GLB) and CityGML.\n"
-         "Missing heights, storeys and roofs are inferred, and every value says where it came from.\n" +
-         settings::option_help(settings::kBuild) +
-         "\n"
-         "Options that tune repair and inference: blockrand help options\n"
-         "\n"
-         "Examples:\n"
-         "  blockrand build leipzig.osm.pbf -o out/leipzig\n"
-         "      everything, as 3D Tiles and CityGML with roofs (LoD 2)\n"
-         "  blockrand build berlin.osm.pbf -o out/mitte --bbox 13.37,52.51,13.41,52.53 --formats gltf\n"
-         "      one quarter of a city, 3D Tiles only\n"
-         "  blockrand build town.osm -o out/town --terrain dem.tif --crs EPSG:25833 --force\n"
-         "      on real ground, in a given coordinate system, in place of an earlier build\n"
-         "  blockrand build --config town.toml --lod 1\n"
-         "      options from a file; blocks instead of roofs\n"
-         "\n"
-         "Exit codes: 0 all well, 1 wrong usage, 2 unreadable or invalid input, 3 buildings below the asked\n"
-         "quality (only with --strict), 4 output could not be written or internal error, 128 + signal.\n"
-         "The output folder appears, or is replaced, when everything in it is complete; never before.\n";
+settings::CommandText build_text() {
+  return {.name = "build",
+          .summary = "an extract in; georeferenced 3D Tiles, CityGML, CityJSON and GeoPackage out",
+          .usage = "INPUT -o FOLDER [options]",
+          .description =
+              "Rebuilds the buildings of an OpenStreetMap extract in 3D: georeferenced 3D Tiles (GLB), CityGML, CityJSON "
+              "and GeoPackage, with a report. Missing heights, storeys and roofs are inferred, and every value says where "
+              "it came from.\n"
+              "The output folder appears, or is replaced, when everything in it is complete; never before.",
+          .options = settings::kBuild,
+          .examples = {{"blockrand build leipzig.osm.pbf -o out/leipzig", "everything, in all formats, with roofs (LoD 2)"},
+                       {"blockrand build berlin.osm.pbf -o out/mitte --bbox 13.37,52.51,13.41,52.53 --formats gltf",
+                        "one quarter of a city, 3D Tiles only"},
+                       {"blockrand build town.osm -o out/town --terrain dem.tif --crs EPSG:25833 --force",
+                        "on real ground, in a given coordinate system, in place of an earlier build"},
+                       {"blockrand build --config town.toml --lod 1",
+                        "options from a file; blocks instead of roofs"}},
+          .exit_codes = {{"0", "all well"},
+                         {"1", "wrong usage"},
+                         {"2", "unreadable or invalid input"},
+                         {"3", "buildings below the asked quality (only with --strict)"},
+                         {"4", "output could not be written or internal error"},
+                         {"128 + N", "ended by signal N"}}};
 }
 
 int run_build(const std::vector<std::string>& arguments) {
   settings::CommandLine line = settings::read_command_line(settings::kBuild, arguments);
   if (line.help) {
-    std::fputs(build_help().c_str(), stdout);
+    std::fputs(settings::command_help(build_text()).c_str(), stdout);
     return kSuccess;
   }
   settings::Settings& s = line.settings;
-  s.build.configs = presets_folder(s.build.configs);
+  s.build.configs = configs_folder(s.build.configs, program_file());
   clean_up_on_signals(s.log_format);
   base::Progress progress(s.progress, s.log_format, s.quiet);
   const region::BuildSummary summary = region::build(s.build, progress);

@@ -4,12 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/settings/command_text.h"
+
 namespace blockrand::cli {
 
 /// \param arguments  after the command's name
 /// \returns the exit code; errors are thrown
 int run_build(const std::vector<std::string>& arguments);
 
-std::string build_help();
+settings::CommandText build_text();
 
 }  // namespace blockrand::cli

@@ -1,6 +1,4 @@
-#include "pipeline/cli/presets_folder.h"
-
-#include <filesystem>
+#include "pipeline/cli/configs_folder.h"
 
 #include "pipeline/base/error.h"
 
@@ -9,26 +7,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool holds_presets(const fs::path& folder) {
+bool holds_configs(const fs::path& folder) {
   std::error_code error;
   return fs::is_regular_file(folder / "defaults" / "uses.toml", error);
 }
 
 }  // namespace
 
-std::string presets_folder(const std::string& given) {
+std::string configs_folder(const std::string& given, const fs::path& program) {
   if (!given.empty()) {
-    if (holds_presets(given)) return given;
-    throw base::UsageError("--presets: " + given +
+    if (holds_configs(given)) return given;
+    throw base::UsageError("--configs: " + given +
                            " has no defaults/uses.toml. Name a folder like the program's configs/.");
   }
+  const fs::path bin = program.parent_path();
+  std::string tried;
+  for (const fs::path& folder : {bin / "configs", bin / BLOCKRAND_INSTALLED_CONFIGS}) {
+    const fs::path place = folder.lexically_normal();
+    if (holds_configs(place)) return place.string();
+    tried += (tried.empty() ? "" : " nor at ") + place.string();
+  }
+  throw base::UsageError("the configs that came with the program are not at " + tried +
+                         ". Name their folder with --configs.");
+}
+
+fs::path program_file() {
   std::error_code error;
-  fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (; !error && folder.has_relative_path(); folder = folder.parent_path())
-    for (const char* place : {"configs", "share/blockrand/configs"})
-      if (holds_presets(folder / place)) return (folder / place).string();
-  if (holds_presets(BLOCKRAND_SOURCE_CONFIGS)) return BLOCKRAND_SOURCE_CONFIGS;
-  throw base::UsageError("the folder configs/ that came with the program is not found. Name it with --presets.");
+  return fs::read_symlink("/proc/self/exe", error);
 }
 
 }  // namespace blockrand::cli

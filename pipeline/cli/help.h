@@ -4,15 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/settings/command_text.h"
+
 namespace blockrand::cli {
 
 std::string general_help();
 std::string version_text();
 
-/// blockrand help [COMMAND | options [--markdown | --toml] | codes]
+/// blockrand help [COMMAND | TOPIC [FORM]]
 int run_help(const std::vector<std::string>& arguments);
 
-/// Names of all commands, for suggestions.
-std::vector<std::string> command_names();
+settings::CommandText help_text();
 
 }  // namespace blockrand::cli

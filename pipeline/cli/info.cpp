@@ -26,26 +26,29 @@ std::uint64_t peak_memory() {
 
 }  // namespace
 
-std::string info_help() {
-  return "Usage: blockrand info INPUT [options]\n"
-         "\n"
-         "Reads an OpenStreetMap extract and says what is in it: buildings and parts, how well they are tagged,\n"
-         "streets and other objects, the extent, the coordinate system that a build would choose, and how long\n"
-         "a build would take. Writes nothing.\n" +
-         settings::option_help(settings::kInfo) +
-         "\n"
-         "Examples:\n"
-         "  blockrand info leipzig.osm.pbf\n"
-         "  blockrand info berlin.osm.pbf --bbox 13.37,52.51,13.41,52.53\n"
-         "  blockrand info leipzig.osm.pbf --json | jq .buildings.count\n"
-         "\n"
-         "Exit codes: 0 all well, 1 wrong usage, 2 unreadable or invalid input, 4 internal error.\n";
+settings::CommandText info_text() {
+  return {.name = "info",
+          .summary = "what is in an extract, and what a build of it would take",
+          .usage = "INPUT [options]",
+          .description =
+              "Reads an OpenStreetMap extract and says what is in it: buildings and parts, how well they are tagged, "
+              "streets and other objects, the extent, the coordinate system that a build would choose, and how long a "
+              "build would take. Writes nothing.",
+          .options = settings::kInfo,
+          .examples = {{"blockrand info leipzig.osm.pbf", ""},
+                       {"blockrand info berlin.osm.pbf --bbox 13.37,52.51,13.41,52.53", ""},
+                       {"blockrand info leipzig.osm.pbf --json | jq .buildings.count", ""}},
+          .exit_codes = {{"0", "all well"},
+                         {"1", "wrong usage"},
+                         {"2", "unreadable or invalid input"},
+                         {"4", "output could not be written or internal error"},
+                         {"128 + N", "ended by signal N"}}};
 }
 
 int run_info(const std::vector<std::string>& arguments) {
   const settings::CommandLine line = settings::read_command_line(settings::kInfo, arguments);
   if (line.help) {
-    std::fputs(info_help().c_str(), stdout);
+    std::fputs(settings::command_help(info_text()).c_str(), stdout);
     return kSuccess;
   }
   const settings::Settings& s = line.settings;

@@ -4,12 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/settings/command_text.h"
+
 namespace blockrand::cli {
 
 /// \param arguments  after the command's name
 /// \returns the exit code; errors are thrown
 int run_info(const std::vector<std::string>& arguments);
 
-std::string info_help();
+settings::CommandText info_text();
 
 }  // namespace blockrand::cli

@@ -8,27 +8,26 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/toml_file.h"
-#include "pipeline/cli/build.h"
+#include "pipeline/cli/command.h"
 #include "pipeline/cli/errors.h"
 #include "pipeline/cli/exit_codes.h"
 #include "pipeline/cli/help.h"
-#include "pipeline/cli/info.h"
 
 namespace {
 
 using namespace blockrand;
 
 int run(const std::string& command, const std::vector<std::string>& arguments) {
-  if (command == "build") return cli::run_build(arguments);
-  if (command == "info") return cli::run_info(arguments);
-  if (command == "help") return cli::run_help(arguments);
+  if (const cli::Command* known = cli::find_command(command)) return known->run(arguments);
   if (command == "--help" || command == "-h") return cli::run_help({});
   if (command == "--version" || command == "-V") {
     std::fputs(cli::version_text().c_str(), stdout);
     return cli::kSuccess;
   }
   if (command.empty()) throw base::UsageError("no command is given. Try 'blockrand --help'.");
-  const std::string near = base::nearest(command, cli::command_names());
+  std::vector<std::string> names;
+  for (const cli::Command& known : cli::commands()) names.push_back(known.text.name);
+  const std::string near = base::nearest(command, names);
   throw base::UsageError("unknown command " + command + "." + (near.empty() ? "" : " Did you mean " + near + "?") +
                          " Try 'blockrand --help'.");
 }

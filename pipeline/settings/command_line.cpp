@@ -12,14 +12,12 @@
 namespace blockrand::settings {
 namespace {
 
-constexpr std::size_t kHelpColumn = 28, kHelpWidth = 100;
-
 std::string shown(const Option& option) {
   return option.positional() ? std::string(option.name) : "--" + std::string(option.name);
 }
 
 [[noreturn]] void wrong_usage(const std::string& what, Commands command) {
-  throw base::UsageError(fmt::format("{} Try 'blockrand {} --help'.", what, command == kBuild ? "build" : "info"));
+  throw base::UsageError(fmt::format("{} Try 'blockrand {} --help'.", what, name(command)));
 }
 
 [[noreturn]] void unknown_option(const std::string& given, Commands command) {
@@ -43,19 +41,6 @@ void set(const Option& option, Settings& settings, const std::string& value) {
   } catch (const ValueError& error) {
     throw base::UsageError(shown(option) + ": " + error.what() + ". " + error.remedy);
   }
-}
-
-/// Breaks `text` at spaces into lines of at most `width` characters.
-std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
-  std::vector<std::string> lines;
-  while (text.size() > width) {
-    std::size_t end = text.rfind(' ', width);
-    if (end == std::string_view::npos) end = width;
-    lines.emplace_back(text.substr(0, end));
-    text.remove_prefix(std::min(text.size(), end + 1));
-  }
-  lines.emplace_back(text);
-  return lines;
 }
 
 }  // namespace
@@ -92,15 +77,14 @@ CommandLine read_command_line(Commands command, const std::vector<std::string>& 
   } catch (const CLI::ParseError& error) {
     wrong_usage(std::string(error.what()) + ".", command);
   }
-  std::string input;
+  std::string taken;
   for (const auto& [o, option] : parsed)
-    if (o->positional() && option->count() > 0) input = option->results().front();
+    if (o->positional() && option->count() > 0)
+      taken += fmt::format("{}{} is {}", taken.empty() ? "" : ", ", o->name, option->results().front());
   for (const std::string& extra : app.remaining()) {
     if (extra == "--") continue;
     if (extra.size() > 1 && extra.starts_with('-')) unknown_option(extra, command);
-    wrong_usage(fmt::format("unexpected argument {}: one input at a time{}.", extra,
-                            input.empty() ? "" : " (it is " + input + ")"),
-                command);
+    wrong_usage(fmt::format("unexpected argument {}{}.", extra, taken.empty() ? "" : ": " + taken + " already"), command);
   }
   // The file first, so that the command line is stronger.
   for (const auto& [o, option] : parsed) {
@@ -110,38 +94,9 @@ CommandLine read_command_line(Commands command, const std::vector<std::string>& 
   }
   for (const auto& [o, option] : parsed)
     if (option->count() > 0) set(*o, line.settings, option->results().back());
-  if (line.settings.build.input.empty()) wrong_usage("no INPUT is given: name an OSM extract.", command);
-  if (command == kBuild && line.settings.build.output.empty())
-    wrong_usage("no output folder is given: name one with --output FOLDER.", command);
+  for (const auto& [o, option] : parsed)
+    if (!o->if_missing.empty() && o->show(line.settings).empty()) wrong_usage(std::string(o->if_missing), command);
   return line;
-}
-
-std::string option_help(Commands command) {
-  std::string text;
-  for (const Section section : {Section::build, Section::messages}) {
-    std::string rows;
-    for (const Option& o : options()) {
-      if (o.section != section || !(o.commands & command)) continue;
-      std::string names = "  ";
-      if (o.positional()) {
-        names += std::string(o.name);
-      } else {
-        names += o.letter.empty() ? "    " : "-" + std::string(o.letter) + ", ";
-        names += "--" + std::string(o.name);
-        if (!o.argument.empty()) names += " " + std::string(o.argument);
-      }
-      std::string help(o.help);
-      const std::string fallback = default_text(o);
-      if (o.type != OptionType::flag && !fallback.empty()) help += " [" + fallback + "]";
-      const std::vector<std::string> lines = wrapped(help, kHelpWidth - kHelpColumn);
-      rows += names.size() + 2 > kHelpColumn ? names + "\n" + std::string(kHelpColumn, ' ')
-                                             : names + std::string(kHelpColumn - names.size(), ' ');
-      for (std::size_t i = 0; i < lines.size(); ++i)
-        rows += (i == 0 ? "" : std::string(kHelpColumn, ' ')) + lines[i] + "\n";
-    }
-    if (!rows.empty()) text += fmt::format("\n{}:\n{}", title(section), rows);
-  }
-  return text;
 }
 
 }  // namespace blockrand::settings

@@ -1,4 +1,4 @@
-// Options from the command line, and what --help says about them.
+// Options from the command line.
 #pragma once
 
 #include <string>
@@ -14,11 +14,9 @@ struct CommandLine {
 };
 
 /// Reads the arguments of a command (without program and command), and the config file that --config names first.
-/// \throws base::UsageError  unknown options (with the nearest known one), missing or wrong values, no INPUT
+/// \throws base::UsageError  unknown options (with the nearest known one), missing or wrong values, no INPUT or what
+///                          else the command needs
 /// \throws base::InputError  from the config file
 CommandLine read_command_line(Commands command, const std::vector<std::string>& arguments);
-
-/// The option part of a command's --help. Tuning options of [repair] and [generate] are left to the reference.
-std::string option_help(Commands command);
 
 }  // namespace blockrand::settings

@@ -33,6 +33,7 @@ std::optional<std::string> value_text(base::TomlTable& table, const Option& opti
       return table.plain(option.key);
     case OptionType::text:
     case OptionType::path:
+    case OptionType::folder:
       return table.text(option.key);
   }
   return std::nullopt;
@@ -50,7 +51,8 @@ void read_config(const std::string& path, Settings& settings) {
       if (option.section != section || option.key.empty()) continue;
       std::optional<std::string> text = value_text(*table, option);
       if (!text) continue;
-      if (option.type == OptionType::path && !text->empty()) *text = (folder / *text).lexically_normal().string();
+      const bool path = option.type == OptionType::path || option.type == OptionType::folder;
+      if (path && !text->empty()) *text = (folder / *text).lexically_normal().string();
       try {
         option.set(settings, *text);
       } catch (const ValueError& error) {

@@ -120,6 +120,12 @@ std::string show_formats(const Settings& s) {
   return text;
 }
 
+std::vector<std::string> format_names() {
+  std::vector<std::string> names;
+  for (const Format& f : kFormats) names.emplace_back(f.name);
+  return names;
+}
+
 void set_crs(Settings& s, const std::string& text) {
   // Whether the code exists and suits the place is for georef to say; here only what cannot be one.
   std::string_view code = text;
@@ -142,6 +148,13 @@ std::string name_of(const std::vector<std::pair<std::string, T>>& choices, T val
   for (const auto& [name, v] : choices)
     if (v == value) return name;
   return {};
+}
+
+template <class T>
+std::vector<std::string> names_of(const std::vector<std::pair<std::string, T>>& choices) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) names.push_back(name);
+  return names;
 }
 
 // ---- the table
@@ -216,15 +229,32 @@ void add_build(Table& t) {
           .type = OptionType::path,
           .section = S,
           .commands = both,
-          .help = "OSM extract: .osm, .osm.pbf, .osm.gz or .osm.bz2"},
+          .help = "OSM extract: .osm, .osm.pbf, .osm.gz or .osm.bz2",
+          .if_missing = "no INPUT is given: name an OSM extract."},
          FIELD(build.input));
+  t.text({.name = "FOLDER",
+          .argument = "FOLDER",
+          .type = OptionType::folder,
+          .section = S,
+          .commands = kExplain | kValidate,
+          .help = "what 'blockrand build' wrote",
+          .if_missing = "no FOLDER is given: name the output folder of a build."},
+         FIELD(folder));
+  t.text({.name = "ID",
+          .argument = "ID",
+          .section = S,
+          .commands = kExplain,
+          .help = "of the building: w123 for way 123, r45 for relation 45",
+          .if_missing = "no ID is given: name a building, for example w123."},
+         FIELD(id));
   t.text({.name = "output",
           .letter = "o",
           .key = "output",
           .argument = "FOLDER",
-          .type = OptionType::path,
+          .type = OptionType::folder,
           .section = S,
-          .help = "folder that the build becomes; it appears when everything in it is complete"},
+          .help = "folder that the build becomes; it appears when everything in it is complete",
+          .if_missing = "no output folder is given: name one with --output FOLDER."},
          FIELD(build.output));
   t.other(
       {.name = "formats",
@@ -233,7 +263,8 @@ void add_build(Table& t) {
        .type = OptionType::list,
        .section = S,
        .help = "what is written, separated by commas: gltf (3D Tiles with GLB; also called tileset, 3dtiles), citygml, cityjson, "
-               "gpkg (GeoPackage; also called geopackage)"},
+               "gpkg (GeoPackage; also called geopackage)",
+       .choices = format_names()},
       set_formats, show_formats);
   t.integer({.name = "lod",
              .key = "lod",
@@ -290,12 +321,14 @@ void add_build(Table& t) {
   t.flag({.name = "report",
           .key = "report",
           .section = S,
-          .help = "write report.html: what was built, where values come from, a map and pictures"},
+          .help = "write report.html: what was built, where values come from, a map and pictures",
+          .without = "no report.html: the page with what was built, where values come from, a map and pictures"},
          FIELD(build.report));
   t.flag({.name = "explain",
           .key = "explain",
           .section = S,
-          .help = "write explain/, from which 'blockrand explain' tells why a building looks as it does"},
+          .help = "write explain/, from which 'blockrand explain' tells why a building looks as it does",
+          .without = "no explain/: 'blockrand explain' cannot tell why a building of this build looks as it does"},
          FIELD(build.explain));
   t.integer({.name = "seed",
              .key = "seed",
@@ -320,10 +353,10 @@ void add_build(Table& t) {
           .section = S,
           .help = "exit with code 3 when a building is simpler than asked or has no solid"},
          FIELD(build.strict));
-  t.text({.name = "presets",
-          .key = "presets",
-          .argument = "FOLDER",
-          .type = OptionType::path,
+  t.text({.name = "configs",
+          .key = "configs",
+          .argument = "DIR",
+          .type = OptionType::folder,
           .section = S,
           .help = "folder with defaults/ and materials/; else the configs/ that came with the program"},
          FIELD(build.configs));
@@ -334,7 +367,7 @@ void add_build(Table& t) {
           .section = S,
           .help = "read options from this file; the command line is stronger"},
          FIELD(config));
-  t.flag({.name = "json", .section = S, .commands = kInfo, .help = "print JSON"}, FIELD(json));
+  t.flag({.name = "json", .section = S, .commands = kInfo | kExplain | kValidate, .help = "print JSON"}, FIELD(json));
 }
 
 void add_repair(Table& t) {
@@ -428,7 +461,8 @@ void add_messages(Table& t) {
        .argument = "STYLE",
        .section = S,
        .commands = both,
-       .help = "auto (bar on a terminal, else plain), bar, plain (lines) or none"},
+       .help = "auto (bar on a terminal, else plain), bar, plain (lines) or none",
+       .choices = names_of(kProgressStyles)},
       [](Settings& s, const std::string& text) { s.progress = choose(text, kProgressStyles); },
       [](const Settings& s) { return name_of(kProgressStyles, s.progress); });
   t.other(
@@ -436,7 +470,8 @@ void add_messages(Table& t) {
        .argument = "FORMAT",
        .section = S,
        .commands = both,
-       .help = "messages, progress and the summary as text or as json lines"},
+       .help = "messages, progress and the summary as text or as json lines",
+       .choices = names_of(kLogFormats)},
       [](Settings& s, const std::string& text) { s.log_format = choose(text, kLogFormats); },
       [](const Settings& s) { return name_of(kLogFormats, s.log_format); });
   t.flag({.name = "quiet", .letter = "q", .section = S, .commands = both, .help = "warnings and errors only"},
@@ -470,10 +505,37 @@ const std::vector<Option>& options() {
   return all;
 }
 
+std::string_view name(Commands command) {
+  switch (command) {
+    case kBuild: return "build";
+    case kInfo: return "info";
+    case kExplain: return "explain";
+    case kValidate: return "validate";
+  }
+  return "";
+}
+
 std::string default_text(const Option& option) {
   static const Settings fresh;
-  const std::string text = option.show(fresh);
-  return option.type == OptionType::flag ? (text == "true" ? "yes" : "no") : text;
+  return option.type == OptionType::flag ? "" : option.show(fresh);
 }
+
+std::string range_text(const Option& option) {
+  if (option.type != OptionType::integer && option.type != OptionType::number) return "";
+  if (option.maximum >= 1e15) return fmt::format("from {}", option.minimum);
+  return fmt::format("{} to {}", option.minimum, option.maximum);
+}
+
+bool on_by_default(const Option& option) {
+  static const Settings fresh;
+  return option.type == OptionType::flag && option.show(fresh) == "true";
+}
+
+std::string shown_name(const Option& option) {
+  if (option.positional()) return std::string(option.name);
+  return (on_by_default(option) ? "--no-" : "--") + std::string(option.name);
+}
+
+std::string_view shown_help(const Option& option) { return on_by_default(option) ? option.without : option.help; }
 
 }  // namespace blockrand::settings

@@ -16,21 +16,25 @@ namespace blockrand::settings {
 struct Settings {
   region::BuildOptions build;
   std::string config;  ///< the config file, for the record; its values are in the other fields
-  bool json = false;   ///< `info` prints JSON
+  std::string folder;  ///< a finished build, for the commands that read one
+  std::string id;      ///< of the building that `explain` is asked about
+  bool json = false;   ///< print JSON
   base::ProgressStyle progress = base::ProgressStyle::automatic;
   base::LogFormat log_format = base::LogFormat::text;
   bool quiet = false;  ///< warnings and errors only
 };
 
 /// Which commands know an option; bits.
-enum Commands : unsigned { kBuild = 1, kInfo = 2 };
+enum Commands : unsigned { kBuild = 1, kInfo = 2, kExplain = 4, kValidate = 8 };
+inline constexpr Commands kAllCommands[] = {kBuild, kInfo, kExplain, kValidate};
+std::string_view name(Commands command);  ///< "build"
 
 /// Where an option stands in the help and the reference; the first three are the sections of the config file.
 enum class Section { build, repair, generate, messages };
 std::string_view name(Section section);   ///< "build"
 std::string_view title(Section section);  ///< "What is built"
 
-enum class OptionType { text, path, integer, number, flag, list };
+enum class OptionType { text, path, folder, integer, number, flag, list };
 
 /// Why a text cannot be the value of an option; the caller adds which option and where.
 struct ValueError : std::runtime_error {
@@ -48,6 +52,9 @@ struct Option {
   unsigned commands = kBuild;
   double minimum = 0, maximum = 0;  ///< of integers and numbers
   std::string_view help{};          ///< one line, with the unit, without the default
+  std::string_view without{};       ///< of a flag that is on by default: what --no-… leaves out; one line
+  std::string_view if_missing{};    ///< what to say when it has no value; empty: it need not have one
+  std::vector<std::string> choices{};  ///< words that are a value (of a list: an item), for completion
   /// Sets the value from text; of flags "true" or "false". \throws ValueError
   std::function<void(Settings&, const std::string&)> set{};
   /// The value as text that `set` understands; empty where nothing is set. Of a fresh Settings: the default.
@@ -59,7 +66,20 @@ struct Option {
 /// All options in the order of help and reference.
 const std::vector<Option>& options();
 
-/// The value that holds when nobody sets one, as people read it.
+/// The value that holds when nobody sets one, as people read it; empty for flags, whose names say it (shown_name).
 std::string default_text(const Option& option);
+
+/// A flag that is set unless --no-… takes it back.
+bool on_by_default(const Option& option);
+
+/// The long name under which people meet an option: "--lod", of a flag that is on by default "--no-report", of a
+/// positional argument "INPUT".
+std::string shown_name(const Option& option);
+
+/// "0 to 2", "from 0"; empty where any value will do.
+std::string range_text(const Option& option);
+
+/// What that name does, without the default.
+std::string_view shown_help(const Option& option);
 
 }  // namespace blockrand::settings

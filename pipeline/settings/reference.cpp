@@ -7,15 +7,11 @@
 namespace blockrand::settings {
 namespace {
 
-std::string range_text(const Option& o) {
-  if (o.type != OptionType::integer && o.type != OptionType::number) return "";
-  if (o.maximum >= 1e15) return fmt::format("from {}", o.minimum);
-  return fmt::format("{} to {}", o.minimum, o.maximum);
-}
-
 std::string commands_text(unsigned commands) {
-  if (commands == (kBuild | kInfo)) return "build, info";
-  return commands == kBuild ? "build" : "info";
+  std::string text;
+  for (const Commands command : kAllCommands)
+    if (commands & command) text += fmt::format("{}{}", text.empty() ? "" : ", ", name(command));
+  return text;
 }
 
 }  // namespace
@@ -29,7 +25,8 @@ std::string options_markdown() {
       "Every option with a key can stand in a file that `--config FILE.toml` names, in the section given here; "
       "the command line is stronger than the file. Relative paths in the file start at the file's folder. "
       "`blockrand help options --toml` prints such a file with every default. "
-      "Every flag can be taken back with `--no-` before its name.\n";
+      "Every flag can be taken back with `--no-` before its name; a flag that is on unless you say so stands here by that "
+      "name, and its key is `true`.\n";
   for (const Section section : {Section::build, Section::repair, Section::generate, Section::messages}) {
     text += fmt::format("\n## {}{}\n\n", title(section),
                         section == Section::messages ? "" : fmt::format(" (`[{}]`)", name(section)));
@@ -41,12 +38,12 @@ std::string options_markdown() {
         names = fmt::format("`{}`", o.name);
       } else {
         if (!o.letter.empty()) names = fmt::format("`-{}`, ", o.letter);
-        names += fmt::format("`--{}{}{}`", o.name, o.argument.empty() ? "" : " ", o.argument);
+        names += fmt::format("`{}{}{}`", shown_name(o), o.argument.empty() ? "" : " ", o.argument);
       }
       const std::string value = default_text(o);
       text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", names, o.key.empty() ? "" : fmt::format("`{}`", o.key),
                           commands_text(o.commands), value.empty() ? "" : fmt::format("`{}`", value), range_text(o),
-                          o.help);
+                          shown_help(o));
     }
   }
   return text;

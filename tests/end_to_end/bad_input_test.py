@@ -207,7 +207,7 @@ class WrongCalls(BuildTest):
                               ('--crs', 'EPSG:99999'), ('--crs', 'EPSG:25833+5783'), ('--crs', 'EPSG:2263'),
                               ('--seed', 'x'), ('--seed', '-3'), ('--ground-height', 'high'),
                               ('--ground-height', 'nan'), ('--ground-height', '1e9'), ('--progress', 'loud'),
-                              ('--log-format', 'xml'), ('--presets', '/nowhere')):
+                              ('--log-format', 'xml'), ('--configs', '/nowhere')):
             with self.subTest(f'{option} {value}'):
                 self.wrong('build', SAMPLE, '-o', self.path('out'), f'{option}={value}', words=[option.strip('-')])
 

@@ -232,7 +232,7 @@ class Options(BuildTest):
         self.assertEqual(run.out.split()[1], read_json(self.plain, 'build.json')['program']['version'])
 
     def test_program_works_from_any_folder(self):
-        """Presets are found by the program's place, not by the working directory."""
+        """Configs are found by the program's place, not by the working directory."""
         out = self.build(SAMPLE, 'elsewhere', cwd='/')
         self.same_files(out, self.plain)
         self.assertEqual(sha256(os.path.join(out, 'report.json')), sha256(os.path.join(self.plain, 'report.json')))

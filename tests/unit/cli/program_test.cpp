@@ -1,4 +1,4 @@
-// Errors, signals, presets and help: the parts of the program around its commands.
+// Errors, signals, configs and help: the parts of the program around its commands.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -8,15 +8,17 @@
 #include <filesystem>
 #include <fstream>
 #include <new>
+#include <sstream>
 #include <thread>
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/publish.h"
 #include "pipeline/cli/build.h"
+#include "pipeline/cli/command.h"
+#include "pipeline/cli/configs_folder.h"
 #include "pipeline/cli/errors.h"
 #include "pipeline/cli/help.h"
 #include "pipeline/cli/info.h"
-#include "pipeline/cli/presets_folder.h"
 #include "pipeline/cli/signals.h"
 
 namespace blockrand::cli {
@@ -70,17 +72,23 @@ TEST(Errors, AreJsonWhereLogsAre) {
 }
 
 TEST(Help, EveryCommandHasExamplesAndExitCodes) {
-  for (const std::string& text : {general_help(), build_help(), info_help()}) {
-    EXPECT_THAT(text, StartsWith("Usage: blockrand"));
-    EXPECT_THAT(text, HasSubstr("Examples:\n  blockrand "));
-    EXPECT_THAT(text, HasSubstr("Exit codes: 0 all well"));
+  EXPECT_GE(commands().size(), 3u);
+  for (const Command& command : commands()) {
+    const std::string help = settings::command_help(command.text);
+    EXPECT_THAT(help, StartsWith("Usage: blockrand " + command.text.name + " "));
+    EXPECT_THAT(help, HasSubstr("\nExamples:\n  blockrand " + command.text.name));
+    EXPECT_THAT(help, HasSubstr("\nExit codes: 0 all well"));
+    EXPECT_THAT(general_help(), HasSubstr("\n  " + command.text.name + " "));
+    EXPECT_LE(command.text.summary.size(), 80u);
+    EXPECT_EQ(outcome([&] { return run_help({command.text.name}); }).out, help);
+    EXPECT_EQ(outcome([&] { return command.run({"--help"}); }).out, help);
+    EXPECT_EQ(outcome([&] { return command.run({"-h"}); }).out, help);
+    EXPECT_EQ(find_command(command.text.name), &command);
+    std::istringstream lines(help);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
   }
-  for (const std::string& command : command_names()) {
-    EXPECT_THAT(general_help(), HasSubstr("\n  " + command + " "));
-    EXPECT_EQ(outcome([&] { return run_help({command}); }).code, 0);
-  }
-  EXPECT_THAT(outcome([] { return run_build({"--help"}); }).out, build_help());
-  EXPECT_THAT(outcome([] { return run_info({"-h"}); }).out, info_help());
+  EXPECT_EQ(find_command("biuld"), nullptr);
+  EXPECT_THAT(general_help(), HasSubstr("Exit codes: 0 all well, 1 wrong usage, 2 "));
   EXPECT_THAT(version_text(), StartsWith("blockrand "));
 }
 
@@ -92,6 +100,12 @@ TEST(Help, KnowsItsTopics) {
   EXPECT_EQ(o.code, 1);
   EXPECT_THAT(o.err, HasSubstr("Did you mean options?"));
   EXPECT_EQ(outcome([] { return run_help({"build", "x"}); }).code, 1);
+  EXPECT_THAT(outcome([] { return run_help({"man"}); }).out, HasSubstr(".TH BLOCKRAND 1"));
+  for (const char* shell : {"bash", "zsh", "fish"})
+    EXPECT_THAT(outcome([&] { return run_help({"completion", shell}); }).out, HasSubstr("for " + std::string(shell)));
+  EXPECT_THAT(outcome([] { return run_help({"completion"}); }).err, HasSubstr("Known: bash, zsh, fish."));
+  EXPECT_THAT(outcome([] { return run_help({"completion", "tcsh"}); }).err, HasSubstr("unknown tcsh"));
+  EXPECT_THAT(outcome([] { return run_help({"options", "--html"}); }).err, HasSubstr("Known: --markdown, --toml."));
 }
 
 TEST(Info, AMissingFileIsInvalidInput) {
@@ -100,10 +114,43 @@ TEST(Info, AMissingFileIsInvalidInput) {
   EXPECT_THAT(o.err, HasSubstr("/nowhere/x.osm.pbf"));
 }
 
-TEST(Presets, AreFoundOrNamed) {
-  EXPECT_TRUE(fs::exists(fs::path(presets_folder("")) / "defaults" / "uses.toml"));
-  EXPECT_EQ(presets_folder(BLOCKRAND_SOURCE_DIR "/configs"), BLOCKRAND_SOURCE_DIR "/configs");
-  EXPECT_THROW(presets_folder("/nowhere"), base::UsageError);
+class Configs : public testing::Test {
+ protected:
+  Configs() {
+    std::string pattern = testing::TempDir() + "configs.XXXXXX";
+    here = mkdtemp(pattern.data());
+  }
+  ~Configs() override { fs::remove_all(here); }
+  fs::path place(const fs::path& folder) const {
+    fs::create_directories(here / folder / "defaults");
+    std::ofstream(here / folder / "defaults" / "uses.toml") << "";
+    return here / folder;
+  }
+  fs::path here;
+};
+
+TEST_F(Configs, LieBesideTheProgramOrBelowItsPrefix) {
+  const fs::path program = here / "usr/bin/blockrand";
+  const fs::path installed = place("usr/share/blockrand/configs");
+  EXPECT_EQ(configs_folder("", program), installed);
+  const fs::path mine = place("mine");
+  EXPECT_EQ(configs_folder(mine, program), mine) << "--configs is stronger";
+  const fs::path beside = place("usr/bin/configs");
+  EXPECT_EQ(configs_folder("", program), beside) << "a build tree's link to the source tree is stronger";
+}
+
+TEST_F(Configs, AreNotSoughtAnywhereElse) {
+  place("configs");
+  place("usr/configs");
+  try {
+    configs_folder("", here / "usr/bin/blockrand");
+    FAIL() << "a folder above the prefix was taken";
+  } catch (const base::UsageError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr((here / "usr/bin/configs").string()),
+                                    HasSubstr((here / "usr/share/blockrand/configs").string()), HasSubstr("--configs")));
+  }
+  EXPECT_THROW(configs_folder("/nowhere", program_file()), base::UsageError) << "no fallback for a wrong --configs";
+  EXPECT_EQ(program_file().filename(), "test_cli");
 }
 
 class Signals : public testing::TestWithParam<int> {};

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "pipeline/base/error.h"
+#include "pipeline/settings/command_text.h"
 #include "pipeline/settings/config_file.h"
 
 namespace blockrand::settings {
@@ -73,17 +74,29 @@ TEST(CommandLine, UnknownOptionsSuggestTheNearest) {
   EXPECT_THAT(build_error({"--job=3"}), StartsWith("usage: unknown option --job. Did you mean --jobs?"));
   EXPECT_EQ(build_error({"--somethingelse"}), "usage: unknown option --somethingelse. Try 'blockrand build --help'.");
   EXPECT_THAT(build_error({"-z"}), StartsWith("usage: unknown option -z. Try"));
-  EXPECT_THAT(error_of([] { read_command_line(kInfo, {"in.osm", "--gzip"}); }), HasSubstr("unknown option --gzip"));
+  EXPECT_THAT(error_of([] { read_command_line(kInfo, {"in.osm", "--gzip"}); }),
+              AllOf(HasSubstr("unknown option --gzip"), HasSubstr("'blockrand info --help'")));
 }
 
 TEST(CommandLine, WrongValuesNameTheOption) {
   EXPECT_THAT(build_error({"--jobs", "1025"}), StartsWith("usage: --jobs: 1025 is out of range. Write a whole"));
   EXPECT_THAT(build_error({"--progress", "bars"}), HasSubstr("Did you mean bar?"));
   EXPECT_THAT(build_error({"--jobs"}), HasSubstr("--jobs"));
-  EXPECT_THAT(build_error({"second.osm"}), HasSubstr("unexpected argument second.osm"));
+  EXPECT_THAT(build_error({"second.osm"}), HasSubstr("unexpected argument second.osm: INPUT is in.osm already"));
   EXPECT_THAT(error_of([] { read_command_line(kBuild, {"-o", "x"}); }), HasSubstr("no INPUT"));
   EXPECT_THAT(error_of([] { read_command_line(kBuild, {"in.osm"}); }), HasSubstr("--output FOLDER"));
   EXPECT_EQ(error_of([] { read_command_line(kInfo, {"in.osm"}); }), "no error") << "info writes nothing";
+}
+
+TEST(CommandLine, CommandsHavePositionalArgumentsOfTheirOwn) {
+  const Settings s = read_command_line(kExplain, {"out/town", "w123", "--json"}).settings;
+  EXPECT_EQ(s.folder, "out/town");
+  EXPECT_EQ(s.id, "w123");
+  EXPECT_TRUE(s.json);
+  EXPECT_THAT(error_of([] { read_command_line(kExplain, {"out"}); }),
+              AllOf(HasSubstr("no ID is given"), HasSubstr("'blockrand explain --help'")));
+  EXPECT_THAT(error_of([] { read_command_line(kValidate, {}); }), HasSubstr("no FOLDER is given"));
+  EXPECT_THAT(error_of([] { read_command_line(kValidate, {"out", "w1"}); }), HasSubstr("unexpected argument w1"));
 }
 
 TEST(CommandLine, HelpWinsOverEverything) {
@@ -92,9 +105,12 @@ TEST(CommandLine, HelpWinsOverEverything) {
 }
 
 TEST(CommandLine, HelpListsWhatTheCommandKnows) {
-  EXPECT_THAT(option_help(kBuild), AllOf(HasSubstr("-o, --output FOLDER"), HasSubstr("[gltf,citygml]"),
+  EXPECT_THAT(option_help(kBuild), AllOf(HasSubstr("-o, --output FOLDER"), HasSubstr("[gltf,citygml,"),
                                          HasSubstr("--log-format"), testing::Not(HasSubstr("--json"))));
   EXPECT_THAT(option_help(kInfo), AllOf(HasSubstr("--json"), testing::Not(HasSubstr("--output"))));
+  EXPECT_THAT(option_help(kBuild), AllOf(HasSubstr("      --no-report           no report.html"),
+                                         testing::Not(HasSubstr("--report"))))
+      << "what is on by default is shown by the name that changes something";
   for (std::size_t start = 0; start < option_help(kBuild).size();) {
     const std::string help = option_help(kBuild);
     const std::size_t end = help.find('\n', start);

@@ -44,6 +44,12 @@ TEST(Options, EveryOneHasNameMeaningAndBothWays) {
     EXPECT_EQ(o.help.find('\n'), std::string_view::npos) << o.name;
     EXPECT_EQ(o.help.find('|'), std::string_view::npos) << o.name << " would break the reference's table";
     EXPECT_TRUE(o.set && o.show) << o.name;
+    EXPECT_EQ(on_by_default(o), !o.without.empty()) << o.name << ": --no-… must say what is left out, and only it";
+    EXPECT_EQ(shown_help(o).find('|'), std::string_view::npos) << o.name;
+    for (const std::string& choice : o.choices) {
+      Settings s;
+      EXPECT_NO_THROW(o.set(s, choice)) << o.name;
+    }
     EXPECT_EQ(o.argument.empty(), o.type == OptionType::flag) << o.name;
     if (o.type == OptionType::integer || o.type == OptionType::number) {
       EXPECT_LT(o.minimum, o.maximum) << o.name;
@@ -149,6 +155,15 @@ TEST(Options, FormatsAreAListWithAliases) {
   EXPECT_THAT(error_of("formats", "cityglm"), HasSubstr("Did you mean citygml?"));
   EXPECT_THAT(error_of("formats", ""), HasSubstr("Known: gltf, citygml"));
   EXPECT_THAT(error_of("formats", "gltf,"), HasSubstr("'' is unknown"));
+}
+
+TEST(Options, FlagsAreShownByTheNameThatChangesSomething) {
+  EXPECT_EQ(shown_name(option("gzip")), "--gzip");
+  EXPECT_EQ(shown_name(option("report")), "--no-report");
+  EXPECT_EQ(shown_name(option("INPUT")), "INPUT");
+  EXPECT_THAT(std::string(shown_help(option("report"))), HasSubstr("no report.html"));
+  EXPECT_EQ(default_text(option("report")), "");
+  EXPECT_EQ(default_text(option("lod")), "2");
 }
 
 TEST(Options, CoordinateSystemsAreEpsgCodes) {

@@ -1,0 +1,34 @@
+#include "pipeline/cli/command.h"
+
+#include <algorithm>
+
+#include "pipeline/cli/build.h"
+#include "pipeline/cli/help.h"
+#include "pipeline/cli/info.h"
+
+namespace blockrand::cli {
+
+const std::vector<Command>& commands() {
+  static const std::vector<Command> all = {
+      {build_text(), run_build},
+      {info_text(), run_info},
+      {help_text(), run_help},
+  };
+  return all;
+}
+
+const Command* find_command(const std::string& name) {
+  const auto found = std::ranges::find(commands(), name, [](const Command& c) { return c.text.name; });
+  return found == commands().end() ? nullptr : &*found;
+}
+
+const std::vector<settings::CommandText>& command_texts() {
+  static const std::vector<settings::CommandText> all = [] {
+    std::vector<settings::CommandText> texts;
+    for (const Command& command : commands()) texts.push_back(command.text);
+    return texts;
+  }();
+  return all;
+}
+
+}  // namespace blockrand::cli
