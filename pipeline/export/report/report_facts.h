@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,6 @@ struct ReportFacts {
   std::uint64_t models = 0, represented = 0, duplicates = 0, reported = 0;  ///< represented without duplicates
   std::array<std::uint64_t, 3> models_by_lod{};
   std::uint64_t buildings_built = 0, bodies = 0;  ///< buildings with at least one body; bodies of all
-  std::map<std::string, std::uint64_t> issues;    ///< rows by code
 
   std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → bodies
   std::map<std::string, std::uint64_t> roofs;                           ///< built roof shape → bodies
@@ -55,7 +55,7 @@ struct ReportFacts {
   double volume = 0;                                                    ///< m³
   std::uint64_t party_walls = 0;
 
-  std::vector<model::ReportRow> rows;   ///< of all objects, sorted; reported ones carry the detail of their object
+  std::span<const model::ReportRow> rows;  ///< of all objects, sorted; outlives this. Reported ones carry the detail of their object
   std::vector<ReportedObject> objects;  ///< in id order
   std::vector<ReportFile> files;        ///< in path order, report.html itself left out
   std::vector<ReportPicture> pictures;

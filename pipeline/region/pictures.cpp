@@ -1,0 +1,232 @@
+#include "pipeline/region/pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "pipeline/base/parallel.h"
+#include "pipeline/base/text.h"
+#include "pipeline/georef/tiles.h"
+#include "pipeline/picture/render.h"
+
+namespace blockrand::region {
+
+namespace {
+
+using model::Point3;
+using picture::Camera;
+using picture::Direction;
+
+constexpr model::Colour kGround{214, 214, 208};
+
+/// Square of the distance between two tiles in tiles; the quadtree closes at 180 degrees.
+std::int64_t distance(const model::TileId& a, const model::TileId& b) {
+  const std::int64_t round = std::int64_t{2} << a.level;
+  std::int64_t dx = std::abs(static_cast<std::int64_t>(a.x) - static_cast<std::int64_t>(b.x));
+  dx = std::min(dx, round - dx);
+  const std::int64_t dy = static_cast<std::int64_t>(a.y) - static_cast<std::int64_t>(b.y);
+  return dx * dx + dy * dy;
+}
+
+/// The buildings without the few that lie far from the others, which would make the rest small.
+std::vector<Point3> core_points(const std::vector<PicturedBuilding>& buildings) {
+  std::vector<double> xs, ys;
+  for (const PicturedBuilding& b : buildings) {
+    xs.push_back(b.box.centre().x);
+    ys.push_back(b.box.centre().y);
+  }
+  std::sort(xs.begin(), xs.end());
+  std::sort(ys.begin(), ys.end());
+  const std::size_t cut = xs.size() / 100, last = xs.size() - 1 - cut;
+  std::vector<Point3> out;
+  for (const PicturedBuilding& b : buildings) {
+    const Point3 c = b.box.centre();
+    if (c.x < xs[cut] || c.x > xs[last] || c.y < ys[cut] || c.y > ys[last]) continue;
+    for (const Point3& p : b.box.corners()) out.push_back(p);
+  }
+  return out;
+}
+
+/// The middle of the cell that has, with its neighbours, the most bodies of house size; where none is that large, of any.
+Point3 densest_spot(const std::vector<PicturedBuilding>& buildings) {
+  constexpr double kCell = 50;        // m
+  constexpr double kHouseHeight = 5;  // m. Sheds and garages stand dense and say nothing.
+  using Key = std::pair<std::int64_t, std::int64_t>;
+  for (const double least : {kHouseHeight, 0.0}) {
+    std::map<Key, std::uint64_t> cells;
+    for (const PicturedBuilding& b : buildings) {
+      const Point3 c = b.box.centre();
+      if (b.box.max.z - b.ground < least) continue;
+      const Key home{static_cast<std::int64_t>(std::floor(c.x / kCell)), static_cast<std::int64_t>(std::floor(c.y / kCell))};
+      for (std::int64_t x = -1; x <= 1; ++x)
+        for (std::int64_t y = -1; y <= 1; ++y) ++cells[{home.first + x, home.second + y}];
+    }
+    const auto best = std::max_element(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (best == cells.end()) continue;
+    return {(static_cast<double>(best->first.first) + 0.5) * kCell, (static_cast<double>(best->first.second) + 0.5) * kCell, 0};
+  }
+  return {};
+}
+
+std::vector<Point3> points_near(const std::vector<PicturedBuilding>& buildings, Point3 spot, double reach) {
+  std::vector<Point3> out;
+  for (const PicturedBuilding& b : buildings) {
+    const Point3 c = b.box.centre();
+    if ((c.x - spot.x) * (c.x - spot.x) + (c.y - spot.y) * (c.y - spot.y) > reach * reach) continue;
+    for (const Point3& p : b.box.corners())
+      out.push_back({std::clamp(p.x, spot.x - reach, spot.x + reach), std::clamp(p.y, spot.y - reach, spot.y + reach), p.z});
+  }
+  return out;
+}
+
+}  // namespace
+
+PicturePlan plan_pictures(std::span<const Shard> shards, const georef::Projection& projection, std::uint64_t budget) {
+  PicturePlan plan;
+  plan.chosen.assign(shards.size(), false);
+  if (shards.empty()) return plan;
+  std::size_t densest = 0;
+  for (std::size_t i = 0; i < shards.size(); ++i)
+    if (shards[i].seeds.size() > shards[densest].seeds.size()) densest = i;
+  const georef::LonLat middle = georef::centre(shards[densest].tile);
+  const model::Point2 origin = projection.forward(middle.lon, middle.lat);
+  plan.origin = {origin.x, origin.y, 0};
+
+  std::vector<std::size_t> order(shards.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return distance(shards[a].tile, shards[densest].tile) < distance(shards[b].tile, shards[densest].tile);
+  });
+  for (const std::size_t i : order) {
+    // The densest tile comes first and is shown in any case; a gap in the picture would look like a hole in the model.
+    if (i != densest && plan.buildings + shards[i].seeds.size() > budget) {
+      plan.whole = false;
+      break;
+    }
+    plan.chosen[i] = true;
+    plan.buildings += shards[i].seeds.size();
+  }
+  return plan;
+}
+
+PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, std::size_t shard) {
+  PictureTile tile{picture::Scene(plan.origin), {}};
+  if (!plan.chosen[shard]) return tile;
+  for (const model::Building& building : region.buildings) {
+    if (!building.owned) continue;
+    const auto object = static_cast<std::uint32_t>(tile.buildings.size());
+    PicturedBuilding pictured;
+    pictured.ground = building.attributes.ground_height.value;
+    for (const model::BuildingPart& part : building.parts) {
+      const bool with_roof = part.lod >= 2 && !part.lod2.empty();
+      const model::Solid& solid = with_roof ? part.lod2 : part.lod1;
+      if (solid.empty()) continue;
+      tile.scene.add(solid, with_roof ? part.lod2_triangles : part.lod1_triangles, object);
+      for (const Point3& p : solid.vertices) pictured.box.include(p);
+    }
+    if (!pictured.box.empty) tile.buildings.push_back(pictured);
+  }
+  return tile;
+}
+
+void Pictures::add(PictureTile&& tile) {
+  scene_.append(tile.scene, static_cast<std::uint32_t>(buildings_.size()));
+  buildings_.insert(buildings_.end(), tile.buildings.begin(), tile.buildings.end());
+}
+
+/// One plane, or where the ground rises and falls a mesh through the grounds of the buildings.
+void Pictures::lay_ground() {
+  double low = buildings_[0].ground, high = low;
+  picture::Box box;
+  for (const PicturedBuilding& b : buildings_) {
+    low = std::min(low, b.ground);
+    high = std::max(high, b.ground);
+    box.include(b.box.min);
+    box.include(b.box.max);
+  }
+  if (high - low < 0.1) {
+    scene_.set_ground(low, kGround);
+    return;
+  }
+  constexpr int kCells = 80;          // along the longer side
+  constexpr double kMargin = 60;      // m around the buildings
+  constexpr double kSmoothing = 400;  // m²: nearer than its root, neighbours weigh alike
+  const double west = box.min.x - kMargin, south = box.min.y - kMargin;
+  const double width = box.max.x + kMargin - west, height = box.max.y + kMargin - south;
+  const double cell = std::max(width, height) / kCells;
+  const int columns = static_cast<int>(width / cell) + 1, rows = static_cast<int>(height / cell) + 1;
+  std::vector<double> z;
+  for (int j = 0; j <= rows; ++j)
+    for (int i = 0; i <= columns; ++i) {
+      // Mean of the grounds, weighted by the inverse fourth power of the distance.
+      double sum = 0, weights = 0;
+      for (const PicturedBuilding& b : buildings_) {
+        const Point3 c = b.box.centre();
+        const double dx = c.x - (west + i * cell), dy = c.y - (south + j * cell), d = dx * dx + dy * dy + kSmoothing;
+        const double w = 1 / (d * d);
+        sum += b.ground * w;
+        weights += w;
+      }
+      z.push_back(sum / weights);
+    }
+  const auto object = static_cast<std::uint32_t>(buildings_.size());
+  const auto node = [&](int i, int j) {
+    return Point3{west + i * cell, south + j * cell, z[static_cast<std::size_t>(j * (columns + 1) + i)]};
+  };
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      scene_.add_triangle({node(i, j), node(i + 1, j), node(i + 1, j + 1)}, kGround, object);
+      scene_.add_triangle({node(i, j), node(i + 1, j + 1), node(i, j + 1)}, kGround, object);
+    }
+}
+
+std::string Pictures::note() const {
+  if (plan_.whole) return {};
+  return fmt::format("The pictures show the densest part of the build: {} buildings. The whole is in the files.",
+                     base::with_thousands(plan_.buildings));
+}
+
+std::vector<export_::ReportPicture> Pictures::take(int workers) {
+  std::vector<export_::ReportPicture> out;
+  if (buildings_.empty()) return out;
+  lay_ground();
+
+  struct Shot {
+    Camera camera;
+    picture::RenderOptions options;
+    std::string caption;
+  };
+  std::vector<Shot> shots;
+  const std::vector<Point3> core = core_points(buildings_);
+  const auto shoot = [&](std::span<const Point3> points, Direction from, double field_of_view, int width, int height,
+                         std::string caption) {
+    Shot shot;
+    shot.options.width = width;
+    shot.options.height = height;
+    shot.camera = fit_perspective(points, from, static_cast<double>(width) / height, field_of_view);
+    shot.caption = std::move(caption);
+    shots.push_back(std::move(shot));
+  };
+  shoot(core, {215, 38}, 30, 1200, 750, "Seen from the south-west; the sun stands in the south-east.");
+  shoot(core, {35, 38}, 30, 960, 600, "The same from the north-east.");
+  constexpr double kDetailReach = 85;  // m
+  shoot(points_near(buildings_, densest_spot(buildings_), kDetailReach), {200, 24}, 40, 960, 600, "Where houses stand densest.");
+  shots.back().options.sky_directions = 64;  // near by, single shades of the sky would show
+
+  out.resize(shots.size());
+  base::ordered_parallel(
+      shots.size(), std::min<int>(workers, 2), shots.size(),
+      [&](std::size_t i) {
+        const Shot& shot = shots[i];
+        out[i] = {picture::png(picture::render(scene_, shot.camera, shot.options)), shot.options.width, shot.options.height, shot.caption};
+      },
+      [](std::size_t) {});
+  scene_ = picture::Scene(plan_.origin);
+  buildings_ = {};
+  return out;
+}
+
+}  // namespace blockrand::region
