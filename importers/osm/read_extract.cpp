@@ -135,6 +135,9 @@ class ExtractWriter {
       out_.report.add(b.id, account.code,
                       detail == accounts.details.end() ? std::string() : clean_text(detail->second));
     }
+    if (b.rings.count == 0)
+      if (const Box box = box_of(accounts, account); !box.empty())
+        b.place = model::Location{static_cast<std::int32_t>((box.west + box.east) / 2), static_cast<std::int32_t>((box.south + box.north) / 2)};
     b.tags = write_tags(account.id, *account.raw, account.tags_also_from);
     // `pairs_` holds the tags just written.
     b.attributes = read_attributes(b.id, b.kind, pairs_, out_.strings, out_.report);

@@ -80,16 +80,23 @@ std::string build_report(const region::BuildOptions& options, const region::Buil
   const auto place = [&](const char* name, const char* what) {
     places.emplace_back((std::filesystem::path(options.output) / name).string(), what);
   };
+  std::string text_of_explain;
   if (options.gltf)
     place("tileset.json", "3D Tiles, for CesiumJS, QGIS 3.34+, Unreal, ...; single tiles are in tiles/");
   if (options.single_glb) place("model.glb", "the whole build in one file, for Blender and other editors");
   if (options.citygml) place("citygml/", "CityGML 2.0, one file per tile");
+  if (options.cityjson) place("cityjson/", "CityJSON 2.0, one text sequence per tile");
+  if (options.single_cityjson) place("model.city.json", "the whole build as one CityJSON object");
+  if (options.geopackage) place("buildings.gpkg", "footprints with every value and its source, coloured, for QGIS");
+  if (options.report) place("report.html", "what was built, where values come from, a map and pictures");
+  if (options.explain)
+    text_of_explain = fmt::format("  why a building looks as it does: blockrand explain {} w123\n", options.output);
   place("report.json", "every object that is not modelled as asked, with its reason");
   place("build.json", "inputs, coordinate system, counts, hashes");
   std::size_t width = 0;
   for (const auto& [path, what] : places) width = std::max(width, path.size());
   for (const auto& [path, what] : places) text += fmt::format("  {:<{}}  {}\n", path, width, what);
-  return text;
+  return text + text_of_explain;
 }
 
 std::string build_report_json(const region::BuildOptions& options, const region::BuildSummary& s) {

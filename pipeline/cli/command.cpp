@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/cli/build.h"
+#include "pipeline/cli/explain.h"
 #include "pipeline/cli/help.h"
 #include "pipeline/cli/info.h"
 
@@ -11,6 +12,7 @@ namespace blockrand::cli {
 const std::vector<Command>& commands() {
   static const std::vector<Command> all = {
       {build_text(), run_build},
+      {explain_text(), run_explain},
       {info_text(), run_info},
       {help_text(), run_help},
   };

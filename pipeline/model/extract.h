@@ -67,6 +67,7 @@ struct MappedBuilding {
   OsmId related;                     ///< of whom it is a duplicate, or who represents it
   OsmId geometry_from;               ///< whose rings these are: differs from `id` for old-style multipolygons
   Range rings;                       ///< into Extract::rings; empty when there is no area
+  std::optional<Location> place;     ///< of an object without rings: the middle of what is known of it
   Range tags;                        ///< into Extract::tags
   MappedAttributes attributes;
 };

@@ -152,6 +152,40 @@ struct ExplainedObject {
   friend auto operator<=>(const ExplainedObject&, const ExplainedObject&) = default;
 };
 
+std::optional<model::Point2> place_of(const Extract& extract, const MappedBuilding& b, const georef::Projection& projection) {
+  const std::optional<model::Location> place = b.rings.count > 0 ? box_centre(extract, b) : b.place;
+  if (!place) return std::nullopt;
+  const model::Point2 p = projection.forward(*place);
+  if (!std::isfinite(p.x) || !std::isfinite(p.y)) return std::nullopt;
+  return model::snap(p);
+}
+
+/// What the importer or the tiles said about objects that end as reported.
+using ReportedDetails = std::map<std::pair<model::OsmId, IssueCode>, std::string>;
+ReportedDetails reported_details(const std::vector<model::ReportRow>& rows) {
+  ReportedDetails details;
+  for (const model::ReportRow& row : rows)
+    if (info(row.code).issue_class == model::IssueClass::reported) details.emplace(std::pair(row.object, row.code), row.detail);
+  return details;
+}
+
+void add_reported(export_::GeoPackageWriter& out, const Extract& extract, const std::vector<model::ReportRow>& rows,
+                  const georef::Projection& projection) {
+  const ReportedDetails details = reported_details(rows);
+  for (const MappedBuilding& b : extract.buildings) {
+    if (b.state == ObjectState::modelled) continue;
+    export_::GeoPackageReported object;
+    object.id = b.id;
+    object.kind = b.kind;
+    object.state = b.state;
+    object.code = b.code;
+    if (const auto found = details.find({b.id, b.code}); found != details.end()) object.detail = found->second;
+    if (b.state != ObjectState::reported) object.related = b.related;
+    object.place = place_of(extract, b, projection);
+    out.add_reported(object);
+  }
+}
+
 std::string explain_index(std::vector<ExplainedObject> objects) {
   std::sort(objects.begin(), objects.end());
   std::string text;
@@ -173,7 +207,7 @@ struct TileResult {
   std::vector<PartySide> party_sides;
   Statistics statistics;
   bool below_quality = false;
-  Region region;  ///< kept only for --single-glb
+  Region region;  ///< kept only for files of the whole build
 };
 
 double edge_length(const model::Ring& ring, std::size_t i) {
@@ -243,6 +277,8 @@ void count_statistics(const Region& region, const context::SharedEdges& shared, 
       count_ring(p.outer);
       for (const model::Ring& hole : p.holes) count_ring(hole);
     }
+    s.buildings += !building.parts.empty();
+    s.bodies += building.parts.size();
     for (const model::BuildingPart& part : building.parts) {
       if (part.lod >= 2) {
         s.volume += geometry::volume(part.lod2, part.lod2_triangles);
@@ -264,6 +300,8 @@ void add(Statistics& sum, const Statistics& s) {
   sum.footprint_area += s.footprint_area;
   sum.outer_wall_area += s.outer_wall_area;
   sum.volume += s.volume;
+  sum.buildings += s.buildings;
+  sum.bodies += s.bodies;
   sum.solids_lod1 += s.solids_lod1;
   sum.solids_lod2 += s.solids_lod2;
   for (const auto& [attribute, sources] : s.sources)
@@ -298,8 +336,15 @@ std::uint64_t estimated_bytes(const BuildOptions& options, std::uint64_t buildin
   constexpr double kGmlBytes[] = {2500, 5500, 12500};  // per building and level of detail
   constexpr double kGlbBytes = 3000;
   const auto lod = static_cast<std::size_t>(std::clamp(options.lod, 0, 2));
+  constexpr double kJsonBytes[] = {2500, 3500, 6500};
+  constexpr double kGeoPackageBytes = 3500, kExplainBytes = 300, kReportBytes = 150;
   double each = 300;
   if (options.citygml) each += options.gzip ? kGmlBytes[lod] / 7 : kGmlBytes[lod];
+  if (options.cityjson) each += options.gzip ? kJsonBytes[lod] / 5 : kJsonBytes[lod];
+  if (options.single_cityjson) each += kJsonBytes[lod];
+  if (options.geopackage) each += kGeoPackageBytes;
+  if (options.explain) each += kExplainBytes;
+  if (options.report) each += kReportBytes;
   if (options.gltf) each += kGlbBytes;
   if (options.single_glb) each += kGlbBytes;
   return static_cast<std::uint64_t>(1.25 * each * static_cast<double>(buildings)) + 1'000'000;
@@ -388,6 +433,15 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2;
   const OutputContext output{options, projection, geoid, has_heights, record, defaults};
 
+  std::optional<export_::GeoPackageWriter> geopackage;
+  if (options.geopackage) geopackage.emplace(folder.staging_path() + "/buildings.gpkg", geopackage_options(output));
+  std::optional<base::StagedFile> cityjson_file;
+  std::optional<export_::SingleCityJson> single_cityjson;
+  if (options.single_cityjson) {
+    cityjson_file.emplace(folder.create("model.city.json"));
+    single_cityjson.emplace(cityjson_options(output, "Blockrand"), [&](std::string_view bytes) { cityjson_file->append(bytes); });
+  }
+
   progress.begin("tiles", to_build, "buildings");
   std::vector<TileResult> slots(in_flight);
   std::vector<model::ReportRow> rows = std::move(region_report.rows);
@@ -459,7 +513,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     count_statistics(region, shared, result);
     result.output = write_tile(region, output, explain_options(result.outcomes), folder);
     result.rows = std::move(region.report.rows);
-    if (options.single_glb) result.region = std::move(region);
+    if (options.single_glb || options.single_cityjson) result.region = std::move(region);
     slots[i % in_flight] = std::move(result);
   };
   const auto consume = [&](std::size_t i) {
@@ -475,6 +529,11 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     std::move(result.rows.begin(), result.rows.end(), std::back_inserter(rows));
     std::move(result.output.files.begin(), result.output.files.end(), std::back_inserter(record.files));
     if (result.output.tile) tiles.push_back(*result.output.tile);
+    if (geopackage && result.output.rows.buildings.rows() > 0) {
+      geopackage->add(result.output.rows);
+      geopackage->add_tile(geopackage_tile(shards[i].tile, result.output, output));
+    }
+    if (single_cityjson) single_cityjson->add(result.region);
     for (const auto& [object, building] : result.output.explained) explained.push_back({object, building, shards[i].tile});
     party_sides.insert(party_sides.end(), result.party_sides.begin(), result.party_sides.end());
     add(record.statistics, result.statistics);
@@ -506,6 +565,15 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   for (const model::ReportRow& row : rows)
     if (info(row.code).issue_class != model::IssueClass::reported) ++summary.issues[std::string(info(row.code).text)];
   record.files.push_back(folder.write("report.json", report_json(extract, rows)));
+  if (geopackage) {
+    add_reported(*geopackage, extract, rows, projection);
+    geopackage->close();
+    record.files.push_back(folder.adopt("buildings.gpkg"));
+  }
+  if (single_cityjson) {
+    single_cityjson->finish();
+    record.files.push_back(cityjson_file->close());
+  }
   std::sort(record.files.begin(), record.files.end(),
             [](const base::PublishedFile& a, const base::PublishedFile& b) { return a.path < b.path; });
   folder.write("build.json", build_json(options, record));

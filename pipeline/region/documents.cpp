@@ -34,8 +34,13 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   c["formats"] = Json::array();
   if (options.gltf) c["formats"].push_back("gltf");
   if (options.citygml) c["formats"].push_back("citygml");
+  if (options.cityjson) c["formats"].push_back("cityjson");
+  if (options.geopackage) c["formats"].push_back("gpkg");
+  c["report"] = options.report;
+  c["explain"] = options.explain;
   c["gzip"] = options.gzip;
   c["single_glb"] = options.single_glb;
+  c["single_cityjson"] = options.single_cityjson;
   c["seed"] = options.seed;
   c["bbox"] = options.bbox ? Json(*options.bbox) : Json(nullptr);
   c["terrain"] = options.terrain;
@@ -71,6 +76,9 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
                  {"models_lod0", s.models_by_lod[0]},
                  {"models_lod1", s.models_by_lod[1]},
                  {"models_lod2", s.models_by_lod[2]},
+                 // What every format holds, to the last one.
+                 {"buildings", r.statistics.buildings},
+                 {"bodies", r.statistics.bodies},
                  {"solids_lod1", r.statistics.solids_lod1},
                  {"solids_lod2", r.statistics.solids_lod2},
                  {"old_style_multipolygons", r.counts.old_style_multipolygons},

@@ -33,6 +33,8 @@ struct Statistics {
   double party_wall_length = 0; ///< m
   std::uint64_t party_walls = 0;
   double volume = 0;            ///< m³ of the best solids
+  std::uint64_t buildings = 0;  ///< with at least one body: what every format holds as a building
+  std::uint64_t bodies = 0;     ///< parts, rests of outlines, and buildings without parts
   std::uint64_t solids_lod1 = 0, solids_lod2 = 0;
   std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → parts
   std::map<std::string, std::uint64_t> roofs;                           ///< built roof shape → parts

@@ -110,6 +110,8 @@ double lowest_ground(const model::Region& region) {
   return lowest;
 }
 
+std::string model_name(model::TileId id) { return fmt::format("Blockrand {}/{}/{}", id.level, id.x, id.y); }
+
 export_::CityGmlOptions citygml_options(const model::Region& region, const OutputContext& context) {
   export_::CityGmlOptions o;
   o.lod = context.options.lod;
@@ -121,20 +123,62 @@ export_::CityGmlOptions citygml_options(const model::Region& region, const Outpu
                          context.record.vertical_crs.substr(context.record.vertical_crs.find(':') + 1);
   o.height_reference = context.record.height_reference;
   o.attribution = kAttribution;
-  o.name = fmt::format("Blockrand {}/{}/{}", region.tile.level, region.tile.x, region.tile.y);
+  o.name = model_name(region.tile);
   return o;
 }
 
-void write_citygml_file(const model::Region& region, const std::string& path, const OutputContext& context,
-                        base::StagedFolder& folder, std::vector<base::PublishedFile>& files) {
-  std::string bytes = export_::write_citygml(region, citygml_options(region, context));
+void write_text_file(const std::string& path, const std::string& bytes, const OutputContext& context, base::StagedFolder& folder,
+                     std::vector<base::PublishedFile>& files) {
   if (context.options.gzip)
     files.push_back(folder.write(path + ".gz", export_::gzip(bytes)));
   else
     files.push_back(folder.write(path, bytes));
 }
 
+void write_city_models(const model::Region& region, const std::string& name, const OutputContext& context,
+                       base::StagedFolder& folder, std::vector<base::PublishedFile>& files) {
+  if (context.options.citygml)
+    write_text_file("citygml/" + name + ".gml", export_::write_citygml(region, citygml_options(region, context)), context, folder, files);
+  if (context.options.cityjson)
+    write_text_file("cityjson/" + name + ".city.jsonl",
+                    export_::write_cityjson_sequence(region, cityjson_options(context, model_name(region.tile))), context, folder, files);
+}
+
 }  // namespace
+
+export_::CityJsonOptions cityjson_options(const OutputContext& context, std::string name) {
+  export_::CityJsonOptions o;
+  o.lod = context.options.lod;
+  o.crs_code = context.record.crs.authority_code;
+  o.vertical_crs = context.record.vertical_crs;
+  o.height_reference = context.record.height_reference;
+  o.attribution = kAttribution;
+  o.name = std::move(name);
+  o.generator = generator();
+  return o;
+}
+
+export_::GeoPackageOptions geopackage_options(const OutputContext& context) {
+  return {context.record.crs.authority_code, context.record.data_time, context.record.height_reference, kAttribution};
+}
+
+export_::GeoPackageTile geopackage_tile(model::TileId id, const TileOutput& output, const OutputContext& context) {
+  export_::GeoPackageTile tile;
+  tile.id = id;
+  tile.buildings = output.rows.buildings.rows();
+  tile.parts = output.rows.parts.rows();
+  if (output.tile) {
+    tile.uri = output.tile->uri;
+    for (const base::PublishedFile& file : output.files)
+      if (file.path == tile.uri) tile.bytes = file.bytes;
+  }
+  const georef::GeoBox box = georef::bounds(id);
+  // Straight lines between the corners of a tile lie within millimetres of its meridians and parallels.
+  for (const georef::LonLat corner : {georef::LonLat{box.west, box.south}, georef::LonLat{box.east, box.south},
+                                      georef::LonLat{box.east, box.north}, georef::LonLat{box.west, box.north}})
+    tile.outline.push_back(model::snap(context.projection.forward(corner.lon, corner.lat)));
+  return tile;
+}
 
 TileOutput write_tile(const model::Region& region, const OutputContext& context, export_::ExplainOptions explain,
                       base::StagedFolder& folder) {
@@ -165,7 +209,8 @@ TileOutput write_tile(const model::Region& region, const OutputContext& context,
       out.tile = std::move(entry);
     }
   }
-  if (context.options.citygml && has_parts) write_citygml_file(region, "citygml/" + name + ".gml", context, folder, out.files);
+  if (has_parts) write_city_models(region, name, context, folder, out.files);
+  if (context.options.geopackage) out.rows = export_::geopackage_rows(region, context.options.lod);
   if (context.options.explain && !region.buildings.empty()) {
     explain.tile = name;
     for (const base::PublishedFile& file : out.files) explain.files.push_back(file.path);
@@ -202,11 +247,11 @@ void write_whole(const model::Region& whole, std::span<const export_::TileEntry>
     };
     files.push_back(folder.write("model.glb", export_::write_glb(whole, o).bytes));
   }
-  // A file without city objects is a valid CityModel and says more than no file.
-  if (context.options.citygml && std::none_of(files.begin(), files.end(), [](const base::PublishedFile& f) {
-        return f.path.rfind("citygml/", 0) == 0;
-      }))
-    write_citygml_file(model::Region{}, "citygml/empty.gml", context, folder, files);
+  // A file without city objects is a valid city model and says more than no file.
+  const bool has_city_models = std::any_of(files.begin(), files.end(), [](const base::PublishedFile& f) {
+    return f.path.starts_with("citygml/") || f.path.starts_with("cityjson/");
+  });
+  if (!has_city_models) write_city_models(model::Region{}, "empty", context, folder, files);
 }
 
 }  // namespace blockrand::region

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "pipeline/base/publish.h"
+#include "pipeline/export/cityjson/cityjson_writer.h"
 #include "pipeline/export/explain/explanation.h"
+#include "pipeline/export/geopackage/geopackage_writer.h"
 #include "pipeline/export/tileset/tileset.h"
 #include "pipeline/generate/defaults.h"
 #include "pipeline/georef/heights.h"
@@ -31,6 +33,7 @@ struct OutputContext {
 struct TileOutput {
   std::vector<base::PublishedFile> files;
   std::optional<export_::TileEntry> tile;  ///< set when the GLB shows something
+  export_::GeoPackageRows rows;            ///< empty where no GeoPackage is asked for
   std::vector<std::pair<model::OsmId, model::OsmId>> explained;  ///< object, building whose line explains it
 };
 
@@ -39,6 +42,13 @@ struct TileOutput {
 /// Safe for different tiles at the same time. \throws base::OutputError
 TileOutput write_tile(const model::Region& region, const OutputContext& context, export_::ExplainOptions explain,
                       base::StagedFolder& folder);
+
+/// How a build's CityJSON, and its GeoPackage, describe themselves.
+export_::CityJsonOptions cityjson_options(const OutputContext& context, std::string name);
+export_::GeoPackageOptions geopackage_options(const OutputContext& context);
+
+/// A tile as a row of the GeoPackage; its outline follows the tile's meridians and parallels.
+export_::GeoPackageTile geopackage_tile(model::TileId id, const TileOutput& output, const OutputContext& context);
 
 /// Writes tileset.json, with --single-glb model.glb from `whole`, and for a build without buildings an empty CityGML
 /// file, so that every asked format is there.

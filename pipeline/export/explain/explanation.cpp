@@ -299,23 +299,29 @@ class Writer {
       }
     };
     model::for_each_attribute(building.attributes, count, [](std::string_view, std::string_view) {});
-    return fmt::format("of {} values {} are tagged, {} follow from others, from parts or the plan, {} come from the surroundings and {} are assumed",
+    return fmt::format("{} values: {} tagged, {} following from other values, parts or the plan, {} from the surroundings, {} assumed",
                        tagged + followed + around + assumed, tagged, followed, around, assumed);
   }
 
   std::string build_text(const Building& building, const Fate& fate) {
     if (building.parts.empty())
       return fmt::format("nothing was built: {}", model::info(fate.code).meaning);
-    std::string text;
+    if (building.parts.size() == 1) return body_text(building.parts.front());
+    // Bodies that became the same are named together, in the order of the first of them.
+    std::vector<std::pair<std::string, std::vector<std::string>>> groups;
     for (const BuildingPart& part : building.parts) {
-      if (!text.empty()) text += "; ";
-      if (building.parts.size() > 1) text += part.id + ": ";
-      text += body_text(part);
-      if (text.size() > 2000) {
-        text += "; …";
-        break;
-      }
+      const std::string what = body_text(part);
+      const auto known = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == what; });
+      if (known == groups.end())
+        groups.push_back({what, {part.id}});
+      else
+        known->second.push_back(part.id);
     }
+    constexpr std::size_t kMostGroups = 12;  // more is no help to a reader; "bodies" has them all
+    std::string text;
+    for (std::size_t i = 0; i < std::min(groups.size(), kMostGroups); ++i)
+      text += (i ? "; " : "") + listed(groups[i].second, 3) + ": " + groups[i].first;
+    if (groups.size() > kMostGroups) text += fmt::format("; and {} more kinds", groups.size() - kMostGroups);
     return text;
   }
 

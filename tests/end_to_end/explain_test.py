@@ -1,0 +1,121 @@
+"""`blockrand explain` for every object of a build: the sample, and a real extract where there is one."""
+import gzip
+import json
+import os
+import subprocess
+
+from blockrand_run import SAMPLE, BuildTest, Setup, blockrand, main, read_json
+
+ORDER = {'n': 0, 'w': 1, 'r': 2}
+SOURCES = ['override', 'tag', 'implied', 'part', 'imagery', 'terrain', 'geometry', 'neighbours', 'block', 'cell',
+           'district', 'region', 'preset', 'default']
+
+
+def index_of(folder):
+    with open(os.path.join(folder, 'explain', 'index.txt'), encoding='utf-8') as file:
+        return [line.split(' ') for line in file.read().splitlines()]
+
+
+def lines_of(folder, tile):
+    with gzip.open(os.path.join(folder, 'explain', tile + '.jsonl.gz'), 'rt', encoding='utf-8') as file:
+        return {j['id']: j for j in map(json.loads, file)}
+
+
+class Explain(BuildTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.out = cls().build(SAMPLE, 'explained')
+
+    def explained(self, folder, identity, *options):
+        run = blockrand('explain', folder, identity, *options)
+        self.assertEqual(run.code, 0, run.err)
+        return run.out
+
+    def complete(self, folder):
+        """Every object that has a body, and every building that has none, has a line; nothing else has."""
+        index = index_of(folder)
+        keys = [(ORDER[o[0]], int(o[1:])) for o, _, _ in index]
+        self.assertEqual(keys, sorted(set(keys)))
+        tiles = {tile: lines_of(folder, tile) for tile in {tile for _, tile, _ in index}}
+        self.assertEqual(sum(map(len, tiles.values())), len({b for _, _, b in index}))
+        counts = read_json(folder, 'build.json')['counts']
+        reported = {o['id']: o for o in read_json(folder, 'report.json')['objects']}
+        buildings = bodies = modelled = 0
+        for tile in tiles.values():
+            for line in tile.values():
+                buildings += bool(line['bodies'])
+                bodies += len(line['bodies'])
+                if line['state'] != 'modelled':
+                    self.assertEqual(line['state'], reported[line['id']]['state'])
+                for a in line['attributes']:
+                    self.assertIn(a['source'], SOURCES)
+                    self.assertTrue(0 <= a['confidence'] <= 1, a)
+                    self.assertTrue(a.get('why'), f"{line['id']} {a['name']} has no reason")
+                    for lost in a.get('lost', []):
+                        self.assertTrue(lost['why'], a)
+                        self.assertLessEqual(SOURCES.index(a['source']), SOURCES.index(lost['source']), a)
+                for name in line['files']:
+                    self.assertTrue(os.path.exists(os.path.join(folder, name)), name)
+        self.assertEqual((buildings, bodies), (counts['buildings'], counts['bodies']))
+        modelled = {o for o, _, _ in index} - set(reported)
+        self.assertEqual(len(modelled), counts['models'])
+        return index, tiles
+
+    def test_every_object_of_the_sample(self):
+        index, tiles = self.complete(self.out)
+        for identity, tile, building in index[::5] + [row for row in index if row[0] != row[2]][:10]:
+            text = self.explained(self.out, identity)
+            line = tiles[tile][building]
+            self.assertIn(building, text)
+            for stage in line['stages']:
+                self.assertIn(stage['stage'], text)
+            self.assertEqual(json.loads(self.explained(self.out, identity, '--json')), line)
+        for row in read_json(self.out, 'report.json')['objects']:
+            text = self.explained(self.out, row['id'])
+            self.assertIn(row['id'], text)
+            if row['state'] == 'reported':
+                self.assertIn(row['code'], text)
+
+    def test_ids_in_all_forms(self):
+        identity = next(o for o, _, b in index_of(self.out) if o == b and o[0] == 'w')
+        text = self.explained(self.out, identity)
+        for form in ('way/' + identity[1:], 'https://www.openstreetmap.org/way/' + identity[1:], identity + '.rest'):
+            self.assertEqual(self.explained(self.out, form), text)
+
+    def test_what_cannot_be_explained(self):
+        run = blockrand('explain', self.out, 'w999999999999')
+        self.assertEqual((run.code, run.out), (2, ''))
+        self.assertIn('w999999999999', run.err)
+        run = blockrand('explain', self.out, '12')
+        self.assertEqual(run.code, 1)
+        self.assertIn('w12', run.err)
+        run = blockrand('explain', os.path.dirname(self.out), 'w1')
+        self.assertEqual(run.code, 1)
+        self.assertIn('build.json', run.err)
+        bare = self.build(SAMPLE, 'bare', '--no-explain')
+        self.assertFalse(os.path.exists(os.path.join(bare, 'explain')))
+        run = blockrand('explain', bare, 'w1')
+        self.assertEqual(run.code, 1)
+        self.assertIn('--no-explain', run.err)
+
+    def test_a_closed_pipe_is_no_crash(self):
+        identity = index_of(self.out)[0][0]
+        run = subprocess.run(f'"{Setup.program}" explain "{self.out}" {identity} | head -1', shell=True, capture_output=True,
+                             text=True)
+        self.assertEqual(run.stdout.count('\n'), 1)
+
+    def test_a_real_quarter(self):
+        path = os.path.join(Setup.shared or '', 'data', 'osm', 'berlin-zionskirchplatz-2020.osm')
+        if not os.path.exists(path):
+            self.skipTest('no ' + path)
+        out = self.build(path, 'real')
+        index, tiles = self.complete(out)
+        lines = [line for tile in tiles.values() for line in tile.values()]
+        named = sum('shared with w' in s['text'] for line in lines for s in line['stages'])
+        self.assertGreater(named, len(lines) / 4, 'perimeter blocks: most houses have neighbours')
+        self.assertTrue(any(a.get('lost') for line in lines for a in line['attributes']))
+
+
+if __name__ == '__main__':
+    main()
