@@ -35,6 +35,8 @@
 #include "pipeline/georef/tiles.h"
 #include "pipeline/region/documents.h"
 #include "pipeline/region/load.h"
+#include "pipeline/region/pictures.h"
+#include "pipeline/region/report_facts.h"
 #include "pipeline/region/shard.h"
 #include "pipeline/region/tile_output.h"
 #include "pipeline/repair/repair.h"
@@ -207,6 +209,8 @@ struct TileResult {
   std::vector<PartySide> party_sides;
   Statistics statistics;
   bool below_quality = false;
+  export_::ReportTile report;
+  PictureTile picture;
   Region region;  ///< kept only for files of the whole build
 };
 
@@ -442,6 +446,10 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     single_cityjson.emplace(cityjson_options(output, "Blockrand"), [&](std::string_view bytes) { cityjson_file->append(bytes); });
   }
 
+  const PicturePlan picture_plan = options.report ? plan_pictures(shards, projection) : PicturePlan{};
+  Pictures pictures(picture_plan);
+  export_::ReportBuilder page;
+
   progress.begin("tiles", to_build, "buildings");
   std::vector<TileResult> slots(in_flight);
   std::vector<model::ReportRow> rows = std::move(region_report.rows);
@@ -512,6 +520,10 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     decide_outcomes(region, options.lod, result);
     count_statistics(region, shared, result);
     result.output = write_tile(region, output, explain_options(result.outcomes), folder);
+    if (options.report) {
+      result.report = export_::report_tile(region);
+      result.picture = picture_tile(region, picture_plan, i);
+    }
     result.rows = std::move(region.report.rows);
     if (options.single_glb || options.single_cityjson) result.region = std::move(region);
     slots[i % in_flight] = std::move(result);
@@ -534,6 +546,10 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       geopackage->add_tile(geopackage_tile(shards[i].tile, result.output, output));
     }
     if (single_cityjson) single_cityjson->add(result.region);
+    if (options.report) {
+      page.add(std::move(result.report));
+      pictures.add(std::move(result.picture));
+    }
     for (const auto& [object, building] : result.output.explained) explained.push_back({object, building, shards[i].tile});
     party_sides.insert(party_sides.end(), result.party_sides.begin(), result.party_sides.end());
     add(record.statistics, result.statistics);
@@ -574,8 +590,18 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     single_cityjson->finish();
     record.files.push_back(cityjson_file->close());
   }
-  std::sort(record.files.begin(), record.files.end(),
-            [](const base::PublishedFile& a, const base::PublishedFile& b) { return a.path < b.path; });
+  const auto sort_files = [&] {
+    std::sort(record.files.begin(), record.files.end(),
+              [](const base::PublishedFile& a, const base::PublishedFile& b) { return a.path < b.path; });
+  };
+  sort_files();
+  if (options.report) {
+    export_::ReportFacts facts = report_facts(options, record, extract, rows, page, centre);
+    facts.pictures_note = pictures.note();
+    facts.pictures = pictures.take(workers);
+    record.files.push_back(folder.write("report.html", page.html(facts)));
+    sort_files();
+  }
   folder.write("build.json", build_json(options, record));
   for (const base::PublishedFile& f : record.files) summary.bytes += f.bytes;
   summary.files = record.files.size() + 2;
