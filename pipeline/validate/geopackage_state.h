@@ -1,0 +1,66 @@
+// What the two halves of GeoPackageReader share: rows tile by tile, and rules of the whole file.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pipeline/validate/geopackage.h"
+#include "pipeline/validate/geopackage_blob.h"
+#include "pipeline/validate/sqlite_file.h"
+
+namespace blockrand::validate {
+
+struct GeoPackageLayer {
+  std::string_view table, geometry_type;
+  WkbType type;
+  bool needs_geometry;
+};
+inline constexpr GeoPackageLayer kGeoPackageLayers[] = {
+    {"buildings", "MULTIPOLYGON", WkbType::multi_polygon, true},
+    {"parts", "POLYGON", WkbType::polygon, true},
+    {"reported", "POINT", WkbType::point, false},
+    {"tiles", "POLYGON", WkbType::polygon, true},
+};
+
+/// An attribute's column; the others are `<name>_source` and `<name>_confidence`.
+struct GeoPackageAttribute {
+  std::string name;
+  bool number = false;
+};
+/// In the order of model::for_each_attribute.
+const std::vector<GeoPackageAttribute>& geopackage_attributes();
+
+/// Columns that a layer must have besides fid and geom.
+std::vector<std::string> geopackage_columns(std::string_view table);
+
+/// "w" for "way" and so on; empty for anything else.
+std::string_view osm_letter(std::string_view type);
+
+struct GeoPackageReader::State {
+  State(const std::string& file_path, std::string file_name)
+      : path(file_path), name(std::move(file_name)), db(file_path) {}
+
+  /// First and last fid of a tile's rows.
+  struct Span {
+    std::int64_t first = 0, last = 0;
+  };
+  struct TileSpans {
+    std::string tile;
+    std::map<std::string, Span, std::less<>> layers;  ///< by table
+  };
+  /// Found once: in the order of the file.
+  const std::vector<TileSpans>& spans();
+  std::int64_t srs_id();
+
+  std::string path, name;
+  std::mutex reading;
+  SqliteFile db;
+  bool have_spans = false;
+  std::vector<TileSpans> tile_spans;
+};
+
+}  // namespace blockrand::validate
