@@ -17,8 +17,8 @@ inline constexpr std::string_view kVisualTheme = "visual";
 
 /// An X3D material, its numbers in ten-thousandths, so that every format prints the same digits.
 struct X3dMaterial {
-  std::string name;                ///< "plaster #decdaa": material class and colour
-  std::array<int, 3> diffuse{};    ///< sRGB / 255; four decimals give the byte back exactly
+  std::string name;              ///< "plaster #decdaa": material class and colour
+  std::array<int, 3> diffuse{};  ///< sRGB / 255; four decimals give the byte back exactly
   std::array<int, 3> specular{};
   int shininess = 0;
 };

@@ -84,7 +84,8 @@ class FileReader {
       findings_.add(Check::file_unreadable, "", where + document.error);
       return false;
     }
-    for (const std::string& name : document.doubled) findings_.rule("", fmt::format("{}\"{}\" stands twice in an object", where, name));
+    for (const std::string& name : document.doubled)
+      findings_.rule("", fmt::format("{}\"{}\" stands twice in an object", where, name));
     if (document.json.is_object()) return true;
     findings_.rule("", where + "is no JSON object");
     return false;
@@ -236,7 +237,8 @@ class FileReader {
     if (doubled) rule(fmt::format("{} vertices stand twice", doubled));
     if (outside) rule(fmt::format("{} vertices lie outside of geographicalExtent", outside));
     if (off_grid)
-      findings_.add(Check::off_grid, "", fmt::format("{}{} vertices are not on the 1/1024 m grid", prefix(where), off_grid));
+      findings_.add(Check::off_grid, "",
+                    fmt::format("{}{} vertices are not on the 1/1024 m grid", prefix(where), off_grid));
   }
 
   void appearance(const Json* a, CityJsonScope& scope, const std::string& where) {
@@ -244,8 +246,8 @@ class FileReader {
     const auto rule = [&](std::string detail) { findings_.rule("", prefix(where) + std::move(detail)); };
     if (!a->is_object()) return rule("the appearance is no object");
     for (const auto& [name, value] : a->items())
-      if (name != "materials" && name != "textures" && name != "vertices-texture" &&
-          name != "default-theme-material" && name != "default-theme-texture")
+      if (name != "materials" && name != "textures" && name != "vertices-texture" && name != "default-theme-material" &&
+          name != "default-theme-texture")
         rule("an appearance with the unknown member " + name);
     scope.theme = text(member(a, "default-theme-material"));
     const Json* materials = member(a, "materials");
@@ -261,7 +263,8 @@ class FileReader {
         const auto n = number(&value);
         if (colour && !read_colour(&value)) rule(name + " is not three numbers from 0 to 1");
         if (share && !(n && *n >= 0 && *n <= 1)) rule(name + " is no number from 0 to 1");
-        if (!colour && !share && name != "name" && name != "isSmooth") rule("a material with the unknown member " + name);
+        if (!colour && !share && name != "name" && name != "isSmooth")
+          rule("a material with the unknown member " + name);
       }
     }
   }

@@ -10,7 +10,8 @@ namespace blockrand::validate {
 
 /// Reads CityJSON 2.0 (https://www.cityjson.org/specs/2.0.1/) as Blockrand writes it: a text sequence where the name of
 /// the file contains ".jsonl", else one CityJSON object. Checks
-/// - members: those required are there and of their type, no unknown ones where the specification allows none, none twice;
+/// - members: those required are there and of their type, no unknown ones where the specification allows none, none
+/// twice;
 /// - vertices: three integers each, every one used, none twice; the transform; an extent that holds them all;
 /// - city objects: known types, parents and children that name each other, ids given once in the file;
 /// - geometries: depth of the boundaries, indices in range, rings, an LoD that fits the type; semantics and materials

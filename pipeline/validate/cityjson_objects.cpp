@@ -15,15 +15,17 @@ namespace {
 
 using model::Point3;
 
+// clang-format off
 const std::unordered_set<std::string_view> kFirstLevel = {
-    "Bridge",     "Building", "CityFurniture", "CityObjectGroup",          "GenericCityObject", "LandUse",
-    "OtherConstruction", "PlantCover", "Railway", "Road",                  "SolitaryVegetationObject", "TINRelief",
-    "TransportSquare", "Tunnel", "WaterBody",  "Waterway"};
+    "Bridge", "Building", "CityFurniture", "CityObjectGroup", "GenericCityObject", "LandUse", "OtherConstruction",
+    "PlantCover", "Railway", "Road", "SolitaryVegetationObject", "TINRelief", "TransportSquare", "Tunnel", "WaterBody",
+    "Waterway"};
 const std::unordered_set<std::string_view> kSecondLevel = {
     "BridgeConstructiveElement", "BridgeFurniture", "BridgeInstallation", "BridgePart", "BridgeRoom",
     "BuildingConstructiveElement", "BuildingFurniture", "BuildingInstallation", "BuildingPart", "BuildingRoom",
     "BuildingStorey", "BuildingUnit", "TunnelConstructiveElement", "TunnelFurniture", "TunnelHollowSpace",
     "TunnelInstallation", "TunnelPart"};
+// clang-format on
 
 struct SurfaceType {
   std::string_view type, kind;
@@ -194,9 +196,7 @@ class ObjectReader {
       if (const Json* value = member(all, standard); value && scalar_text(*value) != body.attributes[name])
         rule(fmt::format("{} is {}, but {} is {}", standard, scalar_text(*value), name, body.attributes[name]));
     const std::string owner_id = owner(id_), link = text(member(all, "externalReference"));
-    const std::string kind = owner_id.starts_with('n')   ? "node/"
-                             : owner_id.starts_with('w') ? "way/"
-                                                         : "relation/";
+    const std::string kind = owner_id.starts_with('n') ? "node/" : owner_id.starts_with('w') ? "way/" : "relation/";
     if (!link.empty() && !owner_id.empty() && link != "https://www.openstreetmap.org/" + kind + owner_id.substr(1))
       rule("its external reference leads to " + link.substr(0, 80));
   }
@@ -343,8 +343,8 @@ class ObjectReader {
   Contents& out_;
   CityJsonFindings& findings_;
   std::string id_, where_;
-  std::vector<std::string> kinds_;       // of the semantic surfaces of the geometry at hand
-  std::vector<ReadPolygon> polygons_;    // of the geometry at hand
+  std::vector<std::string> kinds_;     // of the semantic surfaces of the geometry at hand
+  std::vector<ReadPolygon> polygons_;  // of the geometry at hand
 };
 
 }  // namespace

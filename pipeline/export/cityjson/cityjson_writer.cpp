@@ -80,8 +80,7 @@ bool is_date(std::string_view text) {
   return true;
 }
 
-void append_metadata(std::string& out, const CityJsonOptions& options, const Extent& extent,
-                     const GridOrigin& origin) {
+void append_metadata(std::string& out, const CityJsonOptions& options, const Extent& extent, const GridOrigin& origin) {
   out += '{';
   bool first = true;
   const auto member = [&](std::string_view name) {

@@ -73,8 +73,7 @@ void append_appearance(std::string& out, const MaterialNumbers& numbers,
   out += "\",\"materials\":[";
   bool first = true;
   for (const std::uint32_t key : numbers.keys()) {
-    const X3dMaterial look =
-        x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
+    const X3dMaterial look = x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
     out += first ? "{\"name\":" : ",{\"name\":";
     first = false;
     append_json(out, look.name);
@@ -98,8 +97,7 @@ ObjectText::ObjectText(const model::Region& region, const CityJsonOptions& optio
       materials_(materials),
       tags_(region.extract) {}
 
-void ObjectText::append(std::string& out, const model::Building& building,
-                        const std::vector<std::uint8_t>& class_of) {
+void ObjectText::append(std::string& out, const model::Building& building, const std::vector<std::uint8_t>& class_of) {
   out_ = &out;
   class_of_ = &class_of;
   const std::string id = building.id();

@@ -64,9 +64,7 @@ class ObjectText {
   void value(double v) { append_number(*out_, v); }
   void value(model::Colour v) { append_json(*out_, model::text(v)); }
   void value(model::RoofShape v) { append_json(*out_, model::name(v)); }
-  void value(model::RoofOrientation v) {
-    append_json(*out_, v == model::RoofOrientation::along ? "along" : "across");
-  }
+  void value(model::RoofOrientation v) { append_json(*out_, v == model::RoofOrientation::along ? "along" : "across"); }
 
   const model::Region& region_;
   const CityJsonOptions& options_;
@@ -76,8 +74,8 @@ class ObjectText {
   TagReader tags_;
   std::string* out_ = nullptr;
   const std::vector<std::uint8_t>* class_of_ = nullptr;
-  bool first_ = true;                  // no comma before the next member of the open object
-  std::vector<std::uint32_t> numbers_; // in the vertex table, by vertex of the solid at hand
+  bool first_ = true;                   // no comma before the next member of the open object
+  std::vector<std::uint32_t> numbers_;  // in the vertex table, by vertex of the solid at hand
 };
 
 }  // namespace blockrand::export_

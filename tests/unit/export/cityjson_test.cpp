@@ -145,8 +145,7 @@ TEST(CityJson, ColoursComeBackAndEqualThoseOfCityGml) {
           const json& value = geometry(object, lod).at("material").at("visual").at("values").at(0).at(f);
           const json& material = appearance.at("materials").at(value.get<std::size_t>());
           const model::Face& face = solid.faces[f];
-          EXPECT_EQ(material.at("name"),
-                    zoo.region().materials[face.material].name + " " + model::text(face.colour));
+          EXPECT_EQ(material.at("name"), zoo.region().materials[face.material].name + " " + model::text(face.colour));
           const std::uint8_t channels[3] = {face.colour.r, face.colour.g, face.colour.b};
           for (std::size_t c = 0; c < 3; ++c)
             EXPECT_EQ(static_cast<int>(material.at("diffuseColor").at(c).get<double>() * 255 + 0.5), channels[c]);
@@ -182,7 +181,7 @@ TEST(CityJson, FeaturesAndParts) {
   EXPECT_EQ(found.at("w50.1").first.at("type"), "BuildingPart");
   EXPECT_FALSE(found.at("w12").first.contains("children"));
   EXPECT_EQ(geometry(found.at("w40").first, "0").at("boundaries").at(0).size(), 2u);  // a courtyard
-  EXPECT_EQ(found.at("w60").first.at("geometry").size(), 1u);                          // no solid, but a place
+  EXPECT_EQ(found.at("w60").first.at("geometry").size(), 1u);                         // no solid, but a place
   EXPECT_FALSE(found.at("w60").second.contains("appearance"));
   const json whole = json::parse(single({&zoo.region()}, options()));
   EXPECT_EQ(whole.at("CityObjects").size(), 11u);
@@ -353,9 +352,7 @@ TEST(Materials, EveryByteComesBackFromItsDigits) {
 }
 
 TEST(Materials, RoughnessBecomesShininess) {
-  const auto shininess = [](float roughness) {
-    return x3d_material({"m", roughness, 0}, {}).shininess;
-  };
+  const auto shininess = [](float roughness) { return x3d_material({"m", roughness, 0}, {}).shininess; };
   EXPECT_EQ(shininess(1.0f), 0);
   EXPECT_EQ(shininess(0.9f), 82);  // (2 / 0.6561 - 2) / 128 = 0.00819
   EXPECT_GT(shininess(0.4f), shininess(0.9f));

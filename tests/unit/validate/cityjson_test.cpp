@@ -37,8 +37,7 @@ std::string object() {
 
 std::string listed(const std::vector<Finding>& findings) {
   std::string out;
-  for (const Finding& f : findings)
-    out += std::string(info(f.check).text) + " " + f.object + ": " + f.detail + "\n";
+  for (const Finding& f : findings) out += std::string(info(f.check).text) + " " + f.object + ": " + f.detail + "\n";
   return out;
 }
 
@@ -154,8 +153,7 @@ const std::vector<Damage>& damages() {
       {"the type is not CityJSONFeature", [](Lines& l) { l.house["type"] = "CityJSON"; }},
       {"the id of the feature is none", [](Lines& l) { l.house["id"] = "w13"; }},
       {"the feature's object is a part of another", [](Lines& l) { l.church["id"] = "w30.w31"; }},
-      {"a second first-level object",
-       [](Lines& l) { l.house["CityObjects"]["w99"] = l.house["CityObjects"]["w12"]; }},
+      {"a second first-level object", [](Lines& l) { l.house["CityObjects"]["w99"] = l.house["CityObjects"]["w12"]; }},
       {"a feature with the member transform", [](Lines& l) { l.house["transform"] = l.header["transform"]; }},
       {"CITYJSON_RULE w12: its id is given twice", [](Lines& l) { l.lines.push_back(l.house); }},
       {"of the unknown type", [](Lines& l) { l.house["CityObjects"]["w12"]["type"] = "House"; }},
@@ -165,8 +163,7 @@ const std::vector<Damage>& damages() {
       {"does not name it as a parent", [](Lines& l) { l.church["CityObjects"]["w30.w32"]["parents"][0] = "w31"; }},
       {"its child w30.w31 is not in the file", [](Lines& l) { l.church["CityObjects"].erase("w30.w31"); }},
       {"its parent w31 is not in the file", [](Lines& l) { l.church["CityObjects"]["w30.w32"]["parents"][0] = "w31"; }},
-      {"twice in its children",
-       [](Lines& l) { l.church["CityObjects"]["w30"]["children"].push_back("w30.w31"); }},
+      {"twice in its children", [](Lines& l) { l.church["CityObjects"]["w30"]["children"].push_back("w30.w31"); }},
       {"its geometry is no array", [](Lines& l) { l.house["CityObjects"]["w12"]["geometry"] = json::object(); }},
       {"its address is no array", [](Lines& l) { l.house["CityObjects"]["w12"]["address"] = json::object(); }},
       {"has geometry beside its parts",
@@ -176,7 +173,10 @@ const std::vector<Damage>& damages() {
       {"vertices are not three integers", [](Lines& l) { l.house["vertices"][3][1] = 1.5; }},
       {"vertices are not three integers", [](Lines& l) { l.house["vertices"][3].push_back(0); }},
       {"vertices stand twice", [](Lines& l) { l.house["vertices"][3] = l.house["vertices"][2]; }},
-      {"1 vertices are used by nothing", [](Lines& l) { l.house["vertices"].push_back({1, 2, 3}); }},
+      {"1 vertices are used by nothing",
+       [](Lines& l) {
+         l.house["vertices"].push_back({1, 2, 3});
+       }},
       {"has the vertex index 99 of", [](Lines& l) { l.geometry(2)["boundaries"][0][1][0][0] = 99; }},
       {"has the vertex index -1 of", [](Lines& l) { l.geometry(2)["boundaries"][0][1][0][0] = -1; }},
       {"has the vertex index 1.5 of", [](Lines& l) { l.geometry(2)["boundaries"][0][1][0][0] = 1.5; }},
@@ -195,7 +195,10 @@ const std::vector<Damage>& damages() {
          json& ring = l.geometry(2)["boundaries"][0][1][0];
          ring.push_back(ring[0]);
        }},
-      {"has a ring of 2 vertices", [](Lines& l) { l.geometry(2)["boundaries"][0][1][0] = {0, 1}; }},
+      {"has a ring of 2 vertices",
+       [](Lines& l) {
+         l.geometry(2)["boundaries"][0][1][0] = {0, 1};
+       }},
       {"a vertex twice in a row",
        [](Lines& l) {
          json& ring = l.geometry(2)["boundaries"][0][1][0];
@@ -210,8 +213,7 @@ const std::vector<Damage>& damages() {
       {"has semantics of 6 values beside 7", [](Lines& l) { l.geometry(2)["semantics"]["values"][0].erase(0); }},
       {"has the semantic index 7 of 3", [](Lines& l) { l.geometry(2)["semantics"]["values"][0][0] = 7; }},
       {"has semantics without surfaces or values", [](Lines& l) { l.geometry(2)["semantics"].erase("values"); }},
-      {"a surface of the type \"Wall\"",
-       [](Lines& l) { l.geometry(2)["semantics"]["surfaces"][1]["type"] = "Wall"; }},
+      {"a surface of the type \"Wall\"", [](Lines& l) { l.geometry(2)["semantics"]["surfaces"][1]["type"] = "Wall"; }},
       {"has a material of 6 values beside 7",
        [](Lines& l) { l.geometry(2)["material"]["visual"]["values"][0].erase(0); }},
       {"has the material index 9 of 3", [](Lines& l) { l.geometry(2)["material"]["visual"]["values"][0][0] = 9; }},
