@@ -6,6 +6,7 @@
 #include "pipeline/cli/explain.h"
 #include "pipeline/cli/help.h"
 #include "pipeline/cli/info.h"
+#include "pipeline/cli/validate.h"
 
 namespace blockrand::cli {
 
@@ -13,6 +14,7 @@ const std::vector<Command>& commands() {
   static const std::vector<Command> all = {
       {build_text(), run_build},
       {explain_text(), run_explain},
+      {validate_text(), run_validate},
       {info_text(), run_info},
       {help_text(), run_help},
   };

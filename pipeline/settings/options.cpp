@@ -343,7 +343,7 @@ void add_build(Table& t) {
              .key = "jobs",
              .argument = "N",
              .section = S,
-             .commands = both,
+             .commands = both | kValidate,
              .minimum = 0,
              .maximum = 1024,
              .help = "worker threads; 0 is one per core"},
@@ -367,6 +367,28 @@ void add_build(Table& t) {
           .section = S,
           .help = "read options from this file; the command line is stronger"},
          FIELD(config));
+  t.text({.name = "extract",
+          .argument = "FILE",
+          .type = OptionType::path,
+          .section = S,
+          .commands = kValidate,
+          .help = "the extract that the build was made from, where it is no longer where build.json says"},
+         FIELD(validation.extract));
+  t.text({.name = "schemas",
+          .argument = "FOLDER",
+          .type = OptionType::folder,
+          .section = S,
+          .commands = kValidate,
+          .help = "also check CityGML against the OGC schemas here: citygml2.xsd, and catalog.xml that says where the others are"},
+         FIELD(validation.schemas));
+  t.integer({.name = "sample",
+             .argument = "N",
+             .section = S,
+             .commands = kValidate,
+             .minimum = 1,
+             .maximum = 1000000,
+             .help = "read only every Nth tile; counts are then not compared"},
+            FIELD(validation.sample));
   t.flag({.name = "json", .section = S, .commands = kInfo | kExplain | kValidate, .help = "print JSON"}, FIELD(json));
 }
 
@@ -455,12 +477,12 @@ void add_generate(Table& t) {
 
 void add_messages(Table& t) {
   constexpr auto S = Section::messages;
-  constexpr unsigned both = kBuild | kInfo;
+  constexpr unsigned all = kBuild | kInfo | kValidate;
   t.other(
       {.name = "progress",
        .argument = "STYLE",
        .section = S,
-       .commands = both,
+       .commands = all,
        .help = "auto (bar on a terminal, else plain), bar, plain (lines) or none",
        .choices = names_of(kProgressStyles)},
       [](Settings& s, const std::string& text) { s.progress = choose(text, kProgressStyles); },
@@ -469,12 +491,12 @@ void add_messages(Table& t) {
       {.name = "log-format",
        .argument = "FORMAT",
        .section = S,
-       .commands = both,
+       .commands = all,
        .help = "messages, progress and the summary as text or as json lines",
        .choices = names_of(kLogFormats)},
       [](Settings& s, const std::string& text) { s.log_format = choose(text, kLogFormats); },
       [](const Settings& s) { return name_of(kLogFormats, s.log_format); });
-  t.flag({.name = "quiet", .letter = "q", .section = S, .commands = both, .help = "warnings and errors only"},
+  t.flag({.name = "quiet", .letter = "q", .section = S, .commands = all, .help = "warnings and errors only"},
          FIELD(quiet));
 }
 

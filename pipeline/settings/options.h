@@ -9,6 +9,7 @@
 
 #include "pipeline/base/progress.h"
 #include "pipeline/region/build.h"
+#include "pipeline/validate/options.h"
 
 namespace blockrand::settings {
 
@@ -17,6 +18,7 @@ struct Settings {
   region::BuildOptions build;
   std::string config;  ///< the config file, for the record; its values are in the other fields
   std::string folder;  ///< a finished build, for the commands that read one
+  blockrand::validate::ValidateOptions validation;  ///< but for its folder and jobs, which other commands have too
   std::string id;      ///< of the building that `explain` is asked about
   bool json = false;   ///< print JSON
   base::ProgressStyle progress = base::ProgressStyle::automatic;

@@ -25,11 +25,15 @@ bool is_source(std::string_view name) {
   return false;
 }
 
-std::string number_text(std::string_view text) {
+double to_number(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
-  return base::shortest(value);
+  return error == std::errc() && end == text.data() + text.size() ? value : std::nan("");
+}
+
+std::string number_text(std::string_view text) {
+  const double value = to_number(text);
+  return std::isfinite(value) ? base::shortest(value) : std::string();
 }
 
 }  // namespace blockrand::validate

@@ -230,6 +230,10 @@ class Reader {
     const auto first = [&](std::size_t& counter, const std::string& what) {
       if (++counter <= kNoted) rule(where + ": " + what);
     };
+    if (!s.position.is_float()) {
+      const double steps = !s.position.normalised ? 1 : s.position.size == 1 ? 255 : 65535;
+      out_.position_step = std::max(out_.position_step, length({matrix[0], matrix[1], matrix[2]}) / steps);
+    }
     // Vertices first: most are used by several triangles.
     std::vector<Point3> points(s.position.count);
     std::vector<bool> usable(s.position.count, true);

@@ -1,0 +1,43 @@
+// build.json read back: what the build says of itself, and whether its files are the ones it lists.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "pipeline/validate/finding_log.h"
+#include "pipeline/validate/json_access.h"
+
+namespace blockrand::validate {
+
+struct BuildFile {
+  std::uint64_t bytes = 0;
+  std::string sha256;
+};
+
+struct BuildRecord {
+  Json json;
+  int lod = 2;
+  std::set<std::string> formats;  ///< "gltf", "citygml" …
+  bool gzip = false, single_glb = false, single_cityjson = false, report = false, explain = false;
+  std::string crs, pipeline, vertical_crs, height_reference;
+  double accuracy = 0;  ///< m, as PROJ states it for the operation
+  std::string extract_path, extract_sha256;
+  std::map<std::string, BuildFile> files;
+  /// A member of "counts"; nothing where it is missing.
+  std::optional<std::uint64_t> count(const char* name) const { return whole(member(member(json, "counts"), name)); }
+  bool has(const std::string& format) const { return formats.count(format) > 0; }
+};
+
+/// Reads FOLDER/build.json and checks that its fields are there and do not contradict each other (BUILD_JSON).
+/// \return nothing where it is no JSON object
+std::optional<BuildRecord> read_build_record(const std::string& folder, FindingLog& log);
+
+/// The files below the folder (build.json and run.json left out) against the list: FILE_MISSING, FILE_UNLISTED; and
+/// against the configuration (BUILD_JSON).
+void check_file_list(const std::string& folder, const BuildRecord& record, FindingLog& log);
+
+}  // namespace blockrand::validate

@@ -1,0 +1,45 @@
+// Whether two formats say the same about a tile, body by body.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/validate/contents.h"
+#include "pipeline/validate/glb.h"
+
+namespace blockrand::validate {
+
+/// A format's contents of a tile, and the file that they come from.
+struct Side {
+  const Contents& contents;
+  const std::string& file;
+};
+
+/// OBJECT_DOUBLED for each building or body that stands twice.
+void find_doubles(const Side& side, std::vector<Finding>& findings);
+
+/// OBJECT_MISSING for each building or body that only one side has.
+void compare_objects(const Side& a, const Side& b, std::vector<Finding>& findings);
+
+/// ATTRIBUTE_DIFFERS for attributes of bodies that both sides have. `<name>_confidence` may differ by half a step of
+/// 1/255 where `rounded_confidence`: property tables store it so.
+void compare_attributes(const Side& a, const Side& b, bool rounded_confidence, std::vector<Finding>& findings);
+
+/// SOURCE_WRONG where a value has no source, or one that does not exist, or no confidence in [0, 1].
+void check_sources(const Side& side, std::vector<Finding>& findings);
+
+/// Exactly the same polygons on the grid, in any order, with any first point: GEOMETRY_DIFFERS, COLOUR_DIFFERS.
+void compare_polygons(const Side& a, const Side& b, std::vector<Finding>& findings);
+
+/// Points of the build CRS to the tile's frame, by other ways than the writer's; both spans have the same length.
+using ToLocal = std::function<void(std::span<const model::Point3> in, std::span<model::Point3> out)>;
+
+/// A mesh has the corners, the area, the volume and the colours of the body's best solid (or, without one, its
+/// footprint). Where every body of a tile is off by much the same, that is one finding.
+/// \param tolerance  m, that a vertex may be off
+void compare_meshes(const Side& reference, const Glb& glb, const std::string& glb_file, const ToLocal& to_local,
+                    double tolerance, std::vector<Finding>& findings);
+
+}  // namespace blockrand::validate

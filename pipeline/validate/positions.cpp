@@ -1,0 +1,130 @@
+#include "pipeline/validate/positions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "importers/osm/read_extract.h"
+#include "pipeline/validate/earth.h"
+#include "pipeline/validate/file_bytes.h"
+#include "pipeline/validate/json_access.h"
+
+namespace blockrand::validate {
+namespace {
+
+constexpr double kLeastTurn = 10;    // degrees
+constexpr double kLeastEdge = 0.5;   // m
+constexpr double kMetresPerUnit = 0.0111319;  // 1e-7 degrees of latitude
+
+std::uint64_t mix(std::uint64_t h) {
+  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
+  h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
+  return h ^ (h >> 31);
+}
+
+std::uint64_t rank_of(const std::string& body, model::Location at) {
+  std::uint64_t h = 0x9e3779b97f4a7c15u;
+  for (const char c : body) h = mix(h ^ static_cast<unsigned char>(c));
+  return mix(h ^ (static_cast<std::uint64_t>(static_cast<std::uint32_t>(at.lon)) << 32 | static_cast<std::uint32_t>(at.lat)));
+}
+
+}  // namespace
+
+void PositionSampler::add(const std::string& body, const std::vector<model::Location>& ring) {
+  if (ring.size() < 3) return;
+  const double scale = std::cos(ring[0].lat_degrees() * kRadians) * kMetresPerUnit;
+  const auto edge = [&](model::Location a, model::Location b) {
+    // Across 180 degrees the difference is a turn too much.
+    const double turns = std::nearbyint((static_cast<double>(b.lon) - a.lon) / 3.6e9);
+    return model::Point2{(static_cast<double>(b.lon) - a.lon - turns * 3.6e9) * scale, (static_cast<double>(b.lat) - a.lat) * kMetresPerUnit};
+  };
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const model::Location at = ring[i];
+    const model::Point2 u = edge(ring[(i + ring.size() - 1) % ring.size()], at), v = edge(at, ring[(i + 1) % ring.size()]);
+    if (std::hypot(u.x, u.y) < kLeastEdge || std::hypot(v.x, v.y) < kLeastEdge) continue;
+    const double turn = std::fabs(std::atan2(u.x * v.y - u.y * v.x, u.x * v.x + u.y * v.y)) / kRadians;
+    if (turn < kLeastTurn || turn > 180 - kLeastTurn) continue;
+    candidates_.push_back({rank_of(body, at), body, at});
+  }
+  if (candidates_.size() > 20 * kSampled) shrink();
+}
+
+void PositionSampler::shrink() {
+  if (candidates_.size() <= kSampled) return;
+  std::nth_element(candidates_.begin(), candidates_.begin() + kSampled, candidates_.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.rank < b.rank; });
+  candidates_.resize(kSampled);
+}
+
+PositionSample PositionSampler::finish(std::string source) && {
+  shrink();
+  PositionSample sample;
+  sample.source = std::move(source);
+  std::vector<double> lons, lats;
+  for (Candidate& c : candidates_) {
+    lons.push_back(c.at.lon_degrees());
+    lats.push_back(c.at.lat_degrees());
+    sample.corners[c.body].push_back({c.at, c.rank});
+  }
+  if (lons.empty()) return sample;
+  const auto middle = [](std::vector<double>& v) {
+    std::sort(v.begin(), v.end());
+    return v[v.size() / 2];
+  };
+  sample.lon = middle(lons);
+  sample.lat = middle(lats);
+  sample.west = lons.front();
+  sample.east = lons.back();
+  sample.south = lats.front();
+  sample.north = lats.back();
+  return sample;
+}
+
+PositionSample sample_extract(const std::string& path, const std::optional<std::array<double, 4>>& bbox,
+                              const std::set<std::string>& mended) {
+  importers::osm::ReadOptions options;
+  options.bbox = bbox;
+  const model::Extract extract = importers::osm::read_extract(path, options);
+  PositionSampler sampler;
+  for (const model::MappedBuilding& b : extract.buildings) {
+    if (b.kind != model::ObjectKind::building || b.state != model::ObjectState::pending || b.rings.count == 0) continue;
+    const std::string id = b.id.text();
+    if (mended.count(id)) continue;
+    for (const model::MappedRing& ring : extract.rings_of(b.rings)) {
+      if (ring.inner) continue;
+      const auto vertices = extract.vertices_of(ring);
+      sampler.add(id, {vertices.begin(), vertices.end()});
+    }
+  }
+  return std::move(sampler).finish("the extract " + path);
+}
+
+PositionSample sample_explanations(const std::vector<std::string>& paths, const std::set<std::string>& mended) {
+  PositionSampler sampler;
+  for (const std::string& path : paths) {
+    std::string why;
+    const auto lines = content_of(path, why);
+    if (!lines) continue;
+    for (std::size_t at = 0; at < lines->size();) {
+      const std::size_t end = std::min(lines->find('\n', at), lines->size());
+      const auto line = parse_json(std::string_view(*lines).substr(at, end - at));
+      at = end + 1;
+      if (!line) continue;
+      const std::string id = text(member(*line, "id"));
+      const Json *outline = member(*line, "outline"), *bodies = member(*line, "bodies");
+      const Json *lon = member(outline, "lon"), *lat = member(outline, "lat"), *rings = member(outline, "rings");
+      if (mended.count(id) || !lon || !lat || !lon->is_array() || !lat->is_array() || lon->size() != lat->size()) continue;
+      if (text(member(element(bodies, 0), "id")) != id) continue;
+      const std::size_t first = rings ? static_cast<std::size_t>(whole(element(rings, 0)).value_or(0)) : lon->size();
+      std::vector<model::Location> ring;
+      for (std::size_t i = 0; i < std::min(first, lon->size()); ++i) {
+        const auto x = number(&(*lon)[i]), y = number(&(*lat)[i]);
+        if (!x || !y || std::fabs(*x) > 1.8e9 || std::fabs(*y) > 9e8) break;
+        ring.push_back({static_cast<std::int32_t>(*x), static_cast<std::int32_t>(*y)});
+      }
+      sampler.add(id, ring);
+    }
+  }
+  return std::move(sampler).finish("the records in explain/");
+}
+
+}  // namespace blockrand::validate

@@ -1,0 +1,449 @@
+#include "pipeline/validate/tile_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <unordered_map>
+
+#include "pipeline/validate/attribute_names.h"
+#include "pipeline/validate/cityjson.h"
+#include "pipeline/validate/compare.h"
+#include "pipeline/validate/file_bytes.h"
+#include "pipeline/validate/glb.h"
+#include "pipeline/validate/ids.h"
+#include "pipeline/validate/solids.h"
+
+namespace blockrand::validate {
+namespace {
+
+using model::Point2;
+using model::Point3;
+
+constexpr auto kGltf = static_cast<std::size_t>(Format::gltf), kCityGml = static_cast<std::size_t>(Format::citygml),
+               kCityJson = static_cast<std::size_t>(Format::cityjson);
+constexpr double kPositionTolerance = 1e-3;  // m; the promise
+// Corners of meshes: the millimetre, and the tenth that the polynomial of a tile's frame may cost.
+constexpr double kMeshTolerance = 1.1e-3;
+// The geoid over a tile is a plane for the writer and a grid here.
+constexpr double kGeoidTolerance = 5e-3;
+
+bool says_unreadable(const std::vector<Finding>& findings) {
+  return std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.check == Check::file_unreadable; });
+}
+
+bool has_geometry(const ReadBody& body, int lod) { return lod == 0 ? !body.footprint.empty() : !body.solids.empty(); }
+
+class Checker {
+ public:
+  Checker(const TileFiles& files, const TileContext& context) : files_(files), context_(context) {}
+
+  TileResult run() {
+    read_glb_tile();
+    read_citygml_tile();
+    read_cityjson_tile();
+    check_bounds();
+    judge_solids();
+    compare();
+    check_positions();
+    count();
+    return std::move(out_);
+  }
+
+  TileResult run_single_glb() {
+    read_glb_file(files_.path[kGltf]);
+    if (glb_) {
+      transform_ = glb_->georeference.local_to_ecef;
+      find_doubles({glb_->contents, files_.path[kGltf]}, out_.findings);
+      check_sources({glb_->contents, files_.path[kGltf]}, out_.findings);
+      judge_meshes();
+      check_positions();
+      count();
+    }
+    return std::move(out_);
+  }
+
+ private:
+  void found(Check check, const std::string& file, std::string object, std::string what) {
+    out_.findings.push_back({check, file, std::move(object), std::move(what)});
+  }
+
+  /// The content of a file of the tile; a file that is not there was found already.
+  std::optional<std::string> load(const std::string& path, FormatCounts& counts) {
+    const std::string full = (std::filesystem::path(context_.folder) / path).string();
+    std::error_code error;
+    if (!std::filesystem::exists(full, error)) {
+      counts.incomplete = true;
+      return std::nullopt;
+    }
+    std::string why;
+    auto content = content_of(full, why);
+    if (!content) {
+      found(Check::file_unreadable, path, "", why);
+      counts.incomplete = true;
+    }
+    return content;
+  }
+
+  void take(std::vector<Finding>& findings) {
+    out_.findings.insert(out_.findings.end(), std::make_move_iterator(findings.begin()), std::make_move_iterator(findings.end()));
+    findings.clear();
+  }
+
+  // ---- reading
+
+  void read_glb_file(const std::string& path) {
+    FormatCounts& counts = out_.counts[kGltf];
+    const auto bytes = load(path, counts);
+    if (!bytes) return;
+    glb_ = read_glb(*bytes, path);
+    take(glb_->contents.findings);
+    if (!glb_->readable) {
+      counts.incomplete = true;
+      glb_.reset();
+      return;
+    }
+    if (glb_->georeference.present && glb_->georeference.crs != context_.record.crs)
+      found(Check::georeference, path, "", fmt::format("says {}, build.json says {}", glb_->georeference.crs, context_.record.crs));
+    for (const auto& t : glb_->triangles) out_.triangles += t.size();
+  }
+
+  void read_glb_tile() {
+    const std::string& path = files_.path[kGltf];
+    if (path.empty()) return;
+    read_glb_file(path);
+    if (!glb_) return;
+    transform_ = glb_->georeference.local_to_ecef;
+    if (!context_.tileset || !context_.tileset->readable) return;
+    const auto entry = context_.tileset->entries.find(path);
+    if (entry == context_.tileset->entries.end()) return found(Check::tile_missing, path, "", "the tileset does not name it");
+    entry_ = &entry->second;
+    transform_ = entry_->transform;
+    if (!glb_->georeference.present || transform_ == glb_->georeference.local_to_ecef) return;
+    const Matrix& g = glb_->georeference.local_to_ecef;
+    found(Check::georeference, path, "", fmt::format("its local_to_ecef is not the tileset's transform: origins {:.4f} m apart",
+                                                     std::hypot(transform_[12] - g[12], transform_[13] - g[13], transform_[14] - g[14])));
+  }
+
+  void read_citygml_tile() {
+    const std::string& path = files_.path[kCityGml];
+    if (path.empty()) return;
+    const auto xml = load(path, out_.counts[kCityGml]);
+    if (!xml) return;
+    CityGml gml = read_citygml(*xml, path);
+    take(gml.contents.findings);
+    if (!gml.readable) {
+      out_.counts[kCityGml].incomplete = true;
+      return;
+    }
+    if (context_.schema)
+      for (Finding& f : context_.schema->validate(*xml, path)) out_.findings.push_back(std::move(f));
+    const auto number = [](const std::string& code) { return code.substr(code.find(':') + 1); };
+    const std::string expected = context_.record.vertical_crs.empty()
+                                     ? "urn:ogc:def:crs:EPSG::" + number(context_.record.crs)
+                                     : "urn:ogc:def:crs,crs:EPSG::" + number(context_.record.crs) + ",crs:EPSG::" + number(context_.record.vertical_crs);
+    if (!gml.contents.buildings.empty() && gml.srs_name != expected)
+      found(Check::citygml_rule, path, "", fmt::format("srsName is {}, by build.json it is {}", gml.srs_name, expected));
+    contents_[kCityGml] = std::move(gml.contents);
+  }
+
+  void read_cityjson_tile() {
+    const std::string& path = files_.path[kCityJson];
+    if (path.empty()) return;
+    const auto text = load(path, out_.counts[kCityJson]);
+    if (!text) return;
+    Contents contents = read_cityjson(*text, path);
+    const bool unreadable = says_unreadable(contents.findings);
+    take(contents.findings);
+    if (unreadable)
+      out_.counts[kCityJson].incomplete = true;
+    else
+      contents_[kCityJson] = std::move(contents);
+  }
+
+  /// A format's contents, or null.
+  const Contents* contents(std::size_t format) const {
+    if (format == kGltf) return glb_ ? &glb_->contents : nullptr;
+    return contents_[format] ? &*contents_[format] : nullptr;
+  }
+
+  // ---- one format by itself
+
+  void check_bounds() {
+    if (!entry_) return;
+    const Overhang over = overhang(*entry_, glb_->vertices);
+    if (over.own > kVolumeTolerance)
+      found(Check::tile_bounds, files_.path[kGltf], "", fmt::format("its mesh lies up to {:.3f} m outside of the tile's bounding volume", over.own));
+    if (over.ancestor > kVolumeTolerance)
+      found(Check::tile_bounds, files_.path[kGltf], "", fmt::format("its mesh lies up to {:.3f} m outside of an ancestor's bounding volume", over.ancestor));
+  }
+
+  void judge_meshes() {
+    for (std::size_t i = 0; i < glb_->triangles.size(); ++i) {
+      const ReadBody& body = glb_->contents.bodies[i];
+      const auto lod = body.attributes.find("lod");
+      // A footprint laid on the ground is no solid.
+      if (glb_->triangles[i].empty() || context_.record.lod == 0 || (lod != body.attributes.end() && lod->second == "0")) continue;
+      ++out_.judged;
+      note(judge(glb_->triangles[i]), files_.path[kGltf], body.id, "mesh", out_.findings);
+    }
+  }
+
+  void judge_solids() {
+    if (glb_) judge_meshes();
+    const Contents *gml = contents(kCityGml), *json = contents(kCityJson);
+    std::unordered_map<std::string_view, const ReadBody*> judged;
+    if (gml)
+      for (const ReadBody& body : gml->bodies) {
+        judged.emplace(body.id, &body);
+        judge_body(body, files_.path[kCityGml]);
+      }
+    if (!json) return;
+    for (const ReadBody& body : json->bodies) {
+      // The same polygons in the same order have their verdict already.
+      const auto other = judged.find(body.id);
+      if (other != judged.end() && same_solids(*other->second, body))
+        out_.judged += body.solids.size();
+      else
+        judge_body(body, files_.path[kCityJson]);
+    }
+  }
+
+  void judge_body(const ReadBody& body, const std::string& file) {
+    for (const ReadSolid& solid : body.solids) {
+      ++out_.judged;
+      note(judge(solid), file, body.id, fmt::format("LoD {}", solid.lod), out_.findings);
+    }
+  }
+
+  static bool same_solids(const ReadBody& a, const ReadBody& b) {
+    return std::equal(a.solids.begin(), a.solids.end(), b.solids.begin(), b.solids.end(), [](const ReadSolid& x, const ReadSolid& y) {
+      return x.lod == y.lod && std::equal(x.polygons.begin(), x.polygons.end(), y.polygons.begin(), y.polygons.end(),
+                                          [](const ReadPolygon& p, const ReadPolygon& q) { return p.rings == q.rings; });
+    });
+  }
+
+  /// The ground is where ground_height says it is.
+  void check_ground(const Contents& c, const std::string& file) {
+    for (const ReadBody& body : c.bodies) {
+      const auto ground = body.attributes.find("ground_height");
+      if (ground == body.attributes.end()) continue;
+      const double z = model::snap(to_number(ground->second));
+      const auto check = [&](const ReadPolygon& polygon, const char* what) {
+        for (const auto& ring : polygon.rings)
+          for (const Point3& p : ring)
+            if (std::fabs(p.z - z) > 1e-9) {
+              found(Check::geometry_differs, file, body.id, fmt::format("its {} lies at {:.4f} m, ground_height is {}", what, p.z, ground->second));
+              return false;
+            }
+        return true;
+      };
+      bool good = true;
+      for (const ReadPolygon& p : body.footprint) good = good && check(p, "footprint");
+      for (const ReadSolid& solid : body.solids)
+        for (const ReadPolygon& p : solid.polygons) good = good && (p.kind != "ground" || check(p, "ground surface"));
+    }
+  }
+
+  // ---- formats against each other
+
+  void compare() {
+    std::vector<std::size_t> there;
+    for (const std::size_t f : {kCityGml, kCityJson, kGltf})
+      if (contents(f)) {
+        there.push_back(f);
+        find_doubles({*contents(f), files_.path[f]}, out_.findings);
+      }
+    if (glb_) check_sources({glb_->contents, files_.path[kGltf]}, out_.findings);
+    for (const std::size_t f : {kCityGml, kCityJson})
+      if (contents(f)) check_ground(*contents(f), files_.path[f]);
+    if (there.empty()) return;
+    const std::size_t reference = there.front();
+    const Side first{*contents(reference), files_.path[reference]};
+    for (const std::size_t f : there) {
+      if (f == reference) continue;
+      const Side other{*contents(f), files_.path[f]};
+      compare_objects(first, other, out_.findings);
+      compare_attributes(first, other, f == kGltf, out_.findings);
+      out_.compared += other.contents.bodies.size();
+      if (f == kCityJson) compare_polygons(first, other, out_.findings);
+    }
+    if (glb_ && reference != kGltf) compare_with_mesh(first);
+    note_absent(reference, there);
+  }
+
+  void compare_with_mesh(const Side& reference) {
+    if (!context_.witness) return;
+    const bool above_sea = glb_->georeference.height_reference.find("EGM96") != std::string::npos;
+    context_.witness->with([&](georef::Witness& witness) {
+      const ToLocal to_local = [&](std::span<const Point3> in, std::span<Point3> out) {
+        for (std::size_t i = 0; i < in.size(); ++i) {
+          const georef::LonLat at = witness.inverse(in[i].xy());
+          const double undulation = above_sea ? context_.geoid.undulation(at.lon, at.lat).value_or(0) : 0;
+          out[i] = apply_inverse(transform_, witness.to_ecef({at.lon, at.lat, in[i].z + undulation}));
+        }
+      };
+      const double tolerance = kMeshTolerance + glb_->position_step * 0.87 + (above_sea ? kGeoidTolerance : 0);
+      compare_meshes(reference, *glb_, files_.path[kGltf], to_local, tolerance, out_.findings);
+    });
+  }
+
+  /// A format that the build has, but not for this tile.
+  void note_absent(std::size_t reference, const std::vector<std::size_t>& there) {
+    const Contents& c = *contents(reference);
+    if (c.bodies.empty()) return;
+    static constexpr const char* kKeys[kTileFormats] = {"gltf", "citygml", "cityjson"};
+    for (std::size_t f = 0; f < kTileFormats; ++f) {
+      if (!context_.record.has(kKeys[f]) || !files_.path[f].empty() || std::count(there.begin(), there.end(), f)) continue;
+      // A tile where nothing could be built has no mesh.
+      const auto shown = std::count_if(c.bodies.begin(), c.bodies.end(), [&](const ReadBody& b) { return has_geometry(b, context_.record.lod); });
+      if (f == kGltf && shown == 0) continue;
+      found(Check::object_missing, files_.path[reference], files_.name, fmt::format("{} bodies of the tile, but no file of it in {}", c.bodies.size(), kFormatNames[f]));
+    }
+  }
+
+  // ---- against the map
+
+  void check_positions() {
+    if (!context_.positions || context_.sample.empty()) return;
+    std::map<std::string, std::vector<std::pair<std::size_t, const ReadBody*>>> bodies;  // in id order
+    std::unordered_map<std::string_view, std::size_t> rows;
+    for (std::size_t f = 0; f < kTileFormats; ++f)
+      if (const Contents* c = contents(f))
+        for (std::size_t i = 0; i < c->bodies.size(); ++i) {
+          const ReadBody& body = c->bodies[i];
+          if (!context_.sample.corners.count(body.id)) continue;
+          if (f == kGltf) rows.emplace(body.id, i);
+          if (f == kGltf ? !glb_->triangles[i].empty() : has_geometry(body, context_.record.lod)) bodies[body.id].emplace_back(f, &body);
+        }
+    context_.positions->with([&](georef::Witness& witness) {
+      for (const auto& [id, shown] : bodies) {
+        std::vector<std::vector<Point2>> places(kTileFormats);  // of GLB in degrees
+        for (const auto& [f, body] : shown) places[f] = f == kGltf ? places_on_earth(witness, glb_->triangles[rows.at(id)]) : plan_points(*body);
+        for (const SampledCorner& corner : context_.sample.corners.at(id)) {
+          PositionResult result{corner.rank, id, {-1, -1, -1}, {0, 0, 0}};
+          for (const auto& [f, body] : shown) {
+            result.off[f] = f == kGltf ? nearest_degrees(places[f], corner.at) : nearest(places[f], witness.forward({corner.at.lon_degrees(), corner.at.lat_degrees()}));
+            result.tolerance[f] = kPositionTolerance + (f == kGltf ? glb_->position_step * 0.71 : 0);
+          }
+          out_.positions.push_back(std::move(result));
+        }
+      }
+    });
+  }
+
+  std::vector<Point2> places_on_earth(georef::Witness& witness, const std::vector<GlbTriangle>& triangles) const {
+    std::vector<Point3> corners;
+    for (const GlbTriangle& t : triangles) corners.insert(corners.end(), t.corners.begin(), t.corners.end());
+    std::sort(corners.begin(), corners.end());
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    std::vector<Point2> out;
+    for (const Point3& p : corners) {
+      const georef::Geodetic g = witness.to_geodetic(apply(transform_, p));
+      out.push_back({g.lon, g.lat});
+    }
+    return out;
+  }
+
+  static std::vector<Point2> plan_points(const ReadBody& body) {
+    std::vector<Point2> out;
+    const auto add = [&](const std::vector<ReadPolygon>& polygons) {
+      for (const ReadPolygon& polygon : polygons)
+        for (const auto& ring : polygon.rings)
+          for (const Point3& p : ring) out.push_back(p.xy());
+    };
+    add(body.footprint);
+    for (const ReadSolid& solid : body.solids) add(solid.polygons);
+    return out;
+  }
+
+  static double nearest(const std::vector<Point2>& points, Point2 at) {
+    double best = 1e9;
+    for (const Point2& p : points) best = std::min(best, std::hypot(p.x - at.x, p.y - at.y));
+    return best;
+  }
+
+  static double nearest_degrees(const std::vector<Point2>& points, model::Location at) {
+    // Radii of curvature at the latitude: metres per degree north and east.
+    const double s = std::sin(at.lat_degrees() * kRadians), w = 1 - kEarthE2 * s * s;
+    const double north = kEarthA * (1 - kEarthE2) / (w * std::sqrt(w)) * kRadians;
+    const double east = kEarthA / std::sqrt(w) * std::cos(at.lat_degrees() * kRadians) * kRadians;
+    double best = 1e9;
+    for (const Point2& p : points)
+      best = std::min(best, std::hypot(std::remainder(p.x - at.lon_degrees(), 360.0) * east, (p.y - at.lat_degrees()) * north));
+    return best;
+  }
+
+  // ---- counting
+
+  void count() {
+    std::set<std::string> modelled;
+    bool counted_sources = false;
+    for (const std::size_t f : {kCityGml, kCityJson, kGltf}) {
+      const Contents* c = contents(f);
+      if (!c) continue;
+      FormatCounts& n = out_.counts[f];
+      n.files = 1;
+      n.buildings = std::set<std::string_view>(c->buildings.begin(), c->buildings.end()).size();
+      n.bodies = c->bodies.size();
+      std::set<std::string> models;
+      for (std::size_t i = 0; i < c->bodies.size(); ++i) {
+        const ReadBody& body = c->bodies[i];
+        out_.ids[f].push_back(body.id);
+        out_.attributes += body.attributes.size();
+        const bool shown = f == kGltf ? !glb_->triangles[i].empty() : has_geometry(body, context_.record.lod);
+        if (shown) models.insert(owner(body.id));
+        if (f == kGltf) n.solids[0] += shown;
+        if (f != kGltf)
+          for (const ReadSolid& solid : body.solids) ++n.solids[std::clamp(solid.lod, 0, 2)];
+        if (!counted_sources) count_sources(body);
+      }
+      counted_sources = true;
+      n.models = models.size();
+      modelled.merge(models);
+    }
+    out_.modelled.assign(modelled.begin(), modelled.end());
+  }
+
+  void count_sources(const ReadBody& body) {
+    for (const auto& [name, value] : body.attributes) {
+      if (name.ends_with("_source")) ++out_.sources[name.substr(0, name.size() - 7)][value];
+      if (name == "built_roof") ++out_.roofs[value];
+    }
+  }
+
+  const TileFiles& files_;
+  const TileContext& context_;
+  TileResult out_;
+  std::optional<Glb> glb_;
+  std::optional<Contents> contents_[kTileFormats];
+  const TilesetEntry* entry_ = nullptr;
+  Matrix transform_ = kIdentity;
+};
+
+}  // namespace
+
+void FormatCounts::add(const FormatCounts& other) {
+  files += other.files;
+  buildings += other.buildings;
+  bodies += other.bodies;
+  for (std::size_t i = 0; i < 3; ++i) solids[i] += other.solids[i];
+  models += other.models;
+  incomplete = incomplete || other.incomplete;
+}
+
+TileResult check_tile(const TileFiles& files, const TileContext& context) { return Checker(files, context).run(); }
+
+TileResult check_single_glb(const std::string& path, const TileContext& context) {
+  TileFiles files;
+  files.name = path;
+  files.path[kGltf] = path;
+  return Checker(files, context).run_single_glb();
+}
+
+}  // namespace blockrand::validate

@@ -1,0 +1,78 @@
+// Everything that is checked of one tile: its files against their rules, against each other and against the map.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pipeline/georef/heights.h"
+#include "pipeline/georef/witness.h"
+#include "pipeline/validate/build_record.h"
+#include "pipeline/validate/citygml.h"
+#include "pipeline/validate/contents.h"
+#include "pipeline/validate/positions.h"
+#include "pipeline/validate/tileset.h"
+
+namespace blockrand::validate {
+
+/// The formats that are files of a tile.
+enum class Format { gltf, citygml, cityjson };
+inline constexpr int kTileFormats = 3;
+inline constexpr const char* kFormatNames[kTileFormats] = {"GLB tiles", "CityGML", "CityJSON"};
+
+/// A tile's files as build.json lists them, relative to the build; empty where it lists none.
+struct TileFiles {
+  std::string name;  ///< "15_17600_12900"
+  std::string path[kTileFormats];
+};
+
+/// What one format holds of one or of all tiles.
+struct FormatCounts {
+  std::uint64_t files = 0, buildings = 0, bodies = 0;
+  std::uint64_t solids[3] = {0, 0, 0};  ///< by LoD; of GLB, meshes in [0], whichever LoD they show
+  std::uint64_t models = 0;             ///< objects of the map that own a solid, or at LoD 0 a footprint
+  bool incomplete = false;              ///< a file is missing or unreadable: the counts mean nothing
+  void add(const FormatCounts& other);
+};
+
+/// How far a sampled corner lies from where OpenStreetMap has it; negative where the format does not show it.
+struct PositionResult {
+  std::uint64_t rank = 0;
+  std::string object;
+  double off[kTileFormats] = {-1, -1, -1};  ///< m
+  double tolerance[kTileFormats] = {0, 0, 0};
+};
+
+struct TileResult {
+  std::vector<Finding> findings;
+  FormatCounts counts[kTileFormats];
+  std::uint64_t judged = 0;      ///< solids that were given to both judges
+  std::uint64_t triangles = 0, attributes = 0, compared = 0;  ///< pairs of bodies in two formats
+  std::vector<PositionResult> positions;
+  std::vector<std::string> ids[kTileFormats];  ///< of bodies: across tiles they must differ as well
+  std::vector<std::string> modelled;           ///< objects that own a solid or footprint, in any format
+  std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → bodies
+  std::map<std::string, std::uint64_t> roofs;                           ///< built roof → bodies
+};
+
+/// What all tiles have in common. Every member outlives the checks; const use from several threads.
+struct TileContext {
+  std::string folder;
+  const BuildRecord& record;
+  const Tileset* tileset = nullptr;
+  const CityGmlSchema* schema = nullptr;
+  const PositionSample& sample;
+  georef::WitnessPool* witness = nullptr;    ///< PROJ with the operation of build.json; null where it cannot be used
+  georef::WitnessPool* positions = nullptr;  ///< PROJ with the operation that the positions are compared by
+  const georef::Geoid& geoid;
+};
+
+/// Never throws on account of what the files hold.
+TileResult check_tile(const TileFiles& files, const TileContext& context);
+
+/// model.glb: the whole build as one mesh. Checked like a tile without a tileset.
+TileResult check_single_glb(const std::string& path, const TileContext& context);
+
+}  // namespace blockrand::validate

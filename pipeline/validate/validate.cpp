@@ -1,0 +1,389 @@
+#include "pipeline/validate/validate.h"
+
+#include <fmt/format.h>
+#include <libxml/parser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <unordered_set>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/parallel.h"
+#include "pipeline/base/sha256.h"
+#include "pipeline/validate/build_record.h"
+#include "pipeline/validate/file_bytes.h"
+#include "pipeline/validate/report_check.h"
+#include "pipeline/validate/tile_check.h"
+
+namespace blockrand::validate {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The tile that a file belongs to and its format; empty for files of the whole build.
+struct TilePath {
+  std::string tile;
+  Format format = Format::gltf;
+};
+
+TilePath tile_path(std::string_view path) {
+  const auto between = [&](std::string_view start, std::initializer_list<std::string_view> ends) -> std::string {
+    if (!path.starts_with(start)) return {};
+    for (const std::string_view end : ends)
+      if (path.ends_with(end) && path.size() > start.size() + end.size())
+        return std::string(path.substr(start.size(), path.size() - start.size() - end.size()));
+    return {};
+  };
+  if (std::string name = between("tiles/", {".glb"}); !name.empty()) {
+    std::replace(name.begin(), name.end(), '/', '_');
+    return {name, Format::gltf};
+  }
+  if (const std::string name = between("citygml/", {".gml", ".gml.gz"}); !name.empty()) return {name, Format::citygml};
+  if (const std::string name = between("cityjson/", {".city.jsonl", ".city.jsonl.gz"}); !name.empty()) return {name, Format::cityjson};
+  return {};
+}
+
+class Run {
+ public:
+  Run(const ValidateOptions& options, base::Progress& progress) : o_(options), progress_(progress), workers_(base::worker_count(options.jobs)) {}
+
+  Validation run() {
+    open();
+    check_hashes();
+    read_whole_files();
+    choose_positions();
+    check_tiles();
+    check_single_files();
+    check_counts();
+    check_positions();
+    progress_.end();
+    return std::move(v_);
+  }
+
+ private:
+  FindingLog& log() { return v_.findings; }
+  std::string full(const std::string& path) const { return (fs::path(o_.folder) / path).string(); }
+  void checked(std::string what, std::string how, std::uint64_t count, std::string unit) {
+    v_.checked.push_back({std::move(what), std::move(how), count, std::move(unit)});
+  }
+
+  void open() {
+    std::error_code error;
+    if (!fs::is_directory(o_.folder, error))
+      throw base::UsageError(o_.folder + (fs::exists(o_.folder, error) ? " is no folder." : " does not exist.") + " Name the output folder of a build.");
+    if (!fs::exists(full("build.json"), error))
+      throw base::UsageError(o_.folder + " is no build: there is no build.json in it. Name the output folder of a build.");
+    xmlInitParser();  // before there are several threads
+    auto record = read_build_record(o_.folder, log());
+    if (!record) {
+      record.emplace();  // nothing is known of the files: there is nothing more to check
+      unreadable_ = true;
+    }
+    record_ = std::move(*record);
+    if (!unreadable_) check_file_list(o_.folder, record_, log());
+    checked("build.json", "fields, sums, configuration against files", 1, "file");
+    if (!o_.schemas.empty()) schema_ = std::make_unique<CityGmlSchema>(o_.schemas);
+  }
+
+  // ---- files
+
+  void check_hashes() {
+    std::vector<std::pair<std::string, BuildFile>> files;
+    std::uint64_t bytes = 0;
+    std::error_code error;
+    for (const auto& [path, file] : record_.files)
+      if (fs::exists(full(path), error)) {
+        files.emplace_back(path, file);
+        bytes += file.bytes;
+      }
+    progress_.begin("hashes", files.size(), "files");
+    std::vector<std::string> wrong(files.size());
+    base::ordered_parallel(
+        files.size(), workers_, static_cast<std::size_t>(2 * workers_ + 2),
+        [&](std::size_t i) {
+          const auto& [path, file] = files[i];
+          std::error_code failed;
+          const auto size = fs::file_size(full(path), failed);
+          if (failed || size != file.bytes) {
+            wrong[i] = fmt::format("{} bytes, build.json says {}", failed ? 0 : size, file.bytes);
+            return;
+          }
+          try {
+            if (base::sha256_file(full(path)) != file.sha256) wrong[i] = "its SHA-256 is not that of build.json";
+          } catch (const base::InputError&) {
+            wrong[i] = "cannot be read";
+          }
+        },
+        [&](std::size_t i) {
+          if (!wrong[i].empty()) log().add(Check::file_changed, files[i].first, "", wrong[i]);
+          progress_.advance_to(i + 1);
+        });
+    checked("files", "listed, there, unchanged (size and SHA-256)", files.size(), "files");
+  }
+
+  void read_whole_files() {
+    if (record_.has("gltf") && record_.files.count("tileset.json")) {
+      if (const auto bytes = file_bytes(full("tileset.json"))) {
+        tileset_ = read_tileset(*bytes, "tileset.json");
+        log().add(std::move(tileset_.findings));
+        for (const auto& [uri, entry] : tileset_.entries)
+          if (!record_.files.count(uri) || !fs::exists(full(uri))) {
+            log().add(Check::tile_missing, "tileset.json", uri, "named by the tileset, but not there");
+            totals_[0].incomplete = true;
+          }
+        if (tileset_.readable && tileset_.crs != record_.crs)
+          log().add(Check::tileset_rule, "tileset.json", "", fmt::format("says {}, build.json says {}", tileset_.crs, record_.crs));
+        checked("tileset.json", "3D Tiles 1.1: volumes, errors, transforms, contents", tileset_.entries.size(), "tiles");
+      }
+    }
+    if (record_.files.count("report.json")) report_ = read_report(o_.folder, record_, log());
+    if (report_) checked("report.json", "objects and issues against build.json", report_->objects, "objects");
+  }
+
+  // ---- tiles
+
+  void choose_positions() {
+    if (unreadable_) return;
+    std::error_code error;
+    std::string path = o_.extract, why;
+    if (path.empty()) {
+      path = record_.extract_path;
+      if (path.empty() || !fs::is_regular_file(path, error))
+        path.clear();
+      else if (base::sha256_file(path) != record_.extract_sha256)
+        path.clear();
+    } else if (base::sha256_file(path) != record_.extract_sha256) {
+      throw base::UsageError("--extract " + path + " is not the file that the build was made from: its SHA-256 differs.");
+    }
+    const std::set<std::string> none;
+    const std::set<std::string>& mended = report_ ? report_->mended : none;
+    if (!path.empty()) {
+      progress_.begin("positions");
+      std::optional<std::array<double, 4>> bbox;
+      if (const auto box = numbers(member(member(record_.json, "configuration"), "bbox"), 4)) bbox = {(*box)[0], (*box)[1], (*box)[2], (*box)[3]};
+      sample_ = sample_extract(path, bbox, mended);
+    } else {
+      std::vector<std::string> records;
+      for (const auto& [file, entry] : record_.files)
+        if (file.starts_with("explain/") && file.ends_with(".jsonl.gz")) records.push_back(full(file));
+      if (!records.empty()) sample_ = sample_explanations(records, mended);
+    }
+    if (sample_.empty()) {
+      v_.notes.push_back(path.empty() && sample_.source.empty() ? "positions were not compared with OpenStreetMap: the extract is not where build.json says (give --extract FILE)"
+                                                                : "positions were not compared with OpenStreetMap: no building has a clear corner");
+    }
+    choose_witness();
+  }
+
+  /// PROJ's own choice of an operation where it agrees with the one that build.json pins; the pinned one where several
+  /// of known accuracy exist.
+  void choose_witness() {
+    try {
+      georef::Witness pinned(record_.pipeline);
+      pinned_.emplace(record_.pipeline);
+      positions_ = &*pinned_;
+      if (sample_.empty()) return;
+      georef::Witness own(record_.crs, {sample_.west, sample_.south, sample_.east, sample_.north});
+      const model::Point2 a = pinned.forward({sample_.lon, sample_.lat}), b = own.forward({sample_.lon, sample_.lat});
+      const double apart = std::hypot(a.x - b.x, a.y - b.y);
+      if (!(apart <= 2 * std::max(record_.accuracy, 0.0) + 1))
+        log().add(Check::build_json, "build.json", "crs.pipeline", fmt::format("leads {:.3f} m from where PROJ has {} at {} {}", apart, record_.crs, sample_.lon, sample_.lat));
+    } catch (const base::UsageError& error) {
+      log().add(Check::build_json, "build.json", "crs", error.what());
+    }
+  }
+
+  void check_tiles() {
+    std::map<std::string, TileFiles> tiles;
+    for (const auto& [path, file] : record_.files)
+      if (const TilePath t = tile_path(path); !t.tile.empty()) {
+        TileFiles& files = tiles[t.tile];
+        files.name = t.tile;
+        files.path[static_cast<std::size_t>(t.format)] = path;
+      }
+    std::vector<TileFiles> chosen;
+    std::size_t number = 0;
+    for (auto& [name, files] : tiles)
+      if (number++ % static_cast<std::size_t>(std::max(o_.sample, 1)) == 0) chosen.push_back(std::move(files));
+    const TileContext context = this->context();
+    progress_.begin("tiles", chosen.size(), "tiles");
+    std::vector<TileResult> results(chosen.size());
+    base::ordered_parallel(
+        chosen.size(), workers_, static_cast<std::size_t>(workers_ + 1),
+        [&](std::size_t i) { results[i] = checked_tile(chosen[i], context); },
+        [&](std::size_t i) {
+          take(std::move(results[i]));
+          results[i] = {};
+          progress_.advance_to(i + 1);
+        });
+    for (std::size_t f = 0; f < kTileFormats; ++f) {
+      static constexpr const char* kHow[kTileFormats] = {"glTF 2.0, property tables, bounds, georeference", "structure, references, attributes, colours",
+                                                         "structure, references, attributes, colours"};
+      if (totals_[f].files == 0) continue;
+      std::string how = kHow[f];
+      if (f == static_cast<std::size_t>(Format::citygml) && schema_) how += ", OGC schemas";
+      checked(kFormatNames[f], std::move(how), totals_[f].bodies, fmt::format("bodies in {} files", totals_[f].files));
+    }
+    if (judged_ > 0) checked("solids", "own checker and CGAL", judged_, "solids");
+    if (compared_ > 0) checked("content", "attributes, geometry and colours of one format against another", compared_, "pairs of bodies");
+  }
+
+  static TileResult checked_tile(const TileFiles& files, const TileContext& context) {
+    try {
+      return check_tile(files, context);
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      // Nothing in a file may end the run.
+      TileResult failed;
+      const auto path = std::find_if(std::begin(files.path), std::end(files.path), [](const std::string& p) { return !p.empty(); });
+      failed.findings.push_back({Check::file_unreadable, *path, files.name, std::string("the tile cannot be checked: ") + error.what()});
+      for (FormatCounts& c : failed.counts) c.incomplete = true;
+      return failed;
+    }
+  }
+
+  TileContext context() {
+    return {o_.folder, record_, record_.has("gltf") ? &tileset_ : nullptr, schema_.get(), sample_, pinned_ ? &*pinned_ : nullptr, positions_, geoid_};
+  }
+
+  void take(TileResult&& tile) {
+    log().add(std::move(tile.findings));
+    for (std::size_t f = 0; f < kTileFormats; ++f) {
+      totals_[f].add(tile.counts[f]);
+      for (std::string& id : tile.ids[f])
+        if (!ids_[f].insert(std::hash<std::string>{}(id)).second && tile.counts[f].files > 0) log().add(Check::object_doubled, kFormatNames[f], id, "the body stands in two tiles, or twice in one");
+    }
+    judged_ += tile.judged;
+    compared_ += tile.compared;
+    positions_found_.insert(positions_found_.end(), std::make_move_iterator(tile.positions.begin()), std::make_move_iterator(tile.positions.end()));
+    for (const auto& [attribute, sources] : tile.sources)
+      for (const auto& [source, count] : sources) sources_[attribute][source] += count;
+    for (const auto& [roof, count] : tile.roofs) roofs_[roof] += count;
+    if (report_)
+      for (const std::string& id : tile.modelled) {
+        const auto state = report_->states.find(id);
+        if (state != report_->states.end()) log().add(Check::report_wrong, "report.json", id, "is " + state->second + " there, but stands in the model");
+      }
+  }
+
+  void check_single_files() {
+    if (record_.files.count("model.glb") && fs::exists(full("model.glb"))) {
+      progress_.begin("model.glb");
+      TileResult r = check_single_glb("model.glb", context());
+      log().add(std::move(r.findings));
+      checked("model.glb", "glTF 2.0, property table, georeference, solids", r.counts[0].bodies, "bodies");
+      positions_found_.insert(positions_found_.end(), std::make_move_iterator(r.positions.begin()), std::make_move_iterator(r.positions.end()));
+      compare_whole("model.glb", r.counts[0].bodies, r.counts[0].incomplete);
+    }
+  }
+
+  /// A file of the whole build against what the tiles hold.
+  void compare_whole(const std::string& file, std::uint64_t bodies, bool incomplete) {
+    if (incomplete || o_.sample > 1) return;
+    for (std::size_t f = 0; f < kTileFormats; ++f)
+      if (totals_[f].files > 0 && !totals_[f].incomplete && bodies != totals_[f].bodies)
+        log().add(Check::counts_differ, file, kFormatNames[f], fmt::format("{} bodies, {} in the tiles", bodies, totals_[f].bodies));
+  }
+
+  // ---- counts
+
+  void check_counts() {
+    if (o_.sample > 1) {
+      v_.notes.push_back(fmt::format("only every {}th tile was read: counts were not compared", o_.sample));
+      return;
+    }
+    const auto expect = [&](const std::string& what, std::uint64_t is, const char* key) {
+      const auto said = record_.count(key);
+      if (said && *said != is) log().add(Check::counts_differ, "build.json", std::string("counts.") + key, fmt::format("{} in the file, {} {}", *said, is, what));
+    };
+    static constexpr const char* kKeys[kTileFormats] = {"gltf", "citygml", "cityjson"};
+    bool any = false;
+    for (std::size_t f = 0; f < kTileFormats; ++f) {
+      const FormatCounts& n = totals_[f];
+      if (!record_.has(kKeys[f]) || n.incomplete) continue;
+      any = true;
+      expect(std::string("objects shown in ") + kFormatNames[f], n.models, "models");
+      if (f == static_cast<std::size_t>(Format::gltf)) continue;
+      expect(std::string("solids of LoD 1 in ") + kFormatNames[f], n.solids[1], "solids_lod1");
+      expect(std::string("solids of LoD 2 in ") + kFormatNames[f], n.solids[2], "solids_lod2");
+    }
+    if (any) check_statistics();
+    if (any) checked("counts", "build.json, report.json and every format, to the last building", record_.count("models").value_or(0), "models");
+  }
+
+  void check_statistics() {
+    const Json* statistics = member(record_.json, "statistics");
+    const auto compare = [&](const Json* said, const std::map<std::string, std::uint64_t>& is, const std::string& where) {
+      std::map<std::string, std::uint64_t> there, all = is;
+      if (said && said->is_object())
+        for (const auto& [name, count] : said->items()) there[name] = whole(&count).value_or(0);
+      all.insert(there.begin(), there.end());
+      for (const auto& [name, count] : all) {
+        const std::map<std::string, std::uint64_t>::const_iterator a = there.find(name), b = is.find(name);
+        const std::uint64_t x = a == there.end() ? 0 : a->second, y = b == is.end() ? 0 : b->second;
+        if (x != y) log().add(Check::counts_differ, "build.json", where + "." + name, fmt::format("{} in the file, {} bodies in the model", x, y));
+      }
+    };
+    compare(member(statistics, "roofs"), roofs_, "statistics.roofs");
+    const Json* sources = member(statistics, "sources");
+    for (const auto& [attribute, counts] : sources_) compare(member(sources, attribute), counts, "statistics.sources." + attribute);
+  }
+
+  // ---- positions
+
+  void check_positions() {
+    std::sort(positions_found_.begin(), positions_found_.end(), [](const PositionResult& a, const PositionResult& b) { return a.rank != b.rank ? a.rank < b.rank : a.object < b.object; });
+    // model.glb shows the same corners once more.
+    std::uint64_t last = 0;
+    std::size_t different = 0;
+    for (const PositionResult& p : positions_found_) {
+      if (different == 0 || p.rank != last) {
+        if (different == kPositions) break;
+        ++different;
+      }
+      last = p.rank;
+      for (std::size_t f = 0; f < kTileFormats; ++f) {
+        if (p.off[f] < 0) continue;
+        double& worst = f == static_cast<std::size_t>(Format::gltf) ? v_.worst_glb : v_.worst_crs;
+        worst = std::max(worst, p.off[f]);
+        if (p.off[f] > p.tolerance[f])
+          log().add(Check::position, kFormatNames[f], p.object, fmt::format("the nearest corner is {:.4f} m from where OpenStreetMap has one", p.off[f]));
+      }
+    }
+    v_.positions = different;
+    if (different == 0) return;
+    v_.position_source = sample_.source;
+    checked("positions", "against " + sample_.source + ", through PROJ", different, "corners");
+  }
+
+  const ValidateOptions& o_;
+  base::Progress& progress_;
+  int workers_;
+  Validation v_;
+  bool unreadable_ = false;
+  BuildRecord record_;
+  Tileset tileset_;
+  std::optional<Report> report_;
+  std::unique_ptr<CityGmlSchema> schema_;
+  PositionSample sample_;
+  std::optional<georef::WitnessPool> pinned_;
+  georef::WitnessPool* positions_ = nullptr;
+  georef::Geoid geoid_;
+  FormatCounts totals_[kTileFormats];
+  std::unordered_set<std::size_t> ids_[kTileFormats];  ///< hashes: a city's ids as texts would take the memory of a tile
+  std::uint64_t judged_ = 0, compared_ = 0;
+  std::map<std::string, std::map<std::string, std::uint64_t>> sources_;
+  std::map<std::string, std::uint64_t> roofs_;
+  std::vector<PositionResult> positions_found_;
+};
+
+}  // namespace
+
+Validation validate(const ValidateOptions& options, base::Progress& progress) { return Run(options, progress).run(); }
+
+}  // namespace blockrand::validate
