@@ -33,11 +33,14 @@
 #include "pipeline/georef/projection.h"
 #include "pipeline/georef/round_trip.h"
 #include "pipeline/georef/tiles.h"
+#include "pipeline/region/area.h"
 #include "pipeline/region/documents.h"
 #include "pipeline/region/load.h"
+#include "pipeline/region/outcome.h"
 #include "pipeline/region/pictures.h"
 #include "pipeline/region/report_facts.h"
 #include "pipeline/region/shard.h"
+#include "pipeline/region/statistics.h"
 #include "pipeline/region/tile_output.h"
 #include "pipeline/repair/repair.h"
 
@@ -65,54 +68,6 @@ std::uint64_t current_rss_bytes() {
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-// ---- the place ------------------------------------------------------------------------------------------------------
-
-/// The median place of all buildings, and the box of those within 5 degrees of it: one stray object at 0/0 must not
-/// choose the CRS. Longitudes are unwrapped around the first building.
-struct Area {
-  georef::GeoBox box;
-  georef::LonLat centre;
-};
-
-std::optional<Area> area_of(const Extract& extract) {
-  std::vector<std::int64_t> xs, ys;
-  constexpr std::int64_t kTurn = 3'600'000'000;
-  for (const MappedBuilding& b : extract.buildings) {
-    if (b.rings.count == 0 || b.state != ObjectState::pending) continue;
-    const model::Location c = box_centre(extract, b);
-    std::int64_t x = c.lon;
-    if (!xs.empty() && x - xs[0] > kTurn / 2) x -= kTurn;
-    if (!xs.empty() && xs[0] - x > kTurn / 2) x += kTurn;
-    xs.push_back(x);
-    ys.push_back(c.lat);
-  }
-  if (xs.empty()) return std::nullopt;
-  const auto median = [](std::vector<std::int64_t> v) {
-    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-    return v[v.size() / 2];
-  };
-  const std::int64_t mx = median(xs), my = median(ys);
-  constexpr std::int64_t kNear = 50'000'000;  // 5 degrees
-  std::int64_t west = mx, east = mx, south = my, north = my;
-  for (std::size_t i = 0; i < xs.size(); ++i) {
-    if (std::llabs(xs[i] - mx) > kNear || std::llabs(ys[i] - my) > kNear) continue;
-    west = std::min(west, xs[i]);
-    east = std::max(east, xs[i]);
-    south = std::min(south, ys[i]);
-    north = std::max(north, ys[i]);
-  }
-  const auto degrees = [](std::int64_t v) { return static_cast<double>(v) * 1e-7; };
-  const auto wrapped = [&](std::int64_t v) {
-    if (v > kTurn / 2) v -= kTurn;
-    if (v < -kTurn / 2) v += kTurn;
-    return degrees(v);
-  };
-  Area area;
-  area.box = {wrapped(west), degrees(south), wrapped(east), degrees(north)};
-  area.centre = {wrapped(mx), degrees(my)};
-  return area;
-}
-
 // ---- region-wide tables ---------------------------------------------------------------------------------------------
 
 std::vector<context::TaggedBuilding> tagged_buildings(const Extract& extract, const generate::Defaults& defaults,
@@ -137,15 +92,6 @@ std::vector<context::TaggedBuilding> tagged_buildings(const Extract& extract, co
 }
 
 // ---- one tile -------------------------------------------------------------------------------------------------------
-
-/// What becomes of one object.
-struct Outcome {
-  std::uint32_t index = 0;  ///< into Extract::buildings
-  ObjectState state = ObjectState::modelled;
-  IssueCode code = IssueCode::none;
-  model::OsmId related;
-  int lod = -1;
-};
 
 /// Where the line stands that explains an object.
 struct ExplainedObject {
@@ -196,144 +142,15 @@ std::string explain_index(std::vector<ExplainedObject> objects) {
   return text;
 }
 
-/// One building's side of a shared wall.
-struct PartySide {
-  std::int64_t edge = 0;
-  double length = 0, height = 0;
-};
-
 struct TileResult {
-  std::vector<Outcome> outcomes;
+  Outcomes outcomes;
   std::vector<model::ReportRow> rows;
   TileOutput output;
-  std::vector<PartySide> party_sides;
-  Statistics statistics;
-  bool below_quality = false;
+  TileStatistics statistics;
   export_::ReportTile report;
   PictureTile picture;
   Region region;  ///< kept only for files of the whole build
 };
-
-double edge_length(const model::Ring& ring, std::size_t i) {
-  const model::Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
-  return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
-}
-
-/// Lowest level of detail among the parts that have a solid (or, where only footprints were asked for, a plan).
-int achieved_lod(const std::vector<const model::BuildingPart*>& parts, int asked) {
-  int lod = -1;
-  for (const model::BuildingPart* p : parts) {
-    if (p->lod < std::min(asked, 1)) continue;
-    lod = lod < 0 ? p->lod : std::min(lod, p->lod);
-  }
-  return lod;
-}
-
-void decide_outcomes(const Region& region, int asked, TileResult& out) {
-  const auto decide = [&](std::uint32_t index, const std::vector<const model::BuildingPart*>& own, IssueCode failure) {
-    const int lod = achieved_lod(own, asked);
-    if (lod >= 0) {
-      out.outcomes.push_back({index, ObjectState::modelled, IssueCode::none, {}, lod});
-      if (lod < asked) out.below_quality = true;
-      return true;
-    }
-    out.outcomes.push_back({index, ObjectState::reported, failure == IssueCode::none ? IssueCode::no_solid : failure, {}, -1});
-    out.below_quality = true;
-    return false;
-  };
-  for (const model::Building& building : region.buildings) {
-    std::vector<const model::BuildingPart*> own;
-    std::map<std::uint32_t, std::vector<const model::BuildingPart*>> of_part;
-    for (const model::BuildingPart& part : building.parts)
-      (part.mapped_index == building.mapped_index ? own : of_part[part.mapped_index]).push_back(&part);
-    std::optional<model::OsmId> representative;
-    for (const auto& [index, parts] : of_part)
-      if (decide(index, parts, IssueCode::none) && !representative) representative = parts.front()->osm;
-    if (own.empty() && representative)
-      out.outcomes.push_back({building.mapped_index, ObjectState::represented, IssueCode::none, *representative, -1});
-    else
-      decide(building.mapped_index, own, building.failure);
-  }
-  for (const model::PartFailure& failure : region.part_failures) {
-    out.outcomes.push_back({failure.mapped_index, ObjectState::reported, failure.code, {}, -1});
-    out.below_quality = true;
-  }
-}
-
-void count_statistics(const Region& region, const context::SharedEdges& shared, TileResult& out) {
-  Statistics& s = out.statistics;
-  for (const model::Building& building : region.buildings) {
-    const auto& a = building.attributes;
-    const double wall_height = std::max(0.0, a.height.value - a.roof_height.value - a.min_height.value);
-    std::size_t edge = 0;
-    const auto count_ring = [&](const model::Ring& ring) {
-      for (std::size_t i = 0; i < ring.size(); ++i, ++edge) {
-        const double length = edge_length(ring, i);
-        const model::FacadeEdge& e = building.edges[edge];
-        if (e.kind == model::EdgeKind::party_wall)
-          out.party_sides.push_back({shared.find(e.from_node, e.to_node), length, wall_height});
-        else
-          s.outer_wall_area += length * wall_height;
-      }
-    };
-    for (const model::Polygon& p : building.outline) {
-      s.footprint_area += geometry::area(p);
-      count_ring(p.outer);
-      for (const model::Ring& hole : p.holes) count_ring(hole);
-    }
-    s.buildings += !building.parts.empty();
-    s.bodies += building.parts.size();
-    for (const model::BuildingPart& part : building.parts) {
-      if (part.lod >= 2) {
-        s.volume += geometry::volume(part.lod2, part.lod2_triangles);
-        ++s.solids_lod2;
-      } else if (part.lod == 1) {
-        s.volume += geometry::volume(part.lod1, part.lod1_triangles);
-      }
-      s.solids_lod1 += !part.lod1.empty();
-      ++s.roofs[std::string(model::name(part.built_roof))];
-      model::for_each_attribute(
-          part.attributes,
-          [&](const char* name, const char*, const auto& value) { ++s.sources[name][std::string(model::name(value.source))]; },
-          [](const char*, const char*) {});
-    }
-  }
-}
-
-void add(Statistics& sum, const Statistics& s) {
-  sum.footprint_area += s.footprint_area;
-  sum.outer_wall_area += s.outer_wall_area;
-  sum.volume += s.volume;
-  sum.buildings += s.buildings;
-  sum.bodies += s.bodies;
-  sum.solids_lod1 += s.solids_lod1;
-  sum.solids_lod2 += s.solids_lod2;
-  for (const auto& [attribute, sources] : s.sources)
-    for (const auto& [source, count] : sources) sum.sources[attribute][source] += count;
-  for (const auto& [shape, count] : s.roofs) sum.roofs[shape] += count;
-}
-
-/// Pairs up the sides of shared walls: the lower one is covered whole, the higher one shows what rises above it.
-void settle_party_walls(std::vector<PartySide> sides, Statistics& sum) {
-  std::sort(sides.begin(), sides.end(), [](const PartySide& a, const PartySide& b) {
-    return a.edge != b.edge ? a.edge < b.edge : a.height < b.height;
-  });
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t j = i;
-    while (j < sides.size() && sides[j].edge == sides[i].edge) ++j;
-    if (j - i < 2) {
-      // The neighbour was not built: the wall stands free.
-      sum.outer_wall_area += sides[i].length * sides[i].height;
-    } else {
-      const double covered = sides[j - 2].height;  // the second highest meets the highest
-      sum.party_wall_area += sides[i].length * covered;
-      sum.party_wall_length += sides[i].length;
-      sum.outer_wall_area += sides[i].length * (sides[j - 1].height - covered);
-      ++sum.party_walls;
-    }
-    i = j;
-  }
-}
 
 /// Rough size of the output, from builds of whole cities; with a reserve of a quarter.
 std::uint64_t estimated_bytes(const BuildOptions& options, std::uint64_t buildings) {
@@ -517,9 +334,9 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       for (const model::Building& b : region.buildings)
         if (b.attributes.ground_height.source != model::Source::terrain) region.report.add(b.osm, IssueCode::terrain_missing);
     generate::build_masses(region, defaults, options.generate, options.lod);
-    decide_outcomes(region, options.lod, result);
-    count_statistics(region, shared, result);
-    result.output = write_tile(region, output, explain_options(result.outcomes), folder);
+    result.outcomes = decide_outcomes(region, options.lod);
+    result.statistics = count_statistics(region, shared);
+    result.output = write_tile(region, output, explain_options(result.outcomes.list), folder);
     if (options.report) {
       result.report = export_::report_tile(region);
       result.picture = picture_tile(region, picture_plan, i);
@@ -530,7 +347,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   };
   const auto consume = [&](std::size_t i) {
     TileResult result = std::move(slots[i % in_flight]);
-    for (const Outcome& o : result.outcomes) {
+    for (const Outcome& o : result.outcomes.list) {
       MappedBuilding& object = extract.buildings[o.index];
       const export_::Fate fate = fate_of(o);
       object.state = fate.state;
@@ -551,9 +368,10 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       pictures.add(std::move(result.picture));
     }
     for (const auto& [object, building] : result.output.explained) explained.push_back({object, building, shards[i].tile});
-    party_sides.insert(party_sides.end(), result.party_sides.begin(), result.party_sides.end());
-    add(record.statistics, result.statistics);
-    summary.below_quality = summary.below_quality || result.below_quality;
+    const std::vector<PartySide>& sides = result.statistics.party_sides;
+    party_sides.insert(party_sides.end(), sides.begin(), sides.end());
+    region::add(record.statistics, result.statistics.sums);
+    summary.below_quality = summary.below_quality || result.outcomes.below_quality;
     if (options.single_glb) {
       whole.extract = &extract;
       whole.materials = std::move(result.region.materials);

@@ -1,11 +1,8 @@
 // build.json, run.json and report.json: what a build tells about itself.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "pipeline/base/progress.h"
@@ -14,6 +11,7 @@
 #include "pipeline/georef/round_trip.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/region/build.h"
+#include "pipeline/region/statistics.h"
 
 namespace blockrand::region {
 
@@ -23,21 +21,6 @@ struct InputFile {
   std::string path;  ///< as given
   std::uint64_t bytes = 0;
   std::string sha256;
-};
-
-/// Sums over the whole build, with every shared wall counted once.
-struct Statistics {
-  double footprint_area = 0;    ///< m²
-  double outer_wall_area = 0;   ///< m², without what neighbours cover
-  double party_wall_area = 0;   ///< m², each wall between two buildings once
-  double party_wall_length = 0; ///< m
-  std::uint64_t party_walls = 0;
-  double volume = 0;            ///< m³ of the best solids
-  std::uint64_t buildings = 0;  ///< with at least one body: what every format holds as a building
-  std::uint64_t bodies = 0;     ///< parts, rests of outlines, and buildings without parts
-  std::uint64_t solids_lod1 = 0, solids_lod2 = 0;
-  std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → parts
-  std::map<std::string, std::uint64_t> roofs;                           ///< built roof shape → parts
 };
 
 /// Everything that the same call writes again byte for byte.

@@ -57,8 +57,8 @@ class Options(BuildTest):
         self.assertEqual([f for f in files_of(out) if f.endswith('.glb') or f == 'tileset.json'], [])
         self.same_files(out, self.plain, 'citygml')
 
-    def test_formats_both(self):
-        self.same_files(self.build(SAMPLE, 'both', '--formats', 'gltf,citygml'), self.plain)
+    def test_all_formats_are_the_default(self):
+        self.same_files(self.build(SAMPLE, 'all', '--formats', 'gltf,citygml,cityjson,gpkg'), self.plain)
 
     def test_gzip(self):
         out = self.build(SAMPLE, 'gzip', '--gzip')

@@ -1,0 +1,49 @@
+// How much was built, and where its values come from.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pipeline/context/party_walls.h"
+#include "pipeline/model/region.h"
+
+namespace blockrand::region {
+
+/// Sums over the whole build, with every shared wall counted once.
+struct Statistics {
+  double footprint_area = 0;    ///< m²
+  double outer_wall_area = 0;   ///< m², without what neighbours cover
+  double party_wall_area = 0;   ///< m², each wall between two buildings once
+  double party_wall_length = 0; ///< m
+  std::uint64_t party_walls = 0;
+  double volume = 0;            ///< m³ of the best solids
+  std::uint64_t buildings = 0;  ///< with at least one body: what every format holds as a building
+  std::uint64_t bodies = 0;     ///< parts, rests of outlines, and buildings without parts
+  std::uint64_t solids_lod1 = 0, solids_lod2 = 0;
+  std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → parts
+  std::map<std::string, std::uint64_t> roofs;                           ///< built roof shape → parts
+};
+
+/// One building's side of a shared wall.
+struct PartySide {
+  std::int64_t edge = 0;
+  double length = 0, height = 0;
+};
+
+/// A tile's share. Party walls are settled when both sides are known.
+struct TileStatistics {
+  Statistics sums;
+  std::vector<PartySide> party_sides;
+};
+
+TileStatistics count_statistics(const model::Region& region, const context::SharedEdges& shared);
+
+/// Adds a tile's sums to those of the build; in tile order, since sums of floats depend on theirs.
+void add(Statistics& sum, const Statistics& tile);
+
+/// Pairs up the sides of shared walls: the lower one is covered whole, the higher one shows what rises above it.
+void settle_party_walls(std::vector<PartySide> sides, Statistics& sum);
+
+}  // namespace blockrand::region
