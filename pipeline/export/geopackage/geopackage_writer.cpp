@@ -236,7 +236,7 @@ struct GeoPackageWriter::Impl {
     if (driver == nullptr)
       throw base::OutputError(path +
                               ": cannot write: GDAL was built without GeoPackage. Install GDAL with SQLite, or leave "
-                              "geopackage out of --formats.");
+                              "gpkg out of --formats.");
     made = true;
     const std::array<const char*, 2> creation{"VERSION=1.3", nullptr};
     dataset.reset(driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(creation.data())));
