@@ -12,15 +12,9 @@ esac
 # shellcheck disable=SC2154
 trap 'code=$?; [ "$code" -eq 0 ] || echo "quickstart: FAILED with code $code; the reason stands above" >&2' EXIT
 
-sh "$root/samples/setup.sh" build
-
 cd "$root"
-. samples/build_settings.sh
-echo "quickstart: configuring and building the program ($jobs at a time; the first time takes some minutes)"
-# Tests need more packages. A tree that is configured already stays as it is.
-[ -f build/release/CMakeCache.txt ] || set -- -DBLOCKRAND_TESTS=OFF
-cmake --preset release "$@"
-cmake --build --preset release --parallel "$jobs" --target blockrand
+sample=quickstart
+. samples/build_program.sh
 
 echo "quickstart: building the sample quarter"
 # The quarter lies on a field at about 150 m above sea level.
