@@ -190,7 +190,7 @@ class Reader {
 
   void check_normals(const Accessor& normal, const std::string& where) {
     // Of 8-bit components each is off by half a step at most.
-    const double tolerance = normal.is_float() ? 1e-4 : normal.size == 1 ? 0.8 / 127 : 0.8 / 32767;
+    const double tolerance = normal.is_float() ? 1e-4 : normal.size == 1 ? 0.87 / 127 : 0.87 / 32767;
     std::size_t off = 0;
     for (std::size_t i = 0; i < normal.count; ++i) {
       const double l = length({glb_.value(normal, i, 0), glb_.value(normal, i, 1), glb_.value(normal, i, 2)});

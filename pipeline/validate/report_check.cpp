@@ -49,6 +49,7 @@ class Reader {
       ++states[state];
       ++report_.objects;
       if (state != "represented") report_.states[id] = state;
+      report_.all[id] = state + " " + code;
       report_.mended.insert(id);
     }
     const auto expect = [&](const char* key, std::uint64_t is, const char* what) {

@@ -50,6 +50,8 @@ class Checker {
     check_bounds();
     judge_solids();
     compare();
+    check_geopackage();
+    check_explained();
     check_positions();
     count();
     return std::move(out_);
@@ -307,6 +309,80 @@ class Checker {
     }
   }
 
+  /// The first format that tells bodies, attributes and geometry; null where none is there.
+  const Contents* model(std::size_t& format) const {
+    for (const std::size_t f : {kCityGml, kCityJson, kGltf})
+      if (const Contents* c = contents(f)) {
+        format = f;
+        return c;
+      }
+    return nullptr;
+  }
+
+  void check_geopackage() {
+    if (!context_.geopackage) return;
+    std::string tile = files_.name;
+    std::replace(tile.begin(), tile.end(), '_', '/');
+    GeoPackageTileRows rows = context_.geopackage->rows(tile);
+    take(rows.contents.findings);
+    static const std::string file = "buildings.gpkg";
+    find_doubles({rows.contents, file}, out_.findings);
+    FormatCounts& n = out_.geopackage;
+    n.buildings = rows.contents.buildings.size();
+    n.bodies = rows.contents.bodies.size();
+    std::size_t format = 0;
+    const Contents* reference = model(format);
+    if (!reference) return;
+    // Buildings without a body are rows of the layer, but not in the other formats.
+    std::set<std::string_view> with_bodies;
+    std::unordered_map<std::string_view, std::int64_t> parts;
+    for (const ReadBody& body : rows.contents.bodies) {
+      with_bodies.insert(body.building);
+      ++parts[body.building];
+    }
+    Contents shown;
+    for (const GeoPackageBuilding& b : rows.buildings) {
+      if (parts[b.id] != b.parts) found(Check::geopackage_rule, file, b.id, fmt::format("its row says {} parts, there are {}", b.parts, parts[b.id]));
+      if (with_bodies.count(b.id)) shown.buildings.push_back(b.id);
+    }
+    shown.bodies = std::move(rows.contents.bodies);
+    const Side first{*reference, files_.path[format]}, other{shown, file};
+    compare_objects(first, other, out_.findings);
+    compare_attributes(first, other, format == kGltf, out_.findings);
+    out_.compared += shown.bodies.size();
+    if (format == kGltf) return;
+    Contents flat;  // the layer has footprints without heights
+    for (const ReadBody& body : reference->bodies) {
+      ReadBody copy;
+      copy.id = body.id;
+      copy.footprint = body.footprint;
+      for (ReadPolygon& polygon : copy.footprint) {
+        polygon.colour.clear();
+        for (auto& ring : polygon.rings)
+          for (Point3& p : ring) p.z = 0;
+      }
+      flat.bodies.push_back(std::move(copy));
+    }
+    compare_polygons({flat, files_.path[format]}, other, out_.findings);
+  }
+
+  void check_explained() {
+    if (!context_.explanations) return;
+    std::size_t format = 0;
+    const Contents* reference = model(format);
+    if (files_.explanations.empty()) {
+      if (reference && !reference->bodies.empty()) found(Check::explanation_wrong, files_.path[format], files_.name, "the tile has no file in explain/");
+      return;
+    }
+    FormatCounts ignored;
+    const auto lines = load(files_.explanations, ignored);
+    if (!lines) return;
+    static const std::vector<std::pair<std::string, std::string>> none;
+    const auto entries = context_.explanations->find(files_.name);
+    out_.explained = check_explanations(*lines, files_.explanations, files_.name, reference,
+                                        entries == context_.explanations->end() ? none : entries->second, context_.record, out_.findings);
+  }
+
   // ---- against the map
 
   void check_positions() {
@@ -401,7 +477,10 @@ class Checker {
         if (f == kGltf) n.solids[0] += shown;
         if (f != kGltf)
           for (const ReadSolid& solid : body.solids) ++n.solids[std::clamp(solid.lod, 0, 2)];
-        if (!counted_sources) count_sources(body);
+        if (!counted_sources) {
+          count_sources(body);
+          if (shown || !body.footprint.empty()) out_.buildings.push_back(body.building);
+        }
       }
       counted_sources = true;
       n.models = models.size();

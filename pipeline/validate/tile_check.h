@@ -12,6 +12,8 @@
 #include "pipeline/validate/build_record.h"
 #include "pipeline/validate/citygml.h"
 #include "pipeline/validate/contents.h"
+#include "pipeline/validate/explanations.h"
+#include "pipeline/validate/geopackage.h"
 #include "pipeline/validate/positions.h"
 #include "pipeline/validate/tileset.h"
 
@@ -26,6 +28,7 @@ inline constexpr const char* kFormatNames[kTileFormats] = {"GLB tiles", "CityGML
 struct TileFiles {
   std::string name;  ///< "15_17600_12900"
   std::string path[kTileFormats];
+  std::string explanations;  ///< "explain/15_17600_12900.jsonl.gz"
 };
 
 /// What one format holds of one or of all tiles.
@@ -50,9 +53,12 @@ struct TileResult {
   FormatCounts counts[kTileFormats];
   std::uint64_t judged = 0;      ///< solids that were given to both judges
   std::uint64_t triangles = 0, attributes = 0, compared = 0;  ///< pairs of bodies in two formats
+  std::uint64_t explained = 0;   ///< records in explain/
+  FormatCounts geopackage;
   std::vector<PositionResult> positions;
   std::vector<std::string> ids[kTileFormats];  ///< of bodies: across tiles they must differ as well
   std::vector<std::string> modelled;           ///< objects that own a solid or footprint, in any format
+  std::vector<std::string> buildings;          ///< those with a footprint, of the first format that is there
   std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → bodies
   std::map<std::string, std::uint64_t> roofs;                           ///< built roof → bodies
 };
@@ -67,6 +73,8 @@ struct TileContext {
   georef::WitnessPool* witness = nullptr;    ///< PROJ with the operation of build.json; null where it cannot be used
   georef::WitnessPool* positions = nullptr;  ///< PROJ with the operation that the positions are compared by
   const georef::Geoid& geoid;
+  GeoPackageReader* geopackage = nullptr;  ///< null: not there, or unreadable
+  const ExplanationIndex* explanations = nullptr;
 };
 
 /// Never throws on account of what the files hold.

@@ -47,6 +47,13 @@ TilePath tile_path(std::string_view path) {
   return {};
 }
 
+/// "explain/15_1_2.jsonl.gz" → "15_1_2"
+std::string explained_tile(std::string_view path) {
+  constexpr std::string_view kStart = "explain/", kEnd = ".jsonl.gz";
+  if (!path.starts_with(kStart) || !path.ends_with(kEnd) || path.size() <= kStart.size() + kEnd.size()) return {};
+  return std::string(path.substr(kStart.size(), path.size() - kStart.size() - kEnd.size()));
+}
+
 class Run {
  public:
   Run(const ValidateOptions& options, base::Progress& progress) : o_(options), progress_(progress), workers_(base::worker_count(options.jobs)) {}
@@ -141,7 +148,46 @@ class Run {
       }
     }
     if (record_.files.count("report.json")) report_ = read_report(o_.folder, record_, log());
+    if (record_.explain) {
+      std::string why;
+      if (const auto index = record_.files.count("explain/index.txt") ? content_of(full("explain/index.txt"), why) : std::nullopt) index_ = read_explanation_index(*index, log());
+      else if (!record_.files.count("explain/index.txt")) log().add(Check::build_json, "build.json", "explain/index.txt", "the configuration asks for it, but no such file is listed");
+    }
+    if (record_.has("gpkg") && record_.files.count("buildings.gpkg") && fs::exists(full("buildings.gpkg"))) {
+      progress_.begin("buildings.gpkg");
+      geopackage_ = std::make_unique<GeoPackageReader>(full("buildings.gpkg"), "buildings.gpkg");
+      if (!geopackage_->check(log())) {
+        geopackage_.reset();
+      } else {
+        check_geopackage();
+      }
+    }
     if (report_) checked("report.json", "objects and issues against build.json", report_->objects, "objects");
+  }
+
+  void check_geopackage() {
+    const std::string epsg = fmt::format("EPSG:{}", geopackage_->srs_id());
+    if (epsg != record_.crs) log().add(Check::geopackage_rule, "buildings.gpkg", "", fmt::format("its layers are in {}, build.json says {}", epsg, record_.crs));
+    for (const GeoPackageTileRow& tile : geopackage_->tile_rows()) {
+      if (tile.uri.empty()) continue;
+      const auto file = record_.files.find(tile.uri);
+      if (file == record_.files.end())
+        log().add(Check::tile_missing, "buildings.gpkg", tile.id, tile.uri + " is not there");
+      else if (tile.bytes != static_cast<std::int64_t>(file->second.bytes))
+        log().add(Check::counts_differ, "buildings.gpkg", tile.id, fmt::format("{} bytes, build.json says {}", tile.bytes, file->second.bytes));
+    }
+    if (!report_) return;
+    std::set<std::string> there;
+    for (const GeoPackageReportedRow& row : geopackage_->reported()) {
+      there.insert(row.id);
+      const auto found = report_->all.find(row.id);
+      if (found == report_->all.end())
+        log().add(Check::object_missing, "report.json", row.id, "is in the layer `reported` of buildings.gpkg only");
+      else if (found->second != row.state + " " + row.code)
+        log().add(Check::attribute_differs, "buildings.gpkg", row.id, fmt::format("\"{} {}\" in the layer `reported`, \"{}\" in report.json", row.state, row.code, found->second));
+    }
+    for (const auto& [id, state] : report_->all)
+      if (!there.count(id)) log().add(Check::object_missing, "buildings.gpkg", id, "is in report.json, but not in the layer `reported`");
   }
 
   // ---- tiles
@@ -204,6 +250,18 @@ class Run {
         TileFiles& files = tiles[t.tile];
         files.name = t.tile;
         files.path[static_cast<std::size_t>(t.format)] = path;
+      } else if (std::string tile = explained_tile(path); !tile.empty()) {
+        TileFiles& files = tiles[tile];
+        files.name = tile;
+        files.explanations = path;
+      }
+    if (index_)
+      for (const auto& [tile, entries] : *index_)
+        if (!tiles.count(tile)) log().add(Check::explanation_wrong, "explain/index.txt", tile, "the index names a tile that is not there");
+    if (geopackage_)
+      for (std::string tile : geopackage_->tiles()) {
+        std::replace(tile.begin(), tile.end(), '/', '_');
+        tiles[tile].name = tile;
       }
     std::vector<TileFiles> chosen;
     std::size_t number = 0;
@@ -228,6 +286,8 @@ class Run {
       if (f == static_cast<std::size_t>(Format::citygml) && schema_) how += ", OGC schemas";
       checked(kFormatNames[f], std::move(how), totals_[f].bodies, fmt::format("bodies in {} files", totals_[f].files));
     }
+    if (geopackage_) checked("GeoPackage", "OGC and QGIS rules, every row against the other formats", geopackage_total_.bodies, "bodies in buildings.gpkg");
+    if (index_) checked("explain/", "one record a building, with the values of the model", explained_, "records");
     if (judged_ > 0) checked("solids", "own checker and CGAL", judged_, "solids");
     if (compared_ > 0) checked("content", "attributes, geometry and colours of one format against another", compared_, "pairs of bodies");
   }
@@ -248,7 +308,8 @@ class Run {
   }
 
   TileContext context() {
-    return {o_.folder, record_, record_.has("gltf") ? &tileset_ : nullptr, schema_.get(), sample_, pinned_ ? &*pinned_ : nullptr, positions_, geoid_};
+    return {o_.folder, record_, record_.has("gltf") ? &tileset_ : nullptr, schema_.get(), sample_, pinned_ ? &*pinned_ : nullptr,
+            positions_, geoid_, geopackage_.get(), index_ ? &*index_ : nullptr};
   }
 
   void take(TileResult&& tile) {
@@ -258,6 +319,9 @@ class Run {
       for (std::string& id : tile.ids[f])
         if (!ids_[f].insert(std::hash<std::string>{}(id)).second && tile.counts[f].files > 0) log().add(Check::object_doubled, kFormatNames[f], id, "the body stands in two tiles, or twice in one");
     }
+    geopackage_total_.add(tile.geopackage);
+    explained_ += tile.explained;
+    for (std::string& id : tile.buildings) buildings_.insert(std::move(id));
     judged_ += tile.judged;
     compared_ += tile.compared;
     positions_found_.insert(positions_found_.end(), std::make_move_iterator(tile.positions.begin()), std::make_move_iterator(tile.positions.end()));
@@ -279,6 +343,12 @@ class Run {
       checked("model.glb", "glTF 2.0, property table, georeference, solids", r.counts[0].bodies, "bodies");
       positions_found_.insert(positions_found_.end(), std::make_move_iterator(r.positions.begin()), std::make_move_iterator(r.positions.end()));
       compare_whole("model.glb", r.counts[0].bodies, r.counts[0].incomplete);
+    }
+    if (record_.files.count("report.html")) {
+      progress_.begin("report.html");
+      const bool all = o_.sample <= 1 && std::none_of(std::begin(totals_), std::end(totals_), [](const FormatCounts& n) { return n.incomplete; }) && !buildings_.empty();
+      const std::uint64_t compared = check_report_page(o_.folder, record_, all ? &buildings_ : nullptr, log());
+      checked("report.html", "well-formed, loads nothing, against build.json and the model", compared, "numbers and footprints");
     }
   }
 
@@ -309,9 +379,12 @@ class Run {
       any = true;
       expect(std::string("objects shown in ") + kFormatNames[f], n.models, "models");
       if (f == static_cast<std::size_t>(Format::gltf)) continue;
+      expect(std::string("buildings in ") + kFormatNames[f], n.buildings, "buildings");
+      expect(std::string("bodies in ") + kFormatNames[f], n.bodies, "bodies");
       expect(std::string("solids of LoD 1 in ") + kFormatNames[f], n.solids[1], "solids_lod1");
       expect(std::string("solids of LoD 2 in ") + kFormatNames[f], n.solids[2], "solids_lod2");
     }
+    if (geopackage_) expect("bodies in buildings.gpkg", geopackage_total_.bodies, "bodies");
     if (any) check_statistics();
     if (any) checked("counts", "build.json, report.json and every format, to the last building", record_.count("models").value_or(0), "models");
   }
@@ -374,7 +447,11 @@ class Run {
   std::optional<georef::WitnessPool> pinned_;
   georef::WitnessPool* positions_ = nullptr;
   georef::Geoid geoid_;
-  FormatCounts totals_[kTileFormats];
+  std::unique_ptr<GeoPackageReader> geopackage_;
+  std::optional<ExplanationIndex> index_;
+  FormatCounts totals_[kTileFormats], geopackage_total_;
+  std::unordered_set<std::string> buildings_;
+  std::uint64_t explained_ = 0;
   std::unordered_set<std::size_t> ids_[kTileFormats];  ///< hashes: a city's ids as texts would take the memory of a tile
   std::uint64_t judged_ = 0, compared_ = 0;
   std::map<std::string, std::map<std::string, std::uint64_t>> sources_;

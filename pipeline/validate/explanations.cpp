@@ -1,0 +1,160 @@
+#include "pipeline/validate/explanations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "pipeline/base/text.h"
+#include "pipeline/validate/attribute_names.h"
+#include "pipeline/validate/ids.h"
+#include "pipeline/validate/json_access.h"
+
+namespace blockrand::validate {
+namespace {
+
+/// A value in the text form of contents.h.
+std::string value_text(const Json* value) {
+  if (const auto n = number(value)) return base::shortest(*n);
+  return text(value);
+}
+
+class TileRecords {
+ public:
+  TileRecords(const std::string& file, const std::string& tile, const Contents* model, const BuildRecord& record, std::vector<Finding>& findings)
+      : file_(file), tile_(tile), record_(record), findings_(findings) {
+    if (!model) return;
+    for (const ReadBody& body : model->bodies) bodies_[body.building].push_back(&body);
+    has_model_ = true;
+  }
+
+  void read(std::string_view line, std::size_t number) {
+    const auto json = parse_json(line);
+    if (!json || !json->is_object()) return wrong(fmt::format("line {}", number), "no JSON object");
+    const std::string id = text(member(*json, "id"));
+    if (!is_osm_id(id)) return wrong(fmt::format("line {}", number), "has no id");
+    if (!lines_.insert(id).second) return wrong(id, "has two lines");
+    if (text(member(*json, "tile")) != tile_) wrong(id, "is said to be in tile " + text(member(*json, "tile")));
+    const Json* stages = member(*json, "stages");
+    if (!stages || !stages->is_array() || stages->empty()) wrong(id, "does not say what the stages did");
+    if (const Json* files = member(*json, "files"); files && files->is_array())
+      for (const Json& f : *files)
+        if (!record_.files.count(text(&f))) wrong(id, "names a file that is not there: " + text(&f));
+    if (has_model_) compare(id, *json);
+  }
+
+  void finish(const std::vector<std::pair<std::string, std::string>>& entries) {
+    for (const auto& [building, bodies] : bodies_)
+      if (!lines_.count(building)) wrong(building, "stands in the model, but is not explained");
+    std::unordered_set<std::string_view> indexed;
+    for (const auto& [object, building] : entries) {
+      indexed.insert(object);
+      if (!lines_.count(building)) wrong(object, fmt::format("the index leads to {}, which has no line here", building));
+    }
+    for (const std::string& id : lines_)
+      if (!indexed.count(id)) wrong(id, "is not in the index");
+    for (const auto& [building, bodies] : bodies_)
+      for (const ReadBody* body : bodies)
+        if (const std::string part = owner(body->id); part != building && !indexed.count(part)) wrong(part, "is not in the index");
+  }
+
+  std::size_t count() const { return lines_.size(); }
+
+ private:
+  void wrong(const std::string& object, std::string what) { findings_.push_back({Check::explanation_wrong, file_, object, std::move(what)}); }
+
+  void compare(const std::string& id, const Json& json) {
+    const Json* said = member(json, "bodies");
+    const std::size_t count = said && said->is_array() ? said->size() : 0;
+    const auto model = bodies_.find(id);
+    const std::size_t there = model == bodies_.end() ? 0 : model->second.size();
+    if (count != there) return wrong(id, fmt::format("is said to have {} bodies, the model has {}", count, there));
+    if (count == 0 && text(member(json, "state")) != "reported") wrong(id, "has no body, but is not reported");
+    std::unordered_map<std::string, const ReadBody*> bodies;
+    if (model != bodies_.end())
+      for (const ReadBody* body : model->second) bodies.emplace(body->id, body);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Json& body = (*said)[i];
+      std::string body_id = text(member(body, "id"));
+      if (count > 1 && body_id == id) body_id += ".1";
+      const auto found = bodies.find(body_id);
+      if (found == bodies.end()) {
+        wrong(id, "explains a body that does not exist: " + body_id);
+        continue;
+      }
+      differs(*found->second, "lod", value_text(member(body, "lod")));
+      differs(*found->second, "built_roof", text(member(body, "built_roof")));
+      const Json* attributes = member(body, "attributes");
+      if (!attributes && count == 1) attributes = member(json, "attributes");
+      if (attributes && attributes->is_array()) compare_attributes(*found->second, *attributes);
+    }
+  }
+
+  void compare_attributes(const ReadBody& body, const Json& attributes) {
+    std::set<std::string> said;
+    for (const Json& a : attributes) {
+      const std::string name = text(member(a, "name"));
+      said.insert(name);
+      differs(body, name, value_text(member(a, "value")));
+      differs(body, name + "_source", text(member(a, "source")));
+      if (const auto confidence = number(member(a, "confidence")); !confidence || *confidence < 0 || *confidence > 1)
+        wrong(body.id, name + " has no confidence in [0, 1]");
+    }
+    for (const std::string& name : attribute_names())
+      if (body.attributes.count(name) && !said.count(name)) wrong(body.id, name + " is not explained");
+  }
+
+  void differs(const ReadBody& body, const std::string& name, const std::string& said) {
+    const auto is = body.attributes.find(name);
+    if (is == body.attributes.end()) return;  // the other format does not say
+    if (is->second != said) wrong(body.id, fmt::format("{} is said to be \"{}\", the model has \"{}\"", name, said, is->second));
+  }
+
+  const std::string &file_, &tile_;
+  const BuildRecord& record_;
+  std::vector<Finding>& findings_;
+  bool has_model_ = false;
+  std::map<std::string, std::vector<const ReadBody*>> bodies_;  ///< by building
+  std::set<std::string> lines_;
+};
+
+}  // namespace
+
+ExplanationIndex read_explanation_index(std::string_view lines, FindingLog& log) {
+  ExplanationIndex index;
+  std::unordered_set<std::string> objects;
+  std::size_t number = 0;
+  while (!lines.empty()) {
+    const std::size_t end = std::min(lines.find('\n'), lines.size());
+    const std::string_view line = lines.substr(0, end);
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+    ++number;
+    const std::size_t first = line.find(' '), second = first == line.npos ? line.npos : line.find(' ', first + 1);
+    const std::string object(line.substr(0, first));
+    if (second == line.npos || !is_osm_id(object) || !is_osm_id(line.substr(second + 1))) {
+      log.add(Check::explanation_wrong, "explain/index.txt", fmt::format("line {}", number), "is no entry of object, tile and building");
+      continue;
+    }
+    if (!objects.insert(object).second) log.add(Check::explanation_wrong, "explain/index.txt", object, "stands twice");
+    index[std::string(line.substr(first + 1, second - first - 1))].emplace_back(object, line.substr(second + 1));
+  }
+  return index;
+}
+
+std::size_t check_explanations(std::string_view lines, const std::string& file, const std::string& tile, const Contents* model,
+                               const std::vector<std::pair<std::string, std::string>>& entries, const BuildRecord& record,
+                               std::vector<Finding>& findings) {
+  TileRecords records(file, tile, model, record, findings);
+  for (std::size_t number = 1; !lines.empty(); ++number) {
+    const std::size_t end = std::min(lines.find('\n'), lines.size());
+    records.read(lines.substr(0, end), number);
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+  }
+  records.finish(entries);
+  return records.count();
+}
+
+}  // namespace blockrand::validate
