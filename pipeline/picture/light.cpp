@@ -127,37 +127,40 @@ Light light_of(const Scene& scene, const View& view, const Samples& samples, con
     const int count = (options.sky_directions + phases - 1) / phases * phases;
     const std::vector<Point3> directions = sky_directions(count);
     light.sky.assign(samples.what.size(), 1);
-    for (std::size_t i = 0; i < light.sky.size(); ++i)
-      if (receivers.asks[i]) light.sky[i] = 0;
     DepthMap map(options.sky_map);
-    for (int d = 0; d < count; ++d) {
-      const Point3 to_light = directions[static_cast<std::size_t>(d)];
-      const float lx = static_cast<float>(to_light.x), ly = static_cast<float>(to_light.y), lz = static_cast<float>(to_light.z);
-      map.draw(scene, to_light, receivers.box);
-      const auto lift = static_cast<float>(1.1 * map.cell());
-      each_sample(scene, view, samples, receivers, ss, d % phases, [&](std::size_t i, int x, int y, const Scene::Vector& n) {
-        const float cosine = n.x * lx + n.y * ly + n.z * lz;
-        if (cosine > 0 && map.lit(place(map, i, x, y, n, lift))) light.sky[i] += cosine / lz;
-      });
-    }
-    // As a share of what the same surface would get in the open from the same directions. The series is dense where a
-    // level surface counts most, so each direction stands for its part of the dome divided by its height (1 / lz).
+    // What a sample got, and what it would get in the open from the same directions.
+    struct Asker {
+      float x, y, z;
+      Scene::Vector normal;
+      float got, open;
+      std::uint32_t index;
+    };
+    std::vector<Asker> askers;
     for (int phase = 0; phase < phases; ++phase) {
-      std::uint32_t last = kNothing;
-      float open = 1;
-      each_sample(scene, view, samples, receivers, ss, phase, [&](std::size_t i, int, int, const Scene::Vector& n) {
-        if (samples.what[i] != last) {
-          open = 0;
-          for (int d = phase; d < count; d += phases) {
-            const Point3& l = directions[static_cast<std::size_t>(d)];
-            const float cosine = n.x * static_cast<float>(l.x) + n.y * static_cast<float>(l.y) + n.z * static_cast<float>(l.z);
-            if (cosine > 0) open += cosine / static_cast<float>(l.z);
-          }
-          last = samples.what[i];
-        }
-        // A surface that faces no direction of this sample's share (an overhang) takes part of its neighbours' light.
-        light.sky[i] = open > 0 ? std::min(1.0f, light.sky[i] / open) : 0.5f;
+      askers.clear();
+      each_sample(scene, view, samples, receivers, ss, phase, [&](std::size_t i, int x, int y, const Scene::Vector& n) {
+        const Point3 p = view.position(x + 0.5, y + 0.5, samples.nearness[i]);
+        askers.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), n, 0, 0,
+                          static_cast<std::uint32_t>(i)});
       });
+      for (int d = phase; d < count; d += phases) {
+        const Point3& to_light = directions[static_cast<std::size_t>(d)];
+        const float lx = static_cast<float>(to_light.x), ly = static_cast<float>(to_light.y), lz = static_cast<float>(to_light.z);
+        map.draw(scene, to_light, receivers.box);
+        const auto lift = static_cast<float>(1.1 * map.cell());
+        for (Asker& a : askers) {
+          const Scene::Vector& n = a.normal;
+          const float cosine = n.x * lx + n.y * ly + n.z * lz;
+          if (!(cosine > 0)) continue;
+          // The series is dense where a level surface counts most: each direction stands for its part of the dome divided
+          // by its height.
+          const float weight = cosine / lz;
+          a.open += weight;
+          if (map.lit(map.locate(a.x + n.x * lift, a.y + n.y * lift, a.z + n.z * lift))) a.got += weight;
+        }
+      }
+      // A surface that faces none of this phase's directions (an overhang) gets half.
+      for (const Asker& a : askers) light.sky[a.index] = a.open > 0 ? std::min(1.0f, a.got / a.open) : 0.5f;
     }
   }
   return light;

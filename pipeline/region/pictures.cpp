@@ -71,14 +71,15 @@ Point3 densest_spot(const std::vector<PicturedBuilding>& buildings) {
   return {};
 }
 
-std::vector<Point3> points_near(const std::vector<PicturedBuilding>& buildings, Point3 spot, double reach) {
+/// Corners of what stands within `reach` of a spot.
+std::vector<Point3> points_near(const picture::Scene& scene, Point3 spot, double reach) {
   std::vector<Point3> out;
-  for (const PicturedBuilding& b : buildings) {
-    const Point3 c = b.box.centre();
-    if ((c.x - spot.x) * (c.x - spot.x) + (c.y - spot.y) * (c.y - spot.y) > reach * reach) continue;
-    for (const Point3& p : b.box.corners())
-      out.push_back({std::clamp(p.x, spot.x - reach, spot.x + reach), std::clamp(p.y, spot.y - reach, spot.y + reach), p.z});
-  }
+  const Point3 o = scene.origin();
+  for (const picture::Scene::Triangle& t : scene.triangles())
+    for (const picture::Scene::Vector& v : t.corners) {
+      const Point3 p{o.x + v.x, o.y + v.y, o.z + v.z};
+      if ((p.x - spot.x) * (p.x - spot.x) + (p.y - spot.y) * (p.y - spot.y) <= reach * reach) out.push_back(p);
+    }
   return out;
 }
 
@@ -212,8 +213,9 @@ std::vector<export_::ReportPicture> Pictures::take(int workers) {
   };
   shoot(core, {215, 38}, 30, 1200, 750, "Seen from the south-west; the sun stands in the south-east.");
   shoot(core, {35, 38}, 30, 960, 600, "The same from the north-east.");
-  constexpr double kDetailReach = 85;  // m
-  shoot(points_near(buildings_, densest_spot(buildings_), kDetailReach), {200, 24}, 40, 960, 600, "Where houses stand densest.");
+  constexpr double kDetailReach = 75;  // m
+  std::vector<Point3> near = points_near(scene_, densest_spot(buildings_), kDetailReach);
+  shoot(near.empty() ? core : near, {205, 27}, 40, 960, 600, "Where houses stand densest.");
   shots.back().options.sky_directions = 64;  // near by, single shades of the sky would show
 
   out.resize(shots.size());

@@ -61,7 +61,7 @@ details.code summary::before { content: "\25B8"; color: var(--soft); width: .8re
 .frame { position: relative; background: var(--card); border-radius: .5rem; overflow: hidden; margin: .4rem 0; }
 .frame > svg { display: block; width: 100%; height: auto; touch-action: pan-y; }
 .footprints path { fill: var(--soft); fill-rule: evenodd; } .footprints a:hover path { fill-opacity: .55; }
-.marks circle { fill: none; stroke: var(--mark); stroke-width: 4px; vector-effect: non-scaling-stroke; opacity: 0; pointer-events: none; }
+.marks circle { fill: none; stroke: var(--mark); stroke-width: 4px; vector-effect: non-scaling-stroke; opacity: 0; pointer-events: none; scroll-margin: 40vh 0; }
 .marks circle:target { opacity: 1; }
 .scale { position: absolute; left: .9rem; right: .9rem; bottom: .7rem; font-size: .8rem; line-height: 1; pointer-events: none; }
 .scale .bar { display: block; height: .42rem; border: 2px solid var(--ink); border-top: 0; margin-top: .25rem; } .scale { display: flex; flex-direction: column-reverse; }

@@ -30,6 +30,12 @@ class Finder {
   std::vector<std::pair<model::OsmId, std::uint32_t>> buildings_, parts_;
 };
 
+/// Stages name the body in the detail; where that is the object itself, the link says so already.
+std::string_view without_id(const ListedRow& row) {
+  const std::string prefix = row.object.text() + ": ";
+  return row.detail.rfind(prefix, 0) == 0 ? std::string_view(row.detail).substr(prefix.size()) : std::string_view(row.detail);
+}
+
 std::string limit_note(std::uint64_t count, std::size_t listed) {
   if (count <= listed) return {};
   return "<p class=\"small soft\">The first " + with_thousands(listed) + " of " + with_thousands(count) +
@@ -106,7 +112,8 @@ std::string issue_section(const MapFootprints& footprints, const Issues& issues,
         out += "<li>" + osm_link(row.object);
         if (row.building != model::kNoIndex && std::binary_search(marks.begin(), marks.end(), row.building))
           out += " <a class=\"small\" href=\"#at-" + footprints.buildings[row.building].osm.text() + "\">map</a>";
-        if (!row.detail.empty()) out += " <span class=\"soft\">" + escaped(row.detail) + "</span>";
+        if (const std::string_view detail = without_id(row); !detail.empty())
+          out += " <span class=\"soft\">" + escaped(detail) + "</span>";
         out += "</li>\n";
       }
       out += "</ul>\n" + limit_note(list.count, options.listed_objects) + "</details>\n";

@@ -37,8 +37,11 @@ void fact(std::string& out, std::string_view name, std::string_view escaped_valu
   out += "<dt>" + std::string(name) + "</dt><dd>" + std::string(escaped_value) + "</dd>\n";
 }
 
-/// "storey_height" → "Storey height".
+/// "storey_height" → "Storey height"; some names say more in other words.
 std::string label(std::string_view name) {
+  if (name == "min_height") return "Underside above ground";
+  if (name == "roof_storeys") return "Storeys in the roof";
+  if (name == "use") return "Use of the building";
   std::string out(name);
   std::replace(out.begin(), out.end(), '_', ' ');
   if (!out.empty() && out[0] >= 'a' && out[0] <= 'z') out[0] = static_cast<char>(out[0] - 'a' + 'A');
