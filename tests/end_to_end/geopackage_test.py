@@ -1,6 +1,7 @@
 """The GeoPackage of a build, as others read it: GDAL's ogrinfo, GDAL's own checker of the standard, and SQL.
 
 Skips where ogrinfo is absent (Debian: gdal-bin)."""
+import json
 import os
 import re
 import shutil
@@ -19,11 +20,44 @@ ATTRIBUTES = ('use', 'storeys', 'storey_height', 'height', 'min_height', 'roof_s
 SOURCES = {'override', 'tag', 'implied', 'part', 'imagery', 'terrain', 'geometry', 'neighbours', 'block', 'cell',
            'district', 'region', 'preset', 'default'}
 
+# Opens each layer as a user does: with the style that lies in the file. Prints what it is drawn by, how many features get
+# no symbol, and which of the layer's styles QGIS cannot take.
+QGIS = """
+import json, sys
+from qgis.core import QgsApplication, QgsRenderContext, QgsVectorLayer
+from qgis.PyQt.QtXml import QDomDocument
+app = QgsApplication([], False)
+app.initQgis()
+seen = {}
+for name in sys.argv[2:]:
+    layer = QgsVectorLayer(f'{sys.argv[1]}|layername={name}', name, 'ogr')
+    loaded = layer.loadDefaultStyle()[1]
+    renderer = layer.renderer().clone()
+    context = QgsRenderContext()
+    renderer.startRender(context, layer.fields())
+    bare = 0
+    for feature in layer.getFeatures():
+        context.expressionContext().setFeature(feature)
+        bare += renderer.symbolForFeature(feature, context) is None
+    renderer.stopRender(context)
+    related, ids, *_ = layer.listStylesInDatabase()
+    refused = []
+    for style in ids[:related]:
+        document = QDomDocument()
+        document.setContent(layer.getStyleFromDatabase(style)[0])
+        if not layer.importNamedStyle(document)[0]:
+            refused.append(style)
+    seen[name] = [loaded, renderer.type(), related, bare, refused]
+print(json.dumps(seen), flush=True)
+import os
+os._exit(0)  # QGIS is known to crash when it is taken down
+"""
 
-def checker():
-    """A python that has GDAL's checker of GeoPackages (Debian: python3-gdal), or None."""
+
+def python_with(module):
+    """A python that has the module, or None: Debian's packages are for its own one."""
     for python in (sys.executable, '/usr/bin/python3'):
-        if os.path.exists(python) and call([python, '-c', 'import osgeo_utils.samples.validate_gpkg']).code == 0:
+        if os.path.exists(python) and call([python, '-c', f'import {module}']).code == 0:
             return python
     return None
 
@@ -94,11 +128,23 @@ class GeoPackage(BuildTest):
 
     def test_keeps_the_standard(self):
         """GDAL's checker, which shares no code with its writer."""
-        python = checker()
+        python = python_with('osgeo_utils.samples.validate_gpkg')
         if not python:
             self.skipTest('osgeo_utils is absent (Debian: python3-gdal)')
         run = call([python, '-m', 'osgeo_utils.samples.validate_gpkg', '--extra', '--warning-as-error', '-k', self.file])
         self.assertEqual((run.code, run.out.strip()), (0, ''), run)
+
+    def test_opens_coloured_in_qgis(self):
+        python = python_with('qgis.core')
+        if not python:
+            self.skipTest('QGIS is absent (Debian: python3-qgis)')
+        copy = self.path('for_qgis.gpkg')  # QGIS writes its journal beside what it opens
+        shutil.copy(self.file, copy)
+        run = call([python, '-c', QGIS, copy, *LAYERS], env={'QT_QPA_PLATFORM': 'offscreen', 'HOME': self.folder})
+        self.assertEqual(run.code, 0, run)
+        self.assertEqual(json.loads(run.out.splitlines()[-1]), {
+            'buildings': [True, 'graduatedSymbol', 3, 0, []], 'parts': [True, 'categorizedSymbol', 2, 0, []],
+            'reported': [True, 'categorizedSymbol', 1, 0, []], 'tiles': [True, 'singleSymbol', 1, 0, []]})
 
     # ---- against the other documents of the build
 

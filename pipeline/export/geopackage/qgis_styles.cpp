@@ -14,9 +14,9 @@ namespace {
 using model::Colour;
 
 /// Well-spread colours for classes without an order: hue goes round by the golden angle, lightness alternates. Integers
-/// only.
+/// only. The second class, gabled roofs, is tile red.
 Colour class_colour(int i) {
-  const int hue = (i * 137 + 20) % 360, top = i % 2 ? 205 : 235, low = i % 3 == 0 ? 90 : 130;
+  const int hue = (i * 137 + 233) % 360, top = i % 2 ? 205 : 235, low = i % 3 == 0 ? 90 : 130;
   const int rise = low + (top - low) * (hue % 60) / 60, fall = top + low - rise;
   const auto c = [](int v) { return static_cast<std::uint8_t>(v); };
   switch (hue / 60) {
