@@ -23,12 +23,13 @@ bool is_colour(std::string_view text) {
   return text.size() == 7 && text[0] == '#' && text.find_first_not_of("0123456789abcdef", 1) == std::string_view::npos;
 }
 
+/// Notices stand there as well, where a value that was tagged could not be built.
 bool is_fallback_list(std::string_view codes) {
   while (!codes.empty()) {
     const std::size_t end = codes.find(' ');
     const std::string_view code = codes.substr(0, end);
     if (std::none_of(std::begin(model::kIssueInfo), std::end(model::kIssueInfo), [&](const model::IssueInfo& about) {
-          return about.text == code && about.issue_class == model::IssueClass::fallback;
+          return about.text == code && about.issue_class != model::IssueClass::reported && about.text != "NONE";
         }))
       return false;
     codes.remove_prefix(end == std::string_view::npos ? codes.size() : end + 1);

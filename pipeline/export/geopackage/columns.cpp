@@ -75,7 +75,7 @@ std::vector<Column> building_columns() {
       {"built_roof", ColumnKind::text, "", "Roof that stands on the largest of its bodies"},
       {"footprint_area", ColumnKind::real, "m²", "Area of the footprint on the map"},
       {"volume", ColumnKind::real, "m³", "Volume of the best solids of its bodies"},
-      {"fallbacks", ColumnKind::text, "", "Codes of what was built simpler than asked, separated by blanks"},
+      {"fallbacks", ColumnKind::text, "", "Codes of what was built otherwise than asked, separated by blanks"},
   };
   add_address(c);
   for (const char* name : {"country", "city", "suburb", "postcode", "street", "house_number"})
@@ -96,7 +96,7 @@ std::vector<Column> part_columns() {
       {"built_roof", ColumnKind::text, "", "Roof that stands"},
       {"footprint_area", ColumnKind::real, "m²", "Area of the plan on the map"},
       {"volume", ColumnKind::real, "m³", "Volume of the best solid"},
-      {"fallbacks", ColumnKind::text, "", "Codes of what was built simpler than asked, separated by blanks"},
+      {"fallbacks", ColumnKind::text, "", "Codes of what was built otherwise than asked, separated by blanks"},
   };
   add_address(c);
   add_attributes(c);
