@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <new>
 
 namespace blockrand::geometry {
 
@@ -49,6 +50,8 @@ std::optional<StraightSkeleton> straight_skeleton_by_cgal(const model::Polygon& 
   const auto skeleton = [&] {
     try {
       return CGAL::create_interior_straight_skeleton_2(input, Kernel());
+    } catch (const std::bad_alloc&) {
+      throw;  // whether memory suffices depends on the machine: no house may look different for it
     } catch (const std::exception&) {
       // CGAL reports failed internal assertions by exceptions; for us the plan merely has no skeleton.
       return decltype(CGAL::create_interior_straight_skeleton_2(input, Kernel()))();
