@@ -50,16 +50,21 @@ std::vector<Point3> core_points(const std::vector<PicturedBuilding>& buildings) 
   return out;
 }
 
-/// The middle of the cell that has, with its neighbours, the most bodies of house size; where none is that large, of any.
+/// Stands on the ground and has the size of a house: neither a shed, nor a hall, nor a part of a roof.
+bool like_a_house(const PicturedBuilding& b) {
+  const double area = (b.box.max.x - b.box.min.x) * (b.box.max.y - b.box.min.y);
+  return b.box.max.z - b.ground >= 5 && b.box.min.z - b.ground < 2 && area >= 60 && area <= 2500;
+}
+
+/// The middle of the cell that has, with its neighbours, the most houses; where there is none, the most of anything.
 Point3 densest_spot(const std::vector<PicturedBuilding>& buildings) {
-  constexpr double kCell = 50;        // m
-  constexpr double kHouseHeight = 5;  // m. Sheds and garages stand dense and say nothing.
+  constexpr double kCell = 50;  // m
   using Key = std::pair<std::int64_t, std::int64_t>;
-  for (const double least : {kHouseHeight, 0.0}) {
+  for (const bool houses_only : {true, false}) {
     std::map<Key, std::uint64_t> cells;
     for (const PicturedBuilding& b : buildings) {
+      if (houses_only && !like_a_house(b)) continue;
       const Point3 c = b.box.centre();
-      if (b.box.max.z - b.ground < least) continue;
       const Key home{static_cast<std::int64_t>(std::floor(c.x / kCell)), static_cast<std::int64_t>(std::floor(c.y / kCell))};
       for (std::int64_t x = -1; x <= 1; ++x)
         for (std::int64_t y = -1; y <= 1; ++y) ++cells[{home.first + x, home.second + y}];
@@ -81,6 +86,38 @@ std::vector<Point3> points_near(const picture::Scene& scene, Point3 spot, double
       if ((p.x - spot.x) * (p.x - spot.x) + (p.y - spot.y) * (p.y - spot.y) <= reach * reach) out.push_back(p);
     }
   return out;
+}
+
+/// Where the overview is taken from. The sun stands at the viewer's side in the south, so that walls and shadows show.
+struct View {
+  double azimuth, sun;  ///< degrees
+  std::string_view from, to;
+};
+
+constexpr double kElevation = 38, kFieldOfView = 30, kMargin = 0.07;
+constexpr int kWidth = 1200, kHeight = 750;
+
+/// The view that shows most: a long town is seen from its side. The south-west is preferred unless another is much nearer.
+View best_view(std::span<const Point3> points) {
+  constexpr View kViews[] = {{215, 135, "south-west", "north-east"},
+                             {145, 225, "south-east", "north-west"},
+                             {180, 110, "south", "north"},
+                             {260, 180, "west", "east"}};
+  const auto distance = [&](const View& view) {
+    const Camera c = fit_perspective(points, {view.azimuth, kElevation}, static_cast<double>(kWidth) / kHeight, kFieldOfView, kMargin);
+    double sum = 0;
+    for (const Point3& p : points)
+      sum += (p.x - c.eye.x) * c.forward.x + (p.y - c.eye.y) * c.forward.y + (p.z - c.eye.z) * c.forward.z;
+    return sum / static_cast<double>(points.size());
+  };
+  View best = kViews[0];
+  double nearest = 0.93 * distance(best);
+  for (const View& view : kViews)
+    if (const double d = distance(view); d < nearest) {
+      nearest = d;
+      best = view;
+    }
+  return best;
 }
 
 }  // namespace
@@ -153,10 +190,10 @@ void Pictures::lay_ground() {
     return;
   }
   constexpr int kCells = 80;          // along the longer side
-  constexpr double kMargin = 60;      // m around the buildings
+  constexpr double kBorder = 60;      // m around the buildings
   constexpr double kSmoothing = 400;  // m²: nearer than its root, neighbours weigh alike
-  const double west = box.min.x - kMargin, south = box.min.y - kMargin;
-  const double width = box.max.x + kMargin - west, height = box.max.y + kMargin - south;
+  const double west = box.min.x - kBorder, south = box.min.y - kMargin;
+  const double width = box.max.x + kBorder - west, height = box.max.y + kMargin - south;
   const double cell = std::max(width, height) / kCells;
   const int columns = static_cast<int>(width / cell) + 1, rows = static_cast<int>(height / cell) + 1;
   std::vector<double> z;
@@ -202,20 +239,22 @@ std::vector<export_::ReportPicture> Pictures::take(int workers) {
   };
   std::vector<Shot> shots;
   const std::vector<Point3> core = core_points(buildings_);
+  const View view = best_view(core);
   const auto shoot = [&](std::span<const Point3> points, Direction from, double field_of_view, int width, int height,
                          std::string caption) {
     Shot shot;
     shot.options.width = width;
     shot.options.height = height;
-    shot.camera = fit_perspective(points, from, static_cast<double>(width) / height, field_of_view);
+    shot.options.sun_azimuth = view.sun;
+    shot.camera = fit_perspective(points, from, static_cast<double>(width) / height, field_of_view, kMargin);
     shot.caption = std::move(caption);
     shots.push_back(std::move(shot));
   };
-  shoot(core, {215, 38}, 30, 1200, 750, "Seen from the south-west; the sun stands in the south-east.");
-  shoot(core, {35, 38}, 30, 960, 600, "The same from the north-east.");
+  shoot(core, {view.azimuth, kElevation}, kFieldOfView, kWidth, kHeight, fmt::format("Seen from the {}.", view.from));
+  shoot(core, {view.azimuth + 180, kElevation}, kFieldOfView, 960, 600, fmt::format("The same from the {}.", view.to));
   constexpr double kDetailReach = 75;  // m
   std::vector<Point3> near = points_near(scene_, densest_spot(buildings_), kDetailReach);
-  shoot(near.empty() ? core : near, {205, 27}, 40, 960, 600, "Where houses stand densest.");
+  shoot(near.empty() ? core : near, {view.azimuth, 27}, 40, 960, 600, "Where houses stand densest.");
   shots.back().options.sky_directions = 64;  // near by, single shades of the sky would show
 
   out.resize(shots.size());

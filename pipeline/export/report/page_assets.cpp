@@ -35,7 +35,7 @@ table { border-collapse: collapse; margin: .8rem 0 1rem; font-size: .94rem; }
 th, td { text-align: left; vertical-align: top; padding: .32rem 1.1rem .32rem 0; border-bottom: 1px solid var(--line); }
 th { font-weight: 600; } thead th { color: var(--soft); font-weight: 500; font-size: .86rem; }
 td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-.wide { overflow-x: auto; }
+.wide { overflow-x: auto; } .wide table { min-width: 46rem; }
 figure { margin: 1.2rem 0; } figure img { display: block; width: 100%; height: auto; border-radius: .5rem; }
 figcaption { color: var(--soft); font-size: .9rem; margin-top: .4rem; }
 .pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(20rem, 1fr)); gap: 0 1.2rem; } .pair figure { margin-top: 0; }
@@ -60,7 +60,8 @@ details.code summary::before { content: "\25B8"; color: var(--soft); width: .8re
 .themes > input:focus-visible + label { outline: 2px solid var(--link); outline-offset: 2px; }
 .frame { position: relative; background: var(--card); border-radius: .5rem; overflow: hidden; margin: .4rem 0; }
 .frame > svg { display: block; width: 100%; height: auto; touch-action: pan-y; }
-.footprints path { fill: var(--soft); fill-rule: evenodd; } .footprints a:hover path { fill-opacity: .55; }
+.footprints path { fill: var(--c, var(--soft)); fill-rule: evenodd; } .legend rect { fill: var(--c); }
+.far path { stroke: var(--c, var(--soft)); stroke-width: .6px; vector-effect: non-scaling-stroke; } .footprints a:hover path { fill-opacity: .55; }
 .marks circle { fill: none; stroke: var(--mark); stroke-width: 4px; vector-effect: non-scaling-stroke; opacity: 0; pointer-events: none; scroll-margin: 40vh 0; }
 .marks circle:target { opacity: 1; }
 .scale { position: absolute; left: .9rem; right: .9rem; bottom: .7rem; font-size: .8rem; line-height: 1; pointer-events: none; }
@@ -72,24 +73,24 @@ details.code summary::before { content: "\25B8"; color: var(--soft); width: .8re
 .zoom button { width: 2rem; height: 2rem; font: 1.1rem/1 inherit; border: 1px solid var(--line); border-radius: .35rem; background: var(--paper); color: var(--ink); cursor: pointer; }
 .legend { display: none; }
 #by-s:checked ~ .legend.of-s, #by-q:checked ~ .legend.of-q, #by-r:checked ~ .legend.of-r, #by-i:checked ~ .legend.of-i { display: flex; }
-#by-s:checked ~ .frame .s1, .of-s .c1 { fill: var(--s1); } #by-s:checked ~ .frame .s2, .of-s .c2 { fill: var(--s2); }
-#by-s:checked ~ .frame .s3, .of-s .c3 { fill: var(--s3); } #by-s:checked ~ .frame .s4, .of-s .c4 { fill: var(--s4); }
-#by-s:checked ~ .frame .s5, .of-s .c5 { fill: var(--s5); } #by-s:checked ~ .frame .s6, .of-s .c6 { fill: var(--s6); }
-#by-s:checked ~ .frame .s7, .of-s .c7 { fill: var(--s7); } #by-s:checked ~ .frame .s8, .of-s .c8 { fill: var(--s8); }
-#by-q:checked ~ .frame .q1, .of-q .c1 { fill: #7b3fa0; } #by-q:checked ~ .frame .q2, .of-q .c2 { fill: #1f5fa8; }
-#by-q:checked ~ .frame .q3, .of-q .c3 { fill: #5b9bd8; } #by-q:checked ~ .frame .q4, .of-q .c4 { fill: #2a9d9d; }
-#by-q:checked ~ .frame .q5, .of-q .c5 { fill: #1b7f5f; } #by-q:checked ~ .frame .q6, .of-q .c6 { fill: #6b8e23; }
-#by-q:checked ~ .frame .q7, .of-q .c7 { fill: #93ba5e; } #by-q:checked ~ .frame .q8, .of-q .c8 { fill: #dfae2e; }
-#by-q:checked ~ .frame .q9, .of-q .c9 { fill: #d8932f; } #by-q:checked ~ .frame .q10, .of-q .c10 { fill: #cc7a34; }
-#by-q:checked ~ .frame .q11, .of-q .c11 { fill: #ba643a; } #by-q:checked ~ .frame .q12, .of-q .c12 { fill: #a5513f; }
-#by-q:checked ~ .frame .q13, .of-q .c13 { fill: #c9bba6; } #by-q:checked ~ .frame .q14, .of-q .c14 { fill: #8f8b86; }
-#by-r:checked ~ .frame .r1, .of-r .c1 { fill: #8d9aa8; } #by-r:checked ~ .frame .r2, .of-r .c2 { fill: #c0533b; }
-#by-r:checked ~ .frame .r3, .of-r .c3 { fill: #dd9550; } #by-r:checked ~ .frame .r4, .of-r .c4 { fill: #83508e; }
-#by-r:checked ~ .frame .r5, .of-r .c5 { fill: #5f9e8f; } #by-r:checked ~ .frame .r6, .of-r .c6 { fill: #4b7fb5; }
-#by-r:checked ~ .frame .r7, .of-r .c7 { fill: #6d6a52; }
-#by-i:checked ~ .frame .i0, .of-i .c0 { fill: #b5b1a8; } #by-i:checked ~ .frame .i1, .of-i .c1 { fill: #e3bb3c; }
-#by-i:checked ~ .frame .i2, .of-i .c2 { fill: #e5772a; } #by-i:checked ~ .frame .i3, .of-i .c3 { fill: var(--none); }
-.of-s .c0, .of-q .c0, .of-r .c0, #by-s:checked ~ .frame .s0, #by-q:checked ~ .frame .q0, #by-r:checked ~ .frame .r0 { fill: var(--none); }
+#by-s:checked ~ .frame .s1, .of-s .c1 { --c: var(--s1); } #by-s:checked ~ .frame .s2, .of-s .c2 { --c: var(--s2); }
+#by-s:checked ~ .frame .s3, .of-s .c3 { --c: var(--s3); } #by-s:checked ~ .frame .s4, .of-s .c4 { --c: var(--s4); }
+#by-s:checked ~ .frame .s5, .of-s .c5 { --c: var(--s5); } #by-s:checked ~ .frame .s6, .of-s .c6 { --c: var(--s6); }
+#by-s:checked ~ .frame .s7, .of-s .c7 { --c: var(--s7); } #by-s:checked ~ .frame .s8, .of-s .c8 { --c: var(--s8); }
+#by-q:checked ~ .frame .q1, .of-q .c1 { --c: #7b3fa0; } #by-q:checked ~ .frame .q2, .of-q .c2 { --c: #1f5fa8; }
+#by-q:checked ~ .frame .q3, .of-q .c3 { --c: #5b9bd8; } #by-q:checked ~ .frame .q4, .of-q .c4 { --c: #2a9d9d; }
+#by-q:checked ~ .frame .q5, .of-q .c5 { --c: #1b7f5f; } #by-q:checked ~ .frame .q6, .of-q .c6 { --c: #6b8e23; }
+#by-q:checked ~ .frame .q7, .of-q .c7 { --c: #93ba5e; } #by-q:checked ~ .frame .q8, .of-q .c8 { --c: #dfae2e; }
+#by-q:checked ~ .frame .q9, .of-q .c9 { --c: #d8932f; } #by-q:checked ~ .frame .q10, .of-q .c10 { --c: #cc7a34; }
+#by-q:checked ~ .frame .q11, .of-q .c11 { --c: #ba643a; } #by-q:checked ~ .frame .q12, .of-q .c12 { --c: #a5513f; }
+#by-q:checked ~ .frame .q13, .of-q .c13 { --c: #c9bba6; } #by-q:checked ~ .frame .q14, .of-q .c14 { --c: #8f8b86; }
+#by-r:checked ~ .frame .r1, .of-r .c1 { --c: #8d9aa8; } #by-r:checked ~ .frame .r2, .of-r .c2 { --c: #c0533b; }
+#by-r:checked ~ .frame .r3, .of-r .c3 { --c: #dd9550; } #by-r:checked ~ .frame .r4, .of-r .c4 { --c: #83508e; }
+#by-r:checked ~ .frame .r5, .of-r .c5 { --c: #5f9e8f; } #by-r:checked ~ .frame .r6, .of-r .c6 { --c: #4b7fb5; }
+#by-r:checked ~ .frame .r7, .of-r .c7 { --c: #6d6a52; }
+#by-i:checked ~ .frame .i0, .of-i .c0 { --c: #b5b1a8; } #by-i:checked ~ .frame .i1, .of-i .c1 { --c: #e3bb3c; }
+#by-i:checked ~ .frame .i2, .of-i .c2 { --c: #e5772a; } #by-i:checked ~ .frame .i3, .of-i .c3 { --c: var(--none); }
+.of-s .c0, .of-q .c0, .of-r .c0, #by-s:checked ~ .frame .s0, #by-q:checked ~ .frame .q0, #by-r:checked ~ .frame .r0 { --c: var(--none); }
 .search { width: 100%; max-width: 24rem; font: inherit; padding: .4rem .7rem; border: 1px solid var(--line); border-radius: .4rem; background: var(--card); color: var(--ink); }
 footer { margin-top: 4rem; padding-top: 1rem; border-top: 1px solid var(--line); color: var(--soft); font-size: .88rem; }
 @media (max-width: 40rem) { body { padding: 1.3rem .9rem 3rem; } h1 { font-size: 1.55rem; } .facts { grid-template-columns: 1fr; gap: 0; } .facts dd { margin-bottom: .5rem; }

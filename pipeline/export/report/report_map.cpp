@@ -11,6 +11,9 @@ namespace {
 
 using model::RoofShape;
 
+/// Decimetres. On wider maps houses are less than a pixel; a hairline keeps them visible.
+constexpr std::int64_t kFar = 60'000;
+
 /// Class of a footprint in every theme, as one number.
 struct Classes {
   std::array<std::uint8_t, kMapThemes> of{};
@@ -425,7 +428,7 @@ ReportMap report_map(const MapFootprints& footprints, const std::vector<std::uin
   out.svg = "<div class=\"frame\" style=\"max-width:calc(max(26rem, 88vh * " +
             rounded(static_cast<double>(width) / static_cast<double>(height), 3) + "))\">\n<svg xmlns=\"http://www.w3.org/2000/svg\" id=\"map-svg\" viewBox=\"0 0 " +
             w + " " + h + "\" role=\"img\" aria-label=\"Map of the footprints\" data-metres=\"" + std::to_string(width / 10) + "\">\n" +
-            "<g class=\"footprints\">\n" + paths + "</g>\n<g class=\"marks\">\n";
+            "<g class=\"footprints" + (width > kFar ? " far" : "") + "\">\n" + paths + "</g>\n<g class=\"marks\">\n";
   const std::string radius = std::to_string(std::max<std::int64_t>(1, std::max(width, height) / unit / 60));
   for (const std::uint32_t b : marked) {
     if (!writer.drawn(b)) continue;

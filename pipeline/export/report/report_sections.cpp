@@ -160,7 +160,9 @@ std::string source_section(const ReportFacts& f) {
              "\" height=\"10\"><title>" + text + "</title></rect>";
       words += (words.empty() ? "" : ", ") + text;
     }
-    rows += "<tr><td>" + label(attribute) + "</td><td class=\"bar\"><svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10000 10\" "
+    // Attributes that only some bodies have say of how many they speak.
+    const std::string some = all < f.bodies ? " <span class=\"soft small\">of " + with_thousands(all) + "</span>" : "";
+    rows += "<tr><td>" + label(attribute) + some + "</td><td class=\"bar\"><svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10000 10\" "
             "preserveAspectRatio=\"none\" role=\"img\" aria-label=\"" + words + "\">" + bar + "</svg></td><td class=\"n\">" +
             percent(mapped, all) + "</td></tr>\n";
   };
