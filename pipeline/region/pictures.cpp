@@ -104,7 +104,8 @@ View best_view(std::span<const Point3> points) {
                              {180, 110, "south", "north"},
                              {260, 180, "west", "east"}};
   const auto distance = [&](const View& view) {
-    const Camera c = fit_perspective(points, {view.azimuth, kElevation}, static_cast<double>(kWidth) / kHeight, kFieldOfView, kMargin);
+    const Camera c =
+        picture::fit_perspective(points, {view.azimuth, kElevation}, static_cast<double>(kWidth) / kHeight, kFieldOfView, kMargin);
     double sum = 0;
     for (const Point3& p : points)
       sum += (p.x - c.eye.x) * c.forward.x + (p.y - c.eye.y) * c.forward.y + (p.z - c.eye.z) * c.forward.z;
