@@ -158,6 +158,33 @@ double farthest(const std::vector<Point3>& points, const std::vector<Point3>& ot
   return worst;
 }
 
+std::uint64_t mixed(std::uint64_t h, std::uint64_t v) {
+  h ^= v + 0x9e3779b97f4a7c15u + (h << 6) + (h >> 2);
+  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
+  return h ^ (h >> 29);
+}
+
+std::uint64_t mixed(std::uint64_t h, std::string_view text) {
+  for (const char c : text) h = mixed(h, static_cast<unsigned char>(c));
+  return mixed(h, text.size());
+}
+
+/// The same whatever the order of the polygons and wherever their rings start.
+std::uint64_t digest_of(const std::vector<ReadPolygon>& polygons) {
+  std::uint64_t sum = 0;
+  for (const ReadPolygon& polygon : polygons) {
+    const ReadPolygon p = canonical(polygon);
+    std::uint64_t h = mixed(mixed(1, p.kind), p.colour);
+    for (const auto& ring : p.rings) {
+      h = mixed(h, ring.size());
+      for (const Point3& q : ring)
+        for (const double v : {q.x, q.y, q.z}) h = mixed(h, static_cast<std::uint64_t>(std::llrint(std::clamp(v, -1e12, 1e12) * 1e4)));
+    }
+    sum += h;
+  }
+  return sum;
+}
+
 std::vector<Point3> sorted_points(std::vector<Point3> points) {
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -165,6 +192,14 @@ std::vector<Point3> sorted_points(std::vector<Point3> points) {
 }
 
 }  // namespace
+
+BodyDigest digest(const ReadBody& body) {
+  BodyDigest d;
+  d.geometry = mixed(digest_of(body.footprint), body.solids.size());
+  for (const ReadSolid& solid : body.solids) d.geometry = mixed(mixed(d.geometry, static_cast<std::uint64_t>(solid.lod)), digest_of(solid.polygons));
+  for (const auto& [name, value] : body.attributes) d.attributes = mixed(mixed(d.attributes, name), value);
+  return d;
+}
 
 void find_doubles(const Side& side, std::vector<Finding>& findings) {
   std::set<std::string_view> seen;

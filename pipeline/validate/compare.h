@@ -1,6 +1,7 @@
 // Whether two formats say the same about a tile, body by body.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -41,5 +42,12 @@ using ToLocal = std::function<void(std::span<const model::Point3> in, std::span<
 /// \param tolerance  m, that a vertex may be off
 void compare_meshes(const Side& reference, const Glb& glb, const std::string& glb_file, const ToLocal& to_local,
                     double tolerance, std::vector<Finding>& findings);
+
+/// A body in few bytes, to be compared with the same body in a file of the whole build.
+struct BodyDigest {
+  std::uint64_t geometry = 0;    ///< of footprint and solids with kinds and colours, whatever the order of faces
+  std::uint64_t attributes = 0;  ///< of values, sources and confidences
+};
+BodyDigest digest(const ReadBody& body);
 
 }  // namespace blockrand::validate

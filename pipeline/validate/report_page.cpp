@@ -21,7 +21,8 @@ constexpr const char* kFile = "report.html";
 struct Page {
   std::vector<std::string> sums;                                        ///< the large numbers at the top
   std::map<std::string, std::string> codes;                             ///< code → count
-  std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → bodies
+  /// By row of the table of sources: title, and source → bodies.
+  std::vector<std::pair<std::string, std::map<std::string, std::uint64_t>>> sources;
   std::vector<std::string> footprints;                                  ///< ids on the map
   std::vector<std::string> outside;                                     ///< what the page would load from elsewhere
   std::string wrong;                                                    ///< not empty: not well-formed
@@ -93,12 +94,12 @@ class Reader {
     const Open& open = stack_.back();
     if (open.name == "b" && up(2) && up(2)->classes == "sum") page_.sums.push_back(text_);
     if (open.name == "span" && open.classes == "count" && up(2) && up(2)->id.starts_with("code-")) page_.codes[up(2)->id.substr(5)] = text_;
-    if (open.name == "td" && stack_.size() > 3 && up(3)->classes == "sources" && open.classes.empty()) attribute_ = text_;
+    if (open.name == "td" && stack_.size() > 3 && up(3)->classes == "sources" && open.classes.empty()) page_.sources.push_back({text_, {}});
     if (open.name == "title" && up(3) && up(3)->classes == "bar") {
       // "tag 163 (100 %)"
       const std::size_t space = text_.find(' '), bracket = text_.find(" (");
-      if (space != text_.npos && bracket != text_.npos && bracket > space)
-        page_.sources[attribute_][text_.substr(0, space)] = number_of(text_.substr(space + 1, bracket - space - 1)).value_or(0);
+      if (space != text_.npos && bracket != text_.npos && bracket > space && !page_.sources.empty())
+        page_.sources.back().second[text_.substr(0, space)] = number_of(text_.substr(space + 1, bracket - space - 1)).value_or(0);
     }
     stack_.pop_back();
     text_.clear();
@@ -116,7 +117,7 @@ class Reader {
  private:
   Page page_;
   std::vector<Open> stack_;
-  std::string text_, attribute_;
+  std::string text_;
 };
 
 std::map<std::string, std::uint64_t> counts_of(const Json* object) {
@@ -157,16 +158,21 @@ std::uint64_t check_report_page(const std::string& folder, const BuildRecord& re
     compare(code, said == page.codes.end() ? "" : said->second, is);
   }
 
+  // Rows stand in the order of the attributes; those that no body has are left out.
   const Json* sources = member(member(record.json, "statistics"), "sources");
+  auto row = page.sources.begin();
   for (const std::string& name : attribute_names()) {
-    std::string title = name;
-    std::replace(title.begin(), title.end(), '_', ' ');
-    title[0] = static_cast<char>(title[0] - 'a' + 'A');
     const auto is = counts_of(member(sources, name));
-    const auto said = page.sources.find(title);
+    if (is.empty()) continue;
     ++compared;
-    if (said == page.sources.end() ? !is.empty() : said->second != is) wrong(title, "its bar does not show the counts of build.json");
+    if (row == page.sources.end()) {
+      wrong(name, "has no bar");
+    } else {
+      if (row->second != is) wrong(row->first, "its bar does not show the counts of " + name + " in build.json");
+      ++row;
+    }
   }
+  for (; row != page.sources.end(); ++row) wrong(row->first, "is no attribute of build.json");
 
   std::unordered_set<std::string> shown;
   for (const std::string& id : page.footprints)

@@ -13,7 +13,6 @@
 
 #include "pipeline/validate/attribute_names.h"
 #include "pipeline/validate/cityjson.h"
-#include "pipeline/validate/compare.h"
 #include "pipeline/validate/file_bytes.h"
 #include "pipeline/validate/glb.h"
 #include "pipeline/validate/ids.h"
@@ -471,6 +470,11 @@ class Checker {
       for (std::size_t i = 0; i < c->bodies.size(); ++i) {
         const ReadBody& body = c->bodies[i];
         out_.ids[f].push_back(body.id);
+        if (f == kGltf ? context_.record.single_glb : f == kCityJson && context_.record.single_cityjson) {
+          BodyDigest d = digest(body);
+          if (f == kGltf) d.geometry = glb_->triangles[i].size();
+          out_.digests[f].emplace_back(body.id, d);
+        }
         out_.attributes += body.attributes.size();
         const bool shown = f == kGltf ? !glb_->triangles[i].empty() : has_geometry(body, context_.record.lod);
         if (shown) models.insert(owner(body.id));

@@ -11,6 +11,7 @@
 #include "pipeline/georef/witness.h"
 #include "pipeline/validate/build_record.h"
 #include "pipeline/validate/citygml.h"
+#include "pipeline/validate/compare.h"
 #include "pipeline/validate/contents.h"
 #include "pipeline/validate/explanations.h"
 #include "pipeline/validate/geopackage.h"
@@ -59,6 +60,9 @@ struct TileResult {
   std::vector<std::string> ids[kTileFormats];  ///< of bodies: across tiles they must differ as well
   std::vector<std::string> modelled;           ///< objects that own a solid or footprint, in any format
   std::vector<std::string> buildings;          ///< those with a footprint, of the first format that is there
+  /// By format and body, where a file of the whole build will be compared: BodyDigest; of GLB with the number of
+  /// triangles as its geometry.
+  std::vector<std::pair<std::string, BodyDigest>> digests[kTileFormats];
   std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → bodies
   std::map<std::string, std::uint64_t> roofs;                           ///< built roof → bodies
 };

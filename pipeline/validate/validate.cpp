@@ -15,6 +15,7 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/validate/build_record.h"
+#include "pipeline/validate/cityjson.h"
 #include "pipeline/validate/file_bytes.h"
 #include "pipeline/validate/report_check.h"
 #include "pipeline/validate/tile_check.h"
@@ -316,6 +317,7 @@ class Run {
     log().add(std::move(tile.findings));
     for (std::size_t f = 0; f < kTileFormats; ++f) {
       totals_[f].add(tile.counts[f]);
+      std::move(tile.digests[f].begin(), tile.digests[f].end(), std::back_inserter(digests_[f]));
       for (std::string& id : tile.ids[f])
         if (!ids_[f].insert(std::hash<std::string>{}(id)).second && tile.counts[f].files > 0) log().add(Check::object_doubled, kFormatNames[f], id, "the body stands in two tiles, or twice in one");
     }
@@ -340,9 +342,21 @@ class Run {
       progress_.begin("model.glb");
       TileResult r = check_single_glb("model.glb", context());
       log().add(std::move(r.findings));
-      checked("model.glb", "glTF 2.0, property table, georeference, solids", r.counts[0].bodies, "bodies");
+      checked("model.glb", "glTF 2.0, property table, georeference, solids, against the tiles", r.counts[0].bodies, "bodies");
       positions_found_.insert(positions_found_.end(), std::make_move_iterator(r.positions.begin()), std::make_move_iterator(r.positions.end()));
-      compare_whole("model.glb", r.counts[0].bodies, r.counts[0].incomplete);
+      if (!r.counts[0].incomplete) compare_whole("model.glb", Format::gltf, r.digests[0]);
+    }
+    if (record_.files.count("model.city.json")) {
+      progress_.begin("model.city.json");
+      if (const auto text = file_bytes(full("model.city.json"))) {
+        Contents contents = read_cityjson(*text, "model.city.json");
+        const bool unreadable = std::any_of(contents.findings.begin(), contents.findings.end(), [](const Finding& f) { return f.check == Check::file_unreadable; });
+        log().add(std::move(contents.findings));
+        checked("model.city.json", "rules of CityJSON 2.0, against the tiles", contents.bodies.size(), "bodies");
+        std::vector<std::pair<std::string, BodyDigest>> digests;
+        for (const ReadBody& body : contents.bodies) digests.emplace_back(body.id, digest(body));
+        if (!unreadable) compare_whole("model.city.json", Format::cityjson, digests);
+      }
     }
     if (record_.files.count("report.html")) {
       progress_.begin("report.html");
@@ -352,12 +366,29 @@ class Run {
     }
   }
 
-  /// A file of the whole build against what the tiles hold.
-  void compare_whole(const std::string& file, std::uint64_t bodies, bool incomplete) {
-    if (incomplete || o_.sample > 1) return;
-    for (std::size_t f = 0; f < kTileFormats; ++f)
-      if (totals_[f].files > 0 && !totals_[f].incomplete && bodies != totals_[f].bodies)
-        log().add(Check::counts_differ, file, kFormatNames[f], fmt::format("{} bodies, {} in the tiles", bodies, totals_[f].bodies));
+  /// A file of the whole build against what the tiles of the format hold.
+  void compare_whole(const std::string& file, Format format, const std::vector<std::pair<std::string, BodyDigest>>& bodies) {
+    const auto f = static_cast<std::size_t>(format);
+    if (o_.sample > 1 || totals_[f].incomplete) return;
+    if (totals_[f].files == 0) {
+      if (const auto said = record_.count("bodies"); said && *said != bodies.size())
+        log().add(Check::counts_differ, file, "", fmt::format("{} bodies, build.json says {}", bodies.size(), *said));
+      return;
+    }
+    std::map<std::string_view, BodyDigest> whole;
+    for (const auto& [id, d] : bodies)
+      if (!whole.emplace(id, d).second) log().add(Check::object_doubled, file, id, "the body stands twice");
+    for (const auto& [id, d] : digests_[f]) {
+      const auto found = whole.find(id);
+      if (found == whole.end()) {
+        log().add(Check::object_missing, file, id, std::string("the body stands in ") + kFormatNames[f] + " only");
+        continue;
+      }
+      if (found->second.geometry != d.geometry) log().add(Check::geometry_differs, file, id, std::string("other geometry or colours than in ") + kFormatNames[f]);
+      if (found->second.attributes != d.attributes) log().add(Check::attribute_differs, file, id, std::string("other attributes than in ") + kFormatNames[f]);
+      whole.erase(found);
+    }
+    for (const auto& [id, d] : whole) log().add(Check::object_missing, kFormatNames[f], std::string(id), "the body stands in " + file + " only");
   }
 
   // ---- counts
@@ -452,6 +483,7 @@ class Run {
   FormatCounts totals_[kTileFormats], geopackage_total_;
   std::unordered_set<std::string> buildings_;
   std::uint64_t explained_ = 0;
+  std::vector<std::pair<std::string, BodyDigest>> digests_[kTileFormats];
   std::unordered_set<std::size_t> ids_[kTileFormats];  ///< hashes: a city's ids as texts would take the memory of a tile
   std::uint64_t judged_ = 0, compared_ = 0;
   std::map<std::string, std::map<std::string, std::uint64_t>> sources_;
