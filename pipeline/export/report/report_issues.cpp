@@ -178,6 +178,7 @@ std::string map_section(const ReportMap& map, const ReportFacts& facts) {
   out += "</div>\n<p class=\"small soft\">";
   if (!map.note.empty()) out += map.note + " ";
   if (map.outside > 0) out += with_thousands(map.outside) + (map.outside == 1 ? " building lies" : " buildings lie") + " far from the others, outside of the map. ";
+  if (map.without_area > 0) out += with_thousands(map.without_area) + (map.without_area == 1 ? " building has" : " buildings have") + " no footprint left. ";
   out += "Numbers count buildings. Map data " + escaped(facts.attribution) + ".</p>\n";
   return out + "</section>\n";
 }

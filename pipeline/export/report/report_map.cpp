@@ -391,6 +391,7 @@ ReportMap report_map(const MapFootprints& footprints, const std::vector<std::uin
   const std::size_t count = footprints.buildings.size();
   for (std::size_t b = 0; b < count; ++b)
     for (std::size_t t = 0; t < kMapThemes; ++t) ++out.counts[t][writer.classes(b).of[t]];
+  for (std::size_t b = 0; b < count; ++b) out.without_area += !writer.drawn(b);
   if (!writer.choose_frame(out.outside)) return out;
   const std::int64_t width = writer.frame().east - writer.frame().west, height = writer.frame().north - writer.frame().south;
 

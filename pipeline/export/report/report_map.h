@@ -38,7 +38,8 @@ struct ReportMap {
   std::string note;     ///< how the map was simplified, escaped; empty: not at all
   std::array<std::vector<std::uint64_t>, kMapThemes> counts;  ///< buildings by theme and class
   std::vector<std::uint32_t> marks;  ///< of `marked` those that lie in the frame, in the same order
-  std::uint64_t outside = 0;  ///< buildings beyond the map's frame
+  std::uint64_t outside = 0;       ///< buildings beyond the map's frame
+  std::uint64_t without_area = 0;  ///< buildings that have no footprint
 };
 
 /// \param issue    worst issue class per building, parallel to footprints.buildings
