@@ -138,7 +138,7 @@ class EmptyExtracts(BuildTest):
         self.assertEqual(judges.xmllint(out), '')
         self.assertEqual(judges.tileset(out), '')
         self.assertEqual(judges.khronos(out), '')
-        self.assertEqual(judges.solids(out), '')
+        self.assertEqual(judges.validate(out), '')
         self.assertEqual(sum(len(root.findall('.//{*}Building')) for _, root in citygml_trees(out)), 0)
         return build
 

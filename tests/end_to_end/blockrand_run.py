@@ -4,7 +4,7 @@ Every test file runs alone, from ctest or by hand:
 
     python3 tests/end_to_end/sample_test.py [--program build/release/bin/blockrand] [unittest's own options]
 
-The places of program, judge, data and node modules are options with a search behind each. Exit code 77 means that
+The places of program, data and node modules are options with a search behind each. Exit code 77 means that
 nothing could be tested because data or tools are absent (ctest's SKIP_RETURN_CODE).
 """
 import argparse
@@ -34,14 +34,13 @@ def first_present(*paths):
 
 class Setup:
     """Where things are; filled by main()."""
-    program = judge = shared = node_modules = None
+    program = shared = node_modules = None
     update = keep = False
 
     @classmethod
     def read(cls, argv):
         parser = argparse.ArgumentParser(add_help=False)
         parser.add_argument('--program', help='the blockrand to test')
-        parser.add_argument('--judge', help='the judge_build beside it')
         parser.add_argument('--shared', help='folder with data/osm and schemas')
         parser.add_argument('--node-modules', help='node_modules with gltf-validator')
         parser.add_argument('--update', action='store_true', help='write golden files instead of comparing')
@@ -54,7 +53,6 @@ class Setup:
                                     for p in ('bin', 'pipeline/cli', 'tests', 'tests/end_to_end', '.')))
             return found or shutil.which(name)
         cls.program = options.program or binary('blockrand')
-        cls.judge = options.judge or binary('judge_build')
         cls.shared = options.shared or first_present(os.path.join(SOURCE, '..', 'shared'))
         cls.node_modules = first_present(options.node_modules, *(os.path.join(b, 'node_modules') for b in builds),
                                          os.path.join(SOURCE, 'tests', 'validators', 'node_modules'))

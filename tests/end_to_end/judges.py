@@ -1,4 +1,4 @@
-"""Judges of outputs that are no part of the program: OGC schemas, the Khronos validator, our own solid and tile checks.
+"""Judges of a build: blockrand validate, and those that are no part of the program (OGC schemas, Khronos, tile checks).
 
 Each returns '' when all is well, else what is wrong. Absent tools raise unittest.SkipTest with the reason.
 """
@@ -6,7 +6,7 @@ import os
 import shutil
 import unittest
 
-from blockrand_run import SOURCE, Setup, call, files_of
+from blockrand_run import SOURCE, Setup, blockrand, call, files_of
 
 VALIDATORS = os.path.join(SOURCE, 'tests', 'validators')
 
@@ -67,18 +67,16 @@ def metadata(folder, *files):
     return node('check_metadata.mjs', '--tileset', os.path.join(folder, 'tileset.json'), *files)
 
 
-def solids(folder):
-    """Every solid of every file, read back and judged twice: by our checker and by CGAL."""
-    if not Setup.judge or not os.path.exists(Setup.judge):
-        raise unittest.SkipTest('judge_build is not built: give --judge')
-    run = call([Setup.judge, folder], timeout=7200)
+def validate(folder, *options):
+    """The program's own judges, which share no code with what writes: blockrand validate."""
+    run = blockrand('validate', folder, '--progress', 'none', *options, timeout=7200)
     return '' if run.code == 0 else str(run)
 
 
 def problems(folder, khronos_every=1):
     """All judges that apply to what the build holds. Tools that are absent are named on stdout and passed over."""
     wrong = []
-    checks = [lambda: solids(folder)]
+    checks = [lambda: validate(folder)]
     if files_of(folder, '.gml', '.gml.gz'):
         checks.append(lambda: xmllint(folder))
     if os.path.exists(os.path.join(folder, 'tileset.json')):

@@ -115,8 +115,8 @@ class RealExtract:
     def test_hashes_match(self):
         self.hashes_match(self.out)
 
-    def test_solids(self):
-        self.assertEqual(judges.solids(self.out), '')
+    def test_validate(self):
+        self.assertEqual(judges.validate(self.out), '')
 
     def test_schema(self):
         self.assertEqual(judges.xmllint(self.out), '')

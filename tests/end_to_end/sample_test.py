@@ -177,8 +177,8 @@ class Sample(BuildTest):
     def test_metadata(self):
         self.assertEqual(judges.metadata(self.out), '')
 
-    def test_solids(self):
-        self.assertEqual(judges.solids(self.out), '')
+    def test_validate(self):
+        self.assertEqual(judges.validate(self.out), '')
 
     # ---- the judges themselves: each must notice damage
 
@@ -207,16 +207,16 @@ class Sample(BuildTest):
             for i in (2, len(n) - 1):
                 n[i] = b'%.4f' % (float(n[i]) + 3)
             return data[:at] + b' '.join(n) + data[end:]
-        said = judges.solids(self.damaged('moved', self.some_file('.gml'), lift))
-        self.assertIn('NOT CLEAN', said)
-        self.assertIn('own: ', said)
+        said = judges.validate(self.damaged('moved', self.some_file('.gml'), lift))
+        self.assertIn('NOT SOUND', said)
+        self.assertIn('own checker: ', said)
         self.assertNotIn('CGAL: valid', said)
 
     def test_judges_notice_a_lost_building(self):
         def drop(data):
             a, b = data.index(b'<cityObjectMember>'), data.index(b'</cityObjectMember>')
             return data[:a] + data[b + len(b'</cityObjectMember>'):]
-        self.assertIn('build.json', judges.solids(self.damaged('lost', self.some_file('.gml'), drop)))
+        self.assertIn('build.json', judges.validate(self.damaged('lost', self.some_file('.gml'), drop)))
 
     def test_judges_notice_a_wrong_element(self):
         folder = self.damaged('element', self.some_file('.gml'), lambda d: d.replace(b'bldg:RoofSurface', b'bldg:Rooof'))
