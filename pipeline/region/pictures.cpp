@@ -22,6 +22,9 @@ using picture::Direction;
 
 constexpr model::Colour kGround{214, 214, 208};
 
+/// Tiles from the densest one. Scattered villages in one picture would be specks: what lies further off is left out.
+constexpr std::int64_t kWholeReach = 5, kPartReach = 3;
+
 /// Square of the distance between two tiles in tiles; the quadtree closes at 180 degrees.
 std::int64_t distance(const model::TileId& a, const model::TileId& b) {
   const std::int64_t round = std::int64_t{2} << a.level;
@@ -139,9 +142,13 @@ PicturePlan plan_pictures(std::span<const Shard> shards, const georef::Projectio
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return distance(shards[a].tile, shards[densest].tile) < distance(shards[b].tile, shards[densest].tile);
   });
+  std::uint64_t all = 0;
+  for (const Shard& s : shards) all += s.seeds.size();
+  const std::int64_t reach = all <= budget ? kWholeReach : kPartReach;
   for (const std::size_t i : order) {
     // The densest tile comes first and is shown in any case; a gap in the picture would look like a hole in the model.
-    if (i != densest && plan.buildings + shards[i].seeds.size() > budget) {
+    if (i != densest && (plan.buildings + shards[i].seeds.size() > budget ||
+                         distance(shards[i].tile, shards[densest].tile) > reach * reach)) {
       plan.whole = false;
       break;
     }

@@ -14,7 +14,8 @@
 
 namespace blockrand::region {
 
-/// Builds up to this many buildings are pictured whole: more would be specks in a picture, and cost memory.
+/// Builds up to this many buildings are pictured whole, unless they are scattered wide: more would be specks in a
+/// picture, and cost memory.
 inline constexpr std::uint64_t kPicturedBuildings = 4000;
 
 /// What the pictures will show, decided before any tile runs, so that only those tiles keep their meshes.
@@ -25,7 +26,8 @@ struct PicturePlan {
   model::Point3 origin;         ///< of the scene: the middle of the densest tile, build CRS
 };
 
-/// Chooses the tile with the most buildings and its neighbours by distance, until the next would exceed `budget`.
+/// Chooses the tile with the most buildings and its neighbours by distance, until the next would exceed `budget` or lies
+/// more than some tiles away.
 PicturePlan plan_pictures(std::span<const Shard> shards, const georef::Projection& projection,
                           std::uint64_t budget = kPicturedBuildings);
 

@@ -29,7 +29,7 @@ PicturePlan all_of(std::size_t shards) {
 }
 
 TEST(PicturePlan, SmallBuildsArePicturedWhole) {
-  const std::vector<Shard> shards{shard(0, 0, 10), shard(1, 0, 20), shard(9, 9, 5)};
+  const std::vector<Shard> shards{shard(0, 0, 10), shard(1, 0, 20), shard(4, 3, 5)};
   const PicturePlan plan = plan_pictures(shards, projection(), 100);
   EXPECT_TRUE(plan.whole);
   EXPECT_EQ(plan.buildings, 35u);
@@ -43,6 +43,13 @@ TEST(PicturePlan, LargeOnesShowTheDensestTileAndItsNeighbours) {
   // 50, then its two neighbours at the same distance; the far tile of one building would fit but stands apart.
   EXPECT_EQ(plan.chosen, (std::vector<bool>{false, true, true, true, false}));
   EXPECT_EQ(plan.buildings, 100u);
+}
+
+TEST(PicturePlan, ScatteredVillagesAreNotPicturedAsSpecks) {
+  const std::vector<Shard> shards{shard(0, 0, 10), shard(1, 0, 20), shard(40, 0, 5)};
+  const PicturePlan plan = plan_pictures(shards, projection(), 100);
+  EXPECT_EQ(plan.chosen, (std::vector<bool>{true, true, false}));
+  EXPECT_FALSE(plan.whole);
 }
 
 TEST(PicturePlan, TheDensestTileIsShownWhateverTheBudget) {
