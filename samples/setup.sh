@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs the Debian packages that are missing, with apt-get, as root or through sudo. Says what it installs.
-#   sh samples/setup.sh [build] [test] [package] [picture]     sections of cmake/packages.txt; default: build
+#   sh samples/setup.sh [SECTION …]     sections of cmake/packages.txt; default: build
 # Where apt or the rights are missing it says what to install and ends with 1. BLOCKRAND_SKIP_SETUP=1 skips everything:
 # for machines whose libraries come from elsewhere.
 set -eu

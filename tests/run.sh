@@ -1,7 +1,8 @@
 #!/bin/sh
 # The test suite: installs what is missing, builds with preset `ci`, runs ctest. Can be run from any folder.
 #   sh tests/run.sh [--full] [ctest arguments …]
-#   --full   with the tests of label `long` (whole cities; needs ../shared/data)
+#   --full   with the tests of label `long` (whole cities; needs ../shared/data) and with foreign viewers, which it
+#            installs; without them their tests skip
 # Ends with ctest's summary and its exit code.
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
@@ -9,30 +10,34 @@ full=no
 while [ $# -gt 0 ]; do
   case $1 in
     --full) full=yes; shift ;;
-    -h | --help) sed -n '2,5p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,6p' "$0"; exit 0 ;;
     *) break ;;
   esac
 done
 
-sh "$root/samples/setup.sh" build test
+sections='build test package'
+[ $full = no ] || sections="$sections viewers picture"
+# shellcheck disable=SC2086 # a list
+sh "$root/samples/setup.sh" $sections
 
 cd "$root"
 . samples/build_settings.sh
 build=build/ci
 mkdir -p "$build"
 
-# Khronos' validator, where the tests look for it. Without it they skip: say so, but test the rest.
+# Khronos' validator and a viewer of 3D Tiles, where the tests look for them. Without them they skip: say so, but test
+# the rest.
 if command -v npm >/dev/null 2>&1; then
   if ! cmp -s tests/validators/package.json "$build/package.json" || [ ! -d "$build/node_modules" ]; then
     echo "tests: installing the npm packages of tests/validators/package.json into $build/node_modules"
     cp tests/validators/package.json "$build/package.json"
     if ! (cd "$build" && npm install --no-audit --no-fund --loglevel=error); then
       rm -f "$build/package.json"
-      echo "tests: WARNING: npm could not install gltf-validator; the Khronos checks will be SKIPPED" >&2
+      echo "tests: WARNING: npm could not install them; the Khronos checks and 3d-tiles-renderer will be SKIPPED" >&2
     fi
   fi
 else
-  echo "tests: WARNING: no npm; the Khronos checks will be SKIPPED" >&2
+  echo "tests: WARNING: no npm; the Khronos checks and 3d-tiles-renderer will be SKIPPED" >&2
 fi
 
 echo "tests: configuring and building ($jobs at a time)"
