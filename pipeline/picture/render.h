@@ -29,7 +29,7 @@ struct RenderOptions {
 
 /// The picture that `camera` takes of the scene.
 ///
-/// Same scene, camera and options → same bytes on every x86-64. One thread; about 0.1 µs a sample and 1.5 µs a triangle.
+/// Same scene, camera and options → same bytes on every x86-64. One thread; 1200 x 800 with 350,000 triangles seen from both sides take 1.4 s, with 17,000 0.6 s.
 /// Memory: 13 bytes a sample, 40 bytes a pixel and one depth map at a time.
 /// \throws std::invalid_argument  a size or count that is not positive, or beyond 8192 pixels
 Image render(const Scene& scene, const Camera& camera, const RenderOptions& options = {});

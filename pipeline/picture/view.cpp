@@ -1,17 +1,8 @@
 #include "pipeline/picture/view.h"
 
-#include <algorithm>
-
 #include "pipeline/base/portable_math.h"
 
 namespace blockrand::picture {
-namespace {
-
-/// Samples from the middle of the grid to the edge of the frame that triangles are clipped to. Wider than any picture,
-/// so that clipped edges are never seen, and narrow enough for 64-bit edge functions in 1/256 of a sample.
-constexpr double kFrame = 20000;
-
-}  // namespace
 
 View::View(const Camera& camera, Point3 origin, int width, int height)
     : perspective_(camera.projection == Projection::perspective),
