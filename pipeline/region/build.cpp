@@ -356,12 +356,12 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       if (o.state == ObjectState::modelled) ++summary.models_by_lod[static_cast<std::size_t>(std::clamp(o.lod, 0, 2))];
     }
     std::move(result.rows.begin(), result.rows.end(), std::back_inserter(rows));
-    std::move(result.output.files.begin(), result.output.files.end(), std::back_inserter(record.files));
     if (result.output.tile) tiles.push_back(*result.output.tile);
     if (geopackage && result.output.rows.buildings.rows() > 0) {
       geopackage->add(result.output.rows);
       geopackage->add_tile(geopackage_tile(shards[i].tile, result.output, output));
     }
+    std::move(result.output.files.begin(), result.output.files.end(), std::back_inserter(record.files));
     if (single_cityjson) single_cityjson->add(result.region);
     if (options.report) {
       page.add(std::move(result.report));
