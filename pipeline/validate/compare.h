@@ -18,7 +18,8 @@ struct Side {
   const std::string& file;
 };
 
-/// OBJECT_DOUBLED for each building or body that stands twice.
+/// OBJECT_DOUBLED for each building or body that stands twice. Here and below, those without an id are passed over: that
+/// was found by the reader.
 void find_doubles(const Side& side, std::vector<Finding>& findings);
 
 /// OBJECT_MISSING for each building or body that only one side has.

@@ -42,7 +42,7 @@ class TileRecords {
     if (!stages || !stages->is_array() || stages->empty()) wrong(id, "does not say what the stages did");
     if (const Json* files = member(*json, "files"); files && files->is_array())
       for (const Json& f : *files)
-        if (!record_.files.count(text(&f))) wrong(id, "names a file that is not there: " + text(&f));
+        if (const std::string path = text(&f); !record_.files.count(path) && gone_.insert(path).second) wrong(id, "names a file that is not there: " + path);
     if (has_model_) compare(id, *json);
   }
 
@@ -118,7 +118,7 @@ class TileRecords {
   std::vector<Finding>& findings_;
   bool has_model_ = false;
   std::map<std::string, std::vector<const ReadBody*>> bodies_;  ///< by building
-  std::set<std::string> lines_;
+  std::set<std::string> lines_, gone_;
 };
 
 }  // namespace

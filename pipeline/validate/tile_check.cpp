@@ -487,6 +487,9 @@ class Checker {
         }
       }
       counted_sources = true;
+      // Doubles within the tile were found already.
+      std::sort(out_.ids[f].begin(), out_.ids[f].end());
+      out_.ids[f].erase(std::unique(out_.ids[f].begin(), out_.ids[f].end()), out_.ids[f].end());
       n.models = models.size();
       modelled.merge(models);
     }

@@ -319,7 +319,7 @@ class Run {
       totals_[f].add(tile.counts[f]);
       std::move(tile.digests[f].begin(), tile.digests[f].end(), std::back_inserter(digests_[f]));
       for (std::string& id : tile.ids[f])
-        if (!ids_[f].insert(std::hash<std::string>{}(id)).second && tile.counts[f].files > 0) log().add(Check::object_doubled, kFormatNames[f], id, "the body stands in two tiles, or twice in one");
+        if (!ids_[f].insert(std::hash<std::string>{}(id)).second && tile.counts[f].files > 0) log().add(Check::object_doubled, kFormatNames[f], id, "the body stands in two tiles");
     }
     geopackage_total_.add(tile.geopackage);
     explained_ += tile.explained;

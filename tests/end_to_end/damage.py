@@ -51,7 +51,11 @@ class Damaged:
         os.remove(self.path(name))
 
     def seal(self):
-        """Sizes, hashes and the list of files in build.json as they are now."""
+        """Sizes, hashes and the list of files in build.json as they are now; sizes of tiles in the GeoPackage, too."""
+        for name in files_of(self.folder, '.glb'):
+            size = os.path.getsize(self.path(name))
+            if name.startswith('tiles/') and size != read_json(self.folder, 'build.json')['files'][name]['bytes']:
+                self.sql(f"UPDATE tiles SET bytes = {size} WHERE uri = '{name}'")
         build = read_json(self.folder, 'build.json')
         build['files'] = {name: {'bytes': os.path.getsize(self.path(name)), 'sha256': sha256(self.path(name))}
                           for name in files_of(self.folder) if name not in ('build.json', 'run.json')}

@@ -78,7 +78,7 @@ class Damages(Validated):
     def test_a_truncated_glb(self):
         d = self.damaged()
         d.change(d.glb, lambda t: t[:len(t) // 2])
-        self.found(d, 'FILE_UNREADABLE GEOPACKAGE_RULE COUNTS_DIFFER', d.glb)
+        self.found(d, 'FILE_UNREADABLE', d.glb)
 
     def test_a_truncated_cityjson_file(self):
         d = self.damaged()
@@ -171,7 +171,7 @@ class Damages(Validated):
         def move(t):
             first_leaf(t)['transform'][13] += 0.5
         d.json('tileset.json', move)
-        self.found(d, 'TILESET_RULE GEOREFERENCE GEOMETRY_DIFFERS POSITION TILE_BOUNDS', d.glb, 'all ')
+        self.found(d, 'TILESET_RULE GEOREFERENCE GEOMETRY_DIFFERS POSITION', d.glb, 'all ')
 
     def test_a_scaled_transform(self):
         d = self.damaged()
@@ -187,7 +187,7 @@ class Damages(Validated):
         d = self.damaged()
         name = d.glb
         d.remove(name)
-        self.found(d, 'TILE_MISSING OBJECT_MISSING EXPLANATION_WRONG GEOPACKAGE_RULE', name)
+        self.found(d, 'TILE_MISSING OBJECT_MISSING EXPLANATION_WRONG', name)
 
     def test_a_tile_in_no_tileset(self):
         d = self.damaged()
@@ -216,22 +216,12 @@ class Damages(Validated):
     def test_a_shifted_origin(self):
         d = self.damaged()
         d.change_glb(lambda j, b: j['asset']['extras']['georeference']['origin'].update(longitude=11.0))
-        self.found(d, 'GEOREFERENCE GEOPACKAGE_RULE COUNTS_DIFFER', d.glb)
+        self.found(d, 'GEOREFERENCE', d.glb)
 
-    # The GeoPackage knows the sizes of tiles: those that change are found twice.
     def found_in_glb(self, change, codes, *words):
         d = self.damaged()
-        name = d.glb
-        document, binary = d.glb_parts()
-        before = len(json.dumps(document, separators=(',', ':')))
-        word = change(document, binary)
-        text = json.dumps(document, separators=(',', ':'))
-        # Pads or keeps, so that the size stays.
-        original = struct.unpack_from('<I', d.read(name), 12)[0]
-        self.assertLessEqual(len(text), original, f'{before}: the damage does not fit')
-        data = d.read(name)
-        d.write(name, data[:20] + text.encode() + b' ' * (original - len(text)) + data[20 + original:28 + original] + bytes(binary))
-        self.found(d, codes, name, *words, *([word] if word else []))
+        word = d.change_glb(change)
+        self.found(d, codes, d.glb, *words, *([word] if word else []))
 
     def test_an_origin_elsewhere(self):
         def change(j, _):
@@ -287,7 +277,7 @@ class Damages(Validated):
             one, two = (struct.unpack_from(f, b, start + k * size)[0] for k in (0, 1))
             struct.pack_into(f, b, start, two)
             struct.pack_into(f, b, start + size, one)
-        self.found_in_glb(change, 'GLB_RULE SOLID_INVALID GEOMETRY_DIFFERS', 'does not look')
+        self.found_in_glb(change, 'GLB_RULE SOLID_INVALID', 'does not look')
 
     def test_a_triangle_without_area(self):
         def change(j, b):
@@ -309,7 +299,7 @@ class Damages(Validated):
     def test_a_property_table_of_wrong_length(self):
         def change(j, _):
             table_of(j)['count'] -= 1
-        self.found_in_glb(change, 'METADATA_RULE OBJECT_MISSING COUNTS_DIFFER REPORT_WRONG SOURCE_WRONG ATTRIBUTE_DIFFERS', 'rows')
+        self.found_in_glb(change, 'METADATA_RULE OBJECT_MISSING COUNTS_DIFFER', 'rows')
 
     def test_a_feature_beyond_the_table(self):
         def change(j, b):
@@ -337,7 +327,7 @@ class Damages(Validated):
             i, k = pairs[0]
             b[text + bounds[k]:text + bounds[k + 1]] = b[text + bounds[i]:text + bounds[i + 1]]
             return bytes(b[text + bounds[i]:text + bounds[i + 1]]).decode()
-        self.found_in_glb(change, 'METADATA_RULE OBJECT_DOUBLED OBJECT_MISSING')
+        self.found_in_glb(change, 'METADATA_RULE OBJECT_DOUBLED OBJECT_MISSING COUNTS_DIFFER')
 
     def test_an_extension_that_is_not_declared(self):
         def change(j, _):
@@ -369,13 +359,13 @@ class Damages(Validated):
         self.found(d, 'OFF_GRID', d.ring(nudge))
 
     def test_a_moved_building(self):
-        """One building, ten centimetres to the west: still a sound solid, and still in the envelope."""
+        """One building, an eighth of a metre to the west: still a sound solid, and still in the envelope."""
         d = self.damaged()
 
         def move(text):
             def shift(found):
                 n = found.group(2).split()
-                return found.group(1) + ' '.join(f'{float(v) - 102 / 1024:.4f}' if i % 3 == 0 else v for i, v in enumerate(n))
+                return found.group(1) + ' '.join(f'{float(v) - 0.125:.4f}' if i % 3 == 0 else v for i, v in enumerate(n))
             return re.sub(r'(<gml:posList>)([^<]*)', shift, text)
         west = float(re.search(r'<gml:lowerCorner>([0-9.]*)', d.read(d.gml).decode()).group(1))
         building = d.building(move, lambda text: all(float(x) > west + 1 for x in re.findall(r'<gml:posList>([0-9.]*)', text))
@@ -406,12 +396,12 @@ class Damages(Validated):
     def test_a_building_that_is_missing(self):
         d = self.damaged()
         building = d.building(lambda text: '')
-        self.found(d, 'OBJECT_MISSING COUNTS_DIFFER EXPLANATION_WRONG REPORT_WRONG', building)
+        self.found(d, 'OBJECT_MISSING COUNTS_DIFFER EXPLANATION_WRONG REPORT_WRONG CITYGML_RULE', building)
 
     def test_a_building_that_stands_twice(self):
         d = self.damaged()
         building = d.building(lambda text: text + text)
-        self.found(d, 'CITYGML_RULE OBJECT_DOUBLED COUNTS_DIFFER EXPLANATION_WRONG SOLID_INVALID GEOMETRY_DIFFERS', building)
+        self.found(d, 'CITYGML_RULE OBJECT_DOUBLED COUNTS_DIFFER EXPLANATION_WRONG', building)
 
     def test_a_wrong_reference_system(self):
         d = self.damaged()
@@ -429,12 +419,12 @@ class Damages(Validated):
 
     def test_an_unknown_source(self):
         d = self.damaged()
-        building = d.building(lambda text: re.sub(r'(name="height_source"><gen:value>)[^<]*', r'\1guess', text), lambda t: 'height_source' in t)
+        building = d.building(lambda text: re.sub(r'(name="height_source"><gen:value>)[^<]*', r'\1guess', text), lambda t: 'name="height_source"' in t)
         self.found(d, 'SOURCE_WRONG ATTRIBUTE_DIFFERS EXPLANATION_WRONG COUNTS_DIFFER', building, 'guess')
 
     def test_a_confidence_above_one(self):
         d = self.damaged()
-        building = d.building(lambda text: re.sub(r'(name="height_confidence"><gen:value>)[^<]*', r'\g<1>1.5', text), lambda t: 'height_confidence' in t)
+        building = d.building(lambda text: re.sub(r'(name="height_confidence"><gen:value>)[^<]*', r'\g<1>1.5', text), lambda t: 'name="height_confidence"' in t)
         self.found(d, 'SOURCE_WRONG ATTRIBUTE_DIFFERS', building, '1.5')
 
     def test_a_number_that_is_none(self):
