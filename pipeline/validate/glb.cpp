@@ -82,7 +82,7 @@ class Reader {
       ReadBody body;
       body.building = row["building"];
       body.id = row["id"];
-      if (body.id == body.building && rows_of[body.building] > 1) body.id += ".1";
+      if (!body.id.empty() && body.id == body.building && rows_of[body.building] > 1) body.id += ".1";
       body.attributes = std::move(row);
       if (c.buildings.empty() || c.buildings.back() != body.building) c.buildings.push_back(body.building);
       c.bodies.push_back(std::move(body));

@@ -712,6 +712,17 @@ class Sound(Validated):
     def test_on_a_ground_height(self):
         self.sound(self.build(SAMPLE, 'ground', '--ground-height', '180'))
 
+    def test_on_terrain(self):
+        """A slope from 150 to 250 m, as an ESRI grid."""
+        rows = [' '.join(f'{150 + 2 * (x + y):.2f}' for x in range(26)) for y in range(26)]
+        header = 'ncols 26\nnrows 26\nxllcorner 11.02\nyllcorner 51.46\ncellsize 0.001\nNODATA_value -9999\n'
+        terrain = self.place('slope.asc', header + '\n'.join(rows) + '\n')
+        self.place('slope.prj', 'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],'
+                                'UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4326"]]')
+        out = self.build(SAMPLE, 'terrain', '--terrain', terrain)
+        self.assertIn('terrain', read_json(out, 'build.json')['statistics']['sources']['ground_height'])
+        self.sound(out)
+
     def test_another_crs(self):
         self.sound(self.build(SAMPLE, 'gk', '--crs', 'EPSG:31468'))
 
