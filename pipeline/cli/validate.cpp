@@ -10,23 +10,24 @@
 namespace blockrand::cli {
 
 settings::CommandText validate_text() {
-  return {.name = "validate",
-          .summary = "reads a build back and checks everything in it",
-          .usage = "FOLDER [options]",
-          .description =
-              "Reads every file of a build and checks it against the rules of its format, against the other formats and "
-              "against the map: hashes, 3D Tiles and glTF rules, property tables, CityGML and CityJSON structure, the "
-              "GeoPackage, reports and explanations; every solid by two judges; the same buildings, attributes, geometry "
-              "and colours in every format; and 1,000 corners against their OpenStreetMap positions, through PROJ.\n"
-              "No code that wrote the build takes part. Nothing is changed.",
-          .options = settings::kValidate,
-          .examples = {{"blockrand validate out/leipzig", ""},
-                       {"blockrand validate out/berlin --sample 10", "every tenth tile only"},
-                       {"blockrand validate out/leipzig --extract leipzig.osm.pbf --json | jq .findings", ""}},
-          .exit_codes = {{"0", "all well"},
-                         {"1", "wrong usage"},
-                         {"2", "unreadable or invalid input"},
-                         {"4", "output could not be written or internal error"}}};
+  return {
+      .name = "validate",
+      .summary = "reads a build back and checks everything in it",
+      .usage = "FOLDER [options]",
+      .description =
+          "Reads every file of a build and checks it against the rules of its format, against the other formats and "
+          "against the map: hashes, 3D Tiles and glTF rules, property tables, CityGML and CityJSON structure, the "
+          "GeoPackage, reports and explanations; every solid by two judges; the same buildings, attributes, geometry "
+          "and colours in every format; and 1,000 corners against their OpenStreetMap positions, through PROJ.\n"
+          "No code that wrote the build takes part. Nothing is changed.",
+      .options = settings::kValidate,
+      .examples = {{"blockrand validate out/leipzig", ""},
+                   {"blockrand validate out/berlin --sample 10", "every tenth tile only"},
+                   {"blockrand validate out/leipzig --extract leipzig.osm.pbf --json | jq .findings", ""}},
+      .exit_codes = {{"0", "all well"},
+                     {"1", "wrong usage"},
+                     {"2", "findings, or an unreadable input"},
+                     {"4", "output could not be written or internal error"}}};
 }
 
 int run_validate(const std::vector<std::string>& arguments) {

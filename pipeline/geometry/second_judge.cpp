@@ -26,8 +26,9 @@ bool triangulate(const PolygonRings& rings, const std::map<model::Point3, std::s
   using Traits = CGAL::Projection_traits_3<Kernel>;
   using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::size_t, Traits>;
   using FaceBase = CGAL::Constrained_triangulation_face_base_2<Traits>;
-  using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Traits, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
-                                                         CGAL::No_constraint_intersection_tag>;
+  using Cdt =
+      CGAL::Constrained_Delaunay_triangulation_2<Traits, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
+                                                 CGAL::No_constraint_intersection_tag>;
   Kernel::Vector_3 normal(0, 0, 0);
   const auto& outer = rings[0];
   const model::Point3 o = outer[0];
@@ -55,8 +56,7 @@ bool triangulate(const PolygonRings& rings, const std::map<model::Point3, std::s
       const auto [face, is_inside] = open.back();
       open.pop_back();
       if (!inside.emplace(face, is_inside).second) continue;
-      for (int i = 0; i < 3; ++i)
-        open.emplace_back(face->neighbor(i), is_inside != cdt.is_constrained({face, i}));
+      for (int i = 0; i < 3; ++i) open.emplace_back(face->neighbor(i), is_inside != cdt.is_constrained({face, i}));
     }
     for (const auto f : cdt.finite_face_handles()) {
       if (!inside.at(f)) continue;
@@ -69,7 +69,8 @@ bool triangulate(const PolygonRings& rings, const std::map<model::Point3, std::s
   return true;
 }
 
-std::string judge_soup(const std::vector<Kernel::Point_3>& points, const std::vector<std::vector<std::size_t>>& triangles) {
+std::string judge_soup(const std::vector<Kernel::Point_3>& points,
+                       const std::vector<std::vector<std::size_t>>& triangles) {
   if (triangles.empty()) return "no faces";
   if (!pmp::is_polygon_soup_a_polygon_mesh(triangles)) return "faces do not form an oriented manifold";
   Mesh mesh;

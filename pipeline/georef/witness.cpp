@@ -13,8 +13,8 @@ using detail::Pj;
 struct Witness::State {
   Context context = detail::make_context();
   Pj operation;
-  Pj cartesian{proj_create(context.get(),
-                           "+proj=pipeline +step +proj=unitconvert +xy_in=deg +xy_out=rad +step +proj=cart +ellps=WGS84")};
+  Pj cartesian{proj_create(
+      context.get(), "+proj=pipeline +step +proj=unitconvert +xy_in=deg +xy_out=rad +step +proj=cart +ellps=WGS84")};
   bool corrects = false;  ///< going there and back does not come home
 
   PJ_COORD transform(PJ* pj, PJ_DIRECTION direction, double x, double y, double z) {
@@ -40,7 +40,8 @@ Witness::Witness(const std::string& crs, const GeoBox& area) : state_(std::make_
 
 Witness::Witness(const std::string& pipeline) : state_(std::make_unique<State>()) {
   state_->operation = Pj(proj_create(state_->context.get(), pipeline.c_str()));
-  if (!state_->operation || !state_->cartesian) throw base::UsageError("PROJ cannot use the operation \"" + pipeline + "\"");
+  if (!state_->operation || !state_->cartesian)
+    throw base::UsageError("PROJ cannot use the operation \"" + pipeline + "\"");
   state_->corrects = pipeline.find("+proj=push") != std::string::npos;
 }
 

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "pipeline/base/error.h"
+#include "pipeline/base/parallel.h"
+#include "pipeline/base/sha256.h"
 #include "pipeline/validate/file_bytes.h"
 
 namespace blockrand::validate {
@@ -24,7 +27,8 @@ class Reader {
 
   void read() {
     const Json& j = r_.json;
-    if (text(member(member(j, "program"), "name")) != "blockrand" || text(member(member(j, "program"), "version")).empty())
+    if (text(member(member(j, "program"), "name")) != "blockrand" ||
+        text(member(member(j, "program"), "version")).empty())
       wrong("program", "is missing or is not blockrand");
     read_inputs();
     read_configuration();
@@ -40,8 +44,10 @@ class Reader {
     const Json* inputs = member(r_.json, "inputs");
     if (!inputs || !inputs->is_array() || inputs->empty()) return wrong("inputs", "missing");
     for (const Json& input : *inputs) {
-      const std::string role = text(member(input, "role")), path = text(member(input, "path")), digest = text(member(input, "sha256"));
-      if (role.empty() || path.empty() || !whole(member(input, "bytes")) || !is_digest(digest)) wrong("inputs", "an input without role, path, bytes or sha256");
+      const std::string role = text(member(input, "role")), path = text(member(input, "path")),
+                        digest = text(member(input, "sha256"));
+      if (role.empty() || path.empty() || !whole(member(input, "bytes")) || !is_digest(digest))
+        wrong("inputs", "an input without role, path, bytes or sha256");
       if (role == "extract") r_.extract_path = path, r_.extract_sha256 = digest;
     }
     if (r_.extract_path.empty()) wrong("inputs", "no extract");
@@ -55,11 +61,13 @@ class Reader {
     else
       r_.lod = static_cast<int>(*lod);
     const Json* formats = member(c, "formats");
-    if (!formats || !formats->is_array()) wrong("configuration.formats", "missing");
+    if (!formats || !formats->is_array())
+      wrong("configuration.formats", "missing");
     else
       for (const Json& f : *formats) {
         const std::string name = text(&f);
-        if (name != "gltf" && name != "citygml" && name != "cityjson" && name != "gpkg") wrong("configuration.formats", "unknown format " + name);
+        if (name != "gltf" && name != "citygml" && name != "cityjson" && name != "gpkg")
+          wrong("configuration.formats", "unknown format " + name);
         r_.formats.insert(name);
       }
     r_.gzip = is_true(member(c, "gzip"));
@@ -80,18 +88,21 @@ class Reader {
     if (r_.pipeline.empty()) wrong("crs.pipeline", "missing");
     if (r_.height_reference.empty()) wrong("crs.height_reference", "missing");
     for (const char* key : {"round_trip_error_m", "frame_round_trip_error_m"})
-      if (const auto error = number(member(crs, key)); !error || *error < 0 || *error >= 1e-3) wrong(fmt::format("crs.{}", key), "is missing or not below 1 mm");
+      if (const auto error = number(member(crs, key)); !error || *error < 0 || *error >= 1e-3)
+        wrong(fmt::format("crs.{}", key), "is missing or not below 1 mm");
   }
 
   void read_counts() {
-    for (const char* key : {"buildings_in", "parts_in", "models", "represented", "reported", "represented_as_duplicates",
-                            "models_lod0", "models_lod1", "models_lod2", "solids_lod1", "solids_lod2"})
+    for (const char* key :
+         {"buildings_in", "parts_in", "models", "represented", "reported", "represented_as_duplicates", "models_lod0",
+          "models_lod1", "models_lod2", "solids_lod1", "solids_lod2"})
       if (!r_.count(key)) wrong(fmt::format("counts.{}", key), "is missing or no count");
     const auto n = [&](const char* key) { return r_.count(key).value_or(0); };
     if (n("buildings_in") + n("parts_in") != n("models") + n("represented") + n("reported"))
-      wrong("counts", fmt::format("{} buildings and {} parts in are not {} models, {} represented and {} reported", n("buildings_in"),
-                                  n("parts_in"), n("models"), n("represented"), n("reported")));
-    if (n("models") != n("models_lod0") + n("models_lod1") + n("models_lod2")) wrong("counts", "models are not the sum over levels of detail");
+      wrong("counts", fmt::format("{} buildings and {} parts in are not {} models, {} represented and {} reported",
+                                  n("buildings_in"), n("parts_in"), n("models"), n("represented"), n("reported")));
+    if (n("models") != n("models_lod0") + n("models_lod1") + n("models_lod2"))
+      wrong("counts", "models are not the sum over levels of detail");
     const Json* issues = member(r_.json, "issues");
     if (!issues || !issues->is_object()) wrong("issues", "missing");
   }
@@ -146,10 +157,14 @@ void check_file_list(const std::string& folder, const BuildRecord& record, Findi
     if (!record.files.count(path)) log.add(Check::file_unlisted, path, "", "not listed in build.json");
 
   const auto any = [&](const std::string& folder_name, const std::string& end) {
-    return std::any_of(record.files.begin(), record.files.end(), [&](const auto& f) { return f.first.starts_with(folder_name) && f.first.ends_with(end); });
+    return std::any_of(record.files.begin(), record.files.end(),
+                       [&](const auto& f) { return f.first.starts_with(folder_name) && f.first.ends_with(end); });
   };
   const auto agree = [&](bool asked, bool is, const std::string& what) {
-    if (asked != is) log.add(Check::build_json, kFile, what, asked ? "the configuration asks for it, but no such file is listed" : "listed, but the configuration does not ask for it");
+    if (asked != is)
+      log.add(Check::build_json, kFile, what,
+              asked ? "the configuration asks for it, but no such file is listed"
+                    : "listed, but the configuration does not ask for it");
   };
   agree(record.has("gltf"), record.files.count("tileset.json") > 0, "tileset.json");
   agree(record.has("citygml"), any("citygml/", record.gzip ? ".gml.gz" : ".gml"), "citygml/");
@@ -159,6 +174,38 @@ void check_file_list(const std::string& folder, const BuildRecord& record, Findi
   agree(record.single_cityjson, record.files.count("model.city.json") > 0, "model.city.json");
   agree(record.report, record.files.count("report.html") > 0, "report.html");
   agree(true, record.files.count("report.json") > 0, "report.json");
+}
+
+std::uint64_t check_hashes(const std::string& folder, const BuildRecord& record, int workers, base::Progress& progress,
+                           FindingLog& log) {
+  const auto full = [&](const std::string& path) { return (fs::path(folder) / path).string(); };
+  std::vector<std::pair<std::string, BuildFile>> files;
+  std::error_code error;
+  for (const auto& [path, file] : record.files)
+    if (fs::exists(full(path), error)) files.emplace_back(path, file);
+  progress.begin("hashes", files.size(), "files");
+  std::vector<std::string> wrong(files.size());
+  base::ordered_parallel(
+      files.size(), workers, static_cast<std::size_t>(2 * workers + 2),
+      [&](std::size_t i) {
+        const auto& [path, file] = files[i];
+        std::error_code failed;
+        const auto size = fs::file_size(full(path), failed);
+        if (failed || size != file.bytes) {
+          wrong[i] = fmt::format("{} bytes, build.json says {}", failed ? 0 : size, file.bytes);
+          return;
+        }
+        try {
+          if (base::sha256_file(full(path)) != file.sha256) wrong[i] = "its SHA-256 is not that of build.json";
+        } catch (const base::InputError&) {
+          wrong[i] = "cannot be read";
+        }
+      },
+      [&](std::size_t i) {
+        if (!wrong[i].empty()) log.add(Check::file_changed, files[i].first, "", wrong[i]);
+        progress.advance_to(i + 1);
+      });
+  return files.size();
 }
 
 }  // namespace blockrand::validate

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/progress.h"
 #include "pipeline/validate/finding_log.h"
 #include "pipeline/validate/json_access.h"
 
@@ -39,5 +40,10 @@ std::optional<BuildRecord> read_build_record(const std::string& folder, FindingL
 /// The files below the folder (build.json and run.json left out) against the list: FILE_MISSING, FILE_UNLISTED; and
 /// against the configuration (BUILD_JSON).
 void check_file_list(const std::string& folder, const BuildRecord& record, FindingLog& log);
+
+/// Sizes and SHA-256 of all listed files that are there: FILE_CHANGED. Phase "hashes" of `progress`.
+/// \return how many files were read
+std::uint64_t check_hashes(const std::string& folder, const BuildRecord& record, int workers, base::Progress& progress,
+                           FindingLog& log);
 
 }  // namespace blockrand::validate

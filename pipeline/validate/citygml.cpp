@@ -13,6 +13,7 @@
 #include <unordered_set>
 
 #include "pipeline/validate/attribute_names.h"
+#include "pipeline/validate/citygml_names.h"
 #include "pipeline/validate/ids.h"
 
 namespace blockrand::validate {
@@ -20,51 +21,9 @@ namespace {
 
 using model::Point3;
 
-constexpr std::string_view kGml = "http://www.opengis.net/gml", kCore = "http://www.opengis.net/citygml/2.0",
-                           kBuilding = "http://www.opengis.net/citygml/building/2.0",
-                           kGenerics = "http://www.opengis.net/citygml/generics/2.0",
-                           kAppearance = "http://www.opengis.net/citygml/appearance/2.0",
-                           kAddress = "urn:oasis:names:tc:ciq:xsdschema:xAL:2.0",
-                           kLink = "http://www.w3.org/1999/xlink";
-
 constexpr double kLargestCoordinate = 1e9;  // m; beyond is no projected CRS
 // Four decimals of a multiple of 1/1024 m are off by half a unit of the last one at most.
 constexpr double kGridTolerance = 0.5001e-4;
-
-struct SurfaceName {
-  std::string_view element, kind;
-};
-constexpr SurfaceName kSurfaces[] = {
-    {"GroundSurface", "ground"},           {"WallSurface", "wall"},          {"RoofSurface", "roof"},
-    {"OuterCeilingSurface", "outer_ceiling"}, {"OuterFloorSurface", "outer_floor"}, {"ClosureSurface", "closure"},
-};
-std::string_view surface_kind(std::string_view element) {
-  for (const SurfaceName& s : kSurfaces)
-    if (s.element == element) return s.kind;
-  return {};
-}
-
-/// What may stand in a file of Blockrand, by namespace.
-bool known_element(std::string_view space, std::string_view name) {
-  using Names = std::unordered_set<std::string_view>;
-  static const Names gml = {"description", "name", "boundedBy", "Envelope", "lowerCorner", "upperCorner", "MultiSurface",
-                            "surfaceMember", "Polygon", "exterior", "interior", "LinearRing", "posList", "Solid", "CompositeSurface"};
-  static const Names core = {"CityModel", "cityObjectMember", "externalReference", "informationSystem", "externalObject", "uri",
-                             "Address", "xalAddress"};
-  static const Names building = {"Building", "BuildingPart", "consistsOfBuildingPart", "class", "function", "usage",
-                                 "yearOfConstruction", "roofType", "measuredHeight", "storeysAboveGround", "storeyHeightsAboveGround",
-                                 "lod0FootPrint", "lod1Solid", "lod2Solid", "boundedBy", "lod2MultiSurface", "address"};
-  static const Names generics = {"stringAttribute", "doubleAttribute", "intAttribute", "measureAttribute", "value"};
-  static const Names appearance = {"appearance", "appearanceMember", "Appearance", "theme", "surfaceDataMember", "X3DMaterial",
-                                   "isFront", "ambientIntensity", "diffuseColor", "emissiveColor", "specularColor", "shininess",
-                                   "transparency", "isSmooth", "target"};
-  if (space == kGml) return gml.count(name) > 0;
-  if (space == kCore) return core.count(name) > 0;
-  if (space == kBuilding) return building.count(name) > 0 || !surface_kind(name).empty();
-  if (space == kGenerics) return generics.count(name) > 0;
-  if (space == kAppearance) return appearance.count(name) > 0;
-  return space == kAddress;
-}
 
 std::string_view view(const xmlChar* text) { return text ? reinterpret_cast<const char*>(text) : std::string_view(); }
 
@@ -161,13 +120,16 @@ class Parser {
   }
   void rule(std::string what, std::string object) { found(Check::citygml_rule, std::move(what), std::move(object)); }
 
-  std::string_view parent(std::size_t up = 1) const { return stack_.size() > up ? stack_[stack_.size() - 1 - up] : std::string_view(); }
+  std::string_view parent(std::size_t up = 1) const {
+    return stack_.size() > up ? stack_[stack_.size() - 1 - up] : std::string_view();
+  }
   ReadBody* body() { return open_.empty() ? nullptr : &out_.contents.bodies[open_.back().body]; }
   std::string object() { return open_.empty() ? std::string() : body()->id; }
 
   void start(xmlTextReaderPtr reader) {
     // Names live in the reader's dictionary as long as the reader.
-    const std::string_view name = view(xmlTextReaderConstLocalName(reader)), space = view(xmlTextReaderConstNamespaceUri(reader));
+    const std::string_view name = view(xmlTextReaderConstLocalName(reader)),
+                           space = view(xmlTextReaderConstNamespaceUri(reader));
     text_.clear();
     stack_.push_back(name);
     if (!known_element(space, name)) rule(fmt::format("unexpected element {}", name), object());
@@ -176,14 +138,16 @@ class Parser {
       id = attribute(reader, "id", kGml);
       if (!id.empty() && !ids_.insert(id).second) rule("gml:id twice: " + id, id);
     }
-    if (stack_.size() == 1 && (name != "CityModel" || space != kCore)) rule("the root is no CityModel of CityGML 2.0", "");
+    if (stack_.size() == 1 && (name != "CityModel" || space != kCore))
+      rule("the root is no CityModel of CityGML 2.0", "");
     if (space == kGml)
       start_gml(reader, name, id);
     else if (space == kBuilding)
       start_building(name, id);
     else if (space == kGenerics && name.ends_with("Attribute"))
       attribute_ = attribute(reader, "name");
-    else if (space == kGenerics && name == "value" && parent() == "measureAttribute" && attribute(reader, "uom").empty())
+    else if (space == kGenerics && name == "value" && parent() == "measureAttribute" &&
+             attribute(reader, "uom").empty())
       rule(attribute_ + " has no unit", object());
     else if (space == kAppearance && name == "X3DMaterial")
       materials_.emplace_back();
@@ -224,7 +188,8 @@ class Parser {
       ReadBody body;
       body.id = id;
       body.building = part && !open_.empty() ? out_.contents.bodies[open_.front().body].id : id;
-      if (part && building_of(id) != body.building) rule(fmt::format("{} does not belong to {}", id, body.building), id);
+      if (part && building_of(id) != body.building)
+        rule(fmt::format("{} does not belong to {}", id, body.building), id);
       if (!open_.empty()) open_.front().has_parts = true;
       if (!part) out_.contents.buildings.push_back(id);
       open_.emplace_back();
@@ -279,15 +244,18 @@ class Parser {
     double off = 0;
     for (std::size_t i = 0; i < values->size(); i += 3) {
       const Point3 p{(*values)[i], (*values)[i + 1], (*values)[i + 2]};
-      if (std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) > kLargestCoordinate) return rule("a coordinate beyond any CRS", object());
+      if (std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) > kLargestCoordinate)
+        return rule("a coordinate beyond any CRS", object());
       const Point3 q = model::snap(p);
       off = std::max({off, std::fabs(p.x - q.x), std::fabs(p.y - q.y), std::fabs(p.z - q.z)});
       if (lower_ && upper_ &&
-          (p.x < lower_->x || p.y < lower_->y || p.z < lower_->z || p.x > upper_->x || p.y > upper_->y || p.z > upper_->z))
+          (p.x < lower_->x || p.y < lower_->y || p.z < lower_->z || p.x > upper_->x || p.y > upper_->y ||
+           p.z > upper_->z))
         outside_ = true;
       ring.push_back(q);
     }
-    if (off > kGridTolerance) found(Check::off_grid, fmt::format("a coordinate lies {:.6f} m off the 1/1024 m grid", off), object());
+    if (off > kGridTolerance)
+      found(Check::off_grid, fmt::format("a coordinate lies {:.6f} m off the 1/1024 m grid", off), object());
     if (ring.size() < 4) return rule(fmt::format("a ring of {} points", ring.size()), object());
     if (ring.front() != ring.back()) return rule("a ring that is not closed", object());
     ring.pop_back();
@@ -352,7 +320,8 @@ class Parser {
       rule("boundary surfaces without a solid", body.id);
     }
     for (std::size_t s = 0; s + 1 < body.solids.size(); ++s)
-      if (body.solids[s].lod >= body.solids[s + 1].lod) rule("solids out of the order of their LoD, or one twice", body.id);
+      if (body.solids[s].lod >= body.solids[s + 1].lod)
+        rule("solids out of the order of their LoD, or one twice", body.id);
     if (outside_) rule("a point lies outside of the envelope", body.id);
     outside_ = false;
     finish_attributes(body);
@@ -371,12 +340,15 @@ class Parser {
   void finish_attributes(ReadBody& body) {
     for (const std::string& name : attribute_names()) {
       const auto value = body.attributes.find(name);
-      const auto source = body.attributes.find(name + "_source"), confidence = body.attributes.find(name + "_confidence");
+      const auto source = body.attributes.find(name + "_source"),
+                 confidence = body.attributes.find(name + "_confidence");
       if (source != body.attributes.end()) {
-        if (!is_source(source->second)) found(Check::source_wrong, fmt::format("{} from \"{}\"", name, source->second), body.id);
+        if (!is_source(source->second))
+          found(Check::source_wrong, fmt::format("{} from \"{}\"", name, source->second), body.id);
         if (confidence == body.attributes.end()) found(Check::source_wrong, name + " without confidence", body.id);
       } else {
-        if (confidence != body.attributes.end()) found(Check::source_wrong, name + "_confidence without a source", body.id);
+        if (confidence != body.attributes.end())
+          found(Check::source_wrong, name + "_confidence without a source", body.id);
         if (value != body.attributes.end()) body.attributes[name + "_source"] = "tag";
       }
       if (confidence != body.attributes.end()) {
@@ -441,11 +413,13 @@ class Parser {
   /// "#rrggbb" of three numbers from 0 to 1.
   std::string colour(const std::string& text) {
     const auto values = number_list(text);
-    if (!values || values->size() != 3 || std::any_of(values->begin(), values->end(), [](double v) { return !(v >= 0 && v <= 1); })) {
+    if (!values || values->size() != 3 ||
+        std::any_of(values->begin(), values->end(), [](double v) { return !(v >= 0 && v <= 1); })) {
       rule("a colour that is none: " + text.substr(0, 40), "");
       return {};
     }
-    return fmt::format("#{:02x}{:02x}{:02x}", std::lround((*values)[0] * 255), std::lround((*values)[1] * 255), std::lround((*values)[2] * 255));
+    return fmt::format("#{:02x}{:02x}{:02x}", std::lround((*values)[0] * 255), std::lround((*values)[1] * 255),
+                       std::lround((*values)[2] * 255));
   }
 
   void finish() {
@@ -457,12 +431,14 @@ class Parser {
           continue;
         }
         ReadBody& body = out_.contents.bodies[place->second.body];
-        auto& polygons = place->second.solid < 0 ? body.footprint : body.solids[static_cast<std::size_t>(place->second.solid)].polygons;
+        auto& polygons = place->second.solid < 0 ? body.footprint
+                                                 : body.solids[static_cast<std::size_t>(place->second.solid)].polygons;
         std::string& slot = polygons[place->second.polygon].colour;
         if (!slot.empty()) rule("#" + target + " has two colours", body.id);
         slot = m.colour;
       }
-    if (!out_.contents.buildings.empty() && (!lower_ || !upper_ || out_.srs_name.empty())) rule("no envelope with a reference system", "");
+    if (!out_.contents.buildings.empty() && (!lower_ || !upper_ || out_.srs_name.empty()))
+      rule("no envelope with a reference system", "");
     // Buildings of several parts are no bodies of their own.
     std::vector<ReadBody> bodies;
     for (std::size_t i = 0, next = 0; i < out_.contents.bodies.size(); ++i) {
@@ -500,13 +476,15 @@ CityGml read_citygml(std::string_view xml, const std::string& name) {
           : xmlReaderForMemory(xml.data(), static_cast<int>(xml.size()), "file.gml", nullptr, kOptions),
       xmlFreeTextReader);
   if (reader) {
-    xmlTextReaderSetErrorHandler(reader.get(), [](void*, const char*, xmlParserSeverities, xmlTextReaderLocatorPtr) {}, nullptr);
+    xmlTextReaderSetErrorHandler(
+        reader.get(), [](void*, const char*, xmlParserSeverities, xmlTextReaderLocatorPtr) {}, nullptr);
     out.readable = Parser(name, out).parse(reader.get());
   }
   if (!out.readable) {
     const int line = reader ? xmlTextReaderGetParserLineNumber(reader.get()) : 0;
     out.contents = {};
-    out.contents.findings.push_back({Check::file_unreadable, name, "", fmt::format("line {}: not well-formed XML", line)});
+    out.contents.findings.push_back(
+        {Check::file_unreadable, name, "", fmt::format("line {}: not well-formed XML", line)});
   }
   return out;
 }

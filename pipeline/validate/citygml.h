@@ -16,8 +16,8 @@ struct CityGml {
   std::string srs_name;   ///< of the envelope; empty without one
 };
 
-/// Reads CityGML 2.0 as Blockrand writes it (LoD 0 to 2) and checks: known elements in their places, gml:ids given once,
-/// references that resolve, an envelope that holds every point, rings closed with at least four points, boundary
+/// Reads CityGML 2.0 as Blockrand writes it (LoD 0 to 2) and checks: known elements in their places, gml:ids given
+/// once, references that resolve, an envelope that holds every point, rings closed with at least four points, boundary
 /// surfaces that are the shell of their LoD2 solid, each used once, attributes of their type, colours that exist.
 /// Attributes without a `_source` come from tags: the bodies say so. Never throws on account of the bytes.
 /// \param name  of the file, for findings

@@ -37,8 +37,11 @@ struct CityGmlSchema::State {
 
 CityGmlSchema::CityGmlSchema(const std::string& folder) : state_(std::make_unique<State>()) {
   namespace fs = std::filesystem;
-  const std::string path = (fs::path(folder) / "citygml2.xsd").string(), catalog = (fs::path(folder) / "catalog.xml").string();
-  if (!fs::exists(path)) throw base::InputError(path, "", "there is no such file", "--schemas names a folder with citygml2.xsd and catalog.xml");
+  const std::string path = (fs::path(folder) / "citygml2.xsd").string(),
+                    catalog = (fs::path(folder) / "catalog.xml").string();
+  if (!fs::exists(path))
+    throw base::InputError(path, "", "there is no such file",
+                           "--schemas names a folder with citygml2.xsd and catalog.xml");
   if (fs::exists(catalog)) xmlLoadCatalog(catalog.c_str());
   xmlSchemaParserCtxtPtr parser = xmlSchemaNewParserCtxt(path.c_str());
   if (parser) {
@@ -46,7 +49,9 @@ CityGmlSchema::CityGmlSchema(const std::string& folder) : state_(std::make_uniqu
     state_->schema = xmlSchemaParse(parser);
     xmlSchemaFreeParserCtxt(parser);
   }
-  if (!state_->schema) throw base::InputError(path, "", "the schema cannot be read", "It needs all schemas that it includes; catalog.xml beside it says where they are");
+  if (!state_->schema)
+    throw base::InputError(path, "", "the schema cannot be read",
+                           "It needs all schemas that it includes; catalog.xml beside it says where they are");
 }
 
 CityGmlSchema::~CityGmlSchema() = default;
@@ -55,11 +60,15 @@ std::vector<Finding> CityGmlSchema::validate(std::string_view xml, const std::st
   Collector out{name, {}};
   xmlSchemaValidCtxtPtr context = xmlSchemaNewValidCtxt(state_->schema);
   xmlParserInputBufferPtr input =
-      xml.size() > 0x7fffffff ? nullptr : xmlParserInputBufferCreateMem(xml.data(), static_cast<int>(xml.size()), XML_CHAR_ENCODING_NONE);
+      xml.size() > 0x7fffffff
+          ? nullptr
+          : xmlParserInputBufferCreateMem(xml.data(), static_cast<int>(xml.size()), XML_CHAR_ENCODING_NONE);
   if (context && input) {
     xmlSchemaSetValidStructuredErrors(context, collect, &out);
-    const int status = xmlSchemaValidateStream(context, input, XML_CHAR_ENCODING_NONE, nullptr, nullptr);  // takes `input`
-    if (status != 0 && out.findings.empty()) out.findings.push_back({Check::citygml_schema, name, "", "does not validate"});
+    const int status =
+        xmlSchemaValidateStream(context, input, XML_CHAR_ENCODING_NONE, nullptr, nullptr);  // takes `input`
+    if (status != 0 && out.findings.empty())
+      out.findings.push_back({Check::citygml_schema, name, "", "does not validate"});
   }
   xmlSchemaFreeValidCtxt(context);
   return std::move(out.findings);

@@ -67,7 +67,8 @@ Difference difference(const std::vector<ReadPolygon>& a, const std::vector<ReadP
       } else if (contradict(x[i].kind, y[i].kind) && d.geometry.empty()) {
         d.geometry = fmt::format("a face is {} against {}", x[i].kind, y[i].kind);
       }
-      if (contradict(x[i].colour, y[i].colour) && d.colour.empty()) d.colour = fmt::format("a face is {} against {}", x[i].colour, y[i].colour);
+      if (contradict(x[i].colour, y[i].colour) && d.colour.empty())
+        d.colour = fmt::format("a face is {} against {}", x[i].colour, y[i].colour);
     }
     return d;
   };
@@ -178,7 +179,8 @@ std::uint64_t digest_of(const std::vector<ReadPolygon>& polygons) {
     for (const auto& ring : p.rings) {
       h = mixed(h, ring.size());
       for (const Point3& q : ring)
-        for (const double v : {q.x, q.y, q.z}) h = mixed(h, static_cast<std::uint64_t>(std::llrint(std::clamp(v, -1e12, 1e12) * 1e4)));
+        for (const double v : {q.x, q.y, q.z})
+          h = mixed(h, static_cast<std::uint64_t>(std::llrint(std::clamp(v, -1e12, 1e12) * 1e4)));
     }
     sum += h;
   }
@@ -196,18 +198,42 @@ std::vector<Point3> sorted_points(std::vector<Point3> points) {
 BodyDigest digest(const ReadBody& body) {
   BodyDigest d;
   d.geometry = mixed(digest_of(body.footprint), body.solids.size());
-  for (const ReadSolid& solid : body.solids) d.geometry = mixed(mixed(d.geometry, static_cast<std::uint64_t>(solid.lod)), digest_of(solid.polygons));
+  for (const ReadSolid& solid : body.solids)
+    d.geometry = mixed(mixed(d.geometry, static_cast<std::uint64_t>(solid.lod)), digest_of(solid.polygons));
   for (const auto& [name, value] : body.attributes) d.attributes = mixed(mixed(d.attributes, name), value);
   return d;
+}
+
+void compare_digests(const BodyDigests& tiles, const std::string& format, const BodyDigests& whole,
+                     const std::string& file, std::vector<Finding>& findings) {
+  std::map<std::string_view, BodyDigest> left;
+  for (const auto& [id, d] : whole)
+    if (!left.emplace(id, d).second) findings.push_back({Check::object_doubled, file, id, "the body stands twice"});
+  for (const auto& [id, d] : tiles) {
+    const auto found = left.find(id);
+    if (found == left.end()) {
+      findings.push_back({Check::object_missing, file, id, "the body stands in " + format + " only"});
+      continue;
+    }
+    if (found->second.geometry != d.geometry)
+      findings.push_back({Check::geometry_differs, file, id, "other geometry or colours than in " + format});
+    if (found->second.attributes != d.attributes)
+      findings.push_back({Check::attribute_differs, file, id, "other attributes than in " + format});
+    left.erase(found);
+  }
+  for (const auto& [id, d] : left)
+    findings.push_back({Check::object_missing, format, std::string(id), "the body stands in " + file + " only"});
 }
 
 void find_doubles(const Side& side, std::vector<Finding>& findings) {
   std::set<std::string_view> seen;
   for (const std::string& id : side.contents.buildings)
-    if (!id.empty() && !seen.insert(id).second) findings.push_back({Check::object_doubled, side.file, id, "the building stands twice"});
+    if (!id.empty() && !seen.insert(id).second)
+      findings.push_back({Check::object_doubled, side.file, id, "the building stands twice"});
   seen.clear();
   for (const ReadBody& body : side.contents.bodies)
-    if (!body.id.empty() && !seen.insert(body.id).second) findings.push_back({Check::object_doubled, side.file, body.id, "the body stands twice"});
+    if (!body.id.empty() && !seen.insert(body.id).second)
+      findings.push_back({Check::object_doubled, side.file, body.id, "the body stands twice"});
 }
 
 void compare_objects(const Side& a, const Side& b, std::vector<Finding>& findings) {
@@ -243,7 +269,8 @@ void compare_attributes(const Side& a, const Side& b, bool rounded_confidence, s
     if (found == index.end()) continue;
     const ReadBody& y = *found->second;
     const auto differs = [&](const std::string& name, const std::string& what) {
-      findings.push_back({Check::attribute_differs, b.file, x.id, fmt::format("{}: {} (the first value is that of {})", name, what, a.file)});
+      findings.push_back({Check::attribute_differs, b.file, x.id,
+                          fmt::format("{}: {} (the first value is that of {})", name, what, a.file)});
     };
     for (const std::string& name : names) {
       const std::string *p = find(x, name), *q = find(y, name);
@@ -251,12 +278,14 @@ void compare_attributes(const Side& a, const Side& b, bool rounded_confidence, s
       if (p && q) {
         if (*p == *q) continue;
         // Shortest texts of the same float and double differ; half a step of 1/255 is lost in a property table.
-        if (confidence && std::fabs(to_number(*p) - to_number(*q)) <= (rounded_confidence ? 0.51 / 255 : 1e-7)) continue;
+        if (confidence && std::fabs(to_number(*p) - to_number(*q)) <= (rounded_confidence ? 0.51 / 255 : 1e-7))
+          continue;
         differs(name, fmt::format("{} against {}", *p, *q));
       } else if ((p || q) && !confidence && name != "fallbacks") {
         // A format that says nothing of an attribute at all says nothing of its source either.
         const bool about_source = name.ends_with("_source");
-        if (about_source && (!find(x, name.substr(0, name.size() - 7)) || !find(y, name.substr(0, name.size() - 7)))) continue;
+        if (about_source && (!find(x, name.substr(0, name.size() - 7)) || !find(y, name.substr(0, name.size() - 7))))
+          continue;
         differs(name, p ? *p + " against nothing" : "nothing against " + *q);
       }
     }
@@ -265,13 +294,17 @@ void compare_attributes(const Side& a, const Side& b, bool rounded_confidence, s
 
 void check_sources(const Side& side, std::vector<Finding>& findings) {
   for (const ReadBody& body : side.contents.bodies) {
-    const auto wrong = [&](std::string what) { findings.push_back({Check::source_wrong, side.file, body.id, std::move(what)}); };
+    const auto wrong = [&](std::string what) {
+      findings.push_back({Check::source_wrong, side.file, body.id, std::move(what)});
+    };
     for (const std::string& name : attribute_names()) {
-      const std::string *value = find(body, name), *source = find(body, name + "_source"), *confidence = find(body, name + "_confidence");
+      const std::string *value = find(body, name), *source = find(body, name + "_source"),
+                        *confidence = find(body, name + "_confidence");
       if (value && !source) wrong(name + " without a source");
       if (source && !is_source(*source)) wrong(fmt::format("{} from \"{}\"", name, *source));
       if (value && !confidence) wrong(name + " without a confidence");
-      if (confidence && !(to_number(*confidence) >= 0 && to_number(*confidence) <= 1)) wrong(fmt::format("confidence of {} is {}", name, *confidence));
+      if (confidence && !(to_number(*confidence) >= 0 && to_number(*confidence) <= 1))
+        wrong(fmt::format("confidence of {} is {}", name, *confidence));
     }
   }
 }
@@ -283,8 +316,11 @@ void compare_polygons(const Side& a, const Side& b, std::vector<Finding>& findin
     if (found == index.end()) continue;
     const ReadBody& y = *found->second;
     const auto note = [&](const std::string& which, const Difference& d) {
-      if (!d.geometry.empty()) findings.push_back({Check::geometry_differs, b.file, x.id, fmt::format("{}: {} than in {}", which, d.geometry, a.file)});
-      if (d.geometry.empty() && !d.colour.empty()) findings.push_back({Check::colour_differs, b.file, x.id, fmt::format("{}: {} in {}", which, d.colour, a.file)});
+      if (!d.geometry.empty())
+        findings.push_back(
+            {Check::geometry_differs, b.file, x.id, fmt::format("{}: {} than in {}", which, d.geometry, a.file)});
+      if (d.geometry.empty() && !d.colour.empty())
+        findings.push_back({Check::colour_differs, b.file, x.id, fmt::format("{}: {} in {}", which, d.colour, a.file)});
     };
     note("footprint", difference(x.footprint, y.footprint));
     for (int lod = 1; lod <= 3; ++lod) {
@@ -292,7 +328,8 @@ void compare_polygons(const Side& a, const Side& b, std::vector<Finding>& findin
       if (p && q)
         note(fmt::format("LoD {}", lod), difference(p->polygons, q->polygons));
       else if (p || q)
-        findings.push_back({Check::geometry_differs, b.file, x.id, fmt::format("LoD {}: only {} has a solid", lod, p ? a.file : b.file)});
+        findings.push_back({Check::geometry_differs, b.file, x.id,
+                            fmt::format("LoD {}: only {} has a solid", lod, p ? a.file : b.file)});
     }
   }
 }
@@ -312,11 +349,13 @@ void compare_meshes(const Side& reference, const Glb& glb, const std::string& gl
     const ReadSolid* best = nullptr;
     for (const ReadSolid& solid : body.solids)
       if (!best || solid.lod > best->lod) best = &solid;
-    const bool flat = find(glb.contents.bodies[row->second], "lod") && *find(glb.contents.bodies[row->second], "lod") == "0";
+    const bool flat =
+        find(glb.contents.bodies[row->second], "lod") && *find(glb.contents.bodies[row->second], "lod") == "0";
     const std::vector<ReadPolygon>& polygons = best ? best->polygons : body.footprint;
     if (triangles.empty()) {
       // A body whose solid could not be built is in the table without a mesh.
-      if (best) findings.push_back({Check::geometry_differs, glb_file, body.id, "no mesh, but a solid in " + reference.file});
+      if (best)
+        findings.push_back({Check::geometry_differs, glb_file, body.id, "no mesh, but a solid in " + reference.file});
       continue;
     }
     if (!best && !flat) {
@@ -331,7 +370,8 @@ void compare_meshes(const Side& reference, const Glb& glb, const std::string& gl
     std::vector<Point3> expected(distinct.size()), local(points.size());
     to_local(distinct, expected);
     for (std::size_t i = 0; i < points.size(); ++i)
-      local[i] = expected[static_cast<std::size_t>(std::lower_bound(distinct.begin(), distinct.end(), points[i]) - distinct.begin())];
+      local[i] = expected[static_cast<std::size_t>(std::lower_bound(distinct.begin(), distinct.end(), points[i]) -
+                                                   distinct.begin())];
     expected = sorted_points(std::move(expected));
 
     std::vector<Point3> corners;
@@ -346,11 +386,16 @@ void compare_meshes(const Side& reference, const Glb& glb, const std::string& gl
     const double slack = tolerance * std::sqrt(std::max(should.area, 1.0)) * 8 + 0.002 * should.area;
     if (worst > tolerance) {
       least_off = std::min(least_off, worst);
-      off.push_back({Check::geometry_differs, glb_file, body.id, fmt::format("a corner is {:.4f} m from where {} has it", worst, reference.file)});
-    } else if (best && std::fabs(is.volume - should.volume) > tolerance * should.area + 1e-4 * std::fabs(should.volume) + 0.001) {
-      findings.push_back({Check::geometry_differs, glb_file, body.id, fmt::format("{:.3f} m3 against {:.3f} in {}", is.volume, should.volume, reference.file)});
+      off.push_back({Check::geometry_differs, glb_file, body.id,
+                     fmt::format("a corner is {:.4f} m from where {} has it", worst, reference.file)});
+    } else if (best && std::fabs(is.volume - should.volume) >
+                           tolerance * should.area + 1e-4 * std::fabs(should.volume) + 0.001) {
+      findings.push_back({Check::geometry_differs, glb_file, body.id,
+                          fmt::format("{:.3f} m3 against {:.3f} in {}", is.volume, should.volume, reference.file)});
     } else if (std::fabs(is.area - should.area) > slack) {
-      findings.push_back({Check::geometry_differs, glb_file, body.id, fmt::format("{:.3f} m2 of faces against {:.3f} in {}", is.area, should.area, reference.file)});
+      findings.push_back(
+          {Check::geometry_differs, glb_file, body.id,
+           fmt::format("{:.3f} m2 of faces against {:.3f} in {}", is.area, should.area, reference.file)});
     }
     // Other faces have other areas in every colour: that is one finding.
     if (should.area_of_colour.count("") > 0 || findings.size() + off.size() != before) continue;
@@ -363,13 +408,17 @@ void compare_meshes(const Side& reference, const Glb& glb, const std::string& gl
         return found == m.area_of_colour.end() ? 0.0 : found->second;
       };
       if (std::fabs(area(is) - area(should)) <= slack) continue;
-      findings.push_back({Check::colour_differs, glb_file, body.id,
-                          fmt::format("{:.2f} m2 in {} against {:.2f} in {}", area(is), colour, area(should), reference.file)});
+      findings.push_back(
+          {Check::colour_differs, glb_file, body.id,
+           fmt::format("{:.2f} m2 in {} against {:.2f} in {}", area(is), colour, area(should), reference.file)});
       break;  // one finding a body
     }
   }
   if (off.size() > kMany && off.size() == compared)
-    findings.push_back({Check::geometry_differs, glb_file, "", fmt::format("all {} bodies are off, by {:.4f} m or more: the tile stands elsewhere than {} says", compared, least_off, reference.file)});
+    findings.push_back(
+        {Check::geometry_differs, glb_file, "",
+         fmt::format("all {} bodies are off, by {:.4f} m or more: the tile stands elsewhere than {} says", compared,
+                     least_off, reference.file)});
   else
     std::move(off.begin(), off.end(), std::back_inserter(findings));
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/validate/contents.h"
@@ -18,8 +19,8 @@ struct Side {
   const std::string& file;
 };
 
-/// OBJECT_DOUBLED for each building or body that stands twice. Here and below, those without an id are passed over: that
-/// was found by the reader.
+/// OBJECT_DOUBLED for each building or body that stands twice. Here and below, those without an id are passed over:
+/// that was found by the reader.
 void find_doubles(const Side& side, std::vector<Finding>& findings);
 
 /// OBJECT_MISSING for each building or body that only one side has.
@@ -50,5 +51,11 @@ struct BodyDigest {
   std::uint64_t attributes = 0;  ///< of values, sources and confidences
 };
 BodyDigest digest(const ReadBody& body);
+using BodyDigests = std::vector<std::pair<std::string, BodyDigest>>;  ///< with the body's id
+
+/// A file of the whole build against the tiles of its format: OBJECT_MISSING, OBJECT_DOUBLED, GEOMETRY_DIFFERS,
+/// ATTRIBUTE_DIFFERS.
+void compare_digests(const BodyDigests& tiles, const std::string& format, const BodyDigests& whole,
+                     const std::string& file, std::vector<Finding>& findings);
 
 }  // namespace blockrand::validate

@@ -37,7 +37,7 @@ struct ReadBody {
 struct Contents {
   std::vector<std::string> buildings;  ///< ids in file order, doubles included
   std::vector<ReadBody> bodies;
-  std::vector<Finding> findings;       ///< breaches of the format's own rules
+  std::vector<Finding> findings;  ///< breaches of the format's own rules
 };
 
 }  // namespace blockrand::validate

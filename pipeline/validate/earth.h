@@ -59,7 +59,8 @@ inline Place geodetic(const model::Point3& p) {
 
 inline model::Point3 earth_centred(const Place& p) {
   const double s = std::sin(p.lat), c = std::cos(p.lat), n = kEarthA / std::sqrt(1 - kEarthE2 * s * s);
-  return {(n + p.height) * c * std::cos(p.lon), (n + p.height) * c * std::sin(p.lon), (n * (1 - kEarthE2) + p.height) * s};
+  return {(n + p.height) * c * std::cos(p.lon), (n + p.height) * c * std::sin(p.lon),
+          (n * (1 - kEarthE2) + p.height) * s};
 }
 
 /// From metres east, north, up of a place to earth-centred coordinates.

@@ -24,7 +24,8 @@ std::string value_text(const Json* value) {
 
 class TileRecords {
  public:
-  TileRecords(const std::string& file, const std::string& tile, const Contents* model, const BuildRecord& record, std::vector<Finding>& findings)
+  TileRecords(const std::string& file, const std::string& tile, const Contents* model, const BuildRecord& record,
+              std::vector<Finding>& findings)
       : file_(file), tile_(tile), record_(record), findings_(findings) {
     if (!model) return;
     for (const ReadBody& body : model->bodies) bodies_[body.building].push_back(&body);
@@ -42,7 +43,8 @@ class TileRecords {
     if (!stages || !stages->is_array() || stages->empty()) wrong(id, "does not say what the stages did");
     if (const Json* files = member(*json, "files"); files && files->is_array())
       for (const Json& f : *files)
-        if (const std::string path = text(&f); !record_.files.count(path) && gone_.insert(path).second) wrong(id, "names a file that is not there: " + path);
+        if (const std::string path = text(&f); !record_.files.count(path) && gone_.insert(path).second)
+          wrong(id, "names a file that is not there: " + path);
     if (has_model_) compare(id, *json);
   }
 
@@ -52,19 +54,23 @@ class TileRecords {
     std::unordered_set<std::string_view> indexed;
     for (const auto& [object, building] : entries) {
       indexed.insert(object);
-      if (!lines_.count(building)) wrong(object, fmt::format("the index leads to {}, which has no line here", building));
+      if (!lines_.count(building))
+        wrong(object, fmt::format("the index leads to {}, which has no line here", building));
     }
     for (const std::string& id : lines_)
       if (!indexed.count(id)) wrong(id, "is not in the index");
     for (const auto& [building, bodies] : bodies_)
       for (const ReadBody* body : bodies)
-        if (const std::string part = owner(body->id); part != building && !indexed.count(part)) wrong(part, "is not in the index");
+        if (const std::string part = owner(body->id); part != building && !indexed.count(part))
+          wrong(part, "is not in the index");
   }
 
   std::size_t count() const { return lines_.size(); }
 
  private:
-  void wrong(const std::string& object, std::string what) { findings_.push_back({Check::explanation_wrong, file_, object, std::move(what)}); }
+  void wrong(const std::string& object, std::string what) {
+    findings_.push_back({Check::explanation_wrong, file_, object, std::move(what)});
+  }
 
   void compare(const std::string& id, const Json& json) {
     const Json* said = member(json, "bodies");
@@ -110,7 +116,8 @@ class TileRecords {
   void differs(const ReadBody& body, const std::string& name, const std::string& said) {
     const auto is = body.attributes.find(name);
     if (is == body.attributes.end()) return;  // the other format does not say
-    if (is->second != said) wrong(body.id, fmt::format("{} is said to be \"{}\", the model has \"{}\"", name, said, is->second));
+    if (is->second != said)
+      wrong(body.id, fmt::format("{} is said to be \"{}\", the model has \"{}\"", name, said, is->second));
   }
 
   const std::string &file_, &tile_;
@@ -135,7 +142,8 @@ ExplanationIndex read_explanation_index(std::string_view lines, FindingLog& log)
     const std::size_t first = line.find(' '), second = first == line.npos ? line.npos : line.find(' ', first + 1);
     const std::string object(line.substr(0, first));
     if (second == line.npos || !is_osm_id(object) || !is_osm_id(line.substr(second + 1))) {
-      log.add(Check::explanation_wrong, "explain/index.txt", fmt::format("line {}", number), "is no entry of object, tile and building");
+      log.add(Check::explanation_wrong, "explain/index.txt", fmt::format("line {}", number),
+              "is no entry of object, tile and building");
       continue;
     }
     if (!objects.insert(object).second) log.add(Check::explanation_wrong, "explain/index.txt", object, "stands twice");
@@ -144,9 +152,9 @@ ExplanationIndex read_explanation_index(std::string_view lines, FindingLog& log)
   return index;
 }
 
-std::size_t check_explanations(std::string_view lines, const std::string& file, const std::string& tile, const Contents* model,
-                               const std::vector<std::pair<std::string, std::string>>& entries, const BuildRecord& record,
-                               std::vector<Finding>& findings) {
+std::size_t check_explanations(std::string_view lines, const std::string& file, const std::string& tile,
+                               const Contents* model, const std::vector<std::pair<std::string, std::string>>& entries,
+                               const BuildRecord& record, std::vector<Finding>& findings) {
   TileRecords records(file, tile, model, record, findings);
   for (std::size_t number = 1; !lines.empty(); ++number) {
     const std::size_t end = std::min(lines.find('\n'), lines.size());

@@ -24,8 +24,8 @@ ExplanationIndex read_explanation_index(std::string_view text, FindingLog& log);
 /// \param model  what another format holds of the tile; null: not compared
 /// \param entries  of the index, of this tile
 /// \return the number of records
-std::size_t check_explanations(std::string_view lines, const std::string& file, const std::string& tile, const Contents* model,
-                               const std::vector<std::pair<std::string, std::string>>& entries, const BuildRecord& record,
-                               std::vector<Finding>& findings);
+std::size_t check_explanations(std::string_view lines, const std::string& file, const std::string& tile,
+                               const Contents* model, const std::vector<std::pair<std::string, std::string>>& entries,
+                               const BuildRecord& record, std::vector<Finding>& findings);
 
 }  // namespace blockrand::validate

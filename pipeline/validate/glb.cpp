@@ -113,7 +113,8 @@ class Reader {
       const Json* mesh = element(member(glb_.json(), "meshes"), whole(member(node, "mesh")).value_or(~0ull));
       const Json* primitives = member(mesh, "primitives");
       if (!primitives || !primitives->is_array() || primitives->empty()) return rule("a mesh without primitives");
-      for (std::size_t p = 0; p < primitives->size(); ++p) read_primitive((*primitives)[p], own, fmt::format("primitive {}", p));
+      for (std::size_t p = 0; p < primitives->size(); ++p)
+        read_primitive((*primitives)[p], own, fmt::format("primitive {}", p));
     }
     if (const Json* children = member(node, "children"); children && children->is_array())
       for (const Json& child : *children) read_node(whole(&child).value_or(~0ull), own, seen);
@@ -135,10 +136,22 @@ class Reader {
     if (!t || !s || !r) return std::nullopt;
     const double x = (*r)[0], y = (*r)[1], z = (*r)[2], w = (*r)[3];
     if (std::fabs(x * x + y * y + z * z + w * w - 1) > 1e-6) return std::nullopt;
-    return Matrix{(1 - 2 * (y * y + z * z)) * (*s)[0], 2 * (x * y + z * w) * (*s)[0], 2 * (x * z - y * w) * (*s)[0], 0,
-                  2 * (x * y - z * w) * (*s)[1], (1 - 2 * (x * x + z * z)) * (*s)[1], 2 * (y * z + x * w) * (*s)[1], 0,
-                  2 * (x * z + y * w) * (*s)[2], 2 * (y * z - x * w) * (*s)[2], (1 - 2 * (x * x + y * y)) * (*s)[2], 0,
-                  (*t)[0], (*t)[1], (*t)[2], 1};
+    return Matrix{(1 - 2 * (y * y + z * z)) * (*s)[0],
+                  2 * (x * y + z * w) * (*s)[0],
+                  2 * (x * z - y * w) * (*s)[0],
+                  0,
+                  2 * (x * y - z * w) * (*s)[1],
+                  (1 - 2 * (x * x + z * z)) * (*s)[1],
+                  2 * (y * z + x * w) * (*s)[1],
+                  0,
+                  2 * (x * z + y * w) * (*s)[2],
+                  2 * (y * z - x * w) * (*s)[2],
+                  (1 - 2 * (x * x + y * y)) * (*s)[2],
+                  0,
+                  (*t)[0],
+                  (*t)[1],
+                  (*t)[2],
+                  1};
   }
 
   const Accessor* attribute(const Json& primitive, const char* name, std::size_t count, const std::string& where) {
@@ -154,21 +167,26 @@ class Reader {
   }
 
   void read_primitive(const Json& primitive, const Matrix& matrix, const std::string& where) {
-    if (const Json* mode = member(primitive, "mode"); mode && whole(mode) != 4u) return rule(where + " is no list of triangles");
+    if (const Json* mode = member(primitive, "mode"); mode && whole(mode) != 4u)
+      return rule(where + " is no list of triangles");
     const Accessor* position = attribute(primitive, "POSITION", 0, where);
     if (!position) return;
     if (position->type != "VEC3") return rule(where + ": POSITION is no VEC3");
-    const Json* position_json = element(member(glb_.json(), "accessors"), *whole(member(member(primitive, "attributes"), "POSITION")));
+    const Json* position_json =
+        element(member(glb_.json(), "accessors"), *whole(member(member(primitive, "attributes"), "POSITION")));
     if (!member(position_json, "min") || !member(position_json, "max")) rule(where + ": POSITION without min and max");
-    if (!position->is_float() && !required("KHR_mesh_quantization")) rule(where + ": POSITION needs KHR_mesh_quantization");
+    if (!position->is_float() && !required("KHR_mesh_quantization"))
+      rule(where + ": POSITION needs KHR_mesh_quantization");
     const std::size_t count = position->count;
     const Accessor* normal = attribute(primitive, "NORMAL", count, where);
     const Accessor* colour = attribute(primitive, "COLOR_0", count, where);
     const Accessor* feature = attribute(primitive, "_FEATURE_ID_0", count, where);
     if (normal && normal->type != "VEC3") rule(where + ": NORMAL is no VEC3"), normal = nullptr;
-    if (colour && colour->type != "VEC3" && colour->type != "VEC4") rule(where + ": COLOR_0 is no colour"), colour = nullptr;
+    if (colour && colour->type != "VEC3" && colour->type != "VEC4")
+      rule(where + ": COLOR_0 is no colour"), colour = nullptr;
     if (colour && !colour->is_float() && !colour->normalised) rule(where + ": COLOR_0 is not normalised");
-    if (feature && (feature->type != "SCALAR" || feature->normalised)) metadata(where + ": feature ids are no plain numbers"), feature = nullptr;
+    if (feature && (feature->type != "SCALAR" || feature->normalised))
+      metadata(where + ": feature ids are no plain numbers"), feature = nullptr;
     if (!element(member(glb_.json(), "materials"), whole(member(primitive, "material")).value_or(~0ull)))
       rule(where + ": its material does not exist");
     if (feature) check_features(primitive, *feature, where);
@@ -194,7 +212,8 @@ class Reader {
     std::size_t off = 0;
     for (std::size_t i = 0; i < normal.count; ++i) {
       const double l = length({glb_.value(normal, i, 0), glb_.value(normal, i, 1), glb_.value(normal, i, 2)});
-      if (!(std::fabs(l - 1) <= tolerance) && ++off == 1) rule(fmt::format("{}: normal {} has length {:.4f}", where, i, l));
+      if (!(std::fabs(l - 1) <= tolerance) && ++off == 1)
+        rule(fmt::format("{}: normal {} has length {:.4f}", where, i, l));
     }
     if (off > 1) rule(fmt::format("{}: {} normals are not of unit length", where, off));
   }
@@ -205,7 +224,8 @@ class Reader {
     if (!set) return metadata(where + ": no EXT_mesh_features");
     if (whole(member(set, "attribute")) != 0u) metadata(where + ": its feature ids are not those of _FEATURE_ID_0");
     const Json* tables = member(member(member(glb_.json(), "extensions"), "EXT_structural_metadata"), "propertyTables");
-    if (!element(tables, whole(member(set, "propertyTable")).value_or(~0ull))) metadata(where + ": its property table does not exist");
+    if (!element(tables, whole(member(set, "propertyTable")).value_or(~0ull)))
+      metadata(where + ": its property table does not exist");
     std::set<double> different;
     const std::size_t rows = out_.contents.bodies.size();
     for (std::size_t i = 0; i < feature.count; ++i) {
@@ -216,7 +236,8 @@ class Reader {
     }
     const auto said = whole(member(set, "featureCount"));
     if (said != different.size())
-      metadata(fmt::format("{}: featureCount {}, but {} different features", where, said.value_or(0), different.size()));
+      metadata(
+          fmt::format("{}: featureCount {}, but {} different features", where, said.value_or(0), different.size()));
   }
 
   struct Streams {
@@ -238,9 +259,11 @@ class Reader {
     std::vector<Point3> points(s.position.count);
     std::vector<bool> usable(s.position.count, true);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Point3 p = apply(matrix, {glb_.value(s.position, i, 0), glb_.value(s.position, i, 1), glb_.value(s.position, i, 2)});
+      const Point3 p =
+          apply(matrix, {glb_.value(s.position, i, 0), glb_.value(s.position, i, 1), glb_.value(s.position, i, 2)});
       points[i] = {p.x, 0.0 - p.z, p.y};  // y up becomes z up
-      if (!(std::fabs(p.x) < kLargestCoordinate && std::fabs(p.y) < kLargestCoordinate && std::fabs(p.z) < kLargestCoordinate)) {
+      if (!(std::fabs(p.x) < kLargestCoordinate && std::fabs(p.y) < kLargestCoordinate &&
+            std::fabs(p.z) < kLargestCoordinate)) {
         usable[i] = false;
         first(far, fmt::format("vertex {} lies nowhere", i));
       }
@@ -270,7 +293,8 @@ class Reader {
       }
       if (s.normal) {
         // A sliver's own normal is rounding; others must look where their vertices say.
-        const Point3 said{glb_.value(*s.normal, corner[0], 0), 0.0 - glb_.value(*s.normal, corner[0], 2), glb_.value(*s.normal, corner[0], 1)};
+        const Point3 said{glb_.value(*s.normal, corner[0], 0), 0.0 - glb_.value(*s.normal, corner[0], 2),
+                          glb_.value(*s.normal, corner[0], 1)};
         const double longest = std::max({length({c[1].x - c[0].x, c[1].y - c[0].y, c[1].z - c[0].z}),
                                          length({c[2].x - c[1].x, c[2].y - c[1].y, c[2].z - c[1].z}),
                                          length({c[0].x - c[2].x, c[0].y - c[2].y, c[0].z - c[2].z})});
@@ -278,7 +302,8 @@ class Reader {
           first(turned, fmt::format("triangle {} does not look where its normal points", t / 3));
       }
       if (s.colour) {
-        const std::array<double, 3> linear{glb_.value(*s.colour, corner[0], 0), glb_.value(*s.colour, corner[0], 1), glb_.value(*s.colour, corner[0], 2)};
+        const std::array<double, 3> linear{glb_.value(*s.colour, corner[0], 0), glb_.value(*s.colour, corner[0], 1),
+                                           glb_.value(*s.colour, corner[0], 2)};
         auto found = known_colours.find(linear);
         if (found == known_colours.end())
           found = known_colours.emplace(linear, std::array{srgb(linear[0]), srgb(linear[1]), srgb(linear[2])}).first;
@@ -291,7 +316,8 @@ class Reader {
         if (++two_features <= kNoted) metadata(fmt::format("{}: triangle {} belongs to two features", where, t / 3));
         continue;
       }
-      if (row >= 0 && row < static_cast<double>(out_.triangles.size())) out_.triangles[static_cast<std::size_t>(row)].push_back(triangle);
+      if (row >= 0 && row < static_cast<double>(out_.triangles.size()))
+        out_.triangles[static_cast<std::size_t>(row)].push_back(triangle);
     }
   }
 

@@ -32,7 +32,7 @@ struct Glb {
   Contents contents;
   std::vector<std::vector<GlbTriangle>> triangles;  ///< parallel to contents.bodies
   GlbGeoreference georeference;
-  double position_step = 0;  ///< m: positions are multiples of it; 0 where they are floats
+  double position_step = 0;             ///< m: positions are multiples of it; 0 where they are floats
   std::vector<model::Point3> vertices;  ///< of all triangles, z up, repeated ones included; empty when nothing is drawn
 };
 

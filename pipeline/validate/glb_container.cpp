@@ -92,7 +92,8 @@ bool GlbContainer::open(std::string_view bytes) {
     const std::size_t length = word(bytes, at);
     const std::uint32_t type = word(bytes, at + 4);
     if (length > bytes.size() - at - 8) return unreadable(fmt::format("chunk {} leaves the file", chunk));
-    if (length % 4 != 0) found(Check::glb_rule, fmt::format("chunk {} is {} bytes long, no multiple of 4", chunk, length));
+    if (length % 4 != 0)
+      found(Check::glb_rule, fmt::format("chunk {} is {} bytes long, no multiple of 4", chunk, length));
     const std::string_view content = bytes.substr(at + 8, length);
     if (chunk == 0) {
       if (type != kJsonChunk) return unreadable("the first chunk is not JSON");
@@ -176,7 +177,8 @@ void GlbContainer::check_accessors() {
     const Json& json = (*list)[i];
     const auto wrong = [&](const std::string& why) { found(Check::glb_rule, fmt::format("accessor {} {}", i, why)); };
     Accessor a;
-    a.component_type = static_cast<int>(std::min<std::uint64_t>(whole(member(json, "componentType")).value_or(0), 9999));
+    a.component_type =
+        static_cast<int>(std::min<std::uint64_t>(whole(member(json, "componentType")).value_or(0), 9999));
     a.type = text(member(json, "type"));
     a.normalised = is_true(member(json, "normalized"));
     a.width = width_of(a.type);
@@ -197,7 +199,8 @@ void GlbContainer::check_accessors() {
       wrong("has no buffer view");
       continue;
     }
-    const auto offset = member(json, "byteOffset") ? whole(member(json, "byteOffset")) : std::optional<std::uint64_t>(0);
+    const auto offset =
+        member(json, "byteOffset") ? whole(member(json, "byteOffset")) : std::optional<std::uint64_t>(0);
     const auto own_stride = whole(member(element(views, *whole(member(json, "bufferView"))), "byteStride"));
     a.stride = own_stride.value_or(a.width * a.size);
     const std::size_t element_size = a.width * a.size;

@@ -11,8 +11,8 @@
 namespace blockrand::validate {
 namespace {
 
-constexpr double kLeastTurn = 10;    // degrees
-constexpr double kLeastEdge = 0.5;   // m
+constexpr double kLeastTurn = 10;             // degrees
+constexpr double kLeastEdge = 0.5;            // m
 constexpr double kMetresPerUnit = 0.0111319;  // 1e-7 degrees of latitude
 
 std::uint64_t mix(std::uint64_t h) {
@@ -24,7 +24,8 @@ std::uint64_t mix(std::uint64_t h) {
 std::uint64_t rank_of(const std::string& body, model::Location at) {
   std::uint64_t h = 0x9e3779b97f4a7c15u;
   for (const char c : body) h = mix(h ^ static_cast<unsigned char>(c));
-  return mix(h ^ (static_cast<std::uint64_t>(static_cast<std::uint32_t>(at.lon)) << 32 | static_cast<std::uint32_t>(at.lat)));
+  return mix(
+      h ^ (static_cast<std::uint64_t>(static_cast<std::uint32_t>(at.lon)) << 32 | static_cast<std::uint32_t>(at.lat)));
 }
 
 }  // namespace
@@ -35,11 +36,13 @@ void PositionSampler::add(const std::string& body, const std::vector<model::Loca
   const auto edge = [&](model::Location a, model::Location b) {
     // Across 180 degrees the difference is a turn too much.
     const double turns = std::nearbyint((static_cast<double>(b.lon) - a.lon) / 3.6e9);
-    return model::Point2{(static_cast<double>(b.lon) - a.lon - turns * 3.6e9) * scale, (static_cast<double>(b.lat) - a.lat) * kMetresPerUnit};
+    return model::Point2{(static_cast<double>(b.lon) - a.lon - turns * 3.6e9) * scale,
+                         (static_cast<double>(b.lat) - a.lat) * kMetresPerUnit};
   };
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const model::Location at = ring[i];
-    const model::Point2 u = edge(ring[(i + ring.size() - 1) % ring.size()], at), v = edge(at, ring[(i + 1) % ring.size()]);
+    const model::Point2 u = edge(ring[(i + ring.size() - 1) % ring.size()], at),
+                        v = edge(at, ring[(i + 1) % ring.size()]);
     if (std::hypot(u.x, u.y) < kLeastEdge || std::hypot(v.x, v.y) < kLeastEdge) continue;
     const double turn = std::fabs(std::atan2(u.x * v.y - u.y * v.x, u.x * v.x + u.y * v.y)) / kRadians;
     if (turn < kLeastTurn || turn > 180 - kLeastTurn) continue;
@@ -112,7 +115,8 @@ PositionSample sample_explanations(const std::vector<std::string>& paths, const 
       const std::string id = text(member(*line, "id"));
       const Json *outline = member(*line, "outline"), *bodies = member(*line, "bodies");
       const Json *lon = member(outline, "lon"), *lat = member(outline, "lat"), *rings = member(outline, "rings");
-      if (mended.count(id) || !lon || !lat || !lon->is_array() || !lat->is_array() || lon->size() != lat->size()) continue;
+      if (mended.count(id) || !lon || !lat || !lon->is_array() || !lat->is_array() || lon->size() != lat->size())
+        continue;
       if (text(member(element(bodies, 0), "id")) != id) continue;
       const std::size_t first = rings ? static_cast<std::size_t>(whole(element(rings, 0)).value_or(0)) : lon->size();
       std::vector<model::Location> ring;

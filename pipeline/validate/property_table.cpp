@@ -26,8 +26,8 @@ struct Component {
   bool integer, is_signed;
 };
 constexpr Component kComponents[] = {
-    {"INT8", 1, true, true},    {"UINT8", 1, true, false},  {"INT16", 2, true, true},    {"UINT16", 2, true, false},
-    {"INT32", 4, true, true},   {"UINT32", 4, true, false}, {"INT64", 8, true, true},    {"UINT64", 8, true, false},
+    {"INT8", 1, true, true},     {"UINT8", 1, true, false},   {"INT16", 2, true, true}, {"UINT16", 2, true, false},
+    {"INT32", 4, true, true},    {"UINT32", 4, true, false},  {"INT64", 8, true, true}, {"UINT64", 8, true, false},
     {"FLOAT32", 4, false, true}, {"FLOAT64", 8, false, true},
 };
 const Component* component(std::string_view name) {
@@ -145,7 +145,8 @@ class Table {
     if (!type || !type->integer) return wrong(where, "valueType is no integer");
     const double limit = std::ldexp(1.0, static_cast<int>(8 * type->size) - (type->is_signed ? 1 : 0));
     for (const double v : numbers)
-      if (v != std::floor(v) || v >= limit || v < (type->is_signed ? -limit : 0)) wrong(where, "a value does not fit its type");
+      if (v != std::floor(v) || v >= limit || v < (type->is_signed ? -limit : 0))
+        wrong(where, "a value does not fit its type");
   }
 
   static const Component* enum_component(const Json& e) {
@@ -168,7 +169,8 @@ class Table {
       } else if (no_data) {
         bool known = false;
         if (const Json* values = member(e, "values"); values && values->is_array())
-          for (const Json& v : *values) known = known || (no_data->is_string() && text(member(v, "name")) == text(no_data));
+          for (const Json& v : *values)
+            known = known || (no_data->is_string() && text(member(v, "name")) == text(no_data));
         if (!known) wrong(where, "noData is not in the enum");
       }
     } else if (type == "SCALAR") {
@@ -182,7 +184,8 @@ class Table {
     } else {
       wrong(where, "unknown type");
     }
-    if (is_true(member(p, "required")) && (no_data || member(p, "default"))) wrong(where, "required together with noData");
+    if (is_true(member(p, "required")) && (no_data || member(p, "default")))
+      wrong(where, "required together with noData");
     if (name.ends_with("_source") && text(member(p, "enumType")) != "Source") wrong(where, "is no Source");
   }
 
@@ -252,7 +255,7 @@ class Table {
         continue;
       }
       if (absent && *absent == n.value) continue;
-      rows_[i][name] = normalised ? base::shortest(n.value / largest)
+      rows_[i][name] = normalised   ? base::shortest(n.value / largest)
                        : c->integer ? std::to_string(n.integer)
                                     : base::shortest(n.value);
     }
@@ -274,7 +277,8 @@ class Table {
     if (last != 0) return wrong(where, "the first offset is not 0");
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const auto next = static_cast<std::uint64_t>(validate::read(*c, *offsets, i + 1).integer);
-      if (next < last || next > bytes->size()) return wrong(where, fmt::format("row {}: its offset is out of order or beyond the text", i));
+      if (next < last || next > bytes->size())
+        return wrong(where, fmt::format("row {}: its offset is out of order or beyond the text", i));
       const std::string_view value = bytes->substr(last, next - last);
       if (!is_utf8(value))
         wrong(where, fmt::format("row {} is not UTF-8", i));
@@ -291,7 +295,8 @@ class Table {
       TableRow& row = rows_[i];
       const std::string where = fmt::format("row {}", i), id = row["id"], building = row["building"];
       if (!is_body_id(id)) wrong(where, fmt::format("\"{}\" is no id", id));
-      if (id != building && !id.starts_with(building + ".")) wrong(where, fmt::format("{} does not belong to {}", id, building));
+      if (id != building && !id.starts_with(building + "."))
+        wrong(where, fmt::format("{} does not belong to {}", id, building));
       for (const char* name : {"tags", "building_tags", "evidence"})
         if (const auto found = row.find(name); found != row.end()) {
           const auto parsed = parse_json(found->second);

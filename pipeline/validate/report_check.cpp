@@ -35,7 +35,8 @@ class Reader {
     std::map<std::string, std::uint64_t> states;
     std::set<std::string> seen;
     for (const Json& row : *objects) {
-      const std::string id = text(member(row, "id")), state = text(member(row, "state")), code = text(member(row, "code"));
+      const std::string id = text(member(row, "id")), state = text(member(row, "state")),
+                        code = text(member(row, "code"));
       if (!is_osm_id(id)) wrong(id, "is no id");
       if (!seen.insert(id).second) wrong(id, "stands twice");
       if (state == "reported") {
@@ -54,7 +55,8 @@ class Reader {
     }
     const auto expect = [&](const char* key, std::uint64_t is, const char* what) {
       if (const auto said = record_.count(key); said && *said != is)
-        log_.add(Check::counts_differ, kFile, key, fmt::format("{} objects are {}, build.json says {}", is, what, *said));
+        log_.add(Check::counts_differ, kFile, key,
+                 fmt::format("{} objects are {}, build.json says {}", is, what, *said));
     };
     expect("reported", states["reported"], "reported");
     expect("represented_as_duplicates", states["duplicate"], "duplicates");

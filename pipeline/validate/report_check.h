@@ -6,7 +6,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <unordered_set>
 
 #include "pipeline/validate/build_record.h"
 
@@ -24,10 +23,11 @@ struct Report {
 /// \return nothing where it cannot be read
 std::optional<Report> read_report(const std::string& folder, const BuildRecord& record, FindingLog& log);
 
-/// Reads FOLDER/report.html: well-formed, loads nothing from elsewhere, and its numbers are those of build.json; the map
-/// shows each building once (or, of a large build, none by its id). REPORT_WRONG, FILE_UNREADABLE.
-/// \param buildings  ids of all buildings of the model that have something to show; null: not compared
-/// \return how many numbers and footprints were compared
-std::uint64_t check_report_page(const std::string& folder, const BuildRecord& record, const std::unordered_set<std::string>* buildings, FindingLog& log);
+/// Reads FOLDER/report.html: well-formed, loads nothing from elsewhere, and its numbers are those of build.json; the
+/// map shows each building once (or, of a large build, none by its id). REPORT_WRONG, FILE_UNREADABLE. \param buildings
+/// ids of all buildings of the model that have something to show; null: not compared \return how many numbers and
+/// footprints were compared
+std::uint64_t check_report_page(const std::string& folder, const BuildRecord& record,
+                                const std::set<std::string>* buildings, FindingLog& log);
 
 }  // namespace blockrand::validate

@@ -64,7 +64,8 @@ std::string own_verdict(const ReadSolid& read) {
     face.first_loop = static_cast<std::uint32_t>(solid.loops.size());
     face.loop_count = static_cast<std::uint32_t>(polygon.rings.size());
     for (const auto& ring : polygon.rings) {
-      solid.loops.push_back({static_cast<std::uint32_t>(solid.indices.size()), static_cast<std::uint32_t>(ring.size())});
+      solid.loops.push_back(
+          {static_cast<std::uint32_t>(solid.indices.size()), static_cast<std::uint32_t>(ring.size())});
       for (const Point3& p : ring) solid.indices.push_back(index(p));
     }
     solid.faces.push_back(face);
@@ -92,9 +93,11 @@ std::string own_verdict(const std::vector<GlbTriangle>& read) {
   const Point3 o = index.points().front();
   std::vector<geometry::Grid3> vertices;
   for (const Point3& p : index.points())
-    vertices.push_back({std::llrint((p.x - o.x) * kSteps), std::llrint((p.y - o.y) * kSteps), std::llrint((p.z - o.z) * kSteps)});
+    vertices.push_back(
+        {std::llrint((p.x - o.x) * kSteps), std::llrint((p.y - o.y) * kSteps), std::llrint((p.z - o.z) * kSteps)});
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const GlbTriangle& t : read) triangles.push_back({index(t.corners[0]), index(t.corners[1]), index(t.corners[2])});
+  for (const GlbTriangle& t : read)
+    triangles.push_back({index(t.corners[0]), index(t.corners[1]), index(t.corners[2])});
   const geometry::SolidCheck check = geometry::check_mesh(vertices, triangles);
   return check.valid() ? "" : check.text();
 }
@@ -124,7 +127,8 @@ Verdict judge(const std::vector<GlbTriangle>& triangles) {
 void note(const Verdict& verdict, const std::string& file, const std::string& object, const std::string& which,
           std::vector<Finding>& findings) {
   if (verdict.valid()) return;
-  findings.push_back({verdict.agreed() ? Check::solid_invalid : Check::judges_disagree, file, object, which + ": " + verdict.text()});
+  findings.push_back(
+      {verdict.agreed() ? Check::solid_invalid : Check::judges_disagree, file, object, which + ": " + verdict.text()});
 }
 
 }  // namespace blockrand::validate

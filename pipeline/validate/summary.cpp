@@ -19,16 +19,20 @@ std::string verdict(const Validation& v) {
   if (v.sound()) return "sound: nothing found";
   std::size_t codes = 0;
   for (int c = 0; c < kCheckCount; ++c) codes += v.findings.count(static_cast<Check>(c)) > 0;
-  return fmt::format("NOT SOUND: {} of {}", number_of(v.findings.count(), "finding", "findings"), number_of(codes, "kind", "kinds"));
+  return fmt::format("NOT SOUND: {} of {}", number_of(v.findings.count(), "finding", "findings"),
+                     number_of(codes, "kind", "kinds"));
 }
 
 }  // namespace
 
 std::string validation_text(const ValidateOptions& options, const Validation& v) {
   std::string out = fmt::format("{}\n\nchecked\n", options.folder);
-  for (const Checked& c : v.checked) out += fmt::format("  {:<13} {:>11} {:<24} {}\n", c.what, base::with_thousands(c.count), c.unit, c.how);
+  for (const Checked& c : v.checked)
+    out += fmt::format("  {:<13} {:>11} {:<24} {}\n", c.what, base::with_thousands(c.count), c.unit, c.how);
   if (v.positions > 0)
-    out += fmt::format("\nlargest distance of a corner from OpenStreetMap: {:.2f} mm in GLB, {:.2f} mm in CityGML and CityJSON\n", v.worst_glb * 1e3, v.worst_crs * 1e3);
+    out += fmt::format(
+        "\nlargest distance of a corner from OpenStreetMap: {:.2f} mm in GLB, {:.2f} mm in CityGML and CityJSON\n",
+        v.worst_glb * 1e3, v.worst_crs * 1e3);
   for (const std::string& note : v.notes) out += fmt::format("\nnote: {}\n", note);
   for (int c = 0; c < kCheckCount; ++c) {
     const auto check = static_cast<Check>(c);
@@ -52,15 +56,22 @@ std::string validation_json(const ValidateOptions& options, const Validation& v)
   j["build"] = options.folder;
   j["sound"] = v.sound();
   j["checked"] = Ordered::array();
-  for (const Checked& c : v.checked) j["checked"].push_back({{"what", c.what}, {"how", c.how}, {"count", c.count}, {"unit", c.unit}});
+  for (const Checked& c : v.checked)
+    j["checked"].push_back({{"what", c.what}, {"how", c.how}, {"count", c.count}, {"unit", c.unit}});
   j["notes"] = v.notes;
   if (v.positions > 0)
-    j["positions"] = {{"source", v.position_source}, {"corners", v.positions}, {"worst_glb_m", v.worst_glb}, {"worst_crs_m", v.worst_crs}};
+    j["positions"] = {{"source", v.position_source},
+                      {"corners", v.positions},
+                      {"worst_glb_m", v.worst_glb},
+                      {"worst_crs_m", v.worst_crs}};
   j["counts"] = Ordered::object();
   for (int c = 0; c < kCheckCount; ++c)
-    if (const std::uint64_t count = v.findings.count(static_cast<Check>(c)); count > 0) j["counts"][std::string(kChecks[c].text)] = count;
+    if (const std::uint64_t count = v.findings.count(static_cast<Check>(c)); count > 0)
+      j["counts"][std::string(kChecks[c].text)] = count;
   j["findings"] = Ordered::array();
-  for (const Finding& f : v.findings.kept()) j["findings"].push_back({{"code", info(f.check).text}, {"file", f.file}, {"object", f.object}, {"detail", f.detail}});
+  for (const Finding& f : v.findings.kept())
+    j["findings"].push_back(
+        {{"code", info(f.check).text}, {"file", f.file}, {"object", f.object}, {"detail", f.detail}});
   return j.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

@@ -16,6 +16,7 @@
 #include "pipeline/validate/file_bytes.h"
 #include "pipeline/validate/glb.h"
 #include "pipeline/validate/ids.h"
+#include "pipeline/validate/places.h"
 #include "pipeline/validate/solids.h"
 
 namespace blockrand::validate {
@@ -33,7 +34,8 @@ constexpr double kMeshTolerance = 1.1e-3;
 constexpr double kGeoidTolerance = 5e-3;
 
 bool says_unreadable(const std::vector<Finding>& findings) {
-  return std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.check == Check::file_unreadable; });
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Finding& f) { return f.check == Check::file_unreadable; });
 }
 
 bool has_geometry(const ReadBody& body, int lod) { return lod == 0 ? !body.footprint.empty() : !body.solids.empty(); }
@@ -92,7 +94,8 @@ class Checker {
   }
 
   void take(std::vector<Finding>& findings) {
-    out_.findings.insert(out_.findings.end(), std::make_move_iterator(findings.begin()), std::make_move_iterator(findings.end()));
+    out_.findings.insert(out_.findings.end(), std::make_move_iterator(findings.begin()),
+                         std::make_move_iterator(findings.end()));
     findings.clear();
   }
 
@@ -110,7 +113,8 @@ class Checker {
       return;
     }
     if (glb_->georeference.present && glb_->georeference.crs != context_.record.crs)
-      found(Check::georeference, path, "", fmt::format("says {}, build.json says {}", glb_->georeference.crs, context_.record.crs));
+      found(Check::georeference, path, "",
+            fmt::format("says {}, build.json says {}", glb_->georeference.crs, context_.record.crs));
     for (const auto& t : glb_->triangles) out_.triangles += t.size();
   }
 
@@ -122,13 +126,15 @@ class Checker {
     transform_ = glb_->georeference.local_to_ecef;
     if (!context_.tileset || !context_.tileset->readable) return;
     const auto entry = context_.tileset->entries.find(path);
-    if (entry == context_.tileset->entries.end()) return found(Check::tile_missing, path, "", "the tileset does not name it");
+    if (entry == context_.tileset->entries.end())
+      return found(Check::tile_missing, path, "", "the tileset does not name it");
     entry_ = &entry->second;
     transform_ = entry_->transform;
     if (!glb_->georeference.present || transform_ == glb_->georeference.local_to_ecef) return;
     const Matrix& g = glb_->georeference.local_to_ecef;
-    found(Check::georeference, path, "", fmt::format("its local_to_ecef is not the tileset's transform: origins {:.4f} m apart",
-                                                     std::hypot(transform_[12] - g[12], transform_[13] - g[13], transform_[14] - g[14])));
+    found(Check::georeference, path, "",
+          fmt::format("its local_to_ecef is not the tileset's transform: origins {:.4f} m apart",
+                      std::hypot(transform_[12] - g[12], transform_[13] - g[13], transform_[14] - g[14])));
   }
 
   void read_citygml_tile() {
@@ -147,9 +153,11 @@ class Checker {
     const auto number = [](const std::string& code) { return code.substr(code.find(':') + 1); };
     const std::string expected = context_.record.vertical_crs.empty()
                                      ? "urn:ogc:def:crs:EPSG::" + number(context_.record.crs)
-                                     : "urn:ogc:def:crs,crs:EPSG::" + number(context_.record.crs) + ",crs:EPSG::" + number(context_.record.vertical_crs);
+                                     : "urn:ogc:def:crs,crs:EPSG::" + number(context_.record.crs) +
+                                           ",crs:EPSG::" + number(context_.record.vertical_crs);
     if (!gml.contents.buildings.empty() && gml.srs_name != expected)
-      found(Check::citygml_rule, path, "", fmt::format("srsName is {}, by build.json it is {}", gml.srs_name, expected));
+      found(Check::citygml_rule, path, "",
+            fmt::format("srsName is {}, by build.json it is {}", gml.srs_name, expected));
     contents_[kCityGml] = std::move(gml.contents);
   }
 
@@ -179,9 +187,11 @@ class Checker {
     if (!entry_) return;
     const Overhang over = overhang(*entry_, glb_->vertices);
     if (over.own > kVolumeTolerance)
-      found(Check::tile_bounds, files_.path[kGltf], "", fmt::format("its mesh lies up to {:.3f} m outside of the tile's bounding volume", over.own));
+      found(Check::tile_bounds, files_.path[kGltf], "",
+            fmt::format("its mesh lies up to {:.3f} m outside of the tile's bounding volume", over.own));
     if (over.ancestor > kVolumeTolerance)
-      found(Check::tile_bounds, files_.path[kGltf], "", fmt::format("its mesh lies up to {:.3f} m outside of an ancestor's bounding volume", over.ancestor));
+      found(Check::tile_bounds, files_.path[kGltf], "",
+            fmt::format("its mesh lies up to {:.3f} m outside of an ancestor's bounding volume", over.ancestor));
   }
 
   void judge_meshes() {
@@ -189,7 +199,9 @@ class Checker {
       const ReadBody& body = glb_->contents.bodies[i];
       const auto lod = body.attributes.find("lod");
       // A footprint laid on the ground is no solid.
-      if (glb_->triangles[i].empty() || context_.record.lod == 0 || (lod != body.attributes.end() && lod->second == "0")) continue;
+      if (glb_->triangles[i].empty() || context_.record.lod == 0 ||
+          (lod != body.attributes.end() && lod->second == "0"))
+        continue;
       ++out_.judged;
       note(judge(glb_->triangles[i]), files_.path[kGltf], body.id, "mesh", out_.findings);
     }
@@ -223,10 +235,12 @@ class Checker {
   }
 
   static bool same_solids(const ReadBody& a, const ReadBody& b) {
-    return std::equal(a.solids.begin(), a.solids.end(), b.solids.begin(), b.solids.end(), [](const ReadSolid& x, const ReadSolid& y) {
-      return x.lod == y.lod && std::equal(x.polygons.begin(), x.polygons.end(), y.polygons.begin(), y.polygons.end(),
-                                          [](const ReadPolygon& p, const ReadPolygon& q) { return p.rings == q.rings; });
-    });
+    return std::equal(
+        a.solids.begin(), a.solids.end(), b.solids.begin(), b.solids.end(), [](const ReadSolid& x, const ReadSolid& y) {
+          return x.lod == y.lod &&
+                 std::equal(x.polygons.begin(), x.polygons.end(), y.polygons.begin(), y.polygons.end(),
+                            [](const ReadPolygon& p, const ReadPolygon& q) { return p.rings == q.rings; });
+        });
   }
 
   /// The ground is where ground_height says it is.
@@ -239,7 +253,8 @@ class Checker {
         for (const auto& ring : polygon.rings)
           for (const Point3& p : ring)
             if (std::fabs(p.z - z) > 1e-9) {
-              found(Check::geometry_differs, file, body.id, fmt::format("its {} lies at {:.4f} m, ground_height is {}", what, p.z, ground->second));
+              found(Check::geometry_differs, file, body.id,
+                    fmt::format("its {} lies at {:.4f} m, ground_height is {}", what, p.z, ground->second));
               return false;
             }
         return true;
@@ -300,11 +315,14 @@ class Checker {
     if (c.bodies.empty()) return;
     static constexpr const char* kKeys[kTileFormats] = {"gltf", "citygml", "cityjson"};
     for (std::size_t f = 0; f < kTileFormats; ++f) {
-      if (!context_.record.has(kKeys[f]) || !files_.path[f].empty() || std::count(there.begin(), there.end(), f)) continue;
+      if (!context_.record.has(kKeys[f]) || !files_.path[f].empty() || std::count(there.begin(), there.end(), f))
+        continue;
       // A tile where nothing could be built has no mesh.
-      const auto shown = std::count_if(c.bodies.begin(), c.bodies.end(), [&](const ReadBody& b) { return has_geometry(b, context_.record.lod); });
+      const auto shown = std::count_if(c.bodies.begin(), c.bodies.end(),
+                                       [&](const ReadBody& b) { return has_geometry(b, context_.record.lod); });
       if (f == kGltf && shown == 0) continue;
-      found(Check::object_missing, files_.path[reference], files_.name, fmt::format("{} bodies of the tile, but no file of it in {}", c.bodies.size(), kFormatNames[f]));
+      found(Check::object_missing, files_.path[reference], files_.name,
+            fmt::format("{} bodies of the tile, but no file of it in {}", c.bodies.size(), kFormatNames[f]));
     }
   }
 
@@ -341,7 +359,9 @@ class Checker {
     }
     Contents shown;
     for (const GeoPackageBuilding& b : rows.buildings) {
-      if (parts[b.id] != b.parts) found(Check::geopackage_rule, file, b.id, fmt::format("its row says {} parts, there are {}", b.parts, parts[b.id]));
+      if (parts[b.id] != b.parts)
+        found(Check::geopackage_rule, file, b.id,
+              fmt::format("its row says {} parts, there are {}", b.parts, parts[b.id]));
       if (with_bodies.count(b.id)) shown.buildings.push_back(b.id);
     }
     shown.bodies = std::move(rows.contents.bodies);
@@ -370,7 +390,8 @@ class Checker {
     std::size_t format = 0;
     const Contents* reference = model(format);
     if (files_.explanations.empty()) {
-      if (reference && !reference->bodies.empty()) found(Check::explanation_wrong, files_.path[format], files_.name, "the tile has no file in explain/");
+      if (reference && !reference->bodies.empty())
+        found(Check::explanation_wrong, files_.path[format], files_.name, "the tile has no file in explain/");
       return;
     }
     FormatCounts ignored;
@@ -379,7 +400,8 @@ class Checker {
     static const std::vector<std::pair<std::string, std::string>> none;
     const auto entries = context_.explanations->find(files_.name);
     out_.explained = check_explanations(*lines, files_.explanations, files_.name, reference,
-                                        entries == context_.explanations->end() ? none : entries->second, context_.record, out_.findings);
+                                        entries == context_.explanations->end() ? none : entries->second,
+                                        context_.record, out_.findings);
   }
 
   // ---- against the map
@@ -394,64 +416,30 @@ class Checker {
           const ReadBody& body = c->bodies[i];
           if (!context_.sample.corners.count(body.id)) continue;
           if (f == kGltf) rows.emplace(body.id, i);
-          if (f == kGltf ? !glb_->triangles[i].empty() : has_geometry(body, context_.record.lod)) bodies[body.id].emplace_back(f, &body);
+          if (f == kGltf ? !glb_->triangles[i].empty() : has_geometry(body, context_.record.lod))
+            bodies[body.id].emplace_back(f, &body);
         }
     context_.positions->with([&](georef::Witness& witness) {
       for (const auto& [id, shown] : bodies) {
         std::vector<std::vector<Point2>> places(kTileFormats);  // of GLB in degrees
-        for (const auto& [f, body] : shown) places[f] = f == kGltf ? places_on_earth(witness, glb_->triangles[rows.at(id)]) : plan_points(*body);
+        for (const auto& [f, body] : shown)
+          places[f] =
+              f == kGltf ? corners_on_earth(witness, transform_, glb_->triangles[rows.at(id)]) : plan_points(*body);
         for (const SampledCorner& corner : context_.sample.corners.at(id)) {
-          PositionResult result{corner.rank, id, {-1, -1, -1}, {0, 0, 0}};
+          PositionResult result;
+          result.rank = corner.rank;
+          result.object = id;
           for (const auto& [f, body] : shown) {
-            result.off[f] = f == kGltf ? nearest_degrees(places[f], corner.at) : nearest(places[f], witness.forward({corner.at.lon_degrees(), corner.at.lat_degrees()}));
+            result.file[f] = files_.path[f];
+            result.off[f] =
+                f == kGltf ? distance_on_earth(places[f], corner.at)
+                           : distance(places[f], witness.forward({corner.at.lon_degrees(), corner.at.lat_degrees()}));
             result.tolerance[f] = kPositionTolerance + (f == kGltf ? glb_->position_step * 0.71 : 0);
           }
           out_.positions.push_back(std::move(result));
         }
       }
     });
-  }
-
-  std::vector<Point2> places_on_earth(georef::Witness& witness, const std::vector<GlbTriangle>& triangles) const {
-    std::vector<Point3> corners;
-    for (const GlbTriangle& t : triangles) corners.insert(corners.end(), t.corners.begin(), t.corners.end());
-    std::sort(corners.begin(), corners.end());
-    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-    std::vector<Point2> out;
-    for (const Point3& p : corners) {
-      const georef::Geodetic g = witness.to_geodetic(apply(transform_, p));
-      out.push_back({g.lon, g.lat});
-    }
-    return out;
-  }
-
-  static std::vector<Point2> plan_points(const ReadBody& body) {
-    std::vector<Point2> out;
-    const auto add = [&](const std::vector<ReadPolygon>& polygons) {
-      for (const ReadPolygon& polygon : polygons)
-        for (const auto& ring : polygon.rings)
-          for (const Point3& p : ring) out.push_back(p.xy());
-    };
-    add(body.footprint);
-    for (const ReadSolid& solid : body.solids) add(solid.polygons);
-    return out;
-  }
-
-  static double nearest(const std::vector<Point2>& points, Point2 at) {
-    double best = 1e9;
-    for (const Point2& p : points) best = std::min(best, std::hypot(p.x - at.x, p.y - at.y));
-    return best;
-  }
-
-  static double nearest_degrees(const std::vector<Point2>& points, model::Location at) {
-    // Radii of curvature at the latitude: metres per degree north and east.
-    const double s = std::sin(at.lat_degrees() * kRadians), w = 1 - kEarthE2 * s * s;
-    const double north = kEarthA * (1 - kEarthE2) / (w * std::sqrt(w)) * kRadians;
-    const double east = kEarthA / std::sqrt(w) * std::cos(at.lat_degrees() * kRadians) * kRadians;
-    double best = 1e9;
-    for (const Point2& p : points)
-      best = std::min(best, std::hypot(std::remainder(p.x - at.lon_degrees(), 360.0) * east, (p.y - at.lat_degrees()) * north));
-    return best;
   }
 
   // ---- counting

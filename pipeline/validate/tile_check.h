@@ -45,6 +45,7 @@ struct FormatCounts {
 struct PositionResult {
   std::uint64_t rank = 0;
   std::string object;
+  std::string file[kTileFormats];
   double off[kTileFormats] = {-1, -1, -1};  ///< m
   double tolerance[kTileFormats] = {0, 0, 0};
 };
@@ -52,9 +53,9 @@ struct PositionResult {
 struct TileResult {
   std::vector<Finding> findings;
   FormatCounts counts[kTileFormats];
-  std::uint64_t judged = 0;      ///< solids that were given to both judges
+  std::uint64_t judged = 0;                                   ///< solids that were given to both judges
   std::uint64_t triangles = 0, attributes = 0, compared = 0;  ///< pairs of bodies in two formats
-  std::uint64_t explained = 0;   ///< records in explain/
+  std::uint64_t explained = 0;                                ///< records in explain/
   FormatCounts geopackage;
   std::vector<PositionResult> positions;
   std::vector<std::string> ids[kTileFormats];  ///< of bodies: across tiles they must differ as well
@@ -62,7 +63,7 @@ struct TileResult {
   std::vector<std::string> buildings;          ///< those with a footprint, of the first format that is there
   /// By format and body, where a file of the whole build will be compared: BodyDigest; of GLB with the number of
   /// triangles as its geometry.
-  std::vector<std::pair<std::string, BodyDigest>> digests[kTileFormats];
+  BodyDigests digests[kTileFormats];
   std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → bodies
   std::map<std::string, std::uint64_t> roofs;                           ///< built roof → bodies
 };

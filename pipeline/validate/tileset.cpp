@@ -14,9 +14,9 @@ namespace {
 
 using model::Point3;
 
-constexpr int kDeepest = 64;                // levels; a quadtree of the Earth has no more
-constexpr double kRadius = 6.37e6;          // m; turns angles into distances
-constexpr double kHighestOrigin = 20000;    // m; a frame's origin stands near the ground
+constexpr int kDeepest = 64;              // levels; a quadtree of the Earth has no more
+constexpr double kRadius = 6.37e6;        // m; turns angles into distances
+constexpr double kHighestOrigin = 20000;  // m; a frame's origin stands near the ground
 
 double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Point3 minus(const Point3& a, const Point3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -29,8 +29,8 @@ double beside(double lon, double west, double east) {
 
 double outside_region(const std::array<double, 6>& r, const Place& p) {
   const double width = std::max(std::cos(p.lat), 1e-6) * kRadius;
-  return std::max({beside(p.lon, r[0], r[2]) * width, (r[1] - p.lat) * kRadius, (p.lat - r[3]) * kRadius, r[4] - p.height,
-                   p.height - r[5], 0.0});
+  return std::max({beside(p.lon, r[0], r[2]) * width, (r[1] - p.lat) * kRadius, (p.lat - r[3]) * kRadius,
+                   r[4] - p.height, p.height - r[5], 0.0});
 }
 
 class Reader {
@@ -46,7 +46,8 @@ class Reader {
     if (!error || *error < 0) wrong("", "its geometricError is no number from 0");
     const Json* root = member(json, "root");
     if (!root) return wrong("", "no root");
-    if (error && number(member(root, "geometricError")).value_or(0) > *error) wrong("", "its geometricError is below its root's");
+    if (error && number(member(root, "geometricError")).value_or(0) > *error)
+      wrong("", "its geometricError is below its root's");
     for (const char* key : {"extensionsUsed", "extensionsRequired"})
       if (member(json, key)) wrong("", fmt::format("{}: Blockrand's tilesets need none", key));
     tile(*root, nullptr, kIdentity, {}, "root", 0);
@@ -59,7 +60,8 @@ class Reader {
     out_.findings.push_back({Check::tileset_rule, name_, where, what});
   }
 
-  void tile(const Json& tile, const Json* parent, const Matrix& above, const Chain& chain, const std::string& where, int depth) {
+  void tile(const Json& tile, const Json* parent, const Matrix& above, const Chain& chain, const std::string& where,
+            int depth) {
     if (depth > kDeepest) return wrong(where, "nested deeper than any quadtree");
     const auto error = number(member(tile, "geometricError"));
     if (!error || *error < 0) wrong(where, "geometricError is no number from 0");
@@ -103,7 +105,8 @@ class Reader {
     const Matrix expected = east_north_up(place);
     double turn = 0;
     for (std::size_t i = 0; i < 12; ++i) turn = std::max(turn, std::fabs(expected[i] - transform[i]));
-    if (!(std::fabs(place.height) < kHighestOrigin)) wrong(where, fmt::format("its origin is {:.0f} m above the ellipsoid", place.height));
+    if (!(std::fabs(place.height) < kHighestOrigin))
+      wrong(where, fmt::format("its origin is {:.0f} m above the ellipsoid", place.height));
     if (!(turn < 1e-9)) wrong(where, fmt::format("its transform is no east-north-up frame: {:.2g} off", turn));
   }
 
@@ -115,7 +118,8 @@ class Reader {
     }
     Matrix m{};
     std::copy(values->begin(), values->end(), m.begin());
-    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) wrong(where, "the last row of its transform is not 0 0 0 1");
+    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
+      wrong(where, "the last row of its transform is not 0 0 0 1");
     const Point3 a{m[0], m[1], m[2]}, b{m[4], m[5], m[6]}, c{m[8], m[9], m[10]};
     const double off = std::max({std::fabs(dot(a, a) - 1), std::fabs(dot(b, b) - 1), std::fabs(dot(c, c) - 1),
                                  std::fabs(dot(a, b)), std::fabs(dot(b, c)), std::fabs(dot(c, a))});
@@ -132,7 +136,9 @@ class Reader {
       wrong(where, "boundingVolume needs exactly one of region, box, sphere");
       return nullptr;
     }
-    const auto rotated = [&](double x, double y, double z) { return minus(apply(matrix, {x, y, z}), {matrix[12], matrix[13], matrix[14]}); };
+    const auto rotated = [&](double x, double y, double z) {
+      return minus(apply(matrix, {x, y, z}), {matrix[12], matrix[13], matrix[14]});
+    };
     if (region) {
       const auto r = numbers(region, 6);
       if (!r) return wrong(where, "region is not 6 numbers"), nullptr;
@@ -147,7 +153,8 @@ class Reader {
       if (!b) return wrong(where, "box is not 12 numbers"), nullptr;
       volume->kind = Volume::Kind::box;
       volume->centre = apply(matrix, {(*b)[0], (*b)[1], (*b)[2]});
-      for (std::size_t i = 0; i < 3; ++i) volume->half_axes[i] = rotated((*b)[3 + 3 * i], (*b)[4 + 3 * i], (*b)[5 + 3 * i]);
+      for (std::size_t i = 0; i < 3; ++i)
+        volume->half_axes[i] = rotated((*b)[3 + 3 * i], (*b)[4 + 3 * i], (*b)[5 + 3 * i]);
     } else {
       const auto s = numbers(sphere, 4);
       if (!s || (*s)[3] < 0) return wrong(where, "sphere is not 3 numbers and a radius"), nullptr;
@@ -163,7 +170,8 @@ class Reader {
       double worst = 0;
       for (const Point3& corner : volume.corners()) worst = std::max(worst, up->outside(corner));
       if (worst > kVolumeTolerance)
-        out_.findings.push_back({Check::tile_bounds, name_, where, fmt::format("its box sticks {:.3f} m out of an ancestor's volume", worst)});
+        out_.findings.push_back({Check::tile_bounds, name_, where,
+                                 fmt::format("its box sticks {:.3f} m out of an ancestor's volume", worst)});
       if (volume.kind != Volume::Kind::region || up->kind != Volume::Kind::region) continue;
       const auto &c = volume.region, &p = up->region;
       const bool sides = p[0] > p[2] || (c[0] <= c[2] && c[0] >= p[0] - 1e-12 && c[2] <= p[2] + 1e-12);

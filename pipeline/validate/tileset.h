@@ -16,10 +16,10 @@ namespace blockrand::validate {
 /// A bounding volume in earth-centred coordinates.
 struct Volume {
   enum class Kind { region, box, sphere } kind = Kind::region;
-  std::array<double, 6> region{};             ///< west, south, east, north in radians; lowest and highest, m
-  model::Point3 centre;                       ///< of a box or sphere
-  std::array<model::Point3, 3> half_axes{};   ///< of a box
-  double radius = 0;                          ///< of a sphere
+  std::array<double, 6> region{};            ///< west, south, east, north in radians; lowest and highest, m
+  model::Point3 centre;                      ///< of a box or sphere
+  std::array<model::Point3, 3> half_axes{};  ///< of a box
+  double radius = 0;                         ///< of a sphere
 
   /// How many metres a point lies outside; 0 inside.
   double outside(const model::Point3& ecef) const;
@@ -30,8 +30,8 @@ struct Volume {
 /// A tile with content.
 struct TilesetEntry {
   std::string uri;
-  Matrix transform = kIdentity;                         ///< of the content to earth-centred coordinates
-  std::vector<std::shared_ptr<const Volume>> volumes;   ///< of the tile first, then of its ancestors
+  Matrix transform = kIdentity;                        ///< of the content to earth-centred coordinates
+  std::vector<std::shared_ptr<const Volume>> volumes;  ///< of the tile first, then of its ancestors
 };
 
 struct Tileset {

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <unordered_set>
 
 #include "pipeline/base/error.h"
@@ -44,7 +45,8 @@ TilePath tile_path(std::string_view path) {
     return {name, Format::gltf};
   }
   if (const std::string name = between("citygml/", {".gml", ".gml.gz"}); !name.empty()) return {name, Format::citygml};
-  if (const std::string name = between("cityjson/", {".city.jsonl", ".city.jsonl.gz"}); !name.empty()) return {name, Format::cityjson};
+  if (const std::string name = between("cityjson/", {".city.jsonl", ".city.jsonl.gz"}); !name.empty())
+    return {name, Format::cityjson};
   return {};
 }
 
@@ -57,11 +59,13 @@ std::string explained_tile(std::string_view path) {
 
 class Run {
  public:
-  Run(const ValidateOptions& options, base::Progress& progress) : o_(options), progress_(progress), workers_(base::worker_count(options.jobs)) {}
+  Run(const ValidateOptions& options, base::Progress& progress)
+      : o_(options), progress_(progress), workers_(base::worker_count(options.jobs)) {}
 
   Validation run() {
     open();
-    check_hashes();
+    checked("files", "listed, there, unchanged (size and SHA-256)",
+            check_hashes(o_.folder, record_, workers_, progress_, log()), "files");
     read_whole_files();
     choose_positions();
     check_tiles();
@@ -82,9 +86,11 @@ class Run {
   void open() {
     std::error_code error;
     if (!fs::is_directory(o_.folder, error))
-      throw base::UsageError(o_.folder + (fs::exists(o_.folder, error) ? " is no folder." : " does not exist.") + " Name the output folder of a build.");
+      throw base::UsageError(o_.folder + (fs::exists(o_.folder, error) ? " is no folder." : " does not exist.") +
+                             " Name the output folder of a build.");
     if (!fs::exists(full("build.json"), error))
-      throw base::UsageError(o_.folder + " is no build: there is no build.json in it. Name the output folder of a build.");
+      throw base::UsageError(o_.folder +
+                             " is no build: there is no build.json in it. Name the output folder of a build.");
     xmlInitParser();  // before there are several threads
     auto record = read_build_record(o_.folder, log());
     if (!record) {
@@ -99,40 +105,6 @@ class Run {
 
   // ---- files
 
-  void check_hashes() {
-    std::vector<std::pair<std::string, BuildFile>> files;
-    std::uint64_t bytes = 0;
-    std::error_code error;
-    for (const auto& [path, file] : record_.files)
-      if (fs::exists(full(path), error)) {
-        files.emplace_back(path, file);
-        bytes += file.bytes;
-      }
-    progress_.begin("hashes", files.size(), "files");
-    std::vector<std::string> wrong(files.size());
-    base::ordered_parallel(
-        files.size(), workers_, static_cast<std::size_t>(2 * workers_ + 2),
-        [&](std::size_t i) {
-          const auto& [path, file] = files[i];
-          std::error_code failed;
-          const auto size = fs::file_size(full(path), failed);
-          if (failed || size != file.bytes) {
-            wrong[i] = fmt::format("{} bytes, build.json says {}", failed ? 0 : size, file.bytes);
-            return;
-          }
-          try {
-            if (base::sha256_file(full(path)) != file.sha256) wrong[i] = "its SHA-256 is not that of build.json";
-          } catch (const base::InputError&) {
-            wrong[i] = "cannot be read";
-          }
-        },
-        [&](std::size_t i) {
-          if (!wrong[i].empty()) log().add(Check::file_changed, files[i].first, "", wrong[i]);
-          progress_.advance_to(i + 1);
-        });
-    checked("files", "listed, there, unchanged (size and SHA-256)", files.size(), "files");
-  }
-
   void read_whole_files() {
     if (record_.has("gltf") && record_.files.count("tileset.json")) {
       if (const auto bytes = file_bytes(full("tileset.json"))) {
@@ -144,15 +116,21 @@ class Run {
             totals_[0].incomplete = true;
           }
         if (tileset_.readable && tileset_.crs != record_.crs)
-          log().add(Check::tileset_rule, "tileset.json", "", fmt::format("says {}, build.json says {}", tileset_.crs, record_.crs));
-        checked("tileset.json", "3D Tiles 1.1: volumes, errors, transforms, contents", tileset_.entries.size(), "tiles");
+          log().add(Check::tileset_rule, "tileset.json", "",
+                    fmt::format("says {}, build.json says {}", tileset_.crs, record_.crs));
+        checked("tileset.json", "3D Tiles 1.1: volumes, errors, transforms, contents", tileset_.entries.size(),
+                "tiles");
       }
     }
     if (record_.files.count("report.json")) report_ = read_report(o_.folder, record_, log());
     if (record_.explain) {
       std::string why;
-      if (const auto index = record_.files.count("explain/index.txt") ? content_of(full("explain/index.txt"), why) : std::nullopt) index_ = read_explanation_index(*index, log());
-      else if (!record_.files.count("explain/index.txt")) log().add(Check::build_json, "build.json", "explain/index.txt", "the configuration asks for it, but no such file is listed");
+      if (const auto index =
+              record_.files.count("explain/index.txt") ? content_of(full("explain/index.txt"), why) : std::nullopt)
+        index_ = read_explanation_index(*index, log());
+      else if (!record_.files.count("explain/index.txt"))
+        log().add(Check::build_json, "build.json", "explain/index.txt",
+                  "the configuration asks for it, but no such file is listed");
     }
     if (record_.has("gpkg") && record_.files.count("buildings.gpkg") && fs::exists(full("buildings.gpkg"))) {
       progress_.begin("buildings.gpkg");
@@ -168,14 +146,17 @@ class Run {
 
   void check_geopackage() {
     const std::string epsg = fmt::format("EPSG:{}", geopackage_->srs_id());
-    if (epsg != record_.crs) log().add(Check::geopackage_rule, "buildings.gpkg", "", fmt::format("its layers are in {}, build.json says {}", epsg, record_.crs));
+    if (epsg != record_.crs)
+      log().add(Check::geopackage_rule, "buildings.gpkg", "",
+                fmt::format("its layers are in {}, build.json says {}", epsg, record_.crs));
     for (const GeoPackageTileRow& tile : geopackage_->tile_rows()) {
       if (tile.uri.empty()) continue;
       const auto file = record_.files.find(tile.uri);
       if (file == record_.files.end())
         log().add(Check::tile_missing, "buildings.gpkg", tile.id, tile.uri + " is not there");
       else if (tile.bytes != static_cast<std::int64_t>(file->second.bytes))
-        log().add(Check::counts_differ, "buildings.gpkg", tile.id, fmt::format("{} bytes, build.json says {}", tile.bytes, file->second.bytes));
+        log().add(Check::counts_differ, "buildings.gpkg", tile.id,
+                  fmt::format("{} bytes, build.json says {}", tile.bytes, file->second.bytes));
     }
     if (!report_) return;
     std::set<std::string> there;
@@ -185,10 +166,13 @@ class Run {
       if (found == report_->all.end())
         log().add(Check::object_missing, "report.json", row.id, "is in the layer `reported` of buildings.gpkg only");
       else if (found->second != row.state + " " + row.code)
-        log().add(Check::attribute_differs, "buildings.gpkg", row.id, fmt::format("\"{} {}\" in the layer `reported`, \"{}\" in report.json", row.state, row.code, found->second));
+        log().add(Check::attribute_differs, "buildings.gpkg", row.id,
+                  fmt::format("\"{} {}\" in the layer `reported`, \"{}\" in report.json", row.state, row.code,
+                              found->second));
     }
     for (const auto& [id, state] : report_->all)
-      if (!there.count(id)) log().add(Check::object_missing, "buildings.gpkg", id, "is in report.json, but not in the layer `reported`");
+      if (!there.count(id))
+        log().add(Check::object_missing, "buildings.gpkg", id, "is in report.json, but not in the layer `reported`");
   }
 
   // ---- tiles
@@ -204,14 +188,16 @@ class Run {
       else if (base::sha256_file(path) != record_.extract_sha256)
         path.clear();
     } else if (base::sha256_file(path) != record_.extract_sha256) {
-      throw base::UsageError("--extract " + path + " is not the file that the build was made from: its SHA-256 differs.");
+      throw base::UsageError("--extract " + path +
+                             " is not the file that the build was made from: its SHA-256 differs.");
     }
     const std::set<std::string> none;
     const std::set<std::string>& mended = report_ ? report_->mended : none;
     if (!path.empty()) {
       progress_.begin("positions");
       std::optional<std::array<double, 4>> bbox;
-      if (const auto box = numbers(member(member(record_.json, "configuration"), "bbox"), 4)) bbox = {(*box)[0], (*box)[1], (*box)[2], (*box)[3]};
+      if (const auto box = numbers(member(member(record_.json, "configuration"), "bbox"), 4))
+        bbox = {(*box)[0], (*box)[1], (*box)[2], (*box)[3]};
       sample_ = sample_extract(path, bbox, mended);
     } else {
       std::vector<std::string> records;
@@ -220,8 +206,10 @@ class Run {
       if (!records.empty()) sample_ = sample_explanations(records, mended);
     }
     if (sample_.empty()) {
-      v_.notes.push_back(path.empty() && sample_.source.empty() ? "positions were not compared with OpenStreetMap: the extract is not where build.json says (give --extract FILE)"
-                                                                : "positions were not compared with OpenStreetMap: no building has a clear corner");
+      v_.notes.push_back(path.empty() && sample_.source.empty()
+                             ? "positions were not compared with OpenStreetMap: the extract is not where build.json "
+                               "says (give --extract FILE)"
+                             : "positions were not compared with OpenStreetMap: no building has a clear corner");
     }
     choose_witness();
   }
@@ -238,7 +226,9 @@ class Run {
       const model::Point2 a = pinned.forward({sample_.lon, sample_.lat}), b = own.forward({sample_.lon, sample_.lat});
       const double apart = std::hypot(a.x - b.x, a.y - b.y);
       if (!(apart <= 2 * std::max(record_.accuracy, 0.0) + 1))
-        log().add(Check::build_json, "build.json", "crs.pipeline", fmt::format("leads {:.3f} m from where PROJ has {} at {} {}", apart, record_.crs, sample_.lon, sample_.lat));
+        log().add(Check::build_json, "build.json", "crs.pipeline",
+                  fmt::format("leads {:.3f} m from where PROJ has {} at {} {}", apart, record_.crs, sample_.lon,
+                              sample_.lat));
     } catch (const base::UsageError& error) {
       log().add(Check::build_json, "build.json", "crs", error.what());
     }
@@ -258,7 +248,8 @@ class Run {
       }
     if (index_)
       for (const auto& [tile, entries] : *index_)
-        if (!tiles.count(tile)) log().add(Check::explanation_wrong, "explain/index.txt", tile, "the index names a tile that is not there");
+        if (!tiles.count(tile))
+          log().add(Check::explanation_wrong, "explain/index.txt", tile, "the index names a tile that is not there");
     if (geopackage_)
       for (std::string tile : geopackage_->tiles()) {
         std::replace(tile.begin(), tile.end(), '/', '_');
@@ -280,17 +271,22 @@ class Run {
           progress_.advance_to(i + 1);
         });
     for (std::size_t f = 0; f < kTileFormats; ++f) {
-      static constexpr const char* kHow[kTileFormats] = {"glTF 2.0, property tables, bounds, georeference", "structure, references, attributes, colours",
+      static constexpr const char* kHow[kTileFormats] = {"glTF 2.0, property tables, bounds, georeference",
+                                                         "structure, references, attributes, colours",
                                                          "structure, references, attributes, colours"};
       if (totals_[f].files == 0) continue;
       std::string how = kHow[f];
       if (f == static_cast<std::size_t>(Format::citygml) && schema_) how += ", OGC schemas";
       checked(kFormatNames[f], std::move(how), totals_[f].bodies, fmt::format("bodies in {} files", totals_[f].files));
     }
-    if (geopackage_) checked("GeoPackage", "OGC and QGIS rules, every row against the other formats", geopackage_total_.bodies, "bodies in buildings.gpkg");
+    if (geopackage_)
+      checked("GeoPackage", "OGC and QGIS rules, every row against the other formats", geopackage_total_.bodies,
+              "bodies in buildings.gpkg");
     if (index_) checked("explain/", "one record a building, with the values of the model", explained_, "records");
     if (judged_ > 0) checked("solids", "own checker and CGAL", judged_, "solids");
-    if (compared_ > 0) checked("content", "attributes, geometry and colours of one format against another", compared_, "pairs of bodies");
+    if (compared_ > 0)
+      checked("content", "attributes, geometry and colours of one format against another", compared_,
+              "pairs of bodies");
   }
 
   static TileResult checked_tile(const TileFiles& files, const TileContext& context) {
@@ -301,16 +297,26 @@ class Run {
     } catch (const std::exception& error) {
       // Nothing in a file may end the run.
       TileResult failed;
-      const auto path = std::find_if(std::begin(files.path), std::end(files.path), [](const std::string& p) { return !p.empty(); });
-      failed.findings.push_back({Check::file_unreadable, *path, files.name, std::string("the tile cannot be checked: ") + error.what()});
+      const auto path =
+          std::find_if(std::begin(files.path), std::end(files.path), [](const std::string& p) { return !p.empty(); });
+      failed.findings.push_back(
+          {Check::file_unreadable, *path, files.name, std::string("the tile cannot be checked: ") + error.what()});
       for (FormatCounts& c : failed.counts) c.incomplete = true;
       return failed;
     }
   }
 
   TileContext context() {
-    return {o_.folder, record_, record_.has("gltf") ? &tileset_ : nullptr, schema_.get(), sample_, pinned_ ? &*pinned_ : nullptr,
-            positions_, geoid_, geopackage_.get(), index_ ? &*index_ : nullptr};
+    return {o_.folder,
+            record_,
+            record_.has("gltf") ? &tileset_ : nullptr,
+            schema_.get(),
+            sample_,
+            pinned_ ? &*pinned_ : nullptr,
+            positions_,
+            geoid_,
+            geopackage_.get(),
+            index_ ? &*index_ : nullptr};
   }
 
   void take(TileResult&& tile) {
@@ -319,21 +325,24 @@ class Run {
       totals_[f].add(tile.counts[f]);
       std::move(tile.digests[f].begin(), tile.digests[f].end(), std::back_inserter(digests_[f]));
       for (std::string& id : tile.ids[f])
-        if (!ids_[f].insert(std::hash<std::string>{}(id)).second && tile.counts[f].files > 0) log().add(Check::object_doubled, kFormatNames[f], id, "the body stands in two tiles");
+        if (!ids_[f].insert(std::hash<std::string>{}(id)).second && tile.counts[f].files > 0)
+          log().add(Check::object_doubled, kFormatNames[f], id, "the body stands in two tiles");
     }
     geopackage_total_.add(tile.geopackage);
     explained_ += tile.explained;
     for (std::string& id : tile.buildings) buildings_.insert(std::move(id));
     judged_ += tile.judged;
     compared_ += tile.compared;
-    positions_found_.insert(positions_found_.end(), std::make_move_iterator(tile.positions.begin()), std::make_move_iterator(tile.positions.end()));
+    positions_found_.insert(positions_found_.end(), std::make_move_iterator(tile.positions.begin()),
+                            std::make_move_iterator(tile.positions.end()));
     for (const auto& [attribute, sources] : tile.sources)
       for (const auto& [source, count] : sources) sources_[attribute][source] += count;
     for (const auto& [roof, count] : tile.roofs) roofs_[roof] += count;
     if (report_)
       for (const std::string& id : tile.modelled) {
         const auto state = report_->states.find(id);
-        if (state != report_->states.end()) log().add(Check::report_wrong, "report.json", id, "is " + state->second + " there, but stands in the model");
+        if (state != report_->states.end())
+          log().add(Check::report_wrong, "report.json", id, "is " + state->second + " there, but stands in the model");
       }
   }
 
@@ -342,32 +351,39 @@ class Run {
       progress_.begin("model.glb");
       TileResult r = check_single_glb("model.glb", context());
       log().add(std::move(r.findings));
-      checked("model.glb", "glTF 2.0, property table, georeference, solids, against the tiles", r.counts[0].bodies, "bodies");
-      positions_found_.insert(positions_found_.end(), std::make_move_iterator(r.positions.begin()), std::make_move_iterator(r.positions.end()));
+      checked("model.glb", "glTF 2.0, property table, georeference, solids, against the tiles", r.counts[0].bodies,
+              "bodies");
+      positions_found_.insert(positions_found_.end(), std::make_move_iterator(r.positions.begin()),
+                              std::make_move_iterator(r.positions.end()));
       if (!r.counts[0].incomplete) compare_whole("model.glb", Format::gltf, r.digests[0]);
     }
     if (record_.files.count("model.city.json")) {
       progress_.begin("model.city.json");
       if (const auto text = file_bytes(full("model.city.json"))) {
         Contents contents = read_cityjson(*text, "model.city.json");
-        const bool unreadable = std::any_of(contents.findings.begin(), contents.findings.end(), [](const Finding& f) { return f.check == Check::file_unreadable; });
+        const bool unreadable = std::any_of(contents.findings.begin(), contents.findings.end(),
+                                            [](const Finding& f) { return f.check == Check::file_unreadable; });
         log().add(std::move(contents.findings));
         checked("model.city.json", "rules of CityJSON 2.0, against the tiles", contents.bodies.size(), "bodies");
-        std::vector<std::pair<std::string, BodyDigest>> digests;
+        BodyDigests digests;
         for (const ReadBody& body : contents.bodies) digests.emplace_back(body.id, digest(body));
         if (!unreadable) compare_whole("model.city.json", Format::cityjson, digests);
       }
     }
     if (record_.files.count("report.html")) {
       progress_.begin("report.html");
-      const bool all = o_.sample <= 1 && std::none_of(std::begin(totals_), std::end(totals_), [](const FormatCounts& n) { return n.incomplete; }) && !buildings_.empty();
+      const bool all =
+          o_.sample <= 1 &&
+          std::none_of(std::begin(totals_), std::end(totals_), [](const FormatCounts& n) { return n.incomplete; }) &&
+          !buildings_.empty();
       const std::uint64_t compared = check_report_page(o_.folder, record_, all ? &buildings_ : nullptr, log());
-      checked("report.html", "well-formed, loads nothing, against build.json and the model", compared, "numbers and footprints");
+      checked("report.html", "well-formed, loads nothing, against build.json and the model", compared,
+              "numbers and footprints");
     }
   }
 
   /// A file of the whole build against what the tiles of the format hold.
-  void compare_whole(const std::string& file, Format format, const std::vector<std::pair<std::string, BodyDigest>>& bodies) {
+  void compare_whole(const std::string& file, Format format, const BodyDigests& bodies) {
     const auto f = static_cast<std::size_t>(format);
     if (o_.sample > 1 || totals_[f].incomplete) return;
     if (totals_[f].files == 0) {
@@ -375,20 +391,9 @@ class Run {
         log().add(Check::counts_differ, file, "", fmt::format("{} bodies, build.json says {}", bodies.size(), *said));
       return;
     }
-    std::map<std::string_view, BodyDigest> whole;
-    for (const auto& [id, d] : bodies)
-      if (!whole.emplace(id, d).second) log().add(Check::object_doubled, file, id, "the body stands twice");
-    for (const auto& [id, d] : digests_[f]) {
-      const auto found = whole.find(id);
-      if (found == whole.end()) {
-        log().add(Check::object_missing, file, id, std::string("the body stands in ") + kFormatNames[f] + " only");
-        continue;
-      }
-      if (found->second.geometry != d.geometry) log().add(Check::geometry_differs, file, id, std::string("other geometry or colours than in ") + kFormatNames[f]);
-      if (found->second.attributes != d.attributes) log().add(Check::attribute_differs, file, id, std::string("other attributes than in ") + kFormatNames[f]);
-      whole.erase(found);
-    }
-    for (const auto& [id, d] : whole) log().add(Check::object_missing, kFormatNames[f], std::string(id), "the body stands in " + file + " only");
+    std::vector<Finding> findings;
+    compare_digests(digests_[f], kFormatNames[f], bodies, file, findings);
+    log().add(std::move(findings));
   }
 
   // ---- counts
@@ -400,7 +405,9 @@ class Run {
     }
     const auto expect = [&](const std::string& what, std::uint64_t is, const char* key) {
       const auto said = record_.count(key);
-      if (said && *said != is) log().add(Check::counts_differ, "build.json", std::string("counts.") + key, fmt::format("{} in the file, {} {}", *said, is, what));
+      if (said && *said != is)
+        log().add(Check::counts_differ, "build.json", std::string("counts.") + key,
+                  fmt::format("{} in the file, {} {}", *said, is, what));
     };
     static constexpr const char* kKeys[kTileFormats] = {"gltf", "citygml", "cityjson"};
     bool any = false;
@@ -417,12 +424,15 @@ class Run {
     }
     if (geopackage_) expect("bodies in buildings.gpkg", geopackage_total_.bodies, "bodies");
     if (any) check_statistics();
-    if (any) checked("counts", "build.json, report.json and every format, to the last building", record_.count("models").value_or(0), "models");
+    if (any)
+      checked("counts", "build.json, report.json and every format, to the last building",
+              record_.count("models").value_or(0), "models");
   }
 
   void check_statistics() {
     const Json* statistics = member(record_.json, "statistics");
-    const auto compare = [&](const Json* said, const std::map<std::string, std::uint64_t>& is, const std::string& where) {
+    const auto compare = [&](const Json* said, const std::map<std::string, std::uint64_t>& is,
+                             const std::string& where) {
       std::map<std::string, std::uint64_t> there, all = is;
       if (said && said->is_object())
         for (const auto& [name, count] : said->items()) there[name] = whole(&count).value_or(0);
@@ -430,18 +440,23 @@ class Run {
       for (const auto& [name, count] : all) {
         const std::map<std::string, std::uint64_t>::const_iterator a = there.find(name), b = is.find(name);
         const std::uint64_t x = a == there.end() ? 0 : a->second, y = b == is.end() ? 0 : b->second;
-        if (x != y) log().add(Check::counts_differ, "build.json", where + "." + name, fmt::format("{} in the file, {} bodies in the model", x, y));
+        if (x != y)
+          log().add(Check::counts_differ, "build.json", where + "." + name,
+                    fmt::format("{} in the file, {} bodies in the model", x, y));
       }
     };
     compare(member(statistics, "roofs"), roofs_, "statistics.roofs");
     const Json* sources = member(statistics, "sources");
-    for (const auto& [attribute, counts] : sources_) compare(member(sources, attribute), counts, "statistics.sources." + attribute);
+    for (const auto& [attribute, counts] : sources_)
+      compare(member(sources, attribute), counts, "statistics.sources." + attribute);
   }
 
   // ---- positions
 
   void check_positions() {
-    std::sort(positions_found_.begin(), positions_found_.end(), [](const PositionResult& a, const PositionResult& b) { return a.rank != b.rank ? a.rank < b.rank : a.object < b.object; });
+    std::sort(positions_found_.begin(), positions_found_.end(), [](const PositionResult& a, const PositionResult& b) {
+      return a.rank != b.rank ? a.rank < b.rank : a.object < b.object;
+    });
     // model.glb shows the same corners once more.
     std::uint64_t last = 0;
     std::size_t different = 0;
@@ -456,7 +471,8 @@ class Run {
         double& worst = f == static_cast<std::size_t>(Format::gltf) ? v_.worst_glb : v_.worst_crs;
         worst = std::max(worst, p.off[f]);
         if (p.off[f] > p.tolerance[f])
-          log().add(Check::position, kFormatNames[f], p.object, fmt::format("the nearest corner is {:.4f} m from where OpenStreetMap has one", p.off[f]));
+          log().add(Check::position, p.file[f], p.object,
+                    fmt::format("the nearest corner is {:.4f} m from where OpenStreetMap has one", p.off[f]));
       }
     }
     v_.positions = different;
@@ -481,10 +497,11 @@ class Run {
   std::unique_ptr<GeoPackageReader> geopackage_;
   std::optional<ExplanationIndex> index_;
   FormatCounts totals_[kTileFormats], geopackage_total_;
-  std::unordered_set<std::string> buildings_;
+  std::set<std::string> buildings_;
   std::uint64_t explained_ = 0;
-  std::vector<std::pair<std::string, BodyDigest>> digests_[kTileFormats];
-  std::unordered_set<std::size_t> ids_[kTileFormats];  ///< hashes: a city's ids as texts would take the memory of a tile
+  BodyDigests digests_[kTileFormats];
+  std::unordered_set<std::size_t>
+      ids_[kTileFormats];  ///< hashes: a city's ids as texts would take the memory of a tile
   std::uint64_t judged_ = 0, compared_ = 0;
   std::map<std::string, std::map<std::string, std::uint64_t>> sources_;
   std::map<std::string, std::uint64_t> roofs_;

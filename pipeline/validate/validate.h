@@ -19,10 +19,10 @@ struct Checked {
 };
 
 struct Validation {
-  std::vector<Checked> checked;      ///< in the order in which it was checked
-  std::vector<std::string> notes;    ///< what could not be checked, and why
-  std::string position_source;       ///< in words; empty where no positions were compared
-  std::uint64_t positions = 0;       ///< corners that were compared with OpenStreetMap
+  std::vector<Checked> checked;         ///< in the order in which it was checked
+  std::vector<std::string> notes;       ///< what could not be checked, and why
+  std::string position_source;          ///< in words; empty where no positions were compared
+  std::uint64_t positions = 0;          ///< corners that were compared with OpenStreetMap
   double worst_glb = 0, worst_crs = 0;  ///< m: the largest distance in GLBs, and in CityGML and CityJSON
   FindingLog findings;
   bool sound() const { return findings.count() == 0; }

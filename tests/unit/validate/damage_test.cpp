@@ -90,7 +90,8 @@ std::vector<fs::path> Damage::files_;
 TEST_F(Damage, NoneIsFoundWhereNoneIs) {
   ASSERT_GE(files_.size(), 11u);
   const Validation v = validated();
-  for (const Finding& f : v.findings.kept()) ADD_FAILURE() << info(f.check).text << " " << f.file << " " << f.object << ": " << f.detail;
+  for (const Finding& f : v.findings.kept())
+    ADD_FAILURE() << info(f.check).text << " " << f.file << " " << f.object << ": " << f.detail;
   EXPECT_GT(v.positions, 4u);
 }
 

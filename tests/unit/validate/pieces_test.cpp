@@ -36,7 +36,8 @@ TEST(FindingLog, KeepsSomeAndCountsAll) {
 
 TEST(Ids, OfBodies) {
   for (const char* id : {"w1", "n-5", "r12.w3", "w1.rest", "w1.2", "w1.w2.3"}) EXPECT_TRUE(is_body_id(id)) << id;
-  for (const char* id : {"", "w", "x1", "w1.", "w1..2", "w1.x", "1", "w-", "w1.rest."}) EXPECT_FALSE(is_body_id(id)) << id;
+  for (const char* id : {"", "w", "x1", "w1.", "w1..2", "w1.x", "1", "w-", "w1.rest."})
+    EXPECT_FALSE(is_body_id(id)) << id;
   EXPECT_EQ(owner("w1.2"), "w1");
   EXPECT_EQ(owner("w1.w2.3"), "w2");
   EXPECT_EQ(owner("w1.rest"), "w1");
@@ -111,9 +112,12 @@ ReadSolid cube() {
   const auto p = [](int x, int y, int z) { return Point3{10.0 * x, 10.0 * y, 10.0 * z}; };
   ReadSolid s;
   s.lod = 1;
-  s.polygons = {polygon({p(0, 0, 0), p(0, 1, 0), p(1, 1, 0), p(1, 0, 0)}, "ground"), polygon({p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)}),
-                polygon({p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1)}, "wall"),   polygon({p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1)}, "wall"),
-                polygon({p(1, 1, 0), p(0, 1, 0), p(0, 1, 1), p(1, 1, 1)}, "wall"),   polygon({p(0, 1, 0), p(0, 0, 0), p(0, 0, 1), p(0, 1, 1)}, "wall")};
+  s.polygons = {polygon({p(0, 0, 0), p(0, 1, 0), p(1, 1, 0), p(1, 0, 0)}, "ground"),
+                polygon({p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)}),
+                polygon({p(0, 0, 0), p(1, 0, 0), p(1, 0, 1), p(0, 0, 1)}, "wall"),
+                polygon({p(1, 0, 0), p(1, 1, 0), p(1, 1, 1), p(1, 0, 1)}, "wall"),
+                polygon({p(1, 1, 0), p(0, 1, 0), p(0, 1, 1), p(1, 1, 1)}, "wall"),
+                polygon({p(0, 1, 0), p(0, 0, 0), p(0, 0, 1), p(0, 1, 1)}, "wall")};
   return s;
 }
 
@@ -176,7 +180,8 @@ TEST(Compare, FindsEachDifference) {
   EXPECT_THAT(found([](ReadSolid& s) { s.polygons[1].kind = "wall"; }), ElementsAre("GEOMETRY_DIFFERS"));
   EXPECT_THAT(found([](ReadSolid& s) { s.polygons[1].colour = "#112234"; }), ElementsAre("COLOUR_DIFFERS"));
   EXPECT_THAT(found([](ReadSolid& s) { s.lod = 2; }), ElementsAre("GEOMETRY_DIFFERS", "GEOMETRY_DIFFERS"));
-  EXPECT_THAT(found([](ReadSolid& s) { std::reverse(s.polygons[1].rings[0].begin(), s.polygons[1].rings[0].end()); }), ElementsAre("GEOMETRY_DIFFERS"));
+  EXPECT_THAT(found([](ReadSolid& s) { std::reverse(s.polygons[1].rings[0].begin(), s.polygons[1].rings[0].end()); }),
+              ElementsAre("GEOMETRY_DIFFERS"));
 }
 
 /// The cube's faces as two triangles each.
@@ -197,7 +202,9 @@ Glb mesh_of(const ReadSolid& solid) {
 TEST(Compare, MeshesByCornersVolumeAndColour) {
   const std::string a = "a";
   const Contents x = contents_of(cube());
-  const ToLocal same = [](std::span<const Point3> in, std::span<Point3> out) { std::copy(in.begin(), in.end(), out.begin()); };
+  const ToLocal same = [](std::span<const Point3> in, std::span<Point3> out) {
+    std::copy(in.begin(), in.end(), out.begin());
+  };
   const auto found = [&](const Glb& glb) {
     std::vector<Finding> findings;
     compare_meshes({x, a}, glb, "b", same, 1e-3, findings);
@@ -227,8 +234,11 @@ TEST(Compare, MeshesByCornersVolumeAndColour) {
 }
 
 TEST(Positions, OnlyClearCornersAndTheSameEachTime) {
-  const std::vector<model::Location> ring = {{110300000, 514700000}, {110301000, 514700000}, {110302000, 514700001},  // on a straight wall
-                                             {110302000, 514701000}, {110300000, 514701000}};
+  const std::vector<model::Location> ring = {{110300000, 514700000},
+                                             {110301000, 514700000},
+                                             {110302000, 514700001},  // on a straight wall
+                                             {110302000, 514701000},
+                                             {110300000, 514701000}};
   PositionSampler one, two;
   one.add("w1", ring);
   two.add("w1", ring);
@@ -243,7 +253,8 @@ TEST(Positions, ManyAreThinnedByRankNotByOrder) {
     for (int i = 0; i < 40000; ++i) {
       const int n = backwards ? 39999 - i : i;
       const std::int32_t x = 110000000 + n * 3000;
-      sampler.add("w" + std::to_string(n), {{x, 514700000}, {x + 2000, 514700000}, {x + 2000, 514702000}, {x, 514702000}});
+      sampler.add("w" + std::to_string(n),
+                  {{x, 514700000}, {x + 2000, 514700000}, {x + 2000, 514702000}, {x, 514702000}});
     }
     return std::move(sampler).finish("x");
   };
@@ -259,7 +270,8 @@ TEST(Positions, ManyAreThinnedByRankNotByOrder) {
 
 TEST(TilesetReader, DeepNestingEnds) {
   std::string text = R"({"asset":{"version":"1.1"},"geometricError":1,"root":)";
-  for (int i = 0; i < 2000; ++i) text += R"({"geometricError":0,"refine":"ADD","boundingVolume":{"sphere":[0,0,0,1e8]},"children":[)";
+  for (int i = 0; i < 2000; ++i)
+    text += R"({"geometricError":0,"refine":"ADD","boundingVolume":{"sphere":[0,0,0,1e8]},"children":[)";
   text += "{}";
   for (int i = 0; i < 2000; ++i) text += "]}";
   text += "}";

@@ -1,0 +1,55 @@
+#include "pipeline/validate/places.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace blockrand::validate {
+
+using model::Point2;
+using model::Point3;
+
+std::vector<Point2> corners_on_earth(georef::Witness& witness, const Matrix& transform,
+                                     const std::vector<GlbTriangle>& triangles) {
+  std::vector<Point3> corners;
+  for (const GlbTriangle& t : triangles) corners.insert(corners.end(), t.corners.begin(), t.corners.end());
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  std::vector<Point2> out;
+  for (const Point3& p : corners) {
+    const georef::Geodetic g = witness.to_geodetic(apply(transform, p));
+    out.push_back({g.lon, g.lat});
+  }
+  return out;
+}
+
+std::vector<Point2> plan_points(const ReadBody& body) {
+  std::vector<Point2> out;
+  const auto add = [&](const std::vector<ReadPolygon>& polygons) {
+    for (const ReadPolygon& polygon : polygons)
+      for (const auto& ring : polygon.rings)
+        for (const Point3& p : ring) out.push_back(p.xy());
+  };
+  add(body.footprint);
+  for (const ReadSolid& solid : body.solids) add(solid.polygons);
+  return out;
+}
+
+double distance(const std::vector<Point2>& points, Point2 at) {
+  double best = 1e9;
+  for (const Point2& p : points) best = std::min(best, std::hypot(p.x - at.x, p.y - at.y));
+  return best;
+}
+
+double distance_on_earth(const std::vector<Point2>& points, model::Location at) {
+  // Radii of curvature at the latitude: metres per degree north and east.
+  const double s = std::sin(at.lat_degrees() * kRadians), w = 1 - kEarthE2 * s * s;
+  const double north = kEarthA * (1 - kEarthE2) / (w * std::sqrt(w)) * kRadians;
+  const double east = kEarthA / std::sqrt(w) * std::cos(at.lat_degrees() * kRadians) * kRadians;
+  double best = 1e9;
+  for (const Point2& p : points)
+    best = std::min(best,
+                    std::hypot(std::remainder(p.x - at.lon_degrees(), 360.0) * east, (p.y - at.lat_degrees()) * north));
+  return best;
+}
+
+}  // namespace blockrand::validate
