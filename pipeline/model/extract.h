@@ -58,6 +58,12 @@ enum class ObjectKind : std::uint8_t { building, building_part };
 /// become an area; the region stage decides the rest.
 enum class ObjectState : std::uint8_t { pending, modelled, represented, duplicate, reported };
 
+/// As written in all outputs.
+constexpr std::string_view name(ObjectState state) {
+  constexpr std::string_view names[] = {"pending", "modelled", "represented", "duplicate", "reported"};
+  return names[static_cast<int>(state)];
+}
+
 /// A node, way or relation with `building` or `building:part` (not `no`).
 struct MappedBuilding {
   OsmId id;

@@ -157,8 +157,8 @@ std::uint64_t estimated_bytes(const BuildOptions& options, std::uint64_t buildin
   constexpr double kGmlBytes[] = {2500, 5500, 12500};  // per building and level of detail
   constexpr double kGlbBytes = 3000;
   const auto lod = static_cast<std::size_t>(std::clamp(options.lod, 0, 2));
-  constexpr double kJsonBytes[] = {2500, 3500, 6500};
-  constexpr double kGeoPackageBytes = 3500, kExplainBytes = 300, kReportBytes = 150;
+  constexpr double kJsonBytes[] = {1500, 2000, 3500};
+  constexpr double kGeoPackageBytes = 1600, kExplainBytes = 300, kReportBytes = 150;
   double each = 300;
   if (options.citygml) each += options.gzip ? kGmlBytes[lod] / 7 : kGmlBytes[lod];
   if (options.cityjson) each += options.gzip ? kJsonBytes[lod] / 5 : kJsonBytes[lod];

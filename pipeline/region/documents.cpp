@@ -15,11 +15,6 @@ using Json = nlohmann::ordered_json;
 /// Rounded for people; also keeps the last bits of long sums out of the file.
 double rounded(double value, double steps = 100) { return std::nearbyint(value * steps) / steps; }
 
-std::string_view name(model::ObjectState state) {
-  constexpr std::string_view names[] = {"pending", "modelled", "represented", "duplicate", "reported"};
-  return names[static_cast<int>(state)];
-}
-
 }  // namespace
 
 std::string build_json(const BuildOptions& options, const BuildRecord& r) {
@@ -140,7 +135,7 @@ std::string report_json(const model::Extract& extract, const std::vector<model::
     if (b.state == model::ObjectState::modelled) continue;
     Json entry = {{"id", b.id.text()},
                   {"kind", b.kind == model::ObjectKind::building ? "building" : "building_part"},
-                  {"state", name(b.state)}};
+                  {"state", model::name(b.state)}};
     if (b.state == model::ObjectState::reported) {
       entry["code"] = info(b.code).text;
       if (const auto found = details.find({b.id, b.code}); found != details.end() && !found->second.empty())

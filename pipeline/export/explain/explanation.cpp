@@ -19,11 +19,6 @@ using model::Region;
 using model::ReportRow;
 using model::Sourced;
 
-std::string_view name(ObjectState state) {
-  constexpr std::string_view names[] = {"pending", "modelled", "represented", "duplicate", "reported"};
-  return names[static_cast<int>(state)];
-}
-
 std::string_view name(model::IssueClass issue_class) {
   constexpr std::string_view names[] = {"reported", "fallback", "notice"};
   return names[static_cast<int>(issue_class)];
@@ -58,7 +53,7 @@ class Writer {
     open('{');
     string("id", building.id());
     string("tile", options_.tile);
-    string("state", name(fate.state));
+    string("state", model::name(fate.state));
     if (fate.state == ObjectState::reported) {
       string("code", model::info(fate.code).text);
       string("meaning", model::info(fate.code).meaning);

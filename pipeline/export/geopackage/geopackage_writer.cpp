@@ -78,11 +78,6 @@ constexpr std::string_view name(model::OsmType type) {
   return type == model::OsmType::node ? "node" : type == model::OsmType::way ? "way" : "relation";
 }
 
-constexpr std::string_view name(model::ObjectState state) {
-  constexpr std::array<std::string_view, 5> names{"pending", "modelled", "represented", "duplicate", "reported"};
-  return names[static_cast<std::size_t>(state)];
-}
-
 struct DatasetCloser {
   void operator()(GDALDataset* dataset) const { GDALClose(GDALDataset::ToHandle(dataset)); }
 };
@@ -323,7 +318,7 @@ void GeoPackageWriter::add_reported(const GeoPackageReported& object) {
   text(name(object.id.type));
   f.SetField(i++, static_cast<GIntBig>(object.id.number));
   text(object.kind == model::ObjectKind::building ? "building" : "building_part");
-  text(name(object.state));
+  text(model::name(object.state));
   const bool coded = object.code != model::IssueCode::none;
   text(coded ? info(object.code).text : std::string_view());
   text(coded ? info(object.code).meaning : std::string_view());
