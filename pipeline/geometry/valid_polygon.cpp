@@ -351,6 +351,22 @@ ValidPolygons difference(std::span<const Polygon> a, std::span<const Polygon> b,
   return out;
 }
 
+ValidPolygons unite(std::span<const Polygon> polygons, double min_area, double clearance) {
+  ValidPolygons out;
+  if (polygons.empty()) return out;
+  const Point2 origin = polygons[0].outer.points[0];
+  const Geometry all = union_all(polygons, origin);
+  std::vector<Polygon> pieces;
+  append_polygons(all.get(), origin, pieces);
+  finish(std::move(pieces), min_area, clearance, out);
+  std::map<Point2, std::int64_t> node_at;
+  for (const Polygon& p : polygons)
+    for (std::size_t i = 0; i < p.outer.size(); ++i) node_at.emplace(p.outer.points[i], p.outer.nodes[i]);
+  restore_nodes(out.polygons, node_at);
+  sort_polygons(out.polygons);
+  return out;
+}
+
 double common_area(std::span<const Polygon> a, std::span<const Polygon> b) {
   if (a.empty() || b.empty()) return 0;
   const Point2 origin = a[0].outer.points[0];

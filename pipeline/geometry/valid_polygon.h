@@ -32,6 +32,9 @@ ValidPolygons make_valid(std::span<const model::Ring> rings, const std::vector<b
 ValidPolygons difference(std::span<const model::Polygon> a, std::span<const model::Polygon> b, double min_area,
                          double clearance);
 
+/// The union of valid polygons that may overlap and touch, as strictly simple polygons of at least min_area.
+ValidPolygons unite(std::span<const model::Polygon> polygons, double min_area, double clearance);
+
 /// Area common to a and b in m². Both must be valid.
 double common_area(std::span<const model::Polygon> a, std::span<const model::Polygon> b);
 

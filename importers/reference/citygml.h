@@ -1,0 +1,38 @@
+// Reads CityGML 0.4, 1.0 and 2.0 leniently: surveyed and hand-built models as they are, not as the schema wants them.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "importers/reference/reference_model.h"
+#include "pipeline/georef/lon_lat.h"
+
+namespace blockrand::importers::reference {
+
+struct ReadOptions {
+  /// The file's CRS for files that state none or an unknown one ("EPSG:25833"); wins over what the file states.
+  std::string reference_crs;
+  /// Where the model is expected, degrees: decides about the axis order where both orders lie in the CRS's area of use.
+  std::optional<georef::GeoBox> near;
+  /// Overrides what is found out about the axis order.
+  AxisOrder axis_order = AxisOrder::automatic;
+};
+
+/// Reads `.gml`, `.xml` and either with `.gz` (told by content), streaming: memory is the model, not the document.
+///
+/// Elements are known by their local names, in any of CityGML's namespaces of versions 0.x, 1.0 and 2.0 and any prefix,
+/// also where the prefix is not declared. Xlinks within the file are resolved. Buildings inside of groups count; other
+/// city objects are counted only. What breaks the rules is read as far as it makes sense and noted; after damage to the
+/// XML itself reading goes on where libxml2 can, and a building that the end of the text cuts off is left out.
+///
+/// CRS: the first srsName. Understood are "EPSG:25833", OGC urns and addresses, compound ones ("urn:ogc:def:crs,crs:
+/// EPSG::25832,crs:EPSG::5783"), AdV's urns ("urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH") and names that PROJ knows.
+/// Axis order: a geographic CRS named by urn or address is latitude first, "EPSG:4326" longitude first, a projected
+/// one east first, all that unless only the other order lies in the CRS's area of use; where both do, `near` decides.
+///
+/// \throws base::InputError  when nothing can be read: no such file, no XML, no CityGML of these versions, a document
+///         type definition, or a CRS that is not stated or unknown while `reference_crs` is empty
+/// \throws base::UsageError  when `reference_crs` is unknown
+ReferenceModel read_citygml(const std::string& path, const ReadOptions& options = {});
+
+}  // namespace blockrand::importers::reference

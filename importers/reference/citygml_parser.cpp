@@ -1,0 +1,529 @@
+#include "importers/reference/citygml_parser.h"
+
+#include <libxml/tree.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "importers/reference/coordinate_text.h"
+
+namespace blockrand::importers::reference {
+namespace {
+
+std::string_view view(const xmlChar* text) { return text ? reinterpret_cast<const char*>(text) : std::string_view(); }
+
+/// "bldg:Building" → "Building": libxml2 leaves an undeclared prefix in the local name.
+std::string_view without_prefix(std::string_view name) {
+  const std::size_t colon = name.rfind(':');
+  return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+bool is_gml(std::string_view uri) { return uri.starts_with("http://www.opengis.net/gml"); }
+
+bool any_of(std::string_view name, std::initializer_list<std::string_view> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Metres of a unit as "m", "#m", "urn:ogc:def:uom:UCUM::m" name it; without one metres are meant. 0: unknown.
+double metres_of_unit(std::string_view uom) {
+  const std::size_t last = uom.find_last_of(":#/");
+  const std::string_view unit = last == std::string_view::npos ? uom : uom.substr(last + 1);
+  if (any_of(unit, {"", "m", "M", "metre", "meter", "9001"})) return 1;
+  if (any_of(unit, {"cm"})) return 0.01;
+  if (any_of(unit, {"mm"})) return 0.001;
+  if (any_of(unit, {"ft", "[ft_i]", "foot", "9002"})) return 0.3048;
+  return 0;
+}
+
+constexpr std::size_t kMostSrsNames = 16;
+
+}  // namespace
+
+CityGmlParser::Attributes CityGmlParser::read_attributes(xmlTextReaderPtr reader, int line) {
+  Attributes out;
+  while (xmlTextReaderMoveToNextAttribute(reader) == 1) {
+    if (xmlTextReaderIsNamespaceDecl(reader) == 1) continue;
+    const std::string_view full = view(xmlTextReaderConstLocalName(reader)), name = without_prefix(full);
+    const std::string_view uri = view(xmlTextReaderConstNamespaceUri(reader)),
+                           value = view(xmlTextReaderConstValue(reader));
+    if (name == "id" && (is_gml(uri) || full == "gml:id")) {
+      out.id = value;
+    } else if (name == "href") {
+      out.href = trimmed(value);
+    } else if (name == "srsName") {
+      out.srs_name = trimmed(value);
+    } else if (name == "srsDimension" || (name == "dimension" && uri.empty())) {
+      out.dimension = whole_number_of(value).value_or(0);
+    } else if (name == "orientation") {
+      out.negative = trimmed(value) == "-";
+    } else if (name == "name") {
+      out.name = value;
+    } else if (name == "uom") {
+      out.uom = trimmed(value);
+    } else if (name == "decimal") {
+      out.decimal = value;
+    } else if (name == "cs") {
+      out.within = value;
+    } else if (name == "ts") {
+      out.between = value;
+    }
+  }
+  xmlTextReaderMoveToElement(reader);
+  if (!out.id.empty()) {
+    if (xmlValidateNCName(reinterpret_cast<const xmlChar*>(out.id.c_str()), 0) != 0)
+      notes_.add(NoteKind::bad_id, line, "\"" + out.id + "\"");
+    if (!ids_.insert(out.id).second) notes_.add(NoteKind::duplicate_id, line, "\"" + out.id + "\"");
+  }
+  return out;
+}
+
+CityGmlParser::Space CityGmlParser::space_of(std::string_view uri) {
+  if (uri.empty()) return Space::none;
+  if (is_gml(uri)) return Space::gml;
+  if (uri.find("opengis.net/citygml/") != std::string_view::npos) {
+    const std::string version(uri.substr(uri.rfind('/') + 1));
+    (version >= "3" ? facts_.foreign_version : model_.version) = version;
+    facts_.city_model = true;
+    return Space::citygml;
+  }
+  if (uri.find("citygml.org/citygml/") != std::string_view::npos) {  // the namespace of all versions before 1.0
+    model_.version = "0.4";
+    facts_.city_model = true;
+    return Space::citygml;
+  }
+  return Space::foreign;
+}
+
+void CityGmlParser::element(xmlTextReaderPtr reader) {
+  const bool empty = xmlTextReaderIsEmptyElement(reader) == 1;
+  Element e;
+  e.line = xmlTextReaderGetParserLineNumber(reader);
+  e.name = without_prefix(view(xmlTextReaderConstLocalName(reader)));
+  e.space = space_of(view(xmlTextReaderConstNamespaceUri(reader)));
+  if (xmlTextReaderHasAttributes(reader) == 1) e.attributes = read_attributes(reader, e.line);
+  e.dimension = e.attributes.dimension != 0 ? e.attributes.dimension : stack_.empty() ? 0 : stack_.back().dimension;
+  e.first_item = links_.size();
+  if (stack_.empty() && facts_.root.empty()) facts_.root = e.name;
+  if (skip_depth_ == 0) e.role = start(e);
+  text_.clear();
+  collects_ =
+      e.role == Role::coordinates || e.role == Role::attribute_value || e.role == Role::value || e.role == Role::corner;
+  stack_.push_back(std::move(e));
+  if (empty) end_element();
+}
+
+void CityGmlParser::end_element() {
+  if (stack_.empty()) return;
+  const Element e = std::move(stack_.back());
+  stack_.pop_back();
+  if (skip_depth_ == 0) {
+    end(e);
+  } else if (skip_depth_ == stack_.size() + 1) {
+    skip_depth_ = 0;
+  }
+  collects_ = false;
+  text_.clear();
+}
+
+// ---- starts -------------------------------------------------------------------------------------------------------
+
+CityGmlParser::Role CityGmlParser::start(const Element& e) {
+  const std::string& srs = e.attributes.srs_name;
+  if (!srs.empty() && facts_.srs_names.size() < kMostSrsNames &&
+      std::find(facts_.srs_names.begin(), facts_.srs_names.end(), srs) == facts_.srs_names.end())
+    facts_.srs_names.push_back(srs);
+  const bool own = e.space == Space::citygml || e.space == Space::none;
+  if (own && !in_property_ && any_of(e.name, {"Building", "BuildingPart"})) return start_building(e);
+  return open_.empty() ? start_outside(e) : start_in_building(e);
+}
+
+CityGmlParser::Role CityGmlParser::start_outside(const Element& e) {
+  if (e.name == "appearanceMember" || e.name == "Appearance") return skip();
+  if (e.name == "Envelope" && stack_.size() <= 2) return Role::envelope;
+  if (parent_role() == Role::envelope && any_of(e.name, {"lowerCorner", "upperCorner", "pos"})) return Role::corner;
+  const bool member = any_of(parent_name(), {"cityObjectMember", "featureMember", "featureMembers", "groupMember"});
+  if (member && e.space != Space::gml) {
+    auto& others = model_.other_objects;
+    const auto known = std::find_if(others.begin(), others.end(), [&](const auto& o) { return o.first == e.name; });
+    if (known == others.end()) {
+      others.emplace_back(e.name, 1);
+    } else {
+      ++known->second;
+    }
+    if (e.name != "CityObjectGroup") return skip();
+  }
+  return Role::other;
+}
+
+CityGmlParser::Role CityGmlParser::start_building(const Element& e) {
+  Building b;
+  b.id = e.attributes.id;
+  b.line = e.line;
+  if (!open_.empty()) b.parent = static_cast<int>(open_.back().building);
+  if (b.id.empty()) notes_.add(NoteKind::missing_id, e.line, "a " + e.name + " without gml:id");
+  OpenThing thing;
+  thing.building = model_.buildings.size();
+  open_.push_back(thing);
+  model_.buildings.push_back(std::move(b));
+  return Role::building;
+}
+
+CityGmlParser::Role CityGmlParser::start_in_building(const Element& e) {
+  if (e.space == Space::foreign) {
+    notes_.add(NoteKind::unknown_element, e.line, e.name);
+    return skip();
+  }
+  if (in_property_) return polygon_ ? start_in_polygon(e) : start_geometry(e);
+  if (any_of(e.name, {"address", "externalReference", "appearance", "generalizesTo"})) return skip();
+  if (e.name.size() > 4 && e.name.starts_with("lod") && e.name[3] >= '0' && e.name[3] <= '4') return start_property(e);
+  const Role around = parent_role();
+  if (around == Role::building || around == Role::attribute_set) {
+    if (e.name == "genericAttributeSet") return Role::attribute_set;
+    if (e.name.ends_with("Attribute")) return Role::attribute;
+  }
+  if (around == Role::attribute && e.name == "value") return Role::attribute_value;
+  if (around == Role::building &&
+      any_of(e.name, {"name", "class", "function", "usage", "roofType", "measuredHeight", "storeysAboveGround",
+                      "storeysBelowGround", "yearOfConstruction", "yearOfDemolition"}))
+    return Role::value;
+  return start_thing(e);
+}
+
+CityGmlParser::Role CityGmlParser::start_property(const Element& e) {
+  const std::string_view what = std::string_view(e.name).substr(4);
+  if (what.find("Implicit") != std::string_view::npos) {
+    ++building().implicit_geometries;
+    notes_.add(NoteKind::not_read, e.line, "implicit geometry");
+    return skip();
+  }
+  if (what.find("Curve") != std::string_view::npos || what.find("Intersection") != std::string_view::npos) {
+    notes_.add(NoteKind::not_read, e.line, "curves of " + e.name);
+    return skip();
+  }
+  in_property_ = true;
+  property_lod_ = e.name[3] - '0';
+  begin_geometry(what == "FootPrint"  ? GeometryKind::footprint
+                 : what == "RoofEdge" ? GeometryKind::roof_edge
+                                      : GeometryKind::surfaces,
+                 "");
+  if (!e.attributes.href.empty()) links_.add_link(e.attributes.href, false, e.line);
+  return Role::property;
+}
+
+CityGmlParser::Role CityGmlParser::start_thing(const Element& e) {
+  struct Known {
+    std::string_view name;
+    SurfaceClass surface_class;
+    bool interior;
+  };
+  static constexpr std::array<Known, 13> kKnown{{
+      {"GroundSurface", SurfaceClass::ground, false},
+      {"WallSurface", SurfaceClass::wall, false},
+      {"RoofSurface", SurfaceClass::roof, false},
+      {"ClosureSurface", SurfaceClass::closure, false},
+      {"OuterCeilingSurface", SurfaceClass::outer_ceiling, false},
+      {"OuterFloorSurface", SurfaceClass::outer_floor, false},
+      {"FloorSurface", SurfaceClass::floor, true},
+      {"CeilingSurface", SurfaceClass::ceiling, true},
+      {"InteriorWallSurface", SurfaceClass::interior_wall, true},
+      {"BuildingInstallation", SurfaceClass::installation, false},
+      {"IntBuildingInstallation", SurfaceClass::installation, true},
+      {"Room", SurfaceClass::room, true},
+      {"BuildingFurniture", SurfaceClass::furniture, true},
+  }};
+  OpenThing thing = open_.back();
+  const auto known = std::find_if(kKnown.begin(), kKnown.end(), [&](const Known& k) { return k.name == e.name; });
+  auto& surfaces = building().surfaces;
+  const bool opening = e.name == "Window" || e.name == "Door";
+  if (known == kKnown.end() && !opening) return Role::other;
+  if (known != kKnown.end() || thing.surface < 0) {  // an opening without a surface gets a wall
+    Surface s;
+    if (known != kKnown.end()) {
+      s.surface_class = known->surface_class;
+      s.id = e.attributes.id;
+      thing.interior = thing.interior || known->interior;
+    }
+    s.interior = thing.interior;
+    s.of_installation = thing.installation;
+    thing.installation = thing.installation || s.surface_class == SurfaceClass::installation;
+    thing.surface = static_cast<int>(surfaces.size());
+    thing.opening = -1;
+    surfaces.push_back(std::move(s));
+  }
+  if (opening) {
+    auto& openings = surfaces[static_cast<std::size_t>(thing.surface)].openings;
+    thing.opening = static_cast<int>(openings.size());
+    openings.push_back({e.name == "Door", e.attributes.id, {}});
+  }
+  open_.push_back(thing);
+  return opening ? Role::opening : Role::surface;
+}
+
+CityGmlParser::Role CityGmlParser::start_geometry(const Element& e) {
+  if (any_of(e.name, {"Polygon", "PolygonPatch", "Triangle", "Rectangle"})) {
+    polygon_.emplace();
+    polygon_->id = e.attributes.id;
+    return Role::polygon;
+  }
+  if (e.name == "Solid") {
+    Pending& pending = pending_.back();
+    if (pending.begin == links_.size()) {
+      Geometry& g = geometries_of(pending.building, pending.surface, pending.opening)[pending.geometry];
+      g.kind = GeometryKind::solid;
+      g.id = e.attributes.id;
+    } else {
+      end_geometry();
+      begin_geometry(GeometryKind::solid, e.attributes.id);
+    }
+    return Role::solid;
+  }
+  if (e.name == "ImplicitGeometry") {
+    ++building().implicit_geometries;
+    notes_.add(NoteKind::not_read, e.line, "implicit geometry");
+    return skip();
+  }
+  if (any_of(e.name, {"LineString", "Curve", "MultiCurve", "CompositeCurve", "Point", "MultiPoint"})) {
+    notes_.add(NoteKind::not_read, e.line, "a " + e.name);
+    return skip();
+  }
+  if (e.name == "appearance") return skip();  // of a TexturedSurface
+  if (!e.attributes.href.empty()) links_.add_link(e.attributes.href, reversed_, e.line);
+  if (any_of(e.name, {"OrientableSurface", "TexturedSurface"})) {
+    if (e.attributes.negative) reversed_ = !reversed_;
+    return Role::orientable;
+  }
+  if (e.name == "interior" && parent_role() == Role::solid) {
+    Pending& pending = pending_.back();
+    pending.voids = std::min(pending.voids, links_.size());
+  }
+  return Role::aggregate;
+}
+
+CityGmlParser::Role CityGmlParser::start_in_polygon(const Element& e) {
+  if (any_of(e.name, {"exterior", "outerBoundaryIs", "interior", "innerBoundaryIs"})) {
+    interior_ring_ = e.name.starts_with("in");
+    return Role::ring_side;
+  }
+  if (any_of(e.name, {"LinearRing", "Ring"})) {
+    in_ring_ = true;
+    ring_is_bad_ = false;
+    ring_.clear();
+    return Role::ring;
+  }
+  return in_ring_ && any_of(e.name, {"posList", "pos", "coordinates"}) ? Role::coordinates : Role::other;
+}
+
+// ---- geometries ---------------------------------------------------------------------------------------------------
+
+std::vector<Geometry>& CityGmlParser::geometries_of(std::size_t building, int surface, int opening) {
+  Building& b = model_.buildings[building];
+  if (surface < 0) return b.geometries;
+  Surface& s = b.surfaces[static_cast<std::size_t>(surface)];
+  return opening < 0 ? s.geometries : s.openings[static_cast<std::size_t>(opening)].geometries;
+}
+
+void CityGmlParser::begin_geometry(GeometryKind kind, const std::string& id) {
+  const OpenThing& here = open_.back();
+  auto& geometries = geometries_of(here.building, here.surface, here.opening);
+  pending_.push_back({here.building, here.surface, here.opening, geometries.size(), links_.size(),
+                      static_cast<std::size_t>(-1), links_.size()});
+  Geometry g;
+  g.lod = property_lod_;
+  g.kind = kind;
+  g.id = id;
+  geometries.push_back(std::move(g));
+}
+
+void CityGmlParser::finish() {
+  for (const Pending& p : pending_) {
+    Geometry& g = geometries_of(p.building, p.surface, p.opening)[p.geometry];
+    const std::size_t voids = std::min(p.voids, p.end);
+    g.faces = links_.resolve(p.begin, voids, notes_);
+    g.outer_faces = g.faces.size();
+    const std::vector<Face> inner = links_.resolve(voids, p.end, notes_);
+    g.faces.insert(g.faces.end(), inner.begin(), inner.end());
+  }
+  drop_empty_geometries();
+}
+
+void CityGmlParser::drop_empty_geometries() {
+  const auto drop = [](std::vector<Geometry>& list) {
+    std::erase_if(list, [](const Geometry& g) { return g.faces.empty(); });
+  };
+  for (Building& b : model_.buildings) {
+    drop(b.geometries);
+    for (Surface& s : b.surfaces) {
+      drop(s.geometries);
+      for (Opening& o : s.openings) drop(o.geometries);
+    }
+  }
+}
+
+void CityGmlParser::cut_off() {
+  if (open_.empty()) return;
+  const std::size_t first = open_.front().building;
+  const Building& b = model_.buildings[first];
+  notes_.add(NoteKind::incomplete_building, b.line, "building \"" + b.id + "\" has no end");
+  std::erase_if(pending_, [&](const Pending& p) { return p.building >= first; });
+  model_.buildings.resize(first);
+  open_.clear();
+  stack_.clear();
+  in_property_ = false;
+}
+
+// ---- ends ---------------------------------------------------------------------------------------------------------
+
+void CityGmlParser::end(const Element& e) {
+  switch (e.role) {
+    case Role::building:
+    case Role::surface:
+    case Role::opening:
+      open_.pop_back();
+      break;
+    case Role::property:
+      end_geometry();
+      in_property_ = false;
+      reversed_ = false;
+      break;
+    case Role::orientable:
+      if (e.attributes.negative) reversed_ = !reversed_;
+      [[fallthrough]];
+    case Role::aggregate:
+    case Role::solid:
+      if (!e.attributes.id.empty()) links_.name(e.attributes.id, e.first_item, reversed_);
+      break;
+    case Role::polygon:
+      end_polygon(e);
+      break;
+    case Role::ring:
+      end_ring(e);
+      break;
+    case Role::coordinates:
+      end_coordinates(e);
+      break;
+    case Role::attribute_value: {
+      std::string name = stack_.back().attributes.name;
+      for (std::size_t i = stack_.size() - 1; i-- > 0 && stack_[i].role == Role::attribute_set;)
+        name = stack_[i].attributes.name + "/" + name;
+      building().attributes.emplace_back(std::move(name), std::string(trimmed(text_)));
+      break;
+    }
+    case Role::value:
+      end_value(e);
+      break;
+    case Role::corner:
+      end_corner();
+      break;
+    case Role::envelope:
+    case Role::attribute_set:
+    case Role::attribute:
+    case Role::ring_side:
+    case Role::other:
+      break;
+  }
+}
+
+void CityGmlParser::end_polygon(const Element& e) {
+  if (polygon_->outer.size() >= 3) {
+    links_.add_polygon(static_cast<std::uint32_t>(model_.polygons.size()), reversed_);
+    model_.polygons.push_back(std::move(*polygon_));
+  }
+  polygon_.reset();
+  if (!e.attributes.id.empty()) links_.name(e.attributes.id, e.first_item, reversed_);
+}
+
+void CityGmlParser::end_ring(const Element& e) {
+  in_ring_ = false;
+  if (ring_is_bad_) return;
+  if (ring_.size() > 1 && ring_.front() == ring_.back()) {
+    ring_.pop_back();
+  } else if (ring_.size() >= 3) {
+    notes_.add(NoteKind::open_ring, e.line, "the last point is not the first");
+  }
+  if (ring_.size() < 3) {
+    notes_.add(NoteKind::short_ring, e.line, std::to_string(ring_.size()) + " different points");
+  } else if (interior_ring_) {
+    polygon_->holes.push_back(std::move(ring_));
+  } else {
+    polygon_->outer = std::move(ring_);
+  }
+  ring_.clear();
+}
+
+void CityGmlParser::end_coordinates(const Element& e) {
+  constexpr double kLargest = 1e9;  // m; beyond is no CRS on Earth
+  const Attributes& a = e.attributes;
+  const auto numbers =
+      e.name == "coordinates" ? numbers_of(as_number_list(text_, a.decimal, a.within, a.between)) : numbers_of(text_);
+  int dimension = e.dimension;
+  if (numbers && e.name == "pos" && (numbers->size() == 2 || numbers->size() == 3)) {
+    dimension = static_cast<int>(numbers->size());
+  } else if (numbers && dimension != 0 && numbers->size() % static_cast<std::size_t>(std::max(1, dimension)) != 0) {
+    dimension = 0;  // what is stated does not fit
+  }
+  const auto list = numbers ? points_of(*numbers, dimension) : std::nullopt;
+  const bool sane =
+      list && std::all_of(numbers->begin(), numbers->end(), [](double v) { return v < kLargest && v > -kLargest; });
+  if (!sane) {
+    notes_.add(NoteKind::bad_coordinates, e.line, "\"" + std::string(trimmed(text_).substr(0, 60)) + "\"");
+    ring_is_bad_ = true;
+    return;
+  }
+  if (list->two_dimensional && ring_.empty()) notes_.add(NoteKind::two_dimensional, e.line, "a ring without heights");
+  ring_.insert(ring_.end(), list->points.begin(), list->points.end());
+}
+
+void CityGmlParser::end_corner() {
+  const auto numbers = numbers_of(text_);
+  if (!numbers || numbers->size() < 2) return;
+  if (facts_.lower.empty()) {
+    facts_.lower = *numbers;
+  } else if (facts_.upper.empty()) {
+    facts_.upper = *numbers;
+  }
+}
+
+void CityGmlParser::end_value(const Element& e) {
+  const std::string text(trimmed(text_));
+  if (text.empty()) return;
+  Building& b = building();
+  bool good = true;
+  const auto whole = [&](std::optional<int>& target) {
+    const auto value = whole_number_of(text);
+    good = value && *value >= 0;
+    if (good) target = value;
+  };
+  const auto year = [&](std::optional<int>& target) {
+    const auto value = year_of(text);
+    good = value.has_value();
+    if (good) target = value;
+  };
+  if (e.name == "name") {
+    b.names.push_back(text);
+  } else if (e.name == "function") {
+    b.functions.push_back(text);
+  } else if (e.name == "usage") {
+    b.usages.push_back(text);
+  } else if (e.name == "class") {
+    b.class_code = text;
+  } else if (e.name == "roofType") {
+    b.roof_type = text;
+  } else if (e.name == "measuredHeight") {
+    const auto value = number_of(text);
+    const double unit = metres_of_unit(e.attributes.uom);
+    good = value && unit > 0;
+    if (good) b.measured_height = *value * unit;
+  } else if (e.name == "storeysAboveGround") {
+    whole(b.storeys_above_ground);
+  } else if (e.name == "storeysBelowGround") {
+    whole(b.storeys_below_ground);
+  } else if (e.name == "yearOfConstruction") {
+    year(b.year_of_construction);
+  } else if (e.name == "yearOfDemolition") {
+    year(b.year_of_demolition);
+  }
+  if (!good) notes_.add(NoteKind::bad_value, e.line, e.name + " \"" + text + "\"");
+}
+
+}  // namespace blockrand::importers::reference

@@ -1,0 +1,149 @@
+// CityGML's elements, one after the other, become buildings. Knows nothing of where the bytes come from and of CRS.
+// Internal to this folder.
+#pragma once
+
+#include <libxml/xmlreader.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+#include <vector>
+
+#include "importers/reference/links.h"
+#include "importers/reference/note_log.h"
+#include "importers/reference/reference_model.h"
+
+namespace blockrand::importers::reference {
+
+/// What a document says beside its buildings.
+struct DocumentFacts {
+  bool city_model = false;             ///< some element is CityGML's
+  std::string root;                    ///< local name of the outermost element
+  std::string foreign_version;         ///< "3.0" where the elements are of a version that is not read
+  std::vector<std::string> srs_names;  ///< different ones in order of appearance, a few at most
+  bool has_doctype = false;
+  std::vector<double> lower, upper;  ///< corners of the model's envelope as written; empty without one
+};
+
+/// Takes the events of a libxml2 reader: `element`, `end_element` and `text` as they come, then `finish`.
+class CityGmlParser {
+ public:
+  CityGmlParser(ReferenceModel& model, NoteLog& notes) : model_(model), notes_(notes) {}
+
+  void element(xmlTextReaderPtr reader);
+  void end_element();
+  void text(std::string_view characters) {
+    if (collects_) text_ += characters;
+  }
+  void doctype() { facts_.has_doctype = true; }
+  /// Called where the text ends too early: what stands open is forgotten.
+  void cut_off();
+  /// Resolves links. Call once.
+  void finish();
+
+  const DocumentFacts& facts() const { return facts_; }
+
+ private:
+  enum class Space { gml, citygml, foreign, none };
+  enum class Role {
+    other,
+    building,
+    surface,
+    opening,
+    property,
+    aggregate,
+    solid,
+    orientable,
+    polygon,
+    ring_side,
+    ring,
+    coordinates,
+    attribute_set,
+    attribute,
+    attribute_value,
+    value,
+    envelope,
+    corner,
+  };
+  struct Attributes {
+    std::string id, href, srs_name, name, uom, decimal, within, between;
+    bool negative = false;  ///< orientation="-"
+    int dimension = 0;      ///< srsDimension
+  };
+  struct Element {
+    std::string name;
+    Role role = Role::other;
+    Space space = Space::none;
+    int line = 0;
+    int dimension = 0;           ///< stated here or further out; 0: nowhere
+    std::size_t first_item = 0;  ///< of an element that links may name
+    Attributes attributes;
+  };
+  /// A geometry whose faces are not resolved yet.
+  struct Pending {
+    std::size_t building;
+    int surface, opening;  ///< -1: none
+    std::size_t geometry;
+    std::size_t begin, voids, end;  ///< items; the shells of voids start at `voids`
+  };
+
+  Attributes read_attributes(xmlTextReaderPtr reader, int line);
+  Space space_of(std::string_view uri);
+  Role start(const Element& e);
+  Role start_outside(const Element& e);
+  Role start_in_building(const Element& e);
+  Role start_property(const Element& e);
+  Role start_thing(const Element& e);
+  Role start_geometry(const Element& e);
+  Role start_in_polygon(const Element& e);
+  Role start_building(const Element& e);
+  void end(const Element& e);
+  void end_value(const Element& e);
+  void end_coordinates(const Element& e);
+  void end_ring(const Element& e);
+  void end_polygon(const Element& e);
+  void end_corner();
+  void drop_empty_geometries();
+  Role skip() {
+    skip_depth_ = stack_.size() + 1;
+    return Role::other;
+  }
+
+  std::vector<Geometry>& geometries_of(std::size_t building, int surface, int opening);
+  void begin_geometry(GeometryKind kind, const std::string& id);
+  void end_geometry() { pending_.back().end = links_.size(); }
+
+  std::string_view parent_name(std::size_t up = 1) const {
+    return stack_.size() >= up ? std::string_view(stack_[stack_.size() - up].name) : std::string_view();
+  }
+  Role parent_role() const { return stack_.empty() ? Role::other : stack_.back().role; }
+  Building& building() { return model_.buildings[open_.back().building]; }
+
+  ReferenceModel& model_;
+  NoteLog& notes_;
+  DocumentFacts facts_;
+  Links links_;
+  std::vector<Element> stack_;
+  std::size_t skip_depth_ = 0;  ///< >0: elements from this depth on are not looked at
+  bool collects_ = false;
+  std::string text_;
+  std::unordered_set<std::string> ids_;  // looked up only
+
+  struct OpenThing {
+    std::size_t building;
+    int surface = -1, opening = -1;
+    bool interior = false, installation = false;  ///< inside of one
+  };
+  std::vector<OpenThing> open_;  ///< innermost last: buildings, their surfaces, their openings
+
+  std::vector<Pending> pending_;
+  bool in_property_ = false;
+  int property_lod_ = 0;
+  bool reversed_ = false;
+  std::optional<Polygon3> polygon_;
+  bool interior_ring_ = false, in_ring_ = false, ring_is_bad_ = false;
+  std::vector<model::Point3> ring_;
+};
+
+}  // namespace blockrand::importers::reference

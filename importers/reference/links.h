@@ -1,0 +1,57 @@
+// Geometry as it is met in the file, before xlinks are resolved. Internal to this folder.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "importers/reference/note_log.h"
+#include "importers/reference/reference_model.h"
+
+namespace blockrand::importers::reference {
+
+/// The faces of the file in reading order, each a polygon or a link to something with an id. A geometry is a range of
+/// them, and so is everything that a link may point to.
+class Links {
+ public:
+  void add_polygon(std::uint32_t polygon, bool reversed) { items_.push_back({polygon, kNone, 0, reversed}); }
+  void add_link(const std::string& target, bool reversed, int line);
+
+  std::size_t size() const { return items_.size(); }
+
+  /// Gives the items from `begin` on a name that links may use. The first of a name wins.
+  /// \param reversed  the orientation in which the named thing itself was met
+  void name(const std::string& id, std::size_t begin, bool reversed) {
+    names_.emplace(id, Range{begin, items_.size(), reversed});
+  }
+
+  /// The faces of a range, links followed. What leads nowhere or in a circle is noted and left out.
+  std::vector<Face> resolve(std::size_t begin, std::size_t end, NoteLog& notes) const;
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  struct Item {
+    std::uint32_t polygon, link;
+    int line;
+    bool reversed;
+  };
+  struct Range {
+    std::size_t begin, end;
+    bool reversed;
+  };
+  struct Walk {
+    std::vector<Face> faces;
+    std::vector<std::size_t> open;  ///< links on the way here
+    std::size_t steps;
+    NoteLog& notes;
+  };
+  void append(std::size_t begin, std::size_t end, bool turn, Walk& walk) const;
+
+  std::vector<Item> items_;
+  std::vector<std::string> targets_;
+  std::unordered_map<std::string, Range> names_;  // looked up only
+};
+
+}  // namespace blockrand::importers::reference
