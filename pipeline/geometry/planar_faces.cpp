@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
 #include <memory>
 #include <stdexcept>
+#include <string>
 
+#include "pipeline/geometry/noded_lines.h"
 #include "pipeline/geometry/polygon.h"
-#include "pipeline/geometry/segment_grid.h"
 
 namespace blockrand::geometry {
 
@@ -18,12 +19,6 @@ namespace {
 using model::Point2;
 using model::Polygon;
 using model::Ring;
-
-constexpr double kStep = 1.0 / model::kGridStepsPerMetre;
-/// m. Snap rounding moves a segment's points to the centres of the pixels it passes through: by half a diagonal of a step.
-constexpr double kSameLine = 0.75 * kStep;
-/// m. Cells of the index that finds the lines under an edge: some street segments long.
-constexpr double kIndexCell = 64;
 
 /// GEOS contexts are not shared between threads.
 GEOSContextHandle_t context() {
@@ -48,47 +43,24 @@ Geometry checked(GEOSGeometry* geometry, const char* what) {
   return Geometry(geometry);
 }
 
-/// A segment of an input line, and whose it is.
-struct Source {
-  Segment segment;  ///< in the line's direction
-  std::uint64_t id = 0;
-  friend auto operator<=>(const Source&, const Source&) = default;
-};
-
-std::vector<Source> sources_of(std::span<const DividingLine> lines) {
-  std::vector<Source> out;
-  for (const DividingLine& line : lines)
-    for (std::size_t i = 1; i < line.points.size(); ++i) {
-      const Segment s{model::snap(line.points[i - 1]), model::snap(line.points[i])};
-      if (s.a != s.b) out.push_back({s, line.id});
-    }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
-GEOSGeometry* geos_segment(const Segment& s) {
+GEOSGeometry* geos_segment(Point2 a, Point2 b) {
   GEOSCoordSequence* sequence = GEOSCoordSeq_create_r(context(), 2, 2);
-  GEOSCoordSeq_setXY_r(context(), sequence, 0, s.a.x, s.a.y);
-  GEOSCoordSeq_setXY_r(context(), sequence, 1, s.b.x, s.b.y);
+  GEOSCoordSeq_setXY_r(context(), sequence, 0, a.x, a.y);
+  GEOSCoordSeq_setXY_r(context(), sequence, 1, b.x, b.y);
   return GEOSGeom_createLineString_r(context(), sequence);
 }
 
-/// What GEOS sees is a sorted set of undirected segments: the order and direction of the lines cannot reach it. It works
-/// in absolute coordinates: an origin taken from the data would make the last bits of a crossing depend on far lines.
-Geometry noded(const std::vector<Source>& sources) {
-  std::vector<Segment> segments;
-  segments.reserve(sources.size());
-  for (const Source& s : sources) segments.push_back({std::min(s.segment.a, s.segment.b), std::max(s.segment.a, s.segment.b)});
-  std::sort(segments.begin(), segments.end());
-  segments.erase(std::unique(segments.begin(), segments.end()), segments.end());
+/// Rings of the arrangement. The edges come in a canonical order and direction, so that no order of the input reaches GEOS.
+Geometry polygonized(const std::vector<NodedEdge>& edges) {
   std::vector<GEOSGeometry*> parts;
-  parts.reserve(segments.size());
-  for (const Segment& s : segments) parts.push_back(geos_segment(s));
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    if (i == 0 || edges[i].a != edges[i - 1].a || edges[i].b != edges[i - 1].b)
+      parts.push_back(geos_segment(edges[i].a, edges[i].b));
   const Geometry all = checked(GEOSGeom_createCollection_r(context(), GEOS_MULTILINESTRING, parts.data(),
                                                            static_cast<unsigned>(parts.size())),
                                "collect lines");
-  return checked(GEOSUnaryUnionPrec_r(context(), all.get(), kStep), "node lines");
+  const GEOSGeometry* const input[] = {all.get()};
+  return checked(GEOSPolygonize_r(context(), input, 1), "polygonize");
 }
 
 Ring ring_from(const GEOSGeometry* ring) {
@@ -129,86 +101,68 @@ std::vector<Polygon> polygons_from(const GEOSGeometry* collection) {
   return out;
 }
 
-/// Finds the input lines under the edges of the result.
+/// Tells the faces what lies under their edges.
 class Attribution {
  public:
-  Attribution(std::vector<Source> sources, std::span<const DividingLine> lines)
-      : sources_(std::move(sources)), grid_(segments_of(sources_), kIndexCell) {
+  Attribution(const std::vector<NodedEdge>& edges, std::span<const DividingLine> lines) : edges_(edges) {
     for (const DividingLine& line : lines)
-      for (std::size_t i = 0; i < line.nodes.size() && i < line.points.size(); ++i) {
-        if (line.nodes[i] == 0) continue;
-        const auto [place, added] = nodes_.emplace(model::snap(line.points[i]), line.nodes[i]);
-        if (!added) place->second = std::min(place->second, line.nodes[i]);
-      }
+      for (std::size_t i = 0; i < line.nodes.size() && i < line.points.size(); ++i)
+        if (line.nodes[i] != 0) nodes_.emplace_back(model::snap(line.points[i]), line.nodes[i]);
+    std::sort(nodes_.begin(), nodes_.end());
   }
 
   void attribute(Face& face) {
-    std::map<std::uint64_t, BorderLine> borders;
-    follow(face.polygon.outer, face, borders);
-    for (Ring& hole : face.polygon.holes) follow(hole, face, borders);
-    for (const auto& [id, border] : borders) face.lines.push_back(border);
+    borders_.clear();
+    follow(face.polygon.outer, face);
+    for (Ring& hole : face.polygon.holes) follow(hole, face);
+    // A stable sort keeps the order along the rings, in which lengths are summed.
+    std::stable_sort(borders_.begin(), borders_.end(), [](const BorderLine& a, const BorderLine& b) { return a.id < b.id; });
+    for (const BorderLine& border : borders_) {
+      if (face.lines.empty() || face.lines.back().id != border.id) {
+        face.lines.push_back(border);
+        continue;
+      }
+      face.lines.back().left += border.left;
+      face.lines.back().right += border.right;
+    }
   }
 
  private:
-  static std::vector<Segment> segments_of(const std::vector<Source>& sources) {
-    std::vector<Segment> out;
-    out.reserve(sources.size());
-    for (const Source& s : sources) out.push_back(s.segment);
-    return out;
-  }
-
-  void follow(Ring& ring, Face& face, std::map<std::uint64_t, BorderLine>& borders) {
+  void follow(Ring& ring, Face& face) {
     ring.nodes.assign(ring.size(), 0);
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Point2 p = ring.points[i], q = ring.points[(i + 1) % ring.size()];
-      if (const auto found = nodes_.find(p); found != nodes_.end()) ring.nodes[i] = found->second;
-      find_under(p, q);
-      FaceEdge edge;
+      // Of several nodes at one place the least.
+      const auto node = std::lower_bound(nodes_.begin(), nodes_.end(), std::pair(p, std::numeric_limits<std::int64_t>::min()));
+      if (node != nodes_.end() && node->first == p) ring.nodes[i] = node->second;
       const double length = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
-      for (const FaceEdge& under : under_) {
-        if (edge.line == kNoLine || under.line < edge.line) edge = under;
-        BorderLine& border = borders[under.line];
-        border.id = under.line;
-        (under.left ? border.left : border.right) += length;
+      // The interior lies on the left of every ring edge: the same direction as the line's means left of the line.
+      const bool forward = p < q;
+      const Point2 a = std::min(p, q), b = std::max(p, q);
+      FaceEdge edge;
+      for (auto under = std::lower_bound(edges_.begin(), edges_.end(), NodedEdge{a, b, 0, false});
+           under != edges_.end() && under->a == a && under->b == b; ++under) {
+        const bool left = under->forward == forward;
+        if (edge.line == kNoLine) edge = {under->line, left};  // edges are sorted: the first has the least id
+        borders_.push_back({under->line, left ? length : 0, left ? 0 : length});
       }
       face.edges.push_back(edge);
     }
   }
 
-  /// The interior lies on the left of every ring edge: the same direction as the line's means left of the line.
-  void find_under(Point2 p, Point2 q) {
-    under_.clear();
-    const Point2 middle{(p.x + q.x) / 2, (p.y + q.y) / 2};
-    grid_.near(middle, middle, candidates_);
-    for (const std::uint32_t c : candidates_) {
-      const Segment& s = sources_[c].segment;
-      if (distance_to_segment(p, s.a, s.b) > kSameLine || distance_to_segment(q, s.a, s.b) > kSameLine) continue;
-      const bool left = (q.x - p.x) * (s.b.x - s.a.x) + (q.y - p.y) * (s.b.y - s.a.y) > 0;
-      const FaceEdge edge{sources_[c].id, left};
-      // A line that runs twice along the same edge is one border.
-      if (std::none_of(under_.begin(), under_.end(),
-                       [&](const FaceEdge& e) { return e.line == edge.line && e.left == edge.left; }))
-        under_.push_back(edge);
-    }
-  }
-
-  std::vector<Source> sources_;
-  SegmentGrid grid_;
-  std::map<Point2, std::int64_t> nodes_;
-  std::vector<std::uint32_t> candidates_;
-  std::vector<FaceEdge> under_;
+  const std::vector<NodedEdge>& edges_;
+  std::vector<std::pair<Point2, std::int64_t>> nodes_;  ///< sorted
+  std::vector<BorderLine> borders_;
 };
 
 }  // namespace
 
 std::vector<Face> faces_of_lines(std::span<const DividingLine> lines) {
-  std::vector<Source> sources = sources_of(lines);
+  const std::vector<NodedEdge> edges = noded_edges(lines);
   std::vector<Face> faces;
-  if (sources.empty()) return faces;
-  const Geometry edges = noded(sources);
-  const GEOSGeometry* const input[] = {edges.get()};
-  const Geometry collection = checked(GEOSPolygonize_r(context(), input, 1), "polygonize");
-  Attribution attribution(std::move(sources), lines);
+  if (edges.empty()) return faces;
+  const Geometry collection = polygonized(edges);
+  Attribution attribution(edges, lines);
   for (Polygon& polygon : polygons_from(collection.get())) {
     Face face;
     face.polygon = std::move(polygon);

@@ -5,16 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/geometry/noded_lines.h"
 #include "pipeline/model/polygon.h"
 
 namespace blockrand::geometry {
-
-/// A line that may bound faces. Points in metres on the 1/1024 m grid; a closed line repeats its first point.
-struct DividingLine {
-  std::uint64_t id = 0;             ///< whose line it is; several lines may have the same id
-  std::vector<model::Point2> points;
-  std::vector<std::int64_t> nodes;  ///< OSM nodes of the points, or empty
-};
 
 inline constexpr std::uint64_t kNoLine = ~std::uint64_t{0};
 
@@ -42,8 +36,7 @@ struct Face {
 /// Nodes the lines where they cross, touch or overlap, drops what ends blindly or only connects, and returns the bounded
 /// faces of what remains, in the order of their rings.
 ///
-/// Crossings are rounded to the grid by snap rounding (GEOS, OverlayNG), so that no edge moves by more than a grid step
-/// and no new crossing comes about. The result depends on the set of segments alone: not on the order of lines, their
+/// Crossings are rounded to the grid by exact snap rounding (noded_edges). The result depends on the set of segments alone: not on the order of lines, their
 /// direction (but for left and right), or how they are cut into pieces. It is local: a face depends only on lines that come
 /// into its bounding box, since every edge of its boundary is part of a closed ring within that box.
 ///
