@@ -1,6 +1,7 @@
 #include "importers/reference/citygml.h"
 
-#include <libxml/xmlreader.h>
+#include <libxml/SAX2.h>
+#include <libxml/parser.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "importers/reference/citygml_parser.h"
 #include "importers/reference/reference_crs.h"
@@ -32,13 +34,12 @@ class Bytes {
   bool open() const { return file_ != nullptr; }
   bool damaged() const { return damaged_; }
 
-  /// For libxml2. A damaged archive ends where it is damaged, so that what came before is read.
-  static int read(void* self, char* buffer, int length) {
-    auto& bytes = *static_cast<Bytes*>(self);
-    const int got = gzread(bytes.file_, buffer, static_cast<unsigned>(length));
+  /// The next bytes; 0 at the end. A damaged archive ends where it is damaged, so that what came before is read.
+  int read(char* buffer, int length) {
+    const int got = gzread(file_, buffer, static_cast<unsigned>(length));
     int error = Z_OK;
-    gzerror(bytes.file_, &error);
-    if (got < 0 || error == Z_BUF_ERROR || error == Z_DATA_ERROR) bytes.damaged_ = true;
+    gzerror(file_, &error);
+    if (got < 0 || error == Z_BUF_ERROR || error == Z_DATA_ERROR) damaged_ = true;
     return std::max(0, got);
   }
 
@@ -47,26 +48,47 @@ class Bytes {
   bool damaged_ = false;
 };
 
-/// What libxml2 complained about.
-struct XmlErrors {
+/// What the events of a document go to, with what libxml2 complained about.
+struct Document {
+  CityGmlParser& parser;
   NoteLog& notes;
   bool fatal = false;
   int first_line = 0;
-  std::string first;
+  std::string first;  ///< first fatal complaint
 
-  static void collect(void* self, xmlErrorPtr error) {
-    auto& errors = *static_cast<XmlErrors*>(self);
+  static Document& of(void* context) {
+    return *static_cast<Document*>(static_cast<xmlParserCtxtPtr>(context)->_private);
+  }
+  static std::string_view view(const xmlChar* text) {
+    return text != nullptr ? reinterpret_cast<const char*>(text) : std::string_view();
+  }
+
+  static void start(void* context, const xmlChar* name, const xmlChar*, const xmlChar* space, int, const xmlChar**,
+                    int attribute_count, int, const xmlChar** attributes) {
+    of(context).parser.element({view(name), view(space), xmlSAX2GetLineNumber(context), attribute_count, attributes});
+  }
+  static void end(void* context, const xmlChar*, const xmlChar*, const xmlChar*) { of(context).parser.end_element(); }
+  static void text(void* context, const xmlChar* characters, int length) {
+    of(context).parser.text({reinterpret_cast<const char*>(characters), static_cast<std::size_t>(length)});
+  }
+  static void doctype(void* context, const xmlChar*, const xmlChar*, const xmlChar*) {
+    of(context).parser.doctype();
+    xmlStopParser(static_cast<xmlParserCtxtPtr>(context));
+  }
+  static void complaint(void* context, xmlErrorPtr error) {
     if (error == nullptr || error->level < XML_ERR_ERROR) return;
+    Document& document = of(context);
     std::string what = error->message != nullptr ? error->message : "not well-formed";
     while (!what.empty() && what.back() == '\n') what.pop_back();
+    std::replace(what.begin(), what.end(), '\n', ' ');
     if (error->level == XML_ERR_FATAL) {
-      errors.fatal = true;
-      if (errors.first.empty()) {
-        errors.first = what;
-        errors.first_line = error->line;
+      document.fatal = true;
+      if (document.first.empty()) {
+        document.first = what;
+        document.first_line = error->line;
       }
     }
-    errors.notes.add(NoteKind::malformed_xml, error->line, what);
+    document.notes.add(NoteKind::malformed_xml, error->line, what);
   }
 };
 
@@ -82,32 +104,40 @@ void check_path(const std::string& path) {
   if (fs::file_size(path, error) == 0 && !error) refuse(path, 0, "is empty", "");
 }
 
-/// Feeds the parser until the text ends. \return false where it ended too early
-bool run(xmlTextReaderPtr reader, CityGmlParser& parser) {
-  int status = 0;
-  while ((status = xmlTextReaderRead(reader)) == 1) {
-    switch (xmlTextReaderNodeType(reader)) {
-      case XML_READER_TYPE_ELEMENT:
-        parser.element(reader);
-        break;
-      case XML_READER_TYPE_END_ELEMENT:
-        parser.end_element();
-        break;
-      case XML_READER_TYPE_TEXT:
-      case XML_READER_TYPE_CDATA:
-      case XML_READER_TYPE_SIGNIFICANT_WHITESPACE: {
-        const xmlChar* value = xmlTextReaderConstValue(reader);
-        if (value != nullptr) parser.text(reinterpret_cast<const char*>(value));
-        break;
-      }
-      case XML_READER_TYPE_DOCUMENT_TYPE:
-        parser.doctype();
-        return true;
-      default:
-        break;
-    }
-  }
-  return status == 0;
+/// Sends all bytes through libxml2 to the document. Nothing is fetched and no entity expanded; an illegal byte or a
+/// stray end tag is not the end.
+void run(Bytes& bytes, Document& document, const std::string& path) {
+  constexpr int kFlags = XML_PARSE_NONET | XML_PARSE_HUGE | XML_PARSE_RECOVER;
+  constexpr int kChunk = 1 << 16;
+  xmlSAXHandler handler{};
+  xmlSAXVersion(&handler, 2);
+  handler.startElementNs = Document::start;
+  handler.endElementNs = Document::end;
+  handler.characters = Document::text;
+  handler.ignorableWhitespace = Document::text;
+  handler.cdataBlock = Document::text;
+  handler.internalSubset = Document::doctype;
+  handler.reference = nullptr;
+  handler.comment = nullptr;
+  handler.processingInstruction = nullptr;
+  handler.serror = Document::complaint;
+  std::vector<char> buffer(kChunk);
+  int size = bytes.read(buffer.data(), kChunk);
+  // The first bytes decide about the encoding; handlers of the library itself want the context as their user data.
+  const int head = std::min(size, 4);
+  const std::unique_ptr<xmlParserCtxt, void (*)(xmlParserCtxtPtr)> context(
+      xmlCreatePushParserCtxt(&handler, nullptr, buffer.data(), head, nullptr), [](xmlParserCtxtPtr c) {
+        xmlFreeDoc(c->myDoc);
+        c->myDoc = nullptr;
+        xmlFreeParserCtxt(c);
+      });
+  if (!context) refuse(path, 0, "libxml2 gives no parser", "");
+  xmlCtxtUseOptions(context.get(), kFlags);
+  context->_private = &document;
+  if (size > head) xmlParseChunk(context.get(), buffer.data() + head, size - head, 0);
+  while (!document.parser.facts().has_doctype && (size = bytes.read(buffer.data(), kChunk)) > 0)
+    xmlParseChunk(context.get(), buffer.data(), size, 0);
+  xmlParseChunk(context.get(), buffer.data(), 0, 1);
 }
 
 struct Box {
@@ -162,17 +192,10 @@ ReferenceModel read_citygml(const std::string& path, const ReadOptions& options)
   ReferenceModel model;
   model.path = path;
   NoteLog notes;
-  XmlErrors errors{notes, false, 0, ""};
   CityGmlParser parser(model, notes);
-  {
-    // Nothing is fetched and no entity expanded. RECOVER: an illegal byte or a stray end tag is not the end.
-    constexpr int kFlags = XML_PARSE_NONET | XML_PARSE_HUGE | XML_PARSE_RECOVER | XML_PARSE_COMPACT;
-    const std::unique_ptr<xmlTextReader, void (*)(xmlTextReaderPtr)> reader(
-        xmlReaderForIO(Bytes::read, nullptr, &bytes, nullptr, nullptr, kFlags), xmlFreeTextReader);
-    if (!reader) refuse(path, 0, "libxml2 gives no reader", "");
-    xmlTextReaderSetStructuredErrorHandler(reader.get(), XmlErrors::collect, &errors);
-    if (!run(reader.get(), parser) || bytes.damaged()) parser.cut_off();
-  }
+  Document document{parser, notes, false, 0, ""};
+  run(bytes, document, path);
+  parser.cut_off();
   const DocumentFacts& facts = parser.facts();
   if (facts.has_doctype)
     refuse(path, 0, "has a document type definition, which CityGML has not", "Remove the <!DOCTYPE ...> from the file");
@@ -180,13 +203,14 @@ ReferenceModel read_citygml(const std::string& path, const ReadOptions& options)
   if (model.buildings.empty()) {
     if (!facts.foreign_version.empty() && model.version.empty())
       refuse(path, 0, "is CityGML " + facts.foreign_version, "Versions 0.4, 1.0 and 2.0 are read; convert it to 2.0");
-    if (facts.root.empty() || (errors.fatal && !facts.city_model))
-      refuse(path, errors.first_line, "is no XML that can be read" + (errors.first.empty() ? "" : ": " + errors.first),
+    if (facts.root.empty() || (document.fatal && !facts.city_model))
+      refuse(path, document.first_line,
+             "is no XML that can be read" + (document.first.empty() ? "" : ": " + document.first),
              "A CityGML file (.gml, .xml, also gzipped) is wanted");
     if (!facts.city_model)
       refuse(path, 0, "is no CityGML: its root is <" + facts.root + "> and it has no building", "");
-    if (errors.fatal)
-      refuse(path, errors.first_line, "no building can be read: " + errors.first, "The file is damaged");
+    if (document.fatal)
+      refuse(path, document.first_line, "no building can be read: " + document.first, "The file is damaged");
   }
   parser.finish();
   Box box;

@@ -13,7 +13,7 @@ namespace {
 
 std::string_view view(const xmlChar* text) { return text ? reinterpret_cast<const char*>(text) : std::string_view(); }
 
-/// "bldg:Building" → "Building": libxml2 leaves an undeclared prefix in the local name.
+/// "bldg:Building" → "Building": an undeclared prefix may stay in the local name.
 std::string_view without_prefix(std::string_view name) {
   const std::size_t colon = name.rfind(':');
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
@@ -40,14 +40,14 @@ constexpr std::size_t kMostSrsNames = 16;
 
 }  // namespace
 
-CityGmlParser::Attributes CityGmlParser::read_attributes(xmlTextReaderPtr reader, int line) {
+CityGmlParser::Attributes CityGmlParser::read_attributes(const XmlElement& element) {
   Attributes out;
-  while (xmlTextReaderMoveToNextAttribute(reader) == 1) {
-    if (xmlTextReaderIsNamespaceDecl(reader) == 1) continue;
-    const std::string_view full = view(xmlTextReaderConstLocalName(reader)), name = without_prefix(full);
-    const std::string_view uri = view(xmlTextReaderConstNamespaceUri(reader)),
-                           value = view(xmlTextReaderConstValue(reader));
-    if (name == "id" && (is_gml(uri) || full == "gml:id")) {
+  const int line = element.line;
+  for (int i = 0; i < element.attribute_count; ++i) {
+    const xmlChar** a = element.attributes + 5 * i;
+    const std::string_view full = view(a[0]), name = without_prefix(full), prefix = view(a[1]), uri = view(a[2]);
+    const std::string_view value(reinterpret_cast<const char*>(a[3]), static_cast<std::size_t>(a[4] - a[3]));
+    if (name == "id" && (is_gml(uri) || prefix == "gml" || full == "gml:id")) {
       out.id = value;
     } else if (name == "href") {
       out.href = trimmed(value);
@@ -69,7 +69,6 @@ CityGmlParser::Attributes CityGmlParser::read_attributes(xmlTextReaderPtr reader
       out.between = value;
     }
   }
-  xmlTextReaderMoveToElement(reader);
   if (!out.id.empty()) {
     if (xmlValidateNCName(reinterpret_cast<const xmlChar*>(out.id.c_str()), 0) != 0)
       notes_.add(NoteKind::bad_id, line, "\"" + out.id + "\"");
@@ -95,13 +94,12 @@ CityGmlParser::Space CityGmlParser::space_of(std::string_view uri) {
   return Space::foreign;
 }
 
-void CityGmlParser::element(xmlTextReaderPtr reader) {
-  const bool empty = xmlTextReaderIsEmptyElement(reader) == 1;
+void CityGmlParser::element(const XmlElement& element) {
   Element e;
-  e.line = xmlTextReaderGetParserLineNumber(reader);
-  e.name = without_prefix(view(xmlTextReaderConstLocalName(reader)));
-  e.space = space_of(view(xmlTextReaderConstNamespaceUri(reader)));
-  if (xmlTextReaderHasAttributes(reader) == 1) e.attributes = read_attributes(reader, e.line);
+  e.line = element.line;
+  e.name = without_prefix(element.name);
+  e.space = space_of(element.space);
+  if (element.attribute_count > 0) e.attributes = read_attributes(element);
   e.dimension = e.attributes.dimension != 0 ? e.attributes.dimension : stack_.empty() ? 0 : stack_.back().dimension;
   e.first_item = links_.size();
   if (stack_.empty() && facts_.root.empty()) facts_.root = e.name;
@@ -110,7 +108,6 @@ void CityGmlParser::element(xmlTextReaderPtr reader) {
   collects_ =
       e.role == Role::coordinates || e.role == Role::attribute_value || e.role == Role::value || e.role == Role::corner;
   stack_.push_back(std::move(e));
-  if (empty) end_element();
 }
 
 void CityGmlParser::end_element() {

@@ -2,7 +2,7 @@
 // Internal to this folder.
 #pragma once
 
-#include <libxml/xmlreader.h>
+#include <libxml/xmlstring.h>
 
 #include <optional>
 #include <string>
@@ -26,18 +26,27 @@ struct DocumentFacts {
   std::vector<double> lower, upper;  ///< corners of the model's envelope as written; empty without one
 };
 
-/// Takes the events of a libxml2 reader: `element`, `end_element` and `text` as they come, then `finish`.
+/// An element as libxml2's SAX2 interface gives it: five entries for each attribute (local name, prefix, namespace,
+/// begin and end of the value).
+struct XmlElement {
+  std::string_view name, space;
+  int line = 0;
+  int attribute_count = 0;
+  const xmlChar** attributes = nullptr;
+};
+
+/// Takes a document's events as they come: `element`, `end_element` and `text`, then `cut_off` and `finish`.
 class CityGmlParser {
  public:
   CityGmlParser(ReferenceModel& model, NoteLog& notes) : model_(model), notes_(notes) {}
 
-  void element(xmlTextReaderPtr reader);
+  void element(const XmlElement& element);
   void end_element();
   void text(std::string_view characters) {
     if (collects_) text_ += characters;
   }
   void doctype() { facts_.has_doctype = true; }
-  /// Called where the text ends too early: what stands open is forgotten.
+  /// At the end of the text: forgets a building that has no end.
   void cut_off();
   /// Resolves links. Call once.
   void finish();
@@ -88,7 +97,7 @@ class CityGmlParser {
     std::size_t begin, voids, end;  ///< items; the shells of voids start at `voids`
   };
 
-  Attributes read_attributes(xmlTextReaderPtr reader, int line);
+  Attributes read_attributes(const XmlElement& element);
   Space space_of(std::string_view uri);
   Role start(const Element& e);
   Role start_outside(const Element& e);

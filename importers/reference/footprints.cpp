@@ -152,7 +152,18 @@ class Gatherer {
     return out;
   }
 
-  double plan_area(std::uint32_t polygon) const { return std::fabs(normal_of(model_.polygons[polygon].outer).z) / 2; }
+  /// Largest triangle in plan between the first point and an edge: 0 for what stands upright, not for rings that cross
+  /// themselves.
+  double plan_area(std::uint32_t polygon) const {
+    const auto& ring = model_.polygons[polygon].outer;
+    double largest = 0;
+    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+      const double cross =
+          (ring[i].x - ring[0].x) * (ring[i + 1].y - ring[0].y) - (ring[i].y - ring[0].y) * (ring[i + 1].x - ring[0].x);
+      largest = std::max(largest, std::fabs(cross) / 2);
+    }
+    return largest;
+  }
 
   bool has_plan_area(const std::vector<std::uint32_t>& polygons) const {
     return std::any_of(polygons.begin(), polygons.end(),

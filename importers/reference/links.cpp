@@ -6,8 +6,9 @@
 namespace blockrand::importers::reference {
 namespace {
 
-/// Links may multiply what they point to; no geometry of a building has so many faces and links.
-constexpr std::size_t kMostSteps = 20'000'000;
+/// Links may multiply what they point to. Files use each face in two or three geometries: more than this many visits
+/// for each face and link of the file, beyond the first ones, are an attack or a mistake.
+constexpr std::size_t kVisitsPerItem = 16, kFreeVisits = 1'000'000;
 
 }  // namespace
 
@@ -16,15 +17,19 @@ void Links::add_link(const std::string& target, bool reversed, int line) {
   targets_.push_back(target);
 }
 
-std::vector<Face> Links::resolve(std::size_t begin, std::size_t end, NoteLog& notes) const {
-  Walk walk{{}, {}, 0, notes};
+std::vector<Face> Links::resolve(std::size_t begin, std::size_t end, NoteLog& notes) {
+  Walk walk{{}, {}, notes};
   append(begin, end, false, walk);
   return std::move(walk.faces);
 }
 
-void Links::append(std::size_t begin, std::size_t end, bool turn, Walk& walk) const {
-  for (std::size_t i = begin; i < end && walk.steps < kMostSteps; ++i) {
-    ++walk.steps;
+void Links::append(std::size_t begin, std::size_t end, bool turn, Walk& walk) {
+  for (std::size_t i = begin; i < end; ++i) {
+    if (++visits_ > kFreeVisits + kVisitsPerItem * items_.size()) {
+      if (!exhausted_) walk.notes.add(NoteKind::unresolved_link, items_[i].line, "links multiply without end");
+      exhausted_ = true;
+      return;
+    }
     const Item& item = items_[i];
     const bool reversed = item.reversed != turn;
     if (item.polygon != kNone) {

@@ -27,8 +27,9 @@ class Links {
     names_.emplace(id, Range{begin, items_.size(), reversed});
   }
 
-  /// The faces of a range, links followed. What leads nowhere or in a circle is noted and left out.
-  std::vector<Face> resolve(std::size_t begin, std::size_t end, NoteLog& notes) const;
+  /// The faces of a range, links followed. What leads nowhere, in a circle or multiplies without end is noted and left
+  /// out.
+  std::vector<Face> resolve(std::size_t begin, std::size_t end, NoteLog& notes);
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
@@ -44,11 +45,12 @@ class Links {
   struct Walk {
     std::vector<Face> faces;
     std::vector<std::size_t> open;  ///< links on the way here
-    std::size_t steps;
     NoteLog& notes;
   };
-  void append(std::size_t begin, std::size_t end, bool turn, Walk& walk) const;
+  void append(std::size_t begin, std::size_t end, bool turn, Walk& walk);
 
+  std::size_t visits_ = 0;
+  bool exhausted_ = false;
   std::vector<Item> items_;
   std::vector<std::string> targets_;
   std::unordered_map<std::string, Range> names_;  // looked up only

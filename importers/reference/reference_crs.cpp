@@ -187,8 +187,13 @@ void decide_axis_order(ReferenceCrs& crs, const model::Point2& lowest, const mod
   };
   const std::string order_text = other == AxisOrder::north_first ? "north before east" : "east before north";
   constexpr double kNear = 0.05;  // degrees: models may reach over the edge of what they are compared with
-  if (fits(options.near, usual, kNear)) return;
-  if (fits(options.near, other, kNear)) {
+  const auto from_near = [&](AxisOrder order) {  // squared degrees, longitudes as long as latitudes: a comparison only
+    const georef::LonLat p = place(order), c = options.near->centre();
+    return (p.lon - c.lon) * (p.lon - c.lon) + (p.lat - c.lat) * (p.lat - c.lat);
+  };
+  const bool usual_near = fits(options.near, usual, kNear), other_near = fits(options.near, other, kNear);
+  if (usual_near && (!other_near || from_near(usual) <= from_near(other))) return;
+  if (other_near) {
     crs.axis_order = other;
     notes.add(NoteKind::crs, 0, order_text + ": so the model lies where it is expected");
     return;

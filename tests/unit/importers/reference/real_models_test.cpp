@@ -1,0 +1,303 @@
+// Real models: every count against an independent one made by looking for tags in the text, every footprint against the
+// map of its place. Skipped where the data is absent.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+
+#include "importers/osm/read_extract.h"
+#include "importers/reference/footprints.h"
+#include "importers/reference/transform.h"
+#include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/georef/projection.h"
+#include "tests/unit/importers/reference/support.h"
+
+namespace blockrand::importers::reference::test {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kData = fs::path(BLOCKRAND_SHARED_DIR) / "data";
+
+std::vector<fs::path> models_in(const std::string& folder) {
+  std::vector<fs::path> out;
+  if (!fs::exists(kData / "reference" / folder)) return out;
+  for (const auto& entry : fs::recursive_directory_iterator(kData / "reference" / folder))
+    if (entry.path().extension() == ".gml" || entry.path().extension() == ".xml") out.push_back(entry.path());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::string text_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// How often a tag with the local name opens, with any prefix; as grep counts, knowing nothing of XML.
+/// \param with_text  only those followed by text: not <tag/>, not <tag></tag>
+std::size_t tags(const std::string& text, const std::string& name, bool with_text = false) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+    const std::size_t after = at + name.size();
+    if (after >= text.size() || (text[after] != ' ' && text[after] != '>' && text[after] != '/' && text[after] != '\n'))
+      continue;
+    std::size_t before = at;
+    while (before > 0 && (std::isalnum(static_cast<unsigned char>(text[before - 1])) != 0 || text[before - 1] == '_'))
+      --before;
+    if (before > 0 && text[before - 1] == ':' && before == at) {
+      --before;
+      while (before > 0 && std::isalnum(static_cast<unsigned char>(text[before - 1])) != 0) --before;
+    } else if (before != at) {
+      continue;
+    }
+    if (before == 0 || text[before - 1] != '<') continue;
+    if (with_text) {
+      const std::size_t close = text.find('>', at);
+      if (close == std::string::npos || text[close - 1] == '/' || text[close + 1] == '<') continue;
+    }
+    ++count;
+  }
+  return count;
+}
+
+/// What a model has, by the same names as the tags.
+std::map<std::string, std::size_t> counts(const ReferenceModel& m) {
+  std::map<std::string, std::size_t> c;
+  for (const Building& b : m.buildings) {
+    ++c[b.parent < 0 ? "Building" : "BuildingPart"];
+    c["measuredHeight"] += b.measured_height.has_value();
+    c["storeysAboveGround"] += b.storeys_above_ground.has_value();
+    c["yearOfConstruction"] += b.year_of_construction.has_value();
+    c["roofType"] += !b.roof_type.empty();
+    for (const Geometry& g : b.geometries) c["Solid"] += g.kind == GeometryKind::solid;
+    for (const Surface& s : b.surfaces) {
+      for (const Geometry& g : s.geometries) c["Solid"] += g.kind == GeometryKind::solid;
+      switch (s.surface_class) {
+        case SurfaceClass::ground:
+          ++c["GroundSurface"];
+          break;
+        case SurfaceClass::wall:
+          ++c["WallSurface"];
+          break;
+        case SurfaceClass::roof:
+          ++c["RoofSurface"];
+          break;
+        case SurfaceClass::closure:
+          ++c["ClosureSurface"];
+          break;
+        case SurfaceClass::outer_ceiling:
+          ++c["OuterCeilingSurface"];
+          break;
+        case SurfaceClass::outer_floor:
+          ++c["OuterFloorSurface"];
+          break;
+        case SurfaceClass::interior_wall:
+          ++c["InteriorWallSurface"];
+          break;
+        case SurfaceClass::installation:
+          ++c["BuildingInstallation"];
+          break;
+        default:
+          break;
+      }
+      for (const Opening& o : s.openings) ++c[o.door ? "Door" : "Window"];
+    }
+  }
+  for (const Polygon3& p : m.polygons) c["interior"] += p.holes.size();
+  c["Polygon"] = m.polygons.size();
+  return c;
+}
+
+/// Every file of the folder: counts as the text has them.
+void expect_counts(const fs::path& path, const ReferenceModel& m) {
+  const std::string text = text_of(path);
+  auto found = counts(m);
+  for (const char* name : {"Building", "BuildingPart", "GroundSurface", "WallSurface", "RoofSurface", "ClosureSurface",
+                           "OuterCeilingSurface", "OuterFloorSurface", "InteriorWallSurface", "BuildingInstallation",
+                           "Window", "Door", "Solid"})
+    EXPECT_EQ(found[name], tags(text, name)) << name;
+  for (const char* name : {"measuredHeight", "storeysAboveGround", "yearOfConstruction", "roofType"})
+    EXPECT_EQ(found[name], tags(text, name, true)) << name;
+  if (m.other_objects.empty()) {
+    EXPECT_EQ(found["Polygon"], tags(text, "Polygon"));
+    EXPECT_EQ(found["interior"], tags(text, "interior"));
+  }
+  EXPECT_EQ(m.count(NoteKind::unresolved_link), 0u);
+  EXPECT_EQ(m.count(NoteKind::malformed_xml), 0u);
+  EXPECT_EQ(m.count(NoteKind::incomplete_building), 0u);
+}
+
+/// An OSM extract as polygons of its buildings in a CRS.
+struct Map {
+  explicit Map(const fs::path& file) : extract(osm::read_extract(file.string())) {
+    georef::GeoBox box{180, 90, -180, -90};
+    for (const model::Location v : extract.vertices) {
+      box.west = std::min(box.west, v.lon_degrees()), box.east = std::max(box.east, v.lon_degrees());
+      box.south = std::min(box.south, v.lat_degrees()), box.north = std::max(box.north, v.lat_degrees());
+    }
+    extent = box;
+    const georef::LonLat c = box.centre();
+    crs = georef::choose_crs(c.lon, c.lat);
+    const georef::Projection projection(georef::open_crs(crs, box), box);
+    for (const auto& b : extract.buildings) {
+      std::vector<model::Ring> rings;
+      std::vector<bool> inner;
+      for (const auto& r : extract.rings_of(b.rings)) {
+        rings.emplace_back();
+        inner.push_back(r.inner);
+        for (const model::Location v : extract.vertices_of(r))
+          rings.back().points.push_back(model::snap(projection.forward(v)));
+        rings.back().nodes.assign(rings.back().points.size(), 0);
+      }
+      for (auto& p : geometry::make_valid(rings, inner, 0.01, 0.02).polygons) polygons.push_back(std::move(p));
+    }
+  }
+
+  /// Area that a footprint shares with mapped buildings.
+  double shared(const Footprint2D& f) const {
+    std::vector<model::Polygon> near;
+    for (const auto& p : polygons) {
+      const auto overlaps = [&](const model::Polygon& q) {
+        const auto [ax, bx] =
+            std::minmax_element(p.outer.points.begin(), p.outer.points.end(), [](auto a, auto b) { return a.x < b.x; });
+        const auto [cx, dx] =
+            std::minmax_element(q.outer.points.begin(), q.outer.points.end(), [](auto a, auto b) { return a.x < b.x; });
+        const auto [ay, by] =
+            std::minmax_element(p.outer.points.begin(), p.outer.points.end(), [](auto a, auto b) { return a.y < b.y; });
+        const auto [cy, dy] =
+            std::minmax_element(q.outer.points.begin(), q.outer.points.end(), [](auto a, auto b) { return a.y < b.y; });
+        return ax->x < dx->x && cx->x < bx->x && ay->y < dy->y && cy->y < by->y;
+      };
+      if (std::any_of(f.polygons.begin(), f.polygons.end(), overlaps)) near.push_back(p);
+    }
+    return geometry::common_area(f.polygons, near);
+  }
+
+  model::Extract extract;
+  std::string crs;
+  georef::GeoBox extent;
+  std::vector<model::Polygon> polygons;
+};
+
+/// What a folder showed, for the test's record.
+struct Totals {
+  std::size_t buildings = 0, breaches = 0;
+  double area = 0, shared = 0;
+};
+
+/// Reads a folder, compares counts, and lays every footprint on the map.
+Totals lay_on_map(const std::string& folder, const Map& map) {
+  Totals totals;
+  for (const fs::path& path : models_in(folder)) {
+    SCOPED_TRACE(path.filename());
+    ReferenceModel m = read_citygml(path.string());
+    expect_counts(path, m);
+    transform_to(m, map.crs);
+    const auto extent = extent_of(m);
+    EXPECT_TRUE(extent && extent->west >= map.extent.west && extent->east <= map.extent.east &&
+                extent->south >= map.extent.south && extent->north <= map.extent.north);
+    totals.breaches += m.breaches();
+    for (const Footprint2D& f : ground_footprints(m)) {
+      ++totals.buildings;
+      EXPECT_GT(f.area, 0) << m.buildings[f.building].id;
+      for (const auto& p : f.polygons) EXPECT_TRUE(geometry::strictly_simple(p)) << m.buildings[f.building].id;
+      totals.area += f.area;
+      totals.shared += map.shared(f);
+    }
+  }
+  testing::Test::RecordProperty(folder + "_shared_percent", static_cast<int>(100 * totals.shared / totals.area));
+  return totals;
+}
+
+TEST(RealModels, Ingolstadt) {
+  if (models_in("ingolstadt-lod3").empty()) GTEST_SKIP() << "no reference/ingolstadt-lod3";
+  const Map map(kData / "osm/ingolstadt-altstadt.osm");
+  const Totals totals = lay_on_map("ingolstadt-lod3", map);
+  EXPECT_EQ(totals.buildings, 27u);
+  EXPECT_EQ(totals.breaches, 53470u);  // gml:ids that start with a digit: grep -ohE 'gml:id="[0-9][^"]*"' | wc -l
+  EXPECT_GT(totals.shared / totals.area, 0.85);
+}
+
+TEST(RealModels, BerlinLod2) {
+  if (models_in("berlin-lod2").empty()) GTEST_SKIP() << "no reference/berlin-lod2";
+  const Map map(kData / "osm/berlin-mitte-2014.osm.pbf");
+  const Totals totals = lay_on_map("berlin-lod2", map);
+  EXPECT_EQ(totals.buildings, 158u);
+  EXPECT_EQ(totals.breaches, 402u);  // gml:ids given twice in one file
+  EXPECT_GT(totals.shared / totals.area, 0.85);
+}
+
+TEST(RealModels, PariserPlatz) {
+  if (models_in("berlin-pariser-platz").empty()) GTEST_SKIP() << "no reference/berlin-pariser-platz";
+  const Map map(kData / "osm/berlin-pariser-platz-2014.osm.pbf");
+  const Totals totals = lay_on_map("berlin-pariser-platz", map);
+  EXPECT_EQ(totals.buildings, 18u);
+  EXPECT_EQ(totals.breaches, 0u);
+  // On the map only if the axes are the right way round and the change of datum was made.
+  EXPECT_GT(totals.shared / totals.area, 0.9);
+}
+
+TEST(RealModels, TheTextbookHouseInEveryLevel) {
+  const auto files = models_in("fzk-haus");
+  if (files.empty()) GTEST_SKIP() << "no reference/fzk-haus";
+  for (const fs::path& path : files) {
+    SCOPED_TRACE(path.filename());
+    const ReferenceModel m = read_citygml(path.string());
+    EXPECT_EQ(m.crs.horizontal, "EPSG:25832");
+    expect_counts(path, m);
+    const auto footprints = ground_footprints(m);
+    ASSERT_EQ(footprints.size(), 1u);
+    // "Building": 10 m x 5 m in all levels; with its garage 10 m² more. "FZK-House": 12 m x 10 m.
+    const std::string name = path.filename().string();
+    const double expected = name.find("FZK") == 0 ? 120 : name.find("garage") != std::string::npos ? 60 : 50;
+    EXPECT_NEAR(footprints[0].area, expected, 0.01);
+    const std::size_t level = name.find("LOD");
+    if (level != std::string::npos) {
+      EXPECT_EQ(m.buildings[0].lod(), name[level + 3] - '0');
+    }
+  }
+}
+
+/// The document with the first two of every three coordinates swapped.
+std::string with_swapped_axes(const std::string& text) {
+  std::string out;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t open = text.find('<', at), close = text.find('>', at);
+    if (close == std::string::npos) break;
+    const std::string tag = text.substr(open, close - open);
+    out += text.substr(at, close + 1 - at);
+    at = close + 1;
+    if (tag.find("<gml:pos") != 0 && tag.find("Corner") == std::string::npos) continue;
+    if (tag.find("/gml") != std::string::npos) continue;
+    const std::size_t end = text.find('<', at);
+    std::istringstream numbers(text.substr(at, end - at));
+    for (std::string x, y, z; numbers >> x >> y >> z;) out += y + " " + x + " " + z + "\n";
+    at = end;
+  }
+  return out;
+}
+
+TEST(RealModels, AreTheSameWhereverTheAxesStand) {
+  const auto files = models_in("fzk-haus");
+  if (files.empty()) GTEST_SKIP() << "no reference/fzk-haus";
+  for (const fs::path& path : files) {
+    SCOPED_TRACE(path.filename());
+    const ReferenceModel m = read_citygml(path.string()), swapped = read(with_swapped_axes(text_of(path)));
+    EXPECT_EQ(swapped.crs.axis_order, AxisOrder::north_first);
+    EXPECT_EQ(swapped.count(NoteKind::outside_envelope), m.count(NoteKind::outside_envelope));
+    ASSERT_EQ(m.polygons.size(), swapped.polygons.size());
+    for (std::size_t i = 0; i < m.polygons.size(); ++i) {
+      EXPECT_EQ(m.polygons[i].outer, swapped.polygons[i].outer);
+      EXPECT_EQ(m.polygons[i].holes, swapped.polygons[i].holes);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace blockrand::importers::reference::test
