@@ -1,0 +1,177 @@
+#include "pipeline/context/cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "pipeline/geometry/polygon.h"
+
+namespace blockrand::context {
+
+namespace {
+
+constexpr double kStepsPerUnit = 1024;  ///< of areas and lengths in CellSums
+constexpr double kStoreySteps = 100;
+constexpr int kYearZero = 1900;  ///< keeps the sums of squares small
+constexpr int kFirstYear = 500, kLastYear = 2100;  ///< what is beyond is a slip of the pen
+
+std::int64_t steps(double value, double per_unit) { return static_cast<std::int64_t>(std::llrint(value * per_unit)); }
+
+/// Mean and standard deviation of `n` integers from their sum and the sum of their squares, exact up to the last division.
+struct Spread {
+  double mean = 0, deviation = 0;
+};
+Spread spread_of(std::int64_t n, std::int64_t sum, std::int64_t squares) {
+  __extension__ typedef __int128 Wide;
+  const Wide variance = static_cast<Wide>(n) * squares - static_cast<Wide>(sum) * sum;  // times n squared, never negative
+  return {static_cast<double>(sum) / static_cast<double>(n), std::sqrt(static_cast<double>(variance)) / static_cast<double>(n)};
+}
+
+double quantile(const CellSums& sums, double share) {
+  const double wanted = share * static_cast<double>(sums.buildings);
+  double passed = 0;
+  for (std::size_t bin = 0; bin < kFootprintBins.size(); ++bin) {
+    const double here = static_cast<double>(sums.sizes[bin]);
+    const double low = bin == 0 ? 0 : kFootprintBins[bin - 1];
+    if (here > 0 && passed + here >= wanted) return low + (kFootprintBins[bin] - low) * (wanted - passed) / here;
+    passed += here;
+  }
+  return kFootprintBins.back();  // the last bin has no upper bound
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// A run of digits in a date.
+struct Number {
+  int value = 0;
+  std::size_t at = 0, digits = 0;
+};
+
+std::vector<Number> numbers_in(std::string_view text) {
+  std::vector<Number> out;
+  for (std::size_t i = 0; i < text.size();) {
+    if (!is_digit(text[i])) {
+      ++i;
+      continue;
+    }
+    Number n{0, i, 0};
+    for (; i < text.size() && is_digit(text[i]); ++i, ++n.digits)
+      if (n.digits < 6) n.value = n.value * 10 + (text[i] - '0');
+    out.push_back(n);
+  }
+  return out;
+}
+
+}  // namespace
+
+CellIndex cell_of(model::Point2 p) {
+  return {static_cast<std::int32_t>(std::floor(p.x / kCellSize)), static_cast<std::int32_t>(std::floor(p.y / kCellSize))};
+}
+
+model::Point2 cell_place(const model::Polygon& footprint) {
+  // From the least point on, so that a ring that starts elsewhere does not round into another cell.
+  std::vector<model::Point2> points = footprint.outer.points;
+  if (points.empty()) return {};
+  if (geometry::signed_area(points) < 0) std::reverse(points.begin(), points.end());
+  std::rotate(points.begin(), std::min_element(points.begin(), points.end()), points.end());
+  return model::snap(geometry::centroid(points));
+}
+
+std::optional<int> year_of(std::string_view text) {
+  const std::vector<Number> numbers = numbers_in(text);
+  if (numbers.empty()) return std::nullopt;
+  const Number first = numbers[0];
+  const auto valid = [](int year) { return year >= kFirstYear && year <= kLastYear ? std::optional(year) : std::nullopt; };
+  const std::string_view behind = text.substr(first.at + first.digits);
+  if (first.digits == 4) {
+    if (behind.starts_with("s")) return valid(first.value + 5);
+    // A range has two years; in a date the second number is a month.
+    if (numbers.size() == 2 && numbers[1].digits == 4 && numbers[1].value >= first.value)
+      return valid((first.value + numbers[1].value) / 2);
+    return valid(first.value);
+  }
+  const bool century = (first.at > 0 && (text[first.at - 1] == 'C' || text[first.at - 1] == 'c')) ||
+                       behind.find("cent") != std::string_view::npos;
+  return first.digits <= 2 && century ? valid(first.value * 100 - 50) : std::nullopt;
+}
+
+void CellSums::add(const CellBuilding& b) {
+  const std::int64_t size = steps(b.area, kStepsPerUnit);
+  ++buildings;
+  area += size;
+  walls += steps(b.wall_length, kStepsPerUnit);
+  party_walls += steps(b.party_wall_length, kStepsPerUnit);
+  const auto bin = std::upper_bound(kFootprintBins.begin(), kFootprintBins.end(), static_cast<double>(size) / kStepsPerUnit);
+  ++sizes[static_cast<std::size_t>(bin - kFootprintBins.begin())];
+  if (b.storeys) {
+    const std::int64_t s = steps(*b.storeys, kStoreySteps);
+    ++tagged;
+    tagged_area += size;
+    storeys += s;
+    storeys_squared += s * s;
+    floor_area += steps(b.area * *b.storeys, kStepsPerUnit);
+  }
+  if (b.year) {
+    const std::int64_t y = *b.year - kYearZero;
+    ++dated;
+    years += y;
+    years_squared += y * y;
+  }
+}
+
+void CellSums::add(const CellSums& o) {
+  buildings += o.buildings;
+  area += o.area;
+  walls += o.walls;
+  party_walls += o.party_walls;
+  tagged += o.tagged;
+  tagged_area += o.tagged_area;
+  storeys += o.storeys;
+  storeys_squared += o.storeys_squared;
+  floor_area += o.floor_area;
+  dated += o.dated;
+  years += o.years;
+  years_squared += o.years_squared;
+  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] += o.sizes[i];
+}
+
+CellFigures figures_of(const CellSums& s) {
+  constexpr double kSquareMetresPerHectare = 10000;
+  CellFigures f;
+  f.buildings = s.buildings;
+  if (s.buildings == 0) return f;
+  const double n = static_cast<double>(s.buildings);
+  f.density = n / (kCellSize * kCellSize / kSquareMetresPerHectare);
+  f.built_share = static_cast<double>(s.area) / kStepsPerUnit / (kCellSize * kCellSize);
+  f.tagged_share = static_cast<double>(s.tagged) / n;
+  f.dated_share = static_cast<double>(s.dated) / n;
+  if (s.tagged > 0) {
+    const Spread storeys = spread_of(s.tagged, s.storeys, s.storeys_squared);
+    f.storeys_mean = storeys.mean / kStoreySteps;
+    f.storeys_spread = storeys.deviation / kStoreySteps;
+  }
+  if (s.tagged_area > 0)
+    f.floor_area_ratio = f.built_share * static_cast<double>(s.floor_area) / static_cast<double>(s.tagged_area);
+  if (s.walls > 0) f.party_wall_share = static_cast<double>(s.party_walls) / static_cast<double>(s.walls);
+  if (s.dated > 0) {
+    const Spread years = spread_of(s.dated, s.years, s.years_squared);
+    f.year_mean = kYearZero + years.mean;
+    f.year_spread = years.deviation;
+  }
+  f.footprint_quartile = quantile(s, 0.25);
+  f.footprint_median = quantile(s, 0.5);
+  f.footprint_upper_quartile = quantile(s, 0.75);
+  return f;
+}
+
+Cells cells_of(std::span<const CellBuilding> buildings) {
+  Cells cells;
+  for (const CellBuilding& b : buildings) cells[cell_of(b.place)].add(b);
+  return cells;
+}
+
+void add_cells(Cells& cells, const Cells& more) {
+  for (const auto& [index, sums] : more) cells[index].add(sums);
+}
+
+}  // namespace blockrand::context
