@@ -187,6 +187,7 @@ void swap_axes(ReferenceModel& model) {
 
 ReferenceModel read_citygml(const std::string& path, const ReadOptions& options) {
   check_path(path);
+  xmlInitParser();
   Bytes bytes(path);
   if (!bytes.open()) refuse(path, 0, "cannot be opened", "");
   ReferenceModel model;

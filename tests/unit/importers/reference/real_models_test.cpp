@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -132,6 +134,31 @@ void expect_counts(const fs::path& path, const ReferenceModel& m) {
   EXPECT_EQ(m.count(NoteKind::incomplete_building), 0u);
 }
 
+/// Area of all ground surfaces in m², from the numbers between the tags: outer rings less inner ones.
+double ground_area(const std::string& text) {
+  double sum = 0;
+  for (std::size_t at = text.find("GroundSurface "); at != std::string::npos;
+       at = text.find("GroundSurface ", at + 1)) {
+    if (text[at - 1] != ':') continue;
+    const std::string block = text.substr(at, text.find("GroundSurface>", at) - at);
+    for (std::size_t list = block.find("<gml:posList"); list != std::string::npos;
+         list = block.find("<gml:posList", list + 1)) {
+      std::istringstream numbers(block.substr(block.find('>', list) + 1));
+      std::vector<std::array<double, 2>> ring;
+      for (double x = 0, y = 0, z = 0; numbers >> x >> y >> z;) ring.push_back({x, y});
+      double twice = 0;
+      for (std::size_t i = 0; i + 1 < ring.size(); ++i)
+        twice += (ring[i][0] - ring[0][0]) * (ring[i + 1][1] - ring[0][1]) -
+                 (ring[i + 1][0] - ring[0][0]) * (ring[i][1] - ring[0][1]);
+      const bool inner = block.rfind("<gml:interior>", list) != std::string::npos &&
+                         (block.rfind("</gml:interior>", list) == std::string::npos ||
+                          block.rfind("<gml:interior>", list) > block.rfind("</gml:interior>", list));
+      sum += (inner ? -0.5 : 0.5) * std::abs(twice);
+    }
+  }
+  return sum;
+}
+
 /// An OSM extract as polygons of its buildings in a CRS.
 struct Map {
   explicit Map(const fs::path& file) : extract(osm::read_extract(file.string())) {
@@ -197,6 +224,12 @@ Totals lay_on_map(const std::string& folder, const Map& map) {
     SCOPED_TRACE(path.filename());
     ReferenceModel m = read_citygml(path.string());
     expect_counts(path, m);
+    if (const double expected = ground_area(text_of(path)); expected > 0) {
+      double area = 0;
+      for (const Footprint2D& f : ground_footprints(m)) area += f.area;
+      EXPECT_LE(area, expected * 1.0001);  // the same, but for polygons of a building that overlap
+      EXPECT_GE(area, expected * 0.99);
+    }
     transform_to(m, map.crs);
     const auto extent = extent_of(m);
     EXPECT_TRUE(extent && extent->west >= map.extent.west && extent->east <= map.extent.east &&
