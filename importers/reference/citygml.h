@@ -23,7 +23,7 @@ struct ReadOptions {
 /// Elements are known by their local names, in any of CityGML's namespaces of versions 0.x, 1.0 and 2.0 and any prefix,
 /// also where the prefix is not declared. Xlinks within the file are resolved. Buildings inside of groups count; other
 /// city objects are counted only. What breaks the rules is read as far as it makes sense and noted; after damage to the
-/// XML itself reading goes on where libxml2 can, and a building that the end of the text cuts off is left out.
+/// XML itself reading goes on where libxml2 can, and a building without an end is left out.
 ///
 /// CRS: the first srsName. Understood are "EPSG:25833", OGC urns and addresses, compound ones ("urn:ogc:def:crs,crs:
 /// EPSG::25832,crs:EPSG::5783"), AdV's urns ("urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH") and names that PROJ knows.

@@ -98,6 +98,8 @@ void CityGmlParser::element(const XmlElement& element) {
   e.name = without_prefix(element.name);
   e.space = space_of(element.space);
   if (element.attribute_count > 0) e.attributes = read_attributes(element);
+  // No building holds a member of the city model: an end tag is missing.
+  if ((!open_.empty() || skip_depth_ > 0) && e.name == "cityObjectMember") cut_off();
   e.dimension = e.attributes.dimension != 0 ? e.attributes.dimension : stack_.empty() ? 0 : stack_.back().dimension;
   e.first_item = links_.size();
   if (stack_.empty() && facts_.root.empty()) facts_.root = e.name;
@@ -168,15 +170,18 @@ void CityGmlParser::drop_empty_geometries() {
 }
 
 void CityGmlParser::cut_off() {
-  if (open_.empty()) return;
-  const std::size_t first = open_.front().building;
-  const Building& b = model_.buildings[first];
-  notes_.add(NoteKind::incomplete_building, b.line, "building \"" + b.id + "\" has no end");
-  std::erase_if(pending_, [&](const Pending& p) { return p.building >= first; });
-  model_.buildings.resize(first);
+  if (!open_.empty()) {
+    const std::size_t first = open_.front().building;
+    const Building& b = model_.buildings[first];
+    notes_.add(NoteKind::incomplete_building, b.line, "building \"" + b.id + "\" has no end");
+    std::erase_if(pending_, [&](const Pending& p) { return p.building >= first; });
+    model_.buildings.resize(first);
+  }
   open_.clear();
   stack_.clear();
-  in_property_ = false;
+  skip_depth_ = 0;
+  polygon_.reset();
+  in_property_ = in_ring_ = reversed_ = false;
 }
 
 // ---- ends ---------------------------------------------------------------------------------------------------------

@@ -46,7 +46,8 @@ class CityGmlParser {
     if (collects_) text_ += characters;
   }
   void doctype() { facts_.has_doctype = true; }
-  /// At the end of the text: forgets a building that has no end.
+  /// At the end of the text, and where the next member of the city model starts too early: forgets a building that has
+  /// no end.
   void cut_off();
   /// Resolves links. Call once.
   void finish();

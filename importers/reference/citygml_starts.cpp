@@ -32,7 +32,11 @@ CityGmlParser::Role CityGmlParser::start_outside(const Element& e) {
   if (e.name == "appearanceMember" || e.name == "Appearance") return skip();
   if (e.name == "Envelope" && stack_.size() <= 2) return Role::envelope;
   if (parent_role() == Role::envelope && any_of(e.name, {"lowerCorner", "upperCorner", "pos"})) return Role::corner;
-  const bool member = any_of(parent_name(), {"cityObjectMember", "featureMember", "featureMembers", "groupMember"});
+  // One end tag missing shifts all that follow: a member may stand in a member.
+  const auto is_member = [](std::string_view name) {
+    return any_of(name, {"cityObjectMember", "featureMember", "featureMembers", "groupMember"});
+  };
+  const bool member = is_member(parent_name()) && !is_member(e.name);
   if (member && e.space != Space::gml) {
     auto& others = model_.other_objects;
     const auto known = std::find_if(others.begin(), others.end(), [&](const auto& o) { return o.first == e.name; });

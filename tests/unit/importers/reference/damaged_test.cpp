@@ -185,6 +185,24 @@ TEST(DamagedCityGml, ABuildingThatIsCutOffTakesItsPartsAlong) {
   EXPECT_THAT(ids(read(xml.substr(0, xml.find("<gml:name>")))), ElementsAre("a"));
 }
 
+TEST(DamagedCityGml, MissingEndTagsCostOneBuildingAtMost) {
+  const std::string address = "<bldg:address><Address><x>1</x></Address></bldg:address>";
+  const std::string b = building("b", address + surface("GroundSurface", polygon(kGround)));
+  for (const std::string lost : {"</gml:exterior>", "</gml:posList>", "</gml:Polygon>", "</bldg:GroundSurface>",
+                                 "</Address>", "</bldg:Building>"}) {
+    SCOPED_TRACE(lost);
+    const auto m = read(document(house("a") + replaced(b, lost, "") + house("c") + house("d")));
+    EXPECT_THAT(ids(m), ElementsAre("a", "b", "c", "d"));  // the member's end tag ends the building
+    EXPECT_GT(m.count(NoteKind::malformed_xml), 0u);
+    EXPECT_THAT(m.buildings.back().surfaces, SizeIs(1));
+    const auto two = read(
+        document(house("a") + replaced(replaced(b, lost, ""), "</cityObjectMember>", "") + house("c") + house("d")));
+    EXPECT_THAT(ids(two), ElementsAre("a", "c", "d"));
+    EXPECT_EQ(two.count(NoteKind::incomplete_building), 1u);
+    EXPECT_THAT(two.buildings.back().surfaces, SizeIs(1));
+  }
+}
+
 TEST(DamagedCityGml, CutArchivesKeepWholeBuildings) {
   const TempFolder folder;
   std::string members;
