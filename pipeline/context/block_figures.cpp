@@ -113,7 +113,8 @@ std::vector<BlockShare> shares_of(const Polygon& building, std::span<const Block
     if (inside == corners.size())
       out.push_back({b, geometry::area(building)});
     else if (inside > 0)
-      if (const double common = geometry::common_area(std::span(&building, 1), std::span(&block, 1)); common >= kMinCommonArea)
+      if (const double common = geometry::common_area(std::span(&building, 1), std::span(&block, 1));
+          common >= kMinCommonArea)
         out.push_back({b, common});
   }
   return out;
@@ -122,8 +123,8 @@ std::vector<BlockShare> shares_of(const Polygon& building, std::span<const Block
 // ---- closure of the perimeter ---------------------------------------------------------------------------------------
 
 struct Sample {
-  double along = 0;   ///< m from the beginning of the side
-  double weight = 0;  ///< m of the perimeter that it stands for
+  double along = 0;                                        ///< m from the beginning of the side
+  double weight = 0;                                       ///< m of the perimeter that it stands for
   double depth = std::numeric_limits<double>::infinity();  ///< m to the first wall
 };
 
@@ -212,8 +213,9 @@ std::vector<Side> sides_of(std::span<const Point2> ring, std::span<const Segment
       const int pieces = std::max(1, static_cast<int>(std::lround(length / options.sample_step)));
       for (int s = 0; s < pieces; ++s) {
         const double t = length * (s + 0.5) / pieces;
-        side.samples.push_back({side.length + t, length / pieces,
-                                depth_at({a.x + d.x * t, a.y + d.y * t}, inwards, options.max_depth, walls, grid, near)});
+        side.samples.push_back(
+            {side.length + t, length / pieces,
+             depth_at({a.x + d.x * t, a.y + d.y * t}, inwards, options.max_depth, walls, grid, near)});
       }
       side.length += length;
     }
@@ -223,12 +225,14 @@ std::vector<Side> sides_of(std::span<const Point2> ring, std::span<const Segment
   return sides;
 }
 
-void measure_front(const Block& block, std::span<const Segment> walls, const FrontOptions& options, BlockFigures& figures) {
+void measure_front(const Block& block, std::span<const Segment> walls, const FrontOptions& options,
+                   BlockFigures& figures) {
   const std::vector<Side> sides = sides_of(block.polygon.outer.points, walls, options);
   const auto line_of = [&](const Side& s) { return s.building_line >= 0 ? s.building_line : options.half_street; };
   double built = 0;
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    const Side &side = sides[i], &before = sides[(i + sides.size() - 1) % sides.size()], &after = sides[(i + 1) % sides.size()];
+    const Side &side = sides[i], &before = sides[(i + sides.size() - 1) % sides.size()],
+               &after = sides[(i + 1) % sides.size()];
     double from = 0, to = side.length;
     if (sides.size() > 1) {
       from = corner_cut(before.last, side.first, line_of(side), line_of(before));
@@ -252,7 +256,8 @@ std::vector<BlockFigures> measure_blocks(std::span<const Block> blocks, std::spa
   const BlockIndex index(blocks);
   std::vector<std::uint32_t> by_id(footprints.size());
   for (std::uint32_t i = 0; i < by_id.size(); ++i) by_id[i] = i;
-  std::sort(by_id.begin(), by_id.end(), [&](std::uint32_t a, std::uint32_t b) { return footprints[a].id < footprints[b].id; });
+  std::sort(by_id.begin(), by_id.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return footprints[a].id < footprints[b].id; });
   for (const std::uint32_t i : by_id) {
     const Footprint& building = footprints[i];
     if (building.polygon.outer.size() < 3) continue;
@@ -289,7 +294,8 @@ std::vector<BlockFigures> measure_blocks(std::span<const Block> blocks, std::spa
     if (!blocks[b].gives_ratios()) continue;
     figures.built_share = figures.built_area / blocks[b].area;
     if (figures.built_area > 0) figures.tagged_share = figures.tagged_area / figures.built_area;
-    if (figures.tagged_area > 0) figures.floor_area_ratio = *figures.built_share * figures.floor_area / figures.tagged_area;
+    if (figures.tagged_area > 0)
+      figures.floor_area_ratio = *figures.built_share * figures.floor_area / figures.tagged_area;
     measure_front(blocks[b], walls, front, figures);
   }
   return out;

@@ -32,8 +32,8 @@ struct BlockFigures {
   double courtyard_area = 0;             ///< m²
 
   // Ratios: for blocks that give any (Block::gives_ratios).
-  std::optional<double> built_share;  ///< built area / block area. The block reaches to the centre lines of its streets,
-                                      ///< so this is less than the GRZ of its lots
+  std::optional<double> built_share;  ///< built area / block area. The block reaches to the centre lines of its
+                                      ///< streets, so this is less than the GRZ of its lots
   std::optional<double> tagged_share;      ///< tagged area / built area, where something is built
   std::optional<double> floor_area_ratio;  ///< GFZ: built share times mean storeys of the tagged buildings by area; as
                                            ///< good as `tagged_share`; empty where nothing is tagged
@@ -47,16 +47,16 @@ struct BlockFigures {
 /// across a border, each block counts the area within it (of blocks in which a corner of the building lies; a building
 /// with all its corners in a block is counted there wholly).
 ///
-/// Closure: the perimeter is cut into sides at corners. From samples along a side a ray goes inwards; the building line of
-/// the side is the lower quartile of the distances at which rays meet a wall, and a sample is built when its ray meets a
-/// wall no more than `front_tolerance` behind that line. Samples beside a corner, whose rays run along the other street,
-/// are left out: a side ends where the building line of its neighbour crosses its own. Islands in the block are not
-/// measured.
+/// Closure: the perimeter is cut into sides at corners. From samples along a side a ray goes inwards; the building line
+/// of the side is the lower quartile of the distances at which rays meet a wall, and a sample is built when its ray
+/// meets a wall no more than `front_tolerance` behind that line. Samples beside a corner, whose rays run along the
+/// other street, are left out: a side ends where the building line of its neighbour crosses its own. Islands in the
+/// block are not measured.
 ///
 /// \param lines  the network of find_blocks: its streets lead into no courtyard
 ///
-/// Sums run in the order of OSM ids: the result does not depend on the order of footprints, nor on other blocks; the figures
-/// of a block depend on buildings that reach into it and on streets within its box alone.
+/// Sums run in the order of OSM ids: the result does not depend on the order of footprints, nor on other blocks; the
+/// figures of a block depend on buildings that reach into it and on streets within its box alone.
 std::vector<BlockFigures> measure_blocks(std::span<const Block> blocks, std::span<const Footprint> footprints,
                                          std::span<const NetworkLine> lines, const FrontOptions& front = {},
                                          const CourtyardOptions& courtyards = {});

@@ -107,9 +107,10 @@ std::string id_of(const Face& face, std::span<const NetworkLine> lines,
   return best->line.text() + "." + place + (best->left ? ".l" : ".r");
 }
 
-/// How much of the perimeter (0 to 1) the street with the longest share holds, counting carriageways only; and railways.
+/// How much of the perimeter (0 to 1) the street with the longest share holds, counting carriageways only; and
+/// railways.
 struct Shares {
-  double one_street = 0, railway = 0, coast_to_sea = 0;
+  double one_street = 0, roundabout = 0, railway = 0, coast_to_sea = 0;
 };
 
 Shares shares_of(const Face& face, std::span<const NetworkLine> lines,
@@ -122,6 +123,7 @@ Shares shares_of(const Face& face, std::span<const NetworkLine> lines,
     const NetworkLine& line = lines[found->second];
     const double length = border.left + border.right;
     if (line.kind == LineClass::railway) shares.railway += length;
+    if (line.roundabout) shares.roundabout += length / around;
     // The land lies on the left of a coastline.
     if (line.kind == LineClass::coastline) shares.coast_to_sea += border.right;
     if (!is_street(line.kind) || !line.oneway || line.area) continue;
@@ -157,7 +159,8 @@ std::vector<Point2> coverage_of(std::span<const Point2> points) {
   const auto chain = [&](auto first, auto last) {
     const std::size_t base = hull.size();
     for (; first != last; ++first) {
-      while (hull.size() >= base + 2 && geometry::orientation(hull[hull.size() - 2], hull.back(), *first) <= 0) hull.pop_back();
+      while (hull.size() >= base + 2 && geometry::orientation(hull[hull.size() - 2], hull.back(), *first) <= 0)
+        hull.pop_back();
       hull.push_back(*first);
     }
     hull.pop_back();
@@ -167,7 +170,8 @@ std::vector<Point2> coverage_of(std::span<const Point2> points) {
   std::vector<Point2> out;
   if (hull.size() < 3) return out;
   for (const geometry::Grid2 g : hull)
-    out.push_back({static_cast<double>(g.x) / model::kGridStepsPerMetre, static_cast<double>(g.y) / model::kGridStepsPerMetre});
+    out.push_back(
+        {static_cast<double>(g.x) / model::kGridStepsPerMetre, static_cast<double>(g.y) / model::kGridStepsPerMetre});
   return out;
 }
 
@@ -199,6 +203,8 @@ std::vector<Block> find_blocks(std::span<const NetworkLine> lines, std::span<con
       block.kind = BlockKind::water;
     else if (square || width < options.min_width)
       block.kind = BlockKind::street_space;
+    else if (width <= options.max_roundabout_radius && shares.roundabout >= options.min_same_street)
+      block.kind = BlockKind::between_carriageways;
     else if (width <= options.max_strip_width && shares.one_street >= options.min_same_street)
       block.kind = BlockKind::between_carriageways;
     else if (width <= options.max_strip_width && shares.railway >= options.min_same_street)
@@ -206,7 +212,8 @@ std::vector<Block> find_blocks(std::span<const NetworkLine> lines, std::span<con
 
     const Box box = box_of(face.polygon.outer.points);
     block.too_large = std::max(box.high.x - box.low.x, box.high.y - box.low.y) > options.max_extent;
-    block.cut_by_extract_edge = !coverage.empty() && !inside_convex(coverage, face.polygon.outer.points, options.coverage_margin);
+    block.cut_by_extract_edge =
+        !coverage.empty() && !inside_convex(coverage, face.polygon.outer.points, options.coverage_margin);
     for (auto end = std::lower_bound(ends.begin(), ends.end(), Point2{box.low.x, box.low.y});
          !block.cut_by_extract_edge && end != ends.end() && end->x <= box.high.x; ++end)
       block.cut_by_extract_edge = box.contains(*end) && geometry::contains(face.polygon, *end);
@@ -214,9 +221,8 @@ std::vector<Block> find_blocks(std::span<const NetworkLine> lines, std::span<con
     for (const geometry::BorderLine& border : face.lines)
       if (const auto found = line_of.find(border.id); found != line_of.end())
         block.borders.push_back({found->second, border.left + border.right});
-    std::sort(block.borders.begin(), block.borders.end(), [&](const BlockBorder& a, const BlockBorder& b) {
-      return lines[a.line].id < lines[b.line].id;
-    });
+    std::sort(block.borders.begin(), block.borders.end(),
+              [&](const BlockBorder& a, const BlockBorder& b) { return lines[a.line].id < lines[b.line].id; });
     block.polygon = std::move(face.polygon);
     blocks.push_back(std::move(block));
   }

@@ -15,19 +15,22 @@ namespace blockrand::context {
 struct BlockOptions {
   /// m, the longer side of the bounding box. Larger blocks give no ratios: the result for a block depends on lines that
   /// come into its box and on nothing else, so a tile that reads this far around a building finds the same block as a
-  /// whole build (DESIGN law 4). Perimeter blocks of Berlin are 100 to 350 m; what is larger is railway land, parks, fields.
+  /// whole build (DESIGN law 4). Perimeter blocks of Berlin are 100 to 350 m; what is larger is railway land, parks,
+  /// fields.
   double max_extent = 1000;
   /// m, 2 area / perimeter: the width of a strip. The green between two carriageways is rarely wider (centre line to
   /// centre line); the narrowest blocks that hold two rows of houses are 30 m and more.
   double max_strip_width = 24;
+  /// m, 2 area / perimeter: the radius of a circle. Wider rings of a roundabout hold houses within.
+  double max_roundabout_radius = 40;
   /// Of the perimeter: how much of a strip must belong to one street (or to railways) to lie between its carriageways.
   /// The ends of the strip and links at junctions make up the rest.
   double min_same_street = 0.75;
-  /// m beyond the coverage: half a building and half a street, since the coverage ends at the centres of the last buildings
-  /// and a block in the middle of the street before them.
+  /// m beyond the coverage: half a building and half a street, since the coverage ends at the centres of the last
+  /// buildings and a block in the middle of the street before them.
   double coverage_margin = 30;
-  /// m, 2 area / perimeter. No house fits between the centre lines of two streets that are nearer: such faces are traffic
-  /// islands and slivers between a street and the outline of its square.
+  /// m, 2 area / perimeter. No house fits between the centre lines of two streets that are nearer: such faces are
+  /// traffic islands and slivers between a street and the outline of its square.
   double min_width = 6;
 };
 
@@ -65,11 +68,12 @@ struct Block {
 
 /// Where the data is: the convex hull of points of the extract, as a counter-clockwise ring (empty for fewer than three
 /// points not in line). Meant for a point of each building: streets of an extract reach out of it where ways were kept
-/// whole, buildings do not. A concave extract has land without data inside its hull; there the streets that end without a
-/// cause tell (Block::cut_by_extract_edge).
+/// whole, buildings do not. A concave extract has land without data inside its hull; there the streets that end without
+/// a cause tell (Block::cut_by_extract_edge).
 std::vector<model::Point2> coverage_of(std::span<const model::Point2> points);
 
-/// The bounded faces of the network, in the canonical order of geometry::faces_of_lines. The unbounded face is no block.
+/// The bounded faces of the network, in the canonical order of geometry::faces_of_lines. The unbounded face is no
+/// block.
 ///
 /// \param coverage  a convex counter-clockwise ring in metres (coverage_of), made once per extract; a block that is not
 ///                  within `coverage_margin` of its inside is cut. Empty: nothing is known, no block is cut by it.

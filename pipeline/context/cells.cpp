@@ -12,19 +12,22 @@ namespace {
 
 constexpr double kStepsPerUnit = 1024;  ///< of areas and lengths in CellSums
 constexpr double kStoreySteps = 100;
-constexpr int kYearZero = 1900;  ///< keeps the sums of squares small
+constexpr int kYearZero = 1900;                    ///< keeps the sums of squares small
 constexpr int kFirstYear = 500, kLastYear = 2100;  ///< what is beyond is a slip of the pen
 
 std::int64_t steps(double value, double per_unit) { return static_cast<std::int64_t>(std::llrint(value * per_unit)); }
 
-/// Mean and standard deviation of `n` integers from their sum and the sum of their squares, exact up to the last division.
+/// Mean and standard deviation of `n` integers from their sum and the sum of their squares, exact up to the last
+/// division.
 struct Spread {
   double mean = 0, deviation = 0;
 };
 Spread spread_of(std::int64_t n, std::int64_t sum, std::int64_t squares) {
   __extension__ typedef __int128 Wide;
-  const Wide variance = static_cast<Wide>(n) * squares - static_cast<Wide>(sum) * sum;  // times n squared, never negative
-  return {static_cast<double>(sum) / static_cast<double>(n), std::sqrt(static_cast<double>(variance)) / static_cast<double>(n)};
+  const Wide variance =
+      static_cast<Wide>(n) * squares - static_cast<Wide>(sum) * sum;  // times n squared, never negative
+  return {static_cast<double>(sum) / static_cast<double>(n),
+          std::sqrt(static_cast<double>(variance)) / static_cast<double>(n)};
 }
 
 double quantile(const CellSums& sums, double share) {
@@ -65,7 +68,8 @@ std::vector<Number> numbers_in(std::string_view text) {
 }  // namespace
 
 CellIndex cell_of(model::Point2 p) {
-  return {static_cast<std::int32_t>(std::floor(p.x / kCellSize)), static_cast<std::int32_t>(std::floor(p.y / kCellSize))};
+  return {static_cast<std::int32_t>(std::floor(p.x / kCellSize)),
+          static_cast<std::int32_t>(std::floor(p.y / kCellSize))};
 }
 
 model::Point2 cell_place(const model::Polygon& footprint) {
@@ -81,7 +85,9 @@ std::optional<int> year_of(std::string_view text) {
   const std::vector<Number> numbers = numbers_in(text);
   if (numbers.empty()) return std::nullopt;
   const Number first = numbers[0];
-  const auto valid = [](int year) { return year >= kFirstYear && year <= kLastYear ? std::optional(year) : std::nullopt; };
+  const auto valid = [](int year) {
+    return year >= kFirstYear && year <= kLastYear ? std::optional(year) : std::nullopt;
+  };
   const std::string_view behind = text.substr(first.at + first.digits);
   if (first.digits == 4) {
     if (behind.starts_with("s")) return valid(first.value + 5);
@@ -101,7 +107,8 @@ void CellSums::add(const CellBuilding& b) {
   area += size;
   walls += steps(b.wall_length, kStepsPerUnit);
   party_walls += steps(b.party_wall_length, kStepsPerUnit);
-  const auto bin = std::upper_bound(kFootprintBins.begin(), kFootprintBins.end(), static_cast<double>(size) / kStepsPerUnit);
+  const auto bin =
+      std::upper_bound(kFootprintBins.begin(), kFootprintBins.end(), static_cast<double>(size) / kStepsPerUnit);
   ++sizes[static_cast<std::size_t>(bin - kFootprintBins.begin())];
   if (b.storeys) {
     const std::int64_t s = steps(*b.storeys, kStoreySteps);

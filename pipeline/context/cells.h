@@ -15,8 +15,8 @@
 
 namespace blockrand::context {
 
-/// m. A few blocks: enough buildings for a mean, small enough to follow a change of quarter. Part of every cell's name and
-/// value, so it is no option.
+/// m. A few blocks: enough buildings for a mean, small enough to follow a change of quarter. Part of every cell's name
+/// and value, so it is no option.
 inline constexpr double kCellSize = 250;
 
 /// A square of the grid: x and y count cells from the origin of the build CRS, so that a cell depends on no tile.
@@ -32,12 +32,12 @@ CellIndex cell_of(model::Point2 p);
 
 /// What a cell learns of a building: geometry and tagged values only, never inferred ones (DESIGN law 4).
 struct CellBuilding {
-  model::Point2 place;              ///< m; the whole building counts in the cell of this point
-  double area = 0;                  ///< m², footprint
-  double wall_length = 0;           ///< m, outline
-  double party_wall_length = 0;     ///< m of it shared with other buildings
-  std::optional<double> storeys;    ///< as tagged
-  std::optional<int> year;          ///< of start_date
+  model::Point2 place;            ///< m; the whole building counts in the cell of this point
+  double area = 0;                ///< m², footprint
+  double wall_length = 0;         ///< m, outline
+  double party_wall_length = 0;   ///< m of it shared with other buildings
+  std::optional<double> storeys;  ///< as tagged
+  std::optional<int> year;        ///< of start_date
 };
 
 /// The place of a building in the grid: the centre of mass of its outer ring, on the 1/1024 m grid.
@@ -56,15 +56,15 @@ inline constexpr std::array<double, 20> kFootprintBins = {10,  20,  30,  45,  60
 /// region, added, are the cell of the whole.
 struct CellSums {
   std::int64_t buildings = 0;
-  std::int64_t area = 0;         ///< 1/1024 m²
-  std::int64_t walls = 0;        ///< 1/1024 m
-  std::int64_t party_walls = 0;  ///< 1/1024 m
-  std::int64_t tagged = 0;       ///< buildings with tagged storeys
-  std::int64_t tagged_area = 0;  ///< 1/1024 m² under them
-  std::int64_t storeys = 0, storeys_squared = 0;  ///< in hundredths of a storey, and these squared
-  std::int64_t floor_area = 0;   ///< 1/1024 m², storeys times area of the tagged
-  std::int64_t dated = 0;        ///< buildings with a year
-  std::int64_t years = 0, years_squared = 0;      ///< from 1900
+  std::int64_t area = 0;                                        ///< 1/1024 m²
+  std::int64_t walls = 0;                                       ///< 1/1024 m
+  std::int64_t party_walls = 0;                                 ///< 1/1024 m
+  std::int64_t tagged = 0;                                      ///< buildings with tagged storeys
+  std::int64_t tagged_area = 0;                                 ///< 1/1024 m² under them
+  std::int64_t storeys = 0, storeys_squared = 0;                ///< in hundredths of a storey, and these squared
+  std::int64_t floor_area = 0;                                  ///< 1/1024 m², storeys times area of the tagged
+  std::int64_t dated = 0;                                       ///< buildings with a year
+  std::int64_t years = 0, years_squared = 0;                    ///< from 1900
   std::array<std::int64_t, kFootprintBins.size() + 1> sizes{};  ///< buildings by footprint, kFootprintBins
 
   void add(const CellBuilding& building);
@@ -75,13 +75,13 @@ struct CellSums {
 /// What a cell says. Empty values: nobody told.
 struct CellFigures {
   std::int64_t buildings = 0;
-  double density = 0;              ///< buildings per hectare
-  double built_share = 0;          ///< footprint area / cell area; above 1 where a large building reaches out of its cell
-  double tagged_share = 0;         ///< of the buildings have tagged storeys
+  double density = 0;       ///< buildings per hectare
+  double built_share = 0;   ///< footprint area / cell area; above 1 where a large building reaches out of its cell
+  double tagged_share = 0;  ///< of the buildings have tagged storeys
   std::optional<double> storeys_mean, storeys_spread;  ///< of these buildings; spread is the standard deviation
-  std::optional<double> floor_area_ratio;  ///< built share times storeys by area, as good as `tagged_share`
-  std::optional<double> party_wall_share;  ///< of the length of outlines
-  double dated_share = 0;          ///< of the buildings have a year
+  std::optional<double> floor_area_ratio;              ///< built share times storeys by area, as good as `tagged_share`
+  std::optional<double> party_wall_share;              ///< of the length of outlines
+  double dated_share = 0;                              ///< of the buildings have a year
   std::optional<double> year_mean, year_spread;
   std::optional<double> footprint_quartile, footprint_median, footprint_upper_quartile;  ///< m², from the bins, linear
                                                                                          ///< within a bin

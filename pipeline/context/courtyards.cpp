@@ -60,7 +60,8 @@ class Walls {
     for (std::uint32_t i = 0; i < segments_.size(); ++i) {
       const Point2 corner = segments_[i].a;
       // Gaps are narrowest at convex corners, or between parallel walls, which end in such.
-      if (geometry::orientation(grid2(segments_[walls_[i].previous].a), grid2(corner), grid2(segments_[i].b)) <= 0) continue;
+      if (geometry::orientation(grid2(segments_[walls_[i].previous].a), grid2(corner), grid2(segments_[i].b)) <= 0)
+        continue;
       grid_->near({corner.x - reach, corner.y - reach}, {corner.x + reach, corner.y + reach}, near);
       add_gate(i, near, reach, false, out);
       add_gate(i, near, reach, true, out);
@@ -95,12 +96,17 @@ class Walls {
   }
 
   /// From the corner where wall `i` begins to the nearest wall of the same building, or of another.
-  void add_gate(std::uint32_t i, const std::vector<std::uint32_t>& near, double reach, bool same, std::vector<Segment>& out) const {
+  void add_gate(std::uint32_t i, const std::vector<std::uint32_t>& near, double reach, bool same,
+                std::vector<Segment>& out) const {
     const Point2 corner = segments_[i].a;
     std::vector<std::pair<double, Point2>> places;
     for (const std::uint32_t w : near) {
       if ((walls_[w].building == walls_[i].building) != same || w == i || w == walls_[i].previous) continue;
-      const Point2 place = nearest_on(segments_[w], corner);
+      const Segment& wall = segments_[w];
+      if (std::min(wall.a.x, wall.b.x) > corner.x + reach || std::max(wall.a.x, wall.b.x) < corner.x - reach ||
+          std::min(wall.a.y, wall.b.y) > corner.y + reach || std::max(wall.a.y, wall.b.y) < corner.y - reach)
+        continue;
+      const Point2 place = nearest_on(wall, corner);
       const double gap = distance(corner, place);
       if (gap <= reach) places.emplace_back(gap, place);
     }
@@ -136,7 +142,8 @@ class Walls {
     }
     const Point2 from = segments_[i].a;
     std::vector<std::uint32_t> streets;
-    street_grid_->near({std::min(from.x, to.x), std::min(from.y, to.y)}, {std::max(from.x, to.x), std::max(from.y, to.y)}, streets);
+    street_grid_->near({std::min(from.x, to.x), std::min(from.y, to.y)},
+                       {std::max(from.x, to.x), std::max(from.y, to.y)}, streets);
     return std::none_of(streets.begin(), streets.end(),
                         [&](std::uint32_t s) { return cross(a, b, grid2(streets_[s].a), grid2(streets_[s].b)); });
   }
@@ -158,7 +165,8 @@ template <class Visit>
 void for_each_edge(const Face& face, Visit&& visit) {
   std::size_t k = 0;
   const auto follow = [&](const model::Ring& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i, ++k) visit(ring.points[i], ring.points[(i + 1) % ring.size()], face.edges[k]);
+    for (std::size_t i = 0; i < ring.size(); ++i, ++k)
+      visit(ring.points[i], ring.points[(i + 1) % ring.size()], face.edges[k]);
   };
   follow(face.polygon.outer);
   for (const model::Ring& hole : face.polygon.holes) follow(hole);

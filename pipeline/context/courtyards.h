@@ -21,8 +21,8 @@ struct Footprint {
 using Polyline = std::vector<model::Point2>;
 
 struct CourtyardOptions {
-  /// m. A gap this wide between two buildings, or between two wings, is an opening of a courtyard; through a wider one the
-  /// space belongs to the street. Gateways and fire lanes are 3 to 6 m, a missing house of a row is 15 m and more.
+  /// m. A gap this wide between two buildings, or between two wings, is an opening of a courtyard; through a wider one
+  /// the space belongs to the street. Gateways and fire lanes are 3 to 6 m, a missing house of a row is 15 m and more.
   double max_opening = 9;
   /// m². Closed courtyards down to light wells count; what is smaller is a gap between walls that almost meet.
   double min_closed_area = 4;
@@ -46,10 +46,10 @@ struct Courtyard {
 
 /// The courtyards among the buildings of one block.
 ///
-/// Every gap of at most `max_opening` is closed by its shortest line (from a convex corner to the nearest wall of another
-/// building, and of the same building); what walls and lines enclose and no building covers is courtyard. Courtyards that
-/// only lines divide are one. Over a street no gap is closed: what a street leads into is street space, also where it ends
-/// there. A courtyard depends on the buildings around it alone. The result is in the order of the
+/// Every gap of at most `max_opening` is closed by its shortest line (from a convex corner to the nearest wall of
+/// another building, and of the same building); what walls and lines enclose and no building covers is courtyard.
+/// Courtyards that only lines divide are one. Over a street no gap is closed: what a street leads into is street space,
+/// also where it ends there. A courtyard depends on the buildings around it alone. The result is in the order of the
 /// rings and does not depend on the order of the buildings.
 ///
 /// \param streets  centre lines in metres; those near the block suffice

@@ -15,11 +15,16 @@ using model::Feature;
 using model::FeatureKind;
 
 constexpr std::pair<std::string_view, LineClass> kStreets[] = {
-    {"motorway", LineClass::motorway},           {"trunk", LineClass::trunk},
-    {"primary", LineClass::primary},             {"secondary", LineClass::secondary},
-    {"tertiary", LineClass::tertiary},           {"residential", LineClass::residential},
-    {"unclassified", LineClass::residential},    {"road", LineClass::residential},
-    {"living_street", LineClass::living_street}, {"pedestrian", LineClass::pedestrian},
+    {"motorway", LineClass::motorway},
+    {"trunk", LineClass::trunk},
+    {"primary", LineClass::primary},
+    {"secondary", LineClass::secondary},
+    {"tertiary", LineClass::tertiary},
+    {"residential", LineClass::residential},
+    {"unclassified", LineClass::residential},
+    {"road", LineClass::residential},
+    {"living_street", LineClass::living_street},
+    {"pedestrian", LineClass::pedestrian},
 };
 
 LineClass street_class(std::string_view highway) {

@@ -35,11 +35,11 @@ struct NetworkLine {
   model::OsmId id;
   LineClass kind = LineClass::other;
   std::string name;
-  bool oneway = false;            ///< one carriageway of several, or a one-way street
+  bool oneway = false;  ///< one carriageway of several, or a one-way street
   bool roundabout = false;
-  bool tunnel = false;            ///< under ground; a passage through a building is none
+  bool tunnel = false;  ///< under ground; a passage through a building is none
   bool bridge = false;
-  bool area = false;              ///< one ring of an area; rings of one area have the same id
+  bool area = false;  ///< one ring of an area; rings of one area have the same id
   int layer = 0;
   std::vector<model::Point2> points;  ///< m, on the 1/1024 m grid; closed lines and rings repeat the first point
   std::vector<std::int64_t> nodes;    ///< parallel to `points`, or empty
@@ -51,12 +51,13 @@ inline constexpr double kMinWaterArea = 1000;
 /// Whether a line bounds blocks.
 ///
 /// * Streets from motorway to residential, living streets and pedestrian streets do; service ways, tracks and paths run
-///   inside a block. The outline of a pedestrian area does too: streets end at squares, and without the outline the blocks
-///   around a square would be one.
+///   inside a block. The outline of a pedestrian area does too: streets end at squares, and without the outline the
+///   blocks around a square would be one.
 /// * Railways and light railways do where they lie in the open. Trams and elevated undergrounds do not: they run within
 ///   streets, and their tracks beside a street would cut slivers off every block. Yard and siding tracks do not either.
 /// * Rivers, canals, coasts and waters of kMinWaterArea do; streams and ditches run through gardens.
-/// * Bridges do: a street on a bridge divides the land below as seen from above. Where it crosses another, blocks end there.
+/// * Bridges do: a street on a bridge divides the land below as seen from above. Where it crosses another, blocks end
+/// there.
 /// * Tunnels do not: houses stand above them. A passage through a building (tunnel=building_passage) does: the street
 ///   space goes on, and the house stands over it.
 bool bounds_blocks(const NetworkLine& line);

@@ -67,13 +67,15 @@ bool crossing(const Piece& p, const Piece& q, Grid2& out) {
   return true;
 }
 
-/// Whether a piece passes through the square of side one around a grid point. The square owns its left and lower sides, so
-/// that squares fill the plane without overlapping.
+/// Whether a piece passes through the square of side one around a grid point. The square owns its left and lower sides,
+/// so that squares fill the plane without overlapping.
 bool passes_through(const Piece& piece, Grid2 centre) {
   // In half steps the corners are whole numbers.
-  const Grid2 a{2 * (piece.a.x - centre.x), 2 * (piece.a.y - centre.y)}, b{2 * (piece.b.x - centre.x), 2 * (piece.b.y - centre.y)};
+  const Grid2 a{2 * (piece.a.x - centre.x), 2 * (piece.a.y - centre.y)},
+      b{2 * (piece.b.x - centre.x), 2 * (piece.b.y - centre.y)};
   if ((a.x == 0 && a.y == 0) || (b.x == 0 && b.y == 0)) return true;
-  if (std::max(a.x, b.x) < -1 || std::min(a.x, b.x) >= 1 || std::max(a.y, b.y) < -1 || std::min(a.y, b.y) >= 1) return false;
+  if (std::max(a.x, b.x) < -1 || std::min(a.x, b.x) >= 1 || std::max(a.y, b.y) < -1 || std::min(a.y, b.y) >= 1)
+    return false;
   // Ends lie on other grid points, outside the square: the piece passes when it cuts the inside or meets an owned side.
   const int lower_left = orientation(a, b, Grid2{-1, -1}), lower_right = orientation(a, b, Grid2{1, -1});
   const int upper_left = orientation(a, b, Grid2{-1, 1}), upper_right = orientation(a, b, Grid2{1, 1});
@@ -124,9 +126,12 @@ std::vector<NodedEdge> noded_edges(std::span<const DividingLine> lines) {
     const std::uint32_t i = first->first;
     auto last = first;
     while (last != chains.end() && last->first == i) ++last;
-    // In the order in which the piece passes them; two at the same place along it: by position, which is the same for all.
+    // In the order in which the piece passes them; two at the same place along it: by position, which is the same for
+    // all.
     const Grid2 a = pieces[i].a, u = pieces[i].b - a;
-    const auto along = [&](Grid2 g) { return static_cast<Int128>(u.x) * (g.x - a.x) + static_cast<Int128>(u.y) * (g.y - a.y); };
+    const auto along = [&](Grid2 g) {
+      return static_cast<Int128>(u.x) * (g.x - a.x) + static_cast<Int128>(u.y) * (g.y - a.y);
+    };
     std::stable_sort(first, last, [&](const auto& p, const auto& q) { return along(p.second) < along(q.second); });
     const auto own = source;
     while (source != sources.end() && source->piece == pieces[i]) ++source;

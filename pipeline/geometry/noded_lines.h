@@ -11,7 +11,7 @@ namespace blockrand::geometry {
 
 /// A line that may bound faces. Points in metres on the 1/1024 m grid; a closed line repeats its first point.
 struct DividingLine {
-  std::uint64_t id = 0;             ///< whose line it is; several lines may have the same id
+  std::uint64_t id = 0;  ///< whose line it is; several lines may have the same id
   std::vector<model::Point2> points;
   std::vector<std::int64_t> nodes;  ///< OSM nodes of the points, or empty
 };
@@ -25,14 +25,14 @@ struct NodedEdge {
   friend auto operator<=>(const NodedEdge&, const NodedEdge&) = default;
 };
 
-/// All lines cut where they cross, touch or overlap, ascending and each edge of a line once. Edges of different ends meet
-/// at common ends only.
+/// All lines cut where they cross, touch or overlap, ascending and each edge of a line once. Edges of different ends
+/// meet at common ends only.
 ///
-/// Snap rounding (Hobby 1999): every end of a segment and every crossing, rounded to the grid, makes its grid square hot;
-/// a segment becomes the chain of the centres of the hot squares that it passes through. So nothing moves by more than
-/// 0.71 grid steps, and no edge comes to cross another. All in exact integers: the result depends on the set of segments
-/// alone, and around a place only on segments that come there. (GEOS's noder inserts hot pixels in an order from
-/// std::random_device, which costs more than the noding.) About O(n log n) for segments that cross few others.
+/// Snap rounding (Hobby 1999): every end of a segment and every crossing, rounded to the grid, makes its grid square
+/// hot; a segment becomes the chain of the centres of the hot squares that it passes through. So nothing moves by more
+/// than 0.71 grid steps, and no edge comes to cross another. All in exact integers: the result depends on the set of
+/// segments alone, and around a place only on segments that come there. (GEOS's noder inserts hot pixels in an order
+/// from std::random_device, which costs more than the noding.) About O(n log n) for segments that cross few others.
 std::vector<NodedEdge> noded_edges(std::span<const DividingLine> lines);
 
 }  // namespace blockrand::geometry

@@ -50,15 +50,16 @@ GEOSGeometry* geos_segment(Point2 a, Point2 b) {
   return GEOSGeom_createLineString_r(context(), sequence);
 }
 
-/// Rings of the arrangement. The edges come in a canonical order and direction, so that no order of the input reaches GEOS.
+/// Rings of the arrangement. The edges come in a canonical order and direction, so that no order of the input reaches
+/// GEOS.
 Geometry polygonized(const std::vector<NodedEdge>& edges) {
   std::vector<GEOSGeometry*> parts;
   for (std::size_t i = 0; i < edges.size(); ++i)
     if (i == 0 || edges[i].a != edges[i - 1].a || edges[i].b != edges[i - 1].b)
       parts.push_back(geos_segment(edges[i].a, edges[i].b));
-  const Geometry all = checked(GEOSGeom_createCollection_r(context(), GEOS_MULTILINESTRING, parts.data(),
-                                                           static_cast<unsigned>(parts.size())),
-                               "collect lines");
+  const Geometry all = checked(
+      GEOSGeom_createCollection_r(context(), GEOS_MULTILINESTRING, parts.data(), static_cast<unsigned>(parts.size())),
+      "collect lines");
   const GEOSGeometry* const input[] = {all.get()};
   return checked(GEOSPolygonize_r(context(), input, 1), "polygonize");
 }
@@ -94,7 +95,8 @@ std::vector<Polygon> polygons_from(const GEOSGeometry* collection) {
       polygon.holes.push_back(ring_from(GEOSGetInteriorRingN_r(context(), g, h)));
       make_canonical(polygon.holes.back(), false);
     }
-    std::sort(polygon.holes.begin(), polygon.holes.end(), [](const Ring& a, const Ring& b) { return a.points < b.points; });
+    std::sort(polygon.holes.begin(), polygon.holes.end(),
+              [](const Ring& a, const Ring& b) { return a.points < b.points; });
     out.push_back(std::move(polygon));
   }
   std::sort(out.begin(), out.end(), [](const Polygon& a, const Polygon& b) { return a.outer.points < b.outer.points; });
@@ -116,7 +118,8 @@ class Attribution {
     follow(face.polygon.outer, face);
     for (Ring& hole : face.polygon.holes) follow(hole, face);
     // A stable sort keeps the order along the rings, in which lengths are summed.
-    std::stable_sort(borders_.begin(), borders_.end(), [](const BorderLine& a, const BorderLine& b) { return a.id < b.id; });
+    std::stable_sort(borders_.begin(), borders_.end(),
+                     [](const BorderLine& a, const BorderLine& b) { return a.id < b.id; });
     for (const BorderLine& border : borders_) {
       if (face.lines.empty() || face.lines.back().id != border.id) {
         face.lines.push_back(border);
@@ -133,7 +136,8 @@ class Attribution {
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Point2 p = ring.points[i], q = ring.points[(i + 1) % ring.size()];
       // Of several nodes at one place the least.
-      const auto node = std::lower_bound(nodes_.begin(), nodes_.end(), std::pair(p, std::numeric_limits<std::int64_t>::min()));
+      const auto node =
+          std::lower_bound(nodes_.begin(), nodes_.end(), std::pair(p, std::numeric_limits<std::int64_t>::min()));
       if (node != nodes_.end() && node->first == p) ring.nodes[i] = node->second;
       const double length = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
       // The interior lies on the left of every ring edge: the same direction as the line's means left of the line.
@@ -183,9 +187,9 @@ Point2 inner_point(const Polygon& polygon) {
   };
   std::vector<GEOSGeometry*> holes;
   for (const Ring& hole : polygon.holes) holes.push_back(ring(hole));
-  const Geometry g = checked(GEOSGeom_createPolygon_r(context(), ring(polygon.outer), holes.data(),
-                                                      static_cast<unsigned>(holes.size())),
-                             "make a polygon");
+  const Geometry g = checked(
+      GEOSGeom_createPolygon_r(context(), ring(polygon.outer), holes.data(), static_cast<unsigned>(holes.size())),
+      "make a polygon");
   const Geometry point(GEOSPointOnSurface_r(context(), g.get()));
   Point2 p = origin;
   double x = 0, y = 0;

@@ -26,25 +26,27 @@ struct BorderLine {
 };
 
 struct Face {
-  /// Outer ring counter-clockwise, holes clockwise, each beginning at its least point (x, then y); holes in the order of
-  /// their first points. Valid in OGC's sense: rings may touch each other at points. `nodes` are those of the lines.
+  /// Outer ring counter-clockwise, holes clockwise, each beginning at its least point (x, then y); holes in the order
+  /// of their first points. Valid in OGC's sense: rings may touch each other at points. `nodes` are those of the lines.
   model::Polygon polygon;
-  std::vector<FaceEdge> edges;    ///< parallel to the vertices, outer ring first, then the holes: the edge that starts there
+  std::vector<FaceEdge>
+      edges;  ///< parallel to the vertices, outer ring first, then the holes: the edge that starts there
   std::vector<BorderLine> lines;  ///< every line along the boundary, ascending by id
 };
 
-/// Nodes the lines where they cross, touch or overlap, drops what ends blindly or only connects, and returns the bounded
-/// faces of what remains, in the order of their rings.
+/// Nodes the lines where they cross, touch or overlap, drops what ends blindly or only connects, and returns the
+/// bounded faces of what remains, in the order of their rings.
 ///
-/// Crossings are rounded to the grid by exact snap rounding (noded_edges). The result depends on the set of segments alone: not on the order of lines, their
-/// direction (but for left and right), or how they are cut into pieces. It is local: a face depends only on lines that come
-/// into its bounding box, since every edge of its boundary is part of a closed ring within that box.
+/// Crossings are rounded to the grid by exact snap rounding (noded_edges). The result depends on the set of segments
+/// alone: not on the order of lines, their direction (but for left and right), or how they are cut into pieces. It is
+/// local: a face depends only on lines that come into its bounding box, since every edge of its boundary is part of a
+/// closed ring within that box.
 ///
 /// \throws std::runtime_error when GEOS gives up (out of memory; not for any input on the grid)
 std::vector<Face> faces_of_lines(std::span<const DividingLine> lines);
 
-/// A point inside the polygon, on the grid, well away from the boundary where the polygon is wide. For polygons narrower
-/// than a few millimetres it may lie on the boundary.
+/// A point inside the polygon, on the grid, well away from the boundary where the polygon is wide. For polygons
+/// narrower than a few millimetres it may lie on the boundary.
 model::Point2 inner_point(const model::Polygon& polygon);
 
 }  // namespace blockrand::geometry

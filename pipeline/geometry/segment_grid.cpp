@@ -7,7 +7,8 @@ namespace blockrand::geometry {
 
 namespace {
 
-/// m. Segments and boxes are grown by it: far above the rounding of the interpolation below, and no less than a grid step.
+/// m. Segments and boxes are grown by it: far above the rounding of the interpolation below, and no less than a grid
+/// step.
 constexpr double kSlack = 1.0 / model::kGridStepsPerMetre;
 
 }  // namespace
@@ -21,8 +22,10 @@ SegmentGrid::SegmentGrid(std::span<const Segment> segments, double cell) : cell_
     const std::int32_t first = cell_of(a.x - kSlack), last = cell_of(b.x + kSlack);
     for (std::int32_t x = first; x <= last; ++x) {
       const double slope = b.x > a.x ? (b.y - a.y) / (b.x - a.x) : 0;
-      const double west = std::clamp(x * cell_ - kSlack, a.x, b.x), east = std::clamp((x + 1) * cell_ + kSlack, a.x, b.x);
-      const double from = b.x > a.x ? a.y + (west - a.x) * slope : a.y, to = b.x > a.x ? a.y + (east - a.x) * slope : b.y;
+      const double west = std::clamp(x * cell_ - kSlack, a.x, b.x),
+                   east = std::clamp((x + 1) * cell_ + kSlack, a.x, b.x);
+      const double from = b.x > a.x ? a.y + (west - a.x) * slope : a.y,
+                   to = b.x > a.x ? a.y + (east - a.x) * slope : b.y;
       const std::int32_t low = cell_of(std::min(from, to) - kSlack), high = cell_of(std::max(from, to) + kSlack);
       for (std::int32_t y = low; y <= high; ++y) entries_.push_back({x, y, i});
     }

@@ -27,8 +27,8 @@ class SegmentGrid {
   /// that share a cell with it. `out` is cleared first.
   void near(model::Point2 minimum, model::Point2 maximum, std::vector<std::uint32_t>& out) const;
 
-  /// Calls `visit(i, k)`, i < k, for all pairs of segments that share a cell: all that can meet, and some others. A pair
-  /// that shares several cells is visited several times.
+  /// Calls `visit(i, k)`, i < k, for all pairs of segments that share a cell: all that can meet, and some others. A
+  /// pair that shares several cells is visited several times.
   template <class Visit>
   void for_each_pair(Visit&& visit) const {
     for (auto first = entries_.begin(); first != entries_.end();) {

@@ -31,13 +31,15 @@ NetworkLine street(std::int64_t way, std::vector<Point2> points) {
 
 /// A block of 120 by 100 m, and one of the same size east of it.
 std::vector<NetworkLine> two_blocks() {
-  return {street(1, {{0, 0}, {120, 0}, {240, 0}, {240, 100}, {120, 100}, {0, 100}, {0, 0}}), street(2, {{120, 0}, {120, 100}})};
+  return {street(1, {{0, 0}, {120, 0}, {240, 0}, {240, 100}, {120, 100}, {0, 100}, {0, 0}}),
+          street(2, {{120, 0}, {120, 100}})};
 }
 
 Footprint house(std::int64_t id, double x, double y, double width, double height, std::optional<double> storeys = {}) {
   Footprint f;
   f.id = {OsmType::way, id};
-  for (const Point2 p : {Point2{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}}) f.polygon.outer.points.push_back({kPlace.x + p.x, kPlace.y + p.y});
+  for (const Point2 p : {Point2{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}})
+    f.polygon.outer.points.push_back({kPlace.x + p.x, kPlace.y + p.y});
   f.polygon.outer.nodes.assign(4, 0);
   f.storeys = storeys;
   return f;
@@ -45,7 +47,8 @@ Footprint house(std::int64_t id, double x, double y, double width, double height
 
 /// Wings along all four streets, 10 m behind their centre lines, 12 m deep.
 std::vector<Footprint> perimeter_block() {
-  return {house(11, 10, 10, 100, 12, 4), house(12, 98, 22, 12, 56, 5), house(13, 10, 78, 100, 12, 4), house(14, 10, 22, 12, 56)};
+  return {house(11, 10, 10, 100, 12, 4), house(12, 98, 22, 12, 56, 5), house(13, 10, 78, 100, 12, 4),
+          house(14, 10, 22, 12, 56)};
 }
 
 BlockFigures first_block(const std::vector<Footprint>& houses) {
@@ -101,7 +104,8 @@ TEST(BlockFigures, NothingBuiltIsOpenAndHasNoStoreys) {
 
 TEST(BlockFigures, AHouseAcrossAStreetBelongsWhereMostOfItIs) {
   const auto lines = two_blocks();
-  const auto figures = measure_blocks(find_blocks(lines, {}), std::vector{house(1, 105, 40, 20, 10, 3), house(2, 300, 0, 10, 10)}, lines);
+  const auto figures = measure_blocks(find_blocks(lines, {}),
+                                      std::vector{house(1, 105, 40, 20, 10, 3), house(2, 300, 0, 10, 10)}, lines);
   ASSERT_EQ(figures.size(), 2u);
   EXPECT_THAT(figures[0].buildings, ElementsAre(0));
   EXPECT_THAT(figures[1].buildings, IsEmpty()) << "and the one beyond all blocks to none";
@@ -130,7 +134,9 @@ TEST(BlockFigures, OrderOfFootprintsAndOtherBlocksDoNotMatter) {
   const auto draw = [&](double from, double to) { return model::snap(from + (to - from) * (random() / 4294967296.0)); };
   std::vector<Footprint> houses;
   for (int x = 0; x < 11; ++x)
-    for (int y = 0; y < 5; ++y) houses.push_back(house(x * 10 + y, 5 + x * 20 + draw(0, 5), 5 + y * 19 + draw(0, 5), draw(6, 15), draw(6, 14), draw(1, 6)));
+    for (int y = 0; y < 5; ++y)
+      houses.push_back(
+          house(x * 10 + y, 5 + x * 20 + draw(0, 5), 5 + y * 19 + draw(0, 5), draw(6, 15), draw(6, 14), draw(1, 6)));
   const auto lines = two_blocks();
   const auto blocks = find_blocks(lines, {});
   const auto figures = measure_blocks(blocks, houses, lines);

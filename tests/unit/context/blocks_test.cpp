@@ -58,8 +58,12 @@ std::vector<BlockKind> kinds(const std::vector<Block>& blocks) {
 std::vector<NetworkLine> grid_of_streets() {
   std::vector<NetworkLine> lines;
   for (int i = 0; i <= 3; ++i) {
-    lines.push_back(street(10 + i, {{i * 100.0, -20}, {i * 100.0, 0}, {i * 100.0, 100}, {i * 100.0, 200}, {i * 100.0, 300}, {i * 100.0, 320}}));
-    lines.push_back(street(20 + i, {{-20, i * 100.0}, {0, i * 100.0}, {100, i * 100.0}, {200, i * 100.0}, {300, i * 100.0}, {320, i * 100.0}}));
+    lines.push_back(street(
+        10 + i,
+        {{i * 100.0, -20}, {i * 100.0, 0}, {i * 100.0, 100}, {i * 100.0, 200}, {i * 100.0, 300}, {i * 100.0, 320}}));
+    lines.push_back(street(
+        20 + i,
+        {{-20, i * 100.0}, {0, i * 100.0}, {100, i * 100.0}, {200, i * 100.0}, {300, i * 100.0}, {320, i * 100.0}}));
   }
   return lines;
 }
@@ -93,38 +97,49 @@ TEST(Blocks, WhatRunsInsideThemDoesNotDivide) {
 }
 
 TEST(Blocks, TheStripBetweenCarriagewaysIsNone) {
-  std::vector lines{carriageway(1, {{-50, 0}, {0, 0}, {300, 0}, {350, 0}}, "Allee"), carriageway(2, {{350, 15}, {300, 15}, {0, 15}, {-50, 15}}, "Allee"),
-                    street(3, {{0, -100}, {0, 0}, {0, 15}, {0, 100}}), street(4, {{300, -100}, {300, 0}, {300, 15}, {300, 100}}),
-                    street(5, {{0, 100}, {300, 100}})};
+  std::vector lines{carriageway(1, {{-50, 0}, {0, 0}, {300, 0}, {350, 0}}, "Allee"),
+                    carriageway(2, {{350, 15}, {300, 15}, {0, 15}, {-50, 15}}, "Allee"),
+                    street(3, {{0, -100}, {0, 0}, {0, 15}, {0, 100}}),
+                    street(4, {{300, -100}, {300, 0}, {300, 15}, {300, 100}}), street(5, {{0, 100}, {300, 100}})};
   EXPECT_THAT(kinds(find_blocks(lines, {})), ElementsAre(BlockKind::between_carriageways, BlockKind::ordinary));
   lines[1].name = "Ufer";
   EXPECT_THAT(kinds(find_blocks(lines, {})), ElementsAre(BlockKind::ordinary, BlockKind::ordinary)) << "two streets";
   lines[1].name = "Allee";
   lines[0].oneway = lines[1].oneway = false;
-  EXPECT_THAT(kinds(find_blocks(lines, {})), ElementsAre(BlockKind::ordinary, BlockKind::ordinary)) << "no carriageways";
+  EXPECT_THAT(kinds(find_blocks(lines, {})), ElementsAre(BlockKind::ordinary, BlockKind::ordinary))
+      << "no carriageways";
   for (NetworkLine& l : lines)
     for (Point2& p : l.points)
       if (p.y == kPlace.y + 15) p.y += 25;
   lines[0].oneway = lines[1].oneway = true;
-  EXPECT_THAT(kinds(find_blocks(lines, {})), ElementsAre(BlockKind::ordinary, BlockKind::ordinary)) << "room for houses";
+  EXPECT_THAT(kinds(find_blocks(lines, {})), ElementsAre(BlockKind::ordinary, BlockKind::ordinary))
+      << "room for houses";
 }
 
 TEST(Blocks, TracksRoundaboutsSliversAndSquares) {
-  const auto tracks = std::vector{street(1, {{0, -10}, {0, 0}, {0, 8}, {0, 90}, {300, 90}, {300, 8}, {300, 0}, {300, -10}}),
-                                  street(2, {{0, 0}, {300, 0}}, LineClass::railway), street(3, {{0, 8}, {300, 8}}, LineClass::railway)};
+  const auto tracks =
+      std::vector{street(1, {{0, -10}, {0, 0}, {0, 8}, {0, 90}, {300, 90}, {300, 8}, {300, 0}, {300, -10}}),
+                  street(2, {{0, 0}, {300, 0}}, LineClass::railway), street(3, {{0, 8}, {300, 8}}, LineClass::railway)};
   EXPECT_THAT(kinds(find_blocks(tracks, {})), ElementsAre(BlockKind::between_tracks, BlockKind::ordinary));
   NetworkLine roundabout = street(1, {{0, 0}, {14, 0}, {20, 10}, {14, 20}, {0, 20}, {-6, 10}, {0, 0}});
   roundabout.roundabout = roundabout.oneway = true;
   EXPECT_THAT(kinds(find_blocks(std::vector{roundabout}, {})), ElementsAre(BlockKind::between_carriageways));
+  NetworkLine circus = street(1, box(0, 0, 70, 70));
+  circus.roundabout = circus.oneway = true;
+  EXPECT_THAT(kinds(find_blocks(std::vector{circus}, {})), ElementsAre(BlockKind::between_carriageways));
+  circus.points = street(1, box(0, 0, 170, 170)).points;
+  EXPECT_THAT(kinds(find_blocks(std::vector{circus}, {})), ElementsAre(BlockKind::ordinary)) << "houses stand within";
   EXPECT_THAT(kinds(find_blocks(std::vector{street(1, box(0, 0, 12, 10))}, {})), ElementsAre(BlockKind::street_space))
       << "a traffic island, 5.5 m wide by 2 area / perimeter";
 }
 
 TEST(Blocks, SquaresAndWatersAreNoBuiltLand) {
-  const auto lines = std::vector{street(1, box(0, 0, 200, 200)), area(2, box(20, 20, 60, 60), LineClass::pedestrian),
-                                 area(3, box(100, 100, 80, 80), LineClass::shore), area(3, box(120, 120, 20, 20), LineClass::shore)};
+  const auto lines =
+      std::vector{street(1, box(0, 0, 200, 200)), area(2, box(20, 20, 60, 60), LineClass::pedestrian),
+                  area(3, box(100, 100, 80, 80), LineClass::shore), area(3, box(120, 120, 20, 20), LineClass::shore)};
   const auto blocks = find_blocks(lines, {});
-  EXPECT_THAT(kinds(blocks), ElementsAre(BlockKind::ordinary, BlockKind::street_space, BlockKind::water, BlockKind::ordinary))
+  EXPECT_THAT(kinds(blocks),
+              ElementsAre(BlockKind::ordinary, BlockKind::street_space, BlockKind::water, BlockKind::ordinary))
       << "the second ring of the water is an island";
   EXPECT_DOUBLE_EQ(blocks[0].area, 40000 - 3600 - 6400);
   EXPECT_EQ(blocks[0].polygon.holes.size(), 2u);
@@ -144,13 +159,15 @@ TEST(Blocks, CutByTheEdgeOfTheExtract) {
   const auto lines = grid_of_streets();
   // Data ends 40 m west of the last street but one.
   std::vector<Point2> points;
-  for (const Point2 p : {Point2{5, 5}, {160, 5}, {160, 295}, {5, 295}, {80, 100}}) points.push_back({p.x + kPlace.x, p.y + kPlace.y});
+  for (const Point2 p : {Point2{5, 5}, {160, 5}, {160, 295}, {5, 295}, {80, 100}})
+    points.push_back({p.x + kPlace.x, p.y + kPlace.y});
   const auto coverage = coverage_of(points);
   EXPECT_EQ(coverage.size(), 4u);
   EXPECT_GT(geometry::signed_area(coverage), 0);
   int cut = 0;
   for (const Block& b : find_blocks(lines, coverage)) {
-    EXPECT_EQ(b.cut_by_extract_edge, b.polygon.outer.points[0].x >= kPlace.x + 100) << "nearer than the margin is inside";
+    EXPECT_EQ(b.cut_by_extract_edge, b.polygon.outer.points[0].x >= kPlace.x + 100)
+        << "nearer than the margin is inside";
     EXPECT_NE(b.cut_by_extract_edge, b.gives_ratios());
     cut += b.cut_by_extract_edge;
   }
@@ -184,13 +201,17 @@ TEST(Blocks, TooLargeOnesGiveNoRatios) {
 
 TEST(Blocks, IdsTellTheSidesOfALoopApart) {
   // A closed way with one street through it: both halves have the same ways and the same junctions.
-  const auto blocks = find_blocks(std::vector{street(7, {{0, 0}, {100, 0}, {100, 50}, {100, 100}, {0, 100}, {0, 50}, {0, 0}}), street(9, {{0, 50}, {100, 50}})}, {});
+  const auto blocks =
+      find_blocks(std::vector{street(7, {{0, 0}, {100, 0}, {100, 50}, {100, 100}, {0, 100}, {0, 50}, {0, 0}}),
+                              street(9, {{0, 50}, {100, 50}})},
+                  {});
   ASSERT_EQ(blocks.size(), 2u);
   EXPECT_NE(blocks[0].id, blocks[1].id);
 }
 
 TEST(Blocks, WhereOnlyBridgesCrossThePlaceStandsForTheNode) {
-  std::vector lines{street(1, {{-50, 0}, {150, 0}}), street(2, {{-50, 100}, {150, 100}}), street(3, {{0, -50}, {0, 150}}), street(4, {{100, -50}, {100, 150}})};
+  std::vector lines{street(1, {{-50, 0}, {150, 0}}), street(2, {{-50, 100}, {150, 100}}),
+                    street(3, {{0, -50}, {0, 150}}), street(4, {{100, -50}, {100, 150}})};
   const auto blocks = find_blocks(lines, {});
   ASSERT_EQ(blocks.size(), 1u);
   EXPECT_EQ(blocks[0].id, "w1.p400384000_5959680000.l");
@@ -212,7 +233,9 @@ TEST(Blocks, OrderAndCutsOfLinesDoNotMatterAndABlockDependsOnItsBoxAlone) {
     EXPECT_EQ(blocks[i].kind, again[i].kind);
   }
   // Only the four streets around the first two blocks and the one between.
-  std::erase_if(lines, [](const NetworkLine& l) { return l.id.number != 10 && l.id.number != 11 && l.id.number != 20 && l.id.number != 21 && l.id.number != 31; });
+  std::erase_if(lines, [](const NetworkLine& l) {
+    return l.id.number != 10 && l.id.number != 11 && l.id.number != 20 && l.id.number != 21 && l.id.number != 31;
+  });
   const auto near = find_blocks(lines, {});
   ASSERT_EQ(near.size(), 2u);
   EXPECT_EQ(near[0].id, blocks[0].id);
@@ -224,7 +247,8 @@ TEST(Blocks, OrderAndCutsOfLinesDoNotMatterAndABlockDependsOnItsBoxAlone) {
 
 class ExtractMaker {
  public:
-  void add(std::int64_t id, model::FeatureKind kind, std::vector<std::pair<std::string, std::string>> tags, bool area = false, std::int32_t size = 100) {
+  void add(std::int64_t id, model::FeatureKind kind, std::vector<std::pair<std::string, std::string>> tags,
+           bool area = false, std::int32_t size = 100) {
     model::Feature f;
     f.id = {OsmType::way, id};
     f.kinds = static_cast<std::uint32_t>(kind);
@@ -243,7 +267,8 @@ class ExtractMaker {
   /// Class of each line, by OSM id.
   std::map<std::int64_t, NetworkLine> lines() const {
     std::map<std::int64_t, NetworkLine> out;
-    for (NetworkLine& l : network_lines(e, [](model::Location v) { return Point2{v.lon * 1.0003, v.lat * 1.0003}; })) out[l.id.number] = std::move(l);
+    for (NetworkLine& l : network_lines(e, [](model::Location v) { return Point2{v.lon * 1.0003, v.lat * 1.0003}; }))
+      out[l.id.number] = std::move(l);
     return out;
   }
   model::Extract e;

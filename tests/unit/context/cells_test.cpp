@@ -41,7 +41,8 @@ TEST(Cells, PlaceOfABuildingDoesNotDependOnItsRing) {
 }
 
 TEST(Cells, FiguresOfAFewHouses) {
-  std::vector<CellBuilding> houses{house({10, 10}, 200, 4, 1890), house({20, 10}, 200, 6, 1910), house({30, 10}, 100), house({300, 10}, 50)};
+  std::vector<CellBuilding> houses{house({10, 10}, 200, 4, 1890), house({20, 10}, 200, 6, 1910), house({30, 10}, 100),
+                                   house({300, 10}, 50)};
   houses[0].wall_length = houses[1].wall_length = 60;
   houses[0].party_wall_length = houses[1].party_wall_length = 15;
   const Cells cells = cells_of(houses);
@@ -58,7 +59,8 @@ TEST(Cells, FiguresOfAFewHouses) {
   EXPECT_DOUBLE_EQ(*f.year_mean, 1900);
   EXPECT_DOUBLE_EQ(*f.year_spread, 10);
   const CellFigures other = figures_of(cells.rbegin()->second);
-  EXPECT_FALSE(other.storeys_mean || other.floor_area_ratio || other.year_mean || other.party_wall_share) << "nobody told";
+  EXPECT_FALSE(other.storeys_mean || other.floor_area_ratio || other.year_mean || other.party_wall_share)
+      << "nobody told";
 }
 
 TEST(Cells, QuantilesFromBins) {
@@ -88,7 +90,8 @@ TEST(Cells, TilesInAnyOrderGiveTheCellsOfTheWhole) {
   std::shuffle(houses.begin(), houses.end(), random);
   Cells sum;
   const std::span<const CellBuilding> all(houses);
-  for (const auto& tile : {all.subspan(300), all.subspan(0, 100), all.subspan(100, 200)}) add_cells(sum, cells_of(tile));
+  for (const auto& tile : {all.subspan(300), all.subspan(0, 100), all.subspan(100, 200)})
+    add_cells(sum, cells_of(tile));
   EXPECT_EQ(sum, whole);
   EXPECT_EQ(whole.size(), 16u);
 }

@@ -38,7 +38,8 @@ std::vector<Point2> box(double x, double y, double width, double height) {
 
 /// Four wings around a yard of 30 by 20 m; the eastern one begins `gap` metres behind the southern.
 std::vector<Footprint> four_wings(double gap) {
-  return {house(1, box(0, 0, 50, 10)), house(2, box(40, 10 + gap, 10, 20 - gap)), house(3, box(0, 30, 50, 10)), house(4, box(0, 10, 10, 20))};
+  return {house(1, box(0, 0, 50, 10)), house(2, box(40, 10 + gap, 10, 20 - gap)), house(3, box(0, 30, 50, 10)),
+          house(4, box(0, 10, 10, 20))};
 }
 
 TEST(Courtyards, ClosedBetweenFourWings) {
@@ -65,12 +66,15 @@ TEST(Courtyards, OfOneBuildingByAHoleOrBetweenItsWings) {
   ASSERT_THAT(ring, SizeIs(1));
   EXPECT_TRUE(ring[0].closed);
   EXPECT_DOUBLE_EQ(ring[0].area, 400);
-  const auto u = find_courtyards(std::vector{house(1, {{0, 0}, {28, 0}, {28, 30}, {18, 30}, {18, 10}, {10, 10}, {10, 30}, {0, 30}})});
+  const auto u = find_courtyards(
+      std::vector{house(1, {{0, 0}, {28, 0}, {28, 30}, {18, 30}, {18, 10}, {10, 10}, {10, 30}, {0, 30}})});
   ASSERT_THAT(u, SizeIs(1)) << "8 m wide, 20 m deep";
   EXPECT_FALSE(u[0].closed);
   EXPECT_DOUBLE_EQ(u[0].area, 160);
   EXPECT_DOUBLE_EQ(u[0].opening, 8);
-  EXPECT_THAT(find_courtyards(std::vector{house(1, {{0, 0}, {28, 0}, {28, 14}, {18, 14}, {18, 10}, {10, 10}, {10, 14}, {0, 14}})}), IsEmpty())
+  EXPECT_THAT(find_courtyards(
+                  std::vector{house(1, {{0, 0}, {28, 0}, {28, 14}, {18, 14}, {18, 10}, {10, 10}, {10, 14}, {0, 14}})}),
+              IsEmpty())
       << "a recess of the facade, 4 m deep";
 }
 
@@ -86,9 +90,13 @@ TEST(Courtyards, AHouseThatStandsFreeInTheYardIsAHole) {
 }
 
 TEST(Courtyards, AlleysAndGapsBetweenWallsAreNone) {
-  EXPECT_THAT(find_courtyards(std::vector{house(1, box(0, 0, 10, 12)), house(2, box(12, 0, 10, 12)), house(3, box(27, 0, 10, 12))}), IsEmpty());
+  EXPECT_THAT(find_courtyards(
+                  std::vector{house(1, box(0, 0, 10, 12)), house(2, box(12, 0, 10, 12)), house(3, box(27, 0, 10, 12))}),
+              IsEmpty());
   // Walls that miss each other by 5 cm enclose a sliver.
-  EXPECT_THAT(find_courtyards(std::vector{house(1, {{0, 0}, {10, 0}, {10, 20}, {0, 20}}), house(2, {{10, 0}, {20, 0}, {20, 20}, {10, 20}, {10.05, 10}})}), IsEmpty());
+  EXPECT_THAT(find_courtyards(std::vector{house(1, {{0, 0}, {10, 0}, {10, 20}, {0, 20}}),
+                                          house(2, {{10, 0}, {20, 0}, {20, 20}, {10, 20}, {10.05, 10}})}),
+              IsEmpty());
   EXPECT_THAT(find_courtyards({}), IsEmpty());
 }
 
@@ -103,13 +111,15 @@ TEST(Courtyards, OrderAndRingsOfTheBuildingsDoNotMatter) {
   std::vector<Footprint> houses;
   for (int x = 0; x < 12; ++x)
     for (int y = 0; y < 12; ++y)
-      if (random() % 4) houses.push_back(house(x * 100 + y, box(x * 10, y * 10, random() % 3 ? 10 : 7, random() % 3 ? 10 : 5)));
+      if (random() % 4)
+        houses.push_back(house(x * 100 + y, box(x * 10, y * 10, random() % 3 ? 10 : 7, random() % 3 ? 10 : 5)));
   const auto yards = find_courtyards(houses);
   ASSERT_GT(yards.size(), 5u);
   auto other = houses;
   std::shuffle(other.begin(), other.end(), random);
   for (Footprint& f : other) {
-    std::rotate(f.polygon.outer.points.begin(), f.polygon.outer.points.begin() + random() % 4, f.polygon.outer.points.end());
+    std::rotate(f.polygon.outer.points.begin(), f.polygon.outer.points.begin() + random() % 4,
+                f.polygon.outer.points.end());
     if (random() % 2) std::reverse(f.polygon.outer.points.begin(), f.polygon.outer.points.end());
   }
   const auto again = find_courtyards(other);

@@ -60,11 +60,13 @@ void expect_same_polygons(const std::vector<Face>& a, const std::vector<Face>& b
 }
 
 TEST(FacesOfLines, CrossingLinesQuarterASquare) {
-  const auto faces = faces_of_lines(std::vector{square(1, 0, 0, 100), line(2, {{50, -10}, {50, 110}}), line(3, {{-10, 30}, {110, 30}})});
+  const auto faces = faces_of_lines(
+      std::vector{square(1, 0, 0, 100), line(2, {{50, -10}, {50, 110}}), line(3, {{-10, 30}, {110, 30}})});
   EXPECT_THAT(areas(faces), ElementsAre(1500, 3500, 1500, 3500));
   // Canonical: from the least corner, counter-clockwise.
   EXPECT_THAT(faces[0].polygon.outer.points,
-              ElementsAre(kPlace, Point2{kPlace.x + 50, kPlace.y}, Point2{kPlace.x + 50, kPlace.y + 30}, Point2{kPlace.x, kPlace.y + 30}));
+              ElementsAre(kPlace, Point2{kPlace.x + 50, kPlace.y}, Point2{kPlace.x + 50, kPlace.y + 30},
+                          Point2{kPlace.x, kPlace.y + 30}));
 }
 
 TEST(FacesOfLines, KnowWhatBoundsThemAndOnWhichSideTheyLie) {
@@ -86,9 +88,9 @@ TEST(FacesOfLines, KnowWhatBoundsThemAndOnWhichSideTheyLie) {
 
 TEST(FacesOfLines, BlindEndsAndConnectionsBoundNothing) {
   const auto faces = faces_of_lines(std::vector{square(1, 0, 0, 100), square(2, 200, 0, 50),
-                                    line(3, {{100, 20}, {200, 20}}),   // joins the squares
-                                    line(4, {{0, 50}, {40, 50}, {60, 60}}),  // ends inside
-                                    line(5, {{300, 300}, {400, 300}})});
+                                                line(3, {{100, 20}, {200, 20}}),         // joins the squares
+                                                line(4, {{0, 50}, {40, 50}, {60, 60}}),  // ends inside
+                                                line(5, {{300, 300}, {400, 300}})});
   EXPECT_THAT(areas(faces), ElementsAre(10000, 2500));
   EXPECT_THAT(faces_of_lines(std::vector{line(1, {{0, 0}, {10, 0}, {10, 10}})}), ::testing::IsEmpty());
   EXPECT_THAT(faces_of_lines({}), ::testing::IsEmpty());
@@ -109,7 +111,8 @@ TEST(FacesOfLines, AnIslandIsAHoleWhetherItHangsOnAStreetOrNot) {
 }
 
 TEST(FacesOfLines, LinesThatRunTogetherBothBound) {
-  const auto faces = faces_of_lines(std::vector{square(5, 0, 0, 100), line(3, {{100, 20}, {100, 80}}), line(9, {{100, 120}, {100, 50}})});
+  const auto faces = faces_of_lines(
+      std::vector{square(5, 0, 0, 100), line(3, {{100, 20}, {100, 80}}), line(9, {{100, 120}, {100, 50}})});
   ASSERT_EQ(faces.size(), 1u);
   ASSERT_EQ(faces[0].lines.size(), 3u);
   EXPECT_DOUBLE_EQ(faces[0].lines[0].left, 60);
@@ -170,7 +173,8 @@ TEST(FacesOfLines, OrderDirectionAndCutsOfTheLinesDoNotMatter) {
         ASSERT_EQ(faces[i].lines.size(), again[i].lines.size());
         for (std::size_t k = 0; k < faces[i].lines.size(); ++k) {
           EXPECT_EQ(faces[i].lines[k].id, again[i].lines[k].id);
-          EXPECT_DOUBLE_EQ(faces[i].lines[k].left + faces[i].lines[k].right, again[i].lines[k].left + again[i].lines[k].right);
+          EXPECT_DOUBLE_EQ(faces[i].lines[k].left + faces[i].lines[k].right,
+                           again[i].lines[k].left + again[i].lines[k].right);
         }
       }
     }
@@ -200,7 +204,8 @@ TEST(FacesOfLines, AFaceDependsOnLinesThatComeIntoItsBoxOnly) {
     ASSERT_LT(near.size(), 230u);
     const auto alone = faces_of_lines(near);
     const auto same = std::find_if(alone.begin(), alone.end(), [&](const Face& other) {
-      return other.polygon.outer.points == faces[f].polygon.outer.points && other.polygon.holes.size() == faces[f].polygon.holes.size();
+      return other.polygon.outer.points == faces[f].polygon.outer.points &&
+             other.polygon.holes.size() == faces[f].polygon.holes.size();
     });
     EXPECT_NE(same, alone.end()) << "face " << f;
   }
@@ -210,7 +215,7 @@ TEST(SegmentGrid, FindsWhatComesNearAndNotTheRest) {
   std::vector<Segment> segments;
   for (const DividingLine& l : tangle(3, 100, 500))
     for (std::size_t i = 1; i < l.points.size(); ++i) segments.push_back({l.points[i - 1], l.points[i]});
-  segments.push_back({{kPlace.x, kPlace.y}, {kPlace.x, kPlace.y + 400}});  // upright
+  segments.push_back({{kPlace.x, kPlace.y}, {kPlace.x, kPlace.y + 400}});                // upright
   segments.push_back({{kPlace.x - 5, kPlace.y + 64}, {kPlace.x + 900, kPlace.y + 64}});  // along a cell border
   const SegmentGrid grid(segments, 32);
   std::vector<std::uint32_t> found;
@@ -222,7 +227,9 @@ TEST(SegmentGrid, FindsWhatComesNearAndNotTheRest) {
       visited += found.size();
       EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
       for (std::uint32_t i = 0; i < segments.size(); ++i)
-        EXPECT_TRUE(distance_to_segment(p, segments[i].a, segments[i].b) > 3 || std::binary_search(found.begin(), found.end(), i)) << i;
+        EXPECT_TRUE(distance_to_segment(p, segments[i].a, segments[i].b) > 3 ||
+                    std::binary_search(found.begin(), found.end(), i))
+            << i;
     }
   EXPECT_LT(visited, segments.size() * 13 * 14 / 4);
 }
