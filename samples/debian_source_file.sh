@@ -89,7 +89,11 @@ for archive in "$work/source"/*.tar.*; do
   # The name of the top folder is the archive's own.
   member=$(tar -tf "$archive" | awk -v wanted="$path" '{ name = $0; sub(/^(\.\/)?[^\/]*\//, "", name) } name == wanted { print; exit }')
   [ -n "$member" ] || continue
-  tar -xOf "$archive" "$member" >"$target.part" && mv -f "$target.part" "$target"
+  if ! tar -xOf "$archive" "$member" >"$target.part"; then
+    rm -f "$target.part"
+    fail "$path could not be taken out of $(basename "$archive"): is the disk full?"
+  fi
+  mv -f "$target.part" "$target"
   say "$path of $(basename "$archive"), checked by apt, is now $target"
   exit 0
 done

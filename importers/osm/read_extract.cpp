@@ -136,7 +136,8 @@ class ExtractWriter {
                       detail == accounts.details.end() ? std::string() : clean_text(detail->second));
     }
     if (b.rings.count == 0)
-      if (const Box box = box_of(accounts, account); !box.empty())
+      // What spans half the globe crosses 180 degrees: its middle is not there.
+      if (const Box box = box_of(accounts, account); !box.empty() && box.east - box.west < 1'800'000'000)
         b.place = model::Location{static_cast<std::int32_t>((box.west + box.east) / 2), static_cast<std::int32_t>((box.south + box.north) / 2)};
     b.tags = write_tags(account.id, *account.raw, account.tags_also_from);
     // `pairs_` holds the tags just written.
@@ -216,6 +217,13 @@ class ExtractWriter {
     std::sort(sorted_.begin(), sorted_.end(), [](const auto& a, const auto& b) {
       return std::tie(a.first->clean, a.second->clean) < std::tie(b.first->clean, b.second->clean);
     });
+    // OpenStreetMap has each key once; files from elsewhere, and keys that became equal by cleaning, may not.
+    const auto again = std::unique(sorted_.begin(), sorted_.end(), [&](const auto& a, const auto& b) {
+      if (a.first->clean != b.first->clean) return false;
+      out_.report.add(id, IssueCode::duplicate_key, std::string(b.first->clean) + "=" + std::string(b.second->clean));
+      return true;
+    });
+    sorted_.erase(again, sorted_.end());
     pairs_.clear();
     const model::Range range{static_cast<std::uint32_t>(out_.tags.size()), static_cast<std::uint32_t>(sorted_.size())};
     for (const auto& [key, value] : sorted_) {

@@ -9,7 +9,8 @@ namespace fs = std::filesystem;
 
 bool holds_configs(const fs::path& folder) {
   std::error_code error;
-  return fs::is_regular_file(folder / "defaults" / "uses.toml", error);
+  return fs::is_regular_file(folder / "defaults" / "uses.toml", error) &&
+         fs::is_regular_file(folder / "materials" / "materials.toml", error);
 }
 
 }  // namespace
@@ -18,7 +19,7 @@ std::string configs_folder(const std::string& given, const fs::path& program) {
   if (!given.empty()) {
     if (holds_configs(given)) return given;
     throw base::UsageError("--configs: " + given +
-                           " has no defaults/uses.toml. Name a folder like the program's configs/.");
+                           " lacks defaults/uses.toml or materials/materials.toml. Name a folder like the program's configs/.");
   }
   const fs::path bin = program.parent_path();
   std::string tried;

@@ -141,7 +141,44 @@ std::string looks(const Json& attributes, const std::string& built_roof) {
   return text;
 }
 
+/// Texts of the map cannot steer the terminal or start a line of their own.
+std::string printable(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const bool second_control = c == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+    if (c < 0x20 || c == 0x7F || second_control) {
+      out += "\xEF\xBF\xBD";
+      i += second_control;
+    } else {
+      out += text[i];
+    }
+  }
+  return out;
+}
+
+void make_printable(Json& j) {
+  if (j.is_string()) {
+    j = printable(j.get<std::string>());
+  } else if (j.is_array()) {
+    for (Json& element : j) make_printable(element);
+  } else if (j.is_object()) {
+    Json clean = Json::object();
+    for (auto& [key, value] : j.items()) {
+      make_printable(value);
+      clean[printable(key)] = std::move(value);
+    }
+    j = std::move(clean);
+  }
+}
+
+/// Whether `part` is one of the ids that a body's id is made of.
+bool has_component(const std::string& body, const std::string& part) {
+  return ("." + body + ".").find("." + part + ".") != std::string::npos;
+}
+
 std::string link(const std::string& id) {
+  if (id.size() > 1 && id[1] == '-') return "an editor's new object, without a page at openstreetmap.org";
   const std::string kind = id[0] == 'n' ? "node" : id[0] == 'w' ? "way" : "relation";
   return "https://www.openstreetmap.org/" + kind + "/" + id.substr(1);
 }
@@ -171,7 +208,7 @@ std::string not_modelled(const Json& j, const region::FoundExplanation& found) {
   return text;
 }
 
-std::string body_rows(const Json& j, const std::string& asked) {
+std::string body_rows(const Json& j, const std::string& asked, const std::string& asked_body) {
   std::string text;
   const Json& bodies = j.at("bodies");
   if (bodies.size() < 2 && !(bodies.size() == 1 && bodies[0].contains("attributes"))) return text;
@@ -185,7 +222,7 @@ std::string body_rows(const Json& j, const std::string& asked) {
   }
   for (const Json& body : bodies) {
     const std::string id = body.value("id", "");
-    const bool is_asked = id.ends_with("." + asked) || id.find("." + asked + ".") != std::string::npos;
+    const bool is_asked = asked_body.empty() ? asked != j.value("id", "") && has_component(id, asked) : id == asked_body;
     if (!is_asked || !body.contains("attributes")) continue;
     text += fmt::format("\nThe values of {}\n", id);
     if (body.contains("tags")) text += tag_rows(body["tags"]);
@@ -196,8 +233,9 @@ std::string body_rows(const Json& j, const std::string& asked) {
 
 }  // namespace
 
-std::string explanation_text(const region::FoundExplanation& found) {
-  const Json j = Json::parse(found.json);
+namespace {
+
+std::string text_of(const Json& j, const region::FoundExplanation& found, const std::string& asked_body) {
   if (!found.in_model) return not_modelled(j, found);
 
   const std::string id = j.at("id"), asked = found.asked.text();
@@ -207,7 +245,7 @@ std::string explanation_text(const region::FoundExplanation& found) {
   const std::string kind = use && use->at("value") != "yes" ? spaced(use->at("value").get<std::string>()) : "building";
   std::string text;
   if (asked != id) {
-    const bool is_part = std::any_of(bodies.begin(), bodies.end(), [&](const Json& b) { return b.value("id", "").find("." + asked) != std::string::npos; });
+    const bool is_part = std::any_of(bodies.begin(), bodies.end(), [&](const Json& b) { return has_component(b.value("id", ""), asked); });
     text += fmt::format("{} {} {}.\n\n", asked, is_part ? "is a part of" : "duplicates", id);
   }
   const std::string roof = bodies.size() == 1 ? bodies[0].value("built_roof", "") : "";
@@ -224,7 +262,7 @@ std::string explanation_text(const region::FoundExplanation& found) {
 
   text += "\nWhat the map says\n" + tag_rows(j.at("tags"));
   if (!bodies.empty()) text += "\nEvery value, where it comes from, how sure that is, and what else was considered\n" + attribute_rows(attributes);
-  text += body_rows(j, asked);
+  text += body_rows(j, asked, asked_body);
   text += "\nWhat each stage did\n";
   for (const Json& stage : j.at("stages")) text += row(stage.value("stage", ""), 12, stage.value("text", ""));
   if (!j.at("notes").empty()) {
@@ -243,6 +281,19 @@ std::string explanation_text(const region::FoundExplanation& found) {
   if (!bodies.empty())
     text += "\n" + wrapped("To change a value, tag the building in OpenStreetMap: what is tagged beats every other source.", 0) + "\n";
   return text;
+}
+
+}  // namespace
+
+std::string explanation_text(const region::FoundExplanation& found, const std::string& body) {
+  try {
+    Json j = Json::parse(found.json);
+    make_printable(j);
+    return text_of(j, found, body);
+  } catch (const Json::exception& error) {
+    throw base::InputError("explain/", found.explained.text(), std::string("the explanation is damaged: ") + error.what(),
+                           "Build again; 'blockrand validate' lists all damage");
+  }
 }
 
 settings::CommandText explain_text() {
@@ -280,10 +331,11 @@ int run_explain(const std::vector<std::string>& arguments) {
   if (!found)
     throw base::InputError(s.folder, "", "knows no building or building part " + id->text(),
                            "It is tagged otherwise, or lies outside of the extract or the --bbox");
+  const bool is_body = s.id.find('.') != std::string::npos && s.id.find('/') == std::string::npos;
   if (s.json)
     std::printf("%s\n", found->json.c_str());
   else
-    std::fputs(explanation_text(*found).c_str(), stdout);
+    std::fputs(explanation_text(*found, is_body ? s.id : "").c_str(), stdout);
   return kSuccess;
 }
 

@@ -38,10 +38,10 @@ int main(int argc, char** argv) {
   const std::string command = argc > 1 ? argv[1] : "";
   const std::vector<std::string> arguments(argv + std::min(argc, 2), argv + argc);
   int code = cli::guarded(cli::early_log_format(arguments), [&] { return run(command, arguments); });
-  // A full disk behind a redirection shows here.
-  if (std::fflush(stdout) != 0 && code == cli::kSuccess) {
+  // A full disk behind a redirection shows here, or did when a longer text filled the buffer.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
     std::fprintf(stderr, "blockrand: error: cannot write to standard output: %s\n", std::strerror(errno));
-    code = cli::kInternalError;
+    if (code == cli::kSuccess) code = cli::kInternalError;
   }
   return code;
 }

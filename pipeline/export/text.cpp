@@ -155,6 +155,14 @@ void append_grid(std::string& out, double metres) {
   out.append(p, static_cast<std::size_t>(buffer + sizeof(buffer) - p));
 }
 
+std::string osm_page(model::OsmId id) {
+  if (id.number <= 0) return {};
+  const char* const kind = id.type == model::OsmType::node ? "node/" : id.type == model::OsmType::way ? "way/" : "relation/";
+  std::string page = std::string("https://www.openstreetmap.org/") + kind;
+  append_number(page, id.number);
+  return page;
+}
+
 void append_clean(std::string& out, std::string_view text) { append_escaped(out, text, NoEscape{}); }
 void append_xml(std::string& out, std::string_view text) { append_escaped(out, text, XmlEscape{}); }
 void append_json(std::string& out, std::string_view text) {

@@ -36,6 +36,9 @@ void append_json(std::string& out, std::string_view text);
 /// Appends the tags as a JSON object of strings, in the order of the extract.
 void append_tags_json(std::string& out, const model::Extract& extract, model::Range tags);
 
+/// The object's page at openstreetmap.org; empty for an editor's new object (negative number), which has none.
+std::string osm_page(model::OsmId id);
+
 /// The addr:* tags of an object; views into the extract, empty where absent.
 struct Address {
   std::string_view country, city, suburb, postcode, street, place, house_number, house_name;

@@ -42,6 +42,7 @@ enum class IssueClass : std::uint8_t {
   /* mended, ignored, unreadable */                                                                                  \
   X(value_unreadable, "VALUE_UNREADABLE", notice, "A tag's value cannot be parsed; it is kept as text.")             \
   X(value_clamped, "VALUE_CLAMPED", notice, "A tag's value is out of range and was limited.")                        \
+  X(duplicate_key, "DUPLICATE_KEY", notice, "A key stands twice on the object; the first value in order was kept.") \
   X(values_conflict, "VALUES_CONFLICT", notice, "Two tags contradict each other; the stronger one was used.")        \
   X(members_missing, "MEMBERS_MISSING", notice, "Some members are not in the extract; the rest was built.")          \
   X(relation_repaired, "RELATION_REPAIRED", notice, "The relation's rings were assembled despite errors.")           \

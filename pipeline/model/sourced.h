@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -68,6 +69,13 @@ class EvidenceTable {
     return static_cast<EvidenceId>(entries_.size() - 1);
   }
   const Evidence& operator[](EvidenceId id) const { return entries_[id]; }
+  /// Takes over another table's entries. \returns what their ids (but 0) grow by
+  EvidenceId append(EvidenceTable&& other) {
+    const auto offset = static_cast<EvidenceId>(entries_.size() - 1);
+    entries_.insert(entries_.end(), std::make_move_iterator(other.entries_.begin() + 1),
+                    std::make_move_iterator(other.entries_.end()));
+    return offset;
+  }
 
  private:
   std::vector<Evidence> entries_;

@@ -93,6 +93,20 @@ std::vector<context::TaggedBuilding> tagged_buildings(const Extract& extract, co
 
 // ---- one tile -------------------------------------------------------------------------------------------------------
 
+/// After its table of evidence became the end of a larger one.
+void move_evidence(model::Building& building, model::EvidenceId offset) {
+  const auto move = [offset](model::Attributes& a) {
+    model::for_each_attribute(
+        a,
+        [offset](std::string_view, std::string_view, auto& value) {
+          if (value.evidence != 0) value.evidence += offset;
+        },
+        [](std::string_view, std::string_view) {});
+  };
+  move(building.attributes);
+  for (model::BuildingPart& part : building.parts) move(part.attributes);
+}
+
 /// Where the line stands that explains an object.
 struct ExplainedObject {
   model::OsmId object, building;
@@ -375,6 +389,10 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     if (options.single_glb) {
       whole.extract = &extract;
       whole.materials = std::move(result.region.materials);
+      if (options.evidence) {
+        const model::EvidenceId offset = whole.evidence.append(std::move(result.region.evidence));
+        for (model::Building& b : result.region.buildings) move_evidence(b, offset);
+      }
       std::move(result.region.buildings.begin(), result.region.buildings.end(), std::back_inserter(whole.buildings));
     }
     done += shards[i].seeds.size();
@@ -384,7 +402,10 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   settle_party_walls(std::move(party_sides), record.statistics);
 
   progress.begin("documents");
-  write_whole(whole, tiles, centre, box, output, folder, record.files);
+  if (const double reach = write_whole(whole, tiles, centre, output, folder, record.files); reach > kFineModelRadius)
+    progress.warn(fmt::format("model.glb reaches {:.0f} km from its origin: far from there its vertices are more than 4 mm coarse. "
+                              "Use tileset.json, or a --bbox",
+                              reach / 1000));
   if (options.explain) record.files.push_back(folder.write("explain/index.txt", explain_index(std::move(explained))));
   for (const MappedBuilding& b : extract.buildings) {
     switch (b.state) {

@@ -28,6 +28,7 @@ struct BuildOptions {
   bool geopackage = true;                     ///< buildings.gpkg
   bool report = true;                         ///< report.html
   bool explain = true;                        ///< explain/: what `blockrand explain` reads
+  bool evidence = false;                      ///< GLB, CityGML and CityJSON also say why each attribute has its value
   bool gzip = false;                          ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
   bool single_glb = false;                    ///< also model.glb: the whole build in one frame
   bool single_cityjson = false;               ///< also model.city.json: the whole build as one CityJSON object

@@ -33,6 +33,7 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   if (options.geopackage) c["formats"].push_back("gpkg");
   c["report"] = options.report;
   c["explain"] = options.explain;
+  c["evidence"] = options.evidence;
   c["gzip"] = options.gzip;
   c["single_glb"] = options.single_glb;
   c["single_cityjson"] = options.single_cityjson;

@@ -29,8 +29,11 @@ std::optional<model::OsmId> parse_short_id(std::string_view text) {
   const auto number = parse_number(text.substr(1));
   if (!number) return std::nullopt;
   switch (text[0]) {
+    case 'N':
     case 'n': return model::OsmId{model::OsmType::node, *number};
+    case 'W':
     case 'w': return model::OsmId{model::OsmType::way, *number};
+    case 'R':
     case 'r': return model::OsmId{model::OsmType::relation, *number};
     default: return std::nullopt;
   }
@@ -111,10 +114,10 @@ std::optional<Json> reported_row(const std::string& folder, model::OsmId id) {
   const Json report = Json::parse(read_file(path), nullptr, false);
   if (report.is_discarded() || !report.is_object() || !report.contains("objects")) damaged(path, "is no report of a build");
   for (const Json& row : report["objects"]) {
-    if (row.value("id", "") != id.text()) continue;
+    if (!row.is_object() || !row.contains("id") || row["id"] != id.text()) continue;
     Json out = row;
-    if (const std::string code = row.value("code", ""); !code.empty() && report.contains("codes"))
-      out["meaning"] = report["codes"].value(code, "");
+    if (row.contains("code") && row["code"].is_string() && report.contains("codes") && report["codes"].is_object())
+      out["meaning"] = report["codes"].value(row["code"].get<std::string>(), "");
     return out;
   }
   return std::nullopt;
@@ -123,9 +126,13 @@ std::optional<Json> reported_row(const std::string& folder, model::OsmId id) {
 }  // namespace
 
 std::optional<model::OsmId> parse_object_id(std::string_view text) {
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ')) text.remove_suffix(1);
   if (const std::size_t host = text.find("openstreetmap.org/"); host != std::string_view::npos) {
     text.remove_prefix(host + std::string_view("openstreetmap.org/").size());
     text = text.substr(0, text.find_first_of("?#"));
+    // Pages below an object's own, such as its history.
+    if (const std::size_t second = text.find('/', text.find('/') + 1); second != std::string_view::npos) text = text.substr(0, second);
   }
   while (text.ends_with('/')) text.remove_suffix(1);
   for (const auto& [word, type] : {std::pair{std::string_view("node"), model::OsmType::node},
@@ -144,20 +151,21 @@ std::optional<FoundExplanation> find_explanation(const std::string& folder, mode
   if (!fs::exists(fs::path(folder) / "build.json", error))
     throw base::UsageError(folder + " is no build (it has no build.json). Name the output folder of 'blockrand build'.");
   const std::string index = folder + "/explain/index.txt";
-  if (!fs::exists(index, error))
-    throw base::UsageError(folder + " was built with --no-explain. Build again without it to get explanations.");
+  if (!fs::exists(index, error)) {
+    const Json build = Json::parse(read_file(folder + "/build.json"), nullptr, false);
+    if (build.is_object() && build.contains("configuration") && build["configuration"].is_object() &&
+        build["configuration"].contains("explain") && build["configuration"]["explain"] == false)
+      throw base::UsageError(folder + " was built with --no-explain. Build again without it to get explanations.");
+    damaged(index, "is missing");
+  }
   if (const auto entry = look_up(index, id))
     return FoundExplanation{line_of(folder + "/explain/" + entry->tile + ".jsonl.gz", entry->building), true, id, entry->building};
   const auto row = reported_row(folder, id);
   if (!row) return std::nullopt;
-  if (row->value("state", "") == "duplicate") {
-    const auto other = parse_short_id(row->value("related", ""));
-    if (other && *other != id)
-      if (auto found = find_explanation(folder, *other)) {
-        found->asked = id;
-        return found;
-      }
-  }
+  if (row->contains("state") && (*row)["state"] == "duplicate" && row->contains("related") && (*row)["related"].is_string())
+    if (const auto other = parse_short_id((*row)["related"].get<std::string>()))
+      if (const auto entry = look_up(index, *other))
+        return FoundExplanation{line_of(folder + "/explain/" + entry->tile + ".jsonl.gz", entry->building), true, id, entry->building};
   return FoundExplanation{row->dump(), false, id, id};
 }
 

@@ -200,8 +200,8 @@ void Pictures::lay_ground() {
   constexpr int kCells = 80;          // along the longer side
   constexpr double kBorder = 60;      // m around the buildings
   constexpr double kSmoothing = 400;  // m²: nearer than its root, neighbours weigh alike
-  const double west = box.min.x - kBorder, south = box.min.y - kMargin;
-  const double width = box.max.x + kBorder - west, height = box.max.y + kMargin - south;
+  const double west = box.min.x - kBorder, south = box.min.y - kBorder;
+  const double width = box.max.x + kBorder - west, height = box.max.y + kBorder - south;
   const double cell = std::max(width, height) / kCells;
   const int columns = static_cast<int>(width / cell) + 1, rows = static_cast<int>(height / cell) + 1;
   std::vector<double> z;

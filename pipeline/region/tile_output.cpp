@@ -21,7 +21,7 @@ using model::Point3;
 
 constexpr const char* kAttribution = "\u00a9 OpenStreetMap contributors, ODbL 1.0";
 
-/// Fast, and three times the size of nothing: explanations repeat themselves so much that a higher level gains a tenth.
+/// Fast; explanations repeat themselves so much that the highest level gains a tenth.
 constexpr int kExplainGzipLevel = 4;
 
 std::string generator() { return "Blockrand " + std::string(base::kVersion); }
@@ -61,6 +61,7 @@ export_::GlbOptions glb_options(const OutputContext& context, const georef::EnuF
     o.height_reference = context.record.height_reference + ", taken for ellipsoidal";
   o.generator = generator();
   o.attribution = kAttribution;
+  o.evidence = context.options.evidence;
   o.frame.longitude = frame.origin().lon;
   o.frame.latitude = frame.origin().lat;
   o.frame.height = frame.origin().height;
@@ -124,6 +125,7 @@ export_::CityGmlOptions citygml_options(const model::Region& region, const Outpu
   o.height_reference = context.record.height_reference;
   o.attribution = kAttribution;
   o.name = model_name(region.tile);
+  o.evidence = context.options.evidence;
   return o;
 }
 
@@ -155,6 +157,8 @@ export_::CityJsonOptions cityjson_options(const OutputContext& context, std::str
   o.attribution = kAttribution;
   o.name = std::move(name);
   o.generator = generator();
+  o.data_time = context.record.data_time;
+  o.evidence = context.options.evidence;
   return o;
 }
 
@@ -221,9 +225,9 @@ TileOutput write_tile(const model::Region& region, const OutputContext& context,
   return out;
 }
 
-void write_whole(const model::Region& whole, std::span<const export_::TileEntry> tiles, georef::LonLat centre,
-                 const georef::GeoBox&, const OutputContext& context, base::StagedFolder& folder,
-                 std::vector<base::PublishedFile>& files) {
+double write_whole(const model::Region& whole, std::span<const export_::TileEntry> tiles, georef::LonLat centre,
+                   const OutputContext& context, base::StagedFolder& folder, std::vector<base::PublishedFile>& files) {
+  double reach = 0;
   if (context.options.gltf) {
     export_::TilesetOptions options;
     options.crs = context.record.crs.authority_code;
@@ -245,13 +249,16 @@ void write_whole(const model::Region& whole, std::span<const export_::TileEntry>
         out[i] = frame.to_local(g.lon, g.lat, in[i].z + n);
       }
     };
-    files.push_back(folder.write("model.glb", export_::write_glb(whole, o).bytes));
+    const export_::Glb glb = export_::write_glb(whole, o);
+    for (const double v : {glb.min.x, glb.min.y, glb.max.x, glb.max.y}) reach = std::max(reach, std::fabs(v));
+    files.push_back(folder.write("model.glb", glb.bytes));
   }
   // A file without city objects is a valid city model and says more than no file.
   const bool has_city_models = std::any_of(files.begin(), files.end(), [](const base::PublishedFile& f) {
     return f.path.starts_with("citygml/") || f.path.starts_with("cityjson/");
   });
   if (!has_city_models) write_city_models(model::Region{}, "empty", context, folder, files);
+  return reach;
 }
 
 }  // namespace blockrand::region

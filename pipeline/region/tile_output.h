@@ -50,10 +50,14 @@ export_::GeoPackageOptions geopackage_options(const OutputContext& context);
 /// A tile as a row of the GeoPackage; its outline follows the tile's meridians and parallels.
 export_::GeoPackageTile geopackage_tile(model::TileId id, const TileOutput& output, const OutputContext& context);
 
+/// m. Farther from its origin, the single-precision vertices of model.glb are coarser than 4 mm.
+inline constexpr double kFineModelRadius = 65'536;
+
 /// Writes tileset.json, with --single-glb model.glb from `whole`, and for a build without buildings an empty CityGML
 /// file, so that every asked format is there.
-void write_whole(const model::Region& whole, std::span<const export_::TileEntry> tiles, georef::LonLat centre,
-                 const georef::GeoBox& box, const OutputContext& context, base::StagedFolder& folder,
-                 std::vector<base::PublishedFile>& files);
+/// \returns m, how far model.glb reaches from its origin; 0 without one
+double write_whole(const model::Region& whole, std::span<const export_::TileEntry> tiles, georef::LonLat centre,
+                   const OutputContext& context, base::StagedFolder& folder,
+                   std::vector<base::PublishedFile>& files);
 
 }  // namespace blockrand::region

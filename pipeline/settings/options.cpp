@@ -306,6 +306,11 @@ void add_build(Table& t) {
             .maximum = 9000,
             .help = "height above sea level of the ground where there is no terrain, in m"},
            FIELD(build.ground_height));
+  t.flag({.name = "evidence",
+          .key = "evidence",
+          .section = S,
+          .help = "GLB, CityGML and CityJSON also say why each attribute has its value (explain/ always does)"},
+         FIELD(build.evidence));
   t.flag({.name = "gzip", .key = "gzip", .section = S, .help = "compress the CityGML and CityJSON files (.gml.gz, .city.jsonl.gz)"},
          FIELD(build.gzip));
   t.flag({.name = "single-glb",

@@ -26,7 +26,7 @@ std::string options_markdown() {
       "the command line is stronger than the file. Relative paths in the file start at the file's folder. "
       "`blockrand help options --toml` prints such a file with every default. "
       "Every flag can be taken back with `--no-` before its name; a flag that is on unless you say so stands here by that "
-      "name, and its key is `true`.\n";
+      "name, but its key is the plain one: `report = false`.\n";
   for (const Section section : {Section::build, Section::repair, Section::generate, Section::messages}) {
     text += fmt::format("\n## {}{}\n\n", title(section),
                         section == Section::messages ? "" : fmt::format(" (`[{}]`)", name(section)));

@@ -32,8 +32,8 @@ std::vector<std::string> geopackage_columns(std::string_view table) {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x47504B47;  // "GPKG"
-// Boxes of the spatial index are single precision, rounded outward: at 10,000 km a step is a metre.
-constexpr double kIndexSlack = 1.0;
+/// Boxes of the spatial index are single precision, rounded outward: two steps of a float at most.
+double index_slack(double value) { return std::max(1e-3, std::fabs(value) * (2.0 / 8388608)); }
 // Extents go through decimal text on their way into the file: the last bit may be lost.
 constexpr double kExtentSlack = 1e-6;
 
@@ -225,9 +225,9 @@ class Rules {
            box.add(g);
            if (!indexed) return;
            const bool like = !row.null(3) && row.real(3) <= g.min_x && row.real(4) <= g.min_y &&
-                             row.real(5) >= g.max_x && row.real(6) >= g.max_y && row.real(3) >= g.min_x - kIndexSlack &&
-                             row.real(4) >= g.min_y - kIndexSlack && row.real(5) <= g.max_x + kIndexSlack &&
-                             row.real(6) <= g.max_y + kIndexSlack;
+                             row.real(5) >= g.max_x && row.real(6) >= g.max_y && row.real(3) >= g.min_x - index_slack(g.min_x) &&
+                             row.real(4) >= g.min_y - index_slack(g.min_y) && row.real(5) <= g.max_x + index_slack(g.max_x) &&
+                             row.real(6) <= g.max_y + index_slack(g.max_y);
            if (like) return;
            if (unlike++ == 0) first_unlike = row.string(1);
          });

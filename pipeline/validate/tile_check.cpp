@@ -434,7 +434,7 @@ class Checker {
             result.off[f] =
                 f == kGltf ? distance_on_earth(places[f], corner.at)
                            : distance(places[f], witness.forward({corner.at.lon_degrees(), corner.at.lat_degrees()}));
-            result.tolerance[f] = kPositionTolerance + (f == kGltf ? glb_->position_step * 0.71 : 0);
+            result.tolerance[f] = kPositionTolerance;
           }
           out_.positions.push_back(std::move(result));
         }

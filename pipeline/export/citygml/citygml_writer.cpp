@@ -151,11 +151,11 @@ class BuildingText {
   /// What every city object starts with: its name and where it comes from.
   void head(const model::OsmId& osm, model::Range tags) {
     if (const std::string_view name = tags_.name(tags); !name.empty()) element("gml:name", name);
+    const std::string page = osm_page(osm);
+    if (page.empty()) return;
     out_ +=
-        "<externalReference><informationSystem>https://www.openstreetmap.org</informationSystem><externalObject><uri>"
-        "https://www.openstreetmap.org/";
-    out_ += osm.type == model::OsmType::node ? "node/" : osm.type == model::OsmType::way ? "way/" : "relation/";
-    append_number(out_, osm.number);
+        "<externalReference><informationSystem>https://www.openstreetmap.org</informationSystem><externalObject><uri>";
+    out_ += page;
     out_ += "</uri></externalObject></externalReference>\n";
   }
 

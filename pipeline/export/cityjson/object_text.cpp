@@ -137,11 +137,7 @@ void ObjectText::object(const model::Building& building, const model::BuildingPa
   *out_ += ",\"attributes\":{";
   first_ = true;
   if (const std::string_view name = tags_.name(tags); !name.empty()) text("name", name);
-  key("externalReference");
-  *out_ += "\"https://www.openstreetmap.org/";
-  *out_ += osm.type == model::OsmType::node ? "node/" : osm.type == model::OsmType::way ? "way/" : "relation/";
-  append_number(*out_, osm.number);
-  *out_ += '"';
+  if (const std::string page = osm_page(osm); !page.empty()) text("externalReference", page);
   attributes(part ? part->attributes : building.attributes, tags, part);
   *out_ += '}';
   address(tags);

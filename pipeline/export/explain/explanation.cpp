@@ -24,6 +24,8 @@ std::string_view name(model::IssueClass issue_class) {
   return names[static_cast<int>(issue_class)];
 }
 
+constexpr std::int64_t kTurn = 3'600'000'000;  // 360 degrees in OSM's 1e-7
+
 /// "1 wall", "3 walls".
 std::string counted(std::size_t n, const char* noun) { return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s"); }
 
@@ -143,15 +145,22 @@ class Writer {
       nodes.insert(nodes.end(), ids.begin(), ids.end());
       for (const model::Location v : extract.vertices_of(ring)) {
         if (lon.empty()) west = east = v.lon, south = north = v.lat;
-        west = std::min<std::int64_t>(west, v.lon), east = std::max<std::int64_t>(east, v.lon);
+        // Around the first vertex: an outline may cross 180 degrees.
+        std::int64_t x = v.lon;
+        if (!lon.empty() && x - lon.front() > kTurn / 2) x -= kTurn;
+        if (!lon.empty() && lon.front() - x > kTurn / 2) x += kTurn;
+        west = std::min(west, x), east = std::max(east, x);
         south = std::min<std::int64_t>(south, v.lat), north = std::max<std::int64_t>(north, v.lat);
         lon.push_back(v.lon);
         lat.push_back(v.lat);
       }
     }
+    std::int64_t middle = west + (east - west) / 2;
+    if (middle > kTurn / 2) middle -= kTurn;
+    if (middle < -kTurn / 2) middle += kTurn;
     key("place");
     open('{');
-    number("lon", static_cast<double>(west + (east - west) / 2) / 1e7);
+    number("lon", static_cast<double>(middle) / 1e7);
     number("lat", static_cast<double>(south + (north - south) / 2) / 1e7);
     close('}');
     key("outline");

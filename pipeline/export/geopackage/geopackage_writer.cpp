@@ -130,6 +130,12 @@ struct GeoPackageWriter::Impl {
         {"OGR_GPKG_ALLOW_THREADED_RTREE", "NO"},
         // Settings of the user's environment that would change the bytes.
         {"SQLITE_USE_OGR_VFS", "NO"},
+        {"GPKG_ADD_DEFINITION_12_063", "NO"},
+        {"OSR_ADD_TOWGS84_ON_EXPORT_TO_WKT1", "NO"},
+        {"OSR_ADD_TOWGS84_ON_IMPORT_FROM_EPSG", "NO"},
+        {"OSR_STRIP_TOWGS84", "YES"},
+        {"OSR_USE_NON_DEPRECATED", "YES"},
+        {"OSR_WKT_FORMAT", "DEFAULT"},
     };
   }
 

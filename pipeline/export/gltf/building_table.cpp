@@ -58,7 +58,9 @@ class Builder {
       if (kind == Kind::float64 && !optional) value.no_data = kAbsentNumber;
       c.value = add(std::move(value));
       c.source = add({base + "_source", Kind::enumeration, "", "Source", !optional, kNone, optional ? "none" : ""});
-      c.confidence = add({base + "_confidence", Kind::unit_interval, "", "", false, std::nullopt});
+      // Nobody is 0 % sure of a value that is there.
+      c.confidence = add({base + "_confidence", Kind::unit_interval, "", "", false,
+                          optional ? std::optional<double>(0) : std::nullopt});
       attributes_.push_back(c);
     };
     model::for_each_attribute(all, column, [](std::string_view, std::string_view) {});

@@ -33,11 +33,12 @@ std::array<T, 3> y_up(T east, T north, T up) {
   return {east, up, static_cast<T>(0 - north)};
 }
 
-/// Quantised positions count in steps of 1/1024 m from `origin`; a uniform scale leaves normals as they are.
+/// Quantised positions count in steps of 1/4096 m from `origin`; a uniform scale leaves normals as they are. The model's
+/// own grid of 1/1024 m costs up to 0.69 mm; with 0.17 mm more a corner still lies within 1 mm of its place.
 struct PositionCoding {
   bool quantised = false;
   std::array<double, 3> origin{};  ///< y up
-  static constexpr double kStepsPerMetre = 1024;
+  static constexpr double kStepsPerMetre = 4096;
 };
 
 PositionCoding choose_coding(const Mesh& mesh) {

@@ -29,7 +29,7 @@ struct Glb {
 /// The owned buildings of `region` as one GLB.
 ///
 /// One mesh with a primitive per material class, indexed, y up. Vertices are interleaved: POSITION (float, or 16-bit
-/// integers in steps of 1/1024 m where the whole mesh is smaller than 64 m), NORMAL (8 bits), COLOR_0 (16 bits, linear
+/// integers in steps of 1/4096 m where the whole mesh is smaller than 16 m), NORMAL (8 bits), COLOR_0 (16 bits, linear
 /// light) and _FEATURE_ID_0, the row of the part in the property table. Extensions: KHR_mesh_quantization (required),
 /// EXT_mesh_features, EXT_structural_metadata. `asset.extras.georeference` says where on the Earth the mesh stands.
 ///
