@@ -48,6 +48,21 @@ class BlockIndex {
         for (std::int64_t y = cell(low.y); y <= cell(high.y); ++y) entries_.push_back({x, y, b});
     }
     std::sort(entries_.begin(), entries_.end());
+    for (const Block& block : blocks) append_segments(block.polygon, borders_);
+    border_grid_.emplace(borders_, kIndexCell);
+  }
+
+  /// Whether the box of a border segment meets that of the polygon. Where none does, all its corners are in one block.
+  bool meets_border(const Polygon& polygon) const {
+    Point2 low, high;
+    box_of(polygon.outer.points, low, high);
+    std::vector<std::uint32_t> near;
+    border_grid_->near(low, high, near);
+    return std::any_of(near.begin(), near.end(), [&](std::uint32_t i) {
+      const Segment& s = borders_[i];
+      return std::min(s.a.x, s.b.x) <= high.x && low.x <= std::max(s.a.x, s.b.x) && std::min(s.a.y, s.b.y) <= high.y &&
+             low.y <= std::max(s.a.y, s.b.y);
+    });
   }
 
   /// Blocks whose box meets that of the polygon, ascending.
@@ -87,6 +102,8 @@ class BlockIndex {
 
   std::vector<Segment> boxes_;  ///< from the low to the high corner
   std::vector<Entry> entries_;  ///< sorted
+  std::vector<Segment> borders_;
+  std::optional<geometry::SegmentGrid> border_grid_;
 };
 
 std::vector<Segment> street_segments(std::span<const NetworkLine> lines) {
@@ -105,7 +122,9 @@ struct BlockShare {
 /// Area of the building in each block. Every block is asked for itself, so that no answer depends on the other blocks.
 std::vector<BlockShare> shares_of(const Polygon& building, std::span<const Block> blocks, const BlockIndex& index) {
   std::vector<BlockShare> out;
-  const std::vector<Point2>& corners = building.outer.points;
+  // Far from all borders one corner speaks for all.
+  const std::span<const Point2> corners(building.outer.points.data(),
+                                        index.meets_border(building) ? building.outer.size() : 1);
   for (const std::uint32_t b : index.near(building)) {
     const Polygon& block = blocks[b].polygon;
     const auto inside = static_cast<std::size_t>(
