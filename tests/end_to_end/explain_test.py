@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 
+from osm_files import Node, Way, house, write_xml
 from blockrand_run import SAMPLE, BuildTest, Setup, blockrand, main, read_json
 
 ORDER = {'n': 0, 'w': 1, 'r': 2}
@@ -19,6 +20,13 @@ def index_of(folder):
 def lines_of(folder, tile):
     with gzip.open(os.path.join(folder, 'explain', tile + '.jsonl.gz'), 'rt', encoding='utf-8') as file:
         return {j['id']: j for j in map(json.loads, file)}
+
+
+def turned(thing):
+    """Longitudes beyond 180 degrees on the other side."""
+    if isinstance(thing, Node) and thing.lon > 180:
+        thing.lon -= 360
+    return thing
 
 
 class Explain(BuildTest):
@@ -104,6 +112,46 @@ class Explain(BuildTest):
         run = subprocess.run(f'"{Setup.program}" explain "{self.out}" {identity} | head -1', shell=True, capture_output=True,
                              text=True)
         self.assertEqual(run.stdout.count('\n'), 1)
+
+    def test_output_that_cannot_be_written_is_an_error(self):
+        if not os.path.exists('/dev/full'):
+            self.skipTest('no /dev/full')
+        identity = index_of(self.out)[0][0]
+        for command in (['explain', self.out, identity], ['help', 'options', '--markdown'], ['help', 'man']):
+            with open('/dev/full', 'w') as full:
+                run = subprocess.run([Setup.program, *command], stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(run.returncode, 4, command)
+            self.assertIn('standard output', run.stderr)
+
+    def test_bodies_by_their_own_ids(self):
+        building = next(line for tile in {t for _, t, _ in index_of(self.out)} for line in lines_of(self.out, tile).values()
+                        if len(line['bodies']) > 1)
+        for body in building['bodies']:
+            self.assertIn('The values of ' + body['id'], self.explained(self.out, body['id']))
+
+    def test_hostile_texts_double_keys_and_places_far_from_europe(self):
+        """Near the equator and in the far north, across 180 degrees: sound, and explained where it stands."""
+        places = {'jakarta': (106.8, -6.2), 'svalbard': (15.6, 78.2), 'fiji': (179.9999, -16.5)}
+        for name, (lon, lat) in places.items():
+            objects = [o for i in range(12) for o in house(i, lon + (i % 4) * 0.0003, lat + i // 4 * 0.0003)]
+            way = next(o for o in objects if isinstance(o, Way))
+            way.tags = {'building': 'house', 'note': '\u009b31m', 'name': 'A\n  forged: line'}
+            source = os.path.join(self.folder, name + '.osm')
+            write_xml(source, [turned(o) for o in objects])
+            with open(source, encoding='utf-8') as file:
+                text = file.read()
+            with open(source, 'w', encoding='utf-8') as file:
+                file.write(text.replace('<tag k="note"', '<tag k="height" v="10"/><tag k="height" v="20"/><tag k="note"'))
+            out = self.build(source, name)
+            run = blockrand('validate', out)
+            self.assertEqual(run.code, 0, run.out)
+            explained = self.explained(out, 'w%d' % way.id)
+            self.assertNotIn('\u009b', explained)
+            self.assertNotIn('\n  forged', explained)
+            self.assertIn('DUPLICATE_KEY', explained)
+            place = json.loads(self.explained(out, 'w%d' % way.id, '--json'))['place']
+            self.assertLess(abs((place['lon'] - lon + 180) % 360 - 180), 0.01)
+            self.assertLess(abs(place['lat'] - lat), 0.01)
 
     def test_a_real_quarter(self):
         path = os.path.join(Setup.shared or '', 'data', 'osm', 'berlin-zionskirchplatz-2020.osm')

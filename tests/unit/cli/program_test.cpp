@@ -122,8 +122,10 @@ class Configs : public testing::Test {
   }
   ~Configs() override { fs::remove_all(here); }
   fs::path place(const fs::path& folder) const {
-    fs::create_directories(here / folder / "defaults");
-    std::ofstream(here / folder / "defaults" / "uses.toml") << "";
+    for (const char* file : {"defaults/uses.toml", "materials/materials.toml"}) {
+      fs::create_directories((here / folder / file).parent_path());
+      std::ofstream(here / folder / file) << "";
+    }
     return here / folder;
   }
   fs::path here;

@@ -110,9 +110,10 @@ TEST(CityGml, AttributesSourcesAndTags) {
   EXPECT_EQ(shop.text("roof_shape"), "gabled");
   EXPECT_EQ(shop.text("roof_shape_source"), "");  // from a tag
   EXPECT_EQ(shop.text("roofType"), "1000");
-  EXPECT_EQ(shop.text("uri"), "https://www.openstreetmap.org/way/-7");
+  EXPECT_EQ(shop.text("uri"), "") << "an editor's new object has no page";
 
   const auto& house = building(file, "w12");
+  EXPECT_EQ(house.text("uri"), "https://www.openstreetmap.org/way/12");
   EXPECT_EQ(house.text("yearOfConstruction"), "1904");
   EXPECT_EQ(house.text("measuredHeight"), "9.5");
   EXPECT_EQ(house.text("storeysAboveGround"), "3");

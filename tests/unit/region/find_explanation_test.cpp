@@ -21,7 +21,7 @@ constexpr OsmId way(std::int64_t n) { return {OsmType::way, n}; }
 
 TEST(ObjectId, IsReadAsPeopleWriteIt) {
   for (const char* text : {"w123", "way/123", "way 123", "https://www.openstreetmap.org/way/123", "https://www.openstreetmap.org/way/123/",
-                           "openstreetmap.org/way/123#map=19/52/13", "w123.w456", "w123.rest", "w123.2"})
+                           "openstreetmap.org/way/123#map=19/52/13", "https://www.openstreetmap.org/way/123/history", "W123", " w123 ", "w123.w456", "w123.rest", "w123.2"})
     EXPECT_EQ(parse_object_id(text), way(123)) << text;
   EXPECT_EQ(parse_object_id("r45"), (OsmId{OsmType::relation, 45}));
   EXPECT_EQ(parse_object_id("relation/45"), (OsmId{OsmType::relation, 45}));
@@ -86,6 +86,14 @@ TEST_F(FindExplanation, PartsAndDuplicatesLeadToTheirBuilding) {
   EXPECT_TRUE(duplicate->in_model);
 }
 
+TEST_F(FindExplanation, DuplicatesOfEachOtherEnd) {
+  write("report.json", R"({"objects":[{"id":"w7","state":"duplicate","related":"w9"},{"id":"w9","state":"duplicate","related":"w7"},)"
+                       R"({"id":5},7],"codes":3})");
+  const auto found = find_explanation(folder_, way(7));
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->in_model);
+}
+
 TEST_F(FindExplanation, ReportedObjectsComeWithTheirReason) {
   const auto found = find_explanation(folder_, {OsmType::node, 5});
   ASSERT_TRUE(found);
@@ -112,6 +120,8 @@ TEST_F(FindExplanation, DamageIsNamed) {
   write("explain/index.txt", cut);
   EXPECT_THAT(error(way(2)), ::testing::HasSubstr("line of the index"));
   std::filesystem::remove(folder_ + "/explain/index.txt");
+  EXPECT_THAT(error(way(2)), ::testing::HasSubstr("index.txt: is missing"));
+  write("build.json", R"({"configuration":{"explain":false}})");
   EXPECT_THAT(error(way(2)), ::testing::HasSubstr("--no-explain"));
   std::filesystem::remove(folder_ + "/build.json");
   EXPECT_THAT(error(way(2)), ::testing::HasSubstr("is no build"));
