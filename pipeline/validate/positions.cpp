@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kLeastTurn = 10;             // degrees
 constexpr double kLeastEdge = 0.5;            // m
+constexpr double kNearestToPole = 89.999;     // degrees: a hundred metres
 constexpr double kMetresPerUnit = 0.0111319;  // 1e-7 degrees of latitude
 
 std::uint64_t mix(std::uint64_t h) {
@@ -41,6 +42,8 @@ void PositionSampler::add(const std::string& body, const std::vector<model::Loca
   };
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const model::Location at = ring[i];
+    // On a pole longitude says nothing, so the turn of a corner cannot be told from it.
+    if (std::fabs(at.lat_degrees()) > kNearestToPole) continue;
     const model::Point2 u = edge(ring[(i + ring.size() - 1) % ring.size()], at),
                         v = edge(at, ring[(i + 1) % ring.size()]);
     if (std::hypot(u.x, u.y) < kLeastEdge || std::hypot(v.x, v.y) < kLeastEdge) continue;
