@@ -71,12 +71,88 @@ void for_each_attribute(A& a, Visit&& visit, Absent&& absent) {
 
 inline constexpr std::uint32_t kNoIndex = 0xffffffff;
 
-/// What one edge of a footprint faces. First version: walls shared node by node; `context` refines it.
-enum class EdgeKind : std::uint8_t { unknown, party_wall };
+/// What a stretch of an outline faces.
+enum class EdgeKind : std::uint8_t { unknown, street, courtyard, side, party_wall, passage };
+inline constexpr int kEdgeKindCount = 6;
+constexpr std::string_view name(EdgeKind kind) {
+  constexpr std::string_view names[] = {"unknown", "street", "courtyard", "side", "party_wall", "passage"};
+  return names[static_cast<int>(kind)];
+}
 
+/// A stretch of one edge of the outline with one situation. Edges are cut where their situation changes; the cuts are no
+/// corners of the outline, so that roofs and solids keep whole walls.
 struct FacadeEdge {
-  std::int64_t from_node = 0, to_node = 0;  ///< OSM nodes of its ends (0 where a repair made the point)
+  std::int64_t from_node = 0, to_node = 0;  ///< OSM nodes of the ends of the whole edge (0 where a repair made the point)
+  std::uint32_t polygon = 0;                ///< index into Building::outline
+  std::uint32_t ring = 0;                   ///< 0: outer; k: holes[k - 1]
+  std::uint32_t edge = 0;                   ///< from point `edge` of the ring to the next
+  double start = 0, end = 0;                ///< m along the edge, from its first point
   EdgeKind kind = EdgeKind::unknown;
+  float confidence = 0;                     ///< of `kind`, [0, 1]
+  OsmId neighbour;                          ///< party wall: of whom; number 0 otherwise
+  float covered_height = 0;                 ///< m, party wall: what the neighbour covers, known once heights are resolved
+  OsmId street;                             ///< the street it faces (street, passage; also of a side or courtyard that
+                                            ///< looks out on one); number 0 where none
+  std::string street_name, street_class;    ///< of it; class as context::LineClass is written
+  float street_distance = 0;                ///< m, from the middle of the stretch to the street's line
+  float street_angle = 0;                   ///< degrees [0, 90] between the stretch and the street
+  float visibility = 0;                     ///< [0, 1]: how much of it is seen from street space
+  bool corner_start = false, corner_end = false;  ///< a street corner of the block lies at this end
+  bool chamfer = false;                     ///< cuts off a street corner
+  std::int32_t entrances = 0;               ///< mapped entrances on it
+  std::int32_t arc = -1;                    ///< index into Building::arcs, where the edge is a piece of a curve
+  double length() const { return end - start; }
+};
+
+/// How a building stands to its neighbours and its block.
+enum class BuildingPosition : std::uint8_t {
+  unknown,
+  free_standing,  ///< no party wall
+  end_of_row,     ///< party walls on one side
+  mid_row,        ///< party walls on two sides
+  corner_house,   ///< fronts on two streets that meet
+  rear_building,  ///< Hinterhaus: inside the block, no front on a street
+  side_wing,      ///< Seitenfluegel: inside the block, along the border of the lot, tied to a front or rear building
+};
+inline constexpr int kBuildingPositionCount = 7;
+constexpr std::string_view name(BuildingPosition position) {
+  constexpr std::string_view names[] = {"unknown",      "free_standing", "end_of_row", "mid_row",
+                                        "corner_house", "rear_building", "side_wing"};
+  return names[static_cast<int>(position)];
+}
+
+/// What context says about the whole building. Lengths in metres on the ground.
+struct BuildingSituation {
+  BuildingPosition position = BuildingPosition::unknown;
+  std::vector<std::uint32_t> fronts;          ///< indices into Building::edges: stretches of the main fronts, the longest first
+  std::optional<double> orientation;          ///< degrees clockwise from north: where the main front looks
+  std::optional<double> depth, width;         ///< across and along the main front (without one: shorter, longer side)
+  std::optional<double> setback;              ///< main front to the street's building line
+  double party_wall_length = 0;               ///< m
+  std::string block;                          ///< id of its block (context::Block), empty for none
+  std::vector<std::string> courtyards;        ///< ids of the courtyards that it stands at
+};
+
+/// A run of edges that approximates a circle: a rounded corner, a bay, a round tower.
+struct Arc {
+  std::uint32_t polygon = 0, ring = 0;
+  std::uint32_t first = 0, count = 0;  ///< edges first, first + 1, ... (modulo the ring) are its chords
+  Point2 centre;                       ///< m
+  double radius = 0;                   ///< m
+  bool convex = true;                  ///< bulges out of the building
+};
+
+/// What repair did to one footprint; lengths in metres, areas in square metres.
+struct RepairRecord {
+  std::uint32_t vertices = 0;       ///< of the outline after repair
+  std::uint32_t moved = 0;          ///< of them by more than 1 mm
+  double mean_shift = 0, max_shift = 0;
+  double mapped_area = 0, area = 0;
+  std::uint32_t shared_walls = 0;   ///< stretches whose points a neighbour has as well
+  std::uint32_t gaps_closed = 0;    ///< of them that did not touch as mapped
+  std::uint32_t overlaps_resolved = 0;
+  double overlap_left = 0;          ///< m² common with others at the same level that stay (reported)
+  double direction = -1;            ///< degrees [0, 90), of the main walls clockwise from north; -1 where nothing was squared
 };
 
 /// Rings as mapped, projected, before repair. An inner ring belongs to the last outer ring before it.
@@ -111,7 +187,10 @@ struct Building {
   MappedAttributes mapped;           ///< what its tags say
   MappedRings rings;                 ///< empty for a part without outline that stands alone
   std::vector<Polygon> outline;      ///< repaired; usually one
-  std::vector<FacadeEdge> edges;     ///< of the outline, ring by ring, polygon by polygon
+  std::vector<FacadeEdge> edges;     ///< of the outline: polygon by polygon, ring by ring, edge by edge, along the edge
+  std::vector<Arc> arcs;             ///< curves of the outline
+  RepairRecord repaired;             ///< what repair did to the outline
+  BuildingSituation situation;       ///< what context found
   Attributes attributes;             ///< of the whole building
   std::vector<BuildingPart> parts;   ///< at least one after `generate` unless nothing could be built
   bool has_mapped_parts = false;

@@ -53,6 +53,17 @@ enum class IssueClass : std::uint8_t {
   X(split_outline, "SPLIT_OUTLINE", notice, "The valid outline consists of several pieces.")                         \
   X(touching_rings, "TOUCHING_RINGS", notice, "Rings that touched were moved apart by a few millimetres.")           \
   X(sliver_dropped, "SLIVER_DROPPED", notice, "A piece below the smallest area was dropped.")                        \
+  X(collinear_points, "COLLINEAR_POINTS", notice, "Points on straight walls were removed.")                          \
+  X(shared_wall_made, "SHARED_WALL_MADE", notice, "A wall was joined with that of a neighbour that almost met it.")   \
+  X(shared_wall_conflict, "SHARED_WALL_CONFLICT", notice, "Joining walls would have broken the outline; they stay.") \
+  X(squared, "SQUARED", notice, "Corners that were almost right were made right.")                                   \
+  X(overlap_resolved, "OVERLAP_RESOLVED", notice, "An overlap with a neighbour was given to one of the two.")        \
+  X(overlap_kept, "OVERLAP_KEPT", notice, "An overlap with a neighbour stays: without it, little would be left.")    \
+  X(nested_building, "NESTED_BUILDING", notice, "A building lies within another one at the same level.")             \
+  X(repair_bounded, "REPAIR_BOUNDED", notice, "Repair would have changed too much; the outline stays as mapped.")    \
+  X(parts_outside, "PARTS_OUTSIDE", notice, "A building part sticks out of its building's outline.")                 \
+  X(parts_overlap, "PARTS_OVERLAP", notice, "Parts overlap at overlapping heights; one of them gave way.")           \
+  X(outline_made, "OUTLINE_MADE", notice, "Touching parts without an outline became one building.")                  \
   X(part_without_outline, "PART_WITHOUT_OUTLINE", notice, "A building part lies in no building; it stands alone.")   \
   X(parts_incomplete, "PARTS_INCOMPLETE", notice, "The parts leave some of the outline free; the rest was built.")   \
   X(antimeridian, "ANTIMERIDIAN", notice, "The outline crosses longitude 180 degrees.")                              \

@@ -74,7 +74,12 @@ void note_edges(Building& building) {
   building.edges.clear();
   const auto add = [&](const Ring& ring) {
     for (std::size_t i = 0; i < ring.size(); ++i)
-      building.edges.push_back({ring.nodes[i], ring.nodes[(i + 1) % ring.size()], model::EdgeKind::unknown});
+      {
+      model::FacadeEdge edge;
+      edge.from_node = ring.nodes[i];
+      edge.to_node = ring.nodes[(i + 1) % ring.size()];
+      building.edges.push_back(edge);
+    }
   };
   for (const Polygon& polygon : building.outline) {
     add(polygon.outer);

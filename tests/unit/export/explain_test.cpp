@@ -99,7 +99,9 @@ TEST(Explain, SharedWallsNameTheNeighbours) {
   sample.add_box(b, "w7", 0, 0, 10, 8, 0, 6);
   b.outline = {b.parts[0].plan};
   b.edges.assign(4, {});
-  b.edges[1] = {11, 12, model::EdgeKind::party_wall};
+  b.edges[1].from_node = 11;
+  b.edges[1].to_node = 12;
+  b.edges[1].kind = model::EdgeKind::party_wall;
   ExplainOptions options = plain_options();
   options.sharers = [](std::int64_t from, std::int64_t to) {
     EXPECT_EQ(from, 11);
