@@ -133,6 +133,14 @@ struct BuildingSituation {
   std::vector<std::string> courtyards;        ///< ids of the courtyards that it stands at
 };
 
+/// A mapped tree that stands before a building.
+struct NearTree {
+  OsmId id;
+  Point2 place;            ///< m
+  std::uint32_t edge = 0;  ///< index into Building::edges: the stretch it is nearest to
+  float distance = 0;      ///< m, from that stretch
+};
+
 /// A run of edges that approximates a circle: a rounded corner, a bay, a round tower.
 struct Arc {
   std::uint32_t polygon = 0, ring = 0;
@@ -191,6 +199,7 @@ struct Building {
   std::vector<Arc> arcs;             ///< curves of the outline
   RepairRecord repaired;             ///< what repair did to the outline
   BuildingSituation situation;       ///< what context found
+  std::vector<NearTree> trees;       ///< before its walls, by id
   Attributes attributes;             ///< of the whole building
   std::vector<BuildingPart> parts;   ///< at least one after `generate` unless nothing could be built
   bool has_mapped_parts = false;
