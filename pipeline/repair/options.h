@@ -14,6 +14,8 @@ struct RepairOptions {
   double spike_width = 0.02;          ///< m. A tip narrower than this over its length is a slip of the mouse.
   double collinear_distance = 0.02;   ///< m. A point nearer to the wall through its neighbours is none of its corners.
   double min_piece_area = 0.05;       ///< m². Smaller pieces of a repaired outline are dropped and reported.
+  double max_ring_area_change = 0.1;  ///< of the area of the rings as mapped, loops of a figure eight counted. A slip of the
+                                      ///< mouse changes less; more is mended all the same, but the report says so.
   double ring_clearance = 0.03;       ///< m. Rings that touch get a wall this wide between them: nothing a mapper could see.
 
   // Shared walls.
