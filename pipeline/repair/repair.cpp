@@ -1,11 +1,8 @@
 #include "pipeline/repair/repair.h"
 
-#include <cmath>
-#include <string>
-
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
-#include "pipeline/repair/clean_ring.h"
+#include "pipeline/repair/rings.h"
 
 namespace blockrand::repair {
 
@@ -18,63 +15,11 @@ using model::Polygon;
 using model::Region;
 using model::Ring;
 
-struct Repaired {
-  std::vector<Polygon> polygons;
-  IssueCode failure = IssueCode::none;
-};
-
-std::string square_metres(double area) {
-  const long long hundredths = std::llround(area * 100);
-  std::string fraction = std::to_string(hundredths % 100);
-  if (fraction.size() < 2) fraction.insert(0, "0");
-  return std::to_string(hundredths / 100) + "." + fraction + " m2";
-}
-
-Repaired repair_rings(model::MappedRings rings, model::OsmId id, const RepairOptions& options, model::Report& report) {
-  RingCleaning cleaning;
-  bool has_ring = false;
-  double mapped_area = 0;
-  std::vector<Ring> kept;
-  std::vector<bool> inner;
-  bool outer_kept = false;
-  for (std::size_t i = 0; i < rings.rings.size(); ++i) {
-    Ring& ring = rings.rings[i];
-    const RingCleaning c = clean_ring(ring, options);
-    cleaning.duplicates += c.duplicates;
-    cleaning.spikes += c.spikes;
-    if (ring.size() >= 3) has_ring = has_ring || !rings.inner[i];
-    if (!rings.inner[i]) outer_kept = ring.size() >= 3;
-    // A hole whose outer ring has vanished would otherwise be taken for a building.
-    if (ring.size() < 3 || (rings.inner[i] && !outer_kept)) continue;
-    mapped_area += (rings.inner[i] ? -1 : 1) * std::fabs(geometry::signed_area(ring.points));
-    kept.push_back(std::move(ring));
-    inner.push_back(rings.inner[i]);
-  }
-  if (cleaning.duplicates > 0)
-    report.add(id, IssueCode::duplicate_points, std::to_string(cleaning.duplicates) + " points");
-  if (cleaning.spikes > 0) report.add(id, IssueCode::spike_removed, std::to_string(cleaning.spikes) + " points");
-  if (!has_ring) return {{}, cleaning.spikes > 0 ? IssueCode::zero_area : IssueCode::too_few_points};
-
-  geometry::ValidPolygons valid =
-      geometry::make_valid(kept, inner, options.min_piece_area, options.ring_clearance);
-  if (valid.polygons.empty()) return {{}, IssueCode::zero_area};
-  if (valid.changed) {
-    double area = 0;
-    for (const Polygon& p : valid.polygons) area += geometry::area(p);
-    report.add(id, IssueCode::ring_repaired, square_metres(mapped_area) + " to " + square_metres(area));
-  }
-  if (valid.separated) report.add(id, IssueCode::touching_rings);
-  if (valid.dropped_area > 0) report.add(id, IssueCode::sliver_dropped, square_metres(valid.dropped_area));
-  if (valid.polygons.size() > 1)
-    report.add(id, IssueCode::split_outline, std::to_string(valid.polygons.size()) + " pieces");
-  return {std::move(valid.polygons), IssueCode::none};
-}
-
 void note_edges(Building& building) {
   building.edges.clear();
   const auto add = [&](const Ring& ring) {
     for (std::size_t i = 0; i < ring.size(); ++i)
-      {
+    {
       model::FacadeEdge edge;
       edge.from_node = ring.nodes[i];
       edge.to_node = ring.nodes[(i + 1) % ring.size()];
@@ -110,7 +55,7 @@ BuildingPart whole(const Building& building) {
 void repair_building(Building& building, const RepairOptions& options, Region& region) {
   model::Report& report = region.report;
   if (!building.rings.rings.empty()) {
-    Repaired outline = repair_rings(std::move(building.rings), building.osm, options, report);
+    RepairedRings outline = repair_rings(std::move(building.rings), building.osm, {}, options, report);
     building.rings = {};
     building.outline = std::move(outline.polygons);
     building.failure = outline.failure;
@@ -125,7 +70,7 @@ void repair_building(Building& building, const RepairOptions& options, Region& r
   std::vector<BuildingPart> parts;
   std::vector<Polygon> covered;
   for (BuildingPart& part : building.parts) {
-    Repaired repaired = repair_rings(std::move(part.rings), part.osm, options, report);
+    RepairedRings repaired = repair_rings(std::move(part.rings), part.osm, {}, options, report);
     part.rings = {};
     if (repaired.failure != IssueCode::none) region.part_failures.push_back({part.mapped_index, repaired.failure});
     covered.insert(covered.end(), repaired.polygons.begin(), repaired.polygons.end());
@@ -160,7 +105,10 @@ void repair_building(Building& building, const RepairOptions& options, Region& r
 
 }  // namespace
 
-void repair(Region& region, const RepairOptions& options) {
+void repair(Region& region, const RepairOptions& given) {
+  // Which nodes neighbours share is not known here; without that no point of a wall may go.
+  RepairOptions options = given;
+  options.simplify = false;
   for (Building& building : region.buildings) repair_building(building, options, region);
 }
 

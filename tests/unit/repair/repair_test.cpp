@@ -55,7 +55,7 @@ std::vector<std::string> ids(const model::Building& b) {
 
 TEST(CleanRing, RepeatedPointsAndSpikesGo) {
   auto r = ring({{0, 0}, {0, 0.001}, {10, 0}, {10, 8}, {4, 8}, {4, 20}, {4.01, 8}, {0, 8}});
-  const RingCleaning done = clean_ring(r, {});
+  const RingCleaning done = clean_ring(r, {}, {});
   EXPECT_EQ(done.duplicates, 1);
   EXPECT_GE(done.spikes, 1);
   EXPECT_NEAR(geometry::signed_area(r.points), 80, 0.1);
@@ -63,19 +63,19 @@ TEST(CleanRing, RepeatedPointsAndSpikesGo) {
 
 TEST(CleanRing, AThinButRealStripStays) {
   auto r = ring({{0, 0}, {20, 0}, {20, 0.3}, {0, 0.3}});
-  EXPECT_EQ(clean_ring(r, {}).spikes, 0);
+  EXPECT_EQ(clean_ring(r, {}, {}).spikes, 0);
   EXPECT_EQ(r.size(), 4u);
 }
 
 TEST(CleanRing, ALineVanishes) {
   auto r = ring({{0, 0}, {5, 0}, {10, 0}, {5, 0}});
-  clean_ring(r, {});
+  clean_ring(r, {}, {});
   EXPECT_LT(r.size(), 3u);
 }
 
 TEST(CleanRing, EveryPointAtOnePlace) {
   auto r = ring({{3, 3}, {3, 3}, {3, 3}, {3, 3}});
-  clean_ring(r, {});
+  clean_ring(r, {}, {});
   EXPECT_LT(r.size(), 3u);
 }
 
