@@ -190,6 +190,16 @@ std::vector<Segment> outer_gates(const std::vector<Face>& faces, bool& inner) {
   return out;
 }
 
+std::string id_of(const Courtyard& yard, std::span<const Footprint> buildings) {
+  model::OsmId least = buildings[yard.buildings.front()].id;
+  for (const std::uint32_t b : yard.buildings) least = std::min(least, buildings[b].id);
+  const std::vector<Point2>& ring = yard.polygon.outer.points;
+  const auto first = std::min_element(ring.begin(), ring.end());
+  const geometry::Grid2 a = geometry::to_grid(*first),
+                        b = geometry::to_grid(first + 1 != ring.end() ? *(first + 1) : ring.front());
+  return least.text() + ".y" + std::to_string(a.x + b.x) + "_" + std::to_string(a.y + b.y);
+}
+
 bool counts(const Courtyard& yard, const CourtyardOptions& options) {
   const double around = geometry::perimeter(yard.polygon), width = 2 * yard.area / around;
   if (yard.closed) return yard.area >= options.min_closed_area && width >= options.min_closed_width;
@@ -226,6 +236,7 @@ std::vector<Courtyard> find_courtyards(std::span<const Footprint> buildings, std
     if (!counts(yard, options)) continue;
     for (const geometry::BorderLine& line : face.lines)
       if (line.id < kFirstGate) yard.buildings.push_back(static_cast<std::uint32_t>(line.id));
+    yard.id = id_of(yard, buildings);
     out.push_back(std::move(yard));
   }
   return out;

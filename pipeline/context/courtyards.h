@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "pipeline/model/osm_id.h"
@@ -16,6 +17,7 @@ struct Footprint {
   model::OsmId id;
   model::Polygon polygon;         ///< metres, build CRS; of either orientation
   std::optional<double> storeys;  ///< as tagged, never inferred (DESIGN law 4)
+  bool canopy = false;            ///< building=roof: covers the ground and has no walls
 };
 
 using Polyline = std::vector<model::Point2>;
@@ -37,6 +39,9 @@ struct CourtyardOptions {
 };
 
 struct Courtyard {
+  /// `w123.y456_789`: the least building around it, and the edge of its outer ring that leaves the least corner, as the sum
+  /// of both ends in grid steps: no two courtyards have that in common.
+  std::string id;
   model::Polygon polygon;  ///< canonical as geometry::Face; holes are buildings that stand free in it
   double area = 0;         ///< m²
   bool closed = true;      ///< no open way to the street space (passages through buildings are not looked at)

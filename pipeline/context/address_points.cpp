@@ -1,0 +1,82 @@
+#include "pipeline/context/address_points.h"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+namespace blockrand::context {
+
+namespace {
+
+using model::Extract;
+using model::Feature;
+using model::FeatureKind;
+
+/// Metres of a plain number with or without the unit; anything else tells nothing.
+std::optional<double> metres(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc()) return std::nullopt;
+  std::string_view rest(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  while (rest.starts_with(' ')) rest.remove_prefix(1);
+  if (!rest.empty() && rest != "m") return std::nullopt;
+  if (!(value >= kMinPassageWidth && value <= kMaxPassageWidth)) return std::nullopt;
+  return value;
+}
+
+double assumed_width(std::string_view highway) {
+  constexpr std::string_view kOnFoot[] = {"footway", "path", "steps", "cycleway", "corridor", "bridleway", "platform"};
+  if (std::find(std::begin(kOnFoot), std::end(kOnFoot), highway) != std::end(kOnFoot)) return kFootPassageWidth;
+  if (highway == "service" || highway == "track" || highway == "pedestrian" || highway.empty()) return kServicePassageWidth;
+  return kStreetPassageWidth;
+}
+
+}  // namespace
+
+std::vector<PassageWay> passage_ways(const Extract& extract, const Project& project) {
+  std::vector<PassageWay> out;
+  for (const Feature& f : extract.features) {
+    if (!f.is(FeatureKind::passage) || f.area || f.id.type != model::OsmType::way) continue;
+    if (extract.tag(f.tags, "indoor") == "yes") continue;
+    for (const model::MappedRing& ring : extract.rings_of(f.rings)) {
+      PassageWay way;
+      way.id = f.id;
+      way.name = extract.tag(f.tags, "name");
+      way.width = metres(extract.tag(f.tags, "width")).value_or(assumed_width(extract.tag(f.tags, "highway")));
+      way.covered_only = extract.tag(f.tags, "tunnel") != "building_passage";
+      for (const model::Location v : extract.vertices_of(ring)) way.points.push_back(model::snap(project(v)));
+      const auto nodes = extract.nodes_of(ring);
+      way.nodes.assign(nodes.begin(), nodes.end());
+      if (way.points.size() >= 2) out.push_back(std::move(way));
+    }
+  }
+  return out;
+}
+
+std::vector<SitePoint> site_points(const Extract& extract, const Project& project) {
+  std::vector<SitePoint> out;
+  for (const Feature& f : extract.features) {
+    if (f.id.type != model::OsmType::node) continue;
+    SitePoint point;
+    if (f.is(FeatureKind::entrance) && extract.tag(f.tags, "entrance") != "no")
+      point.kind = SitePointKind::entrance;
+    else if (f.is(FeatureKind::address))
+      point.kind = SitePointKind::address;
+    else if (f.is(FeatureKind::tree))
+      point.kind = SitePointKind::tree;
+    else
+      continue;
+    const auto rings = extract.rings_of(f.rings);
+    if (rings.empty() || extract.vertices_of(rings[0]).empty()) continue;
+    point.id = f.id;
+    point.place = model::snap(project(extract.vertices_of(rings[0])[0]));
+    point.street = extract.tag(f.tags, "addr:street");
+    point.house_number = extract.tag(f.tags, "addr:housenumber");
+    out.push_back(std::move(point));
+  }
+  return out;
+}
+
+std::string_view address_street(const Extract& extract, model::Range tags) { return extract.tag(tags, "addr:street"); }
+
+}  // namespace blockrand::context

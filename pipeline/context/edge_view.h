@@ -1,0 +1,85 @@
+// What can be seen from a wall: rays to the walls and streets around it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "pipeline/context/courtyards.h"
+#include "pipeline/context/street_network.h"
+#include "pipeline/model/point.h"
+
+namespace blockrand::context {
+
+/// A wall of a footprint, the inside on its left.
+struct Wall {
+  model::Point2 a, b;           ///< m
+  std::uint32_t footprint = 0;  ///< index into the footprints given
+};
+
+/// A straight piece of a street's centre line, or of the outline of a pedestrian area.
+struct StreetPiece {
+  model::Point2 a, b;      ///< m
+  std::uint32_t line = 0;  ///< index into the lines given
+};
+
+inline constexpr std::uint32_t kNothing = 0xffffffff;
+
+/// Where a ray ends.
+struct Sight {
+  double wall = std::numeric_limits<double>::infinity();    ///< m to the first wall; infinite for none
+  std::uint32_t footprint = kNothing;                       ///< whose wall
+  bool from_inside = false;                                 ///< met from its inner side: the ray began in that building
+  double street = std::numeric_limits<double>::infinity();  ///< m to the first street before that wall
+  std::uint32_t street_piece = kNothing;                    ///< which one: index into Scene::streets
+};
+
+/// Walls and streets of a tile and its surroundings, filed under the cells of a grid that is fixed in the CRS. Read-only
+/// after construction, safe to share between threads. Canopies hide nothing and are no walls.
+class Scene {
+ public:
+  /// Streets in tunnels are left out; streets are filed as far as `margin` around the footprints.
+  /// \param margin  m
+  Scene(std::span<const Footprint> footprints, std::span<const NetworkLine> lines, double margin);
+
+  /// Follows a ray.
+  /// \param direction  unit vector
+  /// \param reach      m, what is farther is not seen
+  /// What lies within kOnTheWall of the start is not seen, but for walls met from inside.
+  Sight look(model::Point2 from, model::Point2 direction, double reach) const;
+
+  /// Indices, ascending, of walls (canopies' too) that come into a box, and of some others.
+  void walls_near(model::Point2 minimum, model::Point2 maximum, std::vector<std::uint32_t>& out) const;
+
+  std::span<const Wall> walls() const { return walls_; }
+  std::span<const StreetPiece> streets() const { return streets_; }
+  bool is_canopy(std::uint32_t footprint) const { return canopy_[footprint] != 0; }
+
+  /// m. Half of the mean distance that mapping leaves between walls that touch.
+  static constexpr double kOnTheWall = 0.05;
+
+ private:
+  static constexpr double kCell = 8;  ///< m. The length of a usual wall
+  std::int64_t column(double x) const;
+  std::int64_t row(double y) const;
+  template <class Visit>
+  void for_each_cell(model::Point2 a, model::Point2 b, Visit&& visit) const;
+  void test(std::uint32_t item, model::Point2 from, model::Point2 direction, double reach, Sight& sight) const;
+
+  std::vector<Wall> walls_;
+  std::vector<StreetPiece> streets_;
+  std::vector<std::uint8_t> canopy_;  ///< by footprint
+  std::int64_t first_column_ = 0, first_row_ = 0, columns_ = 0, rows_ = 0;
+  std::vector<std::uint32_t> starts_;  ///< per cell, row by row
+  std::vector<std::uint32_t> items_;   ///< walls, then streets (index + number of walls), ascending within a cell
+};
+
+/// Rays of a fan over the half plane before a wall: 13 at steps of 13.5 degrees, from 81 degrees right to 81 left.
+inline constexpr int kFanRays = 13;
+
+/// The directions of the fan around an outward normal (a unit vector).
+std::array<model::Point2, kFanRays> fan_around(model::Point2 normal);
+
+}  // namespace blockrand::context

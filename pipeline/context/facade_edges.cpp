@@ -1,0 +1,171 @@
+#include "pipeline/context/facade_edges.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/context/edge_contacts.h"
+#include "pipeline/context/edge_samples.h"
+
+namespace blockrand::context {
+
+namespace {
+
+using model::EdgeKind;
+using model::FacadeEdge;
+
+/// A piece of an edge with one situation, as it is found.
+struct Piece {
+  double start = 0, end = 0;  ///< m
+  EdgeKind kind = EdgeKind::unknown;
+  model::OsmId neighbour;
+  std::uint32_t passage = kNothing;
+  std::vector<EdgeSample> samples;
+  double length() const { return end - start; }
+};
+
+bool same_situation(const Piece& a, const Piece& b) {
+  return a.kind == b.kind && a.neighbour == b.neighbour && a.passage == b.passage;
+}
+
+/// Joins neighbours of one situation.
+void join_equal(std::vector<Piece>& pieces) {
+  std::vector<Piece> out;
+  for (Piece& p : pieces) {
+    if (!out.empty() && same_situation(out.back(), p)) {
+      out.back().end = p.end;
+      out.back().samples.insert(out.back().samples.end(), p.samples.begin(), p.samples.end());
+    } else {
+      out.push_back(std::move(p));
+    }
+  }
+  pieces = std::move(out);
+}
+
+/// Gives pieces shorter than `least` to the longer of their neighbours, the shortest first (ties: the nearer to the
+/// middle of the edge, so that no direction is preferred; then the first).
+void absorb_short(std::vector<Piece>& pieces, double least) {
+  for (;;) {
+    join_equal(pieces);
+    if (pieces.size() < 2) return;
+    std::size_t shortest = 0;
+    for (std::size_t i = 1; i < pieces.size(); ++i)
+      if (pieces[i].length() < pieces[shortest].length()) shortest = i;
+    if (pieces[shortest].length() >= least) return;
+    const bool has_before = shortest > 0, has_after = shortest + 1 < pieces.size();
+    const bool to_before =
+        has_before && (!has_after || pieces[shortest - 1].length() >= pieces[shortest + 1].length());
+    if (to_before)
+      pieces[shortest - 1].end = pieces[shortest].end;
+    else
+      pieces[shortest + 1].start = pieces[shortest].start;
+    pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(shortest));
+  }
+}
+
+class Labeller {
+ public:
+  Labeller(const model::Building& building, const SurroundingsIndex& index, const EdgeOptions& options)
+      : building_(building), index_(index), options_(options), view_(view_of(building, index)) {
+    const auto& footprints = index.all().footprints;
+    const auto own = std::lower_bound(footprints.begin(), footprints.end(), building.osm,
+                                      [](const Footprint& f, model::OsmId id) { return f.id < id; });
+    canopy_ = own != footprints.end() && own->id == building.osm && own->canopy;
+  }
+
+  std::vector<Piece> pieces_of(const OutlineEdge& edge, const std::vector<Mouth>& mouths) const {
+    std::vector<Piece> fixed;
+    for (const Contact& c : contacts_of(edge, building_.osm, canopy_, index_, options_))
+      fixed.push_back({c.start, c.end, EdgeKind::party_wall, c.neighbour, kNothing, {}});
+    const std::size_t contacts = fixed.size();
+    for (const Mouth& m : canopy_ ? std::vector<Mouth>{} : mouths) {
+      // What a neighbour's wall leaves of the mouth.
+      double start = m.start;
+      for (std::size_t c = 0; c < contacts; ++c) {
+        if (fixed[c].end <= start || fixed[c].start >= m.end) continue;
+        if (fixed[c].start > start) fixed.push_back({start, fixed[c].start, EdgeKind::passage, {}, m.passage, {}});
+        start = fixed[c].end;
+      }
+      if (start < m.end) fixed.push_back({start, m.end, EdgeKind::passage, {}, m.passage, {}});
+    }
+    std::sort(fixed.begin(), fixed.end(), [](const Piece& a, const Piece& b) { return a.start < b.start; });
+    std::vector<Piece> out;
+    double at = 0;
+    for (Piece& piece : fixed) {
+      if (piece.start - at > options_.min_stretch)
+        add_free(edge, at, piece.start, out);
+      else
+        piece.start = at;
+      at = piece.end;
+      out.push_back(std::move(piece));
+    }
+    if (edge.length - at > options_.min_stretch || out.empty())
+      add_free(edge, at, edge.length, out);
+    else
+      out.back().end = edge.length;
+    absorb_short(out, options_.min_stretch);
+    return out;
+  }
+
+ private:
+  /// Cuts a stretch without contacts and mouths where its view changes.
+  void add_free(const OutlineEdge& edge, double start, double end, std::vector<Piece>& out) const {
+    const int n = std::max(1, static_cast<int>(std::ceil((end - start) / options_.sample_step)));
+    const double step = (end - start) / n;
+    std::vector<Piece> pieces;
+    for (int i = 0; i < n; ++i) {
+      EdgeSample sample = look_out(edge, start + (i + 0.5) * step, view_, options_);
+      Piece piece{start + i * step, start + (i + 1) * step, sample.kind, {}, kNothing, {}};
+      if (sample.inside != kNothing) piece.neighbour = index_.all().footprints[sample.inside].id;
+      piece.samples.push_back(std::move(sample));
+      if (!pieces.empty() && !same_situation(pieces.back(), piece))
+        pieces.back().end = piece.start = border(edge, pieces.back(), piece);
+      pieces.push_back(std::move(piece));
+    }
+    absorb_short(pieces, std::min(options_.min_view, (end - start) / 2));
+    for (Piece& p : pieces) out.push_back(std::move(p));
+  }
+
+  /// Where between two samples the view changes, to a quarter of a metre.
+  double border(const OutlineEdge& edge, const Piece& a, const Piece& b) const {
+    constexpr double kEnough = 0.25;  // m
+    double low = a.samples.back().at, high = b.samples.front().at;
+    while (high - low > kEnough) {
+      const double middle = (low + high) / 2;
+      (look_out(edge, middle, view_, options_).kind == a.kind ? low : high) = middle;
+    }
+    return (low + high) / 2;
+  }
+
+  const model::Building& building_;
+  const SurroundingsIndex& index_;
+  const EdgeOptions& options_;
+  BuildingView view_;
+  bool canopy_ = false;
+};
+
+}  // namespace
+
+void label_edges(model::Building& building, const SurroundingsIndex& index, std::string_view, const EdgeOptions& options) {
+  building.edges.clear();
+  const std::vector<OutlineEdge> edges = edges_of(building.outline);
+  const std::vector<std::vector<Mouth>> mouths = mouths_of(building, edges, index);
+  const Labeller labeller(building, index, options);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (edges[e].length == 0) continue;
+    for (const Piece& piece : labeller.pieces_of(edges[e], mouths[e])) {
+      FacadeEdge f;
+      f.from_node = edges[e].from_node;
+      f.to_node = edges[e].to_node;
+      f.polygon = edges[e].polygon;
+      f.ring = edges[e].ring;
+      f.edge = edges[e].edge;
+      f.start = piece.start;
+      f.end = piece.end;
+      f.kind = piece.kind;
+      f.neighbour = piece.neighbour;
+      building.edges.push_back(std::move(f));
+    }
+  }
+}
+
+}  // namespace blockrand::context

@@ -1,0 +1,121 @@
+// What every stretch of an outline faces: street, courtyard, neighbour, passage, or open ground.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/context/address_points.h"
+#include "pipeline/context/block_figures.h"
+#include "pipeline/context/blocks.h"
+#include "pipeline/context/courtyards.h"
+#include "pipeline/context/edge_view.h"
+#include "pipeline/context/street_network.h"
+#include "pipeline/model/building.h"
+
+namespace blockrand::context {
+
+/// m. Nothing farther from a building's outline decides about its edges or its situation, but for what blocks and
+/// courtyards that come this near say themselves (DESIGN law 4).
+inline constexpr double kEdgeReach = 100;
+
+/// What lies around the buildings of a tile: everything within kEdgeReach of their outlines, in metres of the build CRS.
+/// More does no harm and changes nothing.
+struct Surroundings {
+  /// Repaired outlines, the buildings' own too, ascending by id; several entries of one id where an outline has several
+  /// polygons. Streets and yards are seen past canopies.
+  std::span<const Footprint> footprints;
+  std::span<const NetworkLine> lines;
+  std::span<const Block> blocks;
+  std::span<const BlockFigures> figures;  ///< parallel to `blocks`; only the courtyards' polygons and ids are read
+  std::span<const PassageWay> passages;
+  std::span<const SitePoint> points;
+};
+
+struct EdgeOptions {
+  /// m. Walls nearer than this touch (as repair::RepairOptions::snap_distance): party walls.
+  double touching = 0.40;
+  double min_contact = 0.5;   ///< m. Shorter contacts are corners that touch
+  double min_stretch = 0.3;   ///< m. Shorter pieces are not made
+  double min_view = 2.0;      ///< m. What a wall looks at changes no faster: views are blurred by where walls stand
+  double sample_step = 4;     ///< m between places that look out of a wall
+  /// m. How far a wall sees: courts are at most this wide (Berlin's widest inner grounds count as open ground).
+  double view = 60;
+  /// m. A street's line may be this far from its fronts: half of a wide carriageway and a forecourt of 25 m.
+  double street_view = 32;
+  /// m. Walls of one street front step back and forth by no more than this.
+  double max_jog = 3.5;
+};
+
+/// The surroundings of a tile made ready for queries. Read-only after construction, safe to share between threads. Keeps
+/// the spans: what they show must outlive it.
+class SurroundingsIndex {
+ public:
+  explicit SurroundingsIndex(const Surroundings& surroundings);
+
+  const Surroundings& all() const { return all_; }
+  const Scene& scene() const { return scene_; }
+
+  struct Box {
+    model::Point2 low, high;  ///< m
+    bool meets(const Box& o) const { return low.x <= o.high.x && o.low.x <= high.x && low.y <= o.high.y && o.low.y <= high.y; }
+  };
+  /// A courtyard: indices of its block and within BlockFigures::courtyards.
+  struct Yard {
+    std::uint32_t block = 0, courtyard = 0;
+    Box box;
+  };
+  /// A pedestrian area: its rings among the lines.
+  struct Square {
+    std::vector<std::uint32_t> rings;
+    Box box;
+  };
+  const Courtyard& courtyard(const Yard& yard) const { return all_.figures[yard.block].courtyards[yard.courtyard]; }
+  bool contains(const Square& square, model::Point2 p) const;
+
+  std::vector<std::uint32_t> yards_near(const Box& box) const;     ///< indices into yards()
+  std::vector<std::uint32_t> squares_near(const Box& box) const;   ///< indices into squares()
+  std::vector<std::uint32_t> passages_near(const Box& box) const;  ///< indices into Surroundings::passages
+  std::vector<std::uint32_t> points_near(const Box& box) const;    ///< indices into Surroundings::points, ascending
+  const std::vector<Yard>& yards() const { return yards_; }
+  const std::vector<Square>& squares() const { return squares_; }
+  const Box& block_box(std::size_t block) const { return block_boxes_[block]; }
+
+ private:
+  struct PointEntry {
+    std::int64_t x = 0, y = 0;  ///< cell
+    std::uint32_t point = 0;
+    friend auto operator<=>(const PointEntry&, const PointEntry&) = default;
+  };
+  Surroundings all_;
+  Scene scene_;
+  std::vector<Yard> yards_;
+  std::vector<Square> squares_;
+  std::vector<Box> passage_boxes_, block_boxes_;
+  std::vector<PointEntry> points_;  ///< sorted
+};
+
+/// The box of a building's outline grown by `margin` metres.
+SurroundingsIndex::Box box_of(const model::Building& building, double margin);
+
+/// Cuts the edges of `building.outline` where their situation changes and labels every stretch; fills `building.edges`,
+/// `building.trees` and `building.situation`.
+///
+/// Labels, each the first that applies to a stretch:
+/// * `party_wall`: another building's wall runs against it within EdgeOptions::touching, or it lies in another building.
+///   Canopies (building=roof) are no neighbours of a wall, but walls are of a canopy.
+/// * `passage`: the mouth of a way through the building.
+/// * `street`: from most of the stretch the view straight ahead meets a street, or the stretch stands on a square.
+/// * `courtyard`: a courtyard of its block lies before it, or walls stand around more than half of the view.
+/// * `side`: the rest.
+/// Where a wall steps back and forth by less than `max_jog` between two streches of a street front it is `street`, too.
+///
+/// \param address_street  the building's addr:street, or empty: decides which of two fronts is the main one
+/// Requires: the building's polygons are among the footprints; rings as model::Ring says. The result depends neither on
+/// the order of what surrounds it nor on where a ring starts, and on nothing beyond kEdgeReach.
+void label_edges(model::Building& building, const SurroundingsIndex& surroundings, std::string_view address_street = {},
+                 const EdgeOptions& options = {});
+
+}  // namespace blockrand::context
