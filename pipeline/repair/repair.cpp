@@ -1,7 +1,6 @@
 #include "pipeline/repair/repair.h"
 
-#include "pipeline/geometry/polygon.h"
-#include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/repair/parts.h"
 #include "pipeline/repair/rings.h"
 
 namespace blockrand::repair {
@@ -9,8 +8,6 @@ namespace blockrand::repair {
 namespace {
 
 using model::Building;
-using model::BuildingPart;
-using model::IssueCode;
 using model::Polygon;
 using model::Region;
 using model::Ring;
@@ -32,26 +29,6 @@ void note_edges(Building& building) {
   }
 }
 
-/// Parts that are pieces of one thing: the first keeps the plain id when there is but one.
-void add_pieces(std::vector<BuildingPart>& parts, const BuildingPart& pattern, std::vector<Polygon> polygons) {
-  for (std::size_t i = 0; i < polygons.size(); ++i) {
-    BuildingPart piece = pattern;
-    if (polygons.size() > 1) piece.id += "." + std::to_string(i + 1);
-    piece.plan = std::move(polygons[i]);
-    parts.push_back(std::move(piece));
-  }
-}
-
-BuildingPart whole(const Building& building) {
-  BuildingPart part;
-  part.id = building.id();
-  part.osm = building.osm;
-  part.mapped_index = building.mapped_index;
-  part.tags = building.tags;
-  part.mapped = building.mapped;
-  return part;
-}
-
 void repair_building(Building& building, const RepairOptions& options, Region& region) {
   model::Report& report = region.report;
   if (!building.rings.rings.empty()) {
@@ -61,46 +38,8 @@ void repair_building(Building& building, const RepairOptions& options, Region& r
     building.failure = outline.failure;
     note_edges(building);
   }
-  if (!building.has_mapped_parts) {
-    building.parts.clear();
-    add_pieces(building.parts, whole(building), building.outline);
-    return;
-  }
-
-  std::vector<BuildingPart> parts;
-  std::vector<Polygon> covered;
-  for (BuildingPart& part : building.parts) {
-    RepairedRings repaired = repair_rings(std::move(part.rings), part.osm, {}, options, report);
-    part.rings = {};
-    if (repaired.failure != IssueCode::none) region.part_failures.push_back({part.mapped_index, repaired.failure});
-    covered.insert(covered.end(), repaired.polygons.begin(), repaired.polygons.end());
-    add_pieces(parts, part, std::move(repaired.polygons));
-  }
-  building.parts = std::move(parts);
-  if (building.outline.empty()) {
-    if (!building.parts.empty()) building.failure = IssueCode::none;
-    return;
-  }
-  if (building.parts.empty()) {
-    add_pieces(building.parts, whole(building), building.outline);
-    building.has_mapped_parts = false;
-    return;
-  }
-  geometry::ValidPolygons rest =
-      geometry::difference(building.outline, covered, options.parts_free_area, options.ring_clearance);
-  std::vector<Polygon> wide;
-  double area = 0;
-  for (Polygon& p : rest.polygons) {
-    if (geometry::equivalent_width(p) < options.parts_free_width) continue;
-    area += geometry::area(p);
-    wide.push_back(std::move(p));
-  }
-  if (wide.empty()) return;
-  BuildingPart pattern = whole(building);
-  pattern.id += ".rest";
-  pattern.rest = true;
-  add_pieces(building.parts, pattern, std::move(wide));
-  report.add(building.osm, IssueCode::parts_incomplete, square_metres(area));
+  const std::vector<Polygon> before = building.outline;
+  fit_parts(building, before, {}, options, region.part_failures, report);
 }
 
 }  // namespace
