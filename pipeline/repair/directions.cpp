@@ -1,11 +1,11 @@
 #include "pipeline/repair/directions.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
-#include "pipeline/repair/arcs.h"
+#include "pipeline/base/portable_math.h"
+#include "pipeline/repair/row_noise.h"
 
 namespace blockrand::repair {
 
@@ -13,26 +13,25 @@ namespace {
 
 using model::Point2;
 
-constexpr double kLeastNoise = 0.004;     // m. OSM's grid of 11 mm has a standard deviation of 3 mm
-constexpr double kLargestNoise = 0.16;    // m. Walls off by more than half a metre are no slips of a mapper's hand
 constexpr double kFirstNoise = 0.03;      // m. What is assumed before anything is known: a careful mapper
 constexpr double kDeviations = 3.2;       // 1 in 700 of walls that belong to a frame is left out
 constexpr double kMergeDeviations = 3.0;  // the same for frames of neighbours: 1 in 370
+constexpr double kHalfDensity = 0.7978845608028654;  // 2 / sqrt(2 pi): density at 0 of a standard normal's absolute value
+constexpr double kDiagonal = 0.7071067811865476;     // sin 45 degrees: no wall is farther off a frame
 constexpr double kLargestTurn = 0.3826834323650898;  // sin 22.5 degrees: beyond, a wall is nearer to a diagonal
 constexpr double kObliqueSine = 0.08715574274765817; // sin 5 degrees: long walls farther off are meant oblique
 constexpr double kObliqueFrom = 6, kObliqueLength = 8;  // m. From here on that begins to hold, and holds
-constexpr double kMainShare = 0.4;        // of a building's wall length that its frame must explain
-constexpr std::size_t kWingWalls = 3;     // a wing has at least this many walls of its own,
+constexpr double kMainShare = 0.35;       // of a building's wall length that its frame must explain, beyond chance
+constexpr double kWingWalls = 2.5;        // a wing has at least this many walls of its own, beyond chance,
 constexpr double kWingLength = 8;         // m, which are together at least this long
 constexpr std::size_t kMostFrames = 3;    // of a building
-constexpr double kTellingLength = 1.5;    // m. Shorter walls cannot deviate enough to tell of the noise
+constexpr double kTellingLength = 0.5;    // m. Shorter walls tell nothing of the noise
 constexpr std::size_t kMostCandidates = 48;  // walls tried as the direction of a frame: the longest
 constexpr double kBayTurn = 0.2079116908177593;  // sin 12 degrees: cheeks of bays deviate by more, both alike
 constexpr double kBayCheek = 4;           // m. Longer ones are wings
 
 double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
-Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
 double norm(Point2 a) { return std::sqrt(dot(a, a)); }
 Point2 unit(Point2 a) {
   const double n = norm(a);
@@ -65,23 +64,15 @@ struct Groups {
 
 class Reader {
  public:
-  Reader(const RowGraph& graph, std::span<const std::uint32_t> rings) : graph_(graph), rings_(rings) {
-    for (const std::uint32_t r : rings) {
-      const std::uint32_t b = graph.rings[r].building;
-      if (out_.buildings.empty() || out_.buildings.back() != b) out_.buildings.push_back(b);
-    }
-    out_.main_frame.assign(out_.buildings.size(), kNoFrame);
-    lines_of_.resize(out_.buildings.size());
+  explicit Reader(RowLines row) : lines_of_(row.buildings.size()) {
+    out_.row = std::move(row);
+    out_.main_frame.assign(lines_of_.size(), kNoFrame);
   }
 
   RowDirections read() {
-    split_rings();
-    join_shared();
-    fit_lines();
-    mark_curves();
-    for (std::uint32_t l = 0; l < out_.lines.size(); ++l)
-      if (!out_.lines[l].free)
-        for (const std::uint32_t b : out_.lines[l].buildings) lines_of_[b].push_back(l);
+    for (std::uint32_t l = 0; l < lines().size(); ++l)
+      if (!lines()[l].free && lines()[l].length > 0)
+        for (const std::uint32_t b : lines()[l].buildings) lines_of_[b].push_back({l, 0});
     estimate_noise();
     find_frames();
     merge_frames();
@@ -91,169 +82,54 @@ class Reader {
   }
 
  private:
+  struct Member {
+    std::uint32_t line;
+    double limit;  // sine of the angle that it may be off its building's frame
+  };
   struct Frame {
     std::uint32_t building;
     Point2 axis;
     double weight;  // m², of its lines
   };
 
-  void split_rings() {
-    for (const std::uint32_t r : rings_) {
-      const auto& wall = graph_.rings[r].wall;
-      const auto n = static_cast<std::uint32_t>(wall.size());
-      std::uint32_t start = n;
-      for (std::uint32_t i = 0; i < n && start == n; ++i)
-        if (wall[i] != wall[(i + n - 1) % n]) start = i;
-      for (std::uint32_t i = 0; i < n;) {
-        std::uint32_t j = i + 1;
-        while (start < n && j < n && wall[(start + j) % n] == wall[(start + i) % n]) ++j;
-        out_.walls.push_back({r, (start + i) % n, j - i, 0});
-        i = j;
-      }
-    }
-  }
+  std::vector<WallLine>& lines() { return out_.row.lines; }
+  const std::vector<WallLine>& lines() const { return out_.row.lines; }
 
-  std::uint32_t corner(const RingWall& w, std::uint32_t k) const {
-    const auto& corners = graph_.rings[w.ring].corners;
-    return corners[(w.first + k) % corners.size()];
-  }
-
-  void join_shared() {
-    Groups groups(out_.walls.size());
-    if (rings_.size() > 1) {
-      std::vector<std::array<std::uint32_t, 3>> edges;  // lower corner, higher corner, wall
-      for (std::uint32_t w = 0; w < out_.walls.size(); ++w)
-        for (std::uint32_t k = 0; k < out_.walls[w].count; ++k) {
-          const std::uint32_t a = corner(out_.walls[w], k), b = corner(out_.walls[w], k + 1);
-          edges.push_back({std::min(a, b), std::max(a, b), w});
-        }
-      std::sort(edges.begin(), edges.end());
-      for (std::size_t e = 1; e < edges.size(); ++e)
-        if (edges[e][0] == edges[e - 1][0] && edges[e][1] == edges[e - 1][1]) groups.join(edges[e - 1][2], edges[e][2]);
-    }
-    std::vector<std::uint32_t> line(out_.walls.size());
-    std::uint32_t building = 0;
-    for (std::uint32_t w = 0; w < out_.walls.size(); ++w) {
-      while (out_.buildings[building] != graph_.rings[out_.walls[w].ring].building) ++building;
-      const std::uint32_t root = groups.find(w);
-      if (root == w) {
-        line[w] = static_cast<std::uint32_t>(out_.lines.size());
-        out_.lines.emplace_back();
-      }
-      out_.walls[w].line = line[root];
-      WallLine& l = out_.lines[line[root]];
-      for (std::uint32_t k = 0; k <= out_.walls[w].count; ++k) l.corners.push_back(corner(out_.walls[w], k));
-      l.buildings.push_back(building);
-    }
-  }
-
-  void fit_lines() {
-    for (WallLine& l : out_.lines) {
-      std::sort(l.buildings.begin(), l.buildings.end());
-      l.buildings.erase(std::unique(l.buildings.begin(), l.buildings.end()), l.buildings.end());
-      if (l.corners.size() == 2) {
-        const Corner &a = graph_.corners[l.corners[0]], &b = graph_.corners[l.corners[1]];
-        const Point2 d = minus(corner_evidence(b), corner_evidence(a));
-        const double ka = corner_weight(a), kb = corner_weight(b);
-        l.length = norm(d);
-        l.along = unit(d);
-        l.weight = ka * kb / (ka + kb) * l.length * l.length;
-        continue;
-      }
-      fit_long_line(l);
-    }
-  }
-
-  /// Weighted regression across the chord between its outermost corners.
-  void fit_long_line(WallLine& l) {
-    std::sort(l.corners.begin(), l.corners.end());
-    l.corners.erase(std::unique(l.corners.begin(), l.corners.end()), l.corners.end());
-    const auto start = [&](std::uint32_t c) { return graph_.corners[c].start; };
-    const auto farthest = [&](std::uint32_t from) {
-      std::uint32_t best = from;
-      double most = -1;
-      for (const std::uint32_t c : l.corners) {
-        const Point2 d = minus(start(c), start(from));
-        if (dot(d, d) > most) most = dot(d, d), best = c;
-      }
-      return best;
-    };
-    const std::uint32_t a = farthest(l.corners.front()), b = farthest(a);
-    const Point2 e = unit(minus(start(b), start(a)));
-    const Point2 origin = start(a);
-    std::sort(l.corners.begin(), l.corners.end(), [&](std::uint32_t p, std::uint32_t q) {
-      const double tp = dot(minus(start(p), origin), e), tq = dot(minus(start(q), origin), e);
-      return tp != tq ? tp < tq : p < q;
-    });
-    l.length = dot(minus(start(b), origin), e);
-    double k = 0, t = 0, r = 0;
-    for (const std::uint32_t c : l.corners) {
-      const double w = corner_weight(graph_.corners[c]);
-      const Point2 d = minus(corner_evidence(graph_.corners[c]), origin);
-      k += w, t += w * dot(d, e), r += w * cross(e, d);
-    }
-    t /= k, r /= k;
-    double tt = 0, tr = 0;
-    for (const std::uint32_t c : l.corners) {
-      const double w = corner_weight(graph_.corners[c]);
-      const Point2 d = minus(corner_evidence(graph_.corners[c]), origin);
-      tt += w * (dot(d, e) - t) * (dot(d, e) - t), tr += w * (dot(d, e) - t) * (cross(e, d) - r);
-    }
-    const double slope = tt > 0 ? tr / tt : 0;
-    l.along = unit({e.x - slope * e.y, e.y + slope * e.x});
-    l.weight = tt;
-  }
-
-  void mark_curves() {
-    std::vector<Point2> points;
-    for (std::size_t w = 0; w < out_.walls.size();) {
-      std::size_t end = w;
-      points.clear();
-      for (; end < out_.walls.size() && out_.walls[end].ring == out_.walls[w].ring; ++end)
-        points.push_back(graph_.corners[corner(out_.walls[end], 0)].start);
-      for (const ArcRun& run : find_arc_runs(points))
-        for (std::uint32_t k = 0; k < run.count; ++k)
-          out_.lines[out_.walls[w + (run.first + k) % points.size()].line].free = true;
-      w = end;
-    }
-  }
-
-  /// Sine of the angle that a line may be off a frame.
-  double limit(const WallLine& l) const {
+  /// How far a line may be off a frame to which so great a share of its building's walls belongs: as long as it more
+  /// likely belongs to it than not, and within kDeviations.
+  double limit(const WallLine& l, double share) const {
     const double sigma = out_.noise / std::sqrt(l.weight);
+    const double odds = share / (1 - share) * kHalfDensity * kDiagonal / sigma;
+    if (odds <= 1) return 0;
+    const double likely = std::sqrt(2 * base::log(odds));
     const double certain = std::clamp((l.length - kObliqueFrom) / (kObliqueLength - kObliqueFrom), 0.0, 1.0);
-    const double oblique = l.length < kObliqueLength
-                               ? (kObliqueSine * kObliqueLength / std::max(l.length, 1e-3)) - certain * sigma
-                               : kObliqueSine - sigma;
-    return std::min({kDeviations * sigma, oblique, kLargestTurn});
+    const double oblique = kObliqueSine * std::max(1.0, kObliqueLength / l.length) - certain * sigma;
+    return std::max(0.0, std::min({std::min(kDeviations, likely) * sigma, oblique, kLargestTurn}));
   }
 
   /// The direction that most length of the lines agrees with: the line with the highest score under `kernel`, a function
-  /// of (line, sine off) in [0, 1], then improved by reweighted least squares.
+  /// of (member, sine off) in [0, 1], then improved by reweighted least squares.
   template <class Kernel>
-  Point2 mode(const std::vector<std::uint32_t>& lines, const Kernel& kernel) {
-    candidates_ = lines;
+  Point2 mode(const std::vector<Member>& members, const Kernel& kernel) {
+    candidates_.clear();
+    for (const Member& m : members) candidates_.push_back(m.line);
     if (candidates_.size() > kMostCandidates) {
       std::stable_sort(candidates_.begin(), candidates_.end(),
-                       [&](std::uint32_t a, std::uint32_t b) { return out_.lines[a].length > out_.lines[b].length; });
+                       [&](std::uint32_t a, std::uint32_t b) { return lines()[a].length > lines()[b].length; });
       candidates_.resize(kMostCandidates);
     }
     Point2 best{1, 0};
     double best_score = -1;
     for (const std::uint32_t c : candidates_) {
-      const Point2 axis = out_.lines[c].along;
+      const Point2 axis = lines()[c].along;
       double score = 0;
-      for (const std::uint32_t l : lines) {
-        const WallLine& line = out_.lines[l];
-        score += line.length * kernel(line, turn_off(axis, line.along));
-      }
+      for (const Member& m : members) score += lines()[m.line].length * kernel(m, turn_off(axis, lines()[m.line].along));
       if (score > best_score) best_score = score, best = axis;
     }
     for (int round = 0; round < 8; ++round) {
       double weight = 0, turn = 0;
-      for (const std::uint32_t l : lines) {
-        const WallLine& line = out_.lines[l];
-        const double off = turn_off(best, line.along), w = line.weight * kernel(line, off);
+      for (const Member& m : members) {
+        const double off = turn_off(best, lines()[m.line].along), w = lines()[m.line].weight * kernel(m, off);
         weight += w, turn += w * off;
       }
       if (weight <= 0) break;
@@ -266,61 +142,60 @@ class Reader {
 
   void estimate_noise() {
     out_.noise = kFirstNoise;
-    std::vector<double> off;
+    std::vector<Deviation> off;
+    RowNoise told;
     for (int round = 0; round < 3; ++round) {
       const double width = 2 * out_.noise;
-      // Heavy tails: nothing is known yet about which walls belong to a frame.
-      const auto cauchy = [&](const WallLine& l, double sine) {
-        const double z = sine * std::sqrt(l.weight) / width;
-        return 1 / (1 + z * z);
+      // Heavy tails: it is not known yet which walls belong to a frame.
+      const auto cauchy = [&](const Member& m, double sine) {
+        const double z = sine / width;
+        return 1 / (1 + z * z * lines()[m.line].weight);
       };
       off.clear();
-      double freedom = 0;
-      for (const auto& lines : lines_of_) {
-        if (lines.empty()) continue;
-        const Point2 axis = mode(lines, cauchy);
-        freedom -= 1;
-        for (const std::uint32_t l : lines) {
-          const WallLine& line = out_.lines[l];
+      for (std::uint32_t b = 0; b < lines_of_.size(); ++b) {
+        if (lines_of_[b].empty()) continue;
+        const Point2 axis = mode(lines_of_[b], cauchy);
+        for (const Member& m : lines_of_[b]) {
+          const WallLine& line = lines()[m.line];
           if (line.length < kTellingLength) continue;
-          off.push_back(std::fabs(turn_off(axis, line.along)) * std::sqrt(line.weight));
-          freedom += 1 / static_cast<double>(line.buildings.size());
+          const double scale = std::sqrt(line.weight);
+          off.push_back({std::fabs(turn_off(axis, line.along)) * scale, kDiagonal * scale, b});
         }
       }
-      if (off.empty()) return;
-      const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-      std::nth_element(off.begin(), middle, off.end());
-      const double estimate = 1.4826 * (1 + 5 / std::max(freedom, 1.0)) * *middle;
-      out_.noise = std::clamp(estimate, kLeastNoise, kLargestNoise);
+      told = fit_noise(off, lines_of_.size());
+      out_.noise = told.noise;
     }
+    for (std::uint32_t b = 0; b < lines_of_.size(); ++b)
+      for (Member& m : lines_of_[b]) m.limit = limit(lines()[m.line], told.share[b]);
   }
 
   void find_frames() {
-    const auto tukey = [&](const WallLine& l, double sine) {
-      const double z = sine / limit(l);
-      return z * z < 1 ? (1 - z * z) * (1 - z * z) : 0.0;
+    const auto tukey = [](const Member& m, double sine) {
+      const double z = sine * sine, most = m.limit * m.limit;
+      return z < most ? (1 - z / most) * (1 - z / most) : 0.0;
     };
-    std::vector<std::uint32_t> left, next;
+    std::vector<Member> left, next;
     for (std::uint32_t b = 0; b < lines_of_.size(); ++b) {
-      double total = 0;
-      for (const std::uint32_t l : lines_of_[b]) total += out_.lines[l].length;
       left = lines_of_[b];
       for (std::size_t k = 0; k < kMostFrames && left.size() >= 2; ++k) {
         const Point2 axis = mode(left, tukey);
-        double length = 0, weight = 0, along = 0, across = 0;
+        double length = 0, weight = 0, along = 0, across = 0, all_length = 0, beyond_chance = 0, lucky_length = 0;
         std::size_t count = 0;
         next.clear();
-        for (const std::uint32_t l : left) {
-          const WallLine& line = out_.lines[l];
-          if (std::fabs(turn_off(axis, line.along)) > limit(line)) {
-            next.push_back(l);
+        for (const Member& m : left) {
+          const WallLine& line = lines()[m.line];
+          const double chance = m.limit / kDiagonal;  // for a wall of any direction to be in the frame
+          all_length += line.length, lucky_length += chance * line.length;
+          if (std::fabs(turn_off(axis, line.along)) > m.limit) {
+            next.push_back(m);
             continue;
           }
-          ++count, length += line.length, weight += line.weight;
+          ++count, length += line.length, weight += line.weight, beyond_chance += 1 - chance;
           (std::fabs(dot(axis, line.along)) > std::fabs(cross(axis, line.along)) ? along : across) += line.length;
         }
-        const bool strong = k == 0 ? count >= 2 && length >= kMainShare * total
-                                   : count >= kWingWalls && length >= kWingLength && along > 0 && across > 0;
+        const bool strong =
+            k == 0 ? count >= 2 && length - lucky_length >= kMainShare * (all_length - lucky_length)
+                   : beyond_chance >= kWingWalls && length >= kWingLength && along > 0 && across > 0;
         if (!strong) break;
         if (k == 0) out_.main_frame[b] = static_cast<std::uint32_t>(frames_.size());
         frames_.push_back({b, axis, weight});
@@ -341,7 +216,7 @@ class Reader {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
     std::vector<std::uint32_t> first(lines_of_.size() + 1, static_cast<std::uint32_t>(frames_.size()));
     for (std::size_t f = frames_.size(); f-- > 0;) first[frames_[f].building] = static_cast<std::uint32_t>(f);
-    for (const WallLine& l : out_.lines)
+    for (const WallLine& l : lines())
       for (std::size_t i = 0; i < l.buildings.size(); ++i)
         for (std::size_t j = i + 1; j < l.buildings.size(); ++j)
           for (std::uint32_t f = first[l.buildings[i]]; f < frames_.size() && frames_[f].building == l.buildings[i]; ++f)
@@ -389,20 +264,18 @@ class Reader {
   }
 
   void give_directions() {
-    std::vector<std::vector<std::uint32_t>> of_building(lines_of_.size());
-    for (std::uint32_t f = 0; f < frames_.size(); ++f) of_building[frames_[f].building].push_back(group_[f]);
-    for (WallLine& l : out_.lines) {
-      if (l.free || l.length <= 0) continue;
-      double least = limit(l);
-      for (const std::uint32_t b : l.buildings)
-        for (const std::uint32_t f : of_building[b]) {
-          const Point2 axis = out_.frames[f];
-          const double off = std::fabs(turn_off(axis, l.along));
-          if (off > least || (off == least && l.frame != kNoFrame)) continue;
-          least = off;
-          l.frame = f;
-          l.across = std::fabs(dot(axis, l.along)) < std::fabs(cross(axis, l.along));
-        }
+    std::vector<double> least(lines().size(), 1);
+    for (std::uint32_t f = 0; f < frames_.size(); ++f) {
+      const std::uint32_t g = group_[f];
+      const Point2 axis = out_.frames[g];
+      for (const Member& m : lines_of_[frames_[f].building]) {
+        WallLine& l = lines()[m.line];
+        const double off = std::fabs(turn_off(axis, l.along));
+        if (off > m.limit || off >= least[m.line]) continue;
+        least[m.line] = off;
+        l.frame = g;
+        l.across = std::fabs(dot(axis, l.along)) < std::fabs(cross(axis, l.along));
+      }
     }
   }
 
@@ -410,14 +283,14 @@ class Reader {
   /// mouse would rarely be so alike.
   void spare_bays() {
     std::vector<std::uint32_t> cheeks;
-    for (std::size_t w = 0; w < out_.walls.size();) {
+    for (std::size_t w = 0; w < out_.row.walls.size();) {
       std::size_t end = w;
-      while (end < out_.walls.size() && out_.walls[end].ring == out_.walls[w].ring) ++end;
+      while (end < out_.row.walls.size() && out_.row.walls[end].ring == out_.row.walls[w].ring) ++end;
       const std::size_t n = end - w;
       for (std::size_t i = 0; n > 4 && i < n; ++i) {
-        const std::uint32_t a = out_.walls[w + i].line, m = out_.walls[w + (i + 1) % n].line,
-                            b = out_.walls[w + (i + 2) % n].line;
-        const WallLine &la = out_.lines[a], &lm = out_.lines[m], &lb = out_.lines[b];
+        const std::uint32_t a = out_.row.walls[w + i].line, m = out_.row.walls[w + (i + 1) % n].line,
+                            b = out_.row.walls[w + (i + 2) % n].line;
+        const WallLine &la = out_.row.lines[a], &lm = out_.row.lines[m], &lb = out_.row.lines[b];
         if (la.frame == kNoFrame || lb.frame != la.frame || lm.frame != la.frame || la.across != lb.across) continue;
         if (la.length > kBayCheek || lb.length > kBayCheek) continue;
         const double p = turn_off(out_.frames[la.frame], la.along), q = turn_off(out_.frames[lb.frame], lb.along);
@@ -426,34 +299,20 @@ class Reader {
       }
       w = end;
     }
-    for (const std::uint32_t l : cheeks) out_.lines[l].frame = kNoFrame;
+    for (const std::uint32_t l : cheeks) out_.row.lines[l].frame = kNoFrame;
   }
 
-  const RowGraph& graph_;
-  std::span<const std::uint32_t> rings_;
   RowDirections out_;
-  std::vector<std::vector<std::uint32_t>> lines_of_;  // per building
-  std::vector<Frame> frames_;                         // by building
-  std::vector<std::uint32_t> group_;                  // per frame: which frame stands for it
+  std::vector<std::vector<Member>> lines_of_;  // per building
+  std::vector<Frame> frames_;                  // by building
+  std::vector<std::uint32_t> group_;           // per frame: which frame stands for it
   std::vector<std::uint32_t> candidates_;
 };
 
 }  // namespace
 
-double corner_weight(const Corner& corner) {
-  return corner.said.empty() ? 0.25 : static_cast<double>(corner.said.size());
-}
-
-Point2 corner_evidence(const Corner& corner) {
-  if (corner.said.size() < 2) return corner.said.empty() ? corner.start : corner.said.front();
-  Point2 mean;
-  for (const Point2 p : corner.said) mean.x += p.x - corner.start.x, mean.y += p.y - corner.start.y;
-  const double n = static_cast<double>(corner.said.size());
-  return {corner.start.x + mean.x / n, corner.start.y + mean.y / n};
-}
-
 RowDirections find_directions(const RowGraph& graph, std::span<const std::uint32_t> rings) {
-  return Reader(graph, rings).read();
+  return Reader(row_lines(graph, rings)).read();
 }
 
 }  // namespace blockrand::repair

@@ -64,7 +64,7 @@ class Squaring {
       evidence_.push_back(minus(corner_evidence(c), origin_));
       weight_.push_back(corner_weight(c));
     }
-    for (WallLine& l : told_.lines)
+    for (WallLine& l : told_.row.lines)
       for (std::uint32_t& c : l.corners) c = local_[c];
   }
 
@@ -83,20 +83,20 @@ class Squaring {
         return;
       }
     position_ = start_;
-    for (WallLine& l : told_.lines) l.frame = kNoFrame;
+    for (WallLine& l : told_.row.lines) l.frame = kNoFrame;
     write();
   }
 
   void tell(std::vector<double>& direction) const {
-    std::vector<bool> squared(told_.buildings.size(), false);
-    for (const WallLine& l : told_.lines)
+    std::vector<bool> squared(told_.row.buildings.size(), false);
+    for (const WallLine& l : told_.row.lines)
       for (const std::uint32_t b : l.buildings)
         if (l.frame != kNoFrame && l.frame == told_.main_frame[b]) squared[b] = true;
     for (std::size_t b = 0; b < squared.size(); ++b) {
       if (!squared[b]) continue;
       const Point2 axis = told_.frames[told_.main_frame[b]];
       const double degrees = base::atan2(axis.y, axis.x) * base::kDegreesPerRadian;
-      direction[told_.buildings[b]] = degrees > 0 && degrees < 90 ? 90 - degrees : 0;
+      direction[told_.row.buildings[b]] = degrees > 0 && degrees < 90 ? 90 - degrees : 0;
     }
   }
 
@@ -113,14 +113,14 @@ class Squaring {
   /// Lines of one direction that meet in a corner are one line: `whole_[l]` is the least of them.
   void join_lines() {
     at_.clear();
-    for (std::uint32_t l = 0; l < told_.lines.size(); ++l)
-      if (told_.lines[l].frame != kNoFrame)
-        for (const std::uint32_t c : told_.lines[l].corners) at_.push_back({c, l});
+    for (std::uint32_t l = 0; l < told_.row.lines.size(); ++l)
+      if (told_.row.lines[l].frame != kNoFrame)
+        for (const std::uint32_t c : told_.row.lines[l].corners) at_.push_back({c, l});
     std::sort(at_.begin(), at_.end());
     at_first_.assign(corners_.size() + 1, 0);
     for (const Incidence& i : at_) ++at_first_[i.corner + 1];
     for (std::size_t c = 0; c < corners_.size(); ++c) at_first_[c + 1] += at_first_[c];
-    whole_.resize(told_.lines.size());
+    whole_.resize(told_.row.lines.size());
     std::iota(whole_.begin(), whole_.end(), 0u);
     const auto find = [&](std::uint32_t i) {
       while (whole_[i] != i) i = whole_[i] = whole_[whole_[i]];
@@ -129,7 +129,7 @@ class Squaring {
     for (std::size_t c = 0; c < corners_.size(); ++c)
       for (std::uint32_t i = at_first_[c]; i < at_first_[c + 1]; ++i)
         for (std::uint32_t j = i + 1; j < at_first_[c + 1]; ++j) {
-          const WallLine &a = told_.lines[at_[i].line], &b = told_.lines[at_[j].line];
+          const WallLine &a = told_.row.lines[at_[i].line], &b = told_.row.lines[at_[j].line];
           if (a.frame != b.frame || a.across != b.across) continue;
           const std::uint32_t p = find(at_[i].line), q = find(at_[j].line);
           whole_[std::max(p, q)] = std::min(p, q);
@@ -140,7 +140,7 @@ class Squaring {
   /// Walls of given direction through two fixed corners that do not have it lose it. True when there was one.
   bool release_fixed() {
     bool any = false;
-    for (WallLine& l : told_.lines) {
+    for (WallLine& l : told_.row.lines) {
       if (l.frame == kNoFrame) continue;
       const Point2 n = normal(l);
       double low = 1e300, high = -1e300;
@@ -153,11 +153,11 @@ class Squaring {
 
   void place_corners() {
     unknowns_ = 0;
-    line_unknown_.assign(told_.lines.size(), kNoFrame);
-    for (std::uint32_t l = 0; l < told_.lines.size(); ++l)
-      if (told_.lines[l].frame != kNoFrame && whole_[l] == l) line_unknown_[l] = unknowns_++;
+    line_unknown_.assign(told_.row.lines.size(), kNoFrame);
+    for (std::uint32_t l = 0; l < told_.row.lines.size(); ++l)
+      if (told_.row.lines[l].frame != kNoFrame && whole_[l] == l) line_unknown_[l] = unknowns_++;
     line_unknowns_ = unknowns_;
-    for (std::uint32_t l = 0; l < told_.lines.size(); ++l) line_unknown_[l] = line_unknown_[whole_[l]];
+    for (std::uint32_t l = 0; l < told_.row.lines.size(); ++l) line_unknown_[l] = line_unknown_[whole_[l]];
     places_.assign(corners_.size(), {});
     pair_.assign(corners_.size(), {kNoFrame, kNoFrame});
     for (std::uint32_t c = 0; c < corners_.size(); ++c) {
@@ -170,10 +170,10 @@ class Squaring {
       std::uint32_t first = kNoFrame, second = kNoFrame;
       double best = kRightCross;
       for (std::uint32_t i = at_first_[c]; i < at_first_[c + 1]; ++i) {
-        const WallLine& a = told_.lines[at_[i].line];
-        if (first == kNoFrame || (second == kNoFrame && a.weight > told_.lines[first].weight)) first = at_[i].line;
+        const WallLine& a = told_.row.lines[at_[i].line];
+        if (first == kNoFrame || (second == kNoFrame && a.weight > told_.row.lines[first].weight)) first = at_[i].line;
         for (std::uint32_t j = i + 1; j < at_first_[c + 1]; ++j) {
-          const Point2 m = normal(told_.lines[at_[j].line]), n = normal(a);
+          const Point2 m = normal(told_.row.lines[at_[j].line]), n = normal(a);
           const double cross = std::fabs(n.x * m.y - n.y * m.x);
           if (cross > best) best = cross, first = at_[i].line, second = at_[j].line;
         }
@@ -184,12 +184,12 @@ class Squaring {
         p.unknown[0] = unknowns_++, p.unknown[1] = unknowns_++;
         p.g[0] = {1, 0}, p.g[1] = {0, 1};
       } else if (second == kNoFrame) {
-        const Point2 n = normal(told_.lines[first]);
+        const Point2 n = normal(told_.row.lines[first]);
         p.size = 2;
         p.unknown[0] = line_unknown_[first], p.unknown[1] = unknowns_++;
         p.g[0] = n, p.g[1] = {-n.y, n.x};
       } else {
-        const Point2 n = normal(told_.lines[first]), m = normal(told_.lines[second]);
+        const Point2 n = normal(told_.row.lines[first]), m = normal(told_.row.lines[second]);
         const double det = n.x * m.y - n.y * m.x;
         p.size = 2;
         p.unknown[0] = line_unknown_[first], p.unknown[1] = line_unknown_[second];
@@ -218,22 +218,22 @@ class Squaring {
           continue;
         Equation e;  // the corner lies on this line, too
         e.weight = kStrong;
-        add(e, c, normal(told_.lines[l]));
+        add(e, c, normal(told_.row.lines[l]));
         e.add(u, -1);
         equations_.push_back(e);
       }
       if (places_[c].size == 0) continue;
       // In the axes of its lines: what depends on one line alone then ties it to no other.
       Point2 x{1, 0}, y{0, 1};
-      if (first != kNoFrame) x = normal(told_.lines[first]), y = {-x.y, x.x};
-      if (second != kNoFrame && told_.lines[first].frame == told_.lines[second].frame) y = normal(told_.lines[second]);
+      if (first != kNoFrame) x = normal(told_.row.lines[first]), y = {-x.y, x.x};
+      if (second != kNoFrame && told_.row.lines[first].frame == told_.row.lines[second].frame) y = normal(told_.row.lines[second]);
       for (const Point2 d : {x, y}) {
         Equation e;
         e.weight = weight_[c];
         e.value = dot(d, evidence_[c]);
         if (first != kNoFrame && d == x) {
           e.add(places_[c].unknown[0], 1);
-        } else if (second != kNoFrame && d == y && told_.lines[first].frame == told_.lines[second].frame) {
+        } else if (second != kNoFrame && d == y && told_.row.lines[first].frame == told_.row.lines[second].frame) {
           e.add(places_[c].unknown[1], 1);
         } else {
           add(e, c, d);
@@ -246,8 +246,8 @@ class Squaring {
   /// Pieces of a wall without a direction stay in line, corners of a curve together. True when there is a wall of pieces.
   bool hold_shapes() {
     bool pieces = false;
-    for (const RingWall& w : told_.walls) {
-      const WallLine& line = told_.lines[w.line];
+    for (const RingWall& w : told_.row.walls) {
+      const WallLine& line = told_.row.lines[w.line];
       if (line.frame != kNoFrame) continue;
       const auto& ring = graph_.rings[w.ring].corners;
       const auto corner = [&](std::uint32_t k) { return local_[ring[(w.first + k) % ring.size()]]; };
@@ -325,7 +325,7 @@ class Squaring {
   std::uint32_t worst_line(std::uint32_t c, std::uint32_t without, double& most) const {
     std::uint32_t worst = kNoFrame;
     for (std::uint32_t i = at_first_[c]; i < at_first_[c + 1]; ++i) {
-      const WallLine& l = told_.lines[at_[i].line];
+      const WallLine& l = told_.row.lines[at_[i].line];
       if (std::find(l.corners.begin(), l.corners.end(), without) != l.corners.end()) continue;
       const double off = std::fabs(dot(normal(l), minus(position_[c], evidence_[c])));
       if (off > most) most = off, worst = at_[i].line;
@@ -353,7 +353,7 @@ class Squaring {
       for (std::uint32_t i = at_first_[c]; i < at_first_[c + 1]; ++i)
         if (whole_[at_[i].line] == whole_[worst]) lines.push_back(at_[i].line);
     }
-    for (const RingWall& w : told_.walls) {
+    for (const RingWall& w : told_.row.walls) {
       const auto& ring = graph_.rings[w.ring].corners;
       for (std::uint32_t k = 0; k < w.count; ++k) {
         const std::uint32_t a = local_[ring[(w.first + k) % ring.size()]], b = local_[ring[(w.first + k + 1) % ring.size()]];
@@ -368,9 +368,9 @@ class Squaring {
       }
     }
     if (all)
-      for (std::uint32_t l = 0; l < told_.lines.size(); ++l)
-        if (told_.lines[l].frame != kNoFrame && groups[solution_.group[line_unknown_[l]]]) lines.push_back(l);
-    for (const std::uint32_t l : lines) told_.lines[l].frame = kNoFrame;
+      for (std::uint32_t l = 0; l < told_.row.lines.size(); ++l)
+        if (told_.row.lines[l].frame != kNoFrame && groups[solution_.group[line_unknown_[l]]]) lines.push_back(l);
+    for (const std::uint32_t l : lines) told_.row.lines[l].frame = kNoFrame;
     // Too far, but no line to blame: a corner that others pull. The last resort takes the whole group.
     return any && (all ? !lines.empty() : true);
   }
