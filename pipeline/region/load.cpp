@@ -47,9 +47,16 @@ model::Region load_region(const Extract& extract, const Shard& shard, const geor
     building.mapped = lead.attributes;
     building.has_mapped_parts = !seed.parts.empty();
     // A part that stands alone is its own building: its rings are its outline, and no second body is made of it.
-    const bool alone = seed.outline == model::kNoIndex;
+    const bool without_outline = seed.outline == model::kNoIndex;
+    const bool alone = without_outline && seed.parts.size() == 1;
     if (alone) building.has_mapped_parts = false;
-    building.rings = project_rings(extract, lead, projection, crosses);
+    if (without_outline && !alone) {
+      // What the first part says of itself holds for that part only.
+      building.mapped = {};
+      building.mapped.use = lead.attributes.use;
+    } else {
+      building.rings = project_rings(extract, lead, projection, crosses);
+    }
     if (!alone) {
       for (const std::uint32_t p : seed.parts) {
         const MappedBuilding& mapped = extract.buildings[p];
@@ -60,6 +67,7 @@ model::Region load_region(const Extract& extract, const Shard& shard, const geor
         part.tags = mapped.tags;
         part.mapped = mapped.attributes;
         part.rings = project_rings(extract, mapped, projection, crosses);
+        part.canopy = extract.strings.view(mapped.attributes.use) == "roof";
         building.parts.push_back(std::move(part));
       }
     }

@@ -7,7 +7,9 @@
 
 namespace blockrand::region {
 
-/// The buildings of a shard with their rings projected and rounded to the 1/1024 m grid. Notes ANTIMERIDIAN.
+/// The buildings of a shard with their rings projected and rounded to the 1/1024 m grid. A part that stands alone is a
+/// building of its own with its rings as outline; several without outline are a building without rings that has the id
+/// and tags, but not the attributes, of the first. Notes ANTIMERIDIAN.
 model::Region load_region(const model::Extract& extract, const Shard& shard, const georef::Projection& projection);
 
 }  // namespace blockrand::region

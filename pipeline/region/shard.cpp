@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
+#include <string>
 #include <unordered_map>
 
 #include "pipeline/georef/tiles.h"
@@ -133,6 +135,40 @@ class OutlineIndex {
   std::unordered_map<std::uint64_t, std::vector<Entry>> cells_;
 };
 
+/// Objects that share edges, transitively: groups in order of their first members, members in order.
+std::vector<std::vector<std::uint32_t>> groups_by_edges(const Extract& extract, const std::vector<std::uint32_t>& objects) {
+  struct Edge {
+    std::int64_t a, b;   // nodes, the lower first
+    std::uint32_t owner;  // index into `objects`
+    auto operator<=>(const Edge&) const = default;
+  };
+  std::vector<Edge> edges;
+  for (std::uint32_t i = 0; i < objects.size(); ++i)
+    for (const auto& ring : extract.rings_of(extract.buildings[objects[i]].rings)) {
+      const auto nodes = extract.nodes_of(ring);
+      for (std::size_t k = 0; k < nodes.size(); ++k) {
+        const std::int64_t a = nodes[k], b = nodes[(k + 1) % nodes.size()];
+        if (a != b) edges.push_back({std::min(a, b), std::max(a, b), i});
+      }
+    }
+  std::sort(edges.begin(), edges.end());
+  std::vector<std::uint32_t> group(objects.size());
+  std::iota(group.begin(), group.end(), 0u);
+  const auto root = [&](std::uint32_t i) {
+    while (group[i] != i) i = group[i] = group[group[i]];
+    return i;
+  };
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    if (edges[i].a != edges[i - 1].a || edges[i].b != edges[i - 1].b) continue;
+    const std::uint32_t a = root(edges[i - 1].owner), b = root(edges[i].owner);
+    group[std::max(a, b)] = std::min(a, b);
+  }
+  std::vector<std::vector<std::uint32_t>> members(objects.size());
+  for (std::uint32_t i = 0; i < objects.size(); ++i) members[root(i)].push_back(objects[i]);
+  std::erase_if(members, [](const auto& m) { return m.empty(); });
+  return members;
+}
+
 }  // namespace
 
 model::Location box_centre(const Extract& extract, const MappedBuilding& object) {
@@ -195,7 +231,6 @@ std::vector<Shard> make_shards(const Extract& extract, model::Report& report) {
         parts_of[best].push_back(p);
       } else {
         alone.push_back(p);
-        report.add(part.id, model::IssueCode::part_without_outline);
       }
     }
   }
@@ -214,7 +249,17 @@ std::vector<Shard> make_shards(const Extract& extract, model::Report& report) {
     if (const auto parts = parts_of.find(i); parts != parts_of.end()) seed.parts = std::move(parts->second);
     add(std::move(seed));
   }
-  for (const std::uint32_t p : alone) add({model::kNoIndex, {p}});
+  for (std::vector<std::uint32_t>& parts : groups_by_edges(extract, alone)) {
+    for (const std::uint32_t p : parts) {
+      std::string others;
+      if (p != parts.front())
+        others = "built together with " + extract.buildings[parts.front()].id.text();
+      else if (parts.size() > 1)
+        others = "built together with " + std::to_string(parts.size() - 1) + " other parts";
+      report.add(extract.buildings[p].id, model::IssueCode::part_without_outline, std::move(others));
+    }
+    add({model::kNoIndex, std::move(parts)});
+  }
 
   std::vector<Shard> out;
   out.reserve(shards.size());

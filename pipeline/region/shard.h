@@ -9,9 +9,10 @@
 
 namespace blockrand::region {
 
-/// An outline with its parts, or a part that stands alone. Indices into Extract::buildings.
+/// An outline with its parts, a part that stands alone, or parts without an outline that share walls. Indices into
+/// Extract::buildings.
 struct Seed {
-  std::uint32_t outline = model::kNoIndex;  ///< kNoIndex for a part without outline
+  std::uint32_t outline = model::kNoIndex;  ///< kNoIndex for parts without outline
   std::vector<std::uint32_t> parts;         ///< in id order
   std::uint32_t lead() const { return outline != model::kNoIndex ? outline : parts.front(); }
 };
@@ -31,8 +32,8 @@ model::Location box_centre(const model::Extract& extract, const model::MappedBui
 
 /// Assigns parts to outlines and both to tiles. A part belongs to the outline that a type=building relation names, else
 /// to the smallest outline that holds at least half of its corners (boundary included) and whose box holds the middle of
-/// the part's. A part that no outline holds stands alone (PART_WITHOUT_OUTLINE in `report`). A building belongs to the
-/// tile of the centre of its lead's raw box. Shards come in tile order; nothing depends on the order of the input.
+/// the part's. A part that no outline holds stands alone (PART_WITHOUT_OUTLINE in `report`), together with those of its
+/// kind that it shares an edge with (two nodes in sequence), and so on: one building. A building belongs to the tile of the centre of its lead's raw box. Shards come in tile order; nothing depends on the order of the input.
 std::vector<Shard> make_shards(const model::Extract& extract, model::Report& report);
 
 }  // namespace blockrand::region

@@ -84,6 +84,38 @@ TEST(Shards, APartInNoOutlineStandsAloneAndIsReported) {
   EXPECT_EQ(report.rows[0].code, IssueCode::part_without_outline);
 }
 
+TEST(Shards, PartsWithoutOutlineThatShareEdgesAreOneBuilding) {
+  Extract e;
+  const auto first = add(e, 3, ObjectKind::building_part, square(0, 0, 300));
+  const auto far = add(e, 4, ObjectKind::building_part, square(5000, 0, 300));
+  const auto second = add(e, 5, ObjectKind::building_part, square(300, 0, 300));
+  const auto third = add(e, 6, ObjectKind::building_part, square(600, 0, 300));
+  const auto at_corner = add(e, 7, ObjectKind::building_part, square(900, 300, 300));
+  // Squares run from their lower left corner counter-clockwise: what is right of one is left of the next.
+  const auto join = [&](std::uint32_t left, std::uint32_t right) {
+    const auto l = e.rings[e.buildings[left].rings.first].vertices.first, r = e.rings[e.buildings[right].rings.first].vertices.first;
+    e.vertex_nodes[r] = e.vertex_nodes[l + 1];
+    e.vertex_nodes[r + 3] = e.vertex_nodes[l + 2];
+  };
+  join(first, second);
+  join(second, third);
+  const auto c = e.rings[e.buildings[at_corner].rings.first].vertices.first, t = e.rings[e.buildings[third].rings.first].vertices.first;
+  e.vertex_nodes[c] = e.vertex_nodes[t + 2];  // one common node is no common wall
+  model::Report report;
+  const auto shards = make_shards(e, report);
+  ASSERT_NE(seed_of(shards, first), nullptr);
+  EXPECT_EQ(seed_of(shards, first)->outline, model::kNoIndex);
+  EXPECT_EQ(seed_of(shards, first)->parts, (std::vector<std::uint32_t>{first, second, third}));
+  EXPECT_EQ(seed_of(shards, far)->parts, std::vector<std::uint32_t>{far});
+  EXPECT_EQ(seed_of(shards, at_corner)->parts, std::vector<std::uint32_t>{at_corner});
+  EXPECT_EQ(seed_of(shards, second), nullptr);
+  ASSERT_EQ(report.rows.size(), 5u);
+  std::sort(report.rows.begin(), report.rows.end());
+  EXPECT_EQ(report.rows[0].detail, "built together with 2 other parts");
+  EXPECT_EQ(report.rows[1].detail, "");
+  EXPECT_EQ(report.rows[2].detail, "built together with w3");
+}
+
 TEST(Shards, TheTileIsThatOfTheBoxCentreAndEveryBuildingHasOne) {
   Extract e;
   // A long building whose first corner lies two tiles west of its centre.
