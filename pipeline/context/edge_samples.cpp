@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/polygon.h"
 
 namespace blockrand::context {
@@ -19,16 +20,31 @@ constexpr double kAsk = 0.45;
 /// Rays of the fan that look straight ahead: up to 40 degrees to either side.
 constexpr int kAhead = 3;
 
-std::array<double, kFanRays> weights_ahead(Point2 outward, const std::array<Point2, kFanRays>& fan) {
-  std::array<double, kFanRays> out{};
-  double sum = 0;
-  for (int i = kFanRays / 2 - kAhead; i <= kFanRays / 2 + kAhead; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    out[k] = fan[k].x * outward.x + fan[k].y * outward.y;
-    sum += out[k];
-  }
-  for (double& w : out) w /= sum;
-  return out;
+constexpr double kPushes[] = {4, 12};  ///< m before the wall: what surrounds a yard is seen from its ground
+constexpr int kRaysAround = 20;
+/// Cosine of 50 degrees: a wall that stands steeper to a street is a flank, no front. Chamfers have 45.
+constexpr double kMinFrontCosine = 0.643;
+/// m. Whatever its direction, a wall this near to a street's line stands at the street.
+constexpr double kAtTheStreet = 8;
+
+/// Unit vectors around a place, from the normal; none along it or across.
+const std::array<Point2, kRaysAround>& around() {
+  static const std::array<Point2, kRaysAround> turns = [] {
+    std::array<Point2, kRaysAround> out;
+    for (int i = 0; i < kRaysAround; ++i) {
+      const base::SinCos t = base::sin_cos((i + 0.5) * 2 * base::kPi / kRaysAround);
+      out[static_cast<std::size_t>(i)] = {t.cos, t.sin};
+    }
+    return out;
+  }();
+  return turns;
+}
+
+/// Whether a wall may have its front to the street that it sees.
+bool may_front(const OutlineEdge& edge, const Sight& sight, const Scene& scene) {
+  const StreetPiece& piece = scene.streets()[sight.street_piece];
+  return piece.any_direction || sight.street <= kAtTheStreet ||
+         std::fabs(piece.along.x * edge.along.x + piece.along.y * edge.along.y) >= kMinFrontCosine;
 }
 
 }  // namespace
@@ -46,15 +62,22 @@ EdgeSample look_out(const OutlineEdge& edge, double at, const BuildingView& view
   const Point2 eye{wall.x + edge.outward.x * kBefore, wall.y + edge.outward.y * kBefore};
   const Point2 front{wall.x + edge.outward.x * kAsk, wall.y + edge.outward.y * kAsk};
   const std::array<Point2, kFanRays> fan = fan_around(edge.outward);
-  const std::array<double, kFanRays> ahead = weights_ahead(edge.outward, fan);
+  double all = 0, seen = 0, ahead = 0, distance = 0;
   for (std::size_t i = 0; i < kFanRays; ++i) {
+    const double weight = fan[i].x * edge.outward.x + fan[i].y * edge.outward.y;
     const Sight& sight = out.fan[i] = index.scene().look(eye, fan[i], options.view);
-    if (sight.street <= options.street_view) out.ahead += ahead[i];
-    if (sight.street <= options.view)
-      out.street_share += 1.0 / kFanRays;
-    else if (sight.wall <= options.view)
-      out.enclosed += 1.0 / kFanRays;
+    const bool sees_street = sight.street_piece != kNothing;
+    all += weight;
+    if (sees_street) seen += weight;
+    if (i + kAhead < kFanRays / 2 || i > kFanRays / 2 + kAhead) continue;
+    ahead += weight;
+    if (!sees_street || sight.street > options.street_view || !may_front(edge, sight, index.scene())) continue;
+    out.ahead += weight;
+    distance += weight * sight.street * weight;
   }
+  if (out.ahead > 0) out.street_distance = distance / out.ahead;
+  out.ahead /= ahead;
+  out.street_share = seen / all;
   const Sight& straight = out.fan[kFanRays / 2];
   if (straight.from_inside) out.inside = straight.footprint;
   for (const std::uint32_t s : view.squares)
@@ -66,11 +89,33 @@ EdgeSample look_out(const OutlineEdge& edge, double at, const BuildingView& view
     out.kind = EdgeKind::party_wall;
   else if (out.square != kNothing || out.ahead >= 0.5)
     out.kind = EdgeKind::street;
-  else if (out.yard != kNothing || out.enclosed >= 0.6)
+  else if (out.yard != kNothing && index.courtyard(index.yards()[out.yard]).closed)
     out.kind = EdgeKind::courtyard;
-  else
-    out.kind = EdgeKind::side;
-  out.certainty = 1;
+  return out;
+}
+
+Enclosure enclosure_at(const OutlineEdge& edge, double at, const BuildingView& view, const EdgeOptions& options) {
+  const Scene& scene = view.index->scene();
+  const Point2 wall = edge.at(at);
+  const Point2 eye{wall.x + edge.outward.x * kBefore, wall.y + edge.outward.y * kBefore};
+  const double opposite = std::min(scene.look(eye, edge.outward, options.view).wall, options.view);
+  Enclosure out;
+  for (const double push : kPushes) {
+    const double before = std::min(push, opposite / 2);
+    const Point2 place{wall.x + edge.outward.x * before, wall.y + edge.outward.y * before};
+    for (const Point2 turn : around()) {
+      const Point2 direction{edge.outward.x * turn.x - edge.outward.y * turn.y,
+                             edge.outward.y * turn.x + edge.outward.x * turn.y};
+      const Sight sight = scene.look(place, direction, options.view, Obstacles::buildings);
+      if (sight.street_piece != kNothing)
+        out.street += 1;
+      else if (sight.footprint != kNothing)
+        out.walls += 1;
+    }
+  }
+  constexpr double kRays = static_cast<double>(kRaysAround) * std::size(kPushes);
+  out.street /= kRays;
+  out.walls /= kRays;
   return out;
 }
 

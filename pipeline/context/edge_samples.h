@@ -22,17 +22,27 @@ BuildingView view_of(const model::Building& building, const SurroundingsIndex& i
 struct EdgeSample {
   double at = 0;                       ///< m along the edge
   std::array<Sight, kFanRays> fan;     ///< from right to left, as fan_around
+  /// party_wall (within another building), street, courtyard (a closed one), or unknown: surroundings_of tells
   model::EdgeKind kind = model::EdgeKind::unknown;
-  double certainty = 0;                ///< [0, 1] of `kind`
-  double ahead = 0;                    ///< [0, 1]: how much of the view straight ahead ends in a street
-  double enclosed = 0;                 ///< [0, 1]: how much of the view ends at walls
-  double street_share = 0;             ///< [0, 1]: how much of the whole view ends in a street
+  double ahead = 0;                    ///< [0, 1]: how much of the view straight ahead ends in a street it may front
+  double street_share = 0;             ///< [0, 1]: how much of the whole view ends in a street, by cosine
+  double street_distance = 0;          ///< m, mean over the rays of `ahead`, straight ahead
   std::uint32_t square = kNothing;     ///< stands on it: index into SurroundingsIndex::squares
-  std::uint32_t yard = kNothing;       ///< stands at it: index into SurroundingsIndex::yards
+  std::uint32_t yard = kNothing;       ///< a courtyard before it: index into SurroundingsIndex::yards
   std::uint32_t inside = kNothing;     ///< lies within this footprint
 };
 
 /// \param at  m along the edge
 EdgeSample look_out(const OutlineEdge& edge, double at, const BuildingView& view, const EdgeOptions& options);
+
+/// What surrounds the ground before a place on a wall.
+struct Enclosure {
+  double walls = 0;   ///< [0, 1] of the view around: ends at buildings within EdgeOptions::view
+  double street = 0;  ///< [0, 1]: ends in a street; what is left is open
+};
+
+/// The view around from the ground before a wall: the mean of two places, 4 m and 12 m before it (nearer where walls
+/// stand opposite: half the way). From the wall alone a house across a street of gardens would look like a courtyard.
+Enclosure enclosure_at(const OutlineEdge& edge, double at, const BuildingView& view, const EdgeOptions& options);
 
 }  // namespace blockrand::context

@@ -50,17 +50,14 @@ void Scene::for_each_cell(Point2 a, Point2 b, Visit&& visit) const {
 
 Scene::Scene(std::span<const Footprint> footprints, std::span<const NetworkLine> lines, double margin) {
   for (std::uint32_t f = 0; f < footprints.size(); ++f) {
-    canopy_.push_back(footprints[f].canopy ? 1 : 0);
+    sort_.push_back(footprints[f].canopy                                            ? Sort::canopy
+                    : geometry::area(footprints[f].polygon) < kOutbuildingArea ? Sort::outbuilding
+                                                                                 : Sort::building);
     if (footprints[f].polygon.outer.size() < 3) continue;
     add_walls(footprints[f].polygon.outer, true, f, walls_);
     for (const model::Ring& hole : footprints[f].polygon.holes) add_walls(hole, false, f, walls_);
   }
-  for (std::uint32_t l = 0; l < lines.size(); ++l) {
-    const NetworkLine& line = lines[l];
-    if (!is_street(line.kind) || line.tunnel) continue;
-    for (std::size_t i = 1; i < line.points.size(); ++i)
-      if (line.points[i - 1] != line.points[i]) streets_.push_back({line.points[i - 1], line.points[i], l});
-  }
+  add_streets(lines);
   if (walls_.empty()) return;
   Point2 low = walls_[0].a, high = low;
   for (const Wall& w : walls_) {
@@ -91,9 +88,46 @@ Scene::Scene(std::span<const Footprint> footprints, std::span<const NetworkLine>
   for_each_item([&](std::size_t cell, std::uint32_t item) { items_[next[cell]++] = item; });
 }
 
-void Scene::test(std::uint32_t item, Point2 from, Point2 d, double reach, Sight& sight) const {
+void Scene::add_streets(std::span<const NetworkLine> lines) {
+  // How many pieces of streets end at a point: a street that ends where no other is has a dead end there.
+  std::vector<Point2> ends;
+  for (std::uint32_t l = 0; l < lines.size(); ++l) {
+    const NetworkLine& line = lines[l];
+    if (!is_street(line.kind) || line.tunnel) continue;
+    for (std::size_t i = 1; i < line.points.size(); ++i) {
+      const Point2 a = line.points[i - 1], b = line.points[i];
+      if (a == b) continue;
+      const double length = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+      streets_.push_back({a, b, l, {(b.x - a.x) / length, (b.y - a.y) / length}, line.area});
+      ends.push_back(a);
+      ends.push_back(b);
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  const auto is_dead_end = [&](Point2 p) {
+    const auto [first, last] = std::equal_range(ends.begin(), ends.end(), p);
+    return last - first == 1;
+  };
+  const std::size_t pieces = streets_.size();
+  for (std::size_t i = 0; i < pieces; ++i) {
+    const StreetPiece piece = streets_[i];
+    const Point2 across{-piece.along.y, piece.along.x};
+    for (const Point2 end : {piece.a, piece.b})
+      if (is_dead_end(end))
+        streets_.push_back({{end.x - across.x * kDeadEndBar / 2, end.y - across.y * kDeadEndBar / 2},
+                            {end.x + across.x * kDeadEndBar / 2, end.y + across.y * kDeadEndBar / 2},
+                            piece.line,
+                            across,
+                            false});
+  }
+}
+
+void Scene::test(std::uint32_t item, Point2 from, Point2 d, double reach, Obstacles obstacles, Sight& sight) const {
   const bool is_wall = item < walls_.size();
-  if (is_wall && is_canopy(walls_[item].footprint)) return;
+  if (is_wall) {
+    const Sort sort = sort_[walls_[item].footprint];
+    if (sort == Sort::canopy || (sort == Sort::outbuilding && obstacles == Obstacles::buildings)) return;
+  }
   const std::size_t piece = is_wall ? item : item - walls_.size();
   const Point2 a = is_wall ? walls_[piece].a : streets_[piece].a, b = is_wall ? walls_[piece].b : streets_[piece].b;
   const double ax = a.x - from.x, ay = a.y - from.y, bx = b.x - from.x, by = b.y - from.y;
@@ -120,7 +154,7 @@ void Scene::test(std::uint32_t item, Point2 from, Point2 d, double reach, Sight&
   }
 }
 
-Sight Scene::look(Point2 from, Point2 d, double reach) const {
+Sight Scene::look(Point2 from, Point2 d, double reach, Obstacles obstacles) const {
   Sight sight;
   if (items_.empty()) return sight;
   // Cells along the ray (Amanatides and Woo 1987).
@@ -135,7 +169,7 @@ Sight Scene::look(Point2 from, Point2 d, double reach) const {
   while (entered <= reach + kSlack && entered <= sight.wall + kSlack) {
     if (c >= 0 && c < columns_ && r >= 0 && r < rows_) {
       const auto cell = static_cast<std::size_t>(r * columns_ + c);
-      for (std::uint32_t i = starts_[cell]; i < starts_[cell + 1]; ++i) test(items_[i], from, d, reach, sight);
+      for (std::uint32_t i = starts_[cell]; i < starts_[cell + 1]; ++i) test(items_[i], from, d, reach, obstacles, sight);
     }
     if (to_c < to_r) {
       entered = to_c;

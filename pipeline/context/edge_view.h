@@ -19,10 +19,23 @@ struct Wall {
   std::uint32_t footprint = 0;  ///< index into the footprints given
 };
 
-/// A straight piece of a street's centre line, or of the outline of a pedestrian area.
+/// A straight piece of a street's centre line, or of the outline of a pedestrian area; or the bar across a dead end.
 struct StreetPiece {
-  model::Point2 a, b;      ///< m
-  std::uint32_t line = 0;  ///< index into the lines given
+  model::Point2 a, b;         ///< m
+  std::uint32_t line = 0;     ///< index into the lines given
+  model::Point2 along;        ///< unit vector
+  bool any_direction = false; ///< of a square's outline: says nothing of how the square lies
+};
+
+/// m. At a dead end a bar this long stands across the street: walls that close it look at street space, not along a line.
+inline constexpr double kDeadEndBar = 8;
+/// m². Smaller footprints are garages and sheds: one looks over them.
+inline constexpr double kOutbuildingArea = 50;
+
+/// What a ray takes for a wall.
+enum class Obstacles : std::uint8_t {
+  walls,     ///< all but canopies
+  buildings  ///< outbuildings are seen over
 };
 
 inline constexpr std::uint32_t kNothing = 0xffffffff;
@@ -48,29 +61,33 @@ class Scene {
   /// \param direction  unit vector
   /// \param reach      m, what is farther is not seen
   /// What lies within kOnTheWall of the start is not seen, but for walls met from inside.
-  Sight look(model::Point2 from, model::Point2 direction, double reach) const;
+  Sight look(model::Point2 from, model::Point2 direction, double reach, Obstacles obstacles = Obstacles::walls) const;
 
   /// Indices, ascending, of walls (canopies' too) that come into a box, and of some others.
   void walls_near(model::Point2 minimum, model::Point2 maximum, std::vector<std::uint32_t>& out) const;
 
   std::span<const Wall> walls() const { return walls_; }
   std::span<const StreetPiece> streets() const { return streets_; }
-  bool is_canopy(std::uint32_t footprint) const { return canopy_[footprint] != 0; }
+  bool is_canopy(std::uint32_t footprint) const { return sort_[footprint] == Sort::canopy; }
+  bool is_outbuilding(std::uint32_t footprint) const { return sort_[footprint] == Sort::outbuilding; }
 
   /// m. Half of the mean distance that mapping leaves between walls that touch.
   static constexpr double kOnTheWall = 0.05;
 
  private:
   static constexpr double kCell = 8;  ///< m. The length of a usual wall
+  void add_streets(std::span<const NetworkLine> lines);
   std::int64_t column(double x) const;
   std::int64_t row(double y) const;
   template <class Visit>
   void for_each_cell(model::Point2 a, model::Point2 b, Visit&& visit) const;
-  void test(std::uint32_t item, model::Point2 from, model::Point2 direction, double reach, Sight& sight) const;
+  void test(std::uint32_t item, model::Point2 from, model::Point2 direction, double reach, Obstacles obstacles,
+            Sight& sight) const;
 
   std::vector<Wall> walls_;
   std::vector<StreetPiece> streets_;
-  std::vector<std::uint8_t> canopy_;  ///< by footprint
+  enum class Sort : std::uint8_t { building, outbuilding, canopy };
+  std::vector<Sort> sort_;  ///< by footprint
   std::int64_t first_column_ = 0, first_row_ = 0, columns_ = 0, rows_ = 0;
   std::vector<std::uint32_t> starts_;  ///< per cell, row by row
   std::vector<std::uint32_t> items_;   ///< walls, then streets (index + number of walls), ascending within a cell

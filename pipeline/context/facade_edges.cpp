@@ -12,6 +12,7 @@ namespace {
 
 using model::EdgeKind;
 using model::FacadeEdge;
+using model::Point2;
 
 /// A piece of an edge with one situation, as it is found.
 struct Piece {
@@ -72,6 +73,16 @@ class Labeller {
     canopy_ = own != footprints.end() && own->id == building.osm && own->canopy;
   }
 
+  /// What a stretch faces when it is no street front after all.
+  void no_front(const OutlineEdge& edge, Piece& piece) const {
+    std::vector<Piece> parts;
+    add_surrounded(edge, piece, parts);
+    double court = 0;
+    for (const Piece& p : parts)
+      if (p.kind == EdgeKind::courtyard) court += p.length();
+    piece.kind = 2 * court > piece.length() ? EdgeKind::courtyard : EdgeKind::side;
+  }
+
   std::vector<Piece> pieces_of(const OutlineEdge& edge, const std::vector<Mouth>& mouths) const {
     std::vector<Piece> fixed;
     for (const Contact& c : contacts_of(edge, building_.osm, canopy_, index_, options_))
@@ -122,7 +133,30 @@ class Labeller {
       pieces.push_back(std::move(piece));
     }
     absorb_short(pieces, std::min(options_.min_view, (end - start) / 2));
-    for (Piece& p : pieces) out.push_back(std::move(p));
+    std::vector<Piece> surrounded;
+    for (Piece& p : pieces) {
+      if (p.kind == EdgeKind::unknown)
+        add_surrounded(edge, p, surrounded);
+      else
+        surrounded.push_back(std::move(p));
+    }
+    absorb_short(surrounded, std::min(options_.min_view, (end - start) / 2));
+    for (Piece& p : surrounded) out.push_back(std::move(p));
+  }
+
+  /// Courtyard or open ground, by what stands around.
+  void add_surrounded(const OutlineEdge& edge, const Piece& piece, std::vector<Piece>& out) const {
+    const int n = std::max(1, static_cast<int>(std::lround(piece.length() / options_.enclosure_step)));
+    const double step = piece.length() / n;
+    for (int i = 0; i < n; ++i) {
+      const double start = piece.start + i * step, end = i + 1 == n ? piece.end : start + step;
+      const Enclosure around = enclosure_at(edge, start + step / 2, view_, options_);
+      const bool court = around.walls >= options_.min_enclosure && around.street <= options_.max_street_view;
+      Piece part{start, end, court ? EdgeKind::courtyard : EdgeKind::side, {}, kNothing, {}};
+      for (const EdgeSample& sample : piece.samples)
+        if (sample.at >= start && (sample.at < end || i + 1 == n)) part.samples.push_back(sample);
+      out.push_back(std::move(part));
+    }
   }
 
   /// Where between two samples the view changes, to a quarter of a metre.
@@ -143,6 +177,66 @@ class Labeller {
   bool canopy_ = false;
 };
 
+/// Mean distance straight ahead to the street, of the samples that front one; infinite where none does.
+double front_distance(const Piece& piece) {
+  double sum = 0;
+  int n = 0;
+  for (const EdgeSample& s : piece.samples)
+    if (s.kind == EdgeKind::street && s.square == kNothing) {
+      sum += s.street_distance;
+      ++n;
+    }
+  return n > 0 ? sum / n : std::numeric_limits<double>::infinity();
+}
+
+using Pieces = std::vector<std::vector<Piece>>;  ///< parallel to the edges
+
+/// Takes `street` from rears that look over a garden at the next street.
+void drop_rears(const std::vector<OutlineEdge>& edges, const Labeller& labeller, const EdgeOptions& options, Pieces& pieces) {
+  struct Front {
+    model::Point2 outward;
+    double distance;
+  };
+  std::vector<Front> fronts;
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    for (const Piece& p : pieces[e])
+      if (p.kind == EdgeKind::street && p.length() >= options.min_view) fronts.push_back({edges[e].outward, front_distance(p)});
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    for (Piece& p : pieces[e]) {
+      const double distance = p.kind == EdgeKind::street ? front_distance(p) : 0;
+      if (distance <= options.rear_distance || !std::isfinite(distance)) continue;
+      constexpr double kOpposite = -0.7;  // cosine of 135 degrees
+      const Point2 out = edges[e].outward;
+      if (std::any_of(fronts.begin(), fronts.end(), [&](const Front& f) {
+            return f.distance < distance / 2 && f.outward.x * out.x + f.outward.y * out.y < kOpposite;
+          }))
+        labeller.no_front(edges[e], p);
+    }
+}
+
+/// Gives short steps of a street front to it.
+void join_jogs(const std::vector<OutlineEdge>& edges, const EdgeOptions& options, Pieces& pieces) {
+  constexpr double kStep = 0.5;  // cosine of 60 degrees: before and after a step the front goes on
+  for (std::size_t first = 0; first < edges.size();) {
+    std::size_t count = 0;
+    while (first + count < edges.size() && edges[first + count].polygon == edges[first].polygon &&
+           edges[first + count].ring == edges[first].ring)
+      ++count;
+    std::vector<std::size_t> jogs;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t e = first + i, before = first + (i + count - 1) % count, after = first + (i + 1) % count;
+      if (edges[e].length > options.max_jog || pieces[e].size() != 1 || pieces[before].empty() || pieces[after].empty()) continue;
+      const EdgeKind kind = pieces[e][0].kind;
+      if (kind != EdgeKind::side && kind != EdgeKind::courtyard) continue;
+      if (pieces[before].back().kind != EdgeKind::street || pieces[after].front().kind != EdgeKind::street) continue;
+      if (edges[before].along.x * edges[after].along.x + edges[before].along.y * edges[after].along.y > kStep)
+        jogs.push_back(e);
+    }
+    for (const std::size_t e : jogs) pieces[e][0].kind = EdgeKind::street;
+    first += count;
+  }
+}
+
 }  // namespace
 
 void label_edges(model::Building& building, const SurroundingsIndex& index, std::string_view, const EdgeOptions& options) {
@@ -150,9 +244,14 @@ void label_edges(model::Building& building, const SurroundingsIndex& index, std:
   const std::vector<OutlineEdge> edges = edges_of(building.outline);
   const std::vector<std::vector<Mouth>> mouths = mouths_of(building, edges, index);
   const Labeller labeller(building, index, options);
+  Pieces pieces(edges.size());
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    if (edges[e].length > 0) pieces[e] = labeller.pieces_of(edges[e], mouths[e]);
+  drop_rears(edges, labeller, options, pieces);
+  join_jogs(edges, options, pieces);
   for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (edges[e].length == 0) continue;
-    for (const Piece& piece : labeller.pieces_of(edges[e], mouths[e])) {
+    join_equal(pieces[e]);
+    for (const Piece& piece : pieces[e]) {
       FacadeEdge f;
       f.from_node = edges[e].from_node;
       f.to_node = edges[e].to_node;

@@ -47,6 +47,14 @@ struct EdgeOptions {
   double street_view = 32;
   /// m. Walls of one street front step back and forth by no more than this.
   double max_jog = 3.5;
+  double enclosure_step = 8;  ///< m between places that look around: what surrounds a wall changes slowly
+  /// Of the view around: how much must end at buildings for a courtyard. An own straight wall is half of it.
+  double min_enclosure = 0.8;
+  /// Of the view around: how much of it a courtyard may give to streets. A gateway 4 m wide at 10 m has 0.06.
+  double max_street_view = 0.1;
+  /// m. Where a street is farther than this, and the building has another front less than half as far, it has its rear
+  /// here: a garden, not a forecourt.
+  double rear_distance = 18;
 };
 
 /// The surroundings of a tile made ready for queries. Read-only after construction, safe to share between threads. Keeps
@@ -108,9 +116,11 @@ SurroundingsIndex::Box box_of(const model::Building& building, double margin);
 ///   Canopies (building=roof) are no neighbours of a wall, but walls are of a canopy.
 /// * `passage`: the mouth of a way through the building.
 /// * `street`: from most of the stretch the view straight ahead meets a street, or the stretch stands on a square.
-/// * `courtyard`: a courtyard of its block lies before it, or walls stand around more than half of the view.
+/// * `courtyard`: a closed courtyard of its block lies before it, or buildings larger than sheds stand around the ground
+///   before it, with no more than a glimpse of a street between them.
 /// * `side`: the rest.
-/// Where a wall steps back and forth by less than `max_jog` between two streches of a street front it is `street`, too.
+/// Where a wall steps back and forth by less than `max_jog` between two stretches of a street front it is `street`, too;
+/// where the street is far and another front of the building much nearer to one, it is none.
 ///
 /// \param address_street  the building's addr:street, or empty: decides which of two fronts is the main one
 /// Requires: the building's polygons are among the footprints; rings as model::Ring says. The result depends neither on
