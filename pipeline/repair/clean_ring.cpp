@@ -19,7 +19,9 @@ using model::Ring;
 // A curve's corners: each turns by more than the roundness that rounding to OSM's grid gives a wall (a quarter of a
 // degree), and less than 50 degrees; together by 30 degrees. Sines, so that no angle need be computed.
 constexpr double kLeastTurn = 0.0044, kMostTurn = 0.766, kLeastCurve = 0.5;
-constexpr std::size_t kLeastCurvePoints = 4;
+constexpr std::size_t kLeastCurvePoints = 3;
+// m. Dropped points of a curve lie outside its chords by more than rounding to the grid explains.
+constexpr double kLeastBulge = 0.002;
 
 double distance2(Point2 a, Point2 b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
 
@@ -164,8 +166,8 @@ void remove_spikes(Ring& ring, double duplicate2, double spike2, RingCleaning& d
 
 // ---- straight walls -------------------------------------------------------------------------------------------------
 
-/// Which points belong to a curve.
-std::vector<bool> curve_points(const Ring& ring) {
+/// For each point the way that the curve turns on which it lies: 1 left, -1 right, 0 on none.
+std::vector<int> curve_turns(const Ring& ring) {
   const std::size_t n = ring.size();
   std::vector<double> turn(n);  // sine, 0 where the corner is no piece of a curve
   for (std::size_t i = 0; i < n; ++i) {
@@ -178,9 +180,9 @@ std::vector<bool> curve_points(const Ring& ring) {
   const auto goes_on = [&](std::size_t i, std::size_t j) { return turn[i] * turn[j] > 0; };
   std::size_t start = 0;
   while (start < n && goes_on((start + n - 1) % n, start)) ++start;
-  std::vector<bool> curve(n, false);
+  std::vector<int> curve(n, 0);
   if (start == n) {
-    curve.assign(n, n >= kLeastCurvePoints);  // round as a whole
+    curve.assign(n, turn[0] > 0 ? 1 : -1);  // round as a whole
     return curve;
   }
   for (std::size_t first = 0; first < n;) {
@@ -189,10 +191,40 @@ std::vector<bool> curve_points(const Ring& ring) {
     std::size_t last = first + 1;
     for (; last < n && goes_on(at(last - 1), at(last)); ++last) sum += std::fabs(turn[at(last)]);
     if (last - first >= kLeastCurvePoints && sum >= kLeastCurve)
-      for (std::size_t k = first; k < last; ++k) curve[at(k)] = true;
+      for (std::size_t k = first; k < last; ++k) curve[at(k)] = turn[at(k)] > 0 ? 1 : -1;
     first = last;
   }
   return curve;
+}
+
+/// The points to keep, by index: those of `circle`, and those between them that bulge out with a curve.
+std::vector<std::size_t> with_curve_points(const Ring& ring, const Circle& circle) {
+  std::vector<std::size_t> kept;
+  Ring simple;
+  for (std::size_t i = 0; i < ring.size(); ++i)
+    if (circle.alive(i)) kept.push_back(i), simple.points.push_back(ring.points[i]);
+  const std::vector<int> curve = curve_turns(simple);
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    const std::size_t next = (k + 1) % kept.size();
+    const Point2 a = ring.points[kept[k]], b = ring.points[kept[next]];
+    const int way = curve[k] != 0 ? curve[k] : curve[next];
+    const double length = std::sqrt(distance2(a, b));
+    std::vector<std::size_t> between;
+    bool bulges = way != 0;
+    double most = 0;
+    for (std::size_t i = (kept[k] + 1) % ring.size(); i != kept[next] && bulges; i = (i + 1) % ring.size()) {
+      const Point2 p = ring.points[i];
+      // Of a left turn the arc lies to the right of its chords.
+      const double beside = way * ((b.y - a.y) * (p.x - a.x) - (b.x - a.x) * (p.y - a.y)) / length;
+      bulges = beside > 0;
+      most = std::max(most, beside);
+      between.push_back(i);
+    }
+    out.push_back(kept[k]);
+    if (bulges && most >= kLeastBulge) out.insert(out.end(), between.begin(), between.end());
+  }
+  return out;
 }
 
 struct Flat {
@@ -251,13 +283,12 @@ std::optional<Ring> without_collinear_points(const Ring& ring, const KeptNodes& 
           !kept.contains(ring.nodes[i]);
   if (!any) return std::nullopt;
 
-  const std::vector<bool> curve = curve_points(ring);
   Circle circle(n);
   constexpr double kNever = -1;
   std::vector<double> deviation2(n, kNever);
   std::priority_queue<Flat> flattest;
   const auto measure = [&](std::size_t i) {
-    if (curve[i] || kept.contains(ring.nodes[i])) return;
+    if (kept.contains(ring.nodes[i])) return;
     const std::size_t first = circle.previous(i), last = circle.next(i);
     double worst = 0;
     // All points that lie beside the new edge, those dropped before included.
@@ -276,8 +307,11 @@ std::optional<Ring> without_collinear_points(const Ring& ring, const KeptNodes& 
     measure(first);
     measure(last);
   }
-  if (circle.size() == n) return std::nullopt;
-  return circle.taken_from(ring);
+  const std::vector<std::size_t> stay = with_curve_points(ring, circle);
+  if (stay.size() == n) return std::nullopt;
+  Ring out;
+  for (const std::size_t i : stay) out.points.push_back(p[i]), out.nodes.push_back(ring.nodes[i]);
+  return out;
 }
 
 void start_at_least_point(Ring& ring) {

@@ -94,17 +94,28 @@ bool simplify(Polygon& p, const KeptNodes& kept, const RepairOptions& options, i
   return true;
 }
 
+/// What rings enclose, each by itself.
+geometry::ValidPolygons made_valid(std::vector<Ring> rings, const RepairOptions& options) {
+  return geometry::make_valid(rings, std::vector<bool>(rings.size(), false), options.min_piece_area,
+                              options.ring_clearance);
+}
+
 /// Makes one outer ring with its holes valid and appends what comes of it.
 void mend(Polygon p, const KeptNodes& kept, const RepairOptions& options, Mending& done, std::vector<Polygon>& out) {
-  std::vector<Ring> rings{std::move(p.outer)};
-  std::vector<bool> inner{false};
-  for (Ring& hole : p.holes) rings.push_back(std::move(hole)), inner.push_back(true);
-  geometry::ValidPolygons valid = geometry::make_valid(rings, inner, options.min_piece_area, options.ring_clearance);
-  if (valid.polygons.empty() && rings.size() > 1) {
-    rings.resize(1);
-    inner.resize(1);
-    valid = geometry::make_valid(rings, inner, options.min_piece_area, options.ring_clearance);
-    done.remark("holes that left nothing ignored");
+  geometry::ValidPolygons valid = made_valid({std::move(p.outer)}, options);
+  if (!p.holes.empty()) {
+    // Subtracting them, rather than mending the polygon as a whole, keeps holes outside from becoming buildings.
+    const geometry::ValidPolygons holes = made_valid(std::move(p.holes), options);
+    geometry::ValidPolygons rest =
+        geometry::difference(valid.polygons, holes.polygons, options.min_piece_area, options.ring_clearance);
+    if (rest.polygons.empty()) {
+      done.remark("holes that left nothing ignored");
+    } else {
+      restore_nodes(rest.polygons, valid.polygons);
+      restore_nodes(rest.polygons, holes.polygons);
+      rest.dropped_area += valid.dropped_area;
+      valid = std::move(rest);
+    }
   }
   done.changed = true;
   done.separated = done.separated || valid.separated;
