@@ -17,8 +17,6 @@
 namespace blockrand::validate {
 namespace {
 
-constexpr double kAreaTolerance = 0.001;  // m²: areas are written with three decimals
-
 bool is_colour(std::string_view text) {
   return text.size() == 7 && text[0] == '#' && text.find_first_not_of("0123456789abcdef", 1) == std::string_view::npos;
 }
@@ -35,17 +33,6 @@ bool is_fallback_list(std::string_view codes) {
     codes.remove_prefix(end == std::string_view::npos ? codes.size() : end + 1);
   }
   return true;
-}
-
-double area(const std::vector<ReadPolygon>& polygons) {
-  double sum = 0;
-  for (const ReadPolygon& polygon : polygons)
-    for (const auto& ring : polygon.rings)
-      for (std::size_t i = 1; i + 1 < ring.size(); ++i)
-        sum += ((ring[i].x - ring[0].x) * (ring[i + 1].y - ring[0].y) -
-                (ring[i + 1].x - ring[0].x) * (ring[i].y - ring[0].y)) /
-               2;
-  return sum;
 }
 
 /// Reads one row of `buildings` or `parts` from a statement with the columns of row_query().
@@ -103,9 +90,8 @@ class RowReader {
         for (const model::Point3& p : ring) on_grid = on_grid && p == model::snap(p);
     if (!on_grid) findings_.push_back({Check::off_grid, file_, id_, "a point of the footprint is not on the grid"});
     footprint = std::move(g.polygons);
-    // Sums of large areas lose digits; 1e-12 of them is what doubles leave.
-    const double found = area(footprint);
-    if (!row_.is_real(6) || !(std::fabs(row_.real(6) - found) <= kAreaTolerance + 1e-12 * std::fabs(found)))
+    const double found = area_of(footprint);
+    if (!row_.is_real(6) || !(std::fabs(row_.real(6) - found) <= area_tolerance(found)))
       rule(fmt::format("footprint_area is {}, the footprint has {}", row_.text(6), base::shortest(found)));
   }
 
@@ -160,6 +146,19 @@ std::string row_query(const GeoPackageLayer& layer, std::string_view more, std::
 }
 
 }  // namespace
+
+double area_tolerance(double area) { return 0.001 + 1e-12 * std::fabs(area); }
+
+double area_of(const std::vector<ReadPolygon>& polygons) {
+  double sum = 0;
+  for (const ReadPolygon& polygon : polygons)
+    for (const auto& ring : polygon.rings)
+      for (std::size_t i = 1; i + 1 < ring.size(); ++i)
+        sum += ((ring[i].x - ring[0].x) * (ring[i + 1].y - ring[0].y) -
+                (ring[i + 1].x - ring[0].x) * (ring[i].y - ring[0].y)) /
+               2;
+  return sum;
+}
 
 const std::vector<GeoPackageAttribute>& geopackage_attributes() {
   static const std::vector<GeoPackageAttribute> attributes = [] {

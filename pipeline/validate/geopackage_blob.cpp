@@ -95,6 +95,7 @@ class Reader {
       return;
     }
     const auto count = take<std::uint32_t>();
+    if (type == WkbType::line_string) return line(count);
     if (count == 0 || count > kMostPieces) end(fmt::format("{} {}", count, collection ? "polygons" : "rings"));
     for (std::uint32_t i = 0; i < count; ++i) {
       if (collection) {
@@ -114,6 +115,12 @@ class Reader {
     out_.min_y = std::min(out_.min_y, y);
     out_.max_y = std::max(out_.max_y, y);
     return {x, y};
+  }
+
+  void line(std::uint32_t count) {
+    if (count > rest_.size() / 16) end("the geometry is cut short");
+    for (std::uint32_t i = 0; i < count; ++i) out_.line.push_back(point());
+    if (count < 2) error(fmt::format("a line of {} points", count));
   }
 
   void ring(bool hole) {

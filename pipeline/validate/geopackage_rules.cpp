@@ -19,11 +19,14 @@ std::vector<std::string> geopackage_columns(std::string_view table) {
   if (table == "reported")
     return {"id", "osm_type", "osm_number", "kind", "state", "code", "meaning", "detail", "related"};
   if (table == "tiles") return {"id", "level", "x", "y", "uri", "buildings", "parts", "bytes"};
+  if (table != "buildings" && table != "parts") return context_columns(table);
   std::vector<std::string> columns{"id",         "osm_type", "osm_number",     "tile",      "lod",
                                    "built_roof", "volume",   "footprint_area", "fallbacks", "tags"};
   for (const char* name : {"state", "parts"})
     if (table == "buildings") columns.emplace_back(name);
   if (table == "parts") columns.emplace_back("building");
+  if (table == "buildings")
+    for (std::string& name : context_columns(table)) columns.push_back(std::move(name));
   for (const GeoPackageAttribute& a : geopackage_attributes())
     for (const char* end : {"", "_source", "_confidence"}) columns.push_back(a.name + end);
   return columns;
@@ -52,6 +55,7 @@ class Rules {
     ids();
     reported();
     tile_rows();
+    check_context(s_, log_);
     beside();
     return true;
   }
@@ -113,7 +117,7 @@ class Rules {
     bool all = true;
     for (const std::string_view table :
          {"gpkg_spatial_ref_sys", "gpkg_contents", "gpkg_geometry_columns", "gpkg_extensions", "buildings", "parts",
-          "reported", "tiles", "layer_styles"}) {
+          "reported", "tiles", "facade_edges", "blocks", "courtyards", "cells", "layer_styles"}) {
       if (is_table(table)) continue;
       rule(std::string(table), "the table is missing");
       all = false;
@@ -206,8 +210,8 @@ class Rules {
     Box box;
     std::int64_t count = 0, unlike = 0;
     std::string first_unlike;
-    // Polygons are read again, with their rows, by rows(); their errors are told there.
-    const bool tell = l.type == WkbType::point || l.table == "tiles";
+    // Buildings and parts are read again, with their rows, by rows(); their errors are told there.
+    const bool tell = l.table != "buildings" && l.table != "parts";
     each(fmt::format("SELECT l.fid, l.id, l.geom{1} FROM \"{0}\" l{2}", table,
                      indexed ? ", r.minx, r.miny, r.maxx, r.maxy" : "",
                      indexed ? fmt::format(" LEFT JOIN \"{}\" r ON r.id = l.fid", index) : ""),
@@ -288,6 +292,7 @@ class Rules {
 
   void ids() {
     for (const GeoPackageLayer& l : kGeoPackageLayers) {
+      if (l.type == WkbType::line_string) continue;  // millions: told building by building
       std::unordered_set<std::string> seen;
       each(fmt::format("SELECT id FROM \"{}\"", l.table), [&](const SqliteRow& row) {
         if (!seen.insert(row.string(0)).second)

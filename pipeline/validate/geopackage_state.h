@@ -24,6 +24,10 @@ inline constexpr GeoPackageLayer kGeoPackageLayers[] = {
     {"parts", "POLYGON", WkbType::polygon, true},
     {"reported", "POINT", WkbType::point, false},
     {"tiles", "POLYGON", WkbType::polygon, true},
+    {"facade_edges", "LINESTRING", WkbType::line_string, true},
+    {"blocks", "POLYGON", WkbType::polygon, true},
+    {"courtyards", "POLYGON", WkbType::polygon, true},
+    {"cells", "POLYGON", WkbType::polygon, true},
 };
 
 /// An attribute's column; the others are `<name>_source` and `<name>_confidence`.
@@ -36,6 +40,11 @@ const std::vector<GeoPackageAttribute>& geopackage_attributes();
 
 /// Columns that a layer must have besides fid and geom.
 std::vector<std::string> geopackage_columns(std::string_view table);
+
+/// m²: areas are written with three decimals; sums of large areas lose digits, 1e-12 of them is what doubles leave.
+double area_tolerance(double area);
+/// m², holes taken off; outer rings run counter-clockwise.
+double area_of(const std::vector<ReadPolygon>& polygons);
 
 /// "w" for "way" and so on; empty for anything else.
 std::string_view osm_letter(std::string_view type);
@@ -62,5 +71,11 @@ struct GeoPackageReader::State {
   bool have_spans = false;
   std::vector<TileSpans> tile_spans;
 };
+
+/// What repair and context left in the file: columns of buildings, edges of outlines, blocks, courtyards, cells.
+/// GEOPACKAGE_RULE, OBJECT_DOUBLED.
+void check_context(GeoPackageReader::State& state, FindingLog& log);
+/// Columns that these layers must have besides fid and geom; of `buildings` those that come with repair and context.
+std::vector<std::string> context_columns(std::string_view table);
 
 }  // namespace blockrand::validate

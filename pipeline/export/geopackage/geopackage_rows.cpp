@@ -1,12 +1,10 @@
 #include "pipeline/export/geopackage/geopackage_rows.h"
 
 #include <algorithm>
-#include <bit>
-#include <charconv>
-#include <cmath>
-#include <cstring>
 
+#include "pipeline/export/geopackage/cell_writer.h"
 #include "pipeline/export/geopackage/columns.h"
+#include "pipeline/export/geopackage/edge_rows.h"
 #include "pipeline/export/text.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon.h"
@@ -17,104 +15,6 @@ namespace {
 constexpr std::string_view name(model::OsmType type) {
   return type == model::OsmType::node ? "node" : type == model::OsmType::way ? "way" : "relation";
 }
-
-/// The double that the shortest text of `value` stands for: 0.6f becomes 0.6, not 0.60000002384.
-double as_written(float value) {
-  char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-  double out = 0;
-  std::from_chars(buffer, end, out);
-  return out;
-}
-
-/// Areas and volumes are sums; their last bits say nothing.
-double rounded(double value) { return std::nearbyint(value * 1000) / 1000; }
-
-// ---- well-known binary (OGC 06-103r4, clause 8), little-endian
-// --------------------------------------------------------
-
-static_assert(std::endian::native == std::endian::little, "well-known binary is written as memory holds it");
-
-template <class T>
-void append_raw(std::string& out, T value) {
-  char bytes[sizeof value];
-  std::memcpy(bytes, &value, sizeof value);
-  out.append(bytes, sizeof value);
-}
-
-constexpr std::uint32_t kPolygon = 3, kMultiPolygon = 6;
-
-void append_header(std::string& out, std::uint32_t type, std::size_t count) {
-  out += '\1';
-  append_raw(out, type);
-  append_raw(out, static_cast<std::uint32_t>(count));
-}
-
-void append_ring(std::string& out, const model::Ring& ring) {
-  append_raw(out, static_cast<std::uint32_t>(ring.size() + 1));
-  for (std::size_t i = 0; i <= ring.size(); ++i) {
-    const model::Point2 p = ring.points[i == ring.size() ? 0 : i];
-    append_raw(out, p.x);
-    append_raw(out, p.y);
-  }
-}
-
-void append_polygon(std::string& out, const model::Polygon& polygon) {
-  if (polygon.outer.points.empty()) return append_header(out, kPolygon, 0);
-  append_header(out, kPolygon, 1 + polygon.holes.size());
-  append_ring(out, polygon.outer);
-  for (const model::Ring& hole : polygon.holes) append_ring(out, hole);
-}
-
-// ---- cells
-// ------------------------------------------------------------------------------------------------------------
-
-/// Fills a table cell by cell, in the order of its columns.
-class RowWriter {
- public:
-  RowWriter(CellTable& table, std::size_t width) : table_(table) { table_.width = width; }
-
-  void null() { table_.cells.emplace_back(); }
-  void integer(std::int64_t value) {
-    Cell& cell = table_.cells.emplace_back();
-    cell.kind = Cell::Kind::integer;
-    cell.integer = value;
-  }
-  /// NaN and infinity, which no stage should leave, become NULL.
-  void real(double value) {
-    Cell& cell = table_.cells.emplace_back();
-    if (!std::isfinite(value)) return;
-    cell.kind = Cell::Kind::real;
-    cell.real = value == 0 ? 0 : value;  // no -0
-  }
-  /// Empty texts are NULL: nothing is known.
-  void text(std::string_view value) {
-    if (value.empty()) return null();
-    begin_text();
-    append_clean(table_.texts, value);
-    end_text();
-  }
-  /// For texts made piece by piece: append to the result, which must hold clean UTF-8, then end_text().
-  std::string& begin_text() {
-    Cell& cell = table_.cells.emplace_back();
-    cell.kind = Cell::Kind::text;
-    cell.text = table_.texts.size();
-    return table_.texts;
-  }
-  void end_text() { table_.texts += '\0'; }
-
-  void value(double v) { real(v); }
-  void value(const std::string& v) { text(v); }
-  void value(model::Colour v) { text(model::text(v)); }
-  void value(model::RoofShape v) { text(model::name(v)); }
-  void value(model::RoofOrientation v) { text(v == model::RoofOrientation::along ? "along" : "across"); }
-
-  std::string& geometry() { return table_.geometries; }
-  void end_row() { table_.geometry_ends.push_back(table_.geometries.size()); }
-
- private:
-  CellTable& table_;
-};
 
 void write_attributes(RowWriter& row, const model::Attributes& attributes) {
   model::for_each_attribute(
@@ -203,11 +103,14 @@ class Builder {
     }
     rows_.buildings.cells.reserve(buildings * building_width);
     rows_.parts.cells.reserve(parts * part_width);
-    RowWriter building_row(rows_.buildings, building_width), part_row(rows_.parts, part_width);
+    static const std::size_t edge_width = facade_edge_columns().size();
+    RowWriter building_row(rows_.buildings, building_width), part_row(rows_.parts, part_width),
+        edge_row(rows_.facade_edges, edge_width);
     for (const model::Building& b : region.buildings) {
       if (!b.owned || b.parts.empty()) continue;
       write(building_row, b);
       for (const model::BuildingPart& p : b.parts) write(part_row, b, p);
+      append_edges(edge_row, b);
     }
   }
   GeoPackageRows rows() && { return std::move(rows_); }
@@ -234,6 +137,8 @@ class Builder {
                                          address.house_number.empty() ? address.house_name : address.house_number})
       row.text(field);
     write_attributes(row, b.attributes);
+    write_situation(row, b);
+    write_repair(row, b.repaired);
     write_tags(row, region_, b.tags);
     append_header(row.geometry(), kMultiPolygon, b.outline.empty() ? b.parts.size() : b.outline.size());
     for (const model::Polygon& p : b.outline) append_polygon(row.geometry(), p);

@@ -40,11 +40,11 @@ struct CellTable {
 
 /// The rows of a tile.
 struct GeoPackageRows {
-  CellTable buildings, parts;
+  CellTable buildings, parts, facade_edges;
 };
 
-/// Prepares the rows of the owned buildings of `region` that have at least one part, in their order; of parts in the
-/// order of their buildings. Pure: safe on any thread, the same region gives the same rows. This is the expensive half
+/// Prepares the rows of the owned buildings of `region` that have at least one part, in their order; of parts and of
+/// stretches of the outline in the order of their buildings. Pure: safe on any thread, the same region gives the same rows. This is the expensive half
 /// of the work, GeoPackageWriter::add the cheap one.
 ///
 /// Parts have the ids of all other outputs: a part that has its building's id beside other parts becomes "<id>.1". The

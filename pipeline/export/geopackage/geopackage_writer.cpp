@@ -94,14 +94,27 @@ struct GeoPackageWriter::Impl {
   std::string path;
   GeoPackageOptions options;
   std::unique_ptr<GDALDataset, DatasetCloser> dataset;
-  Layer buildings, parts, reported, tiles;
+  Layer buildings, parts, reported, tiles, facade_edges, blocks, courtyards, cells;
+  CellTable row;  // of add_block and its like, used again
   bool made = false, closed = false;
+
+  /// In the order of the file.
+  std::array<std::pair<const char*, Layer*>, 8> layers() {
+    return {{{"buildings", &buildings},
+             {"parts", &parts},
+             {"facade_edges", &facade_edges},
+             {"blocks", &blocks},
+             {"courtyards", &courtyards},
+             {"cells", &cells},
+             {"reported", &reported},
+             {"tiles", &tiles}}};
+  }
 
   ~Impl() {
     if (closed) return;
     // What is left of a file that failed is of no use to anyone.
     const GdalScope scope(settings());
-    for (Layer* l : {&buildings, &parts, &reported, &tiles}) l->feature.reset();
+    for (const auto& [table, layer] : layers()) layer->feature.reset();
     if (dataset) dataset->RollbackTransaction();
     dataset.reset();
     if (made) std::remove(path.c_str());
@@ -169,8 +182,7 @@ struct GeoPackageWriter::Impl {
   void describe_columns(const GdalScope& scope) {
     // GDAL made the table for the JSON columns; names stay NULL, since it declares them unique over all layers.
     sql(scope, "DELETE FROM gpkg_data_columns");
-    for (const auto& [table, layer] : {std::pair("buildings", &buildings), std::pair("parts", &parts),
-                                       std::pair("reported", &reported), std::pair("tiles", &tiles)}) {
+    for (const auto& [table, layer] : layers()) {
       std::string values;
       for (const Column& c : layer->columns) {
         values += (values.empty() ? "(" : ",(") + sql_text(table) + ',' + sql_text(c.name) + ",NULL," +
@@ -183,6 +195,17 @@ struct GeoPackageWriter::Impl {
           "constraint_name) VALUES " +
               values);
     }
+  }
+
+  template <class Row>
+  void put_one(Layer& to, const Row& what) {
+    const GdalScope scope(settings());
+    row.cells.clear();
+    row.texts.clear();
+    row.geometries.clear();
+    row.geometry_ends.clear();
+    append_row(row, what);
+    put(scope, to, row);
   }
 
   /// The table as QGIS makes it when it saves a style itself.
@@ -254,6 +277,14 @@ struct GeoPackageWriter::Impl {
     buildings = make_layer(scope, "buildings", wkbMultiPolygon, building_columns(),
                            text("Buildings with every attribute, its source and its confidence"), srs);
     parts = make_layer(scope, "parts", wkbPolygon, part_columns(), text("Bodies of the buildings"), srs);
+    facade_edges = make_layer(scope, "facade_edges", wkbLineString, facade_edge_columns(),
+                              text("Outlines of the buildings, cut where what they face changes"), srs);
+    blocks = make_layer(scope, "blocks", wkbPolygon, block_columns(),
+                        text("Land between streets, railways and water"), srs);
+    courtyards = make_layer(scope, "courtyards", wkbPolygon, courtyard_columns(),
+                            text("Open space that buildings surround"), srs);
+    cells = make_layer(scope, "cells", wkbPolygon, cell_columns(),
+                       text("Squares of a fixed grid with what is mapped in them"), srs);
     reported = make_layer(scope, "reported", wkbPoint, reported_columns(),
                           text("Mapped objects that are not modelled themselves, and why"), srs);
     tiles = make_layer(scope, "tiles", wkbPolygon, tile_columns(), text("Tiles with content"), srs);
@@ -304,7 +335,12 @@ void GeoPackageWriter::add(const GeoPackageRows& rows) {
   const GdalScope scope(impl_->settings());
   impl_->put(scope, impl_->buildings, rows.buildings);
   impl_->put(scope, impl_->parts, rows.parts);
+  impl_->put(scope, impl_->facade_edges, rows.facade_edges);
 }
+
+void GeoPackageWriter::add_block(const BlockRow& block) { impl_->put_one(impl_->blocks, block); }
+void GeoPackageWriter::add_courtyard(const CourtyardRow& courtyard) { impl_->put_one(impl_->courtyards, courtyard); }
+void GeoPackageWriter::add_cell(const CellRow& cell) { impl_->put_one(impl_->cells, cell); }
 
 void GeoPackageWriter::add_reported(const GeoPackageReported& object) {
   const GdalScope scope(impl_->settings());
@@ -362,15 +398,15 @@ void GeoPackageWriter::add_tile(const GeoPackageTile& tile) {
 void GeoPackageWriter::close() {
   Impl& impl = *impl_;
   const GdalScope scope(impl.settings());
-  for (Impl::Layer* l : {&impl.buildings, &impl.parts, &impl.reported, &impl.tiles}) {
+  for (const auto& [name, l] : impl.layers()) {
     l->feature.reset();
     impl.check(scope, l->layer->SyncToDisk() == OGRERR_NONE);
     // The index in one go over finished rows: its pages lie together, and no trigger runs for each insert.
-    const std::string table = sql_text(l->layer->GetName());
+    const std::string table = sql_text(name);
     impl.sql(scope, "SELECT CreateSpatialIndex(" + table + ", 'geom')");
     // What readers take for the number of rows; GDAL leaves it open for layers that were filled beside others.
     impl.sql(scope, "UPDATE gpkg_ogr_contents SET feature_count = (SELECT count(*) FROM \"" +
-                        std::string(l->layer->GetName()) + "\") WHERE table_name = " + table);
+                        std::string(name) + "\") WHERE table_name = " + table);
   }
   impl.check(scope, impl.dataset->CommitTransaction() == OGRERR_NONE);
   impl.dataset.reset();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/export/geopackage/context_rows.h"
 #include "pipeline/export/geopackage/geopackage_rows.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/model/region.h"
@@ -42,7 +43,7 @@ struct GeoPackageTile {
 };
 
 /// Writes one file with the layers `buildings` (MultiPolygon), `parts` (Polygon), `reported` (Point, NULL where no
-/// place is known) and `tiles` (Polygon); columns in columns.h, their meaning and unit in the file's gpkg_data_columns.
+/// place is known), `tiles` (Polygon), `facade_edges` (LineString), `blocks`, `courtyards` and `cells` (Polygon); columns in columns.h, their meaning and unit in the file's gpkg_data_columns.
 /// The table `layer_styles` holds QGIS styles, one default for each layer.
 ///
 /// The same calls give the same bytes: the file holds no clock and no UUID. One thread at a time, any thread; no GDAL
@@ -59,10 +60,14 @@ class GeoPackageWriter {
   GeoPackageWriter(const GeoPackageWriter&) = delete;
   GeoPackageWriter& operator=(const GeoPackageWriter&) = delete;
 
-  /// Appends a tile's buildings and bodies.
+  /// Appends a tile's buildings, bodies and stretches of outlines.
   void add(const GeoPackageRows& rows);
   void add_reported(const GeoPackageReported& object);
   void add_tile(const GeoPackageTile& tile);
+  /// Rows stand in the file in the order of these calls.
+  void add_block(const BlockRow& block);
+  void add_courtyard(const CourtyardRow& courtyard);
+  void add_cell(const CellRow& cell);
 
   /// Makes the spatial indices and ends the file; no journal stays beside it.
   void close();

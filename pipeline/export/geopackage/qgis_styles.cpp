@@ -1,11 +1,13 @@
 #include "pipeline/export/geopackage/qgis_styles.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
 
-#include "pipeline/export/text.h"
+#include "pipeline/export/geopackage/qml.h"
 #include "pipeline/model/building.h"
+#include "pipeline/model/edge_colours.h"
 #include "pipeline/model/issue_codes.h"
 
 namespace blockrand::export_ {
@@ -35,112 +37,14 @@ Colour class_colour(int i) {
   }
 }
 
-std::string rgba(Colour c, int alpha = 255) {
-  return std::to_string(c.r) + ',' + std::to_string(c.g) + ',' + std::to_string(c.b) + ',' + std::to_string(alpha);
-}
-
-enum class Shape { marker, fill };
-
-/// Puts a style together. QGIS reads symbol properties from <Option> elements since 3.22.
-class Qml {
- public:
-  explicit Qml(Shape shape, bool labels = false) : shape_(shape) {
-    out_ = "<qgis version=\"3.22.0\" styleCategories=\"Symbology|Labeling\" labelsEnabled=\"";
-    out_ += labels ? "1\">\n" : "0\">\n";
-  }
-
-  void categories(std::string_view attribute) {
-    out_ += "<renderer-v2 type=\"categorizedSymbol\" attr=\"";
-    append_xml(out_, attribute);
-    out_ += "\" enableorderby=\"0\" forceraster=\"0\" symbollevels=\"0\">\n";
-    classes_ = "<categories>\n";
-    end_of_classes_ = "</categories>\n";
-  }
-  void category(std::string_view value, std::string_view label, Colour colour) {
-    classes_ += "<category render=\"true\" symbol=\"" + std::to_string(symbols_) + "\" type=\"string\" value=\"";
-    append_xml(classes_, value);
-    classes_ += "\" label=\"";
-    append_xml(classes_, label);
-    classes_ += "\"/>\n";
-    symbol(colour);
-  }
-  void ranges(std::string_view attribute) {
-    out_ += "<renderer-v2 type=\"graduatedSymbol\" graduatedMethod=\"GraduatedColor\" attr=\"";
-    append_xml(out_, attribute);
-    out_ += "\" enableorderby=\"0\" forceraster=\"0\" symbollevels=\"0\">\n";
-    classes_ = "<ranges>\n";
-    end_of_classes_ = "</ranges>\n";
-  }
-  void range(std::string_view lower, std::string_view upper, std::string_view label, Colour colour) {
-    classes_ += "<range render=\"true\" symbol=\"" + std::to_string(symbols_) + "\" lower=\"";
-    classes_ += lower;
-    classes_ += "\" upper=\"";
-    classes_ += upper;
-    classes_ += "\" label=\"";
-    append_xml(classes_, label);
-    classes_ += "\"/>\n";
-    symbol(colour);
-  }
-  void single(Colour colour, int alpha) {
-    out_ += "<renderer-v2 type=\"singleSymbol\" enableorderby=\"0\" forceraster=\"0\" symbollevels=\"0\">\n";
-    symbol(colour, alpha);
-  }
-  void label(std::string_view attribute) {
-    labelling_ = "<labeling type=\"simple\">\n<settings calloutType=\"simple\">\n<text-style fieldName=\"";
-    append_xml(labelling_, attribute);
-    labelling_ +=
-        "\" isExpression=\"0\" fontSize=\"8\" fontSizeUnit=\"Point\" textColor=\"70,70,70,255\" textOpacity=\"1\">\n"
-        "<text-buffer bufferDraw=\"1\" bufferSize=\"0.8\" bufferSizeUnits=\"MM\" bufferColor=\"255,255,255,255\" "
-        "bufferOpacity=\"1\"/>\n</text-style>\n</settings>\n</labeling>\n";
-  }
-
-  std::string done() && {
-    out_ += classes_ + end_of_classes_ + "<symbols>\n" + symbol_list_ + "</symbols>\n</renderer-v2>\n" + labelling_;
-    // QGIS counts points, lines, polygons as 0, 1, 2.
-    out_ +=
-        std::string("<layerGeometryType>") + (shape_ == Shape::marker ? "0" : "2") + "</layerGeometryType>\n</qgis>\n";
-    return std::move(out_);
-  }
-
- private:
-  void option(std::string_view name, std::string_view value) {
-    symbol_list_ += "<Option type=\"QString\" name=\"";
-    symbol_list_ += name;
-    symbol_list_ += "\" value=\"";
-    append_xml(symbol_list_, value);
-    symbol_list_ += "\"/>\n";
-  }
-  void symbol(Colour colour, int alpha = 255) {
-    const bool marker = shape_ == Shape::marker;
-    symbol_list_ += "<symbol type=\"";
-    symbol_list_ += marker ? "marker" : "fill";
-    symbol_list_ +=
-        "\" name=\"" + std::to_string(symbols_++) + "\" alpha=\"1\" clip_to_extent=\"1\" force_rhr=\"0\">\n";
-    symbol_list_ += "<layer class=\"";
-    symbol_list_ += marker ? "SimpleMarker" : "SimpleFill";
-    symbol_list_ += "\" enabled=\"1\" locked=\"0\" pass=\"0\">\n<Option type=\"Map\">\n";
-    option("color", rgba(colour, alpha));
-    if (marker) {
-      option("name", "circle");
-      option("size", "2.4");
-      option("size_unit", "MM");
-    } else {
-      option("style", "solid");
-      option("joinstyle", "bevel");
-    }
-    option("outline_color", rgba({70, 70, 70}));
-    option("outline_style", "solid");
-    option("outline_width", marker ? "0.2" : alpha == 0 ? "0.3" : "0.1");
-    option("outline_width_unit", "MM");
-    symbol_list_ += "</Option>\n</layer>\n</symbol>\n";
-  }
-
-  Shape shape_;
-  std::string out_, classes_, end_of_classes_, symbol_list_, labelling_;
-  int symbols_ = 0;
-};
-
 constexpr Colour kOthers{215, 215, 215};
+
+/// "mid row" of "mid_row".
+std::string spaced(std::string_view name) {
+  std::string out(name);
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
 
 std::string storeys() {
   Qml qml(Shape::fill);
@@ -236,6 +140,90 @@ std::string outlines() {
   return std::move(qml).done();
 }
 
+std::string edge_kinds() {
+  Qml qml(Shape::line);
+  qml.categories("kind");
+  for (int k = 1; k < model::kEdgeKindCount; ++k) {
+    const auto kind = static_cast<model::EdgeKind>(k);
+    qml.category(model::name(kind), spaced(model::name(kind)) + ": " + std::string(model::meaning(kind)),
+                 model::colour_of(kind));
+  }
+  qml.category("", "not known", model::colour_of(model::EdgeKind::unknown));
+  return std::move(qml).done();
+}
+
+std::string positions() {
+  constexpr std::array<Colour, model::kBuildingPositionCount> kColours{{
+      {190, 185, 180},  // unknown
+      {150, 200, 120},  // free-standing
+      {120, 170, 220},  // end of row
+      {60, 105, 185},   // mid-row
+      {220, 70, 50},    // corner house
+      {240, 200, 90},   // rear building
+      {235, 150, 50},   // side wing
+  }};
+  Qml qml(Shape::fill);
+  qml.categories("position");
+  for (std::size_t k = 1; k < kColours.size(); ++k) {
+    const std::string_view name = model::name(static_cast<model::BuildingPosition>(k));
+    qml.category(name, spaced(name), kColours[k]);
+  }
+  qml.category("", "not known", kColours[0]);
+  return std::move(qml).done();
+}
+
+/// A class of a graduated style: from `lower`, excluded, to `upper`.
+struct Step {
+  const char *lower, *upper, *label;
+};
+
+/// Pale to dark, as storeys; what has no value is not drawn.
+std::string steps(std::string_view attribute, const std::array<Step, 6>& classes) {
+  constexpr std::array<Colour, 6> kColours{
+      {{255, 247, 204}, {255, 222, 130}, {253, 180, 85}, {244, 120, 60}, {205, 50, 45}, {125, 15, 60}}};
+  Qml qml(Shape::fill);
+  qml.ranges(attribute);
+  for (std::size_t i = 0; i < classes.size(); ++i)
+    qml.range(classes[i].lower, classes[i].upper, classes[i].label, kColours[i]);
+  return std::move(qml).done();
+}
+
+std::string floor_area_ratio() {
+  return steps("floor_area_ratio", {{{"0", "0.3", "up to 0.3"},
+                                     {"0.3", "0.7", "0.3 to 0.7"},
+                                     {"0.7", "1.2", "0.7 to 1.2"},
+                                     {"1.2", "2", "1.2 to 2"},
+                                     {"2", "3", "2 to 3"},
+                                     {"3", "100", "more than 3"}}});
+}
+
+std::string shares(std::string_view attribute) {
+  return steps(attribute, {{{"0", "0.1", "up to 10 %"},
+                            {"0.1", "0.2", "10 to 20 %"},
+                            {"0.2", "0.35", "20 to 35 %"},
+                            {"0.35", "0.5", "35 to 50 %"},
+                            {"0.5", "0.75", "50 to 75 %"},
+                            {"0.75", "100", "more than 75 %"}}});
+}
+
+std::string storeys_mean() {
+  return steps("storeys_mean", {{{"0", "1.5", "up to 1.5 storeys"},
+                                 {"1.5", "2.5", "1.5 to 2.5"},
+                                 {"2.5", "3.5", "2.5 to 3.5"},
+                                 {"3.5", "4.5", "3.5 to 4.5"},
+                                 {"4.5", "6", "4.5 to 6"},
+                                 {"6", "1000", "more than 6"}}});
+}
+
+std::string closed_or_open() {
+  Qml qml(Shape::fill);
+  qml.categories("closed");
+  qml.category("1", "closed", {120, 190, 130});
+  qml.category("0", "open to the street", {215, 230, 160});
+  qml.category("", "not known", kOthers);
+  return std::move(qml).done();
+}
+
 }  // namespace
 
 std::vector<QgisStyle> qgis_styles() {
@@ -243,8 +231,15 @@ std::vector<QgisStyle> qgis_styles() {
       {"buildings", "Storeys", "Full storeys above ground", storeys(), true},
       {"buildings", "Roofs", "The roof that was built", built_roof(), false},
       {"buildings", "Source of the storeys", "Mapped, concluded or assumed", source_of("storeys"), false},
+      {"buildings", "Position", "How a building stands to its neighbours", positions(), false},
       {"parts", "Roofs", "The roof that was built", built_roof(), true},
       {"parts", "Level of detail", "Where less than asked was built", level_of_detail(), false},
+      {"facade_edges", "Kinds", "What each stretch of an outline faces", edge_kinds(), true},
+      {"blocks", "Floor area ratio", "Floor area by area of the block", floor_area_ratio(), true},
+      {"blocks", "Closure", "Share of the street front that is built", shares("closure"), false},
+      {"courtyards", "Closed and open", "Whether an open way leads out", closed_or_open(), true},
+      {"cells", "Built share", "Area of footprints by area of the square", shares("built_share"), true},
+      {"cells", "Storeys", "Mean of the mapped storeys", storeys_mean(), false},
       {"reported", "Reasons", "Why an object was not built itself", codes(), true},
       {"tiles", "Outlines", "Tile borders with their numbers", outlines(), true},
   };

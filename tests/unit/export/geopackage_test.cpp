@@ -22,6 +22,7 @@
 #include "pipeline/export/geopackage/geopackage_writer.h"
 #include "pipeline/export/geopackage/qgis_styles.h"
 #include "pipeline/model/issue_codes.h"
+#include "tests/unit/export/row_sample.h"
 #include "tests/unit/export/sample_region.h"
 
 namespace blockrand::export_ {
@@ -249,7 +250,8 @@ TEST_F(GeoPackage, IsAGeoPackage) {
   EXPECT_THAT(column(path, "PRAGMA integrity_check"), ElementsAre("ok"));
   EXPECT_THAT(column(path, "PRAGMA foreign_key_check"), ElementsAre());
   EXPECT_THAT(column(path, "PRAGMA journal_mode"), ElementsAre("delete"));
-  for (const std::string layer : {"buildings", "parts", "reported", "tiles"}) {
+  for (const std::string layer :
+       {"buildings", "parts", "facade_edges", "blocks", "courtyards", "cells", "reported", "tiles"}) {
     EXPECT_EQ(column(path, "SELECT count(*) FROM rtree_" + layer + "_geom"),
               column(path, "SELECT count(*) FROM " + layer + " WHERE geom IS NOT NULL"));
     EXPECT_EQ(column(path, "SELECT feature_count FROM gpkg_ogr_contents WHERE table_name = '" + layer + "'"),
@@ -275,8 +277,9 @@ TEST_F(GeoPackage, EveryLayerHasOneDefaultStyle) {
   EXPECT_THAT(query(path,
                     "SELECT f_table_name, count(*) FROM layer_styles WHERE useAsDefault AND f_table_schema = '' "
                     "AND f_geometry_column = 'geom' GROUP BY 1 ORDER BY 1"),
-              ElementsAre(ElementsAre("buildings", "1"), ElementsAre("parts", "1"), ElementsAre("reported", "1"),
-                          ElementsAre("tiles", "1")));
+              ElementsAre(ElementsAre("blocks", "1"), ElementsAre("buildings", "1"), ElementsAre("cells", "1"),
+                          ElementsAre("courtyards", "1"), ElementsAre("facade_edges", "1"), ElementsAre("parts", "1"),
+                          ElementsAre("reported", "1"), ElementsAre("tiles", "1")));
   EXPECT_EQ(column(path, "SELECT styleQML FROM layer_styles ORDER BY id").size(), qgis_styles().size());
 }
 
@@ -427,10 +430,11 @@ TEST(QgisStyles, EveryClassHasASymbol) {
         xpath(style.qml, "/qgis/renderer-v2/categories/category/@symbol | /qgis/renderer-v2/ranges/range/@symbol");
     if (used.empty()) used = {"0"};  // a single symbol
     EXPECT_EQ(symbols, used);
-    const auto colours = xpath(style.qml, "//symbol/layer/Option/Option[@name='color']/@value");
+    const auto colours = xpath(style.qml, "//symbol/layer/Option/Option[@name='color' or @name='line_color']/@value");
     EXPECT_EQ(colours.size(), symbols.size());
     EXPECT_EQ(std::set<std::string>(colours.begin(), colours.end()).size(), colours.size()) << "two classes look alike";
-    EXPECT_THAT(xpath(style.qml, "/qgis/layerGeometryType"), ElementsAre(style.layer == "reported" ? "0" : "2"));
+    const char* const geometry = style.layer == "reported" ? "0" : style.layer == "facade_edges" ? "1" : "2";
+    EXPECT_THAT(xpath(style.qml, "/qgis/layerGeometryType"), ElementsAre(geometry));
   }
 }
 
@@ -444,6 +448,8 @@ TEST(QgisStyles, KnowEveryValue) {
         << shape;
   for (int i = 0; i < model::kSourceCount; ++i)
     EXPECT_TRUE(values["buildings/Source of the storeys"].contains(std::string(name(static_cast<model::Source>(i)))));
+  for (int i = 1; i < model::kBuildingPositionCount; ++i)
+    EXPECT_TRUE(values["buildings/Position"].contains(std::string(name(static_cast<model::BuildingPosition>(i)))));
   for (const model::IssueInfo& about : model::kIssueInfo)
     EXPECT_EQ(values["reported/Reasons"].contains(std::string(about.text)),
               about.issue_class == model::IssueClass::reported)
@@ -454,6 +460,10 @@ TEST(QgisStyles, AttributesAreColumns) {
   std::map<std::string, std::set<std::string>> columns;
   for (const Column& c : building_columns()) columns["buildings"].insert(c.name);
   for (const Column& c : part_columns()) columns["parts"].insert(c.name);
+  for (const Column& c : facade_edge_columns()) columns["facade_edges"].insert(c.name);
+  for (const Column& c : block_columns()) columns["blocks"].insert(c.name);
+  for (const Column& c : courtyard_columns()) columns["courtyards"].insert(c.name);
+  for (const Column& c : cell_columns()) columns["cells"].insert(c.name);
   for (const QgisStyle& style : qgis_styles()) {
     if (style.layer == "reported") continue;  // an expression of two columns
     for (const auto& attribute : xpath(style.qml, "/qgis/renderer-v2/@attr"))
