@@ -21,6 +21,9 @@ constexpr double kNarrowestAlley = 0.8;
 /// Standard deviations by which a wall's mean gap must stay below an alley's: one in 3,000 alleys of 0.8 m is taken for a
 /// wall at the most.
 constexpr double kAlleySigmas = 3.4;
+/// m. The noise that alleys are kept open against: copies of a corner moved in discs of 0.3 m. What looks sloppier than
+/// that is displaced, and a wider margin would leave its walls apart.
+constexpr double kMostNoise = 0.212;
 /// Sine of the largest angle between two edges that are one wall: 30 degrees, which noise of 0.3 m does to a wall of 1 m.
 constexpr double kMostTurn = 0.5;
 /// Standard deviations that noise turns a wall by at the most: two ends with a bounded error each.
@@ -136,11 +139,13 @@ class Search {
     }
   }
 
+  struct Sum {
+    double squares = 0, count = 0;
+    double with_prior(double variance, double weight) const { return (squares + weight * variance) / (count + weight); }
+  };
+
   void estimate_noise() {
-    struct Sum {
-      double squares = 0, count = 0;
-    };
-    Sum row;
+    Sum& row = row_noise_;
     std::vector<Sum> buildings(row_.buildings.size());
     for (const Candidate& c : candidates_) {
       if (!c.contact.opposed) continue;
@@ -153,10 +158,26 @@ class Search {
         }
       }
     }
-    const double of_row = (row.squares + kRowPriorWeight * kPriorNoise * kPriorNoise) / (row.count + kRowPriorWeight);
+    const double of_row = row.with_prior(kPriorNoise * kPriorNoise, kRowPriorWeight);
     out_.noise.reserve(buildings.size());
-    for (const Sum& s : buildings)
-      out_.noise.push_back(std::sqrt((s.squares + kBuildingPriorWeight * of_row) / (s.count + kBuildingPriorWeight)));
+    for (const Sum& s : buildings) out_.noise.push_back(std::sqrt(s.with_prior(of_row, kBuildingPriorWeight)));
+  }
+
+  /// m. The largest mean gap of a wall. The wall's own gap is no evidence of noise here (a pair of houses drawn exactly,
+  /// but apart, is not sloppy); that its ends differ is.
+  double widest_gap(const Candidate& c) const {
+    Sum others = row_noise_;
+    const Contact& w = c.contact;
+    for (const Contact::End& end : {w.low, w.high}) {
+      if (!w.opposed || vertices_.point[end.of_e] == vertices_.point[end.of_f]) continue;
+      others.squares -= end.gap * end.gap;
+      others.count -= 1;
+    }
+    others.squares = std::max(0.0, others.squares) + (w.high.gap - w.low.gap) * (w.high.gap - w.low.gap) / 2;
+    others.count += 1;
+    const double noise =
+        std::min(kMostNoise, std::sqrt(others.with_prior(kPriorNoise * kPriorNoise, kRowPriorWeight)));
+    return std::min(options_.snap_distance, kNarrowestAlley - kAlleySigmas * noise * std::sqrt(c.mean_weight));
   }
 
   void accept() {
@@ -183,8 +204,7 @@ class Search {
     for (const Candidate& c : candidates_) {
       const Contact& w = c.contact;
       const double noise = std::max(out_.noise[vertices_.building(w.e)], out_.noise[vertices_.building(w.f)]);
-      const double widest =
-          std::min(options_.snap_distance, kNarrowestAlley - kAlleySigmas * noise * std::sqrt(c.mean_weight));
+      const double widest = widest_gap(c);
       const double turn = std::fabs(w.high.gap - w.low.gap);
       if (c.mean > widest || turn > options_.snap_angle * w.length + kTurnSigmas * noise * std::sqrt(2.0) ||
           claimed(w.e, c.from_e, c.from_e + w.length) || claimed(w.f, c.from_f, c.from_f + w.length)) {
@@ -202,6 +222,7 @@ class Search {
   const RepairOptions& options_;
   std::vector<Unit> units_;
   std::vector<Candidate> candidates_;
+  Sum row_noise_;
   Contacts out_;
 };
 

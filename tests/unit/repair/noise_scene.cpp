@@ -48,16 +48,20 @@ class Random {
 
 using Shapes = std::vector<std::vector<Point2>>;
 
-/// Houses side by side: front on y = 0, depths differ by at least 1.2 m or not at all.
+/// m. Depths are multiples of it: walls end on the same line or well apart, since what differs by less is one line to
+/// every mapper, and to repair.
+constexpr double kDepthStep = 1.2;
+
+/// Houses side by side: front on y = 0.
 void add_row(Random& random, Shapes& out) {
-  double x = 0, depth = random.uniform(9, 13);
+  double x = 0, depth = kDepthStep * random.number(7, 11);
   const int houses = random.number(5, 12);
   bool left_free = true;
   for (int i = 0; i < houses; ++i) {
     const double width = random.uniform(5.5, 14);
     double own = depth;
-    if (random.chance(0.5)) own += (random.chance(0.5) ? 1 : -1) * random.uniform(1.2, 4);
-    own = std::clamp(own, 7.0, 17.0);
+    if (random.chance(0.5)) own += (random.chance(0.5) ? 1 : -1) * kDepthStep * random.number(1, 3);
+    own = std::clamp(own, 6 * kDepthStep, 14 * kDepthStep);
     const bool alley = random.chance(0.15), last = i + 1 == houses;
     std::vector<Point2> shape = {{x, 0}, {x + width, 0}};
     if (last && random.chance(0.5)) {
@@ -66,7 +70,7 @@ void add_row(Random& random, Shapes& out) {
       shape.push_back({x + width + std::max(slant, 2 - width), own});
     } else if (width > 9 && random.chance(0.4)) {
       // A wing along the right border.
-      const double wing = random.uniform(3.5, 5), length = random.uniform(3, 7);
+      const double wing = random.uniform(3.5, 5), length = kDepthStep * random.number(3, 6);
       shape.push_back({x + width, own + length});
       shape.push_back({x + width - wing, own + length});
       shape.push_back({x + width - wing, own});
@@ -116,6 +120,7 @@ void add_bent_row(Random& random, Shapes& out) {
 void add_block(Random& random, Shapes& out) {
   const double depth = random.uniform(10, 13), width = random.uniform(55, 80), height = random.uniform(45, 70);
   const double shear = random.chance(0.5) ? random.uniform(0.1, 0.35) : 0;  // of the streets left and right
+  const double deeper = random.uniform(1.2, 3);
   const std::size_t first = out.size();
   // Corner houses.
   const double leg = depth + random.uniform(4, 8);
@@ -142,7 +147,7 @@ void add_block(Random& random, Shapes& out) {
     while (at < end) {
       double next = at + random.uniform(7, 14);
       if (next > end - 6) next = end;
-      const double own = random.chance(0.4) ? depth + random.uniform(1.2, 3) : depth;
+      const double own = random.chance(0.4) ? depth + deeper : depth;
       const bool alley = next < end && random.chance(0.1);
       const double to = alley ? next - random.uniform(0.8, 3) : next;
       std::vector<Point2> house = {{at, 0}, {to, 0}, {to, own}, {at, own}};
