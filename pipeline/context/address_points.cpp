@@ -27,7 +27,7 @@ std::optional<double> metres(std::string_view text) {
 double assumed_width(std::string_view highway) {
   constexpr std::string_view kOnFoot[] = {"footway", "path", "steps", "cycleway", "corridor", "bridleway", "platform"};
   if (std::find(std::begin(kOnFoot), std::end(kOnFoot), highway) != std::end(kOnFoot)) return kFootPassageWidth;
-  if (highway == "service" || highway == "track" || highway == "pedestrian" || highway.empty()) return kServicePassageWidth;
+  if (highway == "service" || highway == "track" || highway.empty()) return kServicePassageWidth;
   return kStreetPassageWidth;
 }
 

@@ -173,14 +173,43 @@ std::vector<Contact> contacts_of(const OutlineEdge& edge, model::OsmId own, bool
   return without_overlaps(std::move(joined), [](const Contact& c) { return c.neighbour; });
 }
 
+namespace {
+
+/// m. Arcades are no deeper than this from the way in their middle to their front.
+constexpr double kArcadeHalfDepth = 4;
+/// m. Shorter walls along a way are no front with an arcade.
+constexpr double kMinArcade = 5;
+
+/// Whether an arcade runs along wall `front`: parallel to the way (no mouth could open in it), and no neighbour's.
+bool has_arcade(const OutlineEdge& front, const MouthPoint& m, const model::Building& building,
+                const SurroundingsIndex& index, const EdgeOptions& options) {
+  if (front.length < kMinArcade || std::fabs(cross(front.along, m.direction)) >= kMinMouthSine) return false;
+  double covered = 0;
+  for (const Contact& c : contacts_of(front, building.osm, false, index, options)) covered += c.end - c.start;
+  return 2 * covered < front.length;
+}
+
+}  // namespace
+
 std::vector<std::vector<Mouth>> mouths_of(const model::Building& building, const std::vector<OutlineEdge>& edges,
-                                          const SurroundingsIndex& index) {
+                                          const SurroundingsIndex& index, const EdgeOptions& options) {
   std::vector<std::vector<Mouth>> out(edges.size());
   std::vector<MouthPoint> points;
   for (const std::uint32_t w : index.passages_near(box_of(building, kOnOutline)))
     for (const OutlineEdge& edge : edges)
       if (edge.length > 0) add_mouth_points(building, edge, index.all().passages[w], w, points);
   if (points.empty()) return out;
+  const auto same_ring = [&](std::size_t a, std::size_t b) {
+    return edges[a].polygon == edges[b].polygon && edges[a].ring == edges[b].ring;
+  };
+  const auto after = [&](std::size_t e) {
+    return e + 1 < edges.size() && same_ring(e, e + 1) ? e + 1 : e - edges[e].edge;
+  };
+  const auto before = [&](std::size_t e) {
+    if (edges[e].edge > 0) return e - 1;
+    while (e + 1 < edges.size() && same_ring(e, e + 1)) ++e;
+    return e;
+  };
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const OutlineEdge& edge = edges[e];
     if (edge.length == 0) continue;
@@ -189,8 +218,14 @@ std::vector<std::vector<Mouth>> mouths_of(const model::Building& building, const
       const double sine = std::fabs(cross(edge.along, m.direction));
       if (sine < kMinMouthSine || std::fabs(dot(to, edge.outward)) > kOnOutline) continue;
       const double half = m.width / 2 / sine, middle = dot(to, edge.along);
-      const double start = std::max(0.0, middle - half), end = std::min(edge.length, middle + half);
-      if (end > start) out[e].push_back({start, end, m.passage});
+      double start = std::max(0.0, middle - half), end = std::min(edge.length, middle + half);
+      if (end <= start) continue;
+      // An arcade is open to the front along which it runs: its mouth reaches to the corner.
+      if (start > 0 && middle < kArcadeHalfDepth && has_arcade(edges[before(e)], m, building, index, options)) start = 0;
+      if (end < edge.length && edge.length - middle < kArcadeHalfDepth &&
+          has_arcade(edges[after(e)], m, building, index, options))
+        end = edge.length;
+      out[e].push_back({start, end, m.passage});
     }
     out[e] = without_overlaps(std::move(out[e]), [&](const Mouth& m) { return index.all().passages[m.passage].id; });
   }

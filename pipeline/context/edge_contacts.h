@@ -38,8 +38,9 @@ struct Mouth {
   std::uint32_t passage = 0;  ///< index into Surroundings::passages
 };
 
-/// The mouths in all edges, parallel to `edges`, each in order and without overlaps.
+/// The mouths in all edges, parallel to `edges`, each in order and without overlaps. The mouth of an arcade reaches to the
+/// corner of the front along which it runs.
 std::vector<std::vector<Mouth>> mouths_of(const model::Building& building, const std::vector<OutlineEdge>& edges,
-                                          const SurroundingsIndex& index);
+                                          const SurroundingsIndex& index, const EdgeOptions& options);
 
 }  // namespace blockrand::context

@@ -62,13 +62,14 @@ EdgeSample look_out(const OutlineEdge& edge, double at, const BuildingView& view
   const Point2 eye{wall.x + edge.outward.x * kBefore, wall.y + edge.outward.y * kBefore};
   const Point2 front{wall.x + edge.outward.x * kAsk, wall.y + edge.outward.y * kAsk};
   const std::array<Point2, kFanRays> fan = fan_around(edge.outward);
-  double all = 0, seen = 0, ahead = 0, distance = 0;
+  double all = 0, seen = 0, near = 0, ahead = 0, distance = 0;
   for (std::size_t i = 0; i < kFanRays; ++i) {
     const double weight = fan[i].x * edge.outward.x + fan[i].y * edge.outward.y;
     const Sight& sight = out.fan[i] = index.scene().look(eye, fan[i], options.view);
     const bool sees_street = sight.street_piece != kNothing;
     all += weight;
     if (sees_street) seen += weight;
+    if (sees_street && sight.street <= options.street_view) near += weight;
     if (i + kAhead < kFanRays / 2 || i > kFanRays / 2 + kAhead) continue;
     ahead += weight;
     if (!sees_street || sight.street > options.street_view || !may_front(edge, sight, index.scene())) continue;
@@ -87,14 +88,14 @@ EdgeSample look_out(const OutlineEdge& edge, double at, const BuildingView& view
 
   if (out.inside != kNothing)
     out.kind = EdgeKind::party_wall;
-  else if (out.square != kNothing || out.ahead >= 0.5)
+  else if (out.square != kNothing || out.ahead >= 0.5 || near >= options.min_street_only * all)
     out.kind = EdgeKind::street;
   else if (out.yard != kNothing && index.courtyard(index.yards()[out.yard]).closed)
     out.kind = EdgeKind::courtyard;
   return out;
 }
 
-Enclosure enclosure_at(const OutlineEdge& edge, double at, const BuildingView& view, const EdgeOptions& options) {
+Enclosure enclosure_at(const OutlineEdge& edge, double at, model::OsmId own, const BuildingView& view, const EdgeOptions& options) {
   const Scene& scene = view.index->scene();
   const Point2 wall = edge.at(at);
   const Point2 eye{wall.x + edge.outward.x * kBefore, wall.y + edge.outward.y * kBefore};
@@ -110,12 +111,13 @@ Enclosure enclosure_at(const OutlineEdge& edge, double at, const BuildingView& v
       if (sight.street_piece != kNothing)
         out.street += 1;
       else if (sight.footprint != kNothing)
-        out.walls += 1;
+        (view.index->all().footprints[sight.footprint].id == own ? out.own : out.others) += 1;
     }
   }
   constexpr double kRays = static_cast<double>(kRaysAround) * std::size(kPushes);
   out.street /= kRays;
-  out.walls /= kRays;
+  out.own /= kRays;
+  out.others /= kRays;
   return out;
 }
 

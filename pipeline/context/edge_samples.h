@@ -37,12 +37,18 @@ EdgeSample look_out(const OutlineEdge& edge, double at, const BuildingView& view
 
 /// What surrounds the ground before a place on a wall.
 struct Enclosure {
-  double walls = 0;   ///< [0, 1] of the view around: ends at buildings within EdgeOptions::view
-  double street = 0;  ///< [0, 1]: ends in a street; what is left is open
+  double own = 0;     ///< [0, 1] of the view around: ends at the building itself within EdgeOptions::view
+  double others = 0;  ///< [0, 1]: ends at other buildings
+  double street = 0;  ///< [0, 1]: ends in a street; what is left is open ground
+  /// Of what the building itself leaves of the view, how much may be open in a courtyard; and how much at most in recesses
+  /// where that is next to nothing.
+  bool is_court(const EdgeOptions& options) const {
+    return street <= options.max_street_view && 1 - own - others <= options.max_open * (1 - own) + options.max_open_recess;
+  }
 };
 
 /// The view around from the ground before a wall: the mean of two places, 4 m and 12 m before it (nearer where walls
 /// stand opposite: half the way). From the wall alone a house across a street of gardens would look like a courtyard.
-Enclosure enclosure_at(const OutlineEdge& edge, double at, const BuildingView& view, const EdgeOptions& options);
+Enclosure enclosure_at(const OutlineEdge& edge, double at, model::OsmId own, const BuildingView& view, const EdgeOptions& options);
 
 }  // namespace blockrand::context

@@ -150,9 +150,8 @@ class Labeller {
     const double step = piece.length() / n;
     for (int i = 0; i < n; ++i) {
       const double start = piece.start + i * step, end = i + 1 == n ? piece.end : start + step;
-      const Enclosure around = enclosure_at(edge, start + step / 2, view_, options_);
-      const bool court = around.walls >= options_.min_enclosure && around.street <= options_.max_street_view;
-      Piece part{start, end, court ? EdgeKind::courtyard : EdgeKind::side, {}, kNothing, {}};
+      const Enclosure around = enclosure_at(edge, start + step / 2, building_.osm, view_, options_);
+      Piece part{start, end, around.is_court(options_) ? EdgeKind::courtyard : EdgeKind::side, {}, kNothing, {}};
       for (const EdgeSample& sample : piece.samples)
         if (sample.at >= start && (sample.at < end || i + 1 == n)) part.samples.push_back(sample);
       out.push_back(std::move(part));
@@ -242,7 +241,7 @@ void join_jogs(const std::vector<OutlineEdge>& edges, const EdgeOptions& options
 void label_edges(model::Building& building, const SurroundingsIndex& index, std::string_view, const EdgeOptions& options) {
   building.edges.clear();
   const std::vector<OutlineEdge> edges = edges_of(building.outline);
-  const std::vector<std::vector<Mouth>> mouths = mouths_of(building, edges, index);
+  const std::vector<std::vector<Mouth>> mouths = mouths_of(building, edges, index, options);
   const Labeller labeller(building, index, options);
   Pieces pieces(edges.size());
   for (std::size_t e = 0; e < edges.size(); ++e)

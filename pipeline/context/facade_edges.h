@@ -47,9 +47,12 @@ struct EdgeOptions {
   double street_view = 32;
   /// m. Walls of one street front step back and forth by no more than this.
   double max_jog = 3.5;
-  double enclosure_step = 8;  ///< m between places that look around: what surrounds a wall changes slowly
-  /// Of the view around: how much must end at buildings for a courtyard. An own straight wall is half of it.
-  double min_enclosure = 0.8;
+  /// Of the view, by cosine: a wall that sees hardly anything but streets stands in street space, however it is turned.
+  double min_street_only = 0.85;
+  double enclosure_step = 5;  ///< m between places that look around: what surrounds a wall changes slowly
+  /// Of what the building itself leaves of the view around: how much may be open in a courtyard.
+  double max_open = 0.2;
+  double max_open_recess = 0.03;  ///< of the view around: added to it, so that one ray of 40 decides nothing
   /// Of the view around: how much of it a courtyard may give to streets. A gateway 4 m wide at 10 m has 0.06.
   double max_street_view = 0.1;
   /// m. Where a street is farther than this, and the building has another front less than half as far, it has its rear

@@ -132,8 +132,8 @@ TEST(GoldenEdges, AgreeWithLabelsMadeByEye) {
     for (const auto& [found, n] : row)
       if (label != found) std::printf("  %s taken for %s: %d\n", label.c_str(), found.c_str(), n);
 
-  EXPECT_GE(all.share(), 0.95);
-  for (const auto& [name, c] : by_label) EXPECT_GE(c.share(), 0.85) << name;
+  EXPECT_GE(all.share(), 0.97);
+  for (const auto& [name, c] : by_label) EXPECT_GE(c.share(), 0.90) << name;
 }
 
 }  // namespace
