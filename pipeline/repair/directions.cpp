@@ -13,10 +13,9 @@ namespace {
 
 using model::Point2;
 
-constexpr double kFirstNoise = 0.03;      // m. What is assumed before anything is known: a careful mapper
+constexpr double kUsualNoise = 0.02;      // m, of careful mappers
 constexpr double kDeviations = 3.2;       // 1 in 700 of walls that belong to a frame is left out
 constexpr double kMergeDeviations = 3.0;  // the same for frames of neighbours: 1 in 370
-constexpr double kHalfDensity = 0.7978845608028654;  // 2 / sqrt(2 pi): density at 0 of a standard normal's absolute value
 constexpr double kDiagonal = 0.7071067811865476;     // sin 45 degrees: no wall is farther off a frame
 constexpr double kLargestTurn = 0.3826834323650898;  // sin 22.5 degrees: beyond, a wall is nearer to a diagonal
 constexpr double kObliqueSine = 0.08715574274765817; // sin 5 degrees: long walls farther off are meant oblique
@@ -95,11 +94,11 @@ class Reader {
   std::vector<WallLine>& lines() { return out_.row.lines; }
   const std::vector<WallLine>& lines() const { return out_.row.lines; }
 
-  /// How far a line may be off a frame to which so great a share of its building's walls belongs: as long as it more
-  /// likely belongs to it than not, and within kDeviations.
-  double limit(const WallLine& l, double share) const {
-    const double sigma = out_.noise / std::sqrt(l.weight);
-    const double odds = share / (1 - share) * kHalfDensity * kDiagonal / sigma;
+  /// Sine of how far a line may be off its building's frame: as long as it more likely belongs to it than not, and within
+  /// kDeviations.
+  double limit(const WallLine& l, const RowNoise& row, std::size_t building) const {
+    const double sigma = row.noise / std::sqrt(l.weight);
+    const double odds = odds_of_frame(row, building, l.weight);
     if (odds <= 1) return 0;
     const double likely = std::sqrt(2 * base::log(odds));
     const double certain = std::clamp((l.length - kObliqueFrom) / (kObliqueLength - kObliqueFrom), 0.0, 1.0);
@@ -140,13 +139,25 @@ class Reader {
     return first_quarter(best);
   }
 
+  /// Frames and noise tell each other: found in turn, once from what a careful mapper does and once from what a careless
+  /// one does. The likelier end counts.
   void estimate_noise() {
-    out_.noise = kFirstNoise;
+    RowNoise best;
+    for (const double start : {kLeastNoise, kUsualNoise, kLargestNoise / 2}) {
+      RowNoise told = noise_from(start);
+      if (best.share.empty() || told.likelihood > best.likelihood) best = std::move(told);
+    }
+    out_.noise = best.noise;
+    for (std::uint32_t b = 0; b < lines_of_.size(); ++b)
+      for (Member& m : lines_of_[b]) m.limit = limit(lines()[m.line], best, b);
+  }
+
+  RowNoise noise_from(double noise) {
     std::vector<Deviation> off;
     RowNoise told;
-    for (int round = 0; round < 3; ++round) {
-      const double width = 2 * out_.noise;
+    for (int round = 0; round < 2; ++round) {
       // Heavy tails: it is not known yet which walls belong to a frame.
+      const double width = 2 * noise;
       const auto cauchy = [&](const Member& m, double sine) {
         const double z = sine / width;
         return 1 / (1 + z * z * lines()[m.line].weight);
@@ -159,14 +170,13 @@ class Reader {
           const WallLine& line = lines()[m.line];
           if (line.length < kTellingLength) continue;
           const double scale = std::sqrt(line.weight);
-          off.push_back({std::fabs(turn_off(axis, line.along)) * scale, kDiagonal * scale, b});
+          off.push_back({std::fabs(turn_off(axis, line.along)) * scale, line.weight, b});
         }
       }
-      told = fit_noise(off, lines_of_.size());
-      out_.noise = told.noise;
+      told = fit_noise(off, lines_of_.size(), noise);
+      noise = told.noise;
     }
-    for (std::uint32_t b = 0; b < lines_of_.size(); ++b)
-      for (Member& m : lines_of_[b]) m.limit = limit(lines()[m.line], told.share[b]);
+    return told;
   }
 
   void find_frames() {

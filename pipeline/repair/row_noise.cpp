@@ -9,23 +9,43 @@ namespace blockrand::repair {
 
 namespace {
 
-constexpr double kFreedom = 3;           // of Student's t: tails as long as mappers' slips
-constexpr double kDensity = 0.7351051938957227;  // 2 / (sqrt(3) pi / 2): of |t| at 0
-constexpr double kToDeviation = 1.2;     // standard deviation of evenly disturbed corners by that t's scale
+constexpr double kHalfNormal = 0.7978845608028654;  // 2 / sqrt(2 pi)
+//          // of Student's t: tails as long as mappers' slips
+//constexpr double kDensity = 0.7351051938957227;  // 2 / (sqrt(3) pi / 2): of |t| at 0
+constexpr double kToDeviation = 1.0;     // standard deviation of evenly disturbed corners by that t's scale
 constexpr double kUsualShare = 0.75;     // of walls that belong to a frame, before a building is seen,
 constexpr double kUsualWeight = 2;       // which counts like so many walls
+constexpr double kUsualSlight = 0.05;    // of those that are truly a little off,
+constexpr double kSlightWeight = 20;     // the same
+constexpr double kSlightTurn = 0.026;    // radians (1.5 degrees): scale of how far
+constexpr double kDiagonal = 0.7071067811865476;  // sin 45 degrees: no wall is farther off a frame
 constexpr double kFewWalls = 2.5;        // the noise is raised by this over the walls that tell of it
 constexpr int kRounds = 8;               // EM is near its end then
+constexpr double kLeastScale = 0.001;    // m. Truth on the 1/1024 m grid
 
 struct Fit {
-  double scale = 0, telling = 0, likelihood = 0;
+  double scale = 0, telling = 0, likelihood = 0, slight = kUsualSlight;
   std::vector<double> share;
 };
 
-/// Density of a deviation under the frame.
+/// Density of a deviation at a scale.
 double density(double off, double scale) {
-  const double z = off / scale, q = 1 + z * z / kFreedom;
-  return kDensity / (scale * q * q);
+  const double z = off / scale, exponent = 0.5 * z * z;
+  return exponent > 100 ? 0 : kHalfNormal / scale * base::exp(-exponent);
+}
+double slight_scale(double weight, double scale) {
+  return std::sqrt(scale * scale + kSlightTurn * kSlightTurn * weight);
+}
+double any_density(double weight) { return 1 / (kDiagonal * std::sqrt(weight)); }
+
+struct Shares {
+  double exact, slight, any;
+  double sum() const { return exact + slight + any; }
+};
+Shares shares(const Fit& fit, const Deviation& d) {
+  const double share = fit.share[d.building];
+  return {share * (1 - fit.slight) * density(d.off, fit.scale),
+          share * fit.slight * density(d.off, slight_scale(d.weight, fit.scale)), (1 - share) * any_density(d.weight)};
 }
 
 Fit run(std::span<const Deviation> deviations, std::size_t buildings, double scale) {
@@ -36,38 +56,45 @@ Fit run(std::span<const Deviation> deviations, std::size_t buildings, double sca
   for (int round = 0; round < kRounds; ++round) {
     std::fill(belong.begin(), belong.end(), kUsualShare * kUsualWeight);
     std::fill(count.begin(), count.end(), kUsualWeight);
-    double weight = 0, squares = 0;
+    double exact = 0, squares = 0, slight = kUsualSlight * kSlightWeight, about = kSlightWeight;
     for (const Deviation& d : deviations) {
-      const double in = fit.share[d.building] * density(d.off, fit.scale), out = (1 - fit.share[d.building]) / d.range;
-      const double r = in / (in + out), z = d.off / fit.scale;
-      belong[d.building] += r, count[d.building] += 1;
-      weight += r, squares += r * (kFreedom + 1) / (kFreedom + z * z) * d.off * d.off;
+      const Shares s = shares(fit, d);
+      const double sum = s.sum(), r = s.exact / sum;
+      belong[d.building] += 1 - s.any / sum, count[d.building] += 1;
+      slight += s.slight / sum, about += 1 - s.any / sum;
+      exact += r, squares += r * d.off * d.off;
     }
     // Every frame is fitted to the same walls.
-    const double freedom = std::max(weight - static_cast<double>(buildings), 0.5 * weight);
-    fit.telling = freedom;
-    if (freedom > 0) fit.scale = std::clamp(std::sqrt(squares / freedom), kLeastNoise / kToDeviation, kLargestNoise);
+    fit.telling = std::max(exact - static_cast<double>(buildings), 0.5 * exact);
+    if (fit.telling > 0) fit.scale = std::clamp(std::sqrt(squares / fit.telling), kLeastScale, kLargestNoise);
+    fit.slight = slight / about;
     for (std::size_t b = 0; b < buildings; ++b) fit.share[b] = belong[b] / count[b];
   }
   // The product of densities, its logarithm taken before it can overflow.
   double product = 1;
   std::size_t factors = 0;
   for (const Deviation& d : deviations) {
-    product *= fit.share[d.building] * density(d.off, fit.scale) + (1 - fit.share[d.building]) / d.range;
+    product *= shares(fit, d).sum();
     if (++factors % 32 == 0) fit.likelihood += base::log(product), product = 1;
   }
-  fit.likelihood += base::log(product);
+  // The frames were fitted, too: each is known the better the smaller the noise, which must not make a small one likelier.
+  fit.likelihood += base::log(product) + static_cast<double>(buildings) * 0.8 * base::log(fit.scale);
   return fit;
 }
 
 }  // namespace
 
-RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings) {
-  if (deviations.empty()) return {kLeastNoise, std::vector<double>(buildings, kUsualShare)};
-  Fit low = run(deviations, buildings, 2 * kLeastNoise), high = run(deviations, buildings, kLargestNoise / 2);
-  Fit& fit = low.likelihood > high.likelihood ? low : high;
-  const double noise = fit.scale * kToDeviation * (1 + kFewWalls / std::max(fit.telling, 1.0));
-  return {std::clamp(noise, kLeastNoise, kLargestNoise), std::move(fit.share)};
+RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings, double noise) {
+  if (deviations.empty()) return {kLeastNoise, std::vector<double>(buildings, kUsualShare), kUsualSlight, 0};
+  Fit fit = run(deviations, buildings, noise / kToDeviation);
+  const double raised = fit.scale * kToDeviation * (1 + kFewWalls / std::max(fit.telling, 1.0));
+  return {std::clamp(raised, kLeastNoise, kLargestNoise), std::move(fit.share), fit.slight, fit.likelihood};
+}
+
+double odds_of_frame(const RowNoise& row, std::size_t building, double weight) {
+  const double share = row.share[building];
+  return share * (1 - row.slight) * kHalfNormal / row.noise /
+         ((1 - share) * any_density(weight));
 }
 
 }  // namespace blockrand::repair

@@ -13,20 +13,25 @@ inline constexpr double kLargestNoise = 0.16;  // m. Walls off by more than half
 /// A wall's sideways deviation from its building's frame.
 struct Deviation {
   double off = 0;              ///< m, at least 0, as if one corner of weight 1 had it all: sine of the angle times sqrt(weight)
-  double range = 0;            ///< m. Of a wall of no frame it is anywhere in [0, range]
+  double weight = 1;           ///< m², of its line: what the sine was multiplied with, squared
   std::uint32_t building = 0;  ///< ascending
 };
 
 struct RowNoise {
-  double noise = 0;           ///< m, standard deviation of a corner's coordinate, never below what is known; see fit_noise
-  std::vector<double> share;  ///< per building, (0, 1): of its walls that belong to its frame
+  double noise = kLargestNoise;  ///< m, standard deviation of a corner's coordinate in one footprint
+  std::vector<double> share;     ///< per building, (0, 1): of its walls that belong to its frame, if only about
+  double slight = 0;             ///< of these, in the whole row: that are truly a little off
+  double likelihood = 0;         ///< logarithm, of the deviations
 };
 
-/// Fits a mixture per row: the walls of a frame deviate by Student's t with three degrees of freedom, whose scale is the
-/// noise of the whole row; other walls evenly over their range, in a share of each building's own (EM, from a low and a
-/// high noise; the likelier end; McLachlan & Peel, Finite Mixture Models, 2000, ch. 7). Rows in which most walls are
-/// oblique keep a small noise so. Where few walls tell, the noise is raised by its uncertainty. Within kLeastNoise and
-/// kLargestNoise.
-RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings);
+/// Fits a mixture per row. Walls of a frame deviate by Student's t with three degrees of freedom, whose scale is the noise of
+/// the whole row; some are truly off by a degree or two (party walls of bent rows, old towns), by a noise that grows with
+/// their length; others have any direction, in a share of each building's own. EM that starts from `noise` metres
+/// (McLachlan & Peel, Finite Mixture Models, 2000, ch. 7). Rows in which most walls are off keep a small noise so.
+/// Where few walls tell, the noise is raised by its uncertainty. Within kLeastNoise and kLargestNoise.
+RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings, double noise);
+
+/// How many times likelier than not a wall belongs to a frame exactly, if it does not deviate from it at all.
+double odds_of_frame(const RowNoise& row, std::size_t building, double weight);
 
 }  // namespace blockrand::repair
