@@ -1,7 +1,9 @@
 // What a place on a wall looks at.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -42,8 +44,14 @@ struct Enclosure {
   double street = 0;  ///< [0, 1]: ends in a street; what is left is open ground
   /// Of what the building itself leaves of the view, how much may be open in a courtyard; and how much at most in recesses
   /// where that is next to nothing.
-  bool is_court(const EdgeOptions& options) const {
-    return street <= options.max_street_view && 1 - own - others <= options.max_open * (1 - own) + options.max_open_recess;
+  bool is_court(const EdgeOptions& options) const { return shortage(options) <= 0; }
+  /// How far that is from changing, of the view around.
+  double margin(const EdgeOptions& options) const { return std::fabs(shortage(options)); }
+
+ private:
+  double shortage(const EdgeOptions& options) const {
+    return std::max(street - options.max_street_view,
+                    1 - own - others - options.max_open * (1 - own) - options.max_open_recess);
   }
 };
 

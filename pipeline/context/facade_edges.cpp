@@ -5,6 +5,9 @@
 
 #include "pipeline/context/edge_contacts.h"
 #include "pipeline/context/edge_samples.h"
+#include "pipeline/context/situation.h"
+#include "pipeline/context/street_front.h"
+#include "pipeline/context/wall_points.h"
 
 namespace blockrand::context {
 
@@ -21,6 +24,7 @@ struct Piece {
   model::OsmId neighbour;
   std::uint32_t passage = kNothing;
   std::vector<EdgeSample> samples;
+  double margin = 0;  ///< side and courtyard: of the view around, how far from the other label
   double length() const { return end - start; }
 };
 
@@ -34,6 +38,7 @@ void join_equal(std::vector<Piece>& pieces) {
   for (Piece& p : pieces) {
     if (!out.empty() && same_situation(out.back(), p)) {
       out.back().end = p.end;
+      out.back().margin = std::max(out.back().margin, p.margin);
       out.back().samples.insert(out.back().samples.end(), p.samples.begin(), p.samples.end());
     } else {
       out.push_back(std::move(p));
@@ -73,6 +78,8 @@ class Labeller {
     canopy_ = own != footprints.end() && own->id == building.osm && own->canopy;
   }
 
+  const BuildingView& view() const { return view_; }
+
   /// What a stretch faces when it is no street front after all.
   void no_front(const OutlineEdge& edge, Piece& piece) const {
     std::vector<Piece> parts;
@@ -86,17 +93,17 @@ class Labeller {
   std::vector<Piece> pieces_of(const OutlineEdge& edge, const std::vector<Mouth>& mouths) const {
     std::vector<Piece> fixed;
     for (const Contact& c : contacts_of(edge, building_.osm, canopy_, index_, options_))
-      fixed.push_back({c.start, c.end, EdgeKind::party_wall, c.neighbour, kNothing, {}});
+      fixed.push_back({c.start, c.end, EdgeKind::party_wall, c.neighbour, kNothing, {}, 0});
     const std::size_t contacts = fixed.size();
     for (const Mouth& m : canopy_ ? std::vector<Mouth>{} : mouths) {
       // What a neighbour's wall leaves of the mouth.
       double start = m.start;
       for (std::size_t c = 0; c < contacts; ++c) {
         if (fixed[c].end <= start || fixed[c].start >= m.end) continue;
-        if (fixed[c].start > start) fixed.push_back({start, fixed[c].start, EdgeKind::passage, {}, m.passage, {}});
+        if (fixed[c].start > start) fixed.push_back({start, fixed[c].start, EdgeKind::passage, {}, m.passage, {}, 0});
         start = fixed[c].end;
       }
-      if (start < m.end) fixed.push_back({start, m.end, EdgeKind::passage, {}, m.passage, {}});
+      if (start < m.end) fixed.push_back({start, m.end, EdgeKind::passage, {}, m.passage, {}, 0});
     }
     std::sort(fixed.begin(), fixed.end(), [](const Piece& a, const Piece& b) { return a.start < b.start; });
     std::vector<Piece> out;
@@ -125,7 +132,7 @@ class Labeller {
     std::vector<Piece> pieces;
     for (int i = 0; i < n; ++i) {
       EdgeSample sample = look_out(edge, start + (i + 0.5) * step, view_, options_);
-      Piece piece{start + i * step, start + (i + 1) * step, sample.kind, {}, kNothing, {}};
+      Piece piece{start + i * step, start + (i + 1) * step, sample.kind, {}, kNothing, {}, 0};
       if (sample.inside != kNothing) piece.neighbour = index_.all().footprints[sample.inside].id;
       piece.samples.push_back(std::move(sample));
       if (!pieces.empty() && !same_situation(pieces.back(), piece))
@@ -151,7 +158,7 @@ class Labeller {
     for (int i = 0; i < n; ++i) {
       const double start = piece.start + i * step, end = i + 1 == n ? piece.end : start + step;
       const Enclosure around = enclosure_at(edge, start + step / 2, building_.osm, view_, options_);
-      Piece part{start, end, around.is_court(options_) ? EdgeKind::courtyard : EdgeKind::side, {}, kNothing, {}};
+      Piece part{start, end, around.is_court(options_) ? EdgeKind::courtyard : EdgeKind::side, {}, kNothing, {}, around.margin(options_)};
       for (const EdgeSample& sample : piece.samples)
         if (sample.at >= start && (sample.at < end || i + 1 == n)) part.samples.push_back(sample);
       out.push_back(std::move(part));
@@ -236,9 +243,58 @@ void join_jogs(const std::vector<OutlineEdge>& edges, const EdgeOptions& options
   }
 }
 
+/// [0, 1]: how sure a label is.
+double confidence_of(const Piece& piece, const SurroundingsIndex& index) {
+  switch (piece.kind) {
+    case EdgeKind::party_wall:
+      return piece.samples.empty() ? 0.98 : 0.8;  // touched, or lies within the neighbour
+    case EdgeKind::passage:
+      return 0.85;  // its width is mostly assumed
+    case EdgeKind::street: {
+      double ahead = 0;
+      for (const EdgeSample& s : piece.samples) ahead += s.square != kNothing ? 1 : s.ahead;
+      const double mean = piece.samples.empty() ? 0 : ahead / static_cast<double>(piece.samples.size());
+      return 0.6 + 0.38 * std::clamp(2 * mean - 1, 0.0, 1.0);
+    }
+    default:
+      break;
+  }
+  for (const EdgeSample& s : piece.samples)
+    if (s.yard != kNothing && piece.kind == EdgeKind::courtyard && index.courtyard(index.yards()[s.yard]).closed) return 0.97;
+  return 0.6 + 0.35 * std::min(1.0, piece.margin / 0.2);  // the agreement with labels made by eye is 60 % at the threshold
+}
+
+FacadeEdge stretch_of(const OutlineEdge& edge, const Piece& piece, const SurroundingsIndex& index) {
+  FacadeEdge f;
+  f.from_node = edge.from_node;
+  f.to_node = edge.to_node;
+  f.polygon = edge.polygon;
+  f.ring = edge.ring;
+  f.edge = edge.edge;
+  f.start = piece.start;
+  f.end = piece.end;
+  f.kind = piece.kind;
+  f.confidence = static_cast<float>(confidence_of(piece, index));
+  f.neighbour = piece.neighbour;
+  return f;
+}
+
+void note_arcs(model::Building& building, const std::vector<OutlineEdge>& edges) {
+  for (std::size_t a = 0; a < building.arcs.size(); ++a) {
+    const model::Arc& arc = building.arcs[a];
+    const auto ring = static_cast<std::uint32_t>(std::count_if(edges.begin(), edges.end(), [&](const OutlineEdge& e) {
+      return e.polygon == arc.polygon && e.ring == arc.ring;
+    }));
+    for (FacadeEdge& f : building.edges)
+      if (f.polygon == arc.polygon && f.ring == arc.ring && (f.edge + ring - arc.first) % ring < arc.count)
+        f.arc = static_cast<std::int32_t>(a);
+  }
+}
+
 }  // namespace
 
-void label_edges(model::Building& building, const SurroundingsIndex& index, std::string_view, const EdgeOptions& options) {
+void label_edges(model::Building& building, const SurroundingsIndex& index, std::string_view address_street,
+                 const EdgeOptions& options) {
   building.edges.clear();
   const std::vector<OutlineEdge> edges = edges_of(building.outline);
   const std::vector<std::vector<Mouth>> mouths = mouths_of(building, edges, index, options);
@@ -250,20 +306,20 @@ void label_edges(model::Building& building, const SurroundingsIndex& index, std:
   join_jogs(edges, options, pieces);
   for (std::size_t e = 0; e < edges.size(); ++e) {
     join_equal(pieces[e]);
-    for (const Piece& piece : pieces[e]) {
-      FacadeEdge f;
-      f.from_node = edges[e].from_node;
-      f.to_node = edges[e].to_node;
-      f.polygon = edges[e].polygon;
-      f.ring = edges[e].ring;
-      f.edge = edges[e].edge;
-      f.start = piece.start;
-      f.end = piece.end;
-      f.kind = piece.kind;
-      f.neighbour = piece.neighbour;
+    for (Piece& piece : pieces[e]) {
+      FacadeEdge f = stretch_of(edges[e], piece, index);
+      if (piece.kind != EdgeKind::party_wall) {
+        if (piece.samples.empty())
+          piece.samples.push_back(look_out(edges[e], (piece.start + piece.end) / 2, labeller.view(), options));
+        face_street(edges[e], piece.samples, labeller.view(), f);
+      }
       building.edges.push_back(std::move(f));
     }
   }
+  note_arcs(building, edges);
+  mark_corners(building, edges);
+  assign_points(building, edges, index);
+  describe_situation(building, edges, index, address_street);
 }
 
 }  // namespace blockrand::context
