@@ -97,21 +97,21 @@ void follow(const MovedWalls& walls, std::vector<PartBody>& bodies, const Repair
 /// What the outline gave to neighbours its parts give, too.
 void give_up_lost(std::span<const Polygon> before, const Building& building, std::vector<PartBody>& bodies,
                   const RepairOptions& options, model::Report& report) {
-  const std::vector<Polygon> lost =
+  std::vector<Polygon> lost =
       geometry::difference(before, building.outline, options.min_overlap_area, options.ring_clearance).polygons;
+  // Narrower strips are where a wall moved, and the parts with it.
+  std::erase_if(lost, [&](const Polygon& p) { return geometry::equivalent_width(p) < options.snap_distance; });
   if (lost.empty()) return;
   for (PartBody& body : bodies) {
     const double common = geometry::common_area(body.polygons, lost);
     if (common <= options.min_overlap_area) continue;
-    geometry::ValidPolygons rest =
-        geometry::difference(body.polygons, lost, options.min_piece_area, options.ring_clearance);
-    if (area_of(rest.polygons) < (1 - options.max_loss) * area_of(body.polygons)) {
+    std::vector<Polygon> rest = plan_without(body.polygons, lost, options);
+    if (area_of(rest) < (1 - options.max_loss) * area_of(body.polygons)) {
       report.add(body.osm, IssueCode::overlap_kept, square_metres(common) + " that the outline gave to a neighbour");
       continue;
     }
-    restore_nodes(rest.polygons, body.polygons);
-    restore_nodes(rest.polygons, building.outline);
-    body.polygons = std::move(rest.polygons);
+    restore_nodes(rest, building.outline);
+    body.polygons = std::move(rest);
   }
 }
 

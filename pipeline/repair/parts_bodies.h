@@ -42,9 +42,14 @@ struct PartBody {
 /// \return how many corners were joined to another part's corner or wall that did not have them before
 int share_part_walls(std::vector<PartBody>& bodies, std::span<const model::Polygon> outline, const RepairOptions& options);
 
+/// What is left of a plan without `taken`. Pieces narrower than 0.3 m or smaller than 0.5 m² are drawing tolerance and go;
+/// empty where there are only such. Nodes of both are kept.
+std::vector<model::Polygon> plan_without(std::span<const model::Polygon> plan, std::span<const model::Polygon> taken,
+                                         const RepairOptions& options);
+
 /// Resolves overlaps of more than `min_overlap_area` between parts at overlapping heights: in order of area (smaller
-/// first), then id, each part loses what those before it cover. Pieces narrower than 0.3 m or smaller than 0.5 m² are
-/// drawing tolerance and go; a part of which nothing else would remain keeps its plan. A PARTS_OVERLAP row each.
+/// first), then id, each part loses what those before it cover (plan_without); a part of which nothing would be left
+/// keeps its plan. A PARTS_OVERLAP row each.
 void resolve_part_overlaps(std::vector<PartBody>& bodies, const RepairOptions& options, model::Report& report);
 
 }  // namespace blockrand::repair

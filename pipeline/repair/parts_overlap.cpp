@@ -91,6 +91,15 @@ bool heights_meet(const HeightSpan& a, const HeightSpan& b) {
   return high - low > (one_kind ? kSameKindMargin : kMixedMargin);
 }
 
+std::vector<Polygon> plan_without(std::span<const Polygon> plan, std::span<const Polygon> taken,
+                                  const RepairOptions& options) {
+  geometry::ValidPolygons rest = geometry::difference(plan, taken, kLeastPartArea, options.ring_clearance);
+  std::erase_if(rest.polygons, [](const Polygon& p) { return geometry::equivalent_width(p) < kLeastPartWidth; });
+  restore_nodes(rest.polygons, plan);
+  restore_nodes(rest.polygons, taken);
+  return std::move(rest.polygons);
+}
+
 void resolve_part_overlaps(std::vector<PartBody>& bodies, const RepairOptions& options, model::Report& report) {
   if (bodies.size() < 2) return;
   struct Entry {
@@ -119,16 +128,13 @@ void resolve_part_overlaps(std::vector<PartBody>& bodies, const RepairOptions& o
     }
     if (taken.empty()) continue;
     const double overlap = geometry::common_area(weak.polygons, taken);
-    geometry::ValidPolygons rest =
-        geometry::difference(weak.polygons, taken, kLeastPartArea, options.ring_clearance);
-    std::erase_if(rest.polygons, [](const Polygon& p) { return geometry::equivalent_width(p) < kLeastPartWidth; });
-    if (rest.polygons.empty()) {
-      report.add(weak.osm, IssueCode::parts_overlap, square_metres(overlap) + " with " + takers + "; stays, nothing else is left");
+    std::vector<Polygon> rest = plan_without(weak.polygons, taken, options);
+    if (rest.empty()) {
+      report.add(weak.osm, IssueCode::parts_overlap,
+                 square_metres(overlap) + " with " + takers + "; stays, nothing else is left");
       continue;
     }
-    restore_nodes(rest.polygons, weak.polygons);
-    restore_nodes(rest.polygons, taken);
-    weak.polygons = std::move(rest.polygons);
+    weak.polygons = std::move(rest);
     report.add(weak.osm, IssueCode::parts_overlap, square_metres(overlap) + " given to " + takers);
   }
 }
