@@ -231,11 +231,43 @@ std::string body_rows(const Json& j, const std::string& asked, const std::string
   return text;
 }
 
+/// What the stretch of an outline looks out on: "Kastanienallee, 11.5 m away".
+std::string faces(const Json& e) {
+  const std::string kind = e.value("kind", "");
+  std::string text;
+  if (e.contains("neighbour")) text = e.value("neighbour", "");
+  if (e.contains("covered_height")) text += fmt::format(", covered to {:.1f} m", e.value("covered_height", 0.0));
+  if (e.contains("street")) {
+    text = e.value("street_name", e.value("street", ""));
+    text += fmt::format(", {:.1f} m away", e.value("street_distance", 0.0));
+  }
+  const auto also = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
+  if (e.value("front", false)) also("main front");
+  if (e.value("corner_start", false) || e.value("corner_end", false)) also("street corner");
+  if (e.value("chamfer", false)) also("cuts off the corner");
+  if (e.contains("radius")) also(fmt::format("curve of radius {:.1f} m", e.value("radius", 0.0)));
+  if (const int n = e.value("entrances", 0); n > 0) also(fmt::format("{} entrance{}", n, n == 1 ? "" : "s"));
+  return text;
+}
+
+std::string edge_rows(const Json& j) {
+  if (!j.contains("edges")) return "\nIts walls\n  " + wrapped("This build does not know what they face.", 2) + "\n";
+  std::string text = "\nIts walls\n";
+  for (const Json& e : j["edges"]) {
+    std::string id = e.value("id", "");
+    if (const std::string prefix = j.value("id", "") + ".e"; id.starts_with(prefix)) id = id.substr(prefix.size());
+    text += row(id, 28, fmt::format("{:<11} {:>6.1f} m  {:<2}  {:>3.0f}%  {}", spaced(e.value("kind", "")),
+                                    e.value("length", 0.0), e.value("looks", ""), 100 * e.value("confidence", 0.0),
+                                    faces(e)));
+  }
+  return text;
+}
+
 }  // namespace
 
 namespace {
 
-std::string text_of(const Json& j, const region::FoundExplanation& found, const std::string& asked_body) {
+std::string text_of(const Json& j, const region::FoundExplanation& found, const std::string& asked_body, bool edges) {
   if (!found.in_model) return not_modelled(j, found);
 
   const std::string id = j.at("id"), asked = found.asked.text();
@@ -265,6 +297,7 @@ std::string text_of(const Json& j, const region::FoundExplanation& found, const 
   text += body_rows(j, asked, asked_body);
   text += "\nWhat each stage did\n";
   for (const Json& stage : j.at("stages")) text += row(stage.value("stage", ""), 12, stage.value("text", ""));
+  if (edges) text += edge_rows(j);
   if (!j.at("notes").empty()) {
     text += "\nNotes\n";
     for (const Json& note : j["notes"]) {
@@ -285,11 +318,11 @@ std::string text_of(const Json& j, const region::FoundExplanation& found, const 
 
 }  // namespace
 
-std::string explanation_text(const region::FoundExplanation& found, const std::string& body) {
+std::string explanation_text(const region::FoundExplanation& found, const std::string& body, bool edges) {
   try {
     Json j = Json::parse(found.json);
     make_printable(j);
-    return text_of(j, found, body);
+    return text_of(j, found, body, edges);
   } catch (const Json::exception& error) {
     throw base::InputError("explain/", found.explained.text(), std::string("the explanation is damaged: ") + error.what(),
                            "Build again; 'blockrand validate' lists all damage");
@@ -307,6 +340,7 @@ settings::CommandText explain_text() {
           .options = settings::kExplain,
           .examples = {{"blockrand explain out/leipzig w123", ""},
                        {"blockrand explain out/leipzig https://www.openstreetmap.org/way/123", ""},
+                       {"blockrand explain out/leipzig w123 --edges", ""},
                        {"blockrand explain out/leipzig r45 --json | jq .attributes", ""}},
           .exit_codes = {{"0", "all well"},
                          {"1", "wrong usage"},
@@ -335,7 +369,7 @@ int run_explain(const std::vector<std::string>& arguments) {
   if (s.json)
     std::printf("%s\n", found->json.c_str());
   else
-    std::fputs(explanation_text(*found, is_body ? s.id : "").c_str(), stdout);
+    std::fputs(explanation_text(*found, is_body ? s.id : "", s.edges).c_str(), stdout);
   return kSuccess;
 }
 

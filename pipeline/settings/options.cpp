@@ -394,6 +394,11 @@ void add_build(Table& t) {
              .maximum = 1000000,
              .help = "read only every Nth tile; counts are then not compared"},
             FIELD(validation.sample));
+  t.flag({.name = "edges",
+          .section = S,
+          .commands = kExplain,
+          .help = "list the walls as well: what each faces, how long it is, where it looks"},
+         FIELD(edges));
   t.flag({.name = "json", .section = S, .commands = kInfo | kExplain | kValidate, .help = "print JSON"}, FIELD(json));
 }
 

@@ -21,6 +21,7 @@ struct Settings {
   blockrand::validate::ValidateOptions validation;  ///< but for its folder and jobs, which other commands have too
   std::string id;      ///< of the building that `explain` is asked about
   bool json = false;   ///< print JSON
+  bool edges = false;  ///< `explain` lists the stretches of the outline
   base::ProgressStyle progress = base::ProgressStyle::automatic;
   base::LogFormat log_format = base::LogFormat::text;
   bool quiet = false;  ///< warnings and errors only

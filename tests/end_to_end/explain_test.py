@@ -85,6 +85,19 @@ class Explain(BuildTest):
             if row['state'] == 'reported':
                 self.assertIn(row['code'], text)
 
+    def test_walls_on_request(self):
+        index = index_of(self.out)
+        for identity, tile, building in [row for row in index if row[0] == row[2]][:40:4]:
+            line = lines_of(self.out, tile)[building]
+            text = self.explained(self.out, identity, '--edges')
+            self.assertIn('Its walls', text)
+            self.assertNotIn('Its walls', self.explained(self.out, identity))
+            rows = text[text.index('Its walls'):]
+            for edge in line.get('edges', []):
+                self.assertIn(edge['id'].split('.e', 1)[1], rows)
+                self.assertIn(f"{edge['length']:.1f} m", rows)
+                self.assertIn(edge.get('street_name', edge.get('neighbour', '')), rows)
+
     def test_ids_in_all_forms(self):
         identity = next(o for o, _, b in index_of(self.out) if o == b and o[0] == 'w')
         text = self.explained(self.out, identity)

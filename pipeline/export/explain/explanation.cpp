@@ -1,11 +1,14 @@
 #include "pipeline/export/explain/explanation.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "pipeline/export/explain/json_text.h"
+#include "pipeline/export/explain/situation.h"
 #include "pipeline/export/text.h"
 #include "pipeline/geometry/polygon.h"
 
@@ -26,21 +29,6 @@ std::string_view name(model::IssueClass issue_class) {
 
 constexpr std::int64_t kTurn = 3'600'000'000;  // 360 degrees in OSM's 1e-7
 
-/// "1 wall", "3 walls".
-std::string counted(std::size_t n, const char* noun) { return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s"); }
-
-/// "a", "a and b", "a, b and 3 more".
-std::string listed(const std::vector<std::string>& names, std::size_t most) {
-  std::string text;
-  const std::size_t shown = std::min(names.size(), most);
-  for (std::size_t i = 0; i < shown; ++i) {
-    const bool last = i + 1 == shown && shown == names.size();
-    text += (i == 0 ? "" : last ? " and " : ", ") + names[i];
-  }
-  if (shown < names.size()) text += fmt::format(" and {} more", names.size() - shown);
-  return text;
-}
-
 class Writer {
  public:
   Writer(const Region& region, const ExplainOptions& options) : region_(region), options_(options), tags_(region.extract) {
@@ -51,31 +39,32 @@ class Writer {
 
   void line(const Building& building, Explanations& out) {
     text_ = &out.lines;
+    json_ = JsonText(out.lines);
     const Fate fate = options_.fate(building.mapped_index);
-    open('{');
-    string("id", building.id());
-    string("tile", options_.tile);
-    string("state", model::name(fate.state));
+    json_.open('{');
+    json_.string("id", building.id());
+    json_.string("tile", options_.tile);
+    json_.string("state", model::name(fate.state));
     if (fate.state == ObjectState::reported) {
-      string("code", model::info(fate.code).text);
-      string("meaning", model::info(fate.code).meaning);
+      json_.string("code", model::info(fate.code).text);
+      json_.string("meaning", model::info(fate.code).meaning);
     }
     int lod = -1;
     for (const BuildingPart& part : building.parts)
       if (part.lod >= 0) lod = lod < 0 ? part.lod : std::min(lod, part.lod);
-    if (lod >= 0) number("lod", lod);
+    if (lod >= 0) json_.number("lod", lod);
     identity(building);
     outline(building.mapped_index);
     stages(building, fate);
     attributes(building.attributes);
     bodies(building);
     notes(building);
-    key("files");
-    open('[');
+    json_.key("files");
+    json_.open('[');
     if (!building.parts.empty())
-      for (const std::string& file : options_.files) element(file);
-    close(']');
-    close('}');
+      for (const std::string& file : options_.files) json_.element(file);
+    json_.close(']');
+    json_.close('}');
     *text_ += '\n';
 
     out.objects.emplace_back(building.osm, building.osm);
@@ -84,48 +73,11 @@ class Writer {
   }
 
  private:
-  // ---- JSON by hand: one string, no tree
-  void comma() {
-    const char last = text_->empty() ? '\n' : text_->back();
-    if (last != '{' && last != '[' && last != ':' && last != '\n') *text_ += ',';
-  }
-  void key(std::string_view k) {
-    comma();
-    append_json(*text_, k);
-    *text_ += ':';
-  }
-  void open(char bracket) {
-    comma();
-    *text_ += bracket;
-  }
-  void close(char bracket) { *text_ += bracket; }
-  void string(std::string_view k, std::string_view value) {
-    key(k);
-    append_json(*text_, value);
-  }
-  void element(std::string_view value) {
-    comma();
-    append_json(*text_, value);
-  }
-  void number(std::string_view k, double value) {
-    key(k);
-    append_number(*text_, value);
-  }
-  void integers(std::string_view k, std::size_t count, const std::function<std::int64_t(std::size_t)>& at) {
-    key(k);
-    open('[');
-    for (std::size_t i = 0; i < count; ++i) {
-      comma();
-      append_number(*text_, at(i));
-    }
-    close(']');
-  }
-
   // ---- who it is
   void identity(const Building& building) {
-    if (const auto name = tags_.name(building.tags); !name.empty()) string("name", name);
-    if (const std::string address = tags_.address(building.tags).line(); !address.empty()) string("address", address);
-    key("tags");
+    if (const auto name = tags_.name(building.tags); !name.empty()) json_.string("name", name);
+    if (const std::string address = tags_.address(building.tags).line(); !address.empty()) json_.string("address", address);
+    json_.key("tags");
     if (tags_.extract())
       append_tags_json(*text_, *tags_.extract(), building.tags);
     else
@@ -158,26 +110,26 @@ class Writer {
     std::int64_t middle = west + (east - west) / 2;
     if (middle > kTurn / 2) middle -= kTurn;
     if (middle < -kTurn / 2) middle += kTurn;
-    key("place");
-    open('{');
-    number("lon", static_cast<double>(middle) / 1e7);
-    number("lat", static_cast<double>(south + (north - south) / 2) / 1e7);
-    close('}');
-    key("outline");
-    open('{');
-    integers("nodes", nodes.size(), [&](std::size_t i) { return nodes[i]; });
-    integers("lon", lon.size(), [&](std::size_t i) { return lon[i]; });
-    integers("lat", lat.size(), [&](std::size_t i) { return lat[i]; });
-    integers("rings", rings.size(), [&](std::size_t i) { return static_cast<std::int64_t>(rings[i].vertices.count); });
-    close('}');
+    json_.key("place");
+    json_.open('{');
+    json_.number("lon", static_cast<double>(middle) / 1e7);
+    json_.number("lat", static_cast<double>(south + (north - south) / 2) / 1e7);
+    json_.close('}');
+    json_.key("outline");
+    json_.open('{');
+    json_.integers("nodes", nodes.size(), [&](std::size_t i) { return nodes[i]; });
+    json_.integers("lon", lon.size(), [&](std::size_t i) { return lon[i]; });
+    json_.integers("lat", lat.size(), [&](std::size_t i) { return lat[i]; });
+    json_.integers("rings", rings.size(), [&](std::size_t i) { return static_cast<std::int64_t>(rings[i].vertices.count); });
+    json_.close('}');
   }
 
   // ---- what each stage did
   void stage(std::string_view name, std::string_view text) {
-    open('{');
-    string("stage", name);
-    string("text", text);
-    close('}');
+    json_.open('{');
+    json_.string("stage", name);
+    json_.string("text", text);
+    json_.close('}');
   }
 
   /// Notices of one building and its parts with a code of `codes`, as "meaning (detail)".
@@ -195,8 +147,8 @@ class Writer {
   }
 
   void stages(const Building& building, const Fate& fate) {
-    key("stages");
-    open('[');
+    json_.key("stages");
+    json_.open('[');
     stage("read", read_text(building));
     stage("repair", repair_text(building));
     if (!building.parts.empty()) {
@@ -205,7 +157,10 @@ class Writer {
     }
     stage("build", build_text(building, fate));
     if (!building.parts.empty()) stage("check", check_text(building));
-    close(']');
+    json_.close(']');
+    append_repair(json_, building);
+    append_situation(json_, building);
+    append_edges(json_, building);
   }
 
   std::string mapped_text(const Building& building) const {
@@ -241,9 +196,19 @@ class Writer {
   }
 
   std::string repair_text(const Building& building) {
-    const std::string mended = said(building, {model::IssueCode::duplicate_points, model::IssueCode::spike_removed, model::IssueCode::ring_repaired,
-                                               model::IssueCode::split_outline, model::IssueCode::touching_rings, model::IssueCode::sliver_dropped,
-                                               model::IssueCode::parts_incomplete});
+    using model::IssueCode;
+    std::vector<std::string> pieces;
+    const std::string mended =
+        said(building, {IssueCode::duplicate_points, IssueCode::spike_removed, IssueCode::ring_repaired,
+                        IssueCode::split_outline, IssueCode::touching_rings, IssueCode::sliver_dropped,
+                        IssueCode::collinear_points, IssueCode::shared_wall_conflict, IssueCode::overlap_kept,
+                        IssueCode::nested_building, IssueCode::repair_bounded, IssueCode::parts_outside,
+                        IssueCode::parts_overlap, IssueCode::outline_made, IssueCode::parts_incomplete,
+                        IssueCode::reach_cut});
+    const std::string moved = moved_text(building);
+    if (!mended.empty()) pieces.push_back(mended);
+    if (!moved.empty()) pieces.push_back(moved);
+    if (pieces.empty()) pieces.push_back("nothing to mend");
     double area = 0;
     std::size_t points = 0;
     const auto add = [&](const model::Polygon& p) {
@@ -252,12 +217,19 @@ class Writer {
       for (const model::Ring& hole : p.holes) points += hole.size();
     };
     for (const model::Polygon& p : building.outline) add(p);
-    std::string text = mended.empty() ? "nothing to mend" : mended;
-    if (points > 0) text += fmt::format("; the footprint has {} points and {:.1f} m2", points, area);
-    return text;
+    if (points > 0) pieces.push_back(fmt::format("the footprint has {} points and {:.1f} m2", points, area));
+    return fmt::format("{}", fmt::join(pieces, "; "));
   }
 
   std::string context_text(const Building& building) {
+    const bool looked_at = building.situation.position != model::BuildingPosition::unknown ||
+                           std::any_of(building.edges.begin(), building.edges.end(),
+                                       [](const model::FacadeEdge& e) { return e.end > e.start; });
+    return looked_at ? situation_text(building, options_.courtyard) : mapped_walls_text(building);
+  }
+
+  /// Where context did not look at the surroundings: walls that neighbours share node by node.
+  std::string mapped_walls_text(const Building& building) const {
     std::size_t edge = 0, shared = 0;
     double length = 0;
     std::set<model::OsmId> neighbours;
@@ -366,66 +338,66 @@ class Writer {
   void value(model::RoofOrientation v) { append_json(*text_, v == model::RoofOrientation::along ? "along" : "across"); }
 
   void attributes(const model::Attributes& a) {
-    key("attributes");
-    open('[');
+    json_.key("attributes");
+    json_.open('[');
     model::for_each_attribute(
         a,
         [&](std::string_view attribute, std::string_view unit, const auto& sourced) {
-          open('{');
-          string("name", attribute);
-          key("value");
+          json_.open('{');
+          json_.string("name", attribute);
+          json_.key("value");
           value(sourced.value);
-          if (!unit.empty()) string("unit", unit);
-          string("source", model::name(sourced.source));
-          key("confidence");
+          if (!unit.empty()) json_.string("unit", unit);
+          json_.string("source", model::name(sourced.source));
+          json_.key("confidence");
           append_number(*text_, sourced.confidence);
           const model::Evidence& evidence = region_.evidence[sourced.evidence];
-          if (!evidence.text.empty()) string("why", evidence.text);
+          if (!evidence.text.empty()) json_.string("why", evidence.text);
           if (!evidence.lost.empty()) {
-            key("lost");
-            open('[');
+            json_.key("lost");
+            json_.open('[');
             for (const model::Candidate& c : evidence.lost) {
-              open('{');
-              string("value", c.value);
-              string("source", model::name(c.source));
-              key("confidence");
+              json_.open('{');
+              json_.string("value", c.value);
+              json_.string("source", model::name(c.source));
+              json_.key("confidence");
               append_number(*text_, c.confidence);
-              if (!c.text.empty()) string("why", c.text);
-              close('}');
+              if (!c.text.empty()) json_.string("why", c.text);
+              json_.close('}');
             }
-            close(']');
+            json_.close(']');
           }
-          close('}');
+          json_.close('}');
         },
         [](std::string_view, std::string_view) {});
-    close(']');
+    json_.close(']');
   }
 
   void bodies(const Building& building) {
-    key("bodies");
-    open('[');
+    json_.key("bodies");
+    json_.open('[');
     for (const BuildingPart& part : building.parts) {
-      open('{');
-      string("id", part.id);
+      json_.open('{');
+      json_.string("id", part.id);
       if (part.osm != building.osm) {
-        key("tags");
+        json_.key("tags");
         if (tags_.extract())
           append_tags_json(*text_, *tags_.extract(), part.tags);
         else
           *text_ += "{}";
       }
-      number("lod", part.lod);
-      string("asked_roof", model::name(part.attributes.roof_shape.value));
-      string("built_roof", model::name(part.built_roof));
-      key("fallbacks");
-      open('[');
-      for (const model::IssueCode code : part.fallbacks) element(model::info(code).text);
-      close(']');
+      json_.number("lod", part.lod);
+      json_.string("asked_roof", model::name(part.attributes.roof_shape.value));
+      json_.string("built_roof", model::name(part.built_roof));
+      json_.key("fallbacks");
+      json_.open('[');
+      for (const model::IssueCode code : part.fallbacks) json_.element(model::info(code).text);
+      json_.close(']');
       // A single body has the building's attributes: said once.
       if (building.has_mapped_parts || building.parts.size() > 1) attributes(part.attributes);
-      close('}');
+      json_.close('}');
     }
-    close(']');
+    json_.close(']');
   }
 
   template <class Visit>
@@ -445,26 +417,27 @@ class Writer {
   }
 
   void notes(const Building& building) {
-    key("notes");
-    open('[');
+    json_.key("notes");
+    json_.open('[');
     for_each_row(building, [&](const ReportRow& row) {
       const model::IssueInfo& about = model::info(row.code);
-      open('{');
-      if (row.object != building.osm) string("object", row.object.text());
-      string("code", about.text);
-      string("class", name(about.issue_class));
-      string("meaning", about.meaning);
-      if (!row.detail.empty()) string("detail", row.detail);
-      close('}');
+      json_.open('{');
+      if (row.object != building.osm) json_.string("object", row.object.text());
+      json_.string("code", about.text);
+      json_.string("class", name(about.issue_class));
+      json_.string("meaning", about.meaning);
+      if (!row.detail.empty()) json_.string("detail", row.detail);
+      json_.close('}');
     });
-    close(']');
+    json_.close(']');
   }
 
   const Region& region_;
   const ExplainOptions& options_;
   TagReader tags_;
   std::vector<const ReportRow*> rows_;
-  std::string* text_ = nullptr;
+  std::string* text_ = nullptr;  // the lines so far
+  JsonText json_;                // writes to the same
 };
 
 }  // namespace

@@ -7,6 +7,12 @@
 //    "tags":{…},                                                  all OSM tags
 //    "outline":{"nodes":[…],"lon":[…],"lat":[…],"rings":[…]},     as mapped: node ids, 1e-7 degrees; points per ring
 //    "stages":[{"stage":"read","text":…},…],                      what each stage did, in the order of the flow
+//    "repair":{"vertices":14,"moved":12,"mean_shift":0.08,"max_shift":0.31,"mapped_area":312.4,"area":313,"shared_walls":3,
+//              "gaps_closed":1,"overlaps_resolved":0,"overlap_left":0,"direction":27.3},      where repair left a record
+//    "situation":{"position":"mid_row","orientation":180,"depth":14,"width":18,"setback":0.4,"party_wall_length":28,
+//                 "block":…,"courtyards":[…],"trees":[{"id":"n5","distance":3.1}]},            where context looked
+//    "edges":[{"id":"w1.e11_12","kind":"street","confidence":0.9,"length":18,"looks":"S","front":true,"neighbour":…,
+//              "street":…,"street_name":…,"street_distance":…,"visibility":…,"radius":…},…],    where context looked
 //    "attributes":[{"name":"storeys","value":5,"unit":"","source":"neighbours","confidence":0.6,"why":…,
 //                   "lost":[{"value":"4","source":"preset","confidence":0.3,"why":…}]},…],
 //    "bodies":[{"id":"w1","lod":2,"asked_roof":"gabled","built_roof":"hipped","fallbacks":["GABLE_AS_HIP"],…}],
@@ -15,8 +21,10 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -31,6 +39,14 @@ struct Fate {
   model::OsmId related;
 };
 
+/// What context knows of a courtyard.
+struct CourtyardFacts {
+  double area = 0;  ///< m²
+  bool closed = true;
+};
+/// By the id of the courtyard.
+using CourtyardLookup = std::function<std::optional<CourtyardFacts>(std::string_view)>;
+
 struct ExplainOptions {
   std::string tile;                ///< "15_17600_12900"
   std::vector<std::string> files;  ///< of the tile, relative to the build
@@ -39,7 +55,9 @@ struct ExplainOptions {
   std::function<Fate(std::uint32_t)> fate;
   /// Rows about the tile's objects from before the tile was worked on, sorted by object.
   std::span<const model::ReportRow> earlier;
-  /// Ids of the buildings that share edge `from_node`–`to_node`; empty where none does.
+  /// Of BuildingSituation::courtyards; may be empty.
+  CourtyardLookup courtyard;
+  /// Only for buildings whose surroundings were not looked at: ids of the buildings that share edge `from_node`–`to_node`; empty where none does.
   std::function<std::vector<model::OsmId>(std::int64_t, std::int64_t)> sharers;
 };
 

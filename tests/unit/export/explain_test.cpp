@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "pipeline/export/gzip.h"
+#include "tests/unit/export/row_sample.h"
 #include "tests/unit/export/sample_region.h"
 
 namespace blockrand::export_ {
@@ -93,7 +94,7 @@ TEST(Explain, NotesComeFromBeforeAndFromTheTile) {
   EXPECT_THAT(stages.at("repair"), HasSubstr("1 points"));
 }
 
-TEST(Explain, SharedWallsNameTheNeighbours) {
+TEST(Explain, WithoutContextWallsSharedNodeByNodeAreTold) {
   test::SampleRegion sample;
   model::Building& b = sample.add_building(7, {{"building", "yes"}});
   sample.add_box(b, "w7", 0, 0, 10, 8, 0, 6);
@@ -111,6 +112,91 @@ TEST(Explain, SharedWallsNameTheNeighbours) {
   const json line = lines_of(explain(sample.region(), options).lines).at("w7");
   EXPECT_EQ(line.at("stages")[2].at("stage"), "context");
   EXPECT_EQ(line.at("stages")[2].at("text"), "1 of 4 walls (8.0 m) is shared with w9");
+}
+
+std::map<std::string, std::string> stages_of(const json& line) {
+  std::map<std::string, std::string> stages;
+  for (const json& s : line.at("stages")) stages[s.at("stage")] = s.at("text");
+  return stages;
+}
+
+TEST(ExplainRow, SaysHowAHouseStands) {
+  ExplainOptions options = plain_options();
+  options.courtyard = [](std::string_view id) {
+    EXPECT_EQ(id, "w1.y7_8");
+    return CourtyardFacts{312.4, true};
+  };
+  const auto lines = lines_of(explain(test::row_sample().region(), options).lines);
+  EXPECT_EQ(stages_of(lines.at("w1")).at("context"),
+            "corner house; fronts on Oderberger Straße (14.0 m, looks W) and Kastanienallee (12.0 m, looks S); "
+            "1 mapped entrance; walls shared with w2 (14.0 m); 14.0 m deep and 12.0 m wide; stands at a closed courtyard "
+            "of 312 m2; in block w900.n5.l");
+  EXPECT_EQ(stages_of(lines.at("w2")).at("context"),
+            "within a row; front on Kastanienallee (14.7 m, looks S); a passage 3.3 m wide; walls shared with w3 (14.0 m) "
+            "and w1 (14.0 m); 14.0 m deep and 18.0 m wide; 0.4 m behind the building line of the street; stands at a "
+            "closed courtyard of 312 m2; in block w900.n5.l");
+  EXPECT_EQ(stages_of(lines.at("w4")).at("context"),
+            "rear building (Hinterhaus); no wall is shared with a neighbour; 9.0 m deep and 12.0 m wide; stands at a closed "
+            "courtyard of 312 m2; in block w900.n5.l");
+}
+
+TEST(ExplainRow, SaysWhatRepairDid) {
+  auto sample = test::row_sample();
+  model::Building& fourth = sample.region().buildings.at(3);
+  fourth.repaired.moved = 1;
+  fourth.repaired.mean_shift = fourth.repaired.max_shift = 0.2;
+  fourth.repaired.overlaps_resolved = 1;
+  fourth.repaired.overlap_left = 0.25;
+  const auto lines = lines_of(explain(sample.region(), plain_options()).lines);
+  EXPECT_EQ(stages_of(lines.at("w1")).at("repair"), "no corner was moved; the footprint has 4 points and 168.0 m2");
+  EXPECT_EQ(stages_of(lines.at("w2")).at("repair"),
+            "3 of 4 corners moved by 0.08 m on average, 0.31 m at most, to share 2 walls with w3 and w1 and to make corners "
+            "right; 1 gap between walls closed; area 251.4 -> 252.0 m2; the footprint has 4 points and 252.0 m2");
+  EXPECT_EQ(stages_of(lines.at("w4")).at("repair"),
+            "1 of 4 corners moved by 0.20 m on average, 0.20 m at most, to resolve 1 overlap; 0.2 m2 still overlap with "
+            "others; 1 curve kept; the footprint has 4 points and 108.0 m2");
+}
+
+TEST(ExplainRow, MachinesReadTheSame) {
+  const auto lines = lines_of(explain(test::row_sample().region(), plain_options()).lines);
+  const json& line = lines.at("w2");
+  EXPECT_EQ(line.at("repair"), json({{"vertices", 4}, {"moved", 3}, {"mean_shift", 0.082}, {"max_shift", 0.31},
+                                     {"mapped_area", 251.4}, {"area", 252}, {"shared_walls", 2}, {"gaps_closed", 1},
+                                     {"overlaps_resolved", 0}, {"overlap_left", 0}, {"direction", 90}}));
+  EXPECT_EQ(line.at("situation"),
+            json({{"position", "mid_row"}, {"orientation", 180}, {"depth", 14}, {"width", 18}, {"setback", 0.4},
+                  {"party_wall_length", 28}, {"block", "w900.n5.l"}, {"courtyards", {"w1.y7_8"}}}));
+  const json& edges = line.at("edges");
+  ASSERT_EQ(edges.size(), 6u);
+  EXPECT_EQ(edges[1], json({{"id", "w2.e20_21.1"}, {"kind", "passage"}, {"confidence", 0.9}, {"length", 3.3},
+                            {"looks", "S"}, {"street", "w900"}, {"street_name", "Kastanienallee"},
+                            {"street_class", "residential"}, {"street_distance", 11.5}, {"street_angle", 0.2},
+                            {"visibility", 1}}));
+  EXPECT_EQ(edges[2].at("front"), true);
+  EXPECT_EQ(edges[3].at("neighbour"), "w3");
+  EXPECT_EQ(lines.at("w4").at("edges")[2].at("radius"), 6.25);
+}
+
+TEST(ExplainRow, FrontsWithoutAStreetsNameAndTrees) {
+  auto sample = test::row_sample();
+  model::Building& b = sample.region().buildings.at(2);
+  b.edges[0].street_name.clear();
+  b.edges[0].street_class = "living_street";
+  b.edges[0].chamfer = true;
+  b.trees.push_back({{model::OsmType::node, 77}, {391040, 5819003}, 0, 3.25f});
+  const auto lines = lines_of(explain(sample.region(), plain_options()).lines);
+  const std::string text = stages_of(lines.at("w3")).at("context");
+  EXPECT_THAT(text, HasSubstr("end of a row; front on w900 (living street without a name) (15.0 m, looks S)"));
+  EXPECT_THAT(text, HasSubstr("the street corner is cut off"));
+  EXPECT_THAT(text, HasSubstr("1 tree before its walls"));
+  EXPECT_THAT(text, HasSubstr("stands at the courtyard w1.y7_8"));
+  EXPECT_EQ(lines.at("w3").at("situation").at("trees"), json::array({{{"id", "n77"}, {"distance", 3.25}}}));
+}
+
+TEST(ExplainRow, WithoutRepairAndContextNothingIsClaimed) {
+  const auto zoo = test::SampleRegion::zoo();
+  for (const auto& [id, line] : lines_of(explain(zoo.region(), plain_options()).lines))
+    for (const char* key : {"repair", "situation", "edges"}) EXPECT_FALSE(line.contains(key)) << id;
 }
 
 TEST(Explain, WhatWasNotBuiltSaysWhy) {

@@ -66,7 +66,7 @@ inline SampleRegion row_sample() {
   add_stretch(a, 2, EdgeKind::courtyard);
   face(add_stretch(a, 3, EdgeKind::street));
   a.edges.back().street = {model::OsmType::way, 901};
-  a.edges.back().street_name = "Oderberger Stra\u00dfe";
+  a.edges.back().street_name = "Oderberger Straße";
   a.situation.position = BuildingPosition::corner_house;
   a.situation.fronts = {3, 0};
 
