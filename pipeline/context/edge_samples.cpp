@@ -40,6 +40,18 @@ const std::array<Point2, kRaysAround>& around() {
   return turns;
 }
 
+/// Whether most of a narrow view along a gap ends in a street, or (unless `streets_only`) on open ground.
+bool leads_out(Point2 from, Point2 along, const Scene& scene, bool streets_only, const EdgeOptions& options) {
+  constexpr Point2 kTurns[] = {{0.9945, -0.1045}, {1, 0}, {0.9945, 0.1045}};  // cosine and sine of 6 degrees
+  int open = 0;
+  for (const Point2 t : kTurns) {
+    const Sight sight = scene.look(from, {along.x * t.x - along.y * t.y, along.y * t.x + along.x * t.y}, options.view,
+                                   Obstacles::buildings);
+    open += sight.street_piece != kNothing || (!streets_only && sight.footprint == kNothing);
+  }
+  return open >= 2;
+}
+
 /// Whether a wall may have its front to the street that it sees.
 bool may_front(const OutlineEdge& edge, const Sight& sight, const Scene& scene) {
   const StreetPiece& piece = scene.streets()[sight.street_piece];
@@ -95,7 +107,8 @@ EdgeSample look_out(const OutlineEdge& edge, double at, const BuildingView& view
   return out;
 }
 
-Enclosure enclosure_at(const OutlineEdge& edge, double at, model::OsmId own, const BuildingView& view, const EdgeOptions& options) {
+Enclosure enclosure_at(const OutlineEdge& edge, double at, model::OsmId own, bool in_yard, const BuildingView& view,
+                       const EdgeOptions& options) {
   const Scene& scene = view.index->scene();
   const Point2 wall = edge.at(at);
   const Point2 eye{wall.x + edge.outward.x * kBefore, wall.y + edge.outward.y * kBefore};
@@ -115,6 +128,12 @@ Enclosure enclosure_at(const OutlineEdge& edge, double at, model::OsmId own, con
     }
   }
   constexpr double kRays = static_cast<double>(kRaysAround) * std::size(kPushes);
+  if (opposite <= options.max_alley) {
+    const double before = opposite / 2;
+    const Point2 place{wall.x + edge.outward.x * before, wall.y + edge.outward.y * before};
+    out.alley = leads_out(place, edge.along, scene, in_yard, options) ||
+                leads_out(place, {-edge.along.x, -edge.along.y}, scene, in_yard, options);
+  }
   out.street /= kRays;
   out.own /= kRays;
   out.others /= kRays;

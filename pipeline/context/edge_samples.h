@@ -42,6 +42,7 @@ struct Enclosure {
   double own = 0;     ///< [0, 1] of the view around: ends at the building itself within EdgeOptions::view
   double others = 0;  ///< [0, 1]: ends at other buildings
   double street = 0;  ///< [0, 1]: ends in a street; what is left is open ground
+  bool alley = false; ///< a gap between walls that leads to a street or to open ground
   /// Of what the building itself leaves of the view, how much may be open in a courtyard; and how much at most in recesses
   /// where that is next to nothing.
   bool is_court(const EdgeOptions& options) const { return shortage(options) <= 0; }
@@ -49,7 +50,9 @@ struct Enclosure {
   double margin(const EdgeOptions& options) const { return std::fabs(shortage(options)); }
 
  private:
+  static constexpr double kAlleyMargin = 0.1;  ///< alleys are as clear as a tenth of the view
   double shortage(const EdgeOptions& options) const {
+    if (alley) return kAlleyMargin;
     return std::max(street - options.max_street_view,
                     1 - own - others - options.max_open * (1 - own) - options.max_open_recess);
   }
@@ -57,6 +60,10 @@ struct Enclosure {
 
 /// The view around from the ground before a wall: the mean of two places, 4 m and 12 m before it (nearer where walls
 /// stand opposite: half the way). From the wall alone a house across a street of gardens would look like a courtyard.
-Enclosure enclosure_at(const OutlineEdge& edge, double at, model::OsmId own, const BuildingView& view, const EdgeOptions& options);
+///
+/// \param own      the building
+/// \param in_yard  an open courtyard was found before the wall: gaps in it lead out only where a street is seen
+Enclosure enclosure_at(const OutlineEdge& edge, double at, model::OsmId own, bool in_yard, const BuildingView& view,
+                       const EdgeOptions& options);
 
 }  // namespace blockrand::context

@@ -154,10 +154,12 @@ class Labeller {
   /// Courtyard or open ground, by what stands around.
   void add_surrounded(const OutlineEdge& edge, const Piece& piece, std::vector<Piece>& out) const {
     const int n = std::max(1, static_cast<int>(std::lround(piece.length() / options_.enclosure_step)));
+    const bool in_yard = std::any_of(piece.samples.begin(), piece.samples.end(),
+                                     [](const EdgeSample& s) { return s.yard != kNothing; });
     const double step = piece.length() / n;
     for (int i = 0; i < n; ++i) {
       const double start = piece.start + i * step, end = i + 1 == n ? piece.end : start + step;
-      const Enclosure around = enclosure_at(edge, start + step / 2, building_.osm, view_, options_);
+      const Enclosure around = enclosure_at(edge, start + step / 2, building_.osm, in_yard, view_, options_);
       Piece part{start, end, around.is_court(options_) ? EdgeKind::courtyard : EdgeKind::side, {}, kNothing, {}, around.margin(options_)};
       for (const EdgeSample& sample : piece.samples)
         if (sample.at >= start && (sample.at < end || i + 1 == n)) part.samples.push_back(sample);

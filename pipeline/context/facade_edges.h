@@ -52,6 +52,8 @@ struct EdgeOptions {
   double enclosure_step = 5;  ///< m between places that look around: what surrounds a wall changes slowly
   /// Of what the building itself leaves of the view around: how much may be open in a courtyard.
   double max_open = 0.2;
+  /// m. Gaps between walls up to this width are alleys where one of their ends is open; courts are mostly wider, and closed.
+  double max_alley = 14;
   double max_open_recess = 0.03;  ///< of the view around: added to it, so that one ray of 40 decides nothing
   /// Of the view around: how much of it a courtyard may give to streets. A gateway 4 m wide at 10 m has 0.06.
   double max_street_view = 0.1;
@@ -120,7 +122,7 @@ SurroundingsIndex::Box box_of(const model::Building& building, double margin);
 /// * `passage`: the mouth of a way through the building.
 /// * `street`: from most of the stretch the view straight ahead meets a street, or the stretch stands on a square.
 /// * `courtyard`: a closed courtyard of its block lies before it, or buildings larger than sheds stand around the ground
-///   before it, with no more than a glimpse of a street between them.
+///   before it, with no more than a glimpse of a street between them, and it is no alley.
 /// * `side`: the rest.
 /// Where a wall steps back and forth by less than `max_jog` between two stretches of a street front it is `street`, too;
 /// where the street is far and another front of the building much nearer to one, it is none.

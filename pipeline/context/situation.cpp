@@ -148,7 +148,9 @@ std::optional<double> setback_of(const FacadeEdge& front, const OutlineEdge& edg
   const Point2 middle = edge.at((front.start + front.end) / 2);
   // From the street's line, straight back at the front and at its neighbours.
   const Scene& scene = index.scene();
-  const double own = scene.look(middle, edge.outward, kEdgeReach / 2).street;
+  constexpr double kBefore = 0.02;  // m; clear of the wall's own rounding
+  const Point2 eye{middle.x + edge.outward.x * kBefore, middle.y + edge.outward.y * kBefore};
+  const double own = scene.look(eye, edge.outward, kEdgeReach / 2).street;
   if (!std::isfinite(own)) return std::nullopt;
   std::vector<double> depths{own};
   for (const int side : {-1, 1})
