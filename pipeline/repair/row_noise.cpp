@@ -18,7 +18,11 @@ constexpr double kUsualWeight = 2;       // which counts like so many walls
 constexpr double kUsualSlight = 0.05;    // of those that are truly a little off,
 constexpr double kSlightWeight = 20;     // the same
 constexpr double kSlightTurn = 0.026;    // radians (1.5 degrees): scale of how far
+constexpr double kObliqueTurn = 0.07;    // radians (4 degrees): half width of how far oblique walls mostly are
+constexpr double kCauchy = 0.6366197723675814;  // 2 / pi: density at 0 of a Cauchy distribution's absolute value
 constexpr double kDiagonal = 0.7071067811865476;  // sin 45 degrees: no wall is farther off a frame
+constexpr double kUsualNoise = 0.04;  // m, of mappers
+constexpr double kUsualSpread = 0.8;   // of its logarithm
 constexpr double kFewWalls = 2.5;        // the noise is raised by this over the walls that tell of it
 constexpr int kRounds = 8;               // EM is near its end then
 constexpr double kLeastScale = 0.001;    // m. Truth on the 1/1024 m grid
@@ -36,7 +40,12 @@ double density(double off, double scale) {
 double slight_scale(double weight, double scale) {
   return std::sqrt(scale * scale + kSlightTurn * kSlightTurn * weight);
 }
-double any_density(double weight) { return 1 / (kDiagonal * std::sqrt(weight)); }
+/// Of walls of no frame: half of them have any direction, half are nearly in the frame, since who builds obliquely does so
+/// slightly more often than not.
+double any_density(double off, double weight) {
+  const double root = std::sqrt(weight), z = off / (kObliqueTurn * root);
+  return (0.5 / kDiagonal + 0.5 * kCauchy / (kObliqueTurn * (1 + z * z))) / root;
+}
 
 struct Shares {
   double exact, slight, any;
@@ -45,7 +54,7 @@ struct Shares {
 Shares shares(const Fit& fit, const Deviation& d) {
   const double share = fit.share[d.building];
   return {share * (1 - fit.slight) * density(d.off, fit.scale),
-          share * fit.slight * density(d.off, slight_scale(d.weight, fit.scale)), (1 - share) * any_density(d.weight)};
+          share * fit.slight * density(d.off, slight_scale(d.weight, fit.scale)), (1 - share) * any_density(d.off, d.weight)};
 }
 
 Fit run(std::span<const Deviation> deviations, std::size_t buildings, double scale) {
@@ -78,7 +87,9 @@ Fit run(std::span<const Deviation> deviations, std::size_t buildings, double sca
     if (++factors % 32 == 0) fit.likelihood += base::log(product), product = 1;
   }
   // The frames were fitted, too: each is known the better the smaller the noise, which must not make a small one likelier.
-  fit.likelihood += base::log(product) + static_cast<double>(buildings) * 0.8 * base::log(fit.scale);
+  fit.likelihood += base::log(product) + static_cast<double>(buildings) * base::log(fit.scale);
+  const double usual = base::log(fit.scale / kUsualNoise) / kUsualSpread;
+  fit.likelihood -= 0.5 * usual * usual;
   return fit;
 }
 
@@ -94,7 +105,7 @@ RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings,
 double odds_of_frame(const RowNoise& row, std::size_t building, double weight) {
   const double share = row.share[building];
   return share * (1 - row.slight) * kHalfNormal / row.noise /
-         ((1 - share) * any_density(weight));
+         ((1 - share) * any_density(0, weight));
 }
 
 }  // namespace blockrand::repair
