@@ -100,8 +100,27 @@ geometry::ValidPolygons made_valid(std::vector<Ring> rings, const RepairOptions&
                               options.ring_clearance);
 }
 
+/// One form for one shape, however its rings were listed.
+void make_canonical(Polygon& p) {
+  for_each_ring(p, start_at_least_point);
+  std::sort(p.holes.begin(), p.holes.end(), [](const Ring& a, const Ring& b) { return a.points < b.points; });
+}
+
+/// The same of several, largest first.
+void make_canonical(std::vector<Polygon>& polygons) {
+  for (Polygon& p : polygons) make_canonical(p);
+  if (polygons.size() < 2) return;
+  std::vector<std::pair<double, Polygon>> sorted;
+  for (Polygon& p : polygons) sorted.emplace_back(geometry::area(p), std::move(p));
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first > b.first : a.second.outer.points < b.second.outer.points;
+  });
+  for (std::size_t i = 0; i < sorted.size(); ++i) polygons[i] = std::move(sorted[i].second);
+}
+
 /// Makes one outer ring with its holes valid and appends what comes of it.
 void mend(Polygon p, const KeptNodes& kept, const RepairOptions& options, Mending& done, std::vector<Polygon>& out) {
+  make_canonical(p);
   geometry::ValidPolygons valid = made_valid({std::move(p.outer)}, options);
   if (!p.holes.empty()) {
     // Subtracting them, rather than mending the polygon as a whole, keeps holes outside from becoming buildings.
@@ -172,21 +191,6 @@ void unite_pieces(std::vector<Polygon>& polygons, const RepairOptions& options, 
   done.separated = done.separated || united.separated;
   done.remark("overlapping or touching rings united");
   for (Polygon& p : polygons) drop_sliver_holes(p, options, done);
-}
-
-/// One form for one shape, however its rings were listed.
-void make_canonical(std::vector<Polygon>& polygons) {
-  for (Polygon& p : polygons) {
-    for_each_ring(p, start_at_least_point);
-    std::sort(p.holes.begin(), p.holes.end(), [](const Ring& a, const Ring& b) { return a.points < b.points; });
-  }
-  if (polygons.size() < 2) return;
-  std::vector<std::pair<double, Polygon>> sorted;
-  for (Polygon& p : polygons) sorted.emplace_back(geometry::area(p), std::move(p));
-  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
-    return a.first != b.first ? a.first > b.first : a.second.outer.points < b.second.outer.points;
-  });
-  for (std::size_t i = 0; i < sorted.size(); ++i) polygons[i] = std::move(sorted[i].second);
 }
 
 std::string counted(int n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
@@ -282,6 +286,7 @@ RepairedRings repair_rings(model::MappedRings rings, model::OsmId id, const Kept
     result.mapped_area += std::max(0.0, mapped);
     mend(std::move(p), kept, options, done, result.polygons);
   }
+  make_canonical(result.polygons);  // so that what follows does not depend on the order of rings
   unite_pieces(result.polygons, options, done);
   // The proof: whatever happened above, nothing else leaves.
   std::erase_if(result.polygons, [&](const Polygon& p) {
@@ -290,7 +295,7 @@ RepairedRings repair_rings(model::MappedRings rings, model::OsmId id, const Kept
     ++done.slivers;
     return true;
   });
-  make_canonical(result.polygons);
+  if (done.changed) make_canonical(result.polygons);
   if (!has_ring)
     result.failure = done.cleaning.spikes > 0 ? IssueCode::zero_area : IssueCode::too_few_points;
   else if (result.polygons.empty())
