@@ -81,16 +81,17 @@ class Resolver {
     std::vector<Pair> pairs = all_pairs();
     for (int trial = 0; trial < kTrials && !pairs.empty(); ++trial) {
       std::sort(pairs.begin(), pairs.end());
-      std::vector<Pair> again;
+      touched_.clear();
       for (const Pair& pair : pairs) {
-        touched_.clear();
         if (!overlap(polygons(pair.a), polygons(pair.b))) continue;
         const double area = geometry::common_area(polygons(pair.a), polygons(pair.b));
         if (!resolve(pair.a, pair.b, area)) kept_.emplace(pair.a, pair.b);
-        // New points can move a wall by a grid step, onto a third building.
-        for (const std::uint32_t t : touched_) pairs_of(t, again);
       }
-      pairs = std::move(again);
+      // New points can move a wall by a grid step, onto a third building.
+      pairs.clear();
+      std::sort(touched_.begin(), touched_.end());
+      touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+      for (const std::uint32_t t : touched_) pairs_of(t, pairs);
     }
     tell();
   }
@@ -123,9 +124,10 @@ class Resolver {
     return out;
   }
 
+  /// Overlaps of a touched building; pairs of two touched ones come once.
   void pairs_of(std::uint32_t b, std::vector<Pair>& out) const {
     for (std::uint32_t o = 0; o < boxes_.size(); ++o)
-      if (o != b) add_pair(b, o, out);
+      if (o != b && (o < b || !std::binary_search(touched_.begin(), touched_.end(), o))) add_pair(b, o, out);
   }
 
   /// True when a wins its overlap with b by the rules 2 to 5.
@@ -138,39 +140,30 @@ class Resolver {
   }
 
   bool resolve(std::uint32_t a, std::uint32_t b, double area) {
-    const bool a_within = area >= kWithin * area_of(polygons(a)), b_within = area >= kWithin * area_of(polygons(b));
+    const double area_a = area_of(polygons(a)), area_b = area_of(polygons(b));
     std::uint32_t winner = stronger(a, b) ? a : b, loser = winner == a ? b : a;
-    const bool nested = a_within != b_within;
+    const bool nested = area >= kWithin * std::min(area_a, area_b);
     if (nested) {
-      winner = a_within ? a : b;
-      loser = a_within ? b : a;
+      if (area_a != area_b) winner = area_a < area_b ? a : b;
+      loser = winner == a ? b : a;
       if (nested_.emplace(winner, loser).second && area >= options_.min_overlap_area)
         report_.add(row_.buildings[winner].id, IssueCode::nested_building,
                     "within " + row_.buildings[loser].id.text() + ", " + square_metres(area));
     }
-    if (cut(loser, winner, area)) return true;
-    if (nested || !cut(winner, loser, area)) return false;
-    return true;
+    return cut(loser, winner, area, nested) || (!nested && cut(winner, loser, area, false));
   }
 
-  bool cut(std::uint32_t loser, std::uint32_t winner, double area) {
+  /// Takes from the loser what the winner has. \param around  the winner lies within the loser
+  bool cut(std::uint32_t loser, std::uint32_t winner, double area, bool around) {
     RowBuilding& building = row_.buildings[loser];
     const double before = area_of(building.polygons);
-    if (before - area < (1 - options_.max_loss) * first_area_[loser]) return false;
+    if (!around && before - area < (1 - options_.max_loss) * first_area_[loser]) return false;
     geometry::ValidPolygons rest = geometry::difference(building.polygons, polygons(winner), options_.min_piece_area,
                                                         options_.ring_clearance);
     if (rest.polygons.empty()) return false;
-    // Strips beside the winner are drawing noise, unless nothing else is left; more of it is a part of a building.
-    double noise = rest.dropped_area;
-    if (rest.polygons.size() > building.polygons.size())
-      for (std::size_t i = rest.polygons.size(); i-- > 1;)
-        if (geometry::equivalent_width(rest.polygons[i]) < options_.snap_distance) {
-          noise += geometry::area(rest.polygons[i]);
-          rest.polygons.erase(rest.polygons.begin() + static_cast<std::ptrdiff_t>(i));
-        }
-    if (noise > options_.max_area_change * before) return false;
+    const double noise = rest.dropped_area + drop_strips(rest.polygons, building.polygons.size(), around);
+    if (rest.polygons.empty() || noise > options_.max_area_change * before) return false;
     restore_nodes(building.polygons, rest.polygons);
-    std::vector<Polygon> was = std::move(building.polygons);
     building.polygons = std::move(rest.polygons);
     if (area >= options_.min_overlap_area)
       report_.add(building.id, IssueCode::overlap_resolved,
@@ -178,8 +171,24 @@ class Resolver {
     ++building.record.overlaps_resolved;
     boxes_[loser] = box_of(building.polygons);
     touched_.push_back(loser);
-    share_points(loser);
+    share_points(loser, boxes_[winner]);
     return true;
+  }
+
+  /// Removes what a cut leaves beside the winner and nobody meant; returns how much that was, in m². Around a building
+  /// that lies within, the rule of outlines and parts holds; else pieces that the cut split off must be wider than the
+  /// noise of walls.
+  double drop_strips(std::vector<Polygon>& pieces, std::size_t before, bool around) const {
+    if (!around && pieces.size() <= before) return 0;
+    double sum = 0;
+    std::erase_if(pieces, [&](const Polygon& p) {
+      const double area = geometry::area(p), width = geometry::equivalent_width(p);
+      const bool strip = around ? area < options_.parts_free_area || width < options_.parts_free_width
+                                : width < options_.snap_distance;
+      if (strip) sum += area;
+      return strip;
+    });
+    return sum;
   }
 
   /// Points that were the loser's keep their node; those of the cut are made by repair.
@@ -200,14 +209,21 @@ class Resolver {
     }
   }
 
-  /// Puts the building's points that lie on walls of others into those walls.
-  void share_points(std::uint32_t b) {
+  /// Puts the building's points that lie on walls of others into those walls, as far as they lie in a box (where it was
+  /// cut).
+  void share_points(std::uint32_t b, Box where) {
     std::vector<Point2> points;
-    for_each_ring(polygons(b),
-                  [&](const Ring& ring) { points.insert(points.end(), ring.points.begin(), ring.points.end()); });
+    Box box{1e300, 1e300, -1e300, -1e300};
+    for_each_ring(polygons(b), [&](const Ring& ring) {
+      for (const Point2 p : ring.points) {
+        if (!where.meets({p.x, p.y, p.x, p.y}, kOnWall)) continue;
+        points.push_back(p);
+        box = {std::min(box.x0, p.x), std::min(box.y0, p.y), std::max(box.x1, p.x), std::max(box.y1, p.y)};
+      }
+    });
     std::sort(points.begin(), points.end());
     for (std::uint32_t o = 0; o < boxes_.size(); ++o) {
-      if (o == b || !boxes_[o].meets(boxes_[b], kOnWall)) continue;
+      if (o == b || !boxes_[o].meets(box, kOnWall)) continue;
       if (!same_level(row_.buildings[o].level, row_.buildings[b].level)) continue;
       std::vector<Polygon> with_points = polygons(o);
       bool changed = false;
@@ -269,7 +285,7 @@ class Resolver {
   std::vector<double> first_area_;  ///< m², before anything was given away
   std::set<std::pair<std::uint32_t, std::uint32_t>> kept_;  ///< overlaps that stay
   std::map<std::uint32_t, std::uint32_t> nested_;           ///< who lies within whom
-  std::vector<std::uint32_t> touched_;                      ///< by the cut at hand
+  std::vector<std::uint32_t> touched_;                      ///< by the cuts of this trial
 };
 
 }  // namespace
