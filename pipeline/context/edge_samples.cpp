@@ -22,6 +22,7 @@ constexpr int kAhead = 3;
 
 constexpr double kPushes[] = {4, 12};  ///< m before the wall: what surrounds a yard is seen from its ground
 constexpr int kRaysAround = 20;
+constexpr double kBeyondGap = 4;  ///< m beyond the end of a wall: there lies what the gap before it leads to
 /// Cosine of 50 degrees: a wall that stands steeper to a street is a flank, no front. Chamfers have 45.
 constexpr double kMinFrontCosine = 0.643;
 /// m. Whatever its direction, a wall this near to a street's line stands at the street.
@@ -40,16 +41,43 @@ const std::array<Point2, kRaysAround>& around() {
   return turns;
 }
 
-/// Whether most of a narrow view along a gap ends in a street, or (unless `streets_only`) on open ground.
-bool leads_out(Point2 from, Point2 along, const Scene& scene, bool streets_only, const EdgeOptions& options) {
+/// Adds what is seen around a place.
+void look_around(Point2 place, Point2 first, model::OsmId own, const BuildingView& view, const EdgeOptions& options,
+                 Enclosure& out) {
+  for (const Point2 turn : around()) {
+    const Point2 direction{first.x * turn.x - first.y * turn.y, first.y * turn.x + first.x * turn.y};
+    const Sight sight = view.index->scene().look(place, direction, options.view, Obstacles::buildings);
+    if (sight.street_piece != kNothing)
+      out.street += 1;
+    else if (sight.footprint != kNothing)
+      (view.index->all().footprints[sight.footprint].id == own ? out.own : out.others) += 1;
+  }
+}
+
+/// Whether a gap leads to a street or to open ground, in one direction along it: most of a narrow view does, or the ground
+/// behind the end of the gap is no court.
+///
+/// \param from      in the middle of the gap
+/// \param to_end    m to the end of the wall
+/// \param in_yard   the gap is known to belong to an open courtyard: only streets lead out
+bool leads_out(Point2 from, Point2 along, double to_end, const OutlineEdge& edge, model::OsmId own, bool in_yard,
+               const BuildingView& view, const EdgeOptions& options) {
   constexpr Point2 kTurns[] = {{0.9945, -0.1045}, {1, 0}, {0.9945, 0.1045}};  // cosine and sine of 6 degrees
   int open = 0;
+  double wall = 0;
   for (const Point2 t : kTurns) {
-    const Sight sight = scene.look(from, {along.x * t.x - along.y * t.y, along.y * t.x + along.x * t.y}, options.view,
-                                   Obstacles::buildings);
-    open += sight.street_piece != kNothing || (!streets_only && sight.footprint == kNothing);
+    const Sight sight = view.index->scene().look(from, {along.x * t.x - along.y * t.y, along.y * t.x + along.x * t.y},
+                                                 options.view, Obstacles::buildings);
+    open += sight.street_piece != kNothing || (!in_yard && sight.footprint == kNothing);
+    if (t.x == 1) wall = sight.wall;
   }
-  return open >= 2;
+  if (open >= 2) return true;
+  const double beyond = to_end + kBeyondGap;
+  if (in_yard || wall < beyond + kBeyondGap) return false;
+  Enclosure ground;
+  look_around({from.x + along.x * beyond, from.y + along.y * beyond}, edge.outward, own, view, options, ground);
+  ground.divide(kRaysAround);
+  return !ground.is_court(options);
 }
 
 /// Whether a wall may have its front to the street that it sees.
@@ -112,31 +140,20 @@ Enclosure enclosure_at(const OutlineEdge& edge, double at, model::OsmId own, boo
   const Scene& scene = view.index->scene();
   const Point2 wall = edge.at(at);
   const Point2 eye{wall.x + edge.outward.x * kBefore, wall.y + edge.outward.y * kBefore};
-  const double opposite = std::min(scene.look(eye, edge.outward, options.view).wall, options.view);
+  const Sight ahead = scene.look(eye, edge.outward, options.view);
+  const double opposite = std::min(ahead.wall, options.view);
   Enclosure out;
   for (const double push : kPushes) {
     const double before = std::min(push, opposite / 2);
-    const Point2 place{wall.x + edge.outward.x * before, wall.y + edge.outward.y * before};
-    for (const Point2 turn : around()) {
-      const Point2 direction{edge.outward.x * turn.x - edge.outward.y * turn.y,
-                             edge.outward.y * turn.x + edge.outward.x * turn.y};
-      const Sight sight = scene.look(place, direction, options.view, Obstacles::buildings);
-      if (sight.street_piece != kNothing)
-        out.street += 1;
-      else if (sight.footprint != kNothing)
-        (view.index->all().footprints[sight.footprint].id == own ? out.own : out.others) += 1;
-    }
+    look_around({wall.x + edge.outward.x * before, wall.y + edge.outward.y * before}, edge.outward, own, view, options, out);
   }
-  constexpr double kRays = static_cast<double>(kRaysAround) * std::size(kPushes);
-  if (opposite <= options.max_alley) {
-    const double before = opposite / 2;
-    const Point2 place{wall.x + edge.outward.x * before, wall.y + edge.outward.y * before};
-    out.alley = leads_out(place, edge.along, scene, in_yard, options) ||
-                leads_out(place, {-edge.along.x, -edge.along.y}, scene, in_yard, options);
-  }
-  out.street /= kRays;
-  out.own /= kRays;
-  out.others /= kRays;
+  out.divide(static_cast<double>(kRaysAround) * std::size(kPushes));
+  const bool gap = opposite <= options.max_alley && view.index->all().footprints[ahead.footprint].id != own;
+  if (!gap || !out.is_court(options)) return out;
+  const Point2 middle{wall.x + edge.outward.x * opposite / 2, wall.y + edge.outward.y * opposite / 2};
+  const Point2 back{-edge.along.x, -edge.along.y};
+  out.alley = leads_out(middle, edge.along, edge.length - at, edge, own, in_yard, view, options) ||
+              leads_out(middle, back, at, edge, own, in_yard, view, options);
   return out;
 }
 

@@ -43,6 +43,11 @@ struct Enclosure {
   double others = 0;  ///< [0, 1]: ends at other buildings
   double street = 0;  ///< [0, 1]: ends in a street; what is left is open ground
   bool alley = false; ///< a gap between walls that leads to a street or to open ground
+  void divide(double by) {
+    own /= by;
+    others /= by;
+    street /= by;
+  }
   /// Of what the building itself leaves of the view, how much may be open in a courtyard; and how much at most in recesses
   /// where that is next to nothing.
   bool is_court(const EdgeOptions& options) const { return shortage(options) <= 0; }
