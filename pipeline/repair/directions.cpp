@@ -24,6 +24,9 @@ constexpr double kMainShare = 0.35;       // of a building's wall length that it
 constexpr double kWingWalls = 2.5;        // a wing has at least this many walls of its own, beyond chance,
 constexpr double kWingLength = 8;         // m, which are together at least this long
 constexpr std::size_t kMostFrames = 3;    // of a building
+constexpr std::size_t kFamilyWalls = 4;   // walls that make a direction of the row, beyond chance,
+constexpr double kFamilyDeviations = 5;   // and by so many standard deviations of chance: the best of many directions is taken
+constexpr std::size_t kMostFamilies = 4;  // of a row
 constexpr double kTellingLength = 0.5;    // m. Shorter walls tell nothing of the noise
 constexpr std::size_t kMostCandidates = 48;  // walls tried as the direction of a frame: the longest
 constexpr double kBayTurn = 0.2079116908177593;  // sin 12 degrees: cheeks of bays deviate by more, both alike
@@ -74,6 +77,7 @@ class Reader {
         for (const std::uint32_t b : lines()[l].buildings) lines_of_[b].push_back({l, 0});
     estimate_noise();
     find_frames();
+    find_families();
     merge_frames();
     give_directions();
     spare_bays();
@@ -152,6 +156,12 @@ class Reader {
       for (Member& m : lines_of_[b]) m.limit = limit(lines()[m.line], best, b);
   }
 
+  /// Tukey's biweight: nothing beyond the limit counts.
+  static double tukey(const Member& m, double sine) {
+    const double z = sine * sine, most = m.limit * m.limit;
+    return z < most ? (1 - z / most) * (1 - z / most) : 0.0;
+  }
+
   RowNoise noise_from(double noise) {
     std::vector<Deviation> off;
     RowNoise told;
@@ -180,10 +190,6 @@ class Reader {
   }
 
   void find_frames() {
-    const auto tukey = [](const Member& m, double sine) {
-      const double z = sine * sine, most = m.limit * m.limit;
-      return z < most ? (1 - z / most) * (1 - z / most) : 0.0;
-    };
     std::vector<Member> left, next;
     for (std::uint32_t b = 0; b < lines_of_.size(); ++b) {
       left = lines_of_[b];
@@ -211,6 +217,47 @@ class Reader {
         frames_.push_back({b, axis, weight});
         std::swap(left, next);
       }
+      for (const Member& m : left) left_.push_back(m);
+    }
+  }
+
+  /// Directions that many walls of the row have, but no building enough of: party walls of lots that lie obliquely to
+  /// their street. Every building with such a wall gets the direction as a frame; they are merged from the beginning.
+  void find_families() {
+    std::sort(left_.begin(), left_.end(), [](const Member& a, const Member& b) {
+      return a.line != b.line ? a.line < b.line : a.limit < b.limit;
+    });
+    left_.erase(std::unique(left_.begin(), left_.end(), [](const Member& a, const Member& b) { return a.line == b.line; }),
+                left_.end());
+    std::vector<Member> next;
+    for (std::size_t k = 0; k < kMostFamilies && left_.size() >= kFamilyWalls; ++k) {
+      const Point2 axis = mode(left_, tukey);
+      double beyond_chance = 0, lucky = 0, spread = 0;
+      std::vector<std::pair<std::uint32_t, double>> of_building;  // and the weight of a line
+      next.clear();
+      for (const Member& m : left_) {
+        const WallLine& line = lines()[m.line];
+        const double chance = m.limit / kDiagonal;
+        lucky += chance, spread += chance * (1 - chance);
+        if (std::fabs(turn_off(axis, line.along)) > m.limit) {
+          next.push_back(m);
+          continue;
+        }
+        beyond_chance += 1 - chance;
+        for (const std::uint32_t b : line.buildings) of_building.emplace_back(b, line.weight);
+      }
+      const double surplus = static_cast<double>(left_.size() - next.size()) - lucky - kFamilyDeviations * std::sqrt(spread);
+      if (beyond_chance < kFamilyWalls || surplus < 0) break;
+      std::sort(of_building.begin(), of_building.end());
+      const auto first = static_cast<std::uint32_t>(frames_.size());
+      for (std::size_t i = 0; i < of_building.size(); ++i) {
+        if (i > 0 && of_building[i].first == of_building[i - 1].first)
+          frames_.back().weight += of_building[i].second;
+        else
+          frames_.push_back({of_building[i].first, axis, of_building[i].second});
+      }
+      families_.emplace_back(first, static_cast<std::uint32_t>(frames_.size()));
+      std::swap(left_, next);
     }
   }
 
@@ -223,15 +270,19 @@ class Reader {
   void merge_frames() {
     Groups groups(frames_.size());
     std::vector<Frame> merged = frames_;
+    for (const auto& [begin, end] : families_)
+      for (std::uint32_t f = begin + 1; f < end; ++f) {
+        groups.join(begin, f);
+        merged[begin].weight += merged[f].weight;
+      }
+    std::vector<std::vector<std::uint32_t>> of_building(lines_of_.size());
+    for (std::uint32_t f = 0; f < frames_.size(); ++f) of_building[frames_[f].building].push_back(f);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-    std::vector<std::uint32_t> first(lines_of_.size() + 1, static_cast<std::uint32_t>(frames_.size()));
-    for (std::size_t f = frames_.size(); f-- > 0;) first[frames_[f].building] = static_cast<std::uint32_t>(f);
     for (const WallLine& l : lines())
       for (std::size_t i = 0; i < l.buildings.size(); ++i)
         for (std::size_t j = i + 1; j < l.buildings.size(); ++j)
-          for (std::uint32_t f = first[l.buildings[i]]; f < frames_.size() && frames_[f].building == l.buildings[i]; ++f)
-            for (std::uint32_t g = first[l.buildings[j]]; g < frames_.size() && frames_[g].building == l.buildings[j]; ++g)
-              pairs.emplace_back(f, g);
+          for (const std::uint32_t f : of_building[l.buildings[i]])
+            for (const std::uint32_t g : of_building[l.buildings[j]]) pairs.emplace_back(f, g);
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     struct Step {
@@ -242,8 +293,8 @@ class Reader {
       }
     };
     std::vector<Step> steps;
-    // In every round the more alike half of the pairs is merged, so that groups grow evenly: a single long chain would
-    // drift along a bent row.
+    // In every round a group is merged at most once, so that groups grow evenly: one long chain would drift along a bent
+    // row.
     for (bool again = true; again;) {
       again = false;
       steps.clear();
@@ -314,7 +365,9 @@ class Reader {
 
   RowDirections out_;
   std::vector<std::vector<Member>> lines_of_;  // per building
-  std::vector<Frame> frames_;                  // by building
+  std::vector<Frame> frames_;                  // by building; then of families, by building
+  std::vector<Member> left_;                   // lines of no building's frame
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> families_;  // frames that are one: first, end
   std::vector<std::uint32_t> group_;           // per frame: which frame stands for it
   std::vector<std::uint32_t> candidates_;
 };

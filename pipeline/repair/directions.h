@@ -24,10 +24,10 @@ struct RowDirections {
 /// redescending M-estimate of it; Huber & Ronchetti, Robust Statistics, 2009, ch. 4). A wing at another angle has a frame
 /// of its own. Frames of buildings that share a wall are merged, the most alike first, while they differ by no more than
 /// the noise of mapping explains: straight rows get one, bent rows keep theirs.
-/// Noise: the median sideways deviation of all walls from their frames (Rousseeuw & Leroy, Robust Regression and Outlier
-/// Detection, 1987, ch. 5: 1.4826 (1 + 5 / degrees of freedom) median), between kLeastNoise and kLargestNoise.
-/// A wall gets a frame's direction when its sideways deviation is within kDeviations times that noise, it is not off by
-/// more than kLargestTurn, and, from 8 m of length on, not by 5 degrees less its own uncertainty.
+/// Noise: fit_noise, from three starts.
+/// A wall gets a frame's direction when that is likelier than that it has one of its own (odds_of_frame), its sideways
+/// deviation is within kDeviations times the noise, it is not off by more than kLargestTurn, and, from 8 m of length on,
+/// not by 5 degrees less its own uncertainty. Curves and cheeks of bays get none.
 /// The result does not depend on the order of buildings or where rings start, and turns with the row.
 RowDirections find_directions(const RowGraph& graph, std::span<const std::uint32_t> rings);
 

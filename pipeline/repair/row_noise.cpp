@@ -9,30 +9,27 @@ namespace blockrand::repair {
 
 namespace {
 
-constexpr double kHalfNormal = 0.7978845608028654;  // 2 / sqrt(2 pi)
-//          // of Student's t: tails as long as mappers' slips
-//constexpr double kDensity = 0.7351051938957227;  // 2 / (sqrt(3) pi / 2): of |t| at 0
-constexpr double kToDeviation = 1.0;     // standard deviation of evenly disturbed corners by that t's scale
-constexpr double kUsualShare = 0.75;     // of walls that belong to a frame, before a building is seen,
-constexpr double kUsualWeight = 2;       // which counts like so many walls
-constexpr double kUsualSlight = 0.05;    // of those that are truly a little off,
-constexpr double kSlightWeight = 20;     // the same
-constexpr double kSlightTurn = 0.026;    // radians (1.5 degrees): scale of how far
-constexpr double kObliqueTurn = 0.07;    // radians (4 degrees): half width of how far oblique walls mostly are
-constexpr double kCauchy = 0.6366197723675814;  // 2 / pi: density at 0 of a Cauchy distribution's absolute value
-constexpr double kDiagonal = 0.7071067811865476;  // sin 45 degrees: no wall is farther off a frame
-constexpr double kUsualNoise = 0.04;  // m, of mappers
-constexpr double kUsualSpread = 0.8;   // of its logarithm
-constexpr double kFewWalls = 2.5;        // the noise is raised by this over the walls that tell of it
-constexpr int kRounds = 8;               // EM is near its end then
-constexpr double kLeastScale = 0.001;    // m. Truth on the 1/1024 m grid
+constexpr double kHalfNormal = 0.7978845608028654;  // 2 / sqrt(2 pi): density at 0 of a normal's absolute value
+constexpr double kHalfCauchy = 0.6366197723675814;  // 2 / pi: the same of a Cauchy distribution's
+constexpr double kDiagonal = 0.7071067811865476;    // sin 45 degrees: no wall is farther off a frame
+constexpr double kUsualShare = 0.75;   // of walls that belong to a frame, before a building is seen,
+constexpr double kUsualWeight = 2;     // which counts like so many walls
+constexpr double kUsualSlight = 0.05;  // of these that are truly a little off, before a row is seen,
+constexpr double kSlightWeight = 20;   // the same
+constexpr double kSlightTurn = 0.026;  // radians (1.5 degrees): how far that is, standard deviation
+constexpr double kObliqueTurn = 0.07;  // radians (4 degrees): half of the walls of no frame are about so far off
+constexpr double kUsualNoise = 0.04;   // m, of mappers; more is rarer:
+constexpr double kUsualSpread = 1.4;   // standard deviation of its logarithm
+constexpr double kFewWalls = 2.5;      // the noise is raised by this over the walls that tell of it
+constexpr double kLeastScale = 0.001;  // m. Truth on the 1/1024 m grid
+constexpr int kRounds = 8;             // EM is near its end then
 
 struct Fit {
   double scale = 0, telling = 0, likelihood = 0, slight = kUsualSlight;
   std::vector<double> share;
 };
 
-/// Density of a deviation at a scale.
+/// Density of a deviation that is all noise.
 double density(double off, double scale) {
   const double z = off / scale, exponent = 0.5 * z * z;
   return exponent > 100 ? 0 : kHalfNormal / scale * base::exp(-exponent);
@@ -44,7 +41,7 @@ double slight_scale(double weight, double scale) {
 /// slightly more often than not.
 double any_density(double off, double weight) {
   const double root = std::sqrt(weight), z = off / (kObliqueTurn * root);
-  return (0.5 / kDiagonal + 0.5 * kCauchy / (kObliqueTurn * (1 + z * z))) / root;
+  return (0.5 / kDiagonal + 0.5 * kHalfCauchy / (kObliqueTurn * (1 + z * z))) / root;
 }
 
 struct Shares {
@@ -88,8 +85,9 @@ Fit run(std::span<const Deviation> deviations, std::size_t buildings, double sca
   }
   // The frames were fitted, too: each is known the better the smaller the noise, which must not make a small one likelier.
   fit.likelihood += base::log(product) + static_cast<double>(buildings) * base::log(fit.scale);
-  const double usual = base::log(fit.scale / kUsualNoise) / kUsualSpread;
-  fit.likelihood -= 0.5 * usual * usual;
+  // Careless mappers are rare; careful ones are not.
+  const double careless = std::max(0.0, base::log(fit.scale / kUsualNoise) / kUsualSpread);
+  fit.likelihood -= 0.5 * careless * careless;
   return fit;
 }
 
@@ -97,8 +95,8 @@ Fit run(std::span<const Deviation> deviations, std::size_t buildings, double sca
 
 RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings, double noise) {
   if (deviations.empty()) return {kLeastNoise, std::vector<double>(buildings, kUsualShare), kUsualSlight, 0};
-  Fit fit = run(deviations, buildings, noise / kToDeviation);
-  const double raised = fit.scale * kToDeviation * (1 + kFewWalls / std::max(fit.telling, 1.0));
+  Fit fit = run(deviations, buildings, noise);
+  const double raised = fit.scale * (1 + kFewWalls / std::max(fit.telling, 1.0));
   return {std::clamp(raised, kLeastNoise, kLargestNoise), std::move(fit.share), fit.slight, fit.likelihood};
 }
 

@@ -21,13 +21,14 @@ struct RowNoise {
   double noise = kLargestNoise;  ///< m, standard deviation of a corner's coordinate in one footprint
   std::vector<double> share;     ///< per building, (0, 1): of its walls that belong to its frame, if only about
   double slight = 0;             ///< of these, in the whole row: that are truly a little off
-  double likelihood = 0;         ///< logarithm, of the deviations
+  double likelihood = 0;         ///< logarithm, up to a constant; compares fits of the same walls
 };
 
-/// Fits a mixture per row. Walls of a frame deviate by Student's t with three degrees of freedom, whose scale is the noise of
-/// the whole row; some are truly off by a degree or two (party walls of bent rows, old towns), by a noise that grows with
-/// their length; others have any direction, in a share of each building's own. EM that starts from `noise` metres
-/// (McLachlan & Peel, Finite Mixture Models, 2000, ch. 7). Rows in which most walls are off keep a small noise so.
+/// Fits a mixture to a row. Walls of a frame deviate normally, by the noise of the whole row; some are truly off by a degree
+/// or two (party walls of bent rows), by an angle whose effect grows with their length; others belong to no frame and are
+/// off by any angle, more often by a small one, in a share of each building's own. EM that starts from `noise` metres
+/// (McLachlan & Peel, Finite Mixture Models, 2000, ch. 7); rows in which most walls are off keep a small noise so.
+/// The likelihood counts what mappers usually do, and that every building's frame was fitted to the same walls.
 /// Where few walls tell, the noise is raised by its uncertainty. Within kLeastNoise and kLargestNoise.
 RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings, double noise);
 
