@@ -180,7 +180,8 @@ class Reader {
           const WallLine& line = lines()[m.line];
           if (line.length < kTellingLength) continue;
           const double scale = std::sqrt(line.weight);
-          off.push_back({std::fabs(turn_off(axis, line.along)) * scale, line.weight, b});
+          off.push_back({std::fabs(turn_off(axis, line.along)) * scale, line.weight,
+                         1 / static_cast<double>(line.buildings.size()), b});
         }
       }
       told = fit_noise(off, lines_of_.size(), noise);

@@ -58,33 +58,27 @@ Fit run(std::span<const Deviation> deviations, std::size_t buildings, double sca
   Fit fit;
   fit.scale = scale;
   fit.share.assign(buildings, kUsualShare);
-  std::vector<double> belong(buildings), count(buildings);
+  std::vector<double> belong(buildings), walls(buildings);
   for (int round = 0; round < kRounds; ++round) {
     std::fill(belong.begin(), belong.end(), kUsualShare * kUsualWeight);
-    std::fill(count.begin(), count.end(), kUsualWeight);
-    double exact = 0, squares = 0, slight = kUsualSlight * kSlightWeight, about = kSlightWeight;
+    std::fill(walls.begin(), walls.end(), kUsualWeight);
+    double exact = 0, squares = 0, slight = kUsualSlight * kSlightWeight, all_about = kSlightWeight;
     for (const Deviation& d : deviations) {
       const Shares s = shares(fit, d);
-      const double sum = s.sum(), r = s.exact / sum;
-      belong[d.building] += 1 - s.any / sum, count[d.building] += 1;
-      slight += s.slight / sum, about += 1 - s.any / sum;
+      const double sum = s.sum(), r = d.count * s.exact / sum, about = d.count * (1 - s.any / sum);
+      belong[d.building] += about, walls[d.building] += d.count;
+      slight += d.count * s.slight / sum, all_about += about;
       exact += r, squares += r * d.off * d.off;
     }
     // Every frame is fitted to the same walls.
     fit.telling = std::max(exact - static_cast<double>(buildings), 0.5 * exact);
     if (fit.telling > 0) fit.scale = std::clamp(std::sqrt(squares / fit.telling), kLeastScale, kLargestNoise);
-    fit.slight = slight / about;
-    for (std::size_t b = 0; b < buildings; ++b) fit.share[b] = belong[b] / count[b];
+    fit.slight = slight / all_about;
+    for (std::size_t b = 0; b < buildings; ++b) fit.share[b] = belong[b] / walls[b];
   }
-  // The product of densities, its logarithm taken before it can overflow.
-  double product = 1;
-  std::size_t factors = 0;
-  for (const Deviation& d : deviations) {
-    product *= shares(fit, d).sum();
-    if (++factors % 32 == 0) fit.likelihood += base::log(product), product = 1;
-  }
+  for (const Deviation& d : deviations) fit.likelihood += d.count * base::log(shares(fit, d).sum());
   // The frames were fitted, too: each is known the better the smaller the noise, which must not make a small one likelier.
-  fit.likelihood += base::log(product) + static_cast<double>(buildings) * base::log(fit.scale);
+  fit.likelihood += static_cast<double>(buildings) * base::log(fit.scale);
   // Careless mappers are rare; careful ones are not.
   const double careless = std::max(0.0, base::log(fit.scale / kUsualNoise) / kUsualSpread);
   fit.likelihood -= 0.5 * careless * careless;

@@ -14,6 +14,7 @@ inline constexpr double kLargestNoise = 0.16;  // m. Walls off by more than half
 struct Deviation {
   double off = 0;              ///< m, at least 0, as if one corner of weight 1 had it all: sine of the angle times sqrt(weight)
   double weight = 1;           ///< m², of its line: what the sine was multiplied with, squared
+  double count = 1;            ///< how much of a wall this is: walls of two buildings deviate from two frames
   std::uint32_t building = 0;  ///< ascending
 };
 
