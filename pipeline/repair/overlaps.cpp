@@ -22,6 +22,9 @@ using model::Ring;
 
 /// Of a building's area: with so much of it inside another it lies within.
 constexpr double kWithin = 0.9;
+/// Of what a building had when it came: where both would lose more than max_loss (a house drawn twice, some metres off),
+/// the weaker one may lose so much, if what is left is as large as the rest of an outline must be.
+constexpr double kMostLoss = 0.8;
 /// m. A new corner of the loser this near to a wall lies on it: rounding moves it half a grid step each way.
 constexpr double kOnWall = 1.5 / model::kGridStepsPerMetre;
 /// How often two buildings are tried: rounding of one cut can open another overlap, of grid steps only.
@@ -150,14 +153,18 @@ class Resolver {
         report_.add(row_.buildings[winner].id, IssueCode::nested_building,
                     "within " + row_.buildings[loser].id.text() + ", " + square_metres(area));
     }
-    return cut(loser, winner, area, nested) || (!nested && cut(winner, loser, area, false));
+    if (nested) return cut(loser, winner, area, 1, true);
+    return cut(loser, winner, area, options_.max_loss, false) || cut(winner, loser, area, options_.max_loss, false) ||
+           cut(loser, winner, area, kMostLoss, true);
   }
 
-  /// Takes from the loser what the winner has. \param around  the winner lies within the loser
-  bool cut(std::uint32_t loser, std::uint32_t winner, double area, bool around) {
+  /// Takes from the loser what the winner has.
+  /// \param most    of what the loser came with: so much it may lose
+  /// \param around  what is left must be as large as the rest of an outline that its parts leave free
+  bool cut(std::uint32_t loser, std::uint32_t winner, double area, double most, bool around) {
     RowBuilding& building = row_.buildings[loser];
     const double before = area_of(building.polygons);
-    if (!around && before - area < (1 - options_.max_loss) * first_area_[loser]) return false;
+    if (before - area < (1 - most) * first_area_[loser]) return false;
     geometry::ValidPolygons rest = geometry::difference(building.polygons, polygons(winner), options_.min_piece_area,
                                                         options_.ring_clearance);
     if (rest.polygons.empty()) return false;
@@ -175,9 +182,8 @@ class Resolver {
     return true;
   }
 
-  /// Removes what a cut leaves beside the winner and nobody meant; returns how much that was, in m². Around a building
-  /// that lies within, the rule of outlines and parts holds; else pieces that the cut split off must be wider than the
-  /// noise of walls.
+  /// Removes what a cut leaves beside the winner and nobody meant; returns how much that was, in m². Either the
+  /// rule of outlines and parts holds, or pieces that the cut split off must be wider than the noise of walls.
   double drop_strips(std::vector<Polygon>& pieces, std::size_t before, bool around) const {
     if (!around && pieces.size() <= before) return 0;
     double sum = 0;

@@ -18,8 +18,9 @@ namespace blockrand::repair {
 /// 5. The lower id: drawn first, the other one was laid over it.
 ///
 /// The loser must keep `1 - max_loss` of what it had when it came, and lose no pieces but drawing noise; else the other
-/// one yields; else both stay and OVERLAP_KEPT tells it with the area. One that has another within itself may lose more,
-/// as an outline does to its parts: what is left must be larger than `parts_free_area` and wider than `parts_free_width`. What the cut adds on the winner's walls (at most a
+/// one yields; else the loser may lose 80 % if what is left is larger than `parts_free_area` and wider than
+/// `parts_free_width` (a house drawn twice); else both stay and OVERLAP_KEPT tells it with the area. One that has another
+/// within itself may lose even more, as an outline does to its parts, on the same condition. What the cut adds on the winner's walls (at most a
 /// grid step beside them) becomes points of the winner, and of others that have the wall. All polygons stay strictly
 /// simple. Overlaps below `min_overlap_area` are treated alike, but make no rows in the report.
 ///
