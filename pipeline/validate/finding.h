@@ -31,7 +31,7 @@ namespace blockrand::validate {
   X(glb_rule, "GLB_RULE", "a GLB breaks a rule of glTF 2.0")                                                  \
   X(metadata_rule, "METADATA_RULE", "feature ids or property tables break their extension's rules")           \
   X(georeference, "GEOREFERENCE", "a GLB's georeference and its tile's transform contradict each other")      \
-  X(position, "POSITION", "a vertex is more than 1 mm from its OpenStreetMap position")                       \
+  X(position, "POSITION", "a vertex is farther from its OpenStreetMap position than 1 mm and what repair says") \
   X(citygml_rule, "CITYGML_RULE", "a CityGML file breaks a rule of the standard")                             \
   X(citygml_schema, "CITYGML_SCHEMA", "a CityGML file does not validate against the OGC schemas")             \
   X(cityjson_rule, "CITYJSON_RULE", "a CityJSON file breaks a rule of the specification")                     \

@@ -11,6 +11,7 @@
 #include "pipeline/model/point.h"
 #include "pipeline/validate/contents.h"
 #include "pipeline/validate/finding_log.h"
+#include "pipeline/validate/positions.h"
 
 namespace blockrand::validate {
 
@@ -71,6 +72,8 @@ class GeoPackageReader {
   GeoPackageTileRows rows(const std::string& tile);
   std::vector<GeoPackageReportedRow> reported();
   std::vector<GeoPackageTileRow> tile_rows();
+  /// What the layer `buildings` says of repair.
+  RepairsSaid repairs();
 
   struct State;  ///< internal
 

@@ -34,21 +34,30 @@ std::vector<Point2> plan_points(const ReadBody& body) {
   return out;
 }
 
-double distance(const std::vector<Point2>& points, Point2 at) {
-  double best = 1e9;
-  for (const Point2& p : points) best = std::min(best, std::hypot(p.x - at.x, p.y - at.y));
+namespace {
+
+constexpr Point2 kNowhere{1e6, 0};
+
+void keep_nearer(Point2& best, Point2 d) {
+  if (d.x * d.x + d.y * d.y < best.x * best.x + best.y * best.y) best = d;
+}
+
+}  // namespace
+
+Point2 offset(const std::vector<Point2>& points, Point2 at) {
+  Point2 best = kNowhere;
+  for (const Point2& p : points) keep_nearer(best, {p.x - at.x, p.y - at.y});
   return best;
 }
 
-double distance_on_earth(const std::vector<Point2>& points, model::Location at) {
+Point2 offset_on_earth(const std::vector<Point2>& points, model::Location at) {
   // Radii of curvature at the latitude: metres per degree north and east.
   const double s = std::sin(at.lat_degrees() * kRadians), w = 1 - kEarthE2 * s * s;
   const double north = kEarthA * (1 - kEarthE2) / (w * std::sqrt(w)) * kRadians;
   const double east = kEarthA / std::sqrt(w) * std::cos(at.lat_degrees() * kRadians) * kRadians;
-  double best = 1e9;
+  Point2 best = kNowhere;
   for (const Point2& p : points)
-    best = std::min(best,
-                    std::hypot(std::remainder(p.x - at.lon_degrees(), 360.0) * east, (p.y - at.lat_degrees()) * north));
+    keep_nearer(best, {std::remainder(p.x - at.lon_degrees(), 360.0) * east, (p.y - at.lat_degrees()) * north});
   return best;
 }
 

@@ -16,9 +16,9 @@ std::vector<model::Point2> corners_on_earth(georef::Witness& witness, const Matr
 /// All corners of footprint and solids, in the build CRS.
 std::vector<model::Point2> plan_points(const ReadBody& body);
 
-/// Metres in the CRS from a place to the nearest point.
-double distance(const std::vector<model::Point2>& points, model::Point2 at);
-/// Metres on the ground to the nearest of points in degrees.
-double distance_on_earth(const std::vector<model::Point2>& points, model::Location at);
+/// Metres east and north in the CRS from a place to the nearest point; a thousand kilometres where there is none.
+model::Point2 offset(const std::vector<model::Point2>& points, model::Point2 at);
+/// The same on the ground, of points in degrees.
+model::Point2 offset_on_earth(const std::vector<model::Point2>& points, model::Location at);
 
 }  // namespace blockrand::validate

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "pipeline/model/point.h"
@@ -23,6 +25,8 @@ struct SampledCorner {
 struct PositionSample {
   std::string source;  ///< in words: where the positions are from
   std::unordered_map<std::string, std::vector<SampledCorner>> corners;
+  /// m, by the same ids: how far the build says that repair moved a corner at most. Absent: it moved none.
+  std::unordered_map<std::string, double> reach;
   /// Middle of the sampled places; degrees.
   double lon = 0, lat = 0;
   double west = 0, south = 0, east = 0, north = 0;
@@ -60,5 +64,31 @@ PositionSample sample_extract(const std::string& path, const std::optional<std::
 
 /// From the records below FOLDER/explain. Lines that cannot be read are passed over: another check finds them.
 PositionSample sample_explanations(const std::vector<std::string>& paths, const std::set<std::string>& mended);
+
+/// What a build says of the repair of one building.
+struct RepairSaid {
+  double max_shift = 0;   ///< m, no corner of the outline moved farther
+  bool reshaped = false;  ///< overlaps were cut off: corners may be gone
+};
+/// By building; those without a record are absent.
+using RepairsSaid = std::unordered_map<std::string, RepairSaid>;
+
+/// From the records below FOLDER/explain. \param wanted  only of these bodies
+RepairsSaid repairs_of_explanations(const std::vector<std::string>& paths, const PositionSample& wanted);
+
+/// Fills PositionSample::reach. Bodies that were reshaped are left out, as are those of `moved` without a record: where
+/// their corners belong is not known.
+/// \param moved  buildings of which the report says that repair moved corners
+void bound_positions(PositionSample& sample, const RepairsSaid& said, const std::set<std::string>& moved);
+
+/// What the offsets of all corners have in common. Repair moves corners to and fro: the median over buildings (of their
+/// mean offset, east and north apart) stays near zero unless everything was moved.
+struct CommonShift {
+  model::Point2 median;       ///< m east and north
+  double uncertainty = 0;     ///< m: three standard errors of the median, from the spread of the buildings
+  std::size_t buildings = 0;
+};
+/// \param offsets  m, with the building; those of one building stand together
+CommonShift common_shift(std::span<const std::pair<std::string, model::Point2>> offsets);
 
 }  // namespace blockrand::validate

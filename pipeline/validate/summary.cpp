@@ -33,6 +33,9 @@ std::string validation_text(const ValidateOptions& options, const Validation& v)
     out += fmt::format(
         "\nlargest distance of a corner from OpenStreetMap: {:.2f} mm in GLB, {:.2f} mm in CityGML and CityJSON\n",
         v.worst_glb * 1e3, v.worst_crs * 1e3);
+  if (v.positions_moved > 0)
+    out += fmt::format("where repair moved corners: {:.2f} m; all together: {:.1f} mm\n", v.worst_moved,
+                       v.worst_median * 1e3);
   for (const std::string& note : v.notes) out += fmt::format("\nnote: {}\n", note);
   for (int c = 0; c < kCheckCount; ++c) {
     const auto check = static_cast<Check>(c);
@@ -63,7 +66,10 @@ std::string validation_json(const ValidateOptions& options, const Validation& v)
     j["positions"] = {{"source", v.position_source},
                       {"corners", v.positions},
                       {"worst_glb_m", v.worst_glb},
-                      {"worst_crs_m", v.worst_crs}};
+                      {"worst_crs_m", v.worst_crs},
+                      {"corners_moved", v.positions_moved},
+                      {"worst_moved_m", v.worst_moved},
+                      {"median_m", v.worst_median}};
   j["counts"] = Ordered::object();
   for (int c = 0; c < kCheckCount; ++c)
     if (const std::uint64_t count = v.findings.count(static_cast<Check>(c)); count > 0)

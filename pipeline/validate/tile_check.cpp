@@ -425,16 +425,20 @@ class Checker {
         for (const auto& [f, body] : shown)
           places[f] =
               f == kGltf ? corners_on_earth(witness, transform_, glb_->triangles[rows.at(id)]) : plan_points(*body);
+        const auto moved = context_.sample.reach.find(id);
+        const double reach = moved == context_.sample.reach.end() ? 0 : moved->second;
         for (const SampledCorner& corner : context_.sample.corners.at(id)) {
           PositionResult result;
+          result.moved = reach > 0;
           result.rank = corner.rank;
           result.object = id;
           for (const auto& [f, body] : shown) {
             result.file[f] = files_.path[f];
-            result.off[f] =
-                f == kGltf ? distance_on_earth(places[f], corner.at)
-                           : distance(places[f], witness.forward({corner.at.lon_degrees(), corner.at.lat_degrees()}));
-            result.tolerance[f] = kPositionTolerance;
+            result.offset[f] =
+                f == kGltf ? offset_on_earth(places[f], corner.at)
+                           : offset(places[f], witness.forward({corner.at.lon_degrees(), corner.at.lat_degrees()}));
+            result.off[f] = std::hypot(result.offset[f].x, result.offset[f].y);
+            result.tolerance[f] = kPositionTolerance + reach;
           }
           out_.positions.push_back(std::move(result));
         }

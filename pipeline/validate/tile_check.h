@@ -47,7 +47,9 @@ struct PositionResult {
   std::string object;
   std::string file[kTileFormats];
   double off[kTileFormats] = {-1, -1, -1};  ///< m
+  model::Point2 offset[kTileFormats];       ///< m east and north, from there to the nearest corner of the model
   double tolerance[kTileFormats] = {0, 0, 0};
+  bool moved = false;  ///< repair says that it moved corners of the body
 };
 
 struct TileResult {

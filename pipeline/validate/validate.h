@@ -23,7 +23,11 @@ struct Validation {
   std::vector<std::string> notes;       ///< what could not be checked, and why
   std::string position_source;          ///< in words; empty where no positions were compared
   std::uint64_t positions = 0;          ///< corners that were compared with OpenStreetMap
-  double worst_glb = 0, worst_crs = 0;  ///< m: the largest distance in GLBs, and in CityGML and CityJSON
+  double worst_glb = 0, worst_crs = 0;  ///< m: the largest distance in GLBs, and in CityGML and CityJSON, of corners
+                                        ///< that repair left where they are
+  std::uint64_t positions_moved = 0;    ///< of the corners: of buildings that repair moved corners of
+  double worst_moved = 0;               ///< m: the largest distance of these
+  double worst_median = 0;              ///< m: the median over buildings, of the format where it is the largest
   FindingLog findings;
   bool sound() const { return findings.count() == 0; }
 };

@@ -247,6 +247,53 @@ TEST(Positions, OnlyClearCornersAndTheSameEachTime) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(a.corners.at("w1")[i].rank, b.corners.at("w1")[i].rank);
 }
 
+PositionSample sampled(std::initializer_list<const char*> ids) {
+  PositionSample sample;
+  for (const char* id : ids) sample.corners[id] = {{{110300000, 514700000}, 1}};
+  return sample;
+}
+
+TEST(Positions, WhatTheBuildSaysOfRepairBoundsCorners) {
+  PositionSample sample = sampled({"w1", "w2", "w3", "w4", "w5"});
+  bound_positions(sample, {{"w1", {0, false}}, {"w2", {0.31, false}}, {"w3", {0.2, true}}}, {"w2", "w4"});
+  EXPECT_EQ(sample.reach.count("w1"), 0u) << "agrees to the millimetre";
+  EXPECT_EQ(sample.reach.at("w2"), 0.31);
+  EXPECT_FALSE(sample.corners.contains("w3")) << "an overlap was cut off: corners may be gone";
+  EXPECT_FALSE(sample.corners.contains("w4")) << "moved, and nobody says how far";
+  EXPECT_TRUE(sample.corners.contains("w5"));
+  EXPECT_EQ(sample.reach.size(), 1u);
+}
+
+/// Offsets of `buildings` buildings with four corners each, a share of which repair moved by up to 0.3 m to and fro; all
+/// shifted by `common` to the east.
+std::vector<std::pair<std::string, model::Point2>> offsets(int buildings, double moved, double common) {
+  std::vector<std::pair<std::string, model::Point2>> out;
+  std::uint64_t state = 11;
+  const auto random = [&] {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<double>(state >> 11) / 9007199254740992.0;
+  };
+  for (int b = 0; b < buildings; ++b) {
+    const bool is_moved = random() < moved;
+    for (int i = 0; i < 4; ++i)
+      out.emplace_back("w" + std::to_string(1000 + b), is_moved
+                                                           ? model::Point2{common + random() * 0.6 - 0.3, random() * 0.6 - 0.3}
+                                                           : model::Point2{common, 0.0004});
+  }
+  return out;
+}
+
+TEST(Positions, FiveCentimetresOfEverythingAreFoundAmongRepairs) {
+  for (const double moved : {0.0, 0.4, 0.9}) {
+    const CommonShift sound = common_shift(offsets(250, moved, 0)), shifted = common_shift(offsets(250, moved, 0.05));
+    EXPECT_EQ(sound.buildings, 250u);
+    EXPECT_LT(std::hypot(sound.median.x, sound.median.y), 0.01 + sound.uncertainty) << moved;
+    EXPECT_GT(std::hypot(shifted.median.x, shifted.median.y), 0.01 + shifted.uncertainty) << moved;
+    EXPECT_NEAR(shifted.median.x - sound.median.x, 0.05, 1e-9);
+  }
+  EXPECT_EQ(common_shift({}).buildings, 0u);
+}
+
 TEST(Positions, ManyAreThinnedByRankNotByOrder) {
   const auto sample = [](bool backwards) {
     PositionSampler sampler;
