@@ -26,8 +26,8 @@ RingCleaning clean_ring(model::Ring& ring, const KeptNodes& kept, const RepairOp
 /// The ring without the points of straight walls: drops them, the flattest first, so that every dropped point is nearer
 /// than `collinear_distance` to the edge that runs past it afterwards. Kept nodes stay, and so do the points of curves:
 /// where three or more corners in sequence turn the same way, none sharply, by 30 degrees or more together, points that
-/// bulge out between them the same way. At least three points stay. The result does not depend on where the ring starts.
-/// The ring may cross itself afterwards where it came within that distance of itself before.
+/// bulge out between them the same way. At least three points stay. The result does not depend on where the ring
+/// starts. The ring may cross itself afterwards where it came within that distance of itself before.
 /// \return the ring without them; nothing where no point was dropped
 std::optional<model::Ring> without_collinear_points(const model::Ring& ring, const KeptNodes& kept,
                                                     const RepairOptions& options);

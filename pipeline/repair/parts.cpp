@@ -73,7 +73,8 @@ bool mended(std::vector<Polygon>& moved, double area, const RepairOptions& optio
   }
   geometry::ValidPolygons valid = geometry::make_valid(rings, inner, options.min_piece_area, options.ring_clearance);
   const double change = area_of(valid.polygons) - area;
-  if (valid.polygons.size() != moved.size() || change * change > options.max_area_change * options.max_area_change * area * area)
+  if (valid.polygons.size() != moved.size() ||
+      change * change > options.max_area_change * options.max_area_change * area * area)
     return false;
   moved = std::move(valid.polygons);
   return true;
@@ -133,7 +134,8 @@ void add_rest(Building& building, const std::vector<PartBody>& bodies, const Rep
   const std::vector<Polygon> covered = all_polygons(bodies);
   geometry::ValidPolygons rest =
       geometry::difference(building.outline, covered, options.parts_free_area, options.ring_clearance);
-  std::erase_if(rest.polygons, [&](const Polygon& p) { return geometry::equivalent_width(p) < options.parts_free_width; });
+  std::erase_if(rest.polygons,
+                [&](const Polygon& p) { return geometry::equivalent_width(p) < options.parts_free_width; });
   if (rest.polygons.empty()) return;
   restore_nodes(rest.polygons, building.outline);
   restore_nodes(rest.polygons, covered);
@@ -154,7 +156,8 @@ std::vector<PartBody> repaired_bodies(const Building& building, const KeptNodes&
       failures.push_back({part.mapped_index, repaired.failure});
       continue;
     }
-    bodies.push_back({i, part.osm, height_span(part.mapped, part.canopy, building.mapped), std::move(repaired.polygons)});
+    bodies.push_back(
+        {i, part.osm, height_span(part.mapped, part.canopy, building.mapped), std::move(repaired.polygons)});
   }
   return bodies;
 }
@@ -177,7 +180,8 @@ void fit_parts(Building& building, std::span<const Polygon> outline_before, cons
   std::vector<model::PartFailure> failed;
   std::vector<PartBody> bodies = repaired_bodies(building, kept, options, failed, report);
   for (const model::PartFailure& failure : failed) {
-    // The first part of a building without outline gave the building its name: the object has one state, the building's.
+    // The first part of a building without outline gave the building its name: the object has one state, the
+    // building's.
     if (failure.mapped_index == building.mapped_index)
       building.failure = failure.code;
     else
@@ -192,21 +196,24 @@ void fit_parts(Building& building, std::span<const Polygon> outline_before, cons
   building.failure = IssueCode::none;
   if (building.outline.empty()) {
     building.outline = united(bodies, options);
-    report.add(building.osm, IssueCode::outline_made, std::to_string(bodies.size()) + (bodies.size() == 1 ? " part" : " parts"));
+    report.add(building.osm, IssueCode::outline_made,
+               std::to_string(bodies.size()) + (bodies.size() == 1 ? " part" : " parts"));
   } else if (!outline_before.empty()) {
     const auto same = [](const Polygon& a, const Polygon& b) {
       return a.outer.points == b.outer.points &&
              std::equal(a.holes.begin(), a.holes.end(), b.holes.begin(), b.holes.end(),
                         [](const Ring& g, const Ring& h) { return g.points == h.points; });
     };
-    if (!std::equal(outline_before.begin(), outline_before.end(), building.outline.begin(), building.outline.end(), same)) {
+    if (!std::equal(outline_before.begin(), outline_before.end(), building.outline.begin(), building.outline.end(),
+                    same)) {
       follow(MovedWalls(outline_before, building.outline, options), bodies, options);
       give_up_lost(outline_before, building, bodies, options, report);
     }
   }
   if (options.share_walls) {
     if (const int joined = share_part_walls(bodies, building.outline, options); joined > 0)
-      report.add(building.osm, IssueCode::shared_wall_made, std::to_string(joined) + (joined == 1 ? " corner of its parts" : " corners of its parts"));
+      report.add(building.osm, IssueCode::shared_wall_made,
+                 std::to_string(joined) + (joined == 1 ? " corner of its parts" : " corners of its parts"));
   }
   report_outside(building, bodies, options, report);
   resolve_part_overlaps(bodies, options, report);

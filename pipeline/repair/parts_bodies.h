@@ -12,10 +12,10 @@ namespace blockrand::repair {
 
 /// From where to where a part stands, as far as its tags tell. Metres above the ground.
 struct HeightSpan {
-  double low = 0, high = 0;     ///< high may be infinite: unknown
-  bool low_counted = false;     ///< from storeys, not from metres
+  double low = 0, high = 0;  ///< high may be infinite: unknown
+  bool low_counted = false;  ///< from storeys, not from metres
   bool high_counted = false;
-  bool slab = false;            ///< a roof without walls whose underside is unknown: only its own kind is in its way
+  bool slab = false;  ///< a roof without walls whose underside is unknown: only its own kind is in its way
 };
 
 /// What the tags of a part say, of `building` where the part says nothing: height, else storeys of 3 m each; without
@@ -40,10 +40,11 @@ struct PartBody {
 /// that wall. Only where all polygons stay strictly simple and keep their area to `max_area_change`: else the same is
 /// tried with a quarter of the distance, else nothing is changed. Points that several parts have move together.
 /// \return how many corners were joined to another part's corner or wall that did not have them before
-int share_part_walls(std::vector<PartBody>& bodies, std::span<const model::Polygon> outline, const RepairOptions& options);
+int share_part_walls(std::vector<PartBody>& bodies, std::span<const model::Polygon> outline,
+                     const RepairOptions& options);
 
-/// What is left of a plan without `taken`. Pieces narrower than 0.3 m or smaller than 0.5 m² are drawing tolerance and go;
-/// empty where there are only such. Nodes of both are kept.
+/// What is left of a plan without `taken`. Pieces narrower than 0.3 m or smaller than 0.5 m² are drawing tolerance and
+/// go; empty where there are only such. Nodes of both are kept.
 std::vector<model::Polygon> plan_without(std::span<const model::Polygon> plan, std::span<const model::Polygon> taken,
                                          const RepairOptions& options);
 

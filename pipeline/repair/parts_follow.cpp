@@ -78,8 +78,11 @@ Partners pair_corners(const Ring& before, const Ring& after, double reach) {
         out[(i0 + i - 1) % n] = after.points[(j0 + j - 1) % m];
         --i, --j;
         break;
-      case 'l': --i; break;
-      default: --j;
+      case 'l':
+        --i;
+        break;
+      default:
+        --j;
     }
   }
   return out;

@@ -12,9 +12,9 @@ namespace blockrand::repair {
 /// The movement of an outline as a smooth movement of the plane.
 ///
 /// Corners of the two outlines are paired ring by ring in sequence (least sum of squared distances, equal nodes
-/// preferred); corners without a partner move as the wall between their neighbours does. A point between the walls moves
-/// by the mean of all walls' movements at its nearest points, weighted by the inverse fourth power of the distance
-/// (Shepard, A two-dimensional interpolation function, 1968): on a wall it moves as the wall does.
+/// preferred); corners without a partner move as the wall between their neighbours does. A point between the walls
+/// moves by the mean of all walls' movements at its nearest points, weighted by the inverse fourth power of the
+/// distance (Shepard, A two-dimensional interpolation function, 1968): on a wall it moves as the wall does.
 class MovedWalls {
  public:
   MovedWalls(std::span<const model::Polygon> before, std::span<const model::Polygon> after,

@@ -16,11 +16,11 @@ using model::IssueCode;
 using model::Point2;
 using model::Polygon;
 
-constexpr double kStoreyHeight = 3.0;     // m; only to compare storeys with metres
-constexpr double kSameKindMargin = 0.1;   // m; heights are mapped in tenths
-constexpr double kMixedMargin = 1.5;      // m; half a storey: real ones are 2.5 to 4.5 m high
-constexpr double kLeastPartWidth = 0.3;   // m; what is left of a part and narrower is the noise of two drawn walls
-constexpr double kLeastPartArea = 0.5;    // m²; smaller than the smallest chimney or turret that somebody maps
+constexpr double kStoreyHeight = 3.0;    // m; only to compare storeys with metres
+constexpr double kSameKindMargin = 0.1;  // m; heights are mapped in tenths
+constexpr double kMixedMargin = 1.5;     // m; half a storey: real ones are 2.5 to 4.5 m high
+constexpr double kLeastPartWidth = 0.3;  // m; what is left of a part and narrower is the noise of two drawn walls
+constexpr double kLeastPartArea = 0.5;   // m²; smaller than the smallest chimney or turret that somebody maps
 
 struct Box {
   Point2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};

@@ -16,10 +16,10 @@ using model::Point2;
 using model::Polygon;
 using model::Ring;
 
-constexpr double kShareOfWall = 1.0 / 3;   // corners nearer than this share of their walls: never both ends of one wall
-constexpr double kMostBend = 0.1;          // m; a wall bends no farther to a corner that must not move
-constexpr double kFromEnds = 0.05;         // m; a corner nearer to the end of a wall is that end's business
-constexpr double kSecondTry = 0.25;        // of the distance
+constexpr double kShareOfWall = 1.0 / 3;  // corners nearer than this share of their walls: never both ends of one wall
+constexpr double kMostBend = 0.1;         // m; a wall bends no farther to a corner that must not move
+constexpr double kFromEnds = 0.05;        // m; a corner nearer to the end of a wall is that end's business
+constexpr double kSecondTry = 0.25;       // of the distance
 
 double distance(Point2 a, Point2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
@@ -36,9 +36,9 @@ void for_each_ring(Bodies& bodies, Visit&& visit) {
 struct Place {
   Point2 point;
   std::int64_t node = 0;
-  std::vector<std::size_t> bodies;  ///< sorted
+  std::vector<std::size_t> bodies;                            ///< sorted
   double shortest = std::numeric_limits<double>::infinity();  ///< m, of the walls that end here
-  bool fixed = false;               ///< a corner of the outline
+  bool fixed = false;                                         ///< a corner of the outline
 };
 
 std::vector<Place> places_of(const std::vector<PartBody>& bodies, std::span<const Polygon> outline) {
@@ -94,7 +94,8 @@ void move_points(const Moves& moves, std::vector<PartBody>& bodies) {
   if (moves.empty()) return;
   for_each_ring(bodies, [&](std::size_t, Ring& ring) {
     for (Point2& p : ring.points) {
-      const auto found = std::lower_bound(moves.begin(), moves.end(), p, [](const auto& m, Point2 q) { return m.first < q; });
+      const auto found =
+          std::lower_bound(moves.begin(), moves.end(), p, [](const auto& m, Point2 q) { return m.first < q; });
       if (found != moves.end() && found->first == p) p = found->second;
     }
   });
@@ -117,7 +118,8 @@ class Clusters {
       for (const std::size_t j : members_[b])
         if (common_body(places_[i].bodies, places_[j].bodies) || (places_[i].fixed && places_[j].fixed)) return false;
     std::vector<std::size_t> both;
-    std::merge(members_[a].begin(), members_[a].end(), members_[b].begin(), members_[b].end(), std::back_inserter(both));
+    std::merge(members_[a].begin(), members_[a].end(), members_[b].begin(), members_[b].end(),
+               std::back_inserter(both));
     const Point2 centre = target(both);
     for (const std::size_t i : both)
       if (distance(places_[i].point, centre) > reach_) return false;

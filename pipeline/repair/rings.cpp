@@ -28,7 +28,7 @@ struct Mending {
   bool separated = false;  ///< touching rings were moved apart
   double dropped = 0;      ///< m², of slivers
   int slivers = 0;
-  std::string more;        ///< remarks for RING_REPAIRED
+  std::string more;  ///< remarks for RING_REPAIRED
   void remark(const char* text) {
     changed = true;
     if (more.find(text) == std::string::npos) more += std::string("; ") + text;

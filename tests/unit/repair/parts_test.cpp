@@ -66,7 +66,8 @@ struct Scene {
     return *this;
   }
   const Polygon& plan(const std::string& id) const {
-    const auto found = std::find_if(building.parts.begin(), building.parts.end(), [&](const auto& p) { return p.id == id; });
+    const auto found =
+        std::find_if(building.parts.begin(), building.parts.end(), [&](const auto& p) { return p.id == id; });
     static const Polygon none;
     EXPECT_NE(found, building.parts.end()) << id;
     return found == building.parts.end() ? none : found->plan;
@@ -75,7 +76,8 @@ struct Scene {
   bool has_point(const std::string& id, Point2 p) const {
     const Polygon& of = plan(id);
     if (std::count(of.outer.points.begin(), of.outer.points.end(), p) > 0) return true;
-    return std::any_of(of.holes.begin(), of.holes.end(), [&](const Ring& h) { return std::count(h.points.begin(), h.points.end(), p) > 0; });
+    return std::any_of(of.holes.begin(), of.holes.end(),
+                       [&](const Ring& h) { return std::count(h.points.begin(), h.points.end(), p) > 0; });
   }
   /// The corner nearest to a place.
   Point2 point_near(const std::string& id, Point2 p) const {
@@ -156,7 +158,8 @@ TEST(PartsFollow, OneMapForAllPoints) {
   auto turned = before;
   std::rotate(turned[0].outer.points.begin(), turned[0].outer.points.begin() + 2, turned[0].outer.points.end());
   auto turned_after = after;
-  std::rotate(turned_after[0].outer.points.begin(), turned_after[0].outer.points.begin() + 4, turned_after[0].outer.points.end());
+  std::rotate(turned_after[0].outer.points.begin(), turned_after[0].outer.points.begin() + 4,
+              turned_after[0].outer.points.end());
   const MovedWalls walls(before, after, {}), same(turned, turned_after, {});
   for (std::size_t i = 0; i < before[0].outer.size(); ++i)
     EXPECT_EQ(walls(before[0].outer.points[i]), after[0].outer.points[i]);
@@ -202,7 +205,10 @@ TEST(PartsShare, AGapBetweenPartsIsClosed) {
 
 TEST(PartsShare, AWallEndingInAnotherGetsACorner) {
   Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
-  s.part(2, {{0, 0}, {10, 0}, {10, 10}, {0, 10}}).part(3, {{10.125, 0}, {20, 0}, {20, 5}, {10.125, 5}}).part(4, {{10, 5}, {20, 5}, {20, 10}, {10, 10}}).fit();
+  s.part(2, {{0, 0}, {10, 0}, {10, 10}, {0, 10}})
+      .part(3, {{10.125, 0}, {20, 0}, {20, 5}, {10.125, 5}})
+      .part(4, {{10, 5}, {20, 5}, {20, 10}, {10, 10}})
+      .fit();
   const Point2 middle = s.point_near("w1.w2", {10, 5});
   EXPECT_NEAR(middle.x, 10.0625, 0.07);
   EXPECT_TRUE(s.has_point("w1.w3", middle));
@@ -229,7 +235,9 @@ TEST(PartsShare, CanBeSwitchedOff) {
   RepairOptions options;
   options.share_walls = false;
   Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
-  s.part(2, {{0, 0}, {9.875, 0}, {9.875, 10}, {0, 10}}).part(3, {{10.125, 0}, {20, 0}, {20, 10}, {10.125, 10}}).fit(options);
+  s.part(2, {{0, 0}, {9.875, 0}, {9.875, 10}, {0, 10}})
+      .part(3, {{10.125, 0}, {20, 0}, {20, 10}, {10.125, 10}})
+      .fit(options);
   EXPECT_TRUE(s.has_point("w1.w2", {9.875, 0}));
 }
 
@@ -247,7 +255,9 @@ TEST(PartsOverlap, TheSmallerPartKeepsTheCommonArea) {
 TEST(PartsOverlap, OfEqualPartsTheLowerIdKeepsIt) {
   for (const bool swapped : {false, true}) {
     Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
-    s.part(swapped ? 3 : 2, {{0, 0}, {12, 0}, {12, 10}, {0, 10}}).part(swapped ? 2 : 3, {{8, 0}, {20, 0}, {20, 10}, {8, 10}}).fit();
+    s.part(swapped ? 3 : 2, {{0, 0}, {12, 0}, {12, 10}, {0, 10}})
+        .part(swapped ? 2 : 3, {{8, 0}, {20, 0}, {20, 10}, {8, 10}})
+        .fit();
     EXPECT_NEAR(s.area("w1.w2"), 120, 1e-9);
     EXPECT_NEAR(s.area("w1.w3"), 80, 1e-9);
   }
@@ -255,7 +265,9 @@ TEST(PartsOverlap, OfEqualPartsTheLowerIdKeepsIt) {
 
 TEST(PartsOverlap, AtOtherHeightsPartsOverlapFreely) {
   Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
-  s.part(2, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {10.0f, {}, {}, {}}).part(3, {{2, 2}, {8, 2}, {8, 8}, {2, 8}}, {30.0f, 10.0f, {}, {}}).fit();
+  s.part(2, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {10.0f, {}, {}, {}})
+      .part(3, {{2, 2}, {8, 2}, {8, 8}, {2, 8}}, {30.0f, 10.0f, {}, {}})
+      .fit();
   EXPECT_NEAR(s.common("w1.w2", "w1.w3"), 36, 1e-9);
   EXPECT_EQ(s.detail(IssueCode::parts_overlap), "-");
 }
@@ -303,7 +315,9 @@ TEST(Heights, SpansAndMargins) {
 
 TEST(PartsOutside, WhatSticksOutStaysAndIsReported) {
   Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
-  s.part(2, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {10.0f, {}, {}, {}}).part(3, {{18, 0}, {23, 0}, {23, 10}, {18, 10}}, {20.0f, 10.0f, {}, {}}).fit();
+  s.part(2, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {10.0f, {}, {}, {}})
+      .part(3, {{18, 0}, {23, 0}, {23, 10}, {18, 10}}, {20.0f, 10.0f, {}, {}})
+      .fit();
   EXPECT_NEAR(s.area("w1.w3"), 50, 1e-9);
   EXPECT_EQ(s.detail(IssueCode::parts_outside), "w3 30.00 m2");
 }
@@ -368,21 +382,28 @@ TEST(Parts, NoisyPlansBecomePartitions) {
   double free_before = 0, free_after = 0;
   for (int round = 0; round < 200; ++round) {
     SCOPED_TRACE(round);
-    const double w = 12 + 10 * random.unit(), d = 10 + 8 * random.unit(), x = w * (0.35 + 0.3 * random.unit()), y = d * (0.35 + 0.3 * random.unit());
+    const double w = 12 + 10 * random.unit(), d = 10 + 8 * random.unit(), x = w * (0.35 + 0.3 * random.unit()),
+                 y = d * (0.35 + 0.3 * random.unit());
     const auto noisy = [&](std::vector<Point2> points, double size) {
-      for (Point2& p : points) p = model::snap(Point2{p.x + size * (2 * random.unit() - 1), p.y + size * (2 * random.unit() - 1)});
+      for (Point2& p : points)
+        p = model::snap(Point2{p.x + size * (2 * random.unit() - 1), p.y + size * (2 * random.unit() - 1)});
       return points;
     };
     Scene s(noisy({{0, 0}, {w, 0}, {w, d}, {0, d}}, 0));
     std::vector<std::vector<Point2>> rings;
-    for (const auto& points : std::vector<std::vector<Point2>>{{{0, 0}, {x, 0}, {x, y}, {0, y}}, {{x, 0}, {w, 0}, {w, y}, {x, y}}, {{x, y}, {w, y}, {w, d}, {x, d}}, {{0, y}, {x, y}, {x, d}, {0, d}}})
+    for (const auto& points : std::vector<std::vector<Point2>>{{{0, 0}, {x, 0}, {x, y}, {0, y}},
+                                                               {{x, 0}, {w, 0}, {w, y}, {x, y}},
+                                                               {{x, y}, {w, y}, {w, d}, {x, d}},
+                                                               {{0, y}, {x, y}, {x, d}, {0, d}}})
       rings.push_back(noisy(points, 0.1));
     for (std::size_t i = 0; i < 4; ++i) s.part(static_cast<std::int64_t>(i) + 2, rings[i]);
     const auto moved = noisy({{0, 0}, {w, 0}, {w, d}, {0, d}}, 0.2);
     s.moved_to(moved);
     Scene other = s;
     for (auto& p : other.building.parts)
-      std::rotate(p.rings.rings[0].points.begin(), p.rings.rings[0].points.begin() + static_cast<std::ptrdiff_t>(random.next(4)), p.rings.rings[0].points.end());
+      std::rotate(p.rings.rings[0].points.begin(),
+                  p.rings.rings[0].points.begin() + static_cast<std::ptrdiff_t>(random.next(4)),
+                  p.rings.rings[0].points.end());
     std::vector<Polygon> raw;
     for (const auto& r : rings) raw.push_back(polygon(r));
     s.fit();
@@ -396,7 +417,8 @@ TEST(Parts, NoisyPlansBecomePartitions) {
       total += geometry::area(plans.back());
       Ring a = plans.back().outer, b = other.building.parts[i].plan.outer;
       EXPECT_EQ(a.points, b.points);
-      for (std::size_t j = 0; j < i; ++j) EXPECT_LT(geometry::common_area(std::vector{plans[i]}, std::vector{plans[j]}), 0.1);
+      for (std::size_t j = 0; j < i; ++j)
+        EXPECT_LT(geometry::common_area(std::vector{plans[i]}, std::vector{plans[j]}), 0.1);
     }
     const auto area_of = [](const std::vector<Polygon>& polygons) {
       double sum = 0;

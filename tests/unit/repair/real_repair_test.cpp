@@ -42,7 +42,8 @@ void run(const fs::path& file) {
   const model::Extract extract = importers::osm::read_extract(file.string());
   const auto area = region::area_of(extract);
   ASSERT_TRUE(area.has_value());
-  const georef::Projection projection(georef::open_crs(georef::choose_crs(area->centre.lon, area->centre.lat), area->box), area->box);
+  const georef::Projection projection(
+      georef::open_crs(georef::choose_crs(area->centre.lon, area->centre.lat), area->box), area->box);
   model::Report sharding;
   const auto shards = region::make_shards(extract, sharding);
   const auto kept_from = Clock::now();
@@ -73,7 +74,8 @@ void run(const fs::path& file) {
       f.parts_s += seconds(from);
       // Nothing lost: every mapped part is a body or a failure, every building has a body or a reason.
       for (const auto& p : b.parts) mapped.erase(p.mapped_index);
-      for (std::size_t i = failures_before; i < tile.part_failures.size(); ++i) mapped.erase(tile.part_failures[i].mapped_index);
+      for (std::size_t i = failures_before; i < tile.part_failures.size(); ++i)
+        mapped.erase(tile.part_failures[i].mapped_index);
       EXPECT_TRUE(mapped.empty()) << b.id();
       EXPECT_EQ(b.parts.empty(), b.failure != model::IssueCode::none) << b.id();
       f.failed += b.parts.empty();
@@ -89,14 +91,16 @@ void run(const fs::path& file) {
     for (const auto& row : tile.report.rows) ++f.codes[std::string(model::info(row.code).text)];
     if (std::getenv("BLOCKRAND_ROWS"))
       for (const auto& row : tile.report.rows)
-        std::printf("  row %s %s %s\n", row.object.text().c_str(), std::string(model::info(row.code).text).c_str(), row.detail.c_str());
+        std::printf("  row %s %s %s\n", row.object.text().c_str(), std::string(model::info(row.code).text).c_str(),
+                    row.detail.c_str());
   }
-  std::printf("%-40s %7llu buildings %6llu parts %7llu bodies %4llu without body, points %llu to %llu, rings %.2f us each, parts %.2f us each, kept nodes %.3f s\n",
-              file.filename().c_str(), static_cast<unsigned long long>(f.buildings), static_cast<unsigned long long>(f.parts),
-              static_cast<unsigned long long>(f.bodies),
-              static_cast<unsigned long long>(f.failed), static_cast<unsigned long long>(f.points_in),
-              static_cast<unsigned long long>(f.points_out), 1e6 * f.rings_s / static_cast<double>(f.buildings),
-              1e6 * f.parts_s / static_cast<double>(f.buildings), kept_s);
+  std::printf(
+      "%-40s %7llu buildings %6llu parts %7llu bodies %4llu without body, points %llu to %llu, rings %.2f us each, "
+      "parts %.2f us each, kept nodes %.3f s\n",
+      file.filename().c_str(), static_cast<unsigned long long>(f.buildings), static_cast<unsigned long long>(f.parts),
+      static_cast<unsigned long long>(f.bodies), static_cast<unsigned long long>(f.failed),
+      static_cast<unsigned long long>(f.points_in), static_cast<unsigned long long>(f.points_out),
+      1e6 * f.rings_s / static_cast<double>(f.buildings), 1e6 * f.parts_s / static_cast<double>(f.buildings), kept_s);
   for (const auto& [code, n] : f.codes) std::printf("    %-20s %d\n", code.c_str(), n);
 }
 

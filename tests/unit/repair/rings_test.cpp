@@ -207,14 +207,16 @@ TEST(Rings, BothLoopsOfAFigureEightCountAsMapped) {
 TEST(Rings, AGreatChangeOfAreaIsBuiltAndNamed) {
   // The ring winds twice around a court: even-odd leaves it out, the repair does not.
   model::Report report;
-  const auto r = repair_rings(one({{0, 0}, {12, 0}, {12, 10}, {2, 10}, {2, 2}, {10, 2}, {10, 12}, {0, 12}}), kId, {}, {}, report);
+  const auto r =
+      repair_rings(one({{0, 0}, {12, 0}, {12, 10}, {2, 10}, {2, 2}, {10, 2}, {10, 12}, {0, 12}}), kId, {}, {}, report);
   EXPECT_GT(area_of(r.polygons), r.mapped_area * 1.1);
   EXPECT_NE(detail(report, IssueCode::ring_repaired).find("; changed by "), std::string::npos);
 }
 
 TEST(Rings, TheRowSaysHowMuch) {
   model::Report report;
-  repair_rings(one({{0, 0}, {0, 0}, {5, 0}, {10, 0}, {10, 8}, {4.01, 8}, {4, 20}, {4, 8}, {0, 8}}), kId, {}, {}, report);
+  repair_rings(one({{0, 0}, {0, 0}, {5, 0}, {10, 0}, {10, 8}, {4.01, 8}, {4, 20}, {4, 8}, {0, 8}}), kId, {}, {},
+               report);
   EXPECT_EQ(detail(report, IssueCode::duplicate_points), "1 point");
   EXPECT_EQ(detail(report, IssueCode::spike_removed), "1 spike");
   EXPECT_EQ(detail(report, IssueCode::collinear_points), "3 points");
@@ -231,8 +233,9 @@ TEST(Rings, SimplificationCanBeSwitchedOff) {
 
 TEST(Rings, SimplificationNeverMakesARingCrossItself) {
   // A dent of 15 mm in the wall, and a court whose corner lies in the dent: without the dent they would cross.
-  model::MappedRings rings{{ring({{0, 0}, {5, -0.015625}, {10, 0}, {10, 8}, {0, 8}}), ring({{5, -0.0078125}, {6, 4}, {4, 4}})},
-                           {false, true}};
+  model::MappedRings rings{
+      {ring({{0, 0}, {5, -0.015625}, {10, 0}, {10, 8}, {0, 8}}), ring({{5, -0.0078125}, {6, 4}, {4, 4}})},
+      {false, true}};
   model::Report report;
   const auto r = repair_rings(rings, kId, {}, {}, report);
   expect_sound(r);
@@ -282,15 +285,23 @@ std::vector<Point2> noisy_ring(Random& random, int slips) {
   for (int i = 0; i < n; ++i) {
     const double angle = 2 * base::kPi * (i + 0.8 * random.unit()) / n, radius = 3 + 12 * random.unit();
     out.push_back({radius * base::cos(angle), radius * base::sin(angle)});
-    for (auto k = random.next(3); k > 0; --k) out.push_back({out.back().x + 0.1 * random.unit(), out.back().y + 0.1 * random.unit()});
+    for (auto k = random.next(3); k > 0; --k)
+      out.push_back({out.back().x + 0.1 * random.unit(), out.back().y + 0.1 * random.unit()});
   }
   for (int s = 0; s < slips; ++s) {
     const std::size_t i = random.next(out.size()), j = random.next(out.size());
     switch (random.next(4)) {
-      case 0: std::swap(out[i], out[j]); break;
-      case 1: out.insert(out.begin() + static_cast<std::ptrdiff_t>(i), out[j]); break;
-      case 2: out[i] = {30 * random.unit() - 15, 30 * random.unit() - 15}; break;
-      default: out.insert(out.begin() + static_cast<std::ptrdiff_t>(i), out[i]);
+      case 0:
+        std::swap(out[i], out[j]);
+        break;
+      case 1:
+        out.insert(out.begin() + static_cast<std::ptrdiff_t>(i), out[j]);
+        break;
+      case 2:
+        out[i] = {30 * random.unit() - 15, 30 * random.unit() - 15};
+        break;
+      default:
+        out.insert(out.begin() + static_cast<std::ptrdiff_t>(i), out[i]);
     }
   }
   for (Point2& p : out) p = model::snap(Point2{391000.5 + p.x, 5819000.25 + p.y});
@@ -347,7 +358,8 @@ TEST(Rings, NothingDependsOnTheOrderOfRings) {
     std::vector<Ring> rings;
     for (int i = 0; i < 6; ++i) rings.push_back(ring(noisy_ring(random, i % 3 == 0 ? 1 : 0)));
     for (const int hole : {1, 2, 4, 5})
-      for (Point2& p : rings[static_cast<std::size_t>(hole)].points) p = model::snap(Point2{391000.5 + (p.x - 391000.5) / 3, 5819000.25 + (p.y - 5819000.25) / 3});
+      for (Point2& p : rings[static_cast<std::size_t>(hole)].points)
+        p = model::snap(Point2{391000.5 + (p.x - 391000.5) / 3, 5819000.25 + (p.y - 5819000.25) / 3});
     model::MappedRings first{rings, {false, true, true, false, true, true}};
     model::MappedRings second{{rings[3], rings[5], rings[4], rings[0], rings[2], rings[1]}, first.inner};
     model::Report a_rows, b_rows;
@@ -398,7 +410,8 @@ TEST(Rings, SoundRingsKeepTheirAreaAndDroppedPointsAreNear) {
       points.push_back(a);
       for (std::uint64_t k = 1; k <= n; ++k) {
         const double t = static_cast<double>(k) / static_cast<double>(n + 1);
-        points.push_back({a.x + t * (b.x - a.x) + 0.015 * (random.unit() - 0.5), a.y + t * (b.y - a.y) + 0.015 * (random.unit() - 0.5)});
+        points.push_back({a.x + t * (b.x - a.x) + 0.015 * (random.unit() - 0.5),
+                          a.y + t * (b.y - a.y) + 0.015 * (random.unit() - 0.5)});
       }
     }
     const Polygon plan = testing_shapes::turned(testing_shapes::polygon(points));
@@ -410,7 +423,8 @@ TEST(Rings, SoundRingsKeepTheirAreaAndDroppedPointsAreNear) {
     for (const Point2 p : plan.outer.points) {
       double nearest = 1e9;
       for (std::size_t i = 0; i < outer.size(); ++i)
-        nearest = std::min(nearest, geometry::distance_to_segment(p, outer.points[i], outer.points[(i + 1) % outer.size()]));
+        nearest =
+            std::min(nearest, geometry::distance_to_segment(p, outer.points[i], outer.points[(i + 1) % outer.size()]));
       EXPECT_LE(nearest, RepairOptions{}.collinear_distance);
     }
     for (const Point2 p : outer.points)
@@ -431,7 +445,8 @@ std::uint32_t add_way(model::Extract& e, std::vector<std::int64_t> nodes) {
   return static_cast<std::uint32_t>(e.rings.size() - 1);
 }
 
-void add_building(model::Extract& e, std::vector<std::int64_t> nodes, model::ObjectState state = model::ObjectState::pending) {
+void add_building(model::Extract& e, std::vector<std::int64_t> nodes,
+                  model::ObjectState state = model::ObjectState::pending) {
   model::MappedBuilding b;
   b.rings = {add_way(e, std::move(nodes)), 1};
   b.state = state;
