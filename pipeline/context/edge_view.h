@@ -27,8 +27,9 @@ struct StreetPiece {
   bool any_direction = false; ///< of a square's outline: says nothing of how the square lies
 };
 
-/// m. At a dead end a bar this long stands across the street: walls that close it look at street space, not along a line.
-inline constexpr double kDeadEndBar = 8;
+/// m. At a dead end a bar as long as a turning place stands across the street: walls that close it look at street space,
+/// not along a line.
+inline constexpr double kDeadEndBar = 14;
 /// m². Smaller footprints are garages and sheds: one looks over them.
 inline constexpr double kOutbuildingArea = 50;
 

@@ -18,6 +18,9 @@ using model::FacadeEdge;
 using model::Point2;
 
 constexpr double kMaxChamfer = 8;           ///< m. Longer walls between two streets are fronts of their own
+constexpr double kMaxRounding = 20;         ///< m. The same along a mapped curve: radii up to 12 m
+constexpr double kMinCutSine = 0.26;        ///< sine of 15 degrees, and
+constexpr double kMinCutCosine = 0.34;      ///< cosine of 70 degrees: how far a chamfer is turned from its neighbours
 constexpr double kCornerSine = 0.5;         ///< sine of 30 degrees: the least turn of a street corner
 constexpr double kMinCornerFront = 2;       ///< m. Fronts that meet at a corner are at least this long
 constexpr double kMinPartyWall = 1.5;       ///< m. Shorter ones tie no row together
@@ -275,27 +278,35 @@ void mark_corners(model::Building& building, const std::vector<OutlineEdge>& out
   std::vector<FacadeEdge>& edges = building.edges;
   for_each_ring(edges, [&](std::size_t first, std::size_t last) {
     const std::size_t n = last - first;
+    const auto at = [&](std::size_t i) -> FacadeEdge& { return edges[first + i % n]; };
+    // A short wall between two others, turned outwards from both, but by less than a right angle.
+    const auto is_cut = [&](std::size_t i) {
+      const FacadeEdge &b = at(i + n - 1), &c = at(i), &d = at(i + 1);
+      if (n < 4 || c.length() > kMaxChamfer || c.kind != EdgeKind::street || b.kind != EdgeKind::street || d.kind != EdgeKind::street)
+        return false;
+      const auto turns = [&](const FacadeEdge& p, const FacadeEdge& q) {
+        return cross(of[p].along, of[q].along) > kMinCutSine && dot(of[p].along, of[q].along) > kMinCutCosine;
+      };
+      return turns(b, c) && turns(c, d);
+    };
     for (std::size_t i = 0; i < n; ++i) {
-      FacadeEdge& a = edges[first + i];
-      if (a.kind != EdgeKind::street || a.length() < kMinCornerFront) continue;
-      // Over short stretches of street to the next that looks at another one.
+      FacadeEdge& a = at(i);
+      if (a.kind != EdgeKind::street || a.length() < kMinCornerFront || is_cut(i)) continue;
+      // Over cuts and short stretches of street to the next that looks at another one.
       double between = 0;
-      std::size_t steps = 0;
+      bool curved = false;
       for (std::size_t k = 1; k < n; ++k) {
-        FacadeEdge& b = edges[first + (i + k) % n];
+        FacadeEdge& b = at(i + k);
         if (b.kind != EdgeKind::street) break;
-        if (b.length() >= kMinCornerFront && !same_street(a, b) && cross(of[a].along, of[b].along) > kCornerSine) {
+        if (b.length() >= kMinCornerFront && !is_cut(i + k)) {
+          if (same_street(a, b) || cross(of[a].along, of[b].along) <= kCornerSine) break;
           a.corner_end = b.corner_start = true;
-          steps = k;
+          for (std::size_t c = 1; c < k; ++c) at(i + c).chamfer = is_cut(i + c) || at(i + c).arc >= 0;
           break;
         }
         between += b.length();
-        if (between > kMaxChamfer) break;
-      }
-      for (std::size_t k = 1; k < steps; ++k) {
-        FacadeEdge& cut = edges[first + (i + k) % n];
-        FacadeEdge& b = edges[first + (i + steps) % n];
-        if (cross(of[a].along, of[cut].along) > 0 && cross(of[cut].along, of[b].along) > 0) cut.chamfer = true;
+        curved = curved || b.arc >= 0;
+        if (between > (curved ? kMaxRounding : kMaxChamfer)) break;
       }
     }
   });

@@ -13,7 +13,7 @@ namespace blockrand::context {
 ///
 /// A street corner lies where two street stretches that look at different streets follow each other and the outline turns
 /// outwards by more than 30 degrees; also across a chamfer or a rounded corner, whose stretches are no more than 8 m long
-/// together.
+/// together (20 m along a curve of Building::arcs).
 /// \param outline  edges_of(building.outline)
 void mark_corners(model::Building& building, const std::vector<OutlineEdge>& outline);
 

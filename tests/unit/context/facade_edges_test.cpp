@@ -1,0 +1,528 @@
+#include "pipeline/context/facade_edges.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numeric>
+
+#include "tests/unit/context/small_town.h"
+
+namespace blockrand::context {
+namespace {
+
+using model::EdgeKind;
+using model::FacadeEdge;
+using model::Point2;
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+
+double length_of(const model::Building& b, EdgeKind kind) {
+  double sum = 0;
+  for (const FacadeEdge& f : b.edges)
+    if (f.kind == kind) sum += f.length();
+  return sum;
+}
+
+/// Every edge of the outline is covered once, without gaps.
+void expect_complete(const model::Building& b) {
+  std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, double> reached;
+  double sum = 0;
+  for (const FacadeEdge& f : b.edges) {
+    double& at = reached[{f.polygon, f.ring, f.edge}];
+    EXPECT_EQ(at, f.start);
+    EXPECT_GT(f.end, f.start);
+    at = f.end;
+    sum += f.length();
+    EXPECT_NE(f.kind, EdgeKind::unknown);
+    EXPECT_GT(f.confidence, 0.5F);
+    EXPECT_LE(f.confidence, 1.0F);
+  }
+  double perimeter = 0;
+  const auto add = [&](const model::Ring& r) {
+    for (std::size_t i = 0; i < r.size(); ++i)
+      perimeter += std::hypot(r.points[(i + 1) % r.size()].x - r.points[i].x, r.points[(i + 1) % r.size()].y - r.points[i].y);
+  };
+  for (const model::Polygon& p : b.outline) {
+    add(p.outer);
+    for (const model::Ring& h : p.holes) add(h);
+  }
+  EXPECT_NEAR(sum, perimeter, 1e-6);
+}
+
+TEST(FacadeEdges, HouseOfARowHasStreetCourtyardAndTwoNeighbours) {
+  SmallTown t = perimeter_block();
+  t.label();
+  for (const model::Building& b : t.buildings) expect_complete(b);
+  const model::Building& house = t[12];
+  ASSERT_EQ(house.edges.size(), 4u);
+  EXPECT_EQ(t.kind(12, 44, 10), EdgeKind::street);
+  EXPECT_EQ(t.kind(12, 44, 22), EdgeKind::courtyard);
+  EXPECT_EQ(t.edge(12, 38, 16).neighbour.number, 11);
+  EXPECT_EQ(t.edge(12, 50, 16).neighbour.number, 13);
+  const FacadeEdge& front = t.edge(12, 44, 10);
+  EXPECT_EQ(front.street.number, 901);
+  EXPECT_EQ(front.street_name, "South Street");
+  EXPECT_EQ(front.street_class, "residential");
+  EXPECT_NEAR(front.street_distance, 10, 0.01);
+  EXPECT_NEAR(front.street_angle, 0, 0.01);
+  EXPECT_GT(front.visibility, 0.95F);
+  EXPECT_EQ(t.edge(12, 44, 22).visibility, 0.0F);
+}
+
+TEST(FacadeEdges, PartyWallEndsWhereTheNeighbourEnds) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  t.box(1, 0, 10, 12, 26);
+  t.box(2, 12.2, 10.1, 24, 20);  // 0.2 m off, and 6 m shallower
+  t.label();
+  EXPECT_EQ(t.edge(1, 12, 12).neighbour.number, 2);
+  EXPECT_NEAR(length_of(t[1], EdgeKind::party_wall), 10, 0.01) << "0.1 m at the front is no piece of its own";
+  EXPECT_EQ(t.kind(1, 12, 24), EdgeKind::side);
+  EXPECT_NEAR(length_of(t[2], EdgeKind::party_wall), 9.9, 0.01);
+}
+
+TEST(FacadeEdges, AlleyOfLessThanAMetreIsNoPartyWall) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  t.box(1, 0, 10, 12, 22);
+  t.box(2, 12.6, 10, 24, 22);
+  t.label();
+  EXPECT_EQ(t.kind(1, 12, 16), EdgeKind::side);
+  EXPECT_EQ(t.kind(2, 12.6, 16), EdgeKind::side);
+}
+
+TEST(FacadeEdges, OverlapIsAPartyWallOfTheOneThatSticksIn) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  t.box(1, 0, 10, 14, 22);
+  t.box(2, 12, 10, 24, 22);
+  t.label();
+  EXPECT_EQ(t.kind(1, 14, 16), EdgeKind::party_wall);
+  EXPECT_EQ(t.edge(1, 14, 16).neighbour.number, 2);
+}
+
+TEST(FacadeEdges, CornerHouseFacesBothStreetsAndHasItsCornerFlagged) {
+  SmallTown t = perimeter_block();
+  t.label();
+  const FacadeEdge &south = t.edge(1, 18, 10), &west = t.edge(1, 10, 18);
+  EXPECT_EQ(south.street_name, "South Street");
+  EXPECT_EQ(west.street_name, "West Street");
+  EXPECT_TRUE(west.corner_end);  // counter-clockwise: west front runs south to the corner
+  EXPECT_TRUE(south.corner_start);
+  EXPECT_FALSE(south.corner_end);
+  EXPECT_FALSE(west.corner_start);
+  for (const FacadeEdge& f : t[12].edges) EXPECT_FALSE(f.corner_start || f.corner_end || f.chamfer);
+}
+
+TEST(FacadeEdges, ChamferCutsOffTheStreetCorner) {
+  SmallTown t = perimeter_block();
+  for (std::size_t i = 0; i < t.buildings.size(); ++i)
+    if (t.buildings[i].osm.number == 1) {
+      t.buildings.erase(t.buildings.begin() + static_cast<std::ptrdiff_t>(i));
+      t.footprints.erase(t.footprints.begin() + static_cast<std::ptrdiff_t>(i));
+      break;
+    }
+  t.house(1, {{14, 10}, {26, 10}, {26, 22}, {22, 22}, {22, 26}, {10, 26}, {10, 14}});
+  t.label();
+  const FacadeEdge& chamfer = t.edge(1, 12, 12);
+  EXPECT_EQ(chamfer.kind, EdgeKind::street);
+  EXPECT_TRUE(chamfer.chamfer);
+  EXPECT_TRUE(t.edge(1, 20, 10).corner_start);
+  EXPECT_TRUE(t.edge(1, 10, 20).corner_end);
+  EXPECT_FALSE(t.edge(1, 20, 10).chamfer);
+}
+
+TEST(FacadeEdges, VillaHasAFrontAndThreeSides) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  t.box(1, 0, 15, 12, 25);
+  t.box(2, 40, 15, 52, 25);
+  t.label();
+  EXPECT_EQ(t.kind(1, 6, 15), EdgeKind::street);
+  EXPECT_EQ(t.kind(1, 0, 20), EdgeKind::side);
+  EXPECT_EQ(t.kind(1, 12, 20), EdgeKind::side);
+  EXPECT_EQ(t.kind(1, 6, 25), EdgeKind::side);
+  // The gable looks out on the street aslant: it has one, but no front.
+  EXPECT_EQ(t.edge(1, 12, 20).street.number, 901);
+  EXPECT_NEAR(t.edge(1, 12, 20).street_angle, 90, 0.01);
+  EXPECT_LT(t.edge(1, 12, 20).visibility, 0.5F);
+}
+
+TEST(FacadeEdges, RearBuildingSeesOnlyTheCourtyard) {
+  SmallTown t = perimeter_block();
+  t.box(51, 38, 36, 62, 46);
+  t.label();
+  EXPECT_EQ(length_of(t[51], EdgeKind::courtyard), 68);
+}
+
+TEST(FacadeEdges, MouthOfAPassageIsCutOutOfTheFront) {
+  SmallTown t = perimeter_block();
+  t.passage(801, {{44, 10}, {44, 22}}, kServicePassageWidth);
+  t.label();
+  EXPECT_NEAR(length_of(t[12], EdgeKind::passage), 7, 0.01);
+  EXPECT_EQ(t.kind(12, 44, 10), EdgeKind::passage);
+  EXPECT_EQ(t.kind(12, 44, 22), EdgeKind::passage);
+  EXPECT_EQ(t.kind(12, 40, 10), EdgeKind::street);
+  EXPECT_EQ(t.kind(12, 40, 22), EdgeKind::courtyard);
+  EXPECT_EQ(t.edge(12, 44, 10).street.number, 901);
+  std::vector<double> cuts;
+  for (const FacadeEdge& f : t[12].edges)
+    if (f.edge == 0) cuts.push_back(f.end);
+  EXPECT_THAT(cuts, ElementsAre(DoubleNear(4.25, 0.01), DoubleNear(7.75, 0.01), DoubleNear(12, 0.01)));
+}
+
+TEST(FacadeEdges, PassageAlongAPartyWallLeavesItOne) {
+  SmallTown t = perimeter_block();
+  t.passage(801, {{50, 10}, {50, 22}}, kFootPassageWidth);
+  t.label();
+  EXPECT_EQ(t.kind(12, 50, 16), EdgeKind::party_wall);
+  EXPECT_NEAR(t.edge(12, 50, 10.0).length(), 1.25, 0.01);
+  EXPECT_EQ(t.kind(12, 49.5, 10), EdgeKind::passage);
+  EXPECT_EQ(t.kind(13, 50.5, 10), EdgeKind::passage);
+}
+
+TEST(FacadeEdges, ArcadeIsOpenToTheCornerOfItsFront) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  t.box(1, 0, 8, 30, 22);
+  t.passage(801, {{-5, 10.5}, {35, 10.5}}, 2);
+  t.label();
+  EXPECT_EQ(t.kind(1, 0, 8.5), EdgeKind::passage);
+  EXPECT_EQ(t.kind(1, 30, 8.5), EdgeKind::passage);
+  EXPECT_EQ(t.kind(1, 0, 13), EdgeKind::side);
+  EXPECT_EQ(t.kind(1, 15, 8), EdgeKind::street);
+}
+
+TEST(FacadeEdges, WallsOfALightWellFaceACourtyard) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  t.house(1, {{0, 10}, {20, 10}, {20, 30}, {0, 30}}, {{{8, 18}, {12, 18}, {12, 22}, {8, 22}}});
+  t.label();
+  EXPECT_EQ(t.kind(1, 10, 18), EdgeKind::courtyard);
+  EXPECT_EQ(t.kind(1, 12, 20), EdgeKind::courtyard);
+  EXPECT_EQ(length_of(t[1], EdgeKind::courtyard), 16);
+}
+
+TEST(FacadeEdges, CourtOfAUIsACourtyardAndAnLHasNone) {
+  SmallTown u;
+  u.street(901, {{-80, 0}, {120, 0}}, "Street");
+  u.house(1, {{0, 10}, {40, 10}, {40, 50}, {28, 50}, {28, 22}, {12, 22}, {12, 50}, {0, 50}});
+  u.box(2, -5, 60, 45, 70);  // closes the view out of the court but for two gaps
+  u.label();
+  EXPECT_EQ(u.kind(1, 20, 22), EdgeKind::courtyard);
+  EXPECT_EQ(u.kind(1, 12, 30), EdgeKind::courtyard);
+  EXPECT_EQ(u.kind(1, 28, 30), EdgeKind::courtyard);
+  EXPECT_EQ(u.kind(1, 0, 30), EdgeKind::side);
+  EXPECT_EQ(u.kind(1, 20, 10), EdgeKind::street);
+
+  SmallTown l;
+  l.street(901, {{-80, 0}, {120, 0}}, "Street");
+  l.house(1, {{0, 10}, {40, 10}, {40, 22}, {12, 22}, {12, 60}, {0, 60}});
+  l.label();
+  EXPECT_EQ(l.kind(1, 35, 22), EdgeKind::side);
+  EXPECT_EQ(l.kind(1, 12, 55), EdgeKind::side);
+}
+
+TEST(FacadeEdges, SquareInFrontIsStreetSpace) {
+  SmallTown t;
+  t.street(901, {{0, 0}, {60, 0}, {60, 60}, {0, 60}, {0, 0}}, "Market", LineClass::pedestrian).area = true;
+  t.box(1, 20, 60, 32, 72);   // its front lies on the outline of the square
+  t.box(2, 62, 20, 74, 32);   // 2 m beside it
+  t.label();
+  EXPECT_EQ(t.kind(1, 26, 60), EdgeKind::street);
+  EXPECT_EQ(t.edge(1, 26, 60).street_name, "Market");
+  EXPECT_EQ(t.edge(1, 26, 60).street_class, "pedestrian");
+  EXPECT_EQ(t.kind(2, 62, 26), EdgeKind::street);
+  EXPECT_EQ(t.kind(1, 26, 72), EdgeKind::side);
+}
+
+TEST(FacadeEdges, WallThatClosesADeadEndFacesTheStreet) {
+  SmallTown t;
+  t.street(901, {{0, -100}, {0, 0}}, "Close");
+  t.box(1, -10, 12, 10, 24);
+  t.label();
+  EXPECT_EQ(t.kind(1, 0, 12), EdgeKind::street);
+  EXPECT_EQ(t.edge(1, 0, 12).street_name, "Close");
+  EXPECT_EQ(t.kind(1, 0, 24), EdgeKind::side);
+
+  t.street(902, {{0, 0}, {0, 8}}, "Close");  // goes on towards the wall: still street space
+  t.label();
+  EXPECT_EQ(t.kind(1, 0, 12), EdgeKind::street);
+}
+
+TEST(FacadeEdges, CanopyIsNoNeighbourButHasOne) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  t.box(1, 0, 10, 20, 22);
+  t.house(2, {{0, 22}, {20, 22}, {20, 28}, {0, 28}}, {}, true);
+  t.house(3, {{0, 4}, {20, 4}, {20, 10}, {0, 10}}, {}, true);
+  t.label();
+  EXPECT_EQ(t.kind(1, 10, 22), EdgeKind::side);
+  EXPECT_EQ(t.kind(1, 10, 10), EdgeKind::street) << "streets are seen past canopies";
+  EXPECT_EQ(t.kind(2, 10, 22), EdgeKind::party_wall);
+  EXPECT_EQ(t.edge(2, 10, 22).neighbour.number, 1);
+}
+
+TEST(FacadeEdges, StreetIsSeenThroughARowOfTrees) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  t.box(1, 0, 14, 20, 26);
+  for (int i = 0; i < 10; ++i) t.point(700 + i, SitePointKind::tree, 1 + 2 * i, 9);
+  t.label();
+  EXPECT_EQ(t.kind(1, 10, 14), EdgeKind::street);
+  EXPECT_GT(t.edge(1, 10, 14).visibility, 0.95F);
+}
+
+TEST(FacadeEdges, StreetBehindAHouseIsNotFaced) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  t.box(1, 0, 30, 12, 40);
+  t.box(2, -20, 8, 32, 18);
+  t.label();
+  EXPECT_NE(t.kind(1, 6, 30), EdgeKind::street);
+  EXPECT_EQ(t.kind(2, 6, 8), EdgeKind::street);
+}
+
+TEST(FacadeEdges, RearTowardsAFartherStreetIsAGarden) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Near");
+  t.street(902, {{-80, 44}, {80, 44}}, "Far");
+  t.box(1, 0, 8, 12, 20);
+  t.label();
+  EXPECT_EQ(t.kind(1, 6, 8), EdgeKind::street);
+  EXPECT_EQ(t.kind(1, 6, 20), EdgeKind::side);
+  EXPECT_EQ(t.edge(1, 6, 20).street_name, "Far");
+}
+
+TEST(FacadeEdges, ShortStepOfAStreetFrontGoesWithIt) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  t.house(1, {{0, 10}, {10, 10}, {10, 12}, {20, 12}, {20, 24}, {0, 24}});
+  t.house(2, {{40, 10}, {50, 10}, {50, 18}, {60, 18}, {60, 30}, {40, 30}});
+  t.label();
+  EXPECT_EQ(t.kind(1, 10, 11), EdgeKind::street);
+  EXPECT_EQ(t.kind(2, 50, 14), EdgeKind::side) << "a flank of 8 m is no step";
+}
+
+TEST(FacadeEdges, SteepWallIsAFlankOfTheStreetItSees) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  // A gable 60 degrees to the street, 15 m before it.
+  t.house(1, {{0, 12}, {6, 22.392}, {-6, 40}, {-30, 40}, {-30, 12}});
+  t.label();
+  EXPECT_EQ(t.kind(1, 3, 17.2), EdgeKind::side);
+  EXPECT_EQ(t.kind(1, -15, 12), EdgeKind::street);
+}
+
+TEST(FacadeEdges, ShortPiecesAreNotMade) {
+  SmallTown t = perimeter_block();
+  t.passage(801, {{26.2, 10}, {26.2, 22}}, kServicePassageWidth);
+  t.label();
+  for (const model::Building& b : t.buildings)
+    for (const FacadeEdge& f : b.edges) EXPECT_GE(f.length(), EdgeOptions{}.min_stretch);
+}
+
+TEST(FacadeEdges, EntrancesAndTreesGoToTheNearestWall) {
+  SmallTown t = perimeter_block();
+  t.point(700, SitePointKind::entrance, 44, 10);
+  t.point(701, SitePointKind::entrance, 38, 10);  // between two houses: one entrance of each
+  t.point(702, SitePointKind::entrance, 44, 21.5);
+  t.point(703, SitePointKind::entrance, 44, 16);  // in the middle of the house: nobody's
+  t.point(704, SitePointKind::tree, 40, 6);
+  t.point(705, SitePointKind::tree, 44, 26);
+  t.point(706, SitePointKind::tree, 44, 16);      // within the house
+  t.label();
+  EXPECT_EQ(t.edge(12, 44, 10).entrances, 2);
+  EXPECT_EQ(t.edge(11, 30, 10).entrances, 1);
+  EXPECT_EQ(t.edge(12, 44, 22).entrances, 1);
+  const model::Building& house = t[12];
+  ASSERT_EQ(house.trees.size(), 2u);
+  EXPECT_EQ(house.trees[0].id.number, 704);
+  EXPECT_EQ(house.edges[house.trees[0].edge].kind, EdgeKind::street);
+  EXPECT_NEAR(house.trees[0].distance, 4, 0.01);
+  EXPECT_EQ(house.trees[1].id.number, 705);
+  EXPECT_EQ(house.edges[house.trees[1].edge].kind, EdgeKind::courtyard);
+}
+
+TEST(FacadeEdges, EdgesOfACurveKnowTheirArc) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  t.house(1, {{0, 10}, {20, 10}, {22, 11}, {23, 13}, {23, 24}, {0, 24}});
+  model::Arc arc;
+  arc.first = 1;
+  arc.count = 2;
+  t.buildings[0].arcs.push_back(arc);
+  t.label();
+  for (const FacadeEdge& f : t[1].edges) EXPECT_EQ(f.arc, f.edge == 1 || f.edge == 2 ? 0 : -1);
+}
+
+// ---- what must not matter -------------------------------------------------------------------------------------------
+
+/// Length by kind and position, in the order of buildings.
+std::map<std::int64_t, std::array<double, model::kEdgeKindCount>> lengths(const SmallTown& t) {
+  std::map<std::int64_t, std::array<double, model::kEdgeKindCount>> out;
+  for (const model::Building& b : t.buildings)
+    for (const FacadeEdge& f : b.edges) out[b.osm.number][static_cast<std::size_t>(f.kind)] += f.length();
+  return out;
+}
+
+SmallTown mixed_town(double degrees = 0) {
+  SmallTown t = perimeter_block(degrees);
+  t.box(51, 38, 36, 62, 46);
+  t.box(52, 22, 50, 34, 58);
+  t.passage(801, {{44, 10}, {44, 22}}, kServicePassageWidth);
+  t.box(61, 20, -32, 32, -20);
+  t.box(62, 32.2, -32, 44, -20);
+  t.house(63, {{60, -14}, {80, -14}, {80, -30}, {70, -30}, {70, -24}, {60, -24}});
+  t.point(701, SitePointKind::entrance, 30, 10);
+  return t;
+}
+
+void expect_same(const SmallTown& a, const SmallTown& b, double tolerance) {
+  const auto la = lengths(a), lb = lengths(b);
+  ASSERT_EQ(la.size(), lb.size());
+  for (const auto& [id, kinds] : la)
+    for (std::size_t k = 0; k < kinds.size(); ++k)
+      EXPECT_NEAR(kinds[k], lb.at(id)[k], tolerance) << "w" << id << " " << model::name(static_cast<EdgeKind>(k));
+  for (const model::Building& building : a.buildings) {
+    const model::BuildingSituation &s = building.situation, &o = b[building.osm.number].situation;
+    EXPECT_EQ(s.position, o.position) << building.id();
+    EXPECT_EQ(s.fronts.size(), o.fronts.size()) << building.id();
+    EXPECT_NEAR(s.depth.value_or(-1), o.depth.value_or(-1), tolerance);
+    EXPECT_NEAR(s.width.value_or(-1), o.width.value_or(-1), tolerance);
+    EXPECT_NEAR(s.setback.value_or(-1), o.setback.value_or(-1), tolerance);
+  }
+}
+
+TEST(FacadeEdges, DoNotDependOnTheOrderOfTheSurroundings) {
+  SmallTown a = mixed_town(), b = mixed_town();
+  std::reverse(b.buildings.begin(), b.buildings.end());
+  std::reverse(b.lines.begin(), b.lines.end());
+  std::reverse(b.points.begin(), b.points.end());
+  a.label();
+  b.label();
+  expect_same(a, b, 0);
+  for (const model::Building& x : a.buildings) {
+    const model::Building& y = b[x.osm.number];
+    ASSERT_EQ(x.edges.size(), y.edges.size());
+    for (std::size_t i = 0; i < x.edges.size(); ++i) {
+      EXPECT_EQ(x.edges[i].start, y.edges[i].start);
+      EXPECT_EQ(x.edges[i].street, y.edges[i].street);
+      EXPECT_EQ(x.edges[i].visibility, y.edges[i].visibility);
+      EXPECT_EQ(x.edges[i].confidence, y.edges[i].confidence);
+    }
+  }
+}
+
+TEST(FacadeEdges, DoNotDependOnWhereARingStarts) {
+  SmallTown a = mixed_town(), b = mixed_town();
+  for (std::size_t i = 0; i < b.buildings.size(); ++i)
+    for (model::Polygon* p : {&b.buildings[i].outline[0], &b.footprints[i].polygon}) {
+      std::rotate(p->outer.points.begin(), p->outer.points.begin() + 2, p->outer.points.end());
+      std::rotate(p->outer.nodes.begin(), p->outer.nodes.begin() + 2, p->outer.nodes.end());
+    }
+  a.label();
+  b.label();
+  expect_same(a, b, 1e-9);
+}
+
+TEST(FacadeEdges, DoNotDependOnTheDirectionOfNorth) {
+  SmallTown a = mixed_town(), b = mixed_town(37);
+  a.label();
+  b.label();
+  expect_same(a, b, 0.3);
+  EXPECT_NEAR(*a[12].situation.orientation, 180, 0.1);
+  EXPECT_NEAR(*b[12].situation.orientation, 180 - 37, 0.1);
+}
+
+TEST(FacadeEdges, NothingBeyondTheReachMatters) {
+  SmallTown a = mixed_town(), b = mixed_town();
+  const double far = 110 + kEdgeReach;
+  b.box(1001, far, 0, far + 30, 40);
+  b.box(1002, 40, -60 - kEdgeReach, 60, -40 - kEdgeReach);
+  b.street(991, {{far, -200}, {far, 200}}, "Far Street");
+  b.point(1003, SitePointKind::tree, far, 0);
+  a.label();
+  b.label();
+  for (const model::Building& x : a.buildings) {
+    const model::Building& y = b[x.osm.number];
+    ASSERT_EQ(x.edges.size(), y.edges.size());
+    for (std::size_t i = 0; i < x.edges.size(); ++i) {
+      EXPECT_EQ(x.edges[i].kind, y.edges[i].kind);
+      EXPECT_EQ(x.edges[i].end, y.edges[i].end);
+      EXPECT_EQ(x.edges[i].visibility, y.edges[i].visibility);
+    }
+    EXPECT_EQ(x.situation.position, y.situation.position);
+  }
+}
+
+// ---- points and passages of an extract ------------------------------------------------------------------------------
+
+struct TagList {
+  std::vector<std::pair<std::string, std::string>> tags;
+};
+
+void add_feature(model::Extract& e, model::OsmId id, std::uint32_t kinds, const TagList& tags,
+                 const std::vector<model::Location>& places) {
+  model::Feature f;
+  f.id = id;
+  f.kinds = kinds;
+  f.tags = {static_cast<std::uint32_t>(e.tags.size()), static_cast<std::uint32_t>(tags.tags.size())};
+  for (const auto& [key, value] : tags.tags) e.tags.push_back({e.strings.intern(key), e.strings.intern(value)});
+  f.rings = {static_cast<std::uint32_t>(e.rings.size()), 1};
+  e.rings.push_back({{static_cast<std::uint32_t>(e.vertices.size()), static_cast<std::uint32_t>(places.size())}, false});
+  for (const model::Location p : places) {
+    e.vertices.push_back(p);
+    e.vertex_nodes.push_back(p.lon);
+  }
+  e.features.push_back(f);
+}
+
+Point2 plain(model::Location l) { return {l.lon * 1.0, l.lat * 1.0}; }
+
+constexpr std::uint32_t bit(model::FeatureKind k) { return static_cast<std::uint32_t>(k); }
+
+TEST(PassageWays, TakeTheirWidthFromTheTagElseFromTheKindOfWay) {
+  using enum model::FeatureKind;
+  model::Extract e;
+  const auto way = [&](std::int64_t id, const TagList& tags) {
+    add_feature(e, {model::OsmType::way, id}, bit(street) | bit(passage), tags, {{0, 0}, {10, 0}});
+  };
+  way(1, {{{"highway", "service"}, {"tunnel", "building_passage"}}});
+  way(2, {{{"highway", "footway"}, {"tunnel", "building_passage"}}});
+  way(3, {{{"highway", "residential"}, {"tunnel", "building_passage"}}});
+  way(4, {{{"highway", "footway"}, {"tunnel", "building_passage"}, {"width", "4.2 m"}}});
+  way(5, {{{"highway", "footway"}, {"tunnel", "building_passage"}, {"width", "wide"}}});
+  way(6, {{{"highway", "service"}, {"covered", "yes"}}});
+  add_feature(e, {model::OsmType::way, 7}, bit(street), {{{"highway", "service"}}}, {{0, 0}, {10, 0}});
+  const std::vector<PassageWay> found = passage_ways(e, plain);
+  std::vector<double> widths;
+  for (const PassageWay& p : found) widths.push_back(p.width);
+  EXPECT_THAT(widths, ElementsAre(3.5, 2.5, 5.5, 4.2, 2.5, 3.5));
+  EXPECT_FALSE(found[0].covered_only);
+  EXPECT_TRUE(found[5].covered_only);
+  EXPECT_THAT(found[0].nodes, ElementsAre(0, 10));
+}
+
+TEST(SitePoints, AreEntrancesAddressesAndTrees) {
+  using enum model::FeatureKind;
+  model::Extract e;
+  add_feature(e, {model::OsmType::node, 1}, bit(entrance) | bit(address),
+              {{{"entrance", "main"}, {"addr:street", "Long Street"}, {"addr:housenumber", "3a"}}}, {{5, 6}});
+  add_feature(e, {model::OsmType::node, 2}, bit(address), {{{"addr:street", "Short Street"}}}, {{7, 8}});
+  add_feature(e, {model::OsmType::node, 3}, bit(tree), {{{"natural", "tree"}}}, {{9, 9}});
+  add_feature(e, {model::OsmType::node, 4}, bit(shop), {{{"shop", "bakery"}}}, {{9, 9}});
+  add_feature(e, {model::OsmType::way, 5}, bit(tree), {{{"natural", "tree_row"}}}, {{9, 9}, {10, 10}});
+  const std::vector<SitePoint> found = site_points(e, plain);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].kind, SitePointKind::entrance);
+  EXPECT_EQ(found[0].street, "Long Street");
+  EXPECT_EQ(found[0].house_number, "3a");
+  EXPECT_EQ(found[0].place, (Point2{5, 6}));
+  EXPECT_EQ(found[1].kind, SitePointKind::address);
+  EXPECT_EQ(found[2].kind, SitePointKind::tree);
+}
+
+}  // namespace
+}  // namespace blockrand::context
