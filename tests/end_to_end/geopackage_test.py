@@ -1,6 +1,7 @@
 """The GeoPackage of a build, as others read it: GDAL's ogrinfo, GDAL's own checker of the standard, and SQL.
 
 Skips where ogrinfo is absent (Debian: gdal-bin)."""
+import gzip
 import json
 import os
 import re
@@ -13,7 +14,9 @@ import unittest
 from blockrand_run import SAMPLE, BuildTest, call, extract, main, read_json, sha256
 
 OGRINFO = shutil.which('ogrinfo')
-LAYERS = {'buildings': 'Multi Polygon', 'parts': 'Polygon', 'reported': 'Point', 'tiles': 'Polygon'}
+LAYERS = {'buildings': 'Multi Polygon', 'parts': 'Polygon', 'facade_edges': 'Line String', 'blocks': 'Polygon',
+          'courtyards': 'Polygon', 'cells': 'Polygon', 'reported': 'Point', 'tiles': 'Polygon'}
+EDGE_KINDS = {'unknown', 'street', 'courtyard', 'side', 'party_wall', 'passage'}
 ATTRIBUTES = ('use', 'storeys', 'storey_height', 'height', 'min_height', 'roof_storeys', 'roof_height', 'roof_shape',
               'roof_orientation', 'roof_direction', 'ground_height', 'wall_colour', 'roof_colour', 'wall_material',
               'roof_material')
@@ -143,7 +146,9 @@ class GeoPackage(BuildTest):
         run = call([python, '-c', QGIS, copy, *LAYERS], env={'QT_QPA_PLATFORM': 'offscreen', 'HOME': self.folder})
         self.assertEqual(run.code, 0, run)
         self.assertEqual(json.loads(run.out.splitlines()[-1]), {
-            'buildings': [True, 'graduatedSymbol', 3, 0, []], 'parts': [True, 'categorizedSymbol', 2, 0, []],
+            'buildings': [True, 'graduatedSymbol', 4, 0, []], 'parts': [True, 'categorizedSymbol', 2, 0, []],
+            'facade_edges': [True, 'categorizedSymbol', 1, 0, []], 'blocks': [True, 'graduatedSymbol', 2, 0, []],
+            'courtyards': [True, 'categorizedSymbol', 1, 0, []], 'cells': [True, 'graduatedSymbol', 2, 0, []],
             'reported': [True, 'categorizedSymbol', 1, 0, []], 'tiles': [True, 'singleSymbol', 1, 0, []]})
 
     # ---- against the other documents of the build
@@ -188,6 +193,28 @@ class GeoPackage(BuildTest):
                 self.assertEqual(self.query('SELECT count(*) FROM buildings WHERE tile = ?', tile), [(buildings,)])
                 self.assertEqual(self.query('SELECT count(*) FROM parts WHERE tile = ?', tile), [(parts,)])
         self.assertEqual({uri for _, uri, *_ in rows}, {f for f in self.build_json['files'] if f.endswith('.glb')})
+
+    # ---- what repair and context found
+
+    def test_edges_are_those_that_explain_tells(self):
+        told = {}
+        for name in os.listdir(os.path.join(self.out, 'explain')):
+            if name.endswith('.jsonl.gz'):
+                with gzip.open(os.path.join(self.out, 'explain', name), 'rt', encoding='utf-8') as file:
+                    for line in map(json.loads, file):
+                        if line['bodies']:
+                            told.update({e['id']: (line['id'], e['kind'], e['length'], e.get('neighbour'), e.get('street'))
+                                         for e in line.get('edges', [])})
+        rows = self.query('SELECT id, building, kind, length, neighbour, street FROM facade_edges')
+        self.assertEqual({row[0]: row[1:] for row in rows}, told)
+        self.assertLessEqual({row[2] for row in rows}, EDGE_KINDS)
+
+    def test_buildings_stand_in_their_blocks_and_courtyards(self):
+        blocks = {b for b, in self.query('SELECT id FROM blocks')}
+        self.assertLessEqual({b for b, in self.query('SELECT block FROM buildings WHERE block IS NOT NULL')}, blocks)
+        yards = {c for c, in self.query('SELECT id FROM courtyards')}
+        self.assertLessEqual({c for row in self.query('SELECT courtyards FROM buildings WHERE courtyards IS NOT NULL')
+                              for c in row[0].split()}, yards)
 
     # ---- the file itself
 

@@ -8,6 +8,7 @@ import math
 import os
 import re
 import shutil
+import sqlite3
 import struct
 import unittest
 
@@ -579,6 +580,29 @@ class Damages(Validated):
         result = self.validate_sealed(d)
         self.assertTrue(any(f['code'] == 'OBJECT_MISSING' and f['object'] == 'w9004' for f in result['findings']))
 
+    def test_a_position_in_the_row_that_does_not_exist(self):
+        d = self.damaged()
+        d.sql("UPDATE buildings SET position = 'lost' WHERE id = 'w1020'")
+        self.found(d, 'GEOPACKAGE_RULE', 'buildings.gpkg', 'w1020')
+
+    def test_a_shift_that_contradicts_itself(self):
+        d = self.damaged()
+        d.sql("UPDATE buildings SET mean_shift = 0.3, max_shift = 0.2 WHERE id = 'w1020'")
+        self.found(d, 'GEOPACKAGE_RULE', 'buildings.gpkg', 'w1020')
+
+    def test_an_edge_that_is_missing_and_one_of_another_kind(self):
+        d = self.damaged()
+        db = sqlite3.connect(d.path('buildings.gpkg'))
+        edges = db.execute('SELECT id, building FROM facade_edges ORDER BY fid').fetchall()
+        db.close()
+        if not edges:
+            self.skipTest('this build has no edges')
+        (first, _), (second, building) = edges[0], edges[len(edges) // 2]
+        d.sql(f"UPDATE facade_edges SET kind = 'garden' WHERE id = '{first}'",
+              f"DELETE FROM facade_edges WHERE id = '{second}'")
+        found = [f for f in self.validate_sealed(d)['findings'] if f['code'] == 'GEOPACKAGE_RULE']
+        self.assertLessEqual({first, building}, {f['object'] for f in found})
+
     # ---- explanations and reports
 
     def test_an_explanation_that_is_missing(self):
@@ -657,6 +681,33 @@ class Positions(Validated):
         findings = self.validate(d.folder)['findings']
         self.assertEqual({f['code'] for f in findings}, {'POSITION'})
         self.assertGreater(len(findings), 100)
+
+    def test_five_centimetres_of_everything(self):
+        """Where repair moved corners, each may be off; all of them in one direction may not."""
+        source = self.path('moved_town.osm')
+        shutil.copy(SAMPLE, source)
+        out = self.build(source, 'bounded', '--formats', 'gltf,citygml')
+        os.remove(source)
+        for units, codes in ((0, set()), (7, {'POSITION'})):
+            with self.subTest(units=units):
+                d = Damaged(out, self.path(f'shifted{units}'))
+
+                def move(records):
+                    for r in records:
+                        r['repair'] = {'vertices': 4, 'moved': 4, 'mean_shift': 0.2, 'max_shift': 0.3,
+                                       'overlaps_resolved': 0}
+                        r['outline']['lon'] = [v + units for v in r['outline']['lon']]
+                for name in sorted(files_of(d.folder)):
+                    if name.startswith('explain/') and name.endswith('.jsonl.gz'):
+                        d.explanations(move, name)
+                d.seal()
+                result = self.validate(d.folder)
+                self.assertEqual({f['code'] for f in result['findings']}, codes)
+                self.assertEqual(result['positions']['corners_moved'], result['positions']['corners'])
+                if units:
+                    self.assertEqual({f['file'] for f in result['findings']}, {'GLB', 'CityGML'})
+                    self.assertIn('the whole model was moved', result['findings'][0]['detail'])
+                    self.assertAlmostEqual(result['positions']['median_m'], 0.0485, delta=0.003)
 
     def test_another_extract(self):
         out = self.build(SAMPLE, 'other')

@@ -177,12 +177,13 @@ struct Step {
   const char *lower, *upper, *label;
 };
 
-/// Pale to dark, as storeys; what has no value is not drawn.
+/// Pale to dark, as storeys; what has no value is grey.
 std::string steps(std::string_view attribute, const std::array<Step, 6>& classes) {
   constexpr std::array<Colour, 6> kColours{
       {{255, 247, 204}, {255, 222, 130}, {253, 180, 85}, {244, 120, 60}, {205, 50, 45}, {125, 15, 60}}};
   Qml qml(Shape::fill);
-  qml.ranges(attribute);
+  qml.ranges("coalesce(\"" + std::string(attribute) + "\", -1)");
+  qml.range("-1", "-0.5", "not known", kOthers);
   for (std::size_t i = 0; i < classes.size(); ++i)
     qml.range(classes[i].lower, classes[i].upper, classes[i].label, kColours[i]);
   return std::move(qml).done();
