@@ -29,6 +29,8 @@ constexpr double kFamilyDeviations = 5;   // and by so many standard deviations 
 constexpr std::size_t kMostFamilies = 4;  // of a row
 constexpr double kTellingLength = 0.5;    // m. Shorter walls tell nothing of the noise
 constexpr std::size_t kMostCandidates = 48;  // walls tried as the direction of a frame: the longest
+constexpr int kMostRounds = 30;           // of reweighted least squares,
+constexpr double kStill = 1e-10;          // which end at such a turn (radians)
 constexpr double kBayTurn = 0.2079116908177593;  // sin 12 degrees: cheeks of bays deviate by more, both alike
 constexpr double kBayCheek = 4;           // m. Longer ones are wings
 
@@ -78,6 +80,7 @@ class Reader {
     estimate_noise();
     find_frames();
     find_families();
+    count_all_frames();
     merge_frames();
     give_directions();
     spare_bays();
@@ -100,9 +103,9 @@ class Reader {
 
   /// Sine of how far a line may be off its building's frame: as long as it more likely belongs to it than not, and within
   /// kDeviations.
-  double limit(const WallLine& l, const RowNoise& row, std::size_t building) const {
-    const double sigma = row.noise / std::sqrt(l.weight);
-    const double odds = odds_of_frame(row, building, l.weight);
+  double limit(const WallLine& l, std::size_t building) const {
+    const double sigma = told_.noise / std::sqrt(l.weight);
+    const double odds = odds_of_frame(told_, building, l.weight);
     if (odds <= 1) return 0;
     const double likely = std::sqrt(2 * base::log(odds));
     const double certain = std::clamp((l.length - kObliqueFrom) / (kObliqueLength - kObliqueFrom), 0.0, 1.0);
@@ -129,7 +132,7 @@ class Reader {
       for (const Member& m : members) score += lines()[m.line].length * kernel(m, turn_off(axis, lines()[m.line].along));
       if (score > best_score) best_score = score, best = axis;
     }
-    for (int round = 0; round < 8; ++round) {
+    for (int round = 0; round < kMostRounds; ++round) {
       double weight = 0, turn = 0;
       for (const Member& m : members) {
         const double off = turn_off(best, lines()[m.line].along), w = lines()[m.line].weight * kernel(m, off);
@@ -138,7 +141,7 @@ class Reader {
       if (weight <= 0) break;
       turn /= weight;
       best = unit({best.x - turn * best.y, best.y + turn * best.x});
-      if (std::fabs(turn) < 1e-9) break;
+      if (std::fabs(turn) < kStill) break;
     }
     return first_quarter(best);
   }
@@ -151,9 +154,40 @@ class Reader {
       RowNoise told = noise_from(start);
       if (best.share.empty() || told.likelihood > best.likelihood) best = std::move(told);
     }
-    out_.noise = best.noise;
+    told_ = std::move(best);
+    out_.noise = told_.noise;
+    set_limits();
+  }
+
+  void set_limits() {
     for (std::uint32_t b = 0; b < lines_of_.size(); ++b)
-      for (Member& m : lines_of_[b]) m.limit = limit(lines()[m.line], best, b);
+      for (Member& m : lines_of_[b]) m.limit = limit(lines()[m.line], b);
+  }
+
+  /// Walls of a wing or an oblique lot belong to a frame, too: the noise is told again, with all frames.
+  void count_all_frames() {
+    std::vector<std::vector<Point2>> axes(lines_of_.size());
+    for (const Frame& f : frames_) axes[f.building].push_back(f.axis);
+    if (std::all_of(axes.begin(), axes.end(), [](const auto& a) { return a.size() < 2; })) return;
+    std::vector<Deviation> off;
+    std::size_t frames = frames_.size();
+    for (const auto& [begin, end] : families_) frames -= end - begin - 1;
+    for (std::uint32_t b = 0; b < lines_of_.size(); ++b)
+      for (const Member& m : lines_of_[b]) {
+        const WallLine& line = lines()[m.line];
+        double least = kDiagonal;
+        for (const Point2 axis : axes[b]) least = std::min(least, std::fabs(turn_off(axis, line.along)));
+        if (line.length >= kTellingLength) off.push_back(deviation(line, least, b));
+      }
+    const RowNoise all = fit_noise(off, lines_of_.size(), frames, told_.noise);
+    told_.noise = std::max(told_.noise, all.noise);
+    told_.share = all.share;
+    out_.noise = told_.noise;
+    set_limits();
+  }
+  static Deviation deviation(const WallLine& line, double sine, std::uint32_t building) {
+    const double scale = std::sqrt(line.weight);
+    return {std::fabs(sine) * scale, line.weight, 1 / static_cast<double>(line.buildings.size()), building};
   }
 
   /// Tukey's biweight: nothing beyond the limit counts.
@@ -179,12 +213,10 @@ class Reader {
         for (const Member& m : lines_of_[b]) {
           const WallLine& line = lines()[m.line];
           if (line.length < kTellingLength) continue;
-          const double scale = std::sqrt(line.weight);
-          off.push_back({std::fabs(turn_off(axis, line.along)) * scale, line.weight,
-                         1 / static_cast<double>(line.buildings.size()), b});
+          off.push_back(deviation(line, turn_off(axis, line.along), b));
         }
       }
-      told = fit_noise(off, lines_of_.size(), noise);
+      told = fit_noise(off, lines_of_.size(), lines_of_.size(), noise);
       noise = told.noise;
     }
     return told;
@@ -311,8 +343,9 @@ class Reader {
         if (touched[s.a] || touched[s.b]) continue;
         touched[s.a] = touched[s.b] = true;
         Frame &a = merged[s.a], &b = merged[s.b];
-        const double turn = turn_off(a.axis, b.axis) * b.weight / (a.weight + b.weight);
-        a.axis = first_quarter(unit({a.axis.x - turn * a.axis.y, a.axis.y + turn * a.axis.x}));
+        Point2 other = b.axis;  // or a quarter turn from it
+        while (dot(a.axis, other) < std::fabs(cross(a.axis, other))) other = {other.y, -other.x};
+        a.axis = first_quarter(unit({a.weight * a.axis.x + b.weight * other.x, a.weight * a.axis.y + b.weight * other.y}));
         a.weight += b.weight;
         groups.join(s.a, s.b);
         again = true;
@@ -365,6 +398,7 @@ class Reader {
   }
 
   RowDirections out_;
+  RowNoise told_;
   std::vector<std::vector<Member>> lines_of_;  // per building
   std::vector<Frame> frames_;                  // by building; then of families, by building
   std::vector<Member> left_;                   // lines of no building's frame

@@ -115,44 +115,50 @@ class Reader {
     }
   }
 
-  /// Weighted regression across the chord between its outermost corners.
+  /// Principal axis of what is said of the line's corners, by weighted regressions across the axis found before.
   void fit_long_line(WallLine& l) {
     std::sort(l.corners.begin(), l.corners.end());
     l.corners.erase(std::unique(l.corners.begin(), l.corners.end()), l.corners.end());
-    const auto start = [&](std::uint32_t c) { return graph_.corners[c].start; };
-    const auto farthest = [&](std::uint32_t from) {
-      std::uint32_t best = from;
+    const Point2 origin = graph_.corners[l.corners.front()].start;
+    const auto from_origin = [&](Point2 p) { return minus(p, origin); };
+    // The corner farthest from any other is an end; the one farthest from that is the other end.
+    const auto farthest = [&](Point2 from) {
+      Point2 best = from;
       double most = -1;
       for (const std::uint32_t c : l.corners) {
-        const Point2 d = minus(start(c), start(from));
-        if (dot(d, d) > most) most = dot(d, d), best = c;
+        const Point2 p = from_origin(graph_.corners[c].start), d = minus(p, from);
+        if (dot(d, d) > most) most = dot(d, d), best = p;
       }
       return best;
     };
-    const std::uint32_t a = farthest(l.corners.front()), b = farthest(a);
-    const Point2 e = unit(minus(start(b), start(a)));
-    const Point2 origin = start(a);
+    const Point2 a = farthest({0, 0}), b = farthest(a);
+    l.length = norm(minus(b, a));
+    l.along = unit(minus(b, a));
+    double k = 0;
+    Point2 mean;
+    for (const std::uint32_t c : l.corners) {
+      const double w = corner_weight(graph_.corners[c]);
+      const Point2 p = from_origin(corner_evidence(graph_.corners[c]));
+      k += w, mean.x += w * p.x, mean.y += w * p.y;
+    }
+    mean = {mean.x / k, mean.y / k};
+    for (int round = 0; round < 3; ++round) {
+      double tt = 0, tr = 0;
+      for (const std::uint32_t c : l.corners) {
+        const double w = corner_weight(graph_.corners[c]);
+        const Point2 d = minus(from_origin(corner_evidence(graph_.corners[c])), mean);
+        const double t = dot(d, l.along);
+        tt += w * t * t, tr += w * t * cross(l.along, d);
+      }
+      const double slope = tt > 0 ? tr / tt : 0;
+      l.along = unit({l.along.x - slope * l.along.y, l.along.y + slope * l.along.x});
+      l.weight = tt;
+    }
     std::sort(l.corners.begin(), l.corners.end(), [&](std::uint32_t p, std::uint32_t q) {
-      const double tp = dot(minus(start(p), origin), e), tq = dot(minus(start(q), origin), e);
+      const double tp = dot(from_origin(graph_.corners[p].start), l.along);
+      const double tq = dot(from_origin(graph_.corners[q].start), l.along);
       return tp != tq ? tp < tq : p < q;
     });
-    l.length = dot(minus(start(b), origin), e);
-    double k = 0, t = 0, r = 0;
-    for (const std::uint32_t c : l.corners) {
-      const double w = corner_weight(graph_.corners[c]);
-      const Point2 d = minus(corner_evidence(graph_.corners[c]), origin);
-      k += w, t += w * dot(d, e), r += w * cross(e, d);
-    }
-    t /= k, r /= k;
-    double tt = 0, tr = 0;
-    for (const std::uint32_t c : l.corners) {
-      const double w = corner_weight(graph_.corners[c]);
-      const Point2 d = minus(corner_evidence(graph_.corners[c]), origin);
-      tt += w * (dot(d, e) - t) * (dot(d, e) - t), tr += w * (dot(d, e) - t) * (cross(e, d) - r);
-    }
-    const double slope = tt > 0 ? tr / tt : 0;
-    l.along = unit({e.x - slope * e.y, e.y + slope * e.x});
-    l.weight = tt;
   }
 
   void mark_curves() {

@@ -15,8 +15,8 @@ constexpr double kDiagonal = 0.7071067811865476;    // sin 45 degrees: no wall i
 constexpr double kUsualShare = 0.75;   // of walls that belong to a frame, before a building is seen,
 constexpr double kUsualWeight = 2;     // which counts like so many walls
 constexpr double kUsualSlight = 0.05;  // of these that are truly a little off, before a row is seen,
-constexpr double kSlightWeight = 20;   // the same
-constexpr double kSlightTurn = 0.026;  // radians (1.5 degrees): how far that is, standard deviation
+constexpr double kSlightWeight = 10;   // the same
+constexpr double kSlightTurn = 0.0175;  // radians (1 degree): how far that is, standard deviation
 constexpr double kObliqueTurn = 0.07;  // radians (4 degrees): half of the walls of no frame are about so far off
 constexpr double kUsualNoise = 0.04;   // m, of mappers; more is rarer:
 constexpr double kUsualSpread = 1.4;   // standard deviation of its logarithm
@@ -54,7 +54,7 @@ Shares shares(const Fit& fit, const Deviation& d) {
           share * fit.slight * density(d.off, slight_scale(d.weight, fit.scale)), (1 - share) * any_density(d.off, d.weight)};
 }
 
-Fit run(std::span<const Deviation> deviations, std::size_t buildings, double scale) {
+Fit run(std::span<const Deviation> deviations, std::size_t buildings, std::size_t frames, double scale) {
   Fit fit;
   fit.scale = scale;
   fit.share.assign(buildings, kUsualShare);
@@ -71,14 +71,14 @@ Fit run(std::span<const Deviation> deviations, std::size_t buildings, double sca
       exact += r, squares += r * d.off * d.off;
     }
     // Every frame is fitted to the same walls.
-    fit.telling = std::max(exact - static_cast<double>(buildings), 0.5 * exact);
+    fit.telling = std::max(exact - static_cast<double>(frames), 0.5 * exact);
     if (fit.telling > 0) fit.scale = std::clamp(std::sqrt(squares / fit.telling), kLeastScale, kLargestNoise);
     fit.slight = slight / all_about;
     for (std::size_t b = 0; b < buildings; ++b) fit.share[b] = belong[b] / walls[b];
   }
   for (const Deviation& d : deviations) fit.likelihood += d.count * base::log(shares(fit, d).sum());
   // The frames were fitted, too: each is known the better the smaller the noise, which must not make a small one likelier.
-  fit.likelihood += static_cast<double>(buildings) * base::log(fit.scale);
+  fit.likelihood += static_cast<double>(frames) * base::log(fit.scale);
   // Careless mappers are rare; careful ones are not.
   const double careless = std::max(0.0, base::log(fit.scale / kUsualNoise) / kUsualSpread);
   fit.likelihood -= 0.5 * careless * careless;
@@ -87,17 +87,17 @@ Fit run(std::span<const Deviation> deviations, std::size_t buildings, double sca
 
 }  // namespace
 
-RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings, double noise) {
+RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings, std::size_t frames,
+                   double noise) {
   if (deviations.empty()) return {kLeastNoise, std::vector<double>(buildings, kUsualShare), kUsualSlight, 0};
-  Fit fit = run(deviations, buildings, noise);
+  Fit fit = run(deviations, buildings, frames, noise);
   const double raised = fit.scale * (1 + kFewWalls / std::max(fit.telling, 1.0));
   return {std::clamp(raised, kLeastNoise, kLargestNoise), std::move(fit.share), fit.slight, fit.likelihood};
 }
 
 double odds_of_frame(const RowNoise& row, std::size_t building, double weight) {
   const double share = row.share[building];
-  return share * (1 - row.slight) * kHalfNormal / row.noise /
-         ((1 - share) * any_density(0, weight));
+  return share * (1 - row.slight) * kHalfNormal / row.noise / ((1 - share) * any_density(0, weight));
 }
 
 }  // namespace blockrand::repair

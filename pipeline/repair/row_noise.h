@@ -1,6 +1,7 @@
 // How exactly a row was mapped, and how much of each building is meant to be square.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,9 +30,10 @@ struct RowNoise {
 /// or two (party walls of bent rows), by an angle whose effect grows with their length; others belong to no frame and are
 /// off by any angle, more often by a small one, in a share of each building's own. EM that starts from `noise` metres
 /// (McLachlan & Peel, Finite Mixture Models, 2000, ch. 7); rows in which most walls are off keep a small noise so.
-/// The likelihood counts what mappers usually do, and that every building's frame was fitted to the same walls.
+/// The likelihood counts what mappers usually do, and that `frames` frames were fitted to the same walls.
 /// Where few walls tell, the noise is raised by its uncertainty. Within kLeastNoise and kLargestNoise.
-RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings, double noise);
+RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings, std::size_t frames,
+                   double noise);
 
 /// How many times likelier than not a wall belongs to a frame exactly, if it does not deviate from it at all.
 double odds_of_frame(const RowNoise& row, std::size_t building, double weight);
