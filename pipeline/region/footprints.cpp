@@ -1,0 +1,141 @@
+#include "pipeline/region/footprints.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace blockrand::region {
+
+namespace {
+
+constexpr double kCell = 64;  // m, two to four houses wide: few boxes lie in more than four cells
+
+std::int32_t cell_of(double metres) { return static_cast<std::int32_t>(std::floor(metres / kCell)); }
+
+}  // namespace
+
+void PlanBox::include(model::Point2 p) {
+  if (empty()) {
+    minimum = maximum = p;
+    return;
+  }
+  minimum = {std::min(minimum.x, p.x), std::min(minimum.y, p.y)};
+  maximum = {std::max(maximum.x, p.x), std::max(maximum.y, p.y)};
+}
+
+void PlanBox::include(const PlanBox& other) {
+  if (other.empty()) return;
+  include(other.minimum);
+  include(other.maximum);
+}
+
+PlanBox box_of(std::span<const model::Point2> points) {
+  PlanBox box;
+  for (const model::Point2 p : points) box.include(p);
+  return box;
+}
+
+bool PlanBox::near(const PlanBox& other, double distance) const {
+  if (empty() || other.empty()) return false;
+  return minimum.x <= other.maximum.x + distance && other.minimum.x <= maximum.x + distance &&
+         minimum.y <= other.maximum.y + distance && other.minimum.y <= maximum.y + distance;
+}
+
+void FootprintStore::set(std::uint32_t building, StoredFootprint footprint, std::span<const model::Polygon> polygons,
+                         std::span<const model::Arc> arcs) {
+  footprint.rings = {static_cast<std::uint32_t>(rings_.size()), 0};
+  footprint.arcs = {static_cast<std::uint32_t>(arcs_.size()), static_cast<std::uint32_t>(arcs.size())};
+  footprint.box = {};
+  const auto add = [&](const model::Ring& ring, bool hole) {
+    rings_.push_back({{static_cast<std::uint32_t>(points_.size()), static_cast<std::uint32_t>(ring.size())}, hole});
+    points_.insert(points_.end(), ring.points.begin(), ring.points.end());
+    nodes_.insert(nodes_.end(), ring.nodes.begin(), ring.nodes.end());
+    ++footprint.rings.count;
+  };
+  for (const model::Polygon& polygon : polygons) {
+    add(polygon.outer, false);
+    for (const model::Point2 p : polygon.outer.points) footprint.box.include(p);
+    for (const model::Ring& hole : polygon.holes) add(hole, true);
+  }
+  arcs_.insert(arcs_.end(), arcs.begin(), arcs.end());
+  entries_[building] = footprint;
+}
+
+std::vector<model::Polygon> FootprintStore::polygons(std::uint32_t building) const {
+  std::vector<model::Polygon> out;
+  const model::Range r = entries_[building].rings;
+  for (const StoredRing& stored : std::span(rings_).subspan(r.first, r.count)) {
+    model::Ring ring;
+    const auto points = std::span(points_).subspan(stored.points.first, stored.points.count);
+    const auto nodes = std::span(nodes_).subspan(stored.points.first, stored.points.count);
+    ring.points.assign(points.begin(), points.end());
+    ring.nodes.assign(nodes.begin(), nodes.end());
+    if (stored.hole)
+      out.back().holes.push_back(std::move(ring));
+    else
+      out.push_back({std::move(ring), {}});
+  }
+  return out;
+}
+
+std::vector<model::Arc> FootprintStore::arcs(std::uint32_t building) const {
+  const model::Range r = entries_[building].arcs;
+  const auto found = std::span(arcs_).subspan(r.first, r.count);
+  return {found.begin(), found.end()};
+}
+
+void FootprintStore::shrink_to_fit() {
+  rings_.shrink_to_fit();
+  points_.shrink_to_fit();
+  nodes_.shrink_to_fit();
+  arcs_.shrink_to_fit();
+}
+
+FootprintIndex::FootprintIndex(const FootprintStore& store) : store_(store) {
+  for (std::uint32_t b = 0; b < store.size(); ++b) {
+    const PlanBox& box = store[b].box;
+    if (box.empty()) continue;
+    for (std::int32_t x = cell_of(box.minimum.x); x <= cell_of(box.maximum.x); ++x)
+      for (std::int32_t y = cell_of(box.minimum.y); y <= cell_of(box.maximum.y); ++y) entries_.push_back({x, y, b});
+  }
+  std::sort(entries_.begin(), entries_.end());
+}
+
+std::vector<std::uint32_t> FootprintIndex::near(const PlanBox& box, double distance) const {
+  std::vector<std::uint32_t> out;
+  if (box.empty()) return out;
+  const std::int32_t y0 = cell_of(box.minimum.y - distance), y1 = cell_of(box.maximum.y + distance);
+  for (std::int32_t x = cell_of(box.minimum.x - distance); x <= cell_of(box.maximum.x + distance); ++x) {
+    auto entry = std::lower_bound(entries_.begin(), entries_.end(), Entry{x, y0, 0});
+    for (; entry != entries_.end() && entry->x == x && entry->y <= y1; ++entry)
+      if (store_[entry->building].box.near(box, distance)) out.push_back(entry->building);
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> FootprintIndex::pairs(double distance) const {
+  // Boxes that are near each other share a cell, or lie in cells that touch: the lower one's cell and its neighbours to
+  // the north and east, and the diagonals, are asked.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
+  constexpr std::pair<std::int32_t, std::int32_t> kSteps[] = {{0, 1}, {1, -1}, {1, 0}, {1, 1}};
+  const auto add = [&](std::uint32_t a, std::uint32_t b) {
+    if (a != b && store_[a].box.near(store_[b].box, distance)) out.emplace_back(std::min(a, b), std::max(a, b));
+  };
+  for (auto first = entries_.begin(); first != entries_.end();) {
+    auto last = first;
+    for (; last != entries_.end() && last->x == first->x && last->y == first->y; ++last)
+      for (auto e = first; e != last; ++e) add(e->building, last->building);
+    for (const auto& [dx, dy] : kSteps) {
+      auto other = std::lower_bound(last, entries_.end(), Entry{first->x + dx, first->y + dy, 0});
+      for (; other != entries_.end() && other->x == first->x + dx && other->y == first->y + dy; ++other)
+        for (auto e = first; e != last; ++e) add(e->building, other->building);
+    }
+    first = last;
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+}  // namespace blockrand::region
