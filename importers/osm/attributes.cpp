@@ -70,7 +70,7 @@ class AttributeReader {
 bool any_key_of_the_scheme(Tags tags) {
   for (const auto& [k, v] : tags)
     if (k.starts_with("building:") || k.starts_with("roof:") || k.ends_with("height") || k.ends_with("level") ||
-        k == "levels" || k == "building" || k.starts_with("facade:"))
+        k == "levels" || k == "layer" || k == "building" || k.starts_with("facade:"))
       if (k != "building") return true;
   return false;
 }
@@ -92,6 +92,7 @@ model::MappedAttributes read_attributes(model::OsmId id, model::ObjectKind kind,
   a.min_height = read.number({"min_height", "building:min_height"}, 0, 1000, false, lowest_length);
   a.storeys = read.number({"building:levels", "levels"}, 0, 200, false, storeys);
   a.min_storey = read.number({"building:min_level", "min_level"}, 0, 200, false, lowest_storey);
+  a.layer = read.number({"layer"}, -20, 20, false, lowest_storey);
   a.roof_storeys = read.number({"roof:levels", "building:roof:levels"}, 0, 20, false, storeys);
   a.storeys_underground = read.number({"building:levels:underground"}, 0, 50, false, storeys);
   a.roof_height = read.number({"roof:height", "building:roof:height"}, 0, 300, false, length);

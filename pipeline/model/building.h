@@ -203,6 +203,8 @@ struct Building {
   Attributes attributes;             ///< of the whole building
   std::vector<BuildingPart> parts;   ///< at least one after `generate` unless nothing could be built
   bool has_mapped_parts = false;
+  ObjectState settled = ObjectState::pending;  ///< duplicate or represented: another building stands for it
+  OsmId related;                     ///< that one
   bool owned = true;                 ///< false: halo only, never exported
   IssueCode failure = IssueCode::none;  ///< why nothing could be built, when `parts` is empty or has no solid
   std::string id() const { return osm.text(); }

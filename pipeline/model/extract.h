@@ -43,6 +43,7 @@ struct MappedRing {
 struct MappedAttributes {
   std::optional<float> height, min_height;
   std::optional<float> storeys, min_storey, roof_storeys, storeys_underground;
+  std::optional<float> layer;  ///< order above or below what it crosses; 0 where not tagged
   std::optional<float> roof_height, roof_angle;
   std::optional<float> roof_direction;  ///< degrees clockwise from north, pointing down the slope
   std::optional<RoofOrientation> roof_orientation;

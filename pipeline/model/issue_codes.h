@@ -60,6 +60,8 @@ enum class IssueClass : std::uint8_t {
   X(overlap_resolved, "OVERLAP_RESOLVED", notice, "An overlap with a neighbour was given to one of the two.")        \
   X(overlap_kept, "OVERLAP_KEPT", notice, "An overlap with a neighbour stays: without it, little would be left.")    \
   X(nested_building, "NESTED_BUILDING", notice, "A building lies within another one at the same level.")             \
+  X(near_duplicate, "NEAR_DUPLICATE", notice, "The same house is mapped twice; one of the two outlines was built.")  \
+  X(covered_outline, "COVERED_OUTLINE", notice, "Others cover most of the outline; what they leave free was built.")\
   X(repair_bounded, "REPAIR_BOUNDED", notice, "Repair would have changed too much; the outline stays as mapped.")    \
   X(parts_outside, "PARTS_OUTSIDE", notice, "A building part sticks out of its building's outline.")                 \
   X(parts_overlap, "PARTS_OVERLAP", notice, "Parts overlap at overlapping heights; one of them gave way.")           \

@@ -34,6 +34,8 @@ struct RowBuilding {
   Level level;
   bool has_parts = false;       ///< mapped parts describe it: stronger than an outline alone where two overlap
   int tags = 0;                 ///< how much the mapper said of it
+  model::ObjectState settled = model::ObjectState::pending;  ///< out: duplicate or represented, then without polygons
+  model::OsmId related;         ///< out: of whom, by whom
   std::vector<model::Arc> arcs; ///< out: curves of the repaired polygons
   model::RepairRecord record;   ///< mapped_area given; the rest out
 };
