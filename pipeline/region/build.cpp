@@ -22,27 +22,30 @@
 #include "pipeline/base/publish.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/text.h"
-#include "pipeline/context/party_walls.h"
+#include "pipeline/context/blocks.h"
 #include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/generate/defaults.h"
-#include "pipeline/generate/mass.h"
 #include "pipeline/generate/resolve.h"
-#include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/georef/heights.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/georef/round_trip.h"
 #include "pipeline/georef/tiles.h"
 #include "pipeline/region/area.h"
+#include "pipeline/region/context_extract.h"
 #include "pipeline/region/documents.h"
-#include "pipeline/region/load.h"
 #include "pipeline/region/outcome.h"
 #include "pipeline/region/pictures.h"
+#include "pipeline/region/region_facts.h"
+#include "pipeline/region/repair_extract.h"
 #include "pipeline/region/report_facts.h"
 #include "pipeline/region/shard.h"
 #include "pipeline/region/statistics.h"
+#include "pipeline/region/surroundings.h"
+#include "pipeline/region/tile_choice.h"
 #include "pipeline/region/tile_output.h"
-#include "pipeline/repair/repair.h"
+#include "pipeline/region/tile_stages.h"
+#include "pipeline/repair/kept_nodes.h"
 
 namespace blockrand::region {
 
@@ -90,6 +93,19 @@ std::vector<context::TaggedBuilding> tagged_buildings(const Extract& extract, co
   }
   return out;
 }
+
+/// The middle of each building: where the data is.
+std::vector<model::Point2> building_places(const Extract& extract, const georef::Projection& projection) {
+  std::vector<model::Point2> places;
+  for (const MappedBuilding& b : extract.buildings) {
+    if (b.rings.count == 0 || b.state != ObjectState::pending) continue;
+    const model::Point2 p = projection.forward(box_centre(extract, b));
+    if (std::isfinite(p.x) && std::isfinite(p.y)) places.push_back(model::snap(p));
+  }
+  return places;
+}
+
+bool is_building(const MappedBuilding& b) { return b.kind == ObjectKind::building; }
 
 // ---- one tile -------------------------------------------------------------------------------------------------------
 
@@ -203,10 +219,11 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const generate::Defaults defaults = generate::read_defaults(options.configs);
   std::optional<importers::elevation::Terrain> terrain;
   if (!options.terrain.empty()) terrain.emplace(options.terrain);
+  const std::optional<TileChoice> tile = choose_tile(options);
 
   progress.begin("read");
   importers::osm::ReadOptions read_options;
-  read_options.bbox = options.bbox;
+  read_options.bbox = tile ? tile->window : options.bbox;
   Extract extract = importers::osm::read_extract(options.input, read_options);
   malloc_trim(0);  // libosmium's buffers go back to the system before tiles need the room
   record.inputs.push_back(input_file("extract", options.input));
@@ -218,17 +235,22 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   record.inputs.back().path = "materials/materials.toml";
   record.data_time = extract.data_time;
   record.counts = extract.counts;
-  summary.buildings_in = extract.counts.buildings();
-  summary.parts_in = extract.counts.parts();
 
   progress.begin("locate");
   const std::optional<Area> area = area_of(extract);
   if (!area)
     progress.warn(fmt::format("{}: no building with an outline{}; the outputs are valid but empty", options.input,
-                              options.bbox ? " in the given --bbox" : ""));
-  const georef::GeoBox box = area ? area->box : georef::GeoBox{0, 0, 0, 0};
-  const georef::LonLat centre = area ? area->centre : georef::LonLat{0, 0};
-  record.crs = georef::open_crs(options.crs.empty() ? georef::choose_crs(centre.lon, centre.lat) : options.crs, box);
+                              options.bbox || tile ? " in the given place" : ""));
+  RegionFacts& facts = record.facts;
+  if (tile) {
+    facts = tile->facts;
+  } else {
+    if (area) facts = {"", area->box, area->centre, {}};
+    facts.crs = options.crs.empty() ? georef::choose_crs(facts.centre.lon, facts.centre.lat) : options.crs;
+  }
+  const georef::GeoBox box = facts.box;
+  const georef::LonLat centre = facts.centre;
+  record.crs = georef::open_crs(facts.crs, box);
   const georef::Projection projection(record.crs, box);
   record.portable = projection.portable();
   record.round_trip = georef::measure_round_trip(projection, box);
@@ -251,20 +273,27 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   if (area && has_heights && !geoid.available())
     progress.warn("heights above sea level are taken for ellipsoidal ones in 3D Tiles: " + georef::Geoid::remedy());
 
+  const int workers = base::worker_count(options.jobs);
   model::Report region_report;
-  std::vector<Shard> shards = make_shards(extract, region_report);
-  const context::SharedEdges shared(extract);
+  std::vector<Shard> shards = make_shards(extract, region_report, tile ? tile->id.level : kTileLevel);
+  if (!tile) facts.coverage = context::coverage_of(building_places(extract, projection));
+  const repair::KeptNodes kept(extract);
+  const RepairedExtract repaired = repair_extract(extract, shards, projection, kept, options.repair, workers, progress);
+  record.repair = repaired.totals;
+  const ContextExtract context = context_extract(extract, repaired.footprints, facts.coverage, projection, workers, progress);
+  const SurroundingsFinder surroundings(extract, repaired.footprints, context);
+  const BuildingNumbers numbers(repaired.footprints);
   const context::TaggedNeighbours neighbours(tagged_buildings(extract, defaults, projection), options.generate.neighbour_reach);
+  const std::vector<std::size_t> todo = shards_to_build(shards, tile);
 
   std::uint64_t to_build = 0;
-  for (const Shard& shard : shards) to_build += shard.seeds.size();
+  for (const std::size_t shard : todo) to_build += shards[shard].seeds.size();
   const std::uint64_t wanted = estimated_bytes(options, to_build), free = folder.free_bytes();
   if (wanted > free)
     throw base::OutputError(fmt::format("{}: about {} needed, {} free. Free some space, choose another disk with -o, fewer --formats or --gzip",
                                         options.output, base::with_byte_unit(wanted), base::with_byte_unit(free)));
 
   summary.store_bytes = current_rss_bytes();
-  const int workers = base::worker_count(options.jobs);
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2;
   const OutputContext output{options, projection, geoid, has_heights, record, defaults};
 
@@ -328,32 +357,22 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       const auto found = fates.find(index);
       return found == fates.end() ? export_::Fate{} : found->second;
     };
-    explain.sharers = [&](std::int64_t from, std::int64_t to) -> std::vector<model::OsmId> {
-      const std::int64_t edge = shared.find(from, to);
-      if (edge < 0) return {};
-      const auto [a, b] = shared.owners(edge);
-      return {extract.buildings[a].id, extract.buildings[b].id};
-    };
     return explain;
   };
 
+  const TileInputs inputs{extract,      shards,         projection, defaults,      kept,
+                          repaired,     context,        surroundings, numbers,     neighbours,
+                          options.repair, options.generate, options.seed, options.lod, terrain.has_value(), ground_height};
   const auto work = [&](std::size_t i) {
     TileResult result;
-    Region region = load_region(extract, shards[i], projection);
-    for (const generate::Material& m : defaults.materials) region.materials.push_back(m.looks);
-    repair::repair(region, options.repair);
-    context::mark_party_walls(region, shared);
-    generate::resolve_attributes(region, {defaults, neighbours, options.seed, ground_height}, options.generate);
-    if (terrain)
-      for (const model::Building& b : region.buildings)
-        if (b.attributes.ground_height.source != model::Source::terrain) region.report.add(b.osm, IssueCode::terrain_missing);
-    generate::build_masses(region, defaults, options.generate, options.lod);
+    const std::size_t shard = todo[i];
+    Region region = run_tile(shard, inputs);
     result.outcomes = decide_outcomes(region, options.lod);
-    result.statistics = count_statistics(region, shared);
+    result.statistics = count_statistics(region);
     result.output = write_tile(region, output, explain_options(result.outcomes.list), folder);
     if (options.report) {
       result.report = export_::report_tile(region);
-      result.picture = picture_tile(region, picture_plan, i);
+      result.picture = picture_tile(region, picture_plan, shard);
     }
     result.rows = std::move(region.report.rows);
     if (options.single_glb || options.single_cityjson) result.region = std::move(region);
@@ -373,7 +392,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     if (result.output.tile) tiles.push_back(*result.output.tile);
     if (geopackage && result.output.rows.buildings.rows() > 0) {
       geopackage->add(result.output.rows);
-      geopackage->add_tile(geopackage_tile(shards[i].tile, result.output, output));
+      geopackage->add_tile(geopackage_tile(shards[todo[i]].tile, result.output, output));
     }
     std::move(result.output.files.begin(), result.output.files.end(), std::back_inserter(record.files));
     if (single_cityjson) single_cityjson->add(result.region);
@@ -381,7 +400,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       page.add(std::move(result.report));
       pictures.add(std::move(result.picture));
     }
-    for (const auto& [object, building] : result.output.explained) explained.push_back({object, building, shards[i].tile});
+    for (const auto& [object, building] : result.output.explained) explained.push_back({object, building, shards[todo[i]].tile});
     const std::vector<PartySide>& sides = result.statistics.party_sides;
     party_sides.insert(party_sides.end(), sides.begin(), sides.end());
     region::add(record.statistics, result.statistics.sums);
@@ -395,11 +414,14 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       }
       std::move(result.region.buildings.begin(), result.region.buildings.end(), std::back_inserter(whole.buildings));
     }
-    done += shards[i].seeds.size();
+    done += shards[todo[i]].seeds.size();
     progress.advance_to(done);
   };
-  base::ordered_parallel(shards.size(), workers, in_flight, work, consume);
+  base::ordered_parallel(todo.size(), workers, in_flight, work, consume);
   settle_party_walls(std::move(party_sides), record.statistics);
+  if (tile) forget_others(extract, tile->id, rows);
+  summary.buildings_in = static_cast<std::uint64_t>(std::count_if(extract.buildings.begin(), extract.buildings.end(), is_building));
+  summary.parts_in = extract.buildings.size() - summary.buildings_in;
 
   progress.begin("documents");
   if (const double reach = write_whole(whole, tiles, centre, output, folder, record.files); reach > kFineModelRadius)
@@ -453,7 +475,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   run.seconds = summary.seconds;
   run.peak_rss_bytes = summary.peak_rss_bytes;
   run.store_bytes = summary.store_bytes;
-  run.tiles_in_flight = summary.tiles_in_flight = std::min<std::uint64_t>(in_flight, shards.size());
+  run.tiles_in_flight = summary.tiles_in_flight = std::min<std::uint64_t>(in_flight, todo.size());
   run.jobs = workers;
   char host[256] = "";
   gethostname(host, sizeof host - 1);

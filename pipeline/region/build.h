@@ -20,6 +20,8 @@ struct BuildOptions {
   std::string output;                         ///< folder that the build becomes
   std::string configs;                        ///< folder with defaults/ and materials/; empty: found by the program
   std::optional<std::array<double, 4>> bbox;  ///< west, south, east, north in degrees
+  std::string tile;                           ///< "15/35207/25941": build this tile alone; needs `pinned`
+  std::string pinned;                         ///< build.json of an earlier build of the extract: its CRS, its coverage
   std::string crs;                            ///< "EPSG:…"; empty: chosen from the extent
   int lod = 2;                                ///< highest level of detail, 0 to 2
   bool gltf = true;                           ///< tileset.json and tiles/

@@ -38,13 +38,20 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   c["single_glb"] = options.single_glb;
   c["single_cityjson"] = options.single_cityjson;
   c["seed"] = options.seed;
+  if (!options.tile.empty()) c["tile"] = options.tile;
   c["bbox"] = options.bbox ? Json(*options.bbox) : Json(nullptr);
   c["terrain"] = options.terrain;
   c["ground_height"] = options.ground_height ? Json(*options.ground_height) : Json(nullptr);
   const auto& p = options.repair;
   c["repair"] = {{"duplicate_distance", p.duplicate_distance}, {"spike_width", p.spike_width},
                  {"min_piece_area", p.min_piece_area},         {"ring_clearance", p.ring_clearance},
-                 {"parts_free_area", p.parts_free_area},       {"parts_free_width", p.parts_free_width}};
+                 {"parts_free_area", p.parts_free_area},       {"parts_free_width", p.parts_free_width},
+                 {"simplify", p.simplify},                     {"collinear_distance", p.collinear_distance},
+                 {"share_walls", p.share_walls},               {"square", p.square},
+                 {"snap_distance", p.snap_distance},           {"snap_reach", p.snap_reach},
+                 {"snap_angle", p.snap_angle},                 {"min_overlap", p.min_overlap},
+                 {"max_shift", p.max_shift},                   {"max_area_change", p.max_area_change},
+                 {"min_overlap_area", p.min_overlap_area},     {"max_loss", p.max_loss}};
   const auto& g = options.generate;
   c["generate"] = {{"neighbour_reach", g.neighbour_reach},         {"neighbour_minimum", g.neighbour_minimum},
                    {"min_wall_height", g.min_wall_height},         {"min_roof_height", g.min_roof_height},
@@ -61,6 +68,29 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
               {"frame_round_trip_error_m", std::ceil(r.round_trip.frame_m * 1e8) / 1e8},
               {"height_reference", r.height_reference},
               {"vertical_crs", r.vertical_crs}};
+  // What a build of one tile alone takes from here (--pinned).
+  j["region"] = {{"box", {r.facts.box.west, r.facts.box.south, r.facts.box.east, r.facts.box.north}},
+                 {"centre", {r.facts.centre.lon, r.facts.centre.lat}},
+                 {"coverage", Json::array()}};
+  for (const model::Point2 p : r.facts.coverage) j["region"]["coverage"].push_back({p.x, p.y});
+  const RepairTotals& m = r.repair;
+  j["repair"] = {{"outlines", m.outlines},
+                 {"rows", m.rows},
+                 {"buildings_at_cuts", m.rows_cut},
+                 {"vertices", m.vertices},
+                 {"vertices_moved", m.moved},
+                 {"mean_shift_m", rounded(m.mean_shift, 1000)},
+                 {"max_shift_m", rounded(m.max_shift, 1000)},
+                 {"outlines_squared", m.squared},
+                 {"outlines_area_changed", m.area_changed},
+                 {"median_area_change", rounded(m.median_area_change, 1e6)},
+                 {"max_area_change", rounded(m.max_area_change, 1e6)},
+                 {"shared_walls", m.shared_walls},
+                 {"party_wall_length_m", rounded(m.party_wall_length)},
+                 {"gaps_closed", m.gaps_closed},
+                 {"overlaps_resolved", m.overlaps_resolved},
+                 {"outlines_with_overlap_left", m.overlaps_left},
+                 {"arcs", m.arcs}};
   const BuildSummary& s = r.summary;
   j["counts"] = {{"buildings_in", s.buildings_in},
                  {"parts_in", s.parts_in},

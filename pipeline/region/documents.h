@@ -11,6 +11,8 @@
 #include "pipeline/georef/round_trip.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/region/build.h"
+#include "pipeline/region/region_facts.h"
+#include "pipeline/region/repair_extract.h"
 #include "pipeline/region/statistics.h"
 
 namespace blockrand::region {
@@ -32,6 +34,8 @@ struct BuildRecord {
   georef::RoundTrip round_trip;
   std::string height_reference;
   std::string vertical_crs;  ///< empty: none claimed
+  RegionFacts facts;
+  RepairTotals repair;
   BuildSummary summary;
   Statistics statistics;
   model::ExtractCounts counts;

@@ -38,6 +38,10 @@ Outcomes decide_outcomes(const Region& region, int asked) {
     return false;
   };
   for (const model::Building& building : region.buildings) {
+    if (building.settled != ObjectState::pending) {
+      out.list.push_back({building.mapped_index, building.settled, IssueCode::none, building.related, -1});
+      continue;
+    }
     std::vector<const model::BuildingPart*> own;
     std::map<std::uint32_t, std::vector<const model::BuildingPart*>> of_part;
     for (const model::BuildingPart& part : building.parts)

@@ -178,7 +178,7 @@ model::Location box_centre(const Extract& extract, const MappedBuilding& object)
   return {static_cast<std::int32_t>(c.x), static_cast<std::int32_t>(c.y)};
 }
 
-std::vector<Shard> make_shards(const Extract& extract, model::Report& report) {
+std::vector<Shard> make_shards(const Extract& extract, model::Report& report, int level) {
   const auto buildable = [&](const MappedBuilding& b) { return b.state == ObjectState::pending && b.rings.count > 0; };
   const auto index_of = [&](model::OsmId id) {
     const auto place = std::lower_bound(extract.buildings.begin(), extract.buildings.end(), id,
@@ -237,7 +237,7 @@ std::vector<Shard> make_shards(const Extract& extract, model::Report& report) {
 
   std::map<model::TileId, Shard> shards;
   const auto add = [&](Seed seed) {
-    const model::TileId tile = georef::tile_of(box_centre(extract, extract.buildings[seed.lead()]), kTileLevel);
+    const model::TileId tile = georef::tile_of(box_centre(extract, extract.buildings[seed.lead()]), level);
     Shard& shard = shards[tile];
     shard.tile = tile;
     shard.seeds.push_back(std::move(seed));

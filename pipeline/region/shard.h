@@ -33,7 +33,8 @@ model::Location box_centre(const model::Extract& extract, const model::MappedBui
 /// Assigns parts to outlines and both to tiles. A part belongs to the outline that a type=building relation names, else
 /// to the smallest outline that holds at least half of its corners (boundary included) and whose box holds the middle of
 /// the part's. A part that no outline holds stands alone (PART_WITHOUT_OUTLINE in `report`), together with those of its
-/// kind that it shares an edge with (two nodes in sequence), and so on: one building. A building belongs to the tile of the centre of its lead's raw box. Shards come in tile order; nothing depends on the order of the input.
-std::vector<Shard> make_shards(const model::Extract& extract, model::Report& report);
+/// kind that it shares an edge with (two nodes in sequence), and so on: one building. A building belongs to the tile of
+/// `level` of the centre of its lead's raw box. Shards come in tile order; nothing depends on the order of the input.
+std::vector<Shard> make_shards(const model::Extract& extract, model::Report& report, int level = kTileLevel);
 
 }  // namespace blockrand::region

@@ -5,41 +5,51 @@
 #include <utility>
 
 #include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon.h"
 
 namespace blockrand::region {
 
 namespace {
 
-double edge_length(const model::Ring& ring, std::size_t i) {
-  const model::Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
-  return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+std::uint64_t mixed(std::uint64_t h) {  // the finaliser of MurmurHash3
+  h ^= h >> 33;
+  h *= 0xff51afd7ed558ccdULL;
+  h ^= h >> 33;
+  h *= 0xc4ceb9fe1a85ec53ULL;
+  return h ^ (h >> 33);
 }
+
+/// The same for both directions of a wall.
+std::uint64_t wall_key(model::Point2 a, model::Point2 b) {
+  if (b < a) std::swap(a, b);
+  std::uint64_t h = 0;
+  for (const double v : {a.x, a.y, b.x, b.y}) h = mixed(h ^ static_cast<std::uint64_t>(geometry::to_grid(v)));
+  return h;
+}
+
+/// m. A stretch this near to the whole edge is the whole edge: its ends were computed in another order.
+constexpr double kWholeEdge = 0.002;
 
 }  // namespace
 
-TileStatistics count_statistics(const model::Region& region, const context::SharedEdges& shared) {
+TileStatistics count_statistics(const model::Region& region) {
   TileStatistics out;
   Statistics& s = out.sums;
   for (const model::Building& building : region.buildings) {
     const auto& a = building.attributes;
     const double wall_height = std::max(0.0, a.height.value - a.roof_height.value - a.min_height.value);
-    std::size_t edge = 0;
-    const auto count_ring = [&](const model::Ring& ring) {
-      for (std::size_t i = 0; i < ring.size(); ++i, ++edge) {
-        const double length = edge_length(ring, i);
-        const model::FacadeEdge& e = building.edges[edge];
-        if (e.kind == model::EdgeKind::party_wall)
-          out.party_sides.push_back({shared.find(e.from_node, e.to_node), length, wall_height});
-        else
-          s.outer_wall_area += length * wall_height;
-      }
-    };
-    for (const model::Polygon& p : building.outline) {
-      s.footprint_area += geometry::area(p);
-      count_ring(p.outer);
-      for (const model::Ring& hole : p.holes) count_ring(hole);
+    for (const model::FacadeEdge& e : building.edges) {
+      const model::Polygon& polygon = building.outline[e.polygon];
+      const model::Ring& ring = e.ring == 0 ? polygon.outer : polygon.holes[e.ring - 1];
+      const model::Point2 a = ring.points[e.edge], b = ring.points[(e.edge + 1) % ring.size()];
+      const double whole = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+      if (e.kind == model::EdgeKind::party_wall && e.start <= kWholeEdge && e.end >= whole - kWholeEdge)
+        out.party_sides.push_back({wall_key(a, b), whole, wall_height});
+      else
+        s.outer_wall_area += e.length() * wall_height;
     }
+    for (const model::Polygon& p : building.outline) s.footprint_area += geometry::area(p);
     s.buildings += !building.parts.empty();
     s.bodies += building.parts.size();
     for (const model::BuildingPart& part : building.parts) {
@@ -75,11 +85,11 @@ void add(Statistics& sum, const Statistics& s) {
 
 void settle_party_walls(std::vector<PartySide> sides, Statistics& sum) {
   std::sort(sides.begin(), sides.end(), [](const PartySide& a, const PartySide& b) {
-    return a.edge != b.edge ? a.edge < b.edge : a.height < b.height;
+    return a.wall != b.wall ? a.wall < b.wall : a.height < b.height;
   });
   for (std::size_t i = 0; i < sides.size();) {
     std::size_t j = i;
-    while (j < sides.size() && sides[j].edge == sides[i].edge) ++j;
+    while (j < sides.size() && sides[j].wall == sides[i].wall) ++j;
     if (j - i < 2) {
       // The neighbour was not built: the wall stands free.
       sum.outer_wall_area += sides[i].length * sides[i].height;

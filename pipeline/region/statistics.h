@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/context/party_walls.h"
 #include "pipeline/model/region.h"
 
 namespace blockrand::region {
@@ -28,7 +27,7 @@ struct Statistics {
 
 /// One building's side of a shared wall.
 struct PartySide {
-  std::int64_t edge = 0;
+  std::uint64_t wall = 0;  ///< of both ends: the same for both sides, others' differ but for one in 10^8 cities
   double length = 0, height = 0;
 };
 
@@ -38,7 +37,7 @@ struct TileStatistics {
   std::vector<PartySide> party_sides;
 };
 
-TileStatistics count_statistics(const model::Region& region, const context::SharedEdges& shared);
+TileStatistics count_statistics(const model::Region& region);
 
 /// Adds a tile's sums to those of the build; in tile order, since sums of floats depend on theirs.
 void add(Statistics& sum, const Statistics& tile);

@@ -284,6 +284,17 @@ void add_build(Table& t) {
        .help = "only what lies in this box: west,south,east,north in degrees"},
       [](Settings& s, const std::string& text) { s.build.bbox = parse_bbox(text); },
       [](const Settings& s) { return show_bbox(s.build.bbox); });
+  t.text({.name = "tile",
+          .argument = "LEVEL/X/Y",
+          .section = S,
+          .help = "build this tile alone, from what lies within 3 km of it: the same as in a build of the whole; needs --pinned"},
+         FIELD(build.tile));
+  t.text({.name = "pinned",
+          .argument = "BUILD.JSON",
+          .type = OptionType::path,
+          .section = S,
+          .help = "with --tile: build.json of a build of the whole extract, whose CRS and coverage are taken"},
+         FIELD(build.pinned));
   t.other({.name = "crs",
            .key = "crs",
            .argument = "EPSG:CODE",
@@ -415,6 +426,24 @@ void add_repair(Table& t) {
               .help = help},
              field);
   };
+  t.flag({.name = "repair-simplify",
+          .key = "simplify",
+          .section = S,
+          .help = "remove points on straight walls",
+          .without = "points on straight walls stay"},
+         FIELD(build.repair.simplify));
+  t.flag({.name = "repair-share-walls",
+          .key = "share_walls",
+          .section = S,
+          .help = "join walls of neighbours that almost meet; resolve overlaps",
+          .without = "gaps and overlaps between neighbours stay as mapped"},
+         FIELD(build.repair.share_walls));
+  t.flag({.name = "repair-square",
+          .key = "square",
+          .section = S,
+          .help = "make almost right corners right",
+          .without = "almost right corners stay as mapped"},
+         FIELD(build.repair.square));
   metres("repair-duplicate-distance", "duplicate_distance", 0, 0.5, "nearer neighbours on a ring are one point, in m",
          FIELD(build.repair.duplicate_distance));
   metres("repair-spike-width", "spike_width", 0, 1, "a tip narrower than this is removed, in m",
@@ -429,6 +458,46 @@ void add_repair(Table& t) {
            FIELD(build.repair.min_piece_area));
   metres("repair-ring-clearance", "ring_clearance", 0.002, 0.5, "rings that touch are moved apart by this, in m",
          FIELD(build.repair.ring_clearance));
+  metres("repair-collinear-distance", "collinear_distance", 0, 0.5,
+         "a point nearer to the wall through its neighbours is no corner, in m", FIELD(build.repair.collinear_distance));
+  metres("repair-snap-distance", "snap_distance", 0, 2, "walls of neighbours at this mean distance are one, in m",
+         FIELD(build.repair.snap_distance));
+  metres("repair-snap-reach", "snap_reach", 0, 3, "... and at this distance at their ends, in m", FIELD(build.repair.snap_reach));
+  t.number({.name = "repair-snap-angle",
+            .key = "snap_angle",
+            .argument = "RADIANS",
+            .section = S,
+            .minimum = 0,
+            .maximum = 0.5,
+            .help = "steeper pairs of walls are corners, not one wall"},
+           FIELD(build.repair.snap_angle));
+  metres("repair-min-overlap", "min_overlap", 0, 10, "shorter contacts stay two walls, in m", FIELD(build.repair.min_overlap));
+  metres("repair-max-shift", "max_shift", 0, 2, "no corner moves farther by sharing and squaring, in m",
+         FIELD(build.repair.max_shift));
+  t.number({.name = "repair-max-area-change",
+            .key = "max_area_change",
+            .argument = "SHARE",
+            .section = S,
+            .minimum = 0,
+            .maximum = 1,
+            .help = "of the area, by sharing and squaring; more is undone"},
+           FIELD(build.repair.max_area_change));
+  t.number({.name = "repair-min-overlap-area",
+            .key = "min_overlap_area",
+            .argument = "M2",
+            .section = S,
+            .minimum = 0,
+            .maximum = 100,
+            .help = "larger overlaps of neighbours are resolved or reported, in m2"},
+           FIELD(build.repair.min_overlap_area));
+  t.number({.name = "repair-max-loss",
+            .key = "max_loss",
+            .argument = "SHARE",
+            .section = S,
+            .minimum = 0,
+            .maximum = 1,
+            .help = "of its area that a building may lose to a neighbour it overlaps"},
+           FIELD(build.repair.max_loss));
   t.number({.name = "repair-parts-free-area",
             .key = "parts_free_area",
             .argument = "M2",

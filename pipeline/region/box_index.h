@@ -1,0 +1,52 @@
+// Which boxes come near a place.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "pipeline/region/footprints.h"
+
+namespace blockrand::region {
+
+/// Boxes by the cells of a fixed grid; read-only after construction. Made for streets and blocks: boxes of some 100 m.
+class BoxIndex {
+ public:
+  BoxIndex() = default;
+  explicit BoxIndex(std::vector<PlanBox> boxes) : boxes_(std::move(boxes)) {
+    for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
+      if (boxes_[i].empty()) continue;
+      for_each_cell(boxes_[i], 0, [&](Cell c) { entries_.emplace_back(c, i); });
+    }
+    std::sort(entries_.begin(), entries_.end());
+  }
+  /// Ascending.
+  std::vector<std::uint32_t> near(const PlanBox& box, double distance) const {
+    std::vector<std::uint32_t> out;
+    for_each_cell(box, distance, [&](Cell c) {
+      for (auto e = std::lower_bound(entries_.begin(), entries_.end(), std::pair(c, 0u));
+           e != entries_.end() && e->first == c; ++e)
+        if (boxes_[e->second].near(box, distance)) out.push_back(e->second);
+    });
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  }
+  const PlanBox& box(std::uint32_t i) const { return boxes_[i]; }
+
+ private:
+  using Cell = std::pair<std::int32_t, std::int32_t>;
+  static constexpr double kSize = 250;  // m
+  template <class Visit>
+  static void for_each_cell(const PlanBox& box, double distance, Visit&& visit) {
+    const auto cell = [](double v) { return static_cast<std::int32_t>(std::floor(v / kSize)); };
+    for (std::int32_t x = cell(box.minimum.x - distance); x <= cell(box.maximum.x + distance); ++x)
+      for (std::int32_t y = cell(box.minimum.y - distance); y <= cell(box.maximum.y + distance); ++y) visit(Cell{x, y});
+  }
+  std::vector<PlanBox> boxes_;
+  std::vector<std::pair<Cell, std::uint32_t>> entries_;
+};
+
+}  // namespace blockrand::region

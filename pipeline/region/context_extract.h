@@ -1,0 +1,48 @@
+// Context of a whole extract, after repair and before any tile runs: street network, blocks, courtyards, district cells.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/base/progress.h"
+#include "pipeline/context/block_figures.h"
+#include "pipeline/context/blocks.h"
+#include "pipeline/context/cells.h"
+#include "pipeline/context/courtyards.h"
+#include "pipeline/context/address_points.h"
+#include "pipeline/context/street_network.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/model/extract.h"
+#include "pipeline/region/footprints.h"
+
+namespace blockrand::region {
+
+/// A courtyard with the numbers of its buildings.
+struct ExtractCourtyard {
+  std::uint32_t block = model::kNoIndex;  ///< where it lies in one that is whole and not too large
+  context::Courtyard courtyard;           ///< `buildings` are numbers in the store
+};
+
+/// Read-only once made, safe to share between threads. Numbers of buildings are those of the FootprintStore.
+struct ContextExtract {
+  std::vector<context::NetworkLine> lines;
+  std::vector<context::PassageWay> passages;
+  std::vector<context::SitePoint> points;
+  std::vector<context::Block> blocks;
+  std::vector<context::BlockFigures> figures;  ///< parallel to blocks; without courtyards, which stand below
+  std::vector<ExtractCourtyard> courtyards;    ///< by id
+  std::vector<std::uint32_t> block_of;         ///< per building: the block it belongs to, or kNoIndex. Blocks that are too
+                                               ///< large count as none: what reads a part of the extract cannot find them
+  context::Cells cells;
+};
+
+/// \param coverage  of the extract (context::coverage_of), made once and pinned
+/// Deterministic for any number of workers. The value of a block, a courtyard, a cell depends on data within
+/// BlockOptions::max_extent of it, and on the repair of the buildings in it.
+ContextExtract context_extract(const model::Extract& extract, const FootprintStore& footprints,
+                               std::span<const model::Point2> coverage, const georef::Projection& projection, int workers,
+                               base::Progress& progress);
+
+}  // namespace blockrand::region

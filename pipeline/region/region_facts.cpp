@@ -1,0 +1,40 @@
+#include "pipeline/region/region_facts.h"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/base/error.h"
+
+namespace blockrand::region {
+
+namespace {
+
+double finite(const nlohmann::json& value) {
+  const double v = value.get<double>();
+  if (!std::isfinite(v)) throw std::runtime_error("a number is not finite");
+  return v;
+}
+
+}  // namespace
+
+RegionFacts read_region_facts(const std::string& path) {
+  constexpr const char* kRemedy = "Name the build.json of a finished build of the whole extract, made by this version.";
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw base::InputError(path, "", "cannot be opened", kRemedy);
+  try {
+    const nlohmann::json j = nlohmann::json::parse(file);
+    const nlohmann::json& r = j.at("region");
+    RegionFacts facts;
+    facts.crs = j.at("crs").at("code").get<std::string>();
+    const nlohmann::json& box = r.at("box");
+    facts.box = {finite(box.at(0)), finite(box.at(1)), finite(box.at(2)), finite(box.at(3))};
+    facts.centre = {finite(r.at("centre").at(0)), finite(r.at("centre").at(1))};
+    for (const nlohmann::json& p : r.at("coverage")) facts.coverage.push_back({finite(p.at(0)), finite(p.at(1))});
+    return facts;
+  } catch (const std::exception& e) {
+    throw base::InputError(path, "", std::string("holds no facts about its region (") + e.what() + ")", kRemedy);
+  }
+}
+
+}  // namespace blockrand::region

@@ -1,0 +1,25 @@
+// What a build knows of its extract as a whole, small and made once: so that a part of it can be built alone, with only
+// the data around it, and comes out the same (DESIGN law 4).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/georef/lon_lat.h"
+#include "pipeline/model/point.h"
+
+namespace blockrand::region {
+
+struct RegionFacts {
+  std::string crs;                      ///< "EPSG:25833"
+  georef::GeoBox box;                   ///< of the buildings, degrees
+  georef::LonLat centre;                ///< degrees
+  std::vector<model::Point2> coverage;  ///< m, build CRS: where the data is (context::coverage_of)
+};
+
+/// Reads the facts that an earlier build wrote into its build.json.
+/// \throws base::InputError  `path` is no build.json, is damaged, or comes from a version that wrote no facts
+RegionFacts read_region_facts(const std::string& path);
+
+}  // namespace blockrand::region

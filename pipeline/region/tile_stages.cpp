@@ -1,0 +1,135 @@
+#include "pipeline/region/tile_stages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "pipeline/context/facade_edges.h"
+#include "pipeline/generate/mass.h"
+#include "pipeline/generate/resolve.h"
+#include "pipeline/region/load.h"
+#include "pipeline/repair/parts.h"
+#include "pipeline/repair/rings.h"
+
+namespace blockrand::region {
+
+namespace {
+
+using model::Building;
+using model::Region;
+
+/// The rows of repair about one object, which came before the tile.
+void copy_rows(const std::vector<model::ReportRow>& rows, model::OsmId id, model::Report& report) {
+  const auto [first, last] = std::equal_range(rows.begin(), rows.end(), model::ReportRow{id, {}, {}},
+                                              [](const auto& a, const auto& b) { return a.object < b.object; });
+  report.rows.insert(report.rows.end(), first, last);
+}
+
+/// Buildings with their repaired outlines, parts and attributes. \param numbers  of the shard's seeds, in their order
+Region prepare(const Shard& shard, std::span<const std::uint32_t> numbers, const TileInputs& in) {
+  Region region = load_region(in.extract, shard, in.projection);
+  for (const generate::Material& m : in.defaults.materials) region.materials.push_back(m.looks);
+  for (std::size_t i = 0; i < region.buildings.size(); ++i) {
+    Building& building = region.buildings[i];
+    const StoredFootprint& stored = in.repaired.footprints[numbers[i]];
+    std::vector<model::Polygon> before;
+    if (building.has_mapped_parts && !building.rings.rings.empty()) {
+      model::Report heard;
+      before = repair::repair_rings(std::move(building.rings), building.osm, in.kept, in.repair, heard).polygons;
+    }
+    building.rings = {};
+    building.outline = in.repaired.footprints.polygons(numbers[i]);
+    building.arcs = in.repaired.footprints.arcs(numbers[i]);
+    building.repaired = stored.record;
+    building.failure = stored.failure;
+    if (before.empty()) before = building.outline;
+    copy_rows(in.repaired.rows, building.osm, region.report);
+    building.settled = stored.settled;
+    building.related = stored.related;
+    if (building.settled != model::ObjectState::pending) {
+      building.parts.clear();
+      continue;
+    }
+    repair::fit_parts(building, before, in.kept, in.repair, region.part_failures, region.report);
+  }
+  return region;
+}
+
+void resolve(Region& region, const TileInputs& in) {
+  generate::resolve_attributes(region, {in.defaults, in.neighbours, in.seed, in.ground_height}, in.generate);
+}
+
+/// m above the ground to which a building's outer walls reach.
+double wall_top(const Building& building) {
+  const model::Attributes& a = building.attributes;
+  return std::max(0.0, a.height.value - a.roof_height.value);
+}
+
+/// Fills in what neighbours cover of party walls. Neighbours in other tiles are resolved again, from the same data.
+void cover_party_walls(Region& region, const TileInputs& in) {
+  std::set<model::OsmId> missing;
+  const auto find = [](Region& r, model::OsmId id) -> const Building* {
+    const auto place = std::lower_bound(r.buildings.begin(), r.buildings.end(), id,
+                                        [](const Building& b, model::OsmId wanted) { return b.osm < wanted; });
+    return place != r.buildings.end() && place->osm == id ? &*place : nullptr;
+  };
+  for (const Building& building : region.buildings)
+    for (const model::FacadeEdge& edge : building.edges)
+      if (edge.kind == model::EdgeKind::party_wall && edge.neighbour.number != 0 && find(region, edge.neighbour) == nullptr)
+        missing.insert(edge.neighbour);
+  Shard beside;
+  beside.tile = region.tile;
+  std::vector<std::uint32_t> numbers;
+  for (const model::OsmId id : missing) {
+    const std::uint32_t number = in.numbers.find(id);
+    if (number == model::kNoIndex) continue;
+    const auto after = std::upper_bound(in.repaired.first.begin(), in.repaired.first.end(), number);
+    const auto shard = static_cast<std::size_t>(after - in.repaired.first.begin()) - 1;
+    beside.seeds.push_back(in.shards[shard].seeds[number - in.repaired.first[shard]]);
+    numbers.push_back(number);
+  }
+  Region halo;
+  if (!beside.seeds.empty()) {
+    halo = prepare(beside, numbers, in);
+    resolve(halo, in);
+  }
+  for (Building& building : region.buildings)
+    for (model::FacadeEdge& edge : building.edges) {
+      if (edge.kind != model::EdgeKind::party_wall || edge.neighbour.number == 0) continue;
+      const Building* other = find(region, edge.neighbour);
+      if (other == nullptr) other = find(halo, edge.neighbour);
+      if (other != nullptr)
+        edge.covered_height = static_cast<float>(std::min(wall_top(building), wall_top(*other)));
+    }
+}
+
+}  // namespace
+
+Region run_tile(std::size_t shard, const TileInputs& in) {
+  std::vector<std::uint32_t> numbers(in.shards[shard].seeds.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = in.repaired.first[shard] + static_cast<std::uint32_t>(i);
+  Region region = prepare(in.shards[shard], numbers, in);
+  in.surroundings.label_edges(region, numbers);
+  resolve(region, in);
+  if (in.has_terrain)
+    for (const Building& b : region.buildings)
+      if (b.attributes.ground_height.source != model::Source::terrain)
+        region.report.add(b.osm, model::IssueCode::terrain_missing);
+  cover_party_walls(region, in);
+  generate::build_masses(region, in.defaults, in.generate, in.lod);
+  return region;
+}
+
+BuildingNumbers::BuildingNumbers(const FootprintStore& store) {
+  numbers_.reserve(store.size());
+  for (std::uint32_t i = 0; i < store.size(); ++i) numbers_.emplace_back(store[i].id, i);
+  std::sort(numbers_.begin(), numbers_.end());
+}
+
+std::uint32_t BuildingNumbers::find(model::OsmId id) const {
+  const auto place = std::lower_bound(numbers_.begin(), numbers_.end(), std::pair(id, 0u));
+  return place != numbers_.end() && place->first == id ? place->second : model::kNoIndex;
+}
+
+}  // namespace blockrand::region
