@@ -10,15 +10,15 @@ namespace {
 
 using model::Point2;
 
-constexpr double kLeastTurn = 0.069926811943510;     // tan 4 degrees. Below, facades of several walls bend by accident
-constexpr double kLargestTurn = 0.839099631177280;   // tan 40 degrees. Octagons turn by 45
-constexpr double kTurnRatio = 4;                     // largest to smallest turn (of its tangent)
-constexpr double kChordRatio = 3;                    // longest to shortest chord
-constexpr double kEndChordRatio = 6;                 // the same for the chords at the ends
-constexpr std::size_t kLeastEdges = 4;               // three turns: fewer are chamfers and bays
+constexpr double kLeastTurn = 0.069926811943510;    // tan 4 degrees. Below, facades of several walls bend by accident
+constexpr double kLargestTurn = 0.839099631177280;  // tan 40 degrees. Octagons turn by 45
+constexpr double kTurnRatio = 4;                    // largest to smallest turn (of its tangent)
+constexpr double kChordRatio = 3;                   // longest to shortest chord
+constexpr double kEndChordRatio = 6;                // the same for the chords at the ends
+constexpr std::size_t kLeastEdges = 4;              // three turns: fewer are chamfers and bays
 constexpr double kLeastRadius = 0.5, kLargestRadius = 60;  // m
-constexpr double kHeightShare = 1.0 / 8;             // of the curve's height that a corner may lie off the circle
-constexpr double kLeastOff = 0.02, kLargestOff = 0.15;  // m. Bounds of that: OSM's grid; what mappers see
+constexpr double kHeightShare = 1.0 / 8;                   // of the curve's height that a corner may lie off the circle
+constexpr double kLeastOff = 0.02, kLargestOff = 0.15;     // m. Bounds of that: OSM's grid; what mappers see
 
 double distance(Point2 a, Point2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
@@ -67,8 +67,8 @@ class Ring {
 
   std::vector<ArcRun> runs() {
     std::vector<ArcRun> out;
-    // Stretches of corners that turn the same way, with the edges before and after them. Without a corner that does not,
-    // the whole ring is one stretch, which starts at its longest chord (of equal ones, the one that lies lowest).
+    // Stretches of corners that turn the same way, with the edges before and after them. Without a corner that does
+    // not, the whole ring is one stretch, which starts at its longest chord (of equal ones, the one that lies lowest).
     std::size_t start = n_;
     for (std::size_t i = 0; i < n_ && start == n_; ++i)
       if (begins(i)) start = i;

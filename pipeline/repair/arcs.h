@@ -19,13 +19,15 @@ struct ArcRun {
 };
 
 /// Curves of one ring, by `first`. A curve is a run of at least four edges whose corners
-/// * all turn the same way, each by 4 to 40 degrees (so a square, a hexagon and an octagon are none, whole circles have at
+/// * all turn the same way, each by 4 to 40 degrees (so a square, a hexagon and an octagon are none, whole circles have
+/// at
 ///   least nine corners), the largest turn at most four times the smallest;
-/// * are at similar distances (longest chord at most three times the shortest; the chord at either end may be as short as
+/// * are at similar distances (longest chord at most three times the shortest; the chord at either end may be as short
+/// as
 ///   a sixth of the longest, because curves end between two corners);
-/// * lie on a circle of 0.5 to 60 m radius, each within an eighth of the curve's own height (bounded by 0.02 and 0.15 m).
-/// Runs that overlap: the longest wins, then the one that fits better. A ring that is one circle gives one run with the
-/// count of the ring and `first` 0. What is found does not depend on where the ring starts.
+/// * lie on a circle of 0.5 to 60 m radius, each within an eighth of the curve's own height (bounded by 0.02 and 0.15
+/// m). Runs that overlap: the longest wins, then the one that fits better. A ring that is one circle gives one run with
+/// the count of the ring and `first` 0. What is found does not depend on where the ring starts.
 std::vector<ArcRun> find_arc_runs(std::span<const model::Point2> ring);
 
 /// Curves of a building's polygons, by polygon, ring and first edge.

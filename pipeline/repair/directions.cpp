@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "pipeline/base/portable_math.h"
+#include "pipeline/repair/frames.h"
 #include "pipeline/repair/row_noise.h"
 
 namespace blockrand::repair {
@@ -13,58 +14,26 @@ namespace {
 
 using model::Point2;
 
-constexpr double kUsualNoise = 0.02;      // m, of careful mappers
-constexpr double kDeviations = 3.2;       // 1 in 700 of walls that belong to a frame is left out
-constexpr double kMergeDeviations = 3.0;  // the same for frames of neighbours: 1 in 370
-constexpr double kDiagonal = 0.7071067811865476;     // sin 45 degrees: no wall is farther off a frame
-constexpr double kLargestTurn = 0.3826834323650898;  // sin 22.5 degrees: beyond, a wall is nearer to a diagonal
-constexpr double kObliqueSine = 0.08715574274765817; // sin 5 degrees: long walls farther off are meant oblique
+constexpr double kUsualNoise = 0.02;                    // m, of careful mappers
+constexpr double kDeviations = 3.2;                     // 1 in 700 of walls that belong to a frame is left out
+constexpr double kDiagonal = 0.7071067811865476;        // sin 45 degrees: no wall is farther off a frame
+constexpr double kLargestTurn = 0.3826834323650898;     // sin 22.5 degrees: beyond, a wall is nearer to a diagonal
+constexpr double kObliqueSine = 0.08715574274765817;    // sin 5 degrees: long walls farther off are meant oblique
 constexpr double kObliqueFrom = 6, kObliqueLength = 8;  // m. From here on that begins to hold, and holds
-constexpr double kMainShare = 0.35;       // of a building's wall length that its frame must explain, beyond chance
-constexpr double kWingWalls = 2.5;        // a wing has at least this many walls of its own, beyond chance,
-constexpr double kWingLength = 8;         // m, which are together at least this long
-constexpr std::size_t kMostFrames = 3;    // of a building
-constexpr std::size_t kFamilyWalls = 4;   // walls that make a direction of the row, beyond chance,
-constexpr double kFamilyDeviations = 5;   // and by so many standard deviations of chance: the best of many directions is taken
-constexpr std::size_t kMostFamilies = 4;  // of a row
-constexpr double kTellingLength = 0.5;    // m. Shorter walls tell nothing of the noise
-constexpr std::size_t kMostCandidates = 48;  // walls tried as the direction of a frame: the longest
-constexpr int kMostRounds = 30;           // of reweighted least squares,
-constexpr double kStill = 1e-10;          // which end at such a turn (radians)
+constexpr double kMainShare = 0.35;      // of a building's wall length that its frame must explain, beyond chance
+constexpr double kWingWalls = 2.5;       // a wing has at least this many walls of its own, beyond chance,
+constexpr double kWingLength = 8;        // m, which are together at least this long
+constexpr std::size_t kMostFrames = 3;   // of a building
+constexpr std::size_t kFamilyWalls = 4;  // walls that make a direction of the row, beyond chance,
+constexpr double kFamilyDeviations =
+    5;  // and by so many standard deviations of chance: the best of many directions is taken
+constexpr std::size_t kMostFamilies = 4;         // of a row
+constexpr double kTellingLength = 0.5;           // m. Shorter walls tell nothing of the noise
+constexpr std::size_t kMostCandidates = 48;      // walls tried as the direction of a frame: the longest
+constexpr int kMostRounds = 30;                  // of reweighted least squares,
+constexpr double kStill = 1e-10;                 // which end at such a turn (radians)
 constexpr double kBayTurn = 0.2079116908177593;  // sin 12 degrees: cheeks of bays deviate by more, both alike
-constexpr double kBayCheek = 4;           // m. Longer ones are wings
-
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
-double norm(Point2 a) { return std::sqrt(dot(a, a)); }
-Point2 unit(Point2 a) {
-  const double n = norm(a);
-  return n > 0 ? Point2{a.x / n, a.y / n} : Point2{1, 0};
-}
-/// The same direction modulo a quarter turn, with x > 0 and y >= 0.
-Point2 first_quarter(Point2 u) {
-  for (int k = 0; k < 3 && !(u.x > 0 && u.y >= 0); ++k) u = {u.y, -u.x};
-  return u;
-}
-/// Sine of the angle from the nearer axis of `frame` to `v`, counter-clockwise; within +-sin 45 degrees.
-double turn_off(Point2 frame, Point2 v) {
-  const double c = dot(frame, v), s = cross(frame, v);
-  if (std::fabs(s) <= std::fabs(c)) return c >= 0 ? s : -s;
-  return s >= 0 ? -c : c;
-}
-
-struct Groups {
-  std::vector<std::uint32_t> parent;
-  explicit Groups(std::size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a), b = find(b);
-    parent[std::max(a, b)] = std::min(a, b);
-  }
-};
+constexpr double kBayCheek = 4;                  // m. Longer ones are wings
 
 class Reader {
  public:
@@ -92,17 +61,11 @@ class Reader {
     std::uint32_t line;
     double limit;  // sine of the angle that it may be off its building's frame
   };
-  struct Frame {
-    std::uint32_t building;
-    Point2 axis;
-    double weight;  // m², of its lines
-  };
-
   std::vector<WallLine>& lines() { return out_.row.lines; }
   const std::vector<WallLine>& lines() const { return out_.row.lines; }
 
-  /// Sine of how far a line may be off its building's frame: as long as it more likely belongs to it than not, and within
-  /// kDeviations.
+  /// Sine of how far a line may be off its building's frame: as long as it more likely belongs to it than not, and
+  /// within kDeviations.
   double limit(const WallLine& l, std::size_t building) const {
     const double sigma = told_.noise / std::sqrt(l.weight);
     const double odds = odds_of_frame(told_, building, l.weight);
@@ -113,8 +76,8 @@ class Reader {
     return std::max(0.0, std::min({std::min(kDeviations, likely) * sigma, oblique, kLargestTurn}));
   }
 
-  /// The direction that most length of the lines agrees with: the line with the highest score under `kernel`, a function
-  /// of (member, sine off) in [0, 1], then improved by reweighted least squares.
+  /// The direction that most length of the lines agrees with: the line with the highest score under `kernel`, a
+  /// function of (member, sine off) in [0, 1], then improved by reweighted least squares.
   template <class Kernel>
   Point2 mode(const std::vector<Member>& members, const Kernel& kernel) {
     candidates_.clear();
@@ -129,7 +92,8 @@ class Reader {
     for (const std::uint32_t c : candidates_) {
       const Point2 axis = lines()[c].along;
       double score = 0;
-      for (const Member& m : members) score += lines()[m.line].length * kernel(m, turn_off(axis, lines()[m.line].along));
+      for (const Member& m : members)
+        score += lines()[m.line].length * kernel(m, turn_off(axis, lines()[m.line].along));
       if (score > best_score) best_score = score, best = axis;
     }
     for (int round = 0; round < kMostRounds; ++round) {
@@ -140,14 +104,14 @@ class Reader {
       }
       if (weight <= 0) break;
       turn /= weight;
-      best = unit({best.x - turn * best.y, best.y + turn * best.x});
+      best = turned(best, turn);
       if (std::fabs(turn) < kStill) break;
     }
     return first_quarter(best);
   }
 
-  /// Frames and noise tell each other: found in turn, once from what a careful mapper does and once from what a careless
-  /// one does. The likelier end counts.
+  /// Frames and noise tell each other: found in turn, once from what a careful mapper does and once from what a
+  /// careless one does. The likelier end counts.
   void estimate_noise() {
     RowNoise best;
     for (const double start : {kLeastNoise, kUsualNoise, kLargestNoise / 2}) {
@@ -242,9 +206,8 @@ class Reader {
           ++count, length += line.length, weight += line.weight, beyond_chance += 1 - chance;
           (std::fabs(dot(axis, line.along)) > std::fabs(cross(axis, line.along)) ? along : across) += line.length;
         }
-        const bool strong =
-            k == 0 ? count >= 2 && length - lucky_length >= kMainShare * (all_length - lucky_length)
-                   : beyond_chance >= kWingWalls && length >= kWingLength && along > 0 && across > 0;
+        const bool strong = k == 0 ? count >= 2 && length - lucky_length >= kMainShare * (all_length - lucky_length)
+                                   : beyond_chance >= kWingWalls && length >= kWingLength && along > 0 && across > 0;
         if (!strong) break;
         if (k == 0) out_.main_frame[b] = static_cast<std::uint32_t>(frames_.size());
         frames_.push_back({b, axis, weight});
@@ -257,11 +220,11 @@ class Reader {
   /// Directions that many walls of the row have, but no building enough of: party walls of lots that lie obliquely to
   /// their street. Every building with such a wall gets the direction as a frame; they are merged from the beginning.
   void find_families() {
-    std::sort(left_.begin(), left_.end(), [](const Member& a, const Member& b) {
-      return a.line != b.line ? a.line < b.line : a.limit < b.limit;
-    });
-    left_.erase(std::unique(left_.begin(), left_.end(), [](const Member& a, const Member& b) { return a.line == b.line; }),
-                left_.end());
+    std::sort(left_.begin(), left_.end(),
+              [](const Member& a, const Member& b) { return a.line != b.line ? a.line < b.line : a.limit < b.limit; });
+    left_.erase(
+        std::unique(left_.begin(), left_.end(), [](const Member& a, const Member& b) { return a.line == b.line; }),
+        left_.end());
     std::vector<Member> next;
     for (std::size_t k = 0; k < kMostFamilies && left_.size() >= kFamilyWalls; ++k) {
       const Point2 axis = mode(left_, tukey);
@@ -279,7 +242,8 @@ class Reader {
         beyond_chance += 1 - chance;
         for (const std::uint32_t b : line.buildings) of_building.emplace_back(b, line.weight);
       }
-      const double surplus = static_cast<double>(left_.size() - next.size()) - lucky - kFamilyDeviations * std::sqrt(spread);
+      const double surplus =
+          static_cast<double>(left_.size() - next.size()) - lucky - kFamilyDeviations * std::sqrt(spread);
       if (beyond_chance < kFamilyWalls || surplus < 0) break;
       std::sort(of_building.begin(), of_building.end());
       const auto first = static_cast<std::uint32_t>(frames_.size());
@@ -294,20 +258,10 @@ class Reader {
     }
   }
 
-  /// Of two frames: by how many standard deviations they differ, squared.
-  double difference(const Frame& a, const Frame& b) const {
-    const double off = turn_off(a.axis, b.axis);
-    return off * off / (out_.noise * out_.noise * (1 / a.weight + 1 / b.weight));
-  }
-
   void merge_frames() {
-    Groups groups(frames_.size());
-    std::vector<Frame> merged = frames_;
-    for (const auto& [begin, end] : families_)
-      for (std::uint32_t f = begin + 1; f < end; ++f) {
-        groups.join(begin, f);
-        merged[begin].weight += merged[f].weight;
-      }
+    std::vector<std::uint32_t> leader(frames_.size());
+    std::iota(leader.begin(), leader.end(), 0u);
+    for (const auto& [begin, end] : families_) std::fill(leader.begin() + begin, leader.begin() + end, begin);
     std::vector<std::vector<std::uint32_t>> of_building(lines_of_.size());
     for (std::uint32_t f = 0; f < frames_.size(); ++f) of_building[frames_[f].building].push_back(f);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -318,42 +272,9 @@ class Reader {
             for (const std::uint32_t g : of_building[l.buildings[j]]) pairs.emplace_back(f, g);
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    struct Step {
-      double difference;
-      std::uint32_t a, b;
-      bool operator<(const Step& o) const {
-        return difference != o.difference ? difference < o.difference : std::pair(a, b) < std::pair(o.a, o.b);
-      }
-    };
-    std::vector<Step> steps;
-    // In every round a group is merged at most once, so that groups grow evenly: one long chain would drift along a bent
-    // row.
-    for (bool again = true; again;) {
-      again = false;
-      steps.clear();
-      for (const auto& [f, g] : pairs) {
-        const std::uint32_t a = groups.find(f), b = groups.find(g);
-        if (a == b) continue;
-        const double d = difference(merged[a], merged[b]);
-        if (d <= kMergeDeviations * kMergeDeviations) steps.push_back({d, std::min(a, b), std::max(a, b)});
-      }
-      std::sort(steps.begin(), steps.end());
-      std::vector<bool> touched(frames_.size(), false);
-      for (const Step& s : steps) {
-        if (touched[s.a] || touched[s.b]) continue;
-        touched[s.a] = touched[s.b] = true;
-        Frame &a = merged[s.a], &b = merged[s.b];
-        Point2 other = b.axis;  // or a quarter turn from it
-        while (dot(a.axis, other) < std::fabs(cross(a.axis, other))) other = {other.y, -other.x};
-        a.axis = first_quarter(unit({a.weight * a.axis.x + b.weight * other.x, a.weight * a.axis.y + b.weight * other.y}));
-        a.weight += b.weight;
-        groups.join(s.a, s.b);
-        again = true;
-      }
-    }
-    group_.resize(frames_.size());
-    for (std::uint32_t f = 0; f < frames_.size(); ++f) group_[f] = groups.find(f);
-    for (const Frame& f : merged) out_.frames.push_back(f.axis);
+    FrameGroups groups = group_frames(frames_, std::move(leader), pairs, out_.noise);
+    group_ = std::move(groups.group);
+    out_.frames = std::move(groups.axes);
     for (std::uint32_t& f : out_.main_frame)
       if (f != kNoFrame) f = group_[f];
   }
@@ -399,11 +320,11 @@ class Reader {
 
   RowDirections out_;
   RowNoise told_;
-  std::vector<std::vector<Member>> lines_of_;  // per building
-  std::vector<Frame> frames_;                  // by building; then of families, by building
-  std::vector<Member> left_;                   // lines of no building's frame
+  std::vector<std::vector<Member>> lines_of_;                      // per building
+  std::vector<Frame> frames_;                                      // by building; then of families, by building
+  std::vector<Member> left_;                                       // lines of no building's frame
   std::vector<std::pair<std::uint32_t, std::uint32_t>> families_;  // frames that are one: first, end
-  std::vector<std::uint32_t> group_;           // per frame: which frame stands for it
+  std::vector<std::uint32_t> group_;                               // per frame: which frame stands for it
   std::vector<std::uint32_t> candidates_;
 };
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "pipeline/repair/arcs.h"
+#include "pipeline/repair/frames.h"
 
 namespace blockrand::repair {
 
@@ -13,14 +14,8 @@ namespace {
 
 using model::Point2;
 
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
 Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
 double norm(Point2 a) { return std::sqrt(dot(a, a)); }
-Point2 unit(Point2 a) {
-  const double n = norm(a);
-  return n > 0 ? Point2{a.x / n, a.y / n} : Point2{1, 0};
-}
 
 class Reader {
  public:
@@ -151,7 +146,7 @@ class Reader {
         tt += w * t * t, tr += w * t * cross(l.along, d);
       }
       const double slope = tt > 0 ? tr / tt : 0;
-      l.along = unit({l.along.x - slope * l.along.y, l.along.y + slope * l.along.x});
+      l.along = turned(l.along, slope);
       l.weight = tt;
     }
     std::sort(l.corners.begin(), l.corners.end(), [&](std::uint32_t p, std::uint32_t q) {
@@ -183,6 +178,32 @@ class Reader {
 }  // namespace
 
 RowLines row_lines(const RowGraph& graph, std::span<const std::uint32_t> rings) { return Reader(graph, rings).read(); }
+
+std::vector<std::vector<std::uint32_t>> connected_rings(const RowGraph& graph, std::size_t buildings) {
+  std::vector<std::uint32_t> parent(buildings), owner(graph.corners.size(), kNoFrame);
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto find = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const RowRing& ring : graph.rings)
+    for (const std::uint32_t c : ring.corners) {
+      if (owner[c] == kNoFrame) owner[c] = ring.building;
+      const std::uint32_t a = find(owner[c]), b = find(ring.building);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  std::vector<std::vector<std::uint32_t>> out;
+  std::vector<std::uint32_t> place(buildings, kNoFrame);
+  for (std::uint32_t r = 0; r < graph.rings.size(); ++r) {
+    const std::uint32_t root = find(graph.rings[r].building);
+    if (place[root] == kNoFrame) {
+      place[root] = static_cast<std::uint32_t>(out.size());
+      out.emplace_back();
+    }
+    out[place[root]].push_back(r);
+  }
+  return out;
+}
 
 double corner_weight(const Corner& corner) {
   return corner.said.empty() ? 0.25 : static_cast<double>(corner.said.size());

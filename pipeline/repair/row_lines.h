@@ -27,12 +27,12 @@ struct WallLine {
   double length = 0;                     ///< m
   double weight = 0;                     ///< m². Noise of s m at a corner turns the line by s / sqrt(weight) radians
   bool free = false;                     ///< a chord of a curve, or not straight: gets no direction
-  std::uint32_t frame = kNoFrame;        ///< index into RowDirections::frames; its direction where the evidence is strong
-  bool across = false;                   ///< a quarter turn from the frame's axis
+  std::uint32_t frame = kNoFrame;  ///< index into RowDirections::frames; its direction where the evidence is strong
+  bool across = false;             ///< a quarter turn from the frame's axis
 };
 
 struct RowLines {
-  std::vector<RingWall> walls;           ///< by ring, along it
+  std::vector<RingWall> walls;  ///< by ring, along it
   std::vector<WallLine> lines;
   std::vector<std::uint32_t> buildings;  ///< those of the rings, ascending: indices into Row::buildings
 };
@@ -40,6 +40,9 @@ struct RowLines {
 /// Walls and lines of the rings `rings` (indices into graph.rings, ascending), none with a frame; chords of curves
 /// (find_arc_runs) are marked free.
 RowLines row_lines(const RowGraph& graph, std::span<const std::uint32_t> rings);
+
+/// Rings of the row in groups that have no corner in common; each ascending.
+std::vector<std::vector<std::uint32_t>> connected_rings(const RowGraph& graph, std::size_t buildings);
 
 /// How much a corner's position is worth: the number of footprints that have it; a quarter where only a neighbour ends.
 double corner_weight(const Corner& corner);

@@ -12,11 +12,11 @@ namespace {
 constexpr double kHalfNormal = 0.7978845608028654;  // 2 / sqrt(2 pi): density at 0 of a normal's absolute value
 constexpr double kHalfCauchy = 0.6366197723675814;  // 2 / pi: the same of a Cauchy distribution's
 constexpr double kDiagonal = 0.7071067811865476;    // sin 45 degrees: no wall is farther off a frame
-constexpr double kUsualShare = 0.75;   // of walls that belong to a frame, before a building is seen,
-constexpr double kUsualWeight = 2;     // which counts like so many walls
-constexpr double kUsualSlight = 0.05;  // of these that are truly a little off, before a row is seen,
-constexpr double kSlightWeight = 10;   // the same
-constexpr double kSlightTurn = 0.0175;  // radians (1 degree): how far that is, standard deviation
+constexpr double kUsualShare = 0.75;                // of walls that belong to a frame, before a building is seen,
+constexpr double kUsualWeight = 2;                  // which counts like so many walls
+constexpr double kUsualSlight = 0.05;               // of these that are truly a little off, before a row is seen,
+constexpr double kSlightWeight = 10;                // the same
+constexpr double kSlightTurn = 0.0175;              // radians (1 degree): how far that is, standard deviation
 constexpr double kObliqueTurn = 0.07;  // radians (4 degrees): half of the walls of no frame are about so far off
 constexpr double kUsualNoise = 0.04;   // m, of mappers; more is rarer:
 constexpr double kUsualSpread = 1.4;   // standard deviation of its logarithm
@@ -37,8 +37,8 @@ double density(double off, double scale) {
 double slight_scale(double weight, double scale) {
   return std::sqrt(scale * scale + kSlightTurn * kSlightTurn * weight);
 }
-/// Of walls of no frame: half of them have any direction, half are nearly in the frame, since who builds obliquely does so
-/// slightly more often than not.
+/// Of walls of no frame: half of them have any direction, half are nearly in the frame, since who builds obliquely does
+/// so slightly more often than not.
 double any_density(double off, double weight) {
   const double root = std::sqrt(weight), z = off / (kObliqueTurn * root);
   return (0.5 / kDiagonal + 0.5 * kHalfCauchy / (kObliqueTurn * (1 + z * z))) / root;
@@ -51,7 +51,8 @@ struct Shares {
 Shares shares(const Fit& fit, const Deviation& d) {
   const double share = fit.share[d.building];
   return {share * (1 - fit.slight) * density(d.off, fit.scale),
-          share * fit.slight * density(d.off, slight_scale(d.weight, fit.scale)), (1 - share) * any_density(d.off, d.weight)};
+          share * fit.slight * density(d.off, slight_scale(d.weight, fit.scale)),
+          (1 - share) * any_density(d.off, d.weight)};
 }
 
 Fit run(std::span<const Deviation> deviations, std::size_t buildings, std::size_t frames, double scale) {
@@ -77,7 +78,8 @@ Fit run(std::span<const Deviation> deviations, std::size_t buildings, std::size_
     for (std::size_t b = 0; b < buildings; ++b) fit.share[b] = belong[b] / walls[b];
   }
   for (const Deviation& d : deviations) fit.likelihood += d.count * base::log(shares(fit, d).sum());
-  // The frames were fitted, too: each is known the better the smaller the noise, which must not make a small one likelier.
+  // The frames were fitted, too: each is known the better the smaller the noise, which must not make a small one
+  // likelier.
   fit.likelihood += static_cast<double>(frames) * base::log(fit.scale);
   // Careless mappers are rare; careful ones are not.
   const double careless = std::max(0.0, base::log(fit.scale / kUsualNoise) / kUsualSpread);
@@ -87,8 +89,7 @@ Fit run(std::span<const Deviation> deviations, std::size_t buildings, std::size_
 
 }  // namespace
 
-RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings, std::size_t frames,
-                   double noise) {
+RowNoise fit_noise(std::span<const Deviation> deviations, std::size_t buildings, std::size_t frames, double noise) {
   if (deviations.empty()) return {kLeastNoise, std::vector<double>(buildings, kUsualShare), kUsualSlight, 0};
   Fit fit = run(deviations, buildings, frames, noise);
   const double raised = fit.scale * (1 + kFewWalls / std::max(fit.telling, 1.0));

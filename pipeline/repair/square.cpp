@@ -7,6 +7,7 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/repair/directions.h"
+#include "pipeline/repair/frames.h"
 #include "pipeline/repair/square_system.h"
 
 namespace blockrand::repair {
@@ -15,17 +16,17 @@ namespace {
 
 using model::Point2;
 
-constexpr double kStrong = 1e6;         // weight of what must hold, against 1 for what one footprint says
-constexpr double kCurveStiffness = 4;   // weight of the differences of a curve's corners
-constexpr double kRightCross = 0.5;     // sine of 30 degrees: two lines that meet flatter do not tell where they meet
-constexpr double kRounding = 0.001;     // m. What rounding to the grid may add to a shift
-constexpr double kShiftDeviations = 4;  // corners that would move by more of their standard deviations contradict a wall
-constexpr double kShiftFloor = 0.005;   // m, added to that
-constexpr double kFixedOff = 0.0002;    // m. Fixed corners that a wall of given direction may miss
-constexpr int kSoftRounds = 8;          // then only the bound of the options counts,
-constexpr int kHardRounds = 8;          // then whole neighbourhoods are given up
+constexpr double kStrong = 1e6;        // weight of what must hold, against 1 for what one footprint says
+constexpr double kCurveStiffness = 4;  // weight of the differences of a curve's corners
+constexpr double kRightCross = 0.5;    // sine of 30 degrees: two lines that meet flatter do not tell where they meet
+constexpr double kRounding = 0.001;    // m. What rounding to the grid may add to a shift
+constexpr double kShiftDeviations =
+    4;                                 // corners that would move by more of their standard deviations contradict a wall
+constexpr double kShiftFloor = 0.005;  // m, added to that
+constexpr double kFixedOff = 0.0002;   // m. Fixed corners that a wall of given direction may miss
+constexpr int kSoftRounds = 8;         // then only the bound of the options counts,
+constexpr int kHardRounds = 8;         // then whole neighbourhoods are given up
 
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
 Point2 plus(Point2 a, Point2 b) { return {a.x + b.x, a.y + b.y}; }
 Point2 times(double f, Point2 a) { return {f * a.x, f * a.y}; }
@@ -145,7 +146,8 @@ class Squaring {
       const Point2 n = normal(l);
       double low = 1e300, high = -1e300;
       for (const std::uint32_t c : l.corners)
-        if (graph_.corners[corners_[c]].fixed) low = std::min(low, dot(n, start_[c])), high = std::max(high, dot(n, start_[c]));
+        if (graph_.corners[corners_[c]].fixed)
+          low = std::min(low, dot(n, start_[c])), high = std::max(high, dot(n, start_[c]));
       if (high - low > kFixedOff) l.frame = kNoFrame, any = true;
     }
     return any;
@@ -213,8 +215,8 @@ class Squaring {
       const auto [first, second] = pair_[c];
       for (std::uint32_t i = at_first_[c]; i < at_first_[c + 1]; ++i) {
         const std::uint32_t l = at_[i].line, u = line_unknown_[l];
-        if (places_[c].size > 0 && ((first != kNoFrame && u == line_unknown_[first]) ||
-                                    (second != kNoFrame && u == line_unknown_[second])))
+        if (places_[c].size > 0 &&
+            ((first != kNoFrame && u == line_unknown_[first]) || (second != kNoFrame && u == line_unknown_[second])))
           continue;
         Equation e;  // the corner lies on this line, too
         e.weight = kStrong;
@@ -226,7 +228,8 @@ class Squaring {
       // In the axes of its lines: what depends on one line alone then ties it to no other.
       Point2 x{1, 0}, y{0, 1};
       if (first != kNoFrame) x = normal(told_.row.lines[first]), y = {-x.y, x.x};
-      if (second != kNoFrame && told_.row.lines[first].frame == told_.row.lines[second].frame) y = normal(told_.row.lines[second]);
+      if (second != kNoFrame && told_.row.lines[first].frame == told_.row.lines[second].frame)
+        y = normal(told_.row.lines[second]);
       for (const Point2 d : {x, y}) {
         Equation e;
         e.weight = weight_[c];
@@ -243,7 +246,8 @@ class Squaring {
     }
   }
 
-  /// Pieces of a wall without a direction stay in line, corners of a curve together. True when there is a wall of pieces.
+  /// Pieces of a wall without a direction stay in line, corners of a curve together. True when there is a wall of
+  /// pieces.
   bool hold_shapes() {
     bool pieces = false;
     for (const RingWall& w : told_.row.walls) {
@@ -294,7 +298,8 @@ class Squaring {
       for (std::uint32_t c = 0; c < corners_.size(); ++c) {
         const Place& p = places_[c];
         // Groups are named by their least unknown, and lines come first.
-        const bool held = p.size > 0 && std::min(solution_.group[p.unknown[0]], solution_.group[p.unknown[1]]) < line_unknowns_;
+        const bool held =
+            p.size > 0 && std::min(solution_.group[p.unknown[0]], solution_.group[p.unknown[1]]) < line_unknowns_;
         if (!held) {
           position_[c] = start_[c];
           continue;
@@ -356,7 +361,8 @@ class Squaring {
     for (const RingWall& w : told_.row.walls) {
       const auto& ring = graph_.rings[w.ring].corners;
       for (std::uint32_t k = 0; k < w.count; ++k) {
-        const std::uint32_t a = local_[ring[(w.first + k) % ring.size()]], b = local_[ring[(w.first + k + 1) % ring.size()]];
+        const std::uint32_t a = local_[ring[(w.first + k) % ring.size()]],
+                            b = local_[ring[(w.first + k + 1) % ring.size()]];
         if (dot(minus(position_[b], position_[a]), minus(start_[b], start_[a])) > 0 || start_[a] == start_[b]) continue;
         any = true;
         give_up(a), give_up(b);
@@ -392,33 +398,6 @@ class Squaring {
   std::vector<Equation> equations_;
   Solution solution_;
 };
-
-/// Rings of the row in groups that have no corner in common; each ascending.
-std::vector<std::vector<std::uint32_t>> connected_rings(const RowGraph& graph, std::size_t buildings) {
-  std::vector<std::uint32_t> parent(buildings), owner(graph.corners.size(), kNoFrame);
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto find = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const RowRing& ring : graph.rings)
-    for (const std::uint32_t c : ring.corners) {
-      if (owner[c] == kNoFrame) owner[c] = ring.building;
-      const std::uint32_t a = find(owner[c]), b = find(ring.building);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-  std::vector<std::vector<std::uint32_t>> out;
-  std::vector<std::uint32_t> place(buildings, kNoFrame);
-  for (std::uint32_t r = 0; r < graph.rings.size(); ++r) {
-    const std::uint32_t root = find(graph.rings[r].building);
-    if (place[root] == kNoFrame) {
-      place[root] = static_cast<std::uint32_t>(out.size());
-      out.emplace_back();
-    }
-    out[place[root]].push_back(r);
-  }
-  return out;
-}
 
 }  // namespace
 

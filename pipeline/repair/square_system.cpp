@@ -104,7 +104,8 @@ Solution solve_least_squares(const std::vector<Equation>& equations, std::uint32
   for (const Equation& q : equations)
     if (q.size > 0) ++equation_first[out.group[q.index[0]] + 1];
   for (std::uint32_t i = 0; i < unknowns; ++i) first[i + 1] += first[i], equation_first[i + 1] += equation_first[i];
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1), equation_next(equation_first.begin(), equation_first.end() - 1);
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1),
+      equation_next(equation_first.begin(), equation_first.end() - 1);
   for (std::uint32_t i = 0; i < unknowns; ++i) {
     place[i] = next[out.group[i]] - first[out.group[i]];
     member[next[out.group[i]]++] = i;
@@ -114,7 +115,8 @@ Solution solve_least_squares(const std::vector<Equation>& equations, std::uint32
 
   for (std::uint32_t g = 0; g < unknowns; ++g) {
     const std::span<const std::uint32_t> members(member.data() + first[g], first[g + 1] - first[g]);
-    const std::span<const std::uint32_t> rows(equation.data() + equation_first[g], equation_first[g + 1] - equation_first[g]);
+    const std::span<const std::uint32_t> rows(equation.data() + equation_first[g],
+                                              equation_first[g + 1] - equation_first[g]);
     if (members.empty() || rows.empty()) continue;
     if (members.size() == 1) {
       double a = 0, b = 0;

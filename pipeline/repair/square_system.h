@@ -19,9 +19,9 @@ struct Equation {
   void add(std::uint32_t unknown, double f);
 };
 
-/// Minimises the sum of the equations. Unknowns that no equation ties together are solved apart: one alone in closed form,
-/// few by a dense, many by a sparse LDL^T factorisation (Eigen, AMD ordering). `group[i]` is the least unknown that i is
-/// tied to, directly or not. An unknown in no equation is 0.
+/// Minimises the sum of the equations. Unknowns that no equation ties together are solved apart: one alone in closed
+/// form, few by a dense, many by a sparse LDL^T factorisation (Eigen, AMD ordering). `group[i]` is the least unknown
+/// that i is tied to, directly or not. An unknown in no equation is 0.
 struct Solution {
   std::vector<double> unknown;
   std::vector<std::uint32_t> group;
