@@ -1,28 +1,17 @@
 #include "pipeline/export/facade_edges.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
 
 #include "pipeline/base/portable_math.h"
+#include "pipeline/geometry/facade_stretch.h"
 
 namespace blockrand::export_ {
 namespace {
 
 using model::FacadeEdge;
 using model::Point2;
-
-/// m. A stretch that ends this near the end of its edge ends there: half a step of the grid.
-constexpr double kHalfStep = 0.5 / model::kGridStepsPerMetre;
-
-const model::Ring* ring_of(const model::Building& building, const FacadeEdge& edge) {
-  if (edge.polygon >= building.outline.size()) return nullptr;
-  const model::Polygon& polygon = building.outline[edge.polygon];
-  if (edge.ring > polygon.holes.size()) return nullptr;
-  const model::Ring& ring = edge.ring == 0 ? polygon.outer : polygon.holes[edge.ring - 1];
-  return edge.edge < ring.size() ? &ring : nullptr;
-}
 
 std::string name_of(std::int64_t node, Point2 at) {
   if (node != 0) return std::to_string(node);
@@ -44,25 +33,17 @@ std::vector<Stretch> stretches(const model::Building& building) {
   int piece = 0;
   for (std::size_t i = 0; i < building.edges.size(); ++i) {
     const FacadeEdge& e = building.edges[i];
-    const model::Ring* const ring = ring_of(building, e);
-    if (!ring) continue;
-    const Point2 a = ring->points[e.edge], b = ring->points[(e.edge + 1) % ring->size()];
-    const double dx = b.x - a.x, dy = b.y - a.y, whole = std::sqrt(dx * dx + dy * dy);
-    const auto at = [&](double metres) {
-      if (metres <= kHalfStep) return a;
-      if (metres >= whole - kHalfStep) return b;
-      return model::snap(Point2{a.x + dx * (metres / whole), a.y + dy * (metres / whole)});
-    };
+    const auto ends = geometry::ends_of(building, e);
+    if (!ends) continue;
     Stretch s;
     s.index = static_cast<std::uint32_t>(i);
-    s.from = at(e.start);
-    s.to = at(e.end);
-    if (!(e.start < e.end) || s.from == s.to) continue;
+    s.from = ends->from;
+    s.to = ends->to;
     const std::tuple key{e.polygon, e.ring, e.edge};
     if (key != edge_at_hand) {
       edge_at_hand = key;
       piece = 0;
-      edge_id = name_of(e.from_node, a) + '_' + name_of(e.to_node, b);
+      edge_id = name_of(e.from_node, ends->edge_from) + '_' + name_of(e.to_node, ends->edge_to);
       if (const int times = ++used[edge_id]; times > 1) edge_id += '~' + std::to_string(times);
     }
     s.id = prefix + edge_id;

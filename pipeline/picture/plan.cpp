@@ -1,0 +1,220 @@
+#include "pipeline/picture/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace blockrand::picture {
+
+using model::Colour;
+using model::Point2;
+
+namespace {
+
+constexpr int kLongestSide = 8192;  // pixels
+constexpr int kDiscCorners = 16;    // of round ends: a quarter of a pixel off at a width of 30 pixels
+
+/// Directions to the corners of a regular polygon, by halving angles: sqrt alone, so that every CPU agrees.
+std::vector<Point2> directions() {
+  std::vector<Point2> out{{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+  while (out.size() < kDiscCorners) {
+    std::vector<Point2> finer;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const Point2 a = out[i], b = out[(i + 1) % out.size()], sum{a.x + b.x, a.y + b.y};
+      const double length = std::sqrt(sum.x * sum.x + sum.y * sum.y);
+      finer.push_back(a);
+      finer.push_back({sum.x / length, sum.y / length});
+    }
+    out = std::move(finer);
+  }
+  return out;
+}
+
+/// How much of each pixel of a rectangle lies inside contours that run counter-clockwise (in a picture with rows
+/// downwards: clockwise). Each edge adds the area to its right, as signed differences along the row; their running sum is
+/// the coverage (the accumulation buffer of font rasterisers).
+class Coverage {
+ public:
+  Coverage(int left, int top, int right, int bottom)
+      : left_(left), top_(top), width_(right - left), height_(bottom - top),
+        change_(static_cast<std::size_t>(width_ + 2) * static_cast<std::size_t>(height_), 0.0) {}
+
+  void edge(Point2 a, Point2 b) {
+    a = {a.x - left_, a.y - top_};
+    b = {b.x - left_, b.y - top_};
+    if (a.y == b.y) return;
+    const double sign = a.y < b.y ? 1 : -1;
+    if (a.y > b.y) std::swap(a, b);
+    if (b.y <= 0 || a.y >= height_) return;
+    const double slope = (b.x - a.x) / (b.y - a.y);
+    const int first = std::max(0, static_cast<int>(std::floor(a.y)));
+    const int last = std::min(height_ - 1, static_cast<int>(std::ceil(b.y)) - 1);
+    for (int row = first; row <= last; ++row) {
+      const double y0 = std::max(a.y, static_cast<double>(row)), y1 = std::min(b.y, static_cast<double>(row + 1));
+      piece(row, sign, y1 - y0, a.x + (y0 - a.y) * slope, a.x + (y1 - a.y) * slope);
+    }
+  }
+
+  template <class F>
+  void for_each(const F& paint) const {
+    for (int row = 0; row < height_; ++row) {
+      double sum = 0;
+      const double* change = &change_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_ + 2)];
+      for (int column = 0; column < width_; ++column) {
+        sum += change[column];
+        const double covered = std::min(1.0, std::fabs(sum));
+        if (covered > 1e-6) paint(left_ + column, top_ + row, covered);
+      }
+    }
+  }
+
+ private:
+  /// A piece of an edge within one row, `dy` high, from x0 to x1.
+  void piece(int row, double sign, double dy, double x0, double x1) {
+    if (x0 > x1) std::swap(x0, x1);
+    // What lies outside counts as if at the border: everything to its right is covered, or nothing.
+    const double inside0 = std::clamp(x0, 0.0, static_cast<double>(width_));
+    const double inside1 = std::clamp(x1, 0.0, static_cast<double>(width_));
+    const double span = x1 - x0;
+    double* change = &change_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_ + 2)];
+    const auto vertical = [&](double x, double h) {  // at x, h high: the rest of its pixel, then all to the right
+      const int column = std::min(static_cast<int>(x), width_);
+      const double here = sign * h * (column + 1 - x);
+      change[column] += here;
+      change[column + 1] += sign * h - here;
+    };
+    if (span <= 0) return vertical(inside0, dy);
+    if (inside0 > x0) vertical(0, dy * (std::min(inside0, x1) - x0) / span);
+    if (x1 > inside1) vertical(width_, dy * (x1 - std::max(inside1, x0)) / span);
+    // Pixel by pixel; within one the mean of both ends counts.
+    for (double x = inside0; x < inside1;) {
+      const double next = std::min(inside1, std::floor(x) + 1);
+      vertical((x + next) / 2, dy * (next - x) / span);
+      x = next;
+    }
+  }
+
+  int left_, top_, width_, height_;
+  std::vector<double> change_;
+};
+
+std::uint8_t mixed(std::uint8_t below, std::uint8_t above, double share) {
+  return static_cast<std::uint8_t>(below + (above - below) * share + 0.5);
+}
+
+}  // namespace
+
+Plan::Plan(const PlanBox& box, double pixels_per_metre, Colour paper) : box_(box), scale_(pixels_per_metre) {
+  const double width = std::ceil(box.width() * scale_ - 1e-6), height = std::ceil(box.height() * scale_ - 1e-6);
+  if (!(width >= 1) || !(height >= 1) || !(width <= kLongestSide) || !(height <= kLongestSide))
+    throw std::invalid_argument("a plan of no size, or of more than 8192 pixels");
+  image_.width = static_cast<int>(width);
+  image_.height = static_cast<int>(height);
+  image_.rgb.resize(static_cast<std::size_t>(image_.width) * static_cast<std::size_t>(image_.height) * 3);
+  for (std::size_t i = 0; i < image_.rgb.size(); i += 3) {
+    image_.rgb[i] = paper.r;
+    image_.rgb[i + 1] = paper.g;
+    image_.rgb[i + 2] = paper.b;
+  }
+}
+
+void Plan::cover(const std::vector<std::vector<Point2>>& contours, Colour colour, double opacity) {
+  double min_x = 1e9, min_y = 1e9, max_x = -1e9, max_y = -1e9;
+  std::vector<std::vector<Point2>> pixels(contours.size());
+  for (std::size_t c = 0; c < contours.size(); ++c)
+    for (const Point2 p : contours[c]) {
+      const Point2 q{(p.x - box_.min_x) * scale_, (box_.max_y - p.y) * scale_};
+      min_x = std::min(min_x, q.x), max_x = std::max(max_x, q.x);
+      min_y = std::min(min_y, q.y), max_y = std::max(max_y, q.y);
+      pixels[c].push_back(q);
+    }
+  const auto whole = [](double v, int most) { return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(most))); };
+  const int left = whole(std::floor(min_x), image_.width), right = whole(std::ceil(max_x), image_.width);
+  const int top = whole(std::floor(min_y), image_.height), bottom = whole(std::ceil(max_y), image_.height);
+  if (left >= right || top >= bottom) return;
+  Coverage coverage(left, top, right, bottom);
+  for (const auto& contour : pixels)
+    for (std::size_t i = 0; i < contour.size(); ++i) coverage.edge(contour[i], contour[(i + 1) % contour.size()]);
+  coverage.for_each([&](int x, int y, double covered) {
+    std::uint8_t* const rgb =
+        &image_.rgb[(static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x)) * 3];
+    const double share = covered * opacity;
+    rgb[0] = mixed(rgb[0], colour.r, share);
+    rgb[1] = mixed(rgb[1], colour.g, share);
+    rgb[2] = mixed(rgb[2], colour.b, share);
+  });
+}
+
+void Plan::fill(const model::Polygon& polygon, Colour colour, double opacity) {
+  std::vector<std::vector<Point2>> contours{polygon.outer.points};
+  for (const model::Ring& hole : polygon.holes) contours.push_back(hole.points);
+  cover(contours, colour, std::clamp(opacity, 0.0, 1.0));
+}
+
+void Plan::stroke(std::span<const Point2> points, double width, Colour colour, bool closed) {
+  static const std::vector<Point2> kDirections = directions();
+  const double half = width / 2;
+  std::vector<std::vector<Point2>> contours;
+  for (const Point2 p : points) {
+    std::vector<Point2>& disc = contours.emplace_back();
+    for (const Point2 d : kDirections) disc.push_back({p.x + d.x * half, p.y + d.y * half});
+  }
+  const std::size_t pieces = points.size() - (closed ? 0 : 1);
+  for (std::size_t i = 0; points.size() > 1 && i < pieces; ++i) {
+    const Point2 a = points[i], b = points[(i + 1) % points.size()];
+    const double dx = b.x - a.x, dy = b.y - a.y, length = std::sqrt(dx * dx + dy * dy);
+    if (!(length > 0)) continue;
+    const Point2 n{-dy / length * half, dx / length * half};  // to the left
+    contours.push_back({{a.x - n.x, a.y - n.y}, {b.x - n.x, b.y - n.y}, {b.x + n.x, b.y + n.y}, {a.x + n.x, a.y + n.y}});
+  }
+  cover(contours, colour, 1);
+}
+
+/// Digits as on a pocket calculator: seven bars, from the top clockwise, then the middle one.
+void Plan::text(const char* letters, Point2 at, double size, Colour colour) {
+  constexpr std::uint8_t kBars[] = {0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f};
+  const double w = size / 2, line = size / 7;
+  for (const char* c = letters; *c != '\0'; ++c) {
+    const auto draw = [&](std::initializer_list<Point2> points) {
+      std::vector<Point2> placed;
+      for (const Point2 p : points) placed.push_back({at.x + p.x, at.y + p.y});
+      stroke(placed, line, colour);
+    };
+    if (*c >= '0' && *c <= '9') {
+      const std::uint8_t bars = kBars[*c - '0'];
+      if (bars & 1) draw({{0, size}, {w, size}});
+      if (bars & 2) draw({{w, size}, {w, size / 2}});
+      if (bars & 4) draw({{w, size / 2}, {w, 0}});
+      if (bars & 8) draw({{w, 0}, {0, 0}});
+      if (bars & 16) draw({{0, 0}, {0, size / 2}});
+      if (bars & 32) draw({{0, size / 2}, {0, size}});
+      if (bars & 64) draw({{0, size / 2}, {w, size / 2}});
+    } else if (*c == 'm') {
+      const double top = size * 0.6;
+      draw({{0, 0}, {0, top}, {w, top}, {w, 0}});
+      draw({{w, top}, {2 * w, top}, {2 * w, 0}});
+    }
+    at.x += size * 0.85;
+  }
+}
+
+double Plan::draw_scale_bar() {
+  // The longest of 1, 2, 5, 10, ... m that takes no more than a quarter of the width.
+  double length = 1;
+  for (double step = 1; step <= 1e6; step *= 10)
+    for (const double n : {1.0, 2.0, 5.0})
+      if (n * step <= box_.width() / 4) length = n * step;
+  const double pixel = 1 / scale_, x = box_.min_x + 14 * pixel, y = box_.min_y + 14 * pixel;
+  const Colour ink{30, 30, 30}, halo{255, 255, 255};
+  const std::string name = std::to_string(static_cast<long>(length)) + " m";
+  const Point2 bar[] = {{x, y + 7 * pixel}, {x, y}, {x + length, y}, {x + length, y + 7 * pixel}};
+  stroke(bar, 6 * pixel, halo);
+  stroke(bar, 2.4 * pixel, ink);
+  text(name.c_str(), {x + 6 * pixel, y + 9 * pixel}, 12 * pixel, ink);
+  return length;
+}
+
+double scale_for(const PlanBox& box, int pixels) { return pixels / std::max(box.width(), box.height()); }
+
+}  // namespace blockrand::picture

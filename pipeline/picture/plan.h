@@ -1,0 +1,59 @@
+// Plans: filled polygons and lines seen from above, north up, without steps at their borders.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pipeline/model/colour.h"
+#include "pipeline/model/polygon.h"
+#include "pipeline/picture/image.h"
+
+namespace blockrand::picture {
+
+/// m in the build CRS.
+struct PlanBox {
+  double min_x = 0, min_y = 0, max_x = 0, max_y = 0;
+  double width() const { return max_x - min_x; }
+  double height() const { return max_y - min_y; }
+};
+
+/// A sheet of paper that things are drawn on, one over the other.
+///
+/// A pixel's colour is mixed by how much of it is covered, exactly but for lines that overlap themselves. The same calls
+/// give the same bytes on every x86-64. Memory: 3 bytes a pixel, and 8 bytes for each pixel of the box of what is drawn,
+/// while it is drawn.
+class Plan {
+ public:
+  /// \param pixels_per_metre  the picture is as large as the box needs
+  /// \throws std::invalid_argument  an empty box, no scale, or more than 8192 pixels along a side
+  Plan(const PlanBox& box, double pixels_per_metre, model::Colour paper = {255, 255, 255});
+
+  /// \param opacity  [0, 1]
+  void fill(const model::Polygon& polygon, model::Colour colour, double opacity = 1);
+  /// A line with round ends and corners.
+  /// \param width   m
+  /// \param closed  also from the last point to the first
+  void stroke(std::span<const model::Point2> points, double width, model::Colour colour, bool closed = false);
+
+  /// A bar of a round length, with that length in metres, in the lower left corner.
+  /// \returns that length, m
+  double draw_scale_bar();
+
+  double metres_per_pixel() const { return 1 / scale_; }
+  const PlanBox& box() const { return box_; }
+  const Image& image() const { return image_; }
+
+ private:
+  void cover(const std::vector<std::vector<model::Point2>>& contours, model::Colour colour, double opacity);
+  void text(const char* letters, model::Point2 at, double size, model::Colour colour);
+
+  PlanBox box_;
+  double scale_;
+  Image image_;
+};
+
+/// The largest scale, pixels per metre, at which no side of the picture is longer than `pixels`.
+double scale_for(const PlanBox& box, int pixels);
+
+}  // namespace blockrand::picture
