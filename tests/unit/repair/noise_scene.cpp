@@ -226,16 +226,18 @@ Facing facing(const Edge& a, const Edge& b) {
   return {std::max(0.0, t0), std::min(l, t1), (b.a.x - a.a.x) * y - (b.a.y - a.a.y) * x};
 }
 
-Point2 nearest(const std::vector<Polygon>& polygons, Point2 p) {
+/// Where the vertex with this node is now; when it is gone, the nearest one to `p`.
+Point2 place_of(const std::vector<Polygon>& polygons, std::int64_t node, Point2 p) {
   Point2 best = p;
   double least = 1e300;
   for (const Polygon& q : polygons) {
     const auto look = [&](const Ring& ring) {
-      for (const Point2 c : ring.points)
-        if (distance(c, p) < least) {
-          least = distance(c, p);
-          best = c;
-        }
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const double d = ring.nodes[i] == node ? -1 : distance(ring.points[i], p);
+        if (d >= least) continue;
+        least = d;
+        best = ring.points[i];
+      }
     };
     look(q.outer);
     for (const Ring& hole : q.holes) look(hole);
@@ -291,6 +293,7 @@ Footprints true_houses(std::uint32_t seed, int blocks) {
 Footprints with_noise(const Footprints& truth, double radius, std::uint32_t seed) {
   Random random(seed);
   Footprints out;
+  std::int64_t node = 0;
   for (const std::vector<Polygon>& building : truth) {
     std::vector<Polygon> polygons;
     for (const Polygon& p : building) {
@@ -310,6 +313,9 @@ Footprints with_noise(const Footprints& truth, double radius, std::uint32_t seed
         polygons.push_back(geometry::strictly_simple(moved) ? std::move(moved) : p);
         break;
       }
+      for (std::int64_t& n : polygons.back().outer.nodes) n = ++node;
+      for (Ring& hole : polygons.back().holes)
+        for (std::int64_t& n : hole.nodes) n = ++node;
     }
     out.push_back(std::move(polygons));
   }
@@ -430,14 +436,16 @@ Score score(const Footprints& truth, const Footprints& noisy, const Row& repaire
     for (std::size_t k = 0; k < truth[i].size(); ++k) {
       const auto look = [&](const Ring& t, const Ring& n) {
         for (std::size_t v = 0; v < t.size(); ++v) {
-          const Point2 at = nearest(b.polygons, t.points[v]);
+          const auto now_at = [&](std::size_t k) { return place_of(b.polygons, n.nodes[k], t.points[k]); };
+          const Point2 at = now_at(v);
           before += distance(t.points[v], n.points[v]);
           after += distance(t.points[v], at);
           ++count;
-          const Point2 u = t.points[(v + t.size() - 1) % t.size()], w = t.points[(v + 1) % t.size()];
+          const std::size_t iu = (v + t.size() - 1) % t.size(), iw = (v + 1) % t.size();
+          const Point2 u = t.points[iu], w = t.points[iw];
           const double angle = angle_at(u, t.points[v], w);
           const double legs = std::min(distance(u, t.points[v]), distance(w, t.points[v]));
-          const double now = angle_at(nearest(b.polygons, u), at, nearest(b.polygons, w));
+          const double now = angle_at(now_at(iu), at, now_at(iw));
           if (std::fabs(angle - 90) < 0.2 && legs >= 1) {
             ++s.right;
             if (std::fabs(now - 90) <= 0.1) ++s.right_restored;

@@ -20,7 +20,7 @@ using Footprints = std::vector<std::vector<model::Polygon>>;
 Footprints true_houses(std::uint32_t seed, int blocks);
 
 /// Every vertex of every footprint moved uniformly in a disc of `radius` metres, independently for each footprint, and
-/// rounded to the grid. A footprint that is not simple afterwards is drawn again.
+/// rounded to the grid. A footprint that is not simple afterwards is drawn again. Every vertex gets a node of its own.
 Footprints with_noise(const Footprints& truth, double radius, std::uint32_t seed);
 
 Row row_of(const Footprints& footprints);
