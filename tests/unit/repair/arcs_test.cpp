@@ -51,7 +51,8 @@ TEST(FindArcs, KeepsARoundedStreetCorner) {
 }
 
 TEST(FindArcs, KnowsARoundBayAndANiche) {
-  const auto bay = std::vector<Point2>{{0, 0}, {6, 0}} + curve({8, 0}, 1.5, -180, 0, 8) + std::vector<Point2>{{16, 0}, {16, 9}, {0, 9}};
+  const auto bay = std::vector<Point2>{{0, 0}, {6, 0}} + curve({8, 0}, 1.5, -180, 0, 8) +
+                   std::vector<Point2>{{16, 0}, {16, 9}, {0, 9}};
   const auto runs = find_arc_runs(bay);
   ASSERT_EQ(runs.size(), 1u);
   EXPECT_EQ(runs[0].first, 2u);
@@ -59,7 +60,8 @@ TEST(FindArcs, KnowsARoundBayAndANiche) {
   EXPECT_NEAR(runs[0].radius, 1.5, 0.01);
   EXPECT_TRUE(runs[0].left);
 
-  const auto niche = std::vector<Point2>{{0, 0}, {6, 0}} + curve({8, 0}, 1.5, 180, 0, 8) + std::vector<Point2>{{16, 0}, {16, 9}, {0, 9}};
+  const auto niche = std::vector<Point2>{{0, 0}, {6, 0}} + curve({8, 0}, 1.5, 180, 0, 8) +
+                     std::vector<Point2>{{16, 0}, {16, 9}, {0, 9}};
   const auto inward = find_arc_runs(niche);
   ASSERT_EQ(inward.size(), 1u);
   EXPECT_EQ(inward[0].count, 8u);
@@ -91,7 +93,8 @@ TEST(FindArcs, LeavesPolygonsWithFewCornersAlone) {
   EXPECT_EQ(find_arc_runs(circle({0, 0}, 6, 10)).size(), 1u);
   // A chamfer, a polygonal bay of 45 degrees, a bent facade of three walls.
   EXPECT_TRUE(find_arc_runs(std::vector<Point2>{{0, 0}, {17, 0}, {20, 3}, {20, 12}, {0, 12}}).empty());
-  EXPECT_TRUE(find_arc_runs(std::vector<Point2>{{0, 0}, {6, 0}, {7, -1}, {9, -1}, {10, 0}, {16, 0}, {16, 9}, {0, 9}}).empty());
+  EXPECT_TRUE(
+      find_arc_runs(std::vector<Point2>{{0, 0}, {6, 0}, {7, -1}, {9, -1}, {10, 0}, {16, 0}, {16, 9}, {0, 9}}).empty());
   EXPECT_TRUE(find_arc_runs(std::vector<Point2>{{0, 0}, {6, 0}, {12, 1}, {18, 3}, {16, 12}, {0, 12}}).empty());
 }
 
@@ -100,14 +103,17 @@ TEST(FindArcs, AnEllipseOrAWallWithBendsIsNoCircle) {
   for (Point2& p : ellipse) p.y *= 0.6;
   for (const ArcRun& run : find_arc_runs(ellipse)) EXPECT_LT(run.count, 14u);  // stretches of it are
   // Chords that are wildly different: bends of a long street front.
-  EXPECT_TRUE(find_arc_runs(std::vector<Point2>{{0, 0}, {2, 0}, {22, 2}, {25, 2.8}, {55, 13}, {58, 14.5}, {50, 30}, {0, 30}}).empty());
+  EXPECT_TRUE(
+      find_arc_runs(std::vector<Point2>{{0, 0}, {2, 0}, {22, 2}, {25, 2.8}, {55, 13}, {58, 14.5}, {50, 30}, {0, 30}})
+          .empty());
 }
 
 TEST(FindArcs, BothCurvesOfAnSAreFound) {
   const auto ring = std::vector<Point2>{{-20, 0}} + curve({0, 10}, 10, -90, 0, 8) + curve({20, 10}, 10, 180, 90, 8) +
                     std::vector<Point2>{{40, 20}, {40, 60}, {-20, 60}};
   auto points = ring;
-  points.erase(std::unique(points.begin(), points.end(), [](Point2 a, Point2 b) { return std::hypot(a.x - b.x, a.y - b.y) < 1e-9; }),
+  points.erase(std::unique(points.begin(), points.end(),
+                           [](Point2 a, Point2 b) { return std::hypot(a.x - b.x, a.y - b.y) < 1e-9; }),
                points.end());
   const auto runs = find_arc_runs(points);
   ASSERT_EQ(runs.size(), 2u);
@@ -127,7 +133,8 @@ TEST(FindArcs, DoesNotDependOnWhereTheRingStarts) {
     ASSERT_EQ(runs.size(), 2u) << k;
     for (const ArcRun& run : runs) {
       const auto same = std::find_if(first.begin(), first.end(), [&](const ArcRun& f) {
-        return f.first == (run.first + k) % ring.size() && f.count == run.count && std::fabs(f.radius - run.radius) < 1e-9;
+        return f.first == (run.first + k) % ring.size() && f.count == run.count &&
+               std::fabs(f.radius - run.radius) < 1e-9;
       });
       EXPECT_NE(same, first.end()) << k;
     }
