@@ -33,6 +33,7 @@
 #include "pipeline/georef/tiles.h"
 #include "pipeline/region/area.h"
 #include "pipeline/region/context_extract.h"
+#include "pipeline/region/context_layers.h"
 #include "pipeline/region/documents.h"
 #include "pipeline/region/outcome.h"
 #include "pipeline/region/pictures.h"
@@ -280,7 +281,9 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const repair::KeptNodes kept(extract);
   const RepairedExtract repaired = repair_extract(extract, shards, projection, kept, options.repair, workers, progress);
   record.repair = repaired.totals;
+  malloc_trim(0);
   const ContextExtract context = context_extract(extract, repaired.footprints, facts.coverage, projection, workers, progress);
+  malloc_trim(0);
   const SurroundingsFinder surroundings(extract, repaired.footprints, context);
   const BuildingNumbers numbers(repaired.footprints);
   const context::TaggedNeighbours neighbours(tagged_buildings(extract, defaults, projection), options.generate.neighbour_reach);
@@ -444,6 +447,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   record.files.push_back(folder.write("report.json", report_json(extract, rows)));
   if (geopackage) {
     add_reported(*geopackage, extract, rows, projection);
+    write_context_layers(*geopackage, context, repaired, shards, tile ? std::optional(tile->id) : std::nullopt);
     geopackage->close();
     record.files.push_back(folder.adopt("buildings.gpkg"));
   }

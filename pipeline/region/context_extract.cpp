@@ -143,6 +143,14 @@ void find_loose_courtyards(const Extract& extract, const FootprintStore& store, 
   base::ordered_parallel(groups.size(), workers, in_flight, work, consume);
 }
 
+/// Of the largest polygon.
+Point2 place_of(const std::vector<model::Polygon>& polygons) {
+  const auto largest = std::max_element(polygons.begin(), polygons.end(), [](const auto& a, const auto& b) {
+    return geometry::area(a) < geometry::area(b);
+  });
+  return context::cell_place(*largest);
+}
+
 context::Cells district_cells(const Extract& extract, const FootprintStore& store) {
   std::vector<context::CellBuilding> buildings;
   const base::StringId start_date = extract.strings.find("start_date");
@@ -150,15 +158,12 @@ context::Cells district_cells(const Extract& extract, const FootprintStore& stor
     const StoredFootprint& f = store[b];
     if (f.box.empty()) continue;
     context::CellBuilding c;
-    double largest = 0;
-    for (const model::Polygon& polygon : store.polygons(b)) {
-      const double area = geometry::area(polygon);
-      c.area += area;
+    const std::vector<model::Polygon> polygons = store.polygons(b);
+    for (const model::Polygon& polygon : polygons) {
+      c.area += geometry::area(polygon);
       c.wall_length += geometry::perimeter(polygon);
-      if (area <= largest) continue;
-      largest = area;
-      c.place = context::cell_place(polygon);
     }
+    c.place = place_of(polygons);
     c.party_wall_length = f.party_wall_length;
     c.storeys = tagged_storeys(extract, f);
     c.year = context::year_of(extract.tag(extract.buildings[f.lead].tags, start_date));
@@ -168,6 +173,10 @@ context::Cells district_cells(const Extract& extract, const FootprintStore& stor
 }
 
 }  // namespace
+
+context::CellIndex cell_of_building(const FootprintStore& footprints, std::uint32_t building) {
+  return context::cell_of(place_of(footprints.polygons(building)));
+}
 
 ContextExtract context_extract(const Extract& extract, const FootprintStore& footprints, std::span<const Point2> coverage,
                                const georef::Projection& projection, int workers, base::Progress& progress) {
