@@ -122,9 +122,13 @@ EdgeSample look_out(const OutlineEdge& edge, double at, const BuildingView& view
   const Sight& straight = out.fan[kFanRays / 2];
   if (straight.from_inside) out.inside = straight.footprint;
   for (const std::uint32_t s : view.squares)
-    if (out.square == kNothing && index.contains(index.squares()[s], front)) out.square = s;
+    if (out.square == kNothing && index.squares()[s].box.meets({front, front}) &&
+        index.contains(index.squares()[s], front))
+      out.square = s;
   for (const std::uint32_t y : view.yards)
-    if (out.yard == kNothing && geometry::contains(index.courtyard(index.yards()[y]).polygon, front)) out.yard = y;
+    if (out.yard == kNothing && index.yards()[y].box.meets({front, front}) &&
+        geometry::contains(index.courtyard(index.yards()[y]).polygon, front))
+      out.yard = y;
 
   if (out.inside != kNothing)
     out.kind = EdgeKind::party_wall;

@@ -70,22 +70,23 @@ Scene::Scene(std::span<const Footprint> footprints, std::span<const NetworkLine>
   rows_ = cell_of(high.y + margin, kCell) - first_row_ + 1;
 
   const auto for_each_item = [&](auto&& visit) {
-    std::uint32_t item = 0;
-    for (const Wall& w : walls_) {
+    for (std::uint32_t i = 0; i < walls_.size(); ++i) {
+      const Wall& w = walls_[i];
+      const Item item{w.a, w.b, i, w.footprint, sort_[w.footprint]};
       for_each_cell(w.a, w.b, [&](std::size_t cell) { visit(cell, item); });
-      ++item;
     }
-    for (const StreetPiece& s : streets_) {
+    for (std::uint32_t i = 0; i < streets_.size(); ++i) {
+      const StreetPiece& s = streets_[i];
+      const Item item{s.a, s.b, i, s.line, Sort::street};
       for_each_cell(s.a, s.b, [&](std::size_t cell) { visit(cell, item); });
-      ++item;
     }
   };
   starts_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
-  for_each_item([&](std::size_t cell, std::uint32_t) { ++starts_[cell + 1]; });
+  for_each_item([&](std::size_t cell, const Item&) { ++starts_[cell + 1]; });
   for (std::size_t c = 1; c < starts_.size(); ++c) starts_[c] += starts_[c - 1];
   items_.resize(starts_.back());
   std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
-  for_each_item([&](std::size_t cell, std::uint32_t item) { items_[next[cell]++] = item; });
+  for_each_item([&](std::size_t cell, const Item& item) { items_[next[cell]++] = item; });
 }
 
 void Scene::add_streets(std::span<const NetworkLine> lines) {
@@ -122,40 +123,37 @@ void Scene::add_streets(std::span<const NetworkLine> lines) {
   }
 }
 
-void Scene::test(std::uint32_t item, Point2 from, Point2 d, double reach, Obstacles obstacles, Sight& sight) const {
-  const bool is_wall = item < walls_.size();
-  if (is_wall) {
-    const Sort sort = sort_[walls_[item].footprint];
-    if (sort == Sort::canopy || (sort == Sort::outbuilding && obstacles == Obstacles::buildings)) return;
-  }
-  const std::size_t piece = is_wall ? item : item - walls_.size();
-  const Point2 a = is_wall ? walls_[piece].a : streets_[piece].a, b = is_wall ? walls_[piece].b : streets_[piece].b;
-  const double ax = a.x - from.x, ay = a.y - from.y, bx = b.x - from.x, by = b.y - from.y;
+void Scene::test(const Item& item, Point2 from, Point2 d, double reach, Obstacles obstacles, Sight& sight,
+                 std::uint32_t& street_line) {
+  const double ax = item.a.x - from.x, ay = item.a.y - from.y, bx = item.b.x - from.x, by = item.b.y - from.y;
   const double sa = d.x * ay - d.y * ax, sb = d.x * by - d.y * bx;  // sides of the ends with respect to the ray
   if ((sa > 0) == (sb > 0)) return;
+  if (item.sort == Sort::canopy || (item.sort == Sort::outbuilding && obstacles == Obstacles::buildings)) return;
   const double u = sa / (sa - sb), t = d.x * (ax + u * (bx - ax)) + d.y * (ay + u * (by - ay));
   if (t < 0 || t > reach) return;
-  if (is_wall) {
-    const bool from_inside = sa < 0;  // a wall's inside is on its left: from there it runs from right to left
-    if (t < kOnTheWall && !from_inside) return;
-    // Of walls at one place the one met from inside, then that of the first footprint: no order of pieces shows.
-    const bool nearer = t < sight.wall || (t == sight.wall && from_inside > sight.from_inside) ||
-                        (t == sight.wall && from_inside == sight.from_inside && walls_[piece].footprint < sight.footprint);
-    if (!nearer) return;
-    sight.wall = t;
-    sight.footprint = walls_[piece].footprint;
-    sight.from_inside = from_inside;
-  } else {
-    const auto key = [&](std::size_t s) { return std::pair(streets_[s].line, static_cast<std::uint32_t>(s)); };
-    if (t < sight.street || (t == sight.street && key(piece) < key(sight.street_piece))) {
+  if (item.sort == Sort::street) {
+    const auto key = std::pair(item.owner, item.index);
+    if (t < sight.street || (t == sight.street && key < std::pair(street_line, sight.street_piece))) {
       sight.street = t;
-      sight.street_piece = static_cast<std::uint32_t>(piece);
+      sight.street_piece = item.index;
+      street_line = item.owner;
     }
+    return;
   }
+  const bool from_inside = sa < 0;  // a wall's inside is on its left: from there it runs from right to left
+  if (t < kOnTheWall && !from_inside) return;
+  // Of walls at one place the one met from inside, then that of the first footprint: no order of pieces shows.
+  const bool nearer = t < sight.wall || (t == sight.wall && from_inside > sight.from_inside) ||
+                      (t == sight.wall && from_inside == sight.from_inside && item.owner < sight.footprint);
+  if (!nearer) return;
+  sight.wall = t;
+  sight.footprint = item.owner;
+  sight.from_inside = from_inside;
 }
 
 Sight Scene::look(Point2 from, Point2 d, double reach, Obstacles obstacles) const {
   Sight sight;
+  std::uint32_t street_line = kNothing;
   if (items_.empty()) return sight;
   // Cells along the ray (Amanatides and Woo 1987).
   std::int64_t c = cell_of(from.x, kCell) - first_column_, r = cell_of(from.y, kCell) - first_row_;
@@ -169,7 +167,8 @@ Sight Scene::look(Point2 from, Point2 d, double reach, Obstacles obstacles) cons
   while (entered <= reach + kSlack && entered <= sight.wall + kSlack) {
     if (c >= 0 && c < columns_ && r >= 0 && r < rows_) {
       const auto cell = static_cast<std::size_t>(r * columns_ + c);
-      for (std::uint32_t i = starts_[cell]; i < starts_[cell + 1]; ++i) test(items_[i], from, d, reach, obstacles, sight);
+      for (std::uint32_t i = starts_[cell]; i < starts_[cell + 1]; ++i)
+        test(items_[i], from, d, reach, obstacles, sight, street_line);
     }
     if (to_c < to_r) {
       entered = to_c;
@@ -196,7 +195,8 @@ void Scene::walls_near(Point2 minimum, Point2 maximum, std::vector<std::uint32_t
   for (std::int64_t r = low; r <= high; ++r)
     for (std::int64_t c = first; c <= last; ++c) {
       const auto cell = static_cast<std::size_t>(r * columns_ + c);
-      for (std::uint32_t i = starts_[cell]; i < starts_[cell + 1] && items_[i] < walls_.size(); ++i) out.push_back(items_[i]);
+      for (std::uint32_t i = starts_[cell]; i < starts_[cell + 1] && items_[i].sort != Sort::street; ++i)
+        out.push_back(items_[i].index);
     }
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());

@@ -82,16 +82,23 @@ class Scene {
   std::int64_t row(double y) const;
   template <class Visit>
   void for_each_cell(model::Point2 a, model::Point2 b, Visit&& visit) const;
-  void test(std::uint32_t item, model::Point2 from, model::Point2 direction, double reach, Obstacles obstacles,
-            Sight& sight) const;
+  enum class Sort : std::uint8_t { building, outbuilding, canopy, street };
+  /// A wall or piece of street in a cell: what a ray needs, side by side.
+  struct Item {
+    model::Point2 a, b;
+    std::uint32_t index = 0;  ///< into walls_ or streets_
+    std::uint32_t owner = 0;  ///< footprint or line
+    Sort sort = Sort::building;
+  };
+  static void test(const Item& item, model::Point2 from, model::Point2 direction, double reach, Obstacles obstacles,
+                   Sight& sight, std::uint32_t& street_line);
 
   std::vector<Wall> walls_;
   std::vector<StreetPiece> streets_;
-  enum class Sort : std::uint8_t { building, outbuilding, canopy };
   std::vector<Sort> sort_;  ///< by footprint
   std::int64_t first_column_ = 0, first_row_ = 0, columns_ = 0, rows_ = 0;
   std::vector<std::uint32_t> starts_;  ///< per cell, row by row
-  std::vector<std::uint32_t> items_;   ///< walls, then streets (index + number of walls), ascending within a cell
+  std::vector<Item> items_;            ///< walls, then streets, ascending within a cell
 };
 
 /// Rays of a fan over the half plane before a wall: 13 at steps of 13.5 degrees, from 81 degrees right to 81 left.
