@@ -212,7 +212,8 @@ std::vector<Shard> make_shards(const Extract& extract, model::Report& report, in
     for (std::uint32_t p = 0; p < extract.buildings.size(); ++p) {
       const MappedBuilding& part = extract.buildings[p];
       if (part.kind != ObjectKind::building_part || !buildable(part)) continue;
-      if (const auto named = outline_of_part.find(p); named != outline_of_part.end()) {
+      const auto named = outline_of_part.find(p);
+      if (named != outline_of_part.end() && held_share(extract, extract.buildings[named->second], part) >= 0.5) {
         parts_of[named->second].push_back(p);
         continue;
       }
@@ -227,7 +228,16 @@ std::vector<Shard> make_shards(const Extract& extract, model::Report& report, in
           best_area = area;
         }
       });
-      if (best != model::kNoIndex) {
+      if (named != outline_of_part.end()) {
+        // Two outlines side by side whose relations were mixed up would both be built twice: once by the part of the
+        // other, once as what their own parts leave free.
+        const bool elsewhere = best != model::kNoIndex && held_share(extract, extract.buildings[best], part) == 1;
+        parts_of[elsewhere ? best : named->second].push_back(p);
+        if (elsewhere)
+          report.add(part.id, model::IssueCode::parts_outside,
+                     "in " + extract.buildings[best].id.text() + ", not in " +
+                         extract.buildings[named->second].id.text() + " as its relation says");
+      } else if (best != model::kNoIndex) {
         parts_of[best].push_back(p);
       } else {
         alone.push_back(p);

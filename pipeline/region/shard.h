@@ -30,11 +30,12 @@ inline constexpr int kTileLevel = 15;
 /// object across 180 degrees has its centre there. The object must have a ring.
 model::Location box_centre(const model::Extract& extract, const model::MappedBuilding& object);
 
-/// Assigns parts to outlines and both to tiles. A part belongs to the outline that a type=building relation names, else
-/// to the smallest outline that holds at least half of its corners (boundary included) and whose box holds the middle of
-/// the part's. A part that no outline holds stands alone (PART_WITHOUT_OUTLINE in `report`), together with those of its
+/// Assigns parts to outlines and both to tiles. A part belongs to the outline that a type=building relation names, unless
+/// that holds less than half of its corners and another outline all of them (PARTS_OUTSIDE in `report`); without a
+/// relation to the smallest outline that holds at least half of its corners (boundary included) and whose box holds the
+/// middle of the part's. A part that no outline holds stands alone (PART_WITHOUT_OUTLINE), together with those of its
 /// kind that it shares an edge with (two nodes in sequence), and so on: one building. A building belongs to the tile of
-/// `level` of the centre of its lead's raw box. Shards come in tile order; nothing depends on the order of the input.
+/// the centre of its lead's raw box. Shards come in tile order; nothing depends on the order of the input.
 std::vector<Shard> make_shards(const model::Extract& extract, model::Report& report, int level = kTileLevel);
 
 }  // namespace blockrand::region

@@ -65,12 +65,37 @@ TEST(Shards, APartOnTheOutlinesEdgeAndAlittleBeyondBelongsToIt) {
 
 TEST(Shards, ARelationsWordBeatsGeometry) {
   Extract e;
-  const auto far = add(e, 1, ObjectKind::building, square(0, 0, 1000));
-  add(e, 2, ObjectKind::building, square(2000, 0, 1000));
-  const auto part = add(e, 3, ObjectKind::building_part, square(2200, 200, 300));
-  e.building_relations.push_back({{OsmType::relation, 9}, {OsmType::way, 1}, {{OsmType::way, 3}}});
+  const auto named = add(e, 1, ObjectKind::building, square(0, 0, 1000));
+  add(e, 2, ObjectKind::building, square(400, 0, 600));
+  const auto part = add(e, 3, ObjectKind::building_part, square(500, 200, 300));
+  const auto bridge = add(e, 4, ObjectKind::building_part, square(5000, 200, 300));
+  e.building_relations.push_back({{OsmType::relation, 9}, {OsmType::way, 1}, {{OsmType::way, 3}, {OsmType::way, 4}}});
   model::Report report;
-  EXPECT_EQ(seed_of(make_shards(e, report), far)->parts, std::vector<std::uint32_t>{part});
+  EXPECT_EQ(seed_of(make_shards(e, report), named)->parts, (std::vector<std::uint32_t>{part, bridge}));
+  EXPECT_TRUE(report.rows.empty());
+}
+
+TEST(Shards, RelationsThatMixUpNeighboursAreNotBelieved) {
+  Extract e;
+  const auto left = add(e, 1, ObjectKind::building, square(0, 0, 1000));
+  const auto right = add(e, 2, ObjectKind::building, square(1000, 0, 1000));
+  const auto in_left = add(e, 3, ObjectKind::building_part, square(500, 0, 500));
+  const auto in_right = add(e, 4, ObjectKind::building_part, square(1000, 0, 500));
+  e.building_relations.push_back({{OsmType::relation, 8}, {OsmType::way, 1}, {{OsmType::way, 4}}});
+  e.building_relations.push_back({{OsmType::relation, 9}, {OsmType::way, 2}, {{OsmType::way, 3}}});
+  // A part shares two of its four corners with the other outline: move them off it.
+  for (const auto part : {in_left, in_right})
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      auto& v = e.vertices[e.rings[e.buildings[part].rings.first].vertices.first + i];
+      if (v.lon == kX + 1000) v.lon += part == in_left ? -1 : 1;
+    }
+  model::Report report;
+  const auto shards = make_shards(e, report);
+  EXPECT_EQ(seed_of(shards, left)->parts, std::vector<std::uint32_t>{in_left});
+  EXPECT_EQ(seed_of(shards, right)->parts, std::vector<std::uint32_t>{in_right});
+  ASSERT_EQ(report.rows.size(), 2u);
+  EXPECT_EQ(report.rows[0].code, IssueCode::parts_outside);
+  EXPECT_EQ(report.rows[0].detail, "in w1, not in w2 as its relation says");
 }
 
 TEST(Shards, APartInNoOutlineStandsAloneAndIsReported) {
