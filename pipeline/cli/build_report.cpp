@@ -89,6 +89,7 @@ std::string build_report(const region::BuildOptions& options, const region::Buil
   if (options.single_cityjson) place("model.city.json", "the whole build as one CityJSON object");
   if (options.geopackage) place("buildings.gpkg", "footprints with every value and its source, coloured, for QGIS");
   if (options.report) place("report.html", "what was built, where values come from, a map and pictures");
+  if (options.report && s.models > 0) place("plan.png", "seen from above, walls in the colours of what they face");
   if (options.explain)
     text_of_explain = fmt::format("  why a building looks as it does: blockrand explain {} w123\n", options.output);
   place("report.json", "every object that is not modelled as asked, with its reason");

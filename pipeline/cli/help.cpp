@@ -39,6 +39,7 @@ const std::vector<std::pair<std::string, std::string>> kOutputs = {
     {"cityjson/", "the same content as CityJSON 2.0 text sequences"},
     {"buildings.gpkg", "GeoPackage for QGIS: footprints with every attribute, its source and its confidence"},
     {"report.html", "what was built, where values come from, what fell back and why, with a map and pictures"},
+    {"plan.png", "the neighbourhood from above: blocks, courtyards, walls in the colours of what they face"},
     {"report.json", "every object that was not modelled, and why; every fallback"},
     {"explain/", "what 'blockrand explain' reads"},
     {"model.glb, model.city.json", "the whole build in one file, with --single-glb and --single-cityjson"},

@@ -37,6 +37,7 @@
 #include "pipeline/region/documents.h"
 #include "pipeline/region/outcome.h"
 #include "pipeline/region/pictures.h"
+#include "pipeline/region/plan_picture.h"
 #include "pipeline/region/region_facts.h"
 #include "pipeline/region/repair_extract.h"
 #include "pipeline/region/report_facts.h"
@@ -180,6 +181,7 @@ struct TileResult {
   TileStatistics statistics;
   export_::ReportTile report;
   PictureTile picture;
+  picture::PlanTile plan;
   Region region;  ///< kept only for files of the whole build
 };
 
@@ -311,6 +313,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
 
   const PicturePlan picture_plan = options.report ? plan_pictures(shards, projection) : PicturePlan{};
   Pictures pictures(picture_plan);
+  std::vector<picture::PlanTile> plans;
   export_::ReportBuilder page;
 
   progress.begin("tiles", to_build, "buildings");
@@ -376,6 +379,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     if (options.report) {
       result.report = export_::report_tile(region);
       result.picture = picture_tile(region, picture_plan, shard);
+      if (picture_plan.chosen[shard]) result.plan = picture::plan_tile(region);
     }
     result.rows = std::move(region.report.rows);
     if (options.single_glb || options.single_cityjson) result.region = std::move(region);
@@ -402,6 +406,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     if (options.report) {
       page.add(std::move(result.report));
       pictures.add(std::move(result.picture));
+      if (!result.plan.buildings.empty()) plans.push_back(std::move(result.plan));
     }
     for (const auto& [object, building] : result.output.explained) explained.push_back({object, building, shards[todo[i]].tile});
     const std::vector<PartySide>& sides = result.statistics.party_sides;
@@ -461,7 +466,12 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   };
   sort_files();
   if (options.report) {
+    PlanSheet plan = draw_plan(std::move(plans), context, picture_plan);
+    if (!plan.png.empty()) record.files.push_back(folder.write("plan.png", plan.png));
+    sort_files();
     export_::ReportFacts facts = report_facts(options, record, extract, rows, page, centre);
+    if (!plan.png.empty()) facts.context.plan = std::move(plan.in_report);
+    facts.context.plan_note = std::move(plan.note);
     facts.pictures_note = pictures.note();
     facts.pictures = pictures.take(workers);
     record.files.push_back(folder.write("report.html", page.html(facts)));

@@ -120,6 +120,15 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
                      {"party_walls", t.party_walls},
                      {"party_wall_length_m", rounded(t.party_wall_length)},
                      {"party_wall_area_m2", rounded(t.party_wall_area)}};
+  j["statistics"]["edges"] = Json::object();
+  for (std::size_t k = 0; k < t.edges.size(); ++k)
+    if (t.edges[k] > 0)
+      j["statistics"]["edges"][model::name(static_cast<model::EdgeKind>(k))] = {{"stretches", t.edges[k]},
+                                                                                 {"length_m", rounded(t.edge_length[k])}};
+  j["statistics"]["positions"] = Json::object();
+  for (std::size_t k = 0; k < t.positions.size(); ++k)
+    if (t.positions[k] > 0)
+      j["statistics"]["positions"][model::name(static_cast<model::BuildingPosition>(k))] = t.positions[k];
   j["statistics"]["roofs"] = Json::object();
   for (const auto& [shape, count] : t.roofs) j["statistics"]["roofs"][shape] = count;
   j["statistics"]["sources"] = Json::object();

@@ -1,8 +1,38 @@
 #include "pipeline/region/report_facts.h"
 
+#include <fmt/format.h>
+
+#include "pipeline/base/text.h"
 #include "pipeline/base/version.h"
 
 namespace blockrand::region {
+
+namespace {
+
+/// What repair did, in words for the report.
+std::vector<std::pair<std::string, std::string>> repair_lines(const RepairTotals& t) {
+  using base::with_thousands;
+  const auto of = [](std::uint64_t part, std::uint64_t whole) {
+    return with_thousands(part) + " of " + with_thousands(whole);
+  };
+  const auto share = [](double ratio) { return fmt::format("{:.2f} %", 100 * ratio); };
+  std::vector<std::pair<std::string, std::string>> out = {
+      {"Outlines", with_thousands(t.outlines)},
+      {"Rows of touching buildings", with_thousands(t.rows)},
+      {"Corners moved", of(t.moved, t.vertices)},
+      {"Mean, largest shift of those", fmt::format("{:.3f} m, {:.2f} m", t.mean_shift, t.max_shift)},
+      {"Median, largest change of area", share(t.median_area_change) + ", " + share(t.max_area_change)},
+      {"Shared walls", with_thousands(t.shared_walls)},
+      {"Gaps closed", with_thousands(t.gaps_closed)},
+      {"Overlaps resolved", with_thousands(t.overlaps_resolved)},
+      {"Outlines with an overlap left", with_thousands(t.overlaps_left)},
+      {"Outlines with a main direction", with_thousands(t.squared)},
+      {"Curved walls", with_thousands(t.arcs)}};
+  if (t.rows_cut > 0) out.emplace_back("Buildings at cuts of long rows", with_thousands(t.rows_cut));
+  return out;
+}
+
+}  // namespace
 
 export_::ReportFacts report_facts(const BuildOptions& options, const BuildRecord& record, const model::Extract& extract,
                                   const std::vector<model::ReportRow>& rows, const export_::ReportBuilder& page,
@@ -38,6 +68,10 @@ export_::ReportFacts report_facts(const BuildOptions& options, const BuildRecord
   f.party_wall_length = t.party_wall_length;
   f.volume = t.volume;
   f.party_walls = t.party_walls;
+  if (record.repair.outlines > 0) f.context.repair = repair_lines(record.repair);
+  f.context.edges = t.edges;
+  f.context.edge_length = t.edge_length;
+  f.context.positions = t.positions;
   f.rows = rows;
   for (const model::MappedBuilding& b : extract.buildings)
     if (b.state != model::ObjectState::modelled) f.objects.push_back({b.id, b.kind, b.state, b.code, b.related});

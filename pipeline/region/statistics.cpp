@@ -39,7 +39,10 @@ TileStatistics count_statistics(const model::Region& region) {
   for (const model::Building& building : region.buildings) {
     const auto& a = building.attributes;
     const double wall_height = std::max(0.0, a.height.value - a.roof_height.value - a.min_height.value);
+    if (!building.parts.empty()) ++s.positions[static_cast<std::size_t>(building.situation.position)];
     for (const model::FacadeEdge& e : building.edges) {
+      ++s.edges[static_cast<std::size_t>(e.kind)];
+      s.edge_length[static_cast<std::size_t>(e.kind)] += e.length();
       const model::Polygon& polygon = building.outline[e.polygon];
       const model::Ring& ring = e.ring == 0 ? polygon.outer : polygon.holes[e.ring - 1];
       const model::Point2 a = ring.points[e.edge], b = ring.points[(e.edge + 1) % ring.size()];
@@ -78,6 +81,11 @@ void add(Statistics& sum, const Statistics& s) {
   sum.bodies += s.bodies;
   sum.solids_lod1 += s.solids_lod1;
   sum.solids_lod2 += s.solids_lod2;
+  for (std::size_t k = 0; k < s.edges.size(); ++k) {
+    sum.edges[k] += s.edges[k];
+    sum.edge_length[k] += s.edge_length[k];
+  }
+  for (std::size_t k = 0; k < s.positions.size(); ++k) sum.positions[k] += s.positions[k];
   for (const auto& [attribute, sources] : s.sources)
     for (const auto& [source, count] : sources) sum.sources[attribute][source] += count;
   for (const auto& [shape, count] : s.roofs) sum.roofs[shape] += count;

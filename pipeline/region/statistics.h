@@ -1,6 +1,7 @@
 // How much was built, and where its values come from.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -23,6 +24,9 @@ struct Statistics {
   std::uint64_t solids_lod1 = 0, solids_lod2 = 0;
   std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → parts
   std::map<std::string, std::uint64_t> roofs;                           ///< built roof shape → parts
+  std::array<std::uint64_t, model::kEdgeKindCount> edges{};  ///< stretches of outlines by model::EdgeKind
+  std::array<double, model::kEdgeKindCount> edge_length{};   ///< m
+  std::array<std::uint64_t, model::kBuildingPositionCount> positions{};  ///< buildings by model::BuildingPosition
 };
 
 /// One building's side of a shared wall.

@@ -4,10 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "pipeline/model/building.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/model/report.h"
 
@@ -31,6 +34,17 @@ struct ReportPicture {
   std::string png;  ///< the file's bytes
   int width = 0, height = 0;
   std::string caption;  ///< a sentence, plain text
+};
+
+/// What repair and context found, for the section "Footprints and context"; empty where they did not run.
+struct ContextFacts {
+  /// What repair did, as people read it: {"Corners moved", "12,345 of 67,890"}.
+  std::vector<std::pair<std::string, std::string>> repair;
+  std::array<std::uint64_t, model::kEdgeKindCount> edges{};   ///< stretches of outlines by model::EdgeKind
+  std::array<double, model::kEdgeKindCount> edge_length{};    ///< m
+  std::array<std::uint64_t, model::kBuildingPositionCount> positions{};  ///< buildings by model::BuildingPosition
+  std::optional<ReportPicture> plan;  ///< from above, edges in the colours of model/edge_colours.h
+  std::string plan_note;              ///< what the plan shows, where it is not the whole build; may be empty
 };
 
 struct ReportFacts {
@@ -60,6 +74,7 @@ struct ReportFacts {
   std::vector<ReportFile> files;        ///< in path order, report.html itself left out
   std::vector<ReportPicture> pictures;
   std::string pictures_note;            ///< what the pictures show, where it is not the whole build; may be empty
+  ContextFacts context;
   std::string attribution = "\u00a9 OpenStreetMap contributors";
 };
 

@@ -48,6 +48,7 @@ std::string ReportBuilder::html(const ReportFacts& facts, const ReportOptions& o
   out += "<main>\n";
   out += picture_section(facts);
   out += map_section(map, facts);
+  out += context_section(facts);
   out += source_section(facts);
   out += issue_section(footprints_, issues, map.marks, facts, options);
   out += statistics_section(facts);

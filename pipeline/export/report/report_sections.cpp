@@ -19,19 +19,6 @@ std::string file_name(std::string_view path) {
   return std::string(slash == std::string_view::npos ? path : path.substr(slash + 1));
 }
 
-void append_base64(std::string& out, std::string_view bytes) {
-  static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  out.reserve(out.size() + (bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto at = [&](std::size_t k) { return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0u; };
-    const unsigned group = at(i) << 16 | at(i + 1) << 8 | at(i + 2);
-    out += letters[group >> 18];
-    out += letters[group >> 12 & 63];
-    out += i + 1 < bytes.size() ? letters[group >> 6 & 63] : '=';
-    out += i + 2 < bytes.size() ? letters[group & 63] : '=';
-  }
-}
-
 void fact(std::string& out, std::string_view name, std::string_view escaped_value) {
   if (escaped_value.empty()) return;
   out += "<dt>" + std::string(name) + "</dt><dd>" + std::string(escaped_value) + "</dd>\n";
@@ -106,7 +93,8 @@ std::string head_section(const ReportFacts& f) {
   }
   fact(out, "Built by", "Blockrand " + escaped(f.program_version));
   out += "</dl>\n<nav>" + std::string(f.pictures.empty() ? "" : "<a href=\"#pictures\">Pictures</a>") +
-         "<a href=\"#map\">Map</a><a href=\"#sources\">Where values come from</a><a href=\"#issues\">Fallbacks and issues</a>"
+         "<a href=\"#map\">Map</a>" + (has_context(f) ? "<a href=\"#context\">Footprints and context</a>" : "") +
+         "<a href=\"#sources\">Where values come from</a><a href=\"#issues\">Fallbacks and issues</a>"
          "<a href=\"#statistics\">Statistics</a><a href=\"#files\">Files</a></nav>\n</header>\n";
   return out;
 }

@@ -20,6 +20,9 @@ std::string source_section(const ReportFacts& facts);
 std::string statistics_section(const ReportFacts& facts);
 /// Where the files are, how to open them, how to ask for one building.
 std::string file_section(const ReportFacts& facts);
+/// Empty where neither repair nor context has anything to say.
+std::string context_section(const ReportFacts& facts);
+bool has_context(const ReportFacts& facts);
 
 /// One line of the lists of issues: an object, and where it is on the map.
 struct ListedRow {

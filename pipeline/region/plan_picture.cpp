@@ -1,0 +1,81 @@
+#include "pipeline/region/plan_picture.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "pipeline/picture/image.h"
+
+namespace blockrand::region {
+
+namespace {
+
+using picture::PlanBox;
+
+constexpr int kFilePixels = 4000;      // a side of the file: at kPlanReach a wall's colour is two pixels wide
+constexpr int kReportPixels = 1300;    // a side of the picture in the report
+constexpr double kFinest = 8;          // pixels per metre: more shows nothing more
+
+PlanBox cropped(const PlanBox& box, model::Point3 middle) {
+  const auto crop = [](double low, double high, double at) {
+    if (high - low <= 2 * kPlanReach) return std::pair(low, high);
+    const double start = std::clamp(at - kPlanReach, low, high - 2 * kPlanReach);
+    return std::pair(start, start + 2 * kPlanReach);
+  };
+  const auto [west, east] = crop(box.min_x, box.max_x, middle.x);
+  const auto [south, north] = crop(box.min_y, box.max_y, middle.y);
+  return {west, south, east, north};
+}
+
+bool meets(const PlanBox& box, std::span<const model::Point2> points) {
+  PlanBox of{box.max_x, box.max_y, box.min_x, box.min_y};
+  for (const model::Point2 p : points)
+    of = {std::min(of.min_x, p.x), std::min(of.min_y, p.y), std::max(of.max_x, p.x), std::max(of.max_y, p.y)};
+  return of.min_x <= box.max_x && of.max_x >= box.min_x && of.min_y <= box.max_y && of.max_y >= box.min_y;
+}
+
+/// m, drawn: wider for main streets. Not measured; a plan of edges needs streets to find one's way.
+double street_width(context::LineClass kind) {
+  if (kind <= context::LineClass::secondary) return 12;
+  return kind <= context::LineClass::residential ? 8 : 6;
+}
+
+/// What buildings do not say: blocks, courtyards and streets in the box.
+picture::PlanTile surroundings(const ContextExtract& context, const PlanBox& box) {
+  picture::PlanTile tile;
+  for (const context::NetworkLine& line : context.lines)
+    if (context::is_street(line.kind) && !line.tunnel && !line.area && meets(box, line.points))
+      tile.streets.push_back({line.points, street_width(line.kind)});
+  for (const context::Block& block : context.blocks)
+    if (!block.too_large && meets(box, block.polygon.outer.points)) tile.blocks.push_back(block.polygon);
+  for (const ExtractCourtyard& yard : context.courtyards)
+    if (meets(box, yard.courtyard.polygon.outer.points)) tile.courtyards.push_back(yard.courtyard.polygon);
+  return tile;
+}
+
+picture::Image sheet(std::span<const picture::PlanTile> tiles, const PlanBox& box, int pixels) {
+  picture::Plan plan(box, std::min(kFinest, picture::scale_for(box, pixels)), picture::kPlanPaper);
+  picture::draw(plan, tiles);
+  plan.draw_scale_bar();
+  return plan.image();
+}
+
+}  // namespace
+
+PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const ContextExtract& context, const PicturePlan& pictures) {
+  PlanSheet out;
+  const PlanBox all = picture::box_of(tiles);
+  if (!(all.width() > 0 && all.height() > 0)) return out;
+  const PlanBox box = cropped(all, pictures.origin);
+  tiles.push_back(surroundings(context, box));
+  out.png = picture::png(sheet(tiles, box, kFilePixels));
+  const picture::Image small = sheet(tiles, box, kReportPixels);
+  out.in_report = {picture::png(small), small.width, small.height,
+                   "From above, north up. Walls in the colours of what they face."};
+  if (!pictures.whole || box.width() < all.width() || box.height() < all.height())
+    out.note = fmt::format("The plan shows {:.0f} by {:.0f} m of the build's densest part. All of it is in the GeoPackage.",
+                           box.width(), box.height());
+  return out;
+}
+
+}  // namespace blockrand::region

@@ -1,0 +1,30 @@
+// The report's plan: the neighbourhood from above, each wall in the colour of what it faces.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/export/report/report_facts.h"
+#include "pipeline/picture/building_plan.h"
+#include "pipeline/region/context_extract.h"
+#include "pipeline/region/pictures.h"
+
+namespace blockrand::region {
+
+/// The plan of the tiles that the pictures show.
+struct PlanSheet {
+  std::string png;                     ///< the sheet as a file of its own, to look at closely; empty without buildings
+  export_::ReportPicture in_report;    ///< the same, smaller
+  std::string note;                    ///< what the plan shows, where it is not the whole build; may be empty
+};
+
+/// Draws blocks, streets, courtyards, buildings and their edges. A plan wider than 2 * kPlanReach shows the surroundings
+/// of the middle of the densest tile (PicturePlan::origin) only: on more, walls would be too thin to tell their colours.
+/// \param tiles  in tile order; not empty tiles only
+PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const ContextExtract& context, const PicturePlan& pictures);
+
+inline constexpr double kPlanReach = 900;  ///< m
+
+}  // namespace blockrand::region
