@@ -10,13 +10,11 @@ namespace blockrand::region {
 
 namespace {
 
-using picture::PlanBox;
-
 constexpr int kFilePixels = 4000;      // a side of the file: at kPlanReach a wall's colour is two pixels wide
 constexpr int kReportPixels = 1300;    // a side of the picture in the report
 constexpr double kFinest = 8;          // pixels per metre: more shows nothing more
 
-PlanBox cropped(const PlanBox& box, model::Point3 middle) {
+picture::PlanBox cropped(const picture::PlanBox& box, model::Point3 middle) {
   const auto crop = [](double low, double high, double at) {
     if (high - low <= 2 * kPlanReach) return std::pair(low, high);
     const double start = std::clamp(at - kPlanReach, low, high - 2 * kPlanReach);
@@ -27,8 +25,8 @@ PlanBox cropped(const PlanBox& box, model::Point3 middle) {
   return {west, south, east, north};
 }
 
-bool meets(const PlanBox& box, std::span<const model::Point2> points) {
-  PlanBox of{box.max_x, box.max_y, box.min_x, box.min_y};
+bool meets(const picture::PlanBox& box, std::span<const model::Point2> points) {
+  picture::PlanBox of{box.max_x, box.max_y, box.min_x, box.min_y};
   for (const model::Point2 p : points)
     of = {std::min(of.min_x, p.x), std::min(of.min_y, p.y), std::max(of.max_x, p.x), std::max(of.max_y, p.y)};
   return of.min_x <= box.max_x && of.max_x >= box.min_x && of.min_y <= box.max_y && of.max_y >= box.min_y;
@@ -41,7 +39,7 @@ double street_width(context::LineClass kind) {
 }
 
 /// What buildings do not say: blocks, courtyards and streets in the box.
-picture::PlanTile surroundings(const ContextExtract& context, const PlanBox& box) {
+picture::PlanTile surroundings(const ContextExtract& context, const picture::PlanBox& box) {
   picture::PlanTile tile;
   for (const context::NetworkLine& line : context.lines)
     if (context::is_street(line.kind) && !line.tunnel && !line.area && meets(box, line.points))
@@ -53,7 +51,7 @@ picture::PlanTile surroundings(const ContextExtract& context, const PlanBox& box
   return tile;
 }
 
-picture::Image sheet(std::span<const picture::PlanTile> tiles, const PlanBox& box, int pixels) {
+picture::Image sheet(std::span<const picture::PlanTile> tiles, const picture::PlanBox& box, int pixels) {
   picture::Plan plan(box, std::min(kFinest, picture::scale_for(box, pixels)), picture::kPlanPaper);
   picture::draw(plan, tiles);
   plan.draw_scale_bar();
@@ -64,9 +62,9 @@ picture::Image sheet(std::span<const picture::PlanTile> tiles, const PlanBox& bo
 
 PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const ContextExtract& context, const PicturePlan& pictures) {
   PlanSheet out;
-  const PlanBox all = picture::box_of(tiles);
+  const picture::PlanBox all = picture::box_of(tiles);
   if (!(all.width() > 0 && all.height() > 0)) return out;
-  const PlanBox box = cropped(all, pictures.origin);
+  const picture::PlanBox box = cropped(all, pictures.origin);
   tiles.push_back(surroundings(context, box));
   out.png = picture::png(sheet(tiles, box, kFilePixels));
   const picture::Image small = sheet(tiles, box, kReportPixels);
