@@ -357,6 +357,12 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     export_::ExplainOptions explain;
     explain.lod = options.lod;
     explain.earlier = earlier;
+    explain.courtyard = [&context](std::string_view id) -> std::optional<export_::CourtyardFacts> {
+      const auto found = std::lower_bound(context.courtyards.begin(), context.courtyards.end(), id,
+                                          [](const ExtractCourtyard& y, std::string_view i) { return y.courtyard.id < i; });
+      if (found == context.courtyards.end() || found->courtyard.id != id) return std::nullopt;
+      return export_::CourtyardFacts{found->courtyard.area, found->courtyard.closed};
+    };
     std::map<std::uint32_t, export_::Fate> fates;
     for (const Outcome& o : outcomes) fates[o.index] = fate_of(o);
     explain.fate = [fates = std::move(fates)](std::uint32_t index) {

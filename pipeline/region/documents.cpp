@@ -48,6 +48,8 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
                  {"parts_free_area", p.parts_free_area},       {"parts_free_width", p.parts_free_width},
                  {"simplify", p.simplify},                     {"collinear_distance", p.collinear_distance},
                  {"share_walls", p.share_walls},               {"square", p.square},
+                 {"fit_parts", p.fit_parts},                   {"arcs", p.arcs},
+                 {"max_ring_area_change", p.max_ring_area_change},
                  {"snap_distance", p.snap_distance},           {"snap_reach", p.snap_reach},
                  {"snap_angle", p.snap_angle},                 {"min_overlap", p.min_overlap},
                  {"max_shift", p.max_shift},                   {"max_area_change", p.max_area_change},

@@ -10,7 +10,7 @@ namespace blockrand::region {
 
 namespace {
 
-constexpr int kFilePixels = 4000;      // a side of the file: at kPlanReach a wall's colour is two pixels wide
+constexpr int kFilePixels = 3000;      // a side of the file: at kPlanReach a wall is two pixels wide
 constexpr int kReportPixels = 1300;    // a side of the picture in the report
 constexpr double kFinest = 8;          // pixels per metre: more shows nothing more
 

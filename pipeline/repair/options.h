@@ -8,6 +8,8 @@ struct RepairOptions {
   bool simplify = true;      ///< collinear points are removed
   bool share_walls = true;   ///< walls of neighbours become one, overlaps are resolved
   bool square = true;        ///< almost right corners become right
+  bool fit_parts = true;     ///< parts follow their outline, share walls, do not overlap; large rests of it are built
+  bool arcs = true;          ///< rounded walls are told from corners
 
   // Validity.
   double duplicate_distance = 0.002;  ///< m. Nearer neighbours on a ring are one point; OSM's own grid is 11 mm.

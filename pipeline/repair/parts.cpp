@@ -198,7 +198,7 @@ void fit_parts(Building& building, std::span<const Polygon> outline_before, cons
     building.outline = united(bodies, options);
     report.add(building.osm, IssueCode::outline_made,
                std::to_string(bodies.size()) + (bodies.size() == 1 ? " part" : " parts"));
-  } else if (!outline_before.empty()) {
+  } else if (options.fit_parts && !outline_before.empty()) {
     const auto same = [](const Polygon& a, const Polygon& b) {
       return a.outer.points == b.outer.points &&
              std::equal(a.holes.begin(), a.holes.end(), b.holes.begin(), b.holes.end(),
@@ -210,13 +210,13 @@ void fit_parts(Building& building, std::span<const Polygon> outline_before, cons
       give_up_lost(outline_before, building, bodies, options, report);
     }
   }
-  if (options.share_walls) {
+  if (options.fit_parts && options.share_walls) {
     if (const int joined = share_part_walls(bodies, building.outline, options); joined > 0)
       report.add(building.osm, IssueCode::shared_wall_made,
                  std::to_string(joined) + (joined == 1 ? " corner of its parts" : " corners of its parts"));
   }
   report_outside(building, bodies, options, report);
-  resolve_part_overlaps(bodies, options, report);
+  if (options.fit_parts) resolve_part_overlaps(bodies, options, report);
 
   std::vector<BuildingPart> parts;
   for (PartBody& body : bodies) {
@@ -225,7 +225,7 @@ void fit_parts(Building& building, std::span<const Polygon> outline_before, cons
     add_pieces(parts, part, body.polygons);
   }
   building.parts = std::move(parts);
-  add_rest(building, bodies, options, report);
+  if (options.fit_parts) add_rest(building, bodies, options, report);
 }
 
 }  // namespace blockrand::repair

@@ -34,6 +34,8 @@ std::vector<model::Polygon> outline_of_parts(const model::Building& building, co
 /// 6. What the parts leave of the outline is built as part "….rest" when it is larger than `parts_free_area` and wider
 ///    than `parts_free_width` (PARTS_INCOMPLETE).
 ///
+/// Without RepairOptions::fit_parts only 1 and 4 are done.
+///
 /// Guarantees: plans are strictly simple; no part vanishes but by 1; points that two parts have in common stay so, and
 /// where the outline did not move step 2 moves nothing; the result does not depend on where rings start.
 /// \param outline_before  the outline after repair_rings, before shared walls and squaring; equal to the building's

@@ -27,7 +27,7 @@ void repair_sorted_row(Row& row, const RepairOptions& options, model::Report& re
   record_walls(row, mapped, said, report);
   for (std::size_t b = 0; b < row.buildings.size(); ++b) {
     row.buildings[b].record.direction = direction[b];
-    row.buildings[b].arcs = find_arcs(row.buildings[b].polygons);
+    if (options.arcs) row.buildings[b].arcs = find_arcs(row.buildings[b].polygons);
   }
 }
 

@@ -444,6 +444,18 @@ void add_repair(Table& t) {
           .help = "make almost right corners right",
           .without = "almost right corners stay as mapped"},
          FIELD(build.repair.square));
+  t.flag({.name = "repair-fit-parts",
+          .key = "fit_parts",
+          .section = S,
+          .help = "fit parts to their repaired outline; build what they leave of it",
+          .without = "parts stay as mapped, what they leave of an outline is not built"},
+         FIELD(build.repair.fit_parts));
+  t.flag({.name = "repair-arcs",
+          .key = "arcs",
+          .section = S,
+          .help = "recognise rounded walls",
+          .without = "rounded walls are taken for many straight ones"},
+         FIELD(build.repair.arcs));
   metres("repair-duplicate-distance", "duplicate_distance", 0, 0.5, "nearer neighbours on a ring are one point, in m",
          FIELD(build.repair.duplicate_distance));
   metres("repair-spike-width", "spike_width", 0, 1, "a tip narrower than this is removed, in m",
@@ -456,6 +468,14 @@ void add_repair(Table& t) {
             .maximum = 100,
             .help = "smaller pieces of a repaired outline are dropped and reported, in m2"},
            FIELD(build.repair.min_piece_area));
+  t.number({.name = "repair-max-ring-area-change",
+            .key = "max_ring_area_change",
+            .argument = "SHARE",
+            .section = S,
+            .minimum = 0,
+            .maximum = 1,
+            .help = "of the area, by mending invalid rings; more is reported"},
+           FIELD(build.repair.max_ring_area_change));
   metres("repair-ring-clearance", "ring_clearance", 0.002, 0.5, "rings that touch are moved apart by this, in m",
          FIELD(build.repair.ring_clearance));
   metres("repair-collinear-distance", "collinear_distance", 0, 0.5,

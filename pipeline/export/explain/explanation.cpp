@@ -225,37 +225,7 @@ class Writer {
     const bool looked_at = building.situation.position != model::BuildingPosition::unknown ||
                            std::any_of(building.edges.begin(), building.edges.end(),
                                        [](const model::FacadeEdge& e) { return e.end > e.start; });
-    return looked_at ? situation_text(building, options_.courtyard) : mapped_walls_text(building);
-  }
-
-  /// Where context did not look at the surroundings: walls that neighbours share node by node.
-  std::string mapped_walls_text(const Building& building) const {
-    std::size_t edge = 0, shared = 0;
-    double length = 0;
-    std::set<model::OsmId> neighbours;
-    const auto add = [&](const model::Ring& ring) {
-      for (std::size_t i = 0; i < ring.size(); ++i, ++edge) {
-        if (edge >= building.edges.size()) return;
-        const model::FacadeEdge& e = building.edges[edge];
-        if (e.kind != model::EdgeKind::party_wall) continue;
-        const model::Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
-        length += std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
-        ++shared;
-        if (options_.sharers)
-          for (const model::OsmId id : options_.sharers(e.from_node, e.to_node))
-            if (id != building.osm) neighbours.insert(id);
-      }
-    };
-    for (const model::Polygon& p : building.outline) {
-      add(p.outer);
-      for (const model::Ring& hole : p.holes) add(hole);
-    }
-    if (shared == 0) return "no wall is shared with a neighbour";
-    std::vector<std::string> names;
-    for (const model::OsmId id : neighbours) names.push_back(id.text());
-    std::string text = fmt::format("{} of {} walls ({:.1f} m) {} shared", shared, building.edges.size(), length, shared == 1 ? "is" : "are");
-    if (!names.empty()) text += " with " + listed(names, 6);
-    return text;
+    return looked_at ? situation_text(building, options_.courtyard) : "its surroundings were not looked at";
   }
 
   std::string resolve_text(const Building& building) {

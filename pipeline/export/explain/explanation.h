@@ -57,8 +57,6 @@ struct ExplainOptions {
   std::span<const model::ReportRow> earlier;
   /// Of BuildingSituation::courtyards; may be empty.
   CourtyardLookup courtyard;
-  /// Only for buildings whose surroundings were not looked at: ids of the buildings that share edge `from_node`–`to_node`; empty where none does.
-  std::function<std::vector<model::OsmId>(std::int64_t, std::int64_t)> sharers;
 };
 
 struct Explanations {

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "pipeline/context/party_walls.h"
 #include "pipeline/context/tagged_neighbours.h"
 
 namespace blockrand::context {
@@ -53,40 +52,6 @@ TEST(TaggedNeighbours, MajorityOfRoofs) {
   EXPECT_EQ(opinion->value, RoofShape::hipped);
   EXPECT_DOUBLE_EQ(opinion->share, 0.6);
   EXPECT_FALSE(n.storeys({0, 0}, 0, kNobody, 1)) << "nobody tagged storeys";
-}
-
-model::Extract two_houses_with_one_wall() {
-  model::Extract e;
-  const auto add = [&](std::int64_t id, std::vector<std::int64_t> nodes) {
-    model::MappedBuilding b;
-    b.id = {OsmType::way, id};
-    b.rings = {static_cast<std::uint32_t>(e.rings.size()), 1};
-    e.rings.push_back({{static_cast<std::uint32_t>(e.vertices.size()), static_cast<std::uint32_t>(nodes.size())}, false});
-    for (const auto n : nodes) {
-      e.vertices.push_back({static_cast<std::int32_t>(n), 0});
-      e.vertex_nodes.push_back(n);
-    }
-    e.buildings.push_back(b);
-  };
-  add(1, {1, 2, 3, 4});
-  add(2, {2, 5, 6, 3});
-  return e;
-}
-
-TEST(SharedEdges, TheCommonWallAndNothingElse) {
-  const model::Extract e = two_houses_with_one_wall();
-  const SharedEdges shared(e);
-  EXPECT_EQ(shared.size(), 1u);
-  EXPECT_GE(shared.find(2, 3), 0);
-  EXPECT_EQ(shared.find(2, 3), shared.find(3, 2));
-  EXPECT_EQ(shared.find(1, 2), -1);
-  EXPECT_EQ(shared.find(0, 3), -1);
-}
-
-TEST(SharedEdges, ADuplicateSharesNoWallsWithItsOriginal) {
-  model::Extract e = two_houses_with_one_wall();
-  e.buildings[1].state = model::ObjectState::duplicate;
-  EXPECT_EQ(SharedEdges(e).size(), 0u);
 }
 
 }  // namespace

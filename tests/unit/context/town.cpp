@@ -7,7 +7,7 @@
 #include "pipeline/region/area.h"
 #include "pipeline/region/load.h"
 #include "pipeline/region/shard.h"
-#include "pipeline/repair/repair.h"
+#include "tests/unit/repair/repair_alone.h"
 
 namespace blockrand::context {
 
@@ -22,7 +22,7 @@ Town read_town(const std::string& path) {
   model::Report report;
   for (const region::Shard& shard : region::make_shards(town.extract, report)) {
     model::Region tile = region::load_region(town.extract, shard, *town.projection);
-    repair::repair(tile, {});
+    repair::test::repair_alone(tile);
     for (model::Building& b : tile.buildings)
       if (!b.outline.empty()) town.buildings.push_back(std::move(b));
   }

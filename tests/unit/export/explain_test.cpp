@@ -94,24 +94,14 @@ TEST(Explain, NotesComeFromBeforeAndFromTheTile) {
   EXPECT_THAT(stages.at("repair"), HasSubstr("1 points"));
 }
 
-TEST(Explain, WithoutContextWallsSharedNodeByNodeAreTold) {
+TEST(Explain, SaysThatSurroundingsWereNotLookedAt) {
   test::SampleRegion sample;
   model::Building& b = sample.add_building(7, {{"building", "yes"}});
   sample.add_box(b, "w7", 0, 0, 10, 8, 0, 6);
   b.outline = {b.parts[0].plan};
-  b.edges.assign(4, {});
-  b.edges[1].from_node = 11;
-  b.edges[1].to_node = 12;
-  b.edges[1].kind = model::EdgeKind::party_wall;
-  ExplainOptions options = plain_options();
-  options.sharers = [](std::int64_t from, std::int64_t to) {
-    EXPECT_EQ(from, 11);
-    EXPECT_EQ(to, 12);
-    return std::vector<model::OsmId>{{model::OsmType::way, 7}, {model::OsmType::way, 9}};
-  };
-  const json line = lines_of(explain(sample.region(), options).lines).at("w7");
+  const json line = lines_of(explain(sample.region(), plain_options()).lines).at("w7");
   EXPECT_EQ(line.at("stages")[2].at("stage"), "context");
-  EXPECT_EQ(line.at("stages")[2].at("text"), "1 of 4 walls (8.0 m) is shared with w9");
+  EXPECT_EQ(line.at("stages")[2].at("text"), "its surroundings were not looked at");
 }
 
 std::map<std::string, std::string> stages_of(const json& line) {

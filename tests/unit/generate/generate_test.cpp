@@ -8,8 +8,8 @@
 #include "pipeline/generate/resolve.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon.h"
-#include "pipeline/repair/repair.h"
 #include "tests/unit/geometry/shapes.h"
+#include "tests/unit/repair/repair_alone.h"
 
 namespace blockrand::generate {
 namespace {
@@ -54,7 +54,7 @@ class Town {
   void build(int lod = 2) {
     region.extract = &extract;
     for (const Material& m : defaults.materials) region.materials.push_back(m.looks);
-    repair::repair(region, {});
+    repair::test::repair_alone(region);
     const context::TaggedNeighbours index(neighbours, 100);
     resolve_attributes(region, {defaults, index, seed, [](const model::Building&) { return model::Sourced<double>{34, Source::override_, 1, 0}; }}, {});
     build_masses(region, defaults, {}, lod);

@@ -1,5 +1,3 @@
-#include "pipeline/repair/repair.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/repair/clean_ring.h"
 #include "tests/unit/geometry/shapes.h"
+#include "tests/unit/repair/repair_alone.h"
 
 namespace blockrand::repair {
 namespace {
@@ -39,7 +38,7 @@ void add_part(model::Building& b, std::int64_t number, std::vector<Point2> outli
 model::Region region_of(std::vector<model::Building> buildings) {
   model::Region r;
   r.buildings = std::move(buildings);
-  repair(r, {});
+  test::repair_alone(r);
   return r;
 }
 
