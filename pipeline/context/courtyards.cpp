@@ -33,6 +33,17 @@ struct Wall {
 
 double distance(Point2 a, Point2 b) { return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y)); }
 
+double square(double x) { return x * x; }
+
+/// m², without the rounding of nearest_on.
+double square_distance(const Segment& s, Point2 p) {
+  const double dx = s.b.x - s.a.x, dy = s.b.y - s.a.y, px = p.x - s.a.x, py = p.y - s.a.y;
+  const double along = px * dx + py * dy, length2 = dx * dx + dy * dy;
+  if (along <= 0) return px * px + py * py;
+  if (along >= length2) return square(p.x - s.b.x) + square(p.y - s.b.y);
+  return square(px * dy - py * dx) / length2;
+}
+
 Point2 nearest_on(const Segment& s, Point2 p) {
   const double dx = s.b.x - s.a.x, dy = s.b.y - s.a.y, length2 = dx * dx + dy * dy;
   const double t = length2 > 0 ? std::clamp(((p.x - s.a.x) * dx + (p.y - s.a.y) * dy) / length2, 0.0, 1.0) : 0;
@@ -63,8 +74,15 @@ class Walls {
       if (geometry::orientation(grid2(segments_[walls_[i].previous].a), grid2(corner), grid2(segments_[i].b)) <= 0)
         continue;
       grid_->near({corner.x - reach, corner.y - reach}, {corner.x + reach, corner.y + reach}, near);
-      add_gate(i, near, reach, false, out);
-      add_gate(i, near, reach, true, out);
+      std::vector<Place> same, others;
+      for (const std::uint32_t w : near) {
+        if (w == i || w == walls_[i].previous || square_distance(segments_[w], corner) > square(reach + kTouching)) continue;
+        const Point2 place = nearest_on(segments_[w], corner);
+        const double gap = distance(corner, place);
+        if (gap <= reach) (walls_[w].building == walls_[i].building ? same : others).push_back({gap, place});
+      }
+      add_gate(i, near, std::move(others), false, out);
+      add_gate(i, near, std::move(same), true, out);
     }
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
@@ -95,21 +113,17 @@ class Walls {
     }
   }
 
-  /// From the corner where wall `i` begins to the nearest wall of the same building, or of another.
-  void add_gate(std::uint32_t i, const std::vector<std::uint32_t>& near, double reach, bool same,
+  /// Where a gate from a corner may end.
+  struct Place {
+    double gap = 0;  ///< m
+    Point2 at;
+    auto operator<=>(const Place&) const = default;
+  };
+
+  /// From the corner where wall `i` begins to the nearest of some places on walls, of the same building or of others.
+  void add_gate(std::uint32_t i, const std::vector<std::uint32_t>& near, std::vector<Place> places, bool same,
                 std::vector<Segment>& out) const {
     const Point2 corner = segments_[i].a;
-    std::vector<std::pair<double, Point2>> places;
-    for (const std::uint32_t w : near) {
-      if ((walls_[w].building == walls_[i].building) != same || w == i || w == walls_[i].previous) continue;
-      const Segment& wall = segments_[w];
-      if (std::min(wall.a.x, wall.b.x) > corner.x + reach || std::max(wall.a.x, wall.b.x) < corner.x - reach ||
-          std::min(wall.a.y, wall.b.y) > corner.y + reach || std::max(wall.a.y, wall.b.y) < corner.y - reach)
-        continue;
-      const Point2 place = nearest_on(wall, corner);
-      const double gap = distance(corner, place);
-      if (gap <= reach) places.emplace_back(gap, place);
-    }
     std::sort(places.begin(), places.end());
     for (const auto& [gap, place] : places) {
       if (gap < kTouching) {

@@ -41,10 +41,22 @@ const std::array<Point2, kRaysAround>& around() {
   return turns;
 }
 
+/// Whether so much is open that the place is no court whatever the rest of the rays meet, and that beyond doubt.
+/// \param seen  rays by what they met, not yet divided  \param rays  of these, the rest included
+bool is_open(const Enclosure& seen, int looked, int rays, const EdgeOptions& options) {
+  Enclosure at_best = seen;
+  at_best.others += rays - looked;
+  at_best.divide(rays);
+  return !at_best.is_court(options) && at_best.margin(options) >= Enclosure::kCertain;
+}
+
 /// Adds what is seen around a place.
-void look_around(Point2 place, Point2 first, model::OsmId own, const BuildingView& view, const EdgeOptions& options,
-                 Enclosure& out) {
+/// \param before  rays that looked from other places, of `rays` in all
+/// \returns false when the rest of the rays would change nothing
+bool look_around(Point2 place, Point2 first, model::OsmId own, int before, int rays, const BuildingView& view,
+                 const EdgeOptions& options, Enclosure& out) {
   for (const Point2 turn : around()) {
+    if (is_open(out, before++, rays, options)) return false;
     const Point2 direction{first.x * turn.x - first.y * turn.y, first.y * turn.x + first.x * turn.y};
     const Sight sight = view.index->scene().look(place, direction, options.view, Obstacles::buildings);
     if (sight.street_piece != kNothing)
@@ -52,6 +64,7 @@ void look_around(Point2 place, Point2 first, model::OsmId own, const BuildingVie
     else if (sight.footprint != kNothing)
       (view.index->all().footprints[sight.footprint].id == own ? out.own : out.others) += 1;
   }
+  return true;
 }
 
 /// Whether a gap leads to a street or to open ground, in one direction along it: most of a narrow view does, or the ground
@@ -75,7 +88,8 @@ bool leads_out(Point2 from, Point2 along, double to_end, const OutlineEdge& edge
   const double beyond = to_end + kBeyondGap;
   if (in_yard || wall < beyond + kBeyondGap) return false;
   Enclosure ground;
-  look_around({from.x + along.x * beyond, from.y + along.y * beyond}, edge.outward, own, view, options, ground);
+  look_around({from.x + along.x * beyond, from.y + along.y * beyond}, edge.outward, own, 0, kRaysAround, view, options,
+              ground);
   ground.divide(kRaysAround);
   return !ground.is_court(options);
 }
@@ -147,11 +161,16 @@ Enclosure enclosure_at(const OutlineEdge& edge, double at, model::OsmId own, boo
   const Sight ahead = scene.look(eye, edge.outward, options.view);
   const double opposite = std::min(ahead.wall, options.view);
   Enclosure out;
+  constexpr int kRays = kRaysAround * static_cast<int>(std::size(kPushes));
+  int looked = 0;
   for (const double push : kPushes) {
     const double before = std::min(push, opposite / 2);
-    look_around({wall.x + edge.outward.x * before, wall.y + edge.outward.y * before}, edge.outward, own, view, options, out);
+    if (!look_around({wall.x + edge.outward.x * before, wall.y + edge.outward.y * before}, edge.outward, own, looked,
+                     kRays, view, options, out))
+      break;
+    looked += kRaysAround;
   }
-  out.divide(static_cast<double>(kRaysAround) * std::size(kPushes));
+  out.divide(kRays);
   const bool gap = opposite <= options.max_alley && view.index->all().footprints[ahead.footprint].id != own;
   if (!gap || !out.is_court(options)) return out;
   const Point2 middle{wall.x + edge.outward.x * opposite / 2, wall.y + edge.outward.y * opposite / 2};

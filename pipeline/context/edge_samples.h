@@ -53,6 +53,7 @@ struct Enclosure {
   bool is_court(const EdgeOptions& options) const { return shortage(options) <= 0; }
   /// How far that is from changing, of the view around.
   double margin(const EdgeOptions& options) const { return std::fabs(shortage(options)); }
+  static constexpr double kCertain = 0.1;  ///< a larger margin makes nobody surer
 
  private:
   static constexpr double kAlleyMargin = 0.1;  ///< alleys are as clear as a tenth of the view

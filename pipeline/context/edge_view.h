@@ -76,7 +76,7 @@ class Scene {
   static constexpr double kOnTheWall = 0.05;
 
  private:
-  static constexpr double kCell = 8;  ///< m. The length of a usual wall
+  static constexpr double kCell = 5;  ///< m. Smaller cells cost more steps than they save tests
   void add_streets(std::span<const NetworkLine> lines);
   std::int64_t column(double x) const;
   std::int64_t row(double y) const;

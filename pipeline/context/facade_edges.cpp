@@ -263,7 +263,7 @@ double confidence_of(const Piece& piece, const SurroundingsIndex& index) {
   }
   for (const EdgeSample& s : piece.samples)
     if (s.yard != kNothing && piece.kind == EdgeKind::courtyard && index.courtyard(index.yards()[s.yard]).closed) return 0.97;
-  return 0.6 + 0.35 * std::min(1.0, piece.margin / 0.1);  // the agreement with labels made by eye is 60 % at the threshold
+  return 0.6 + 0.35 * std::min(1.0, piece.margin / Enclosure::kCertain);  // the agreement with labels made by eye is 60 % at the threshold
 }
 
 FacadeEdge stretch_of(const OutlineEdge& edge, const Piece& piece, const SurroundingsIndex& index) {

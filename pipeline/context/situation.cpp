@@ -244,9 +244,17 @@ std::string block_of(const model::Building& building, const SurroundingsIndex& i
     if (!index.block_box(b).meets(box)) continue;
     if (!meets_border(blocks[b], box)) {
       if (geometry::contains(blocks[b].polygon, building.outline[0].outer.points[0])) return blocks[b].id;
-    } else if (2 * geometry::common_area(building.outline, std::span(&blocks[b].polygon, 1)) > area) {
-      return blocks[b].id;
+      continue;
     }
+    std::size_t corners = 0, inside = 0;
+    for (const model::Polygon& polygon : building.outline)
+      for (const Point2 p : polygon.outer.points) {
+        ++corners;
+        inside += geometry::contains(blocks[b].polygon, p);
+      }
+    if (inside == corners) return blocks[b].id;
+    if (inside > 0 && 2 * geometry::common_area(building.outline, std::span(&blocks[b].polygon, 1)) > area)
+      return blocks[b].id;
   }
   return {};
 }

@@ -69,10 +69,17 @@ std::vector<std::size_t> shards_to_build(std::span<const Shard> shards, const st
 
 void forget_others(model::Extract& extract, model::TileId tile, std::vector<model::ReportRow>& rows) {
   std::vector<model::OsmId> kept;
+  const auto find = [&](model::OsmId id) -> const MappedBuilding* {
+    const auto place = std::lower_bound(extract.buildings.begin(), extract.buildings.end(), id,
+                                        [](const MappedBuilding& b, model::OsmId wanted) { return b.id < wanted; });
+    return place != extract.buildings.end() && place->id == id ? &*place : nullptr;
+  };
   const auto is_here = [&](const MappedBuilding& b) {
-    // Modelled and represented objects were built with this tile; so were those that a stage reported.
-    if (b.state == ObjectState::modelled || b.state == ObjectState::represented) return true;
+    // Modelled objects were built with this tile; what stands for others stands where it was built.
+    if (b.state == ObjectState::modelled) return true;
     if (b.state == ObjectState::pending) return false;
+    if (b.state == ObjectState::represented)
+      if (const MappedBuilding* by = find(b.related)) return by->state != ObjectState::pending;
     const std::optional<model::Location> place = b.rings.count > 0 ? box_centre(extract, b) : b.place;
     return place && georef::tile_of(*place, tile.level) == tile;
   };

@@ -116,7 +116,6 @@ class Tiles(BuildTest):
             for key in total:
                 total[key] += counts[key]
         counts = read_json(whole, 'build.json')['counts']
-        # Objects without a place (open ways whose nodes are missing) are in no tile.
         self.assertEqual(total, {key: counts[key] for key in total})
 
     def test_an_empty_tile_is_an_empty_build(self):
