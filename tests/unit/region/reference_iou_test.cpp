@@ -1,5 +1,5 @@
-// Does repair bring outlines nearer to what surveyors measured? Buildings of OSM against the ground surfaces of surveyed
-// and hand-built models on the same ground, before repair and after. Skipped where the data is absent.
+// Does repair bring outlines nearer to what surveyors measured? Buildings of OSM against the ground surfaces of
+// surveyed and hand-built models on the same ground, before repair and after. Skipped where the data is absent.
 //
 // Prints for each set: the matches, the agreement before and after (intersection over union, IoU), and what lost most,
 // step by step.
@@ -159,16 +159,16 @@ void print_row(const char* what, const std::vector<Measured>& some) {
   std::printf("| %-20s | %3zu |", what, some.size());
   for (const Placing p : {as_is, offset_off, best_place}) {
     const Agreement a = agreement(some, p);
-    std::printf(" %.4f | %.4f | %+.4f +- %.4f | %2zu (%.1f %%) |", a.before, a.after, a.after - a.before, a.error, a.lost,
-                100 * static_cast<double>(a.lost) / std::max(1.0, static_cast<double>(a.count)));
+    std::printf(" %.4f | %.4f | %+.4f +- %.4f | %2zu (%.1f %%) |", a.before, a.after, a.after - a.before, a.error,
+                a.lost, 100 * static_cast<double>(a.lost) / std::max(1.0, static_cast<double>(a.count)));
   }
   std::printf("\n");
 }
 
 void print_table(const std::vector<Measured>& all) {
   const auto moved = those(all, [](const Measured& m) { return m.moved(); });
-  std::printf("| which | matches | as is: before | after | change | lost > 0.01 | without the offset: before | after | change "
-              "| lost | each at its best place: before | after | change | lost |\n");
+  std::printf("| which | matches | as is: before | after | change | lost > 0.01 | without the offset: before | after | "
+              "change | lost | each at its best place: before | after | change | lost |\n");
   print_row("all", all);
   print_row("moved > 5 cm", moved);
   print_row("  by the record", those(moved, [](const Measured& m) { return m.shift > kMoved; }));
@@ -180,7 +180,8 @@ void print_table(const std::vector<Measured>& all) {
   for (const Measured& m : moved)
     for (std::size_t s = 0; s < kSteps; ++s)
       change[s] += (m.iou[s] - m.iou[mapped]) / static_cast<double>(moved.size());
-  std::printf("  mean change of the moved, as is: simplified %+.4f, walls shared %+.4f, squared apart %+.4f, all %+.4f\n",
+  std::printf("  mean change of the moved, as is: simplified %+.4f, walls shared %+.4f, squared apart %+.4f, "
+              "all %+.4f\n",
               change[simplified], change[shared], change[squared], change[repaired]);
 }
 
@@ -188,8 +189,8 @@ void print_losers(const std::vector<Measured>& all) {
   std::vector<Measured> moved = those(all, [](const Measured& m) { return m.moved(); });
   std::stable_sort(moved.begin(), moved.end(),
                    [](const auto& a, const auto& b) { return a.gain(as_is) < b.gain(as_is); });
-  std::printf("  worst: buildings (surveyed), area / surveyed, shift / of outline, IoU before, change: simplified, walls "
-              "shared, squared apart, all; all without the offset, at its best place\n");
+  std::printf("  worst: buildings (surveyed), area / surveyed, shift / of outline, IoU before, change: simplified, "
+              "walls shared, squared apart, all; all without the offset, at its best place\n");
   for (std::size_t i = 0; i < std::min<std::size_t>(10, moved.size()); ++i) {
     const Measured& m = moved[i];
     std::printf("  %s (%zu)%s %.0f / %.0f m2, %.2f / %.2f m, %.4f: %+.4f %+.4f %+.4f %+.4f; %+.4f %+.4f\n",
