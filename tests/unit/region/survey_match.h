@@ -59,7 +59,7 @@ struct SurveyMatch {
 /// Matches by area, as comparisons of OSM with surveys do (Hecht, Kunze and Hahmann 2013; Fan, Zipf, Fu and Neis 2014):
 /// a building and a surveyed one are linked when they have more than half of the smaller one in common; what is linked,
 /// directly or through others, is one match (1:1, 1:n, n:1, n:m); a match counts when both sides, each united, have
-/// more than half of their area in common. Anything else is another building than the survey saw, not a badly drawn one.
+/// more than half of their area in common. Anything else is another building than the survey saw, not one drawn badly.
 std::vector<SurveyMatch> match_survey(const FootprintStore& mapped, const std::vector<SurveyedBuilding>& survey);
 
 /// The outlines of some buildings together.
