@@ -118,7 +118,8 @@ class Builder {
     Point2 point;
     bool fixed;
   };
-  /// Mean of the members, or where a fixed one is. Summed in the order of the points, so that it depends on nothing else.
+  /// Mean of the places that the members are drawn at, each once, or where a fixed one is. Sorts the members by point and
+  /// sums in that order, so that it depends on nothing else.
   Place place_of(std::vector<std::uint32_t>& members) const {
     std::sort(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
       return std::tie(vertices_.point[a], a) < std::tie(vertices_.point[b], b);
@@ -126,12 +127,14 @@ class Builder {
     for (const std::uint32_t m : members)
       if (vertices_.fixed[m]) return {vertices_.point[m], true};
     const Point2 first = vertices_.point[members.front()];
-    double x = 0, y = 0;
-    for (const std::uint32_t m : members) {
-      x += vertices_.point[m].x - first.x;
-      y += vertices_.point[m].y - first.y;
+    double x = 0, y = 0, n = 0;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      const Point2 p = vertices_.point[members[i]];
+      if (i > 0 && p == vertices_.point[members[i - 1]]) continue;
+      x += p.x - first.x;
+      y += p.y - first.y;
+      ++n;
     }
-    const auto n = static_cast<double>(members.size());
     return {{first.x + x / n, first.y + y / n}, false};
   }
 
@@ -179,7 +182,7 @@ class Builder {
       corner.said.reserve(left_.size());
       for (const std::uint32_t m : left_) {
         corner_of_[m] = static_cast<std::uint32_t>(graph_.corners.size());
-        corner.said.push_back(vertices_.point[m]);
+        if (corner.said.empty() || corner.said.back() != vertices_.point[m]) corner.said.push_back(vertices_.point[m]);
         const std::int64_t node = vertices_.node[m];
         if (node != 0 && (corner.node == 0 || node < corner.node)) corner.node = node;
       }
