@@ -154,7 +154,7 @@ struct Arc {
 struct RepairRecord {
   std::uint32_t vertices = 0;       ///< of the outline after repair
   std::uint32_t moved = 0;          ///< of them by more than 1 mm
-  double mean_shift = 0, max_shift = 0;
+  double mean_shift = 0, max_shift = 0;  ///< m, of the moved ones
   double mapped_area = 0, area = 0;
   std::uint32_t shared_walls = 0;   ///< stretches whose points a neighbour has as well
   std::uint32_t gaps_closed = 0;    ///< of them that did not touch as mapped

@@ -26,7 +26,7 @@ std::vector<Column> situation_columns() {
 std::vector<Column> repair_columns() {
   return {
       {"moved", kInteger, "", "Corners of the outline that repair moved by more than 1 mm"},
-      {"mean_shift", kReal, "m", "How far corners of the outline were moved, on average"},
+      {"mean_shift", kReal, "m", "How far the moved corners of the outline were moved, on average"},
       {"max_shift", kReal, "m", "How far a corner of the outline was moved at most"},
       {"mapped_area", kReal, "m²", "Area of the outline as mapped, before repair"},
       {"shared_walls", kInteger, "", "Stretches of the outline whose points a neighbour has as well"},
