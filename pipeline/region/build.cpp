@@ -313,6 +313,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
 
   const PicturePlan picture_plan = options.report ? plan_pictures(shards, projection) : PicturePlan{};
   Pictures pictures(picture_plan);
+  const PlanChoice plan_choice = options.report ? choose_plan(shards, projection, picture_plan) : PlanChoice{};
   std::vector<picture::PlanTile> plans;
   export_::ReportBuilder page;
 
@@ -385,7 +386,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     if (options.report) {
       result.report = export_::report_tile(region);
       result.picture = picture_tile(region, picture_plan, shard);
-      if (picture_plan.chosen[shard]) result.plan = picture::plan_tile(region);
+      if (plan_choice.chosen[shard]) result.plan = picture::plan_tile(region);
     }
     result.rows = std::move(region.report.rows);
     if (options.single_glb || options.single_cityjson) result.region = std::move(region);
@@ -472,7 +473,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   };
   sort_files();
   if (options.report) {
-    PlanSheet plan = draw_plan(std::move(plans), context, picture_plan);
+    PlanSheet plan = draw_plan(std::move(plans), context, plan_choice);
     if (!plan.png.empty()) record.files.push_back(folder.write("plan.png", plan.png));
     sort_files();
     export_::ReportFacts facts = report_facts(options, record, extract, rows, page, centre);

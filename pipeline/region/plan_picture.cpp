@@ -1,9 +1,11 @@
 #include "pipeline/region/plan_picture.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
+#include "pipeline/georef/tiles.h"
 #include "pipeline/picture/image.h"
 
 namespace blockrand::region {
@@ -12,9 +14,10 @@ namespace {
 
 constexpr int kFilePixels = 3000;      // a side of the file: at kPlanReach a wall is two pixels wide
 constexpr int kReportPixels = 1300;    // a side of the picture in the report
+constexpr double kTileExtent = 700;    // m: buildings of a tile of level 15 lie at most so far from its centre
 constexpr double kFinest = 8;          // pixels per metre: more shows nothing more
 
-picture::PlanBox cropped(const picture::PlanBox& box, model::Point3 middle) {
+picture::PlanBox cropped(const picture::PlanBox& box, model::Point2 middle) {
   const auto crop = [](double low, double high, double at) {
     if (high - low <= 2 * kPlanReach) return std::pair(low, high);
     const double start = std::clamp(at - kPlanReach, low, high - 2 * kPlanReach);
@@ -60,17 +63,31 @@ picture::Image sheet(std::span<const picture::PlanTile> tiles, const picture::Pl
 
 }  // namespace
 
-PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const ContextExtract& context, const PicturePlan& pictures) {
+PlanChoice choose_plan(std::span<const Shard> shards, const georef::Projection& projection, const PicturePlan& pictures) {
+  PlanChoice choice;
+  choice.middle = {pictures.origin.x, pictures.origin.y};
+  // The plan may lie to one side of the middle, and a tile to one side of its own.
+  constexpr double kFar = 2 * kPlanReach + kTileExtent;
+  for (const Shard& shard : shards) {
+    const georef::LonLat at = georef::centre(shard.tile);
+    const model::Point2 p = projection.forward(at.lon, at.lat);
+    choice.chosen.push_back(std::fabs(p.x - choice.middle.x) <= kFar && std::fabs(p.y - choice.middle.y) <= kFar);
+    choice.whole = choice.whole && choice.chosen.back();
+  }
+  return choice;
+}
+
+PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const ContextExtract& context, const PlanChoice& choice) {
   PlanSheet out;
   const picture::PlanBox all = picture::box_of(tiles);
   if (!(all.width() > 0 && all.height() > 0)) return out;
-  const picture::PlanBox box = cropped(all, pictures.origin);
+  const picture::PlanBox box = cropped(all, choice.middle);
   tiles.push_back(surroundings(context, box));
   out.png = picture::png(sheet(tiles, box, kFilePixels));
   const picture::Image small = sheet(tiles, box, kReportPixels);
   out.in_report = {picture::png(small), small.width, small.height,
                    "From above, north up. Walls in the colours of what they face."};
-  if (!pictures.whole || box.width() < all.width() || box.height() < all.height())
+  if (!choice.whole || box.width() < all.width() || box.height() < all.height())
     out.note = fmt::format("The plan shows {:.0f} by {:.0f} m of the build's densest part. All of it is in the GeoPackage.",
                            box.width(), box.height());
   return out;
