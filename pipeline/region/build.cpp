@@ -373,9 +373,11 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     return explain;
   };
 
+  std::atomic<std::int64_t> context_time = 0;
   const TileInputs inputs{extract,      shards,         projection, defaults,      kept,
                           repaired,     context,        surroundings, numbers,     neighbours,
-                          options.repair, options.generate, options.seed, options.lod, terrain.has_value(), ground_height};
+                          options.repair, options.generate, options.seed, options.lod, terrain.has_value(), ground_height,
+                          context_time};
   const auto work = [&](std::size_t i) {
     TileResult result;
     const std::size_t shard = todo[i];
@@ -497,6 +499,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   run.peak_rss_bytes = summary.peak_rss_bytes;
   run.store_bytes = summary.store_bytes;
   run.tiles_in_flight = summary.tiles_in_flight = std::min<std::uint64_t>(in_flight, todo.size());
+  run.tile_context_seconds = 1e-9 * static_cast<double>(context_time.load());
   run.jobs = workers;
   char host[256] = "";
   gethostname(host, sizeof host - 1);

@@ -147,6 +147,7 @@ std::string run_json(const RunRecord& run, const BuildSummary& summary) {
   Json j;
   j["timings"] = Json::object();
   for (const auto& t : run.timings) j["timings"][t.name] = rounded(t.seconds, 1000);
+  j["repair_and_context_in_tiles_thread_seconds"] = rounded(run.tile_context_seconds, 1000);
   j["seconds"] = rounded(run.seconds, 1000);
   const double objects = static_cast<double>(summary.buildings_in + summary.parts_in);
   j["buildings_per_second"] = run.seconds > 0 ? rounded(objects / run.seconds, 10) : 0;

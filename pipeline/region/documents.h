@@ -46,6 +46,7 @@ struct BuildRecord {
 struct RunRecord {
   std::vector<base::Progress::PhaseTime> timings;
   double seconds = 0;
+  double tile_context_seconds = 0;    ///< of all threads: parts and facade edges, which are worked on in tiles
   std::uint64_t peak_rss_bytes = 0;
   std::uint64_t store_bytes = 0;      ///< the object store with its indices
   std::uint64_t tiles_in_flight = 0;

@@ -1,6 +1,7 @@
 #include "pipeline/region/tile_stages.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -109,8 +110,10 @@ void cover_party_walls(Region& region, const TileInputs& in) {
 Region run_tile(std::size_t shard, const TileInputs& in) {
   std::vector<std::uint32_t> numbers(in.shards[shard].seeds.size());
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = in.repaired.first[shard] + static_cast<std::uint32_t>(i);
+  const auto start = std::chrono::steady_clock::now();
   Region region = prepare(in.shards[shard], numbers, in);
   in.surroundings.label_edges(region, numbers);
+  in.context_time += std::chrono::nanoseconds(std::chrono::steady_clock::now() - start).count();
   resolve(region, in);
   if (in.has_terrain)
     for (const Building& b : region.buildings)

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <span>
 
@@ -49,6 +51,8 @@ struct TileInputs {
   bool has_terrain = false;
   /// Ground under a building above the build's height reference.
   std::function<model::Sourced<double>(const model::Building&)> ground_height;
+  /// Nanoseconds, summed over all threads, that tiles spend on parts and facade edges: the rest of repair and context.
+  std::atomic<std::int64_t>& context_time;
 };
 
 /// Everything about the buildings of a shard but its files. Safe for different shards at the same time.
