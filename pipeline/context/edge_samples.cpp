@@ -105,7 +105,7 @@ bool may_front(const OutlineEdge& edge, const Sight& sight, const Scene& scene) 
 
 BuildingView view_of(const model::Building& building, const SurroundingsIndex& index) {
   const SurroundingsIndex::Box box = box_of(building, 2 * kAsk);
-  return {&index, index.yards_near(box), index.squares_near(box)};
+  return {&index, building.osm, index.yards_near(box), index.squares_near(box)};
 }
 
 EdgeSample look_out(const OutlineEdge& edge, double at, const BuildingView& view, const EdgeOptions& options) {
@@ -134,7 +134,8 @@ EdgeSample look_out(const OutlineEdge& edge, double at, const BuildingView& view
   out.ahead /= ahead;
   out.street_share = seen / all;
   const Sight& straight = out.fan[kFanRays / 2];
-  if (straight.from_inside) out.inside = straight.footprint;
+  // Where a recess is narrower than rays begin before a wall, they begin in the building itself.
+  if (straight.from_inside && index.all().footprints[straight.footprint].id != view.own) out.inside = straight.footprint;
   for (const std::uint32_t s : view.squares)
     if (out.square == kNothing && index.squares()[s].box.meets({front, front}) &&
         index.contains(index.squares()[s], front))

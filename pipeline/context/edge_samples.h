@@ -15,6 +15,7 @@ namespace blockrand::context {
 /// What can matter for one building, gathered once.
 struct BuildingView {
   const SurroundingsIndex* index = nullptr;
+  model::OsmId own;                    ///< of the building
   std::vector<std::uint32_t> yards;    ///< into SurroundingsIndex::yards
   std::vector<std::uint32_t> squares;  ///< into SurroundingsIndex::squares
 };

@@ -204,6 +204,16 @@ TEST(FacadeEdges, WallsOfALightWellFaceACourtyard) {
   EXPECT_EQ(length_of(t[1], EdgeKind::courtyard), 16);
 }
 
+TEST(FacadeEdges, NobodyIsItsOwnNeighbour) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  // Rays begin 0.02 m before a wall: in this recess, within the building.
+  t.house(1, {{0, 10}, {20, 10}, {20, 30}, {10.005, 30}, {10.005, 20}, {9.995, 20}, {9.995, 30}, {0, 30}});
+  t.label();
+  expect_complete(t[1]);
+  EXPECT_EQ(length_of(t[1], EdgeKind::party_wall), 0);
+}
+
 TEST(FacadeEdges, CourtOfAUIsACourtyardAndAnLHasNone) {
   SmallTown u;
   u.street(901, {{-80, 0}, {120, 0}}, "Street");
