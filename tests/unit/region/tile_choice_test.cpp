@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "pipeline/base/error.h"
+#include "pipeline/georef/tiles.h"
 
 namespace blockrand::region {
 namespace {
@@ -77,6 +78,38 @@ TEST_F(Pinned, MistakesAreNamed) {
   }
   std::filesystem::remove(path_);
   EXPECT_THAT(message<base::InputError>(options), HasSubstr("cannot be opened"));
+}
+
+TEST(ForgetOthers, KeepsWhatWasBuiltHereAndWhatItStandsFor) {
+  using model::ObjectState;
+  model::Extract e;
+  const auto add = [&](std::int64_t id, ObjectState state, std::int64_t related = 0) {
+    model::MappedBuilding b;
+    b.id = {model::OsmType::way, id};
+    b.state = state;
+    b.related = {model::OsmType::way, related};
+    b.place = model::Location{134'000'000, 525'000'000};
+    e.buildings.push_back(b);
+  };
+  add(1, ObjectState::modelled);
+  add(2, ObjectState::represented, 1);
+  add(3, ObjectState::pending);
+  add(4, ObjectState::represented, 3);  // by a building of another tile, though it lies here
+  add(5, ObjectState::reported);
+  add(6, ObjectState::duplicate, 3);
+  std::vector<model::ReportRow> rows = {{{model::OsmType::way, 2}, model::IssueCode::squared, ""},
+                                        {{model::OsmType::way, 4}, model::IssueCode::squared, ""}};
+  const model::TileId here = georef::tile_of(*e.buildings[0].place, 15);
+  forget_others(e, here, rows);
+  std::vector<std::int64_t> kept;
+  for (const model::MappedBuilding& b : e.buildings) kept.push_back(b.id.number);
+  EXPECT_THAT(kept, ::testing::ElementsAre(1, 2, 5, 6));
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].object.number, 2);
+  forget_others(e, {15, here.x + 1, here.y}, rows);
+  kept.clear();
+  for (const model::MappedBuilding& b : e.buildings) kept.push_back(b.id.number);
+  EXPECT_THAT(kept, ::testing::ElementsAre(1, 2)) << "what was reported lies elsewhere";
 }
 
 }  // namespace
