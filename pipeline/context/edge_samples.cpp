@@ -145,11 +145,12 @@ EdgeSample look_out(const OutlineEdge& edge, double at, const BuildingView& view
         geometry::contains(index.courtyard(index.yards()[y]).polygon, front))
       out.yard = y;
 
+  const bool closed_yard = out.yard != kNothing && index.courtyard(index.yards()[out.yard]).closed;
   if (out.inside != kNothing)
     out.kind = EdgeKind::party_wall;
-  else if (out.square != kNothing || out.ahead >= 0.5 || near >= options.min_street_only * all)
+  else if ((out.square != kNothing && !closed_yard) || out.ahead >= 0.5 || near >= options.min_street_only * all)
     out.kind = EdgeKind::street;
-  else if (out.yard != kNothing && index.courtyard(index.yards()[out.yard]).closed)
+  else if (closed_yard)
     out.kind = EdgeKind::courtyard;
   return out;
 }

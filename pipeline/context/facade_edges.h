@@ -35,7 +35,7 @@ struct Surroundings {
 };
 
 struct EdgeOptions {
-  /// m. Walls nearer than this touch (as repair::RepairOptions::snap_distance): party walls.
+  /// m. Walls nearer than this touch: party walls. As RepairOptions::snap_distance unless that is set.
   double touching = 0.40;
   double min_contact = 0.5;   ///< m. Shorter contacts are corners that touch
   double min_stretch = 0.3;   ///< m. Shorter pieces are not made

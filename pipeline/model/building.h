@@ -81,6 +81,14 @@ constexpr std::string_view name(EdgeKind kind) {
 
 /// A stretch of one edge of the outline with one situation. Edges are cut where their situation changes; the cuts are no
 /// corners of the outline, so that roofs and solids keep whole walls.
+/// A mapped entrance or address node, and the stretch of wall it belongs to.
+struct EdgePoint {
+  OsmId id;
+  Point2 place;              ///< m
+  bool entrance = false;     ///< else an address alone
+  std::string house_number;  ///< addr:housenumber, empty for none
+};
+
 struct FacadeEdge {
   std::int64_t from_node = 0, to_node = 0;  ///< OSM nodes of the ends of the whole edge (0 where a repair made the point)
   std::uint32_t polygon = 0;                ///< index into Building::outline
@@ -100,6 +108,7 @@ struct FacadeEdge {
   bool corner_start = false, corner_end = false;  ///< a street corner of the block lies at this end
   bool chamfer = false;                     ///< cuts off a street corner
   std::int32_t entrances = 0;               ///< mapped entrances on it
+  std::vector<EdgePoint> points;            ///< mapped entrances and address nodes at it, by id
   std::int32_t arc = -1;                    ///< index into Building::arcs, where the edge is a piece of a curve
   double length() const { return end - start; }
 };

@@ -32,7 +32,7 @@ enum class IssueClass : std::uint8_t {
   X(roof_shape_unsupported, "ROOF_SHAPE_UNSUPPORTED", fallback, "This roof shape is built as its nearest relative.") \
   X(roof_shape_unknown, "ROOF_SHAPE_UNKNOWN", fallback, "The value of roof:shape is in no list; flat was built.")    \
   X(roof_failed, "ROOF_FAILED", fallback, "The roof's solid failed its check; a flat roof was built.")               \
-  X(roof_simplified, "ROOF_SIMPLIFIED", fallback, "The roof stands on a plan simplified by up to 0.5 m.")            \
+  X(roof_simplified, "ROOF_SIMPLIFIED", fallback, "The roof stands on a simplified plan.")                           \
   X(gable_as_hip, "GABLE_AS_HIP", fallback, "No gable end fits this plan; hips were built.")                         \
   X(pyramid_as_hip, "PYRAMID_AS_HIP", fallback, "No apex sees every eaves edge; hips were built.")                   \
   X(roof_height_clamped, "ROOF_HEIGHT_CLAMPED", fallback, "The roof was higher than the building allows.")           \
@@ -51,7 +51,7 @@ enum class IssueClass : std::uint8_t {
   X(spike_removed, "SPIKE_REMOVED", notice, "A spike was removed.")                                                  \
   X(ring_repaired, "RING_REPAIRED", notice, "A self-intersecting outline was made valid.")                           \
   X(split_outline, "SPLIT_OUTLINE", notice, "The valid outline consists of several pieces.")                         \
-  X(touching_rings, "TOUCHING_RINGS", notice, "Rings that touched were moved apart by a few millimetres.")           \
+  X(touching_rings, "TOUCHING_RINGS", notice, "Rings that touched were moved apart by a few centimetres.")           \
   X(sliver_dropped, "SLIVER_DROPPED", notice, "A piece below the smallest area was dropped.")                        \
   X(collinear_points, "COLLINEAR_POINTS", notice, "Points on straight walls were removed.")                          \
   X(shared_wall_made, "SHARED_WALL_MADE", notice, "A wall was joined with that of a neighbour that almost met it.")   \
@@ -69,7 +69,7 @@ enum class IssueClass : std::uint8_t {
   X(part_without_outline, "PART_WITHOUT_OUTLINE", notice, "A building part lies in no building; it stands alone.")   \
   X(parts_incomplete, "PARTS_INCOMPLETE", notice, "The parts leave some of the outline free; the rest was built.")   \
   X(antimeridian, "ANTIMERIDIAN", notice, "The outline crosses longitude 180 degrees.")                              \
-  X(reach_cut, "REACH_CUT", notice, "A row or block larger than the halo was cut at the grid.")                      \
+  X(reach_cut, "REACH_CUT", notice, "A row of buildings longer than 1 km was cut at the grid.")                      \
   X(terrain_missing, "TERRAIN_MISSING", notice, "The terrain has no value here; the ground height was used.")        \
   X(text_cleaned, "TEXT_CLEANED", notice, "Characters that no XML file may hold were replaced in a tag.")
 

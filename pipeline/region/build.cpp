@@ -191,7 +191,7 @@ std::uint64_t estimated_bytes(const BuildOptions& options, std::uint64_t buildin
   constexpr double kGlbBytes = 3000;
   const auto lod = static_cast<std::size_t>(std::clamp(options.lod, 0, 2));
   constexpr double kJsonBytes[] = {1500, 2000, 3500};
-  constexpr double kGeoPackageBytes = 1600, kExplainBytes = 300, kReportBytes = 150;
+  constexpr double kGeoPackageBytes = 4800, kExplainBytes = 750, kReportBytes = 150;
   double each = 300;
   if (options.citygml) each += options.gzip ? kGmlBytes[lod] / 7 : kGmlBytes[lod];
   if (options.cityjson) each += options.gzip ? kJsonBytes[lod] / 5 : kJsonBytes[lod];

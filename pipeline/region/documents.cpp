@@ -49,6 +49,7 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
                  {"simplify", p.simplify},                     {"collinear_distance", p.collinear_distance},
                  {"share_walls", p.share_walls},               {"square", p.square},
                  {"fit_parts", p.fit_parts},                   {"arcs", p.arcs},
+                 {"settle_coverings", p.settle_coverings},     {"resolve_overlaps", p.resolve_overlaps},
                  {"max_ring_area_change", p.max_ring_area_change},
                  {"snap_distance", p.snap_distance},           {"snap_reach", p.snap_reach},
                  {"snap_angle", p.snap_angle},                 {"min_overlap", p.min_overlap},

@@ -151,7 +151,7 @@ RepairedRow run_row(const Extract& extract, const FootprintStore& store, const R
     std::vector<Polygon> polygons = store.polygons(b);
     std::move(polygons.begin(), polygons.end(), std::back_inserter(out.row.beyond_cut));
   }
-  if (options.share_walls) repair::settle_coverings(out.row, options, report);
+  if (options.settle_coverings) repair::settle_coverings(out.row, options, report);
   repair::Row standing;  // what is settled has no polygons left to repair
   standing.beyond_cut = std::move(out.row.beyond_cut);
   for (repair::RowBuilding& b : out.row.buildings)

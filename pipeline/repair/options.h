@@ -5,11 +5,13 @@ namespace blockrand::repair {
 
 struct RepairOptions {
   // Which steps run. Validity always does: everything after it stands on valid polygons.
-  bool simplify = true;      ///< collinear points are removed
-  bool share_walls = true;   ///< walls of neighbours become one, overlaps are resolved
-  bool square = true;        ///< almost right corners become right
-  bool fit_parts = true;     ///< parts follow their outline, share walls, do not overlap; large rests of it are built
-  bool arcs = true;          ///< rounded walls are told from corners
+  bool simplify = true;          ///< collinear points are removed
+  bool settle_coverings = true;  ///< houses mapped twice and outlines around mapped houses are settled
+  bool share_walls = true;       ///< walls of neighbours become one
+  bool resolve_overlaps = true;  ///< buildings at one level that still overlap give way
+  bool square = true;            ///< almost right corners become right
+  bool fit_parts = true;         ///< parts follow their outline, share walls, do not overlap; large rests of it are built
+  bool arcs = true;              ///< rounded walls are recorded; no step makes them straight either way
 
   // Validity.
   double duplicate_distance = 0.002;  ///< m. Nearer neighbours on a ring are one point; OSM's own grid is 11 mm.

@@ -23,7 +23,7 @@ void repair_sorted_row(Row& row, const RepairOptions& options, model::Report& re
   if (options.square) square_row(graph, row, options, direction);
   std::vector<std::vector<SaidPoint>> said;
   apply_row_graph(graph, row, options, report, said);
-  if (options.share_walls) resolve_overlaps(row, options, report);
+  if (options.resolve_overlaps) resolve_overlaps(row, options, report);
   record_walls(row, mapped, said, report);
   for (std::size_t b = 0; b < row.buildings.size(); ++b) {
     row.buildings[b].record.direction = direction[b];

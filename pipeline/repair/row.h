@@ -48,10 +48,10 @@ struct Row {
 
 /// One corner of the row's topology.
 struct Corner {
-  model::Point2 start;             ///< m, before squaring: the mean of what the footprints say
+  model::Point2 start;             ///< m, before squaring: the mean of what is said
   model::Point2 position;          ///< m; where it ends. Equal to `start` at first
-  std::vector<model::Point2> said; ///< m, one for each footprint that has a corner here; empty for the foot of a neighbour's
-                                   ///< wall alone
+  std::vector<model::Point2> said; ///< m, ascending, each once: where footprints have the corner (copies of one node say one
+                                   ///< thing); empty for the foot of a neighbour's wall alone
   bool fixed = false;              ///< must not move
   std::int64_t node = 0;           ///< OSM node, the least of those merged; 0 where repair made it
 };

@@ -44,7 +44,7 @@ RowLines row_lines(const RowGraph& graph, std::span<const std::uint32_t> rings);
 /// Rings of the row in groups that have no corner in common; each ascending.
 std::vector<std::vector<std::uint32_t>> connected_rings(const RowGraph& graph, std::size_t buildings);
 
-/// How much a corner's position is worth: the number of footprints that have it; a quarter where only a neighbour ends.
+/// How much a corner's position is worth: in how many places footprints have it; a quarter where only a neighbour ends.
 double corner_weight(const Corner& corner);
 /// What the footprints say about where it is, on average; `start` where none does.
 model::Point2 corner_evidence(const Corner& corner);

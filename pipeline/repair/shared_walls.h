@@ -12,7 +12,7 @@ namespace blockrand::repair {
 /// corner, the nearest pairs first; never two corners of one polygon, of different levels, of two sides of an alley,
 /// nor any whose mean lies more than 90 % of `max_shift` from what one of them says. Where a shared wall ends in the
 /// middle of the neighbour's, the corner is put into the neighbour's wall.
-/// `Corner::start` is the mean of what the footprints say, moved so that the pieces of a wall lie in one line where
+/// `Corner::start` is the mean of the places where footprints have it, each once, moved so that the pieces of a wall lie in one line where
 /// `max_shift` allows (least squares over the wall's ends and what ends on it). `position` is the same.
 /// With `share_walls` off, or in a row of one, every corner is its footprint's own.
 ///

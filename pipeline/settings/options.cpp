@@ -338,7 +338,7 @@ void add_build(Table& t) {
           .key = "report",
           .section = S,
           .help = "write report.html: what was built, where values come from, a map and pictures",
-          .without = "no report.html: the page with what was built, where values come from, a map and pictures"},
+          .without = "no report.html, the page with what was built, where values come from, a map and pictures; no plan.png"},
          FIELD(build.report));
   t.flag({.name = "explain",
           .key = "explain",
@@ -435,9 +435,21 @@ void add_repair(Table& t) {
   t.flag({.name = "repair-share-walls",
           .key = "share_walls",
           .section = S,
-          .help = "join walls of neighbours that almost meet; resolve overlaps",
-          .without = "gaps and overlaps between neighbours stay as mapped"},
+          .help = "join walls of neighbours that almost meet",
+          .without = "gaps between neighbours stay as mapped"},
          FIELD(build.repair.share_walls));
+  t.flag({.name = "repair-resolve-overlaps",
+          .key = "resolve_overlaps",
+          .section = S,
+          .help = "buildings that overlap at one level give way to each other",
+          .without = "overlaps of neighbours stay"},
+         FIELD(build.repair.resolve_overlaps));
+  t.flag({.name = "repair-settle-coverings",
+          .key = "settle_coverings",
+          .section = S,
+          .help = "settle houses mapped twice, and outlines around mapped houses",
+          .without = "houses mapped twice are built twice"},
+         FIELD(build.repair.settle_coverings));
   t.flag({.name = "repair-square",
           .key = "square",
           .section = S,
@@ -453,8 +465,8 @@ void add_repair(Table& t) {
   t.flag({.name = "repair-arcs",
           .key = "arcs",
           .section = S,
-          .help = "recognise rounded walls",
-          .without = "rounded walls are taken for many straight ones"},
+          .help = "record rounded walls as arcs",
+          .without = "rounded walls are not recorded; what repair does to them stays the same"},
          FIELD(build.repair.arcs));
   metres("repair-duplicate-distance", "duplicate_distance", 0, 0.5, "nearer neighbours on a ring are one point, in m",
          FIELD(build.repair.duplicate_distance));

@@ -192,7 +192,7 @@ class PageTest(BuildTest):
 
     def pictures_are_pictures(self, page):
         images = page.all(HTML + 'img')
-        self.assertEqual(len(images), 3)
+        self.assertEqual(len(images), 4, 'three views and the plan')
         for image in images:
             self.assertTrue(image.get('alt'))
             data = base64.b64decode(image.get('src').removeprefix('data:image/png;base64,'), validate=True)
@@ -230,12 +230,12 @@ class Sample(PageTest):
         self.assertEqual(sha256(os.path.join(self.out, 'report.html')), sha256(os.path.join(other, 'report.html')))
 
     def test_footprints_only(self):
-        """LoD 0 has no bodies to picture; the page is there all the same."""
+        """LoD 0 has no bodies to picture, but a plan; the page is there all the same."""
         folder = self.build(SAMPLE, 'lod0', '--lod', '0')
         page = Page(folder)
         self.loads_nothing(page)
         self.links_lead_somewhere(page, folder)
-        self.assertEqual(page.all(HTML + 'img'), [])
+        self.assertEqual(len(page.all(HTML + 'img')), 1, 'the plan')
         self.assertGreater(len(page.all(SVG + 'path')), 100)
 
 
