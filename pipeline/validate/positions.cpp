@@ -16,7 +16,8 @@ constexpr double kLeastEdge = 0.5;            // m
 constexpr double kNearestToPole = 89.999;     // degrees: a hundred metres
 constexpr double kMetresPerUnit = 0.0111319;  // 1e-7 degrees of latitude
 
-constexpr double kUnmoved = 0.0005;           // m: shifts are written in millimetres
+constexpr double kWritten = 0.0005;           // m: shifts are written in millimetres
+constexpr double kStraight = 0.02;            // m: flatter corners are points on a straight wall
 // The median of n values that spread normally by s has the standard error 1.2533 s / sqrt(n); s is 1.4826 times their
 // median distance from their median. Three of them: one sound build in 370 is beyond by chance, along one axis.
 constexpr double kThreeErrorsOfMedian = 3 * 1.2533 * 1.4826;
@@ -60,7 +61,9 @@ void PositionSampler::add(const std::string& body, const std::vector<model::Loca
     if (std::hypot(u.x, u.y) < kLeastEdge || std::hypot(v.x, v.y) < kLeastEdge) continue;
     const double turn = std::fabs(std::atan2(u.x * v.y - u.y * v.x, u.x * v.x + u.y * v.y)) / kRadians;
     if (turn < kLeastTurn || turn > 180 - kLeastTurn) continue;
-    candidates_.push_back({rank_of(body, at), body, at});
+    // Of the triangle of the corner and its neighbours.
+    const double height = std::fabs(u.x * v.y - u.y * v.x) / std::hypot(u.x + v.x, u.y + v.y);
+    candidates_.push_back({rank_of(body, at), body, at, height});
   }
   if (candidates_.size() > 20 * kSampled) shrink();
 }
@@ -80,7 +83,7 @@ PositionSample PositionSampler::finish(std::string source) && {
   for (Candidate& c : candidates_) {
     lons.push_back(c.at.lon_degrees());
     lats.push_back(c.at.lat_degrees());
-    sample.corners[c.body].push_back({c.at, c.rank});
+    sample.corners[c.body].push_back({c.at, c.rank, c.height});
   }
   if (lons.empty()) return sample;
   const auto middle = [](std::vector<double>& v) {
@@ -173,12 +176,16 @@ RepairsSaid repairs_of_explanations(const std::vector<std::string>& paths, const
 
 void bound_positions(PositionSample& sample, const RepairsSaid& said, const std::set<std::string>& moved) {
   std::vector<std::string> unknown;
-  for (const auto& [id, corners] : sample.corners) {
+  for (auto& [id, corners] : sample.corners) {
     const auto found = said.find(id);
     if (found == said.end() ? moved.contains(id) : found->second.reshaped)
       unknown.push_back(id);
-    else if (found != said.end() && found->second.max_shift > kUnmoved)
-      sample.reach[id] = found->second.max_shift;
+    else if (found != said.end() && found->second.max_shift > kWritten) {
+      const double reach = sample.reach[id] = found->second.max_shift + kWritten;
+      // Where the corner and its neighbours may have come into one line the model has no corner.
+      std::erase_if(corners, [&](const SampledCorner& c) { return c.height <= 2 * reach + kStraight; });
+      if (corners.empty()) unknown.push_back(id);
+    }
   }
   for (const std::string& id : unknown) sample.corners.erase(id);
 }

@@ -19,6 +19,7 @@ namespace blockrand::validate {
 struct SampledCorner {
   model::Location at;
   std::uint64_t rank = 0;  ///< pseudo-random, the same in every run: the first 1,000 that are found in the model count
+  double height = 0;  ///< m, over the line through its neighbours
 };
 
 /// By the id of a body that is a whole building.
@@ -47,6 +48,7 @@ class PositionSampler {
     std::uint64_t rank;
     std::string body;
     model::Location at;
+    double height = 0;  ///< m
   };
   void shrink();
   std::vector<Candidate> candidates_;

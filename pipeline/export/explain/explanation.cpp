@@ -68,8 +68,9 @@ class Writer {
     *text_ += '\n';
 
     out.objects.emplace_back(building.osm, building.osm);
+    std::set<model::OsmId> parts;  // a part may be built in pieces
     for (const BuildingPart& part : building.parts)
-      if (part.osm != building.osm) out.objects.emplace_back(part.osm, building.osm);
+      if (part.osm != building.osm && parts.insert(part.osm).second) out.objects.emplace_back(part.osm, building.osm);
   }
 
  private:
