@@ -24,6 +24,7 @@ enum class IssueClass : std::uint8_t {
   X(too_few_points, "TOO_FEW_POINTS", reported, "The outline has fewer than three distinct points.")                 \
   X(zero_area, "ZERO_AREA", reported, "The outline encloses no area.")                                               \
   X(invalid_location, "INVALID_LOCATION", reported, "A node lies outside the range of longitude and latitude.")      \
+  X(too_large, "TOO_LARGE", reported, "The outline is wider than 10 km; no building is. Correct it in an editor.")   \
   X(underground, "UNDERGROUND", reported, "The building lies below the ground (location or layer tags).")            \
   X(lifecycle, "LIFECYCLE", reported, "The building is planned, under construction, ruined or gone.")                \
   X(relation_type, "RELATION_TYPE", reported, "A relation of this type carries no outline of its own.")              \

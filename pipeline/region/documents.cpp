@@ -17,14 +17,8 @@ double rounded(double value, double steps = 100) { return std::nearbyint(value *
 
 }  // namespace
 
-std::string build_json(const BuildOptions& options, const BuildRecord& r) {
-  Json j;
-  j["program"] = {{"name", "blockrand"}, {"version", base::kVersion}};
-  j["inputs"] = Json::array();
-  for (const InputFile& f : r.inputs)
-    j["inputs"].push_back({{"role", f.role}, {"path", f.path}, {"bytes", f.bytes}, {"sha256", f.sha256}});
-  j["data_time"] = r.data_time;
-  Json& c = j["configuration"];
+nlohmann::ordered_json configuration(const BuildOptions& options) {
+  Json c;
   c["lod"] = options.lod;
   c["formats"] = Json::array();
   if (options.gltf) c["formats"].push_back("gltf");
@@ -60,6 +54,17 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
                    {"min_wall_height", g.min_wall_height},         {"min_roof_height", g.min_roof_height},
                    {"max_roof_pitch", g.max_roof_pitch},           {"canopy_thickness", g.canopy_thickness},
                    {"collinear_tolerance", g.collinear_tolerance}, {"simplify_tolerance", g.simplify_tolerance}};
+  return c;
+}
+
+std::string build_json(const BuildOptions& options, const BuildRecord& r) {
+  Json j;
+  j["program"] = {{"name", "blockrand"}, {"version", base::kVersion}};
+  j["inputs"] = Json::array();
+  for (const InputFile& f : r.inputs)
+    j["inputs"].push_back({{"role", f.role}, {"path", f.path}, {"bytes", f.bytes}, {"sha256", f.sha256}});
+  j["data_time"] = r.data_time;
+  j["configuration"] = configuration(options);
   j["crs"] = {{"code", r.crs.authority_code},
               {"name", r.crs.name},
               {"operation", r.crs.operation},
@@ -79,7 +84,7 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   const RepairTotals& m = r.repair;
   j["repair"] = {{"outlines", m.outlines},
                  {"rows", m.rows},
-                 {"buildings_at_cuts", m.rows_cut},
+                 {"buildings_at_cuts", m.at_cuts},
                  {"vertices", m.vertices},
                  {"vertices_moved", m.moved},
                  {"mean_shift_m", rounded(m.mean_shift, 1000)},

@@ -9,7 +9,16 @@ namespace {
 
 constexpr double kCell = 64;  // m, two to four houses wide: few boxes lie in more than four cells
 
+/// A building over more cells stands in a list of its own.
+constexpr std::int64_t kManyCells = 4096;
+
 std::int32_t cell_of(double metres) { return static_cast<std::int32_t>(std::floor(metres / kCell)); }
+
+std::int64_t cells_of(const PlanBox& box) {
+  const std::int64_t columns = cell_of(box.maximum.x) - cell_of(box.minimum.x) + 1,
+                     rows = cell_of(box.maximum.y) - cell_of(box.minimum.y) + 1;
+  return columns * rows;
+}
 
 }  // namespace
 
@@ -90,10 +99,16 @@ void FootprintStore::shrink_to_fit() {
   arcs_.shrink_to_fit();
 }
 
+void FootprintStore::add_overlap(std::uint32_t building, double area) { entries_[building].record.overlap_left += area; }
+
 FootprintIndex::FootprintIndex(const FootprintStore& store) : store_(store) {
   for (std::uint32_t b = 0; b < store.size(); ++b) {
     const PlanBox& box = store[b].box;
     if (box.empty()) continue;
+    if (cells_of(box) > kManyCells) {
+      large_.push_back(b);
+      continue;
+    }
     for (std::int32_t x = cell_of(box.minimum.x); x <= cell_of(box.maximum.x); ++x)
       for (std::int32_t y = cell_of(box.minimum.y); y <= cell_of(box.maximum.y); ++y) entries_.push_back({x, y, b});
   }
@@ -109,6 +124,8 @@ std::vector<std::uint32_t> FootprintIndex::near(const PlanBox& box, double dista
     for (; entry != entries_.end() && entry->x == x && entry->y <= y1; ++entry)
       if (store_[entry->building].box.near(box, distance)) out.push_back(entry->building);
   }
+  for (const std::uint32_t b : large_)
+    if (store_[b].box.near(box, distance)) out.push_back(b);
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
@@ -133,6 +150,8 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> FootprintIndex::pairs(doubl
     }
     first = last;
   }
+  for (const std::uint32_t large : large_)
+    for (const std::uint32_t b : near(store_[large].box, distance)) add(large, b);
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;

@@ -48,6 +48,8 @@ class FootprintStore {
   /// Stores what is in `footprint` and the polygons; box and ranges are set here.
   void set(std::uint32_t building, StoredFootprint footprint, std::span<const model::Polygon> polygons,
            std::span<const model::Arc> arcs = {});
+  /// \param area  m², that a building has in common with another and keeps
+  void add_overlap(std::uint32_t building, double area);
   std::size_t size() const { return entries_.size(); }
   const StoredFootprint& operator[](std::uint32_t building) const { return entries_[building]; }
   std::vector<model::Polygon> polygons(std::uint32_t building) const;
@@ -89,7 +91,8 @@ class FootprintIndex {
     friend auto operator<=>(const Entry&, const Entry&) = default;
   };
   const FootprintStore& store_;
-  std::vector<Entry> entries_;  ///< sorted
+  std::vector<Entry> entries_;        ///< sorted
+  std::vector<std::uint32_t> large_;  ///< buildings over so many cells that all are asked for them
 };
 
 }  // namespace blockrand::region

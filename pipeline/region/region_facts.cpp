@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/base/error.h"
+#include "pipeline/region/documents.h"
 
 namespace blockrand::region {
 
@@ -16,9 +17,20 @@ double finite(const nlohmann::json& value) {
   return v;
 }
 
+/// The first option that shapes a building and differs; empty for none.
+std::string first_difference(const nlohmann::json& theirs, const nlohmann::json& ours) {
+  for (const char* name : {"lod", "seed", "ground_height"})
+    if (theirs.at(name) != ours.at(name)) return name;
+  for (const char* section : {"repair", "generate"})
+    for (const auto& [name, value] : ours.at(section).items())
+      if (!theirs.at(section).contains(name) || theirs.at(section).at(name) != value)
+        return std::string(section) + "." + name;
+  return {};
+}
+
 }  // namespace
 
-RegionFacts read_region_facts(const std::string& path) {
+RegionFacts read_region_facts(const std::string& path, const BuildOptions& options) {
   constexpr const char* kRemedy = "Name the build.json of a finished build of the whole extract, made by this version.";
   std::ifstream file(path, std::ios::binary);
   if (!file) throw base::InputError(path, "", "cannot be opened", kRemedy);
@@ -30,8 +42,13 @@ RegionFacts read_region_facts(const std::string& path) {
     const nlohmann::json& box = r.at("box");
     facts.box = {finite(box.at(0)), finite(box.at(1)), finite(box.at(2)), finite(box.at(3))};
     facts.centre = {finite(r.at("centre").at(0)), finite(r.at("centre").at(1))};
+    if (const std::string name = first_difference(j.at("configuration"), configuration(options)); !name.empty())
+      throw base::UsageError(path + ": that build had another " + name +
+                             ", so this tile would not fit into it. Build with the same options");
     for (const nlohmann::json& p : r.at("coverage")) facts.coverage.push_back({finite(p.at(0)), finite(p.at(1))});
     return facts;
+  } catch (const base::UsageError&) {
+    throw;
   } catch (const std::exception& e) {
     throw base::InputError(path, "", std::string("holds no facts about its region (") + e.what() + ")", kRemedy);
   }

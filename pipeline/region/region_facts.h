@@ -8,6 +8,7 @@
 
 #include "pipeline/georef/lon_lat.h"
 #include "pipeline/model/point.h"
+#include "pipeline/region/build.h"
 
 namespace blockrand::region {
 
@@ -20,6 +21,7 @@ struct RegionFacts {
 
 /// Reads the facts that an earlier build wrote into its build.json.
 /// \throws base::InputError  `path` is no build.json, is damaged, or comes from a version that wrote no facts
-RegionFacts read_region_facts(const std::string& path);
+/// \throws base::UsageError  that build had other options than this one, so that a tile would not fit into it
+RegionFacts read_region_facts(const std::string& path, const BuildOptions& options);
 
 }  // namespace blockrand::region

@@ -4,8 +4,11 @@
 #include <cmath>
 #include <map>
 
+#include <fmt/format.h>
+
 #include "pipeline/base/parallel.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/region/load.h"
 #include "pipeline/region/rows.h"
 #include "pipeline/repair/coverings.h"
@@ -25,6 +28,9 @@ using model::Polygon;
 /// Buildings that one piece of work takes: rows are small as a rule, and threads should not wait for each other.
 constexpr std::size_t kBatch = 400;
 
+/// Of the mapped area: less is the rounding of coordinates.
+constexpr double kAreaChanged = 0.001;
+
 /// m. Where a lowest storey is tagged and no height: the usual storey.
 constexpr double kStoreyHeight = 3;
 
@@ -42,6 +48,16 @@ repair::Level level_of(const Extract& extract, const MappedBuilding& b, bool has
   return level;
 }
 
+/// m. The largest buildings are 2 km wide. One over a whole country would be everybody's neighbour.
+constexpr double kWidestBuilding = 10'000;
+
+bool is_too_large(const model::MappedRings& rings) {
+  PlanBox box;
+  for (const model::Ring& ring : rings.rings)
+    for (const Point2 p : ring.points) box.include(p);
+  return !box.empty() && std::max(box.maximum.x - box.minimum.x, box.maximum.y - box.minimum.y) > kWidestBuilding;
+}
+
 struct RingsOfShard {
   std::vector<repair::RepairedRings> outlines;
   model::Report report;
@@ -56,6 +72,10 @@ void repair_all_rings(const Extract& extract, std::span<const Shard> shards, con
     RingsOfShard result;
     model::Region region = load_region(extract, shards[i], projection);
     for (model::Building& building : region.buildings) {
+      if (is_too_large(building.rings)) {
+        result.outlines.emplace_back().failure = model::IssueCode::too_large;
+        continue;
+      }
       if (!building.rings.rings.empty()) {
         result.outlines.push_back(
             repair::repair_rings(std::move(building.rings), building.osm, kept, options, result.report));
@@ -89,11 +109,12 @@ void repair_all_rings(const Extract& extract, std::span<const Shard> shards, con
   base::ordered_parallel(shards.size(), workers, in_flight, work, consume);
 }
 
-/// For each building of a row: m of its rings that another one has point for point, the other way round.
+/// For each building of a row: m of its rings that another one at its level has point for point, the other way round.
 std::vector<double> shared_lengths(const repair::Row& row) {
   struct Wall {
     Point2 a, b;
     std::uint32_t building = 0;
+    bool forward = true;  ///< from a to b
     auto operator<=>(const Wall&) const = default;
   };
   std::vector<Wall> walls;
@@ -102,7 +123,7 @@ std::vector<double> shared_lengths(const repair::Row& row) {
       const auto add = [&](const model::Ring& ring) {
         for (std::size_t k = 0; k < ring.size(); ++k) {
           const Point2 a = ring.points[k], b = ring.points[(k + 1) % ring.size()];
-          walls.push_back(a < b ? Wall{a, b, i} : Wall{b, a, i});
+          walls.push_back(a < b ? Wall{a, b, i, true} : Wall{b, a, i, false});
         }
       };
       add(polygon.outer);
@@ -113,10 +134,15 @@ std::vector<double> shared_lengths(const repair::Row& row) {
   for (std::size_t i = 0; i < walls.size();) {
     std::size_t j = i;
     while (j < walls.size() && walls[j].a == walls[i].a && walls[j].b == walls[i].b) ++j;
-    if (walls[j - 1].building != walls[i].building) {
-      const double x = walls[i].b.x - walls[i].a.x, y = walls[i].b.y - walls[i].a.y;
-      for (std::size_t k = i; k < j; ++k) out[walls[k].building] += std::sqrt(x * x + y * y);
-    }
+    const double x = walls[i].b.x - walls[i].a.x, y = walls[i].b.y - walls[i].a.y;
+    const auto is_shared = [&](const Wall& wall) {
+      return std::any_of(&walls[i], &walls[i] + (j - i), [&](const Wall& other) {
+        return other.building != wall.building && other.forward != wall.forward &&
+               repair::same_level(row.buildings[other.building].level, row.buildings[wall.building].level);
+      });
+    };
+    for (std::size_t k = i; k < j; ++k)
+      if (is_shared(walls[k])) out[walls[k].building] += std::sqrt(x * x + y * y);
     i = j;
   }
   return out;
@@ -164,6 +190,25 @@ RepairedRow run_row(const Extract& extract, const FootprintStore& store, const R
   return out;
 }
 
+/// Rows are repaired apart: what a cut of a long row leaves of overlaps is said.
+void report_overlaps_at_cuts(std::span<const RowPlan> plans, const repair::RepairOptions& options, RepairedExtract& out,
+                             RepairTotals& totals) {
+  for (const RowPlan& plan : plans)
+    for (const std::uint32_t b : plan.buildings)
+      for (const std::uint32_t other : plan.beyond) {
+        const StoredFootprint &here = out.footprints[b], &there = out.footprints[other];
+        if (here.box.empty() || there.box.empty() || !here.box.near(there.box, 0) ||
+            !repair::same_level(here.level, there.level))
+          continue;
+        const double common = geometry::common_area(out.footprints.polygons(b), out.footprints.polygons(other));
+        if (common <= options.min_overlap_area) continue;
+        totals.overlaps_left += here.record.overlap_left == 0;
+        out.footprints.add_overlap(b, common);
+        out.rows.push_back({here.id, model::IssueCode::overlap_kept,
+                            fmt::format("{:.2f} m2 with {}, at a cut", common, there.id.text())});
+      }
+}
+
 class Totals {
  public:
   void add(const StoredFootprint& f) {
@@ -174,8 +219,8 @@ class Totals {
     shift_ += r.mean_shift * r.moved;
     totals_.max_shift = std::max(totals_.max_shift, r.max_shift);
     const double change = r.mapped_area > 0 ? std::fabs(r.area - r.mapped_area) / r.mapped_area : 0;
-    totals_.area_changed += change > 0.001;
-    if (change > 0) changes_.push_back(static_cast<float>(change));
+    totals_.area_changed += change > kAreaChanged;
+    if (change > kAreaChanged) changes_.push_back(static_cast<float>(change));
     totals_.shared_walls += r.shared_walls;
     totals_.gaps_closed += r.gaps_closed;
     totals_.overlaps_resolved += r.overlaps_resolved;
@@ -185,10 +230,9 @@ class Totals {
     totals_.party_wall_length += f.party_wall_length;
   }
   RepairTotals finish() {
-    // Both neighbours count what they share.
+    // Both neighbours count what they share; of an overlap only who gave way.
     totals_.shared_walls /= 2;
     totals_.gaps_closed /= 2;
-    totals_.overlaps_resolved /= 2;
     totals_.party_wall_length /= 2;
     if (totals_.moved > 0) totals_.mean_shift = shift_ / static_cast<double>(totals_.moved);
     if (!changes_.empty()) {
@@ -262,7 +306,7 @@ RepairedExtract repair_extract(const Extract& extract, std::span<const Shard> sh
         for (const std::uint32_t other : row.plan->beyond)
           cut[k] = cut[k] || mapped[b].box.near(mapped[other].box, 2 * options.max_shift);
         if (cut[k]) {
-          ++totals.totals_.rows_cut;
+          ++totals.totals_.at_cuts;
           out.rows.push_back({f.id, model::IssueCode::reach_cut, "a row longer than 1 km"});
         }
       }
@@ -272,6 +316,7 @@ RepairedExtract repair_extract(const Extract& extract, std::span<const Shard> sh
     progress.advance_to(done);
   };
   if (!plans.empty()) base::ordered_parallel(batches.size() - 1, workers, in_flight, work, consume);
+  report_overlaps_at_cuts(plans, options, out, totals.totals_);
   out.footprints.shrink_to_fit();
   std::sort(out.rows.begin(), out.rows.end());
   out.totals = totals.finish();

@@ -19,10 +19,10 @@ namespace blockrand::region {
 struct RepairTotals {
   std::uint64_t outlines = 0;             ///< with an area
   std::uint64_t rows = 0;                 ///< of two buildings and more
-  std::uint64_t rows_cut = 0;             ///< buildings that a cut parted from a neighbour (REACH_CUT)
+  std::uint64_t at_cuts = 0;              ///< buildings that a cut parted from a neighbour (REACH_CUT)
   std::uint64_t vertices = 0, moved = 0;  ///< of all outlines
   double mean_shift = 0, max_shift = 0;   ///< m, of the moved vertices
-  double median_area_change = 0, max_area_change = 0;  ///< of the mapped area, of outlines that changed at all
+  double median_area_change = 0, max_area_change = 0;  ///< of the mapped area, of those whose area changed
   std::uint64_t area_changed = 0;         ///< outlines whose area changed by more than a thousandth
   std::uint64_t shared_walls = 0, gaps_closed = 0, overlaps_resolved = 0;  ///< each counted once
   double party_wall_length = 0;           ///< m, each wall once

@@ -28,7 +28,7 @@ std::vector<std::pair<std::string, std::string>> repair_lines(const RepairTotals
       {"Outlines with an overlap left", with_thousands(t.overlaps_left)},
       {"Outlines with a main direction", with_thousands(t.squared)},
       {"Curved walls", with_thousands(t.arcs)}};
-  if (t.rows_cut > 0) out.emplace_back("Buildings at cuts of long rows", with_thousands(t.rows_cut));
+  if (t.at_cuts > 0) out.emplace_back("Buildings at cuts of long rows", with_thousands(t.at_cuts));
   return out;
 }
 

@@ -49,7 +49,7 @@ std::optional<TileChoice> choose_tile(const BuildOptions& options) {
   if (!options.crs.empty()) throw base::UsageError("--tile takes the CRS of --pinned: leave out --crs");
   TileChoice choice;
   choice.id = parse_tile(options.tile);
-  choice.facts = read_region_facts(options.pinned);
+  choice.facts = read_region_facts(options.pinned, options);
   const georef::GeoBox tile = georef::bounds(choice.id);
   const double north = kHalo / kMetresPerDegree;
   const double farthest = std::min(89.0, std::max(std::abs(tile.south), std::abs(tile.north)) + north);

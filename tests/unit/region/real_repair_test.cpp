@@ -88,7 +88,7 @@ TEST_P(RealExtracts, AreRepaired) {
               static_cast<unsigned long long>(t.area_changed), 100 * t.median_area_change, 100 * t.max_area_change,
               static_cast<unsigned long long>(t.shared_walls), static_cast<unsigned long long>(t.gaps_closed),
               static_cast<unsigned long long>(t.overlaps_resolved), judged.reported,
-              static_cast<unsigned long long>(t.rows_cut), static_cast<unsigned long long>(t.squared),
+              static_cast<unsigned long long>(t.at_cuts), static_cast<unsigned long long>(t.squared),
               static_cast<unsigned long long>(t.arcs), seconds);
   EXPECT_EQ(judged.invalid, 0u);
   EXPECT_EQ(judged.missing, 0u) << "buildings without an outline and without a reason";

@@ -10,6 +10,7 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/georef/tiles.h"
+#include "pipeline/region/documents.h"
 
 namespace blockrand::region {
 namespace {
@@ -21,7 +22,7 @@ class Pinned : public ::testing::Test {
   void write(const std::string& text) { std::ofstream(path_) << text; }
   void TearDown() override { std::filesystem::remove(path_); }
   std::string path_ = ::testing::TempDir() + "pinned-" + std::to_string(::getpid()) + ".json";
-  std::string good_ = R"({"crs":{"code":"EPSG:25833"},"region":{"box":[13.3,52.4,13.5,52.6],"centre":[13.4,52.5],
+  std::string good_ = R"({"configuration":)" + configuration({}).dump() + R"(,"crs":{"code":"EPSG:25833"},"region":{"box":[13.3,52.4,13.5,52.6],"centre":[13.4,52.5],
                           "coverage":[[380000,5800000],[390000,5800000],[385000,5810000.5]]}})";
 };
 
@@ -71,6 +72,9 @@ TEST_F(Pinned, MistakesAreNamed) {
   options.crs = "EPSG:25833";
   EXPECT_THAT(message<base::UsageError>(options), HasSubstr("--crs"));
   options.crs.clear();
+  options.repair.max_shift = 0.3;
+  EXPECT_THAT(message<base::UsageError>(options), HasSubstr("repair.max_shift"));
+  options.repair = {};
   for (const char* text : {"", "{", "[]", "{\"crs\":{\"code\":\"EPSG:25833\"}}",
                            R"({"crs":{"code":"EPSG:25833"},"region":{"box":[1,2,3],"centre":[1,2],"coverage":[]}})"}) {
     write(text);
