@@ -48,6 +48,10 @@ repair::Level level_of(const Extract& extract, const MappedBuilding& b, bool has
   return level;
 }
 
+double longer_side(const PlanBox& box) {
+  return std::max(box.maximum.x - box.minimum.x, box.maximum.y - box.minimum.y);
+}
+
 /// m. The largest buildings are 2 km wide. One over a whole country would be everybody's neighbour.
 constexpr double kWidestBuilding = 10'000;
 
@@ -55,7 +59,7 @@ bool is_too_large(const model::MappedRings& rings) {
   PlanBox box;
   for (const model::Ring& ring : rings.rings)
     for (const Point2 p : ring.points) box.include(p);
-  return !box.empty() && std::max(box.maximum.x - box.minimum.x, box.maximum.y - box.minimum.y) > kWidestBuilding;
+  return !box.empty() && longer_side(box) > kWidestBuilding;
 }
 
 struct RingsOfShard {
@@ -190,6 +194,48 @@ RepairedRow run_row(const Extract& extract, const FootprintStore& store, const R
   return out;
 }
 
+bool is_wide(const PlanBox& box) { return longer_side(box) > kMaxRowExtent; }
+
+/// m. What stands in a wider outline is not all within reach of its tile alone (kHalo): its overlaps stay, and are said.
+constexpr double kWidestYielding = 5'000;
+
+/// An outline wider than a row is mostly an area that somebody took for a building: it is cut off from all rows, and
+/// gives way to what stands in it, after those were repaired.
+void yield_to_neighbours(std::uint32_t b, std::span<const std::uint32_t> beyond, const repair::RepairOptions& options,
+                         RepairedExtract& out) {
+  StoredFootprint here = out.footprints[b];
+  if (!is_wide(here.box) || longer_side(here.box) > kWidestYielding || here.has_parts) return;
+  const std::vector<Polygon> outline = out.footprints.polygons(b);
+  std::vector<Polygon> taken;
+  double most = 0;
+  for (const std::uint32_t other : beyond) {
+    const StoredFootprint& there = out.footprints[other];
+    if (there.box.empty() || is_wide(there.box) || !repair::same_level(here.level, there.level)) continue;
+    std::vector<Polygon> polygons = out.footprints.polygons(other);
+    const double common = geometry::common_area(outline, polygons);
+    if (common <= options.min_overlap_area) continue;
+    if (common > most) here.related = there.id;
+    most = std::max(most, common);
+    std::move(polygons.begin(), polygons.end(), std::back_inserter(taken));
+    ++here.record.overlaps_resolved;
+  }
+  if (taken.empty()) return;
+  const std::vector<Polygon> ground = geometry::unite(taken, 0, options.ring_clearance).polygons;
+  std::vector<Polygon> rest =
+      geometry::difference(outline, ground, options.parts_free_area, options.ring_clearance).polygons;
+  std::erase_if(rest, [&](const Polygon& p) { return geometry::equivalent_width(p) < options.parts_free_width; });
+  here.record.area = 0;
+  for (const Polygon& p : rest) here.record.area += geometry::area(p);
+  if (rest.empty())
+    here.settled = model::ObjectState::represented;
+  else
+    here.related = {};
+  out.rows.push_back({here.id, model::IssueCode::covered_outline,
+                      fmt::format("{} within it; {:.2f} m2 of {:.2f} m2 left", here.record.overlaps_resolved,
+                                  here.record.area, here.record.mapped_area)});
+  out.footprints.set(b, here, rest);
+}
+
 /// Rows are repaired apart: what a cut of a long row leaves of overlaps is said.
 void report_overlaps_at_cuts(std::span<const RowPlan> plans, const repair::RepairOptions& options, RepairedExtract& out,
                              RepairTotals& totals) {
@@ -316,6 +362,9 @@ RepairedExtract repair_extract(const Extract& extract, std::span<const Shard> sh
     progress.advance_to(done);
   };
   if (!plans.empty()) base::ordered_parallel(batches.size() - 1, workers, in_flight, work, consume);
+  if (options.resolve_overlaps)
+    for (const RowPlan& plan : plans)
+      for (const std::uint32_t b : plan.buildings) yield_to_neighbours(b, plan.beyond, options, out);
   report_overlaps_at_cuts(plans, options, out, totals.totals_);
   out.footprints.shrink_to_fit();
   std::sort(out.rows.begin(), out.rows.end());
