@@ -231,6 +231,17 @@ std::string body_rows(const Json& j, const std::string& asked, const std::string
   return text;
 }
 
+/// The house numbers of a stretch, each once: "7, 7a".
+std::string house_numbers(const Json& edge) {
+  std::vector<std::string> numbers;
+  if (edge.contains("points"))
+    for (const Json& point : edge["points"])
+      if (std::string number = point.value("house_number", "");
+          !number.empty() && std::find(numbers.begin(), numbers.end(), number) == numbers.end())
+        numbers.push_back(std::move(number));
+  return fmt::format("{}", fmt::join(numbers, ", "));
+}
+
 /// What the stretch of an outline looks out on: "Kastanienallee, 11.5 m away".
 std::string faces(const Json& e) {
   const std::string kind = e.value("kind", "");
@@ -247,6 +258,7 @@ std::string faces(const Json& e) {
   if (e.value("chamfer", false)) also("cuts off the corner");
   if (e.contains("radius")) also(fmt::format("curve of radius {:.1f} m", e.value("radius", 0.0)));
   if (const int n = e.value("entrances", 0); n > 0) also(fmt::format("{} entrance{}", n, n == 1 ? "" : "s"));
+  if (const std::string numbers = house_numbers(e); !numbers.empty()) also("house number " + numbers);
   return text;
 }
 

@@ -77,6 +77,10 @@ std::vector<SitePoint> site_points(const Extract& extract, const Project& projec
   return out;
 }
 
+BuildingAddress building_address(const Extract& extract, model::OsmId id, model::Range tags) {
+  return {id, extract.tag(tags, "addr:street"), extract.tag(tags, "addr:housenumber")};
+}
+
 std::string_view address_street(const Extract& extract, model::Range tags) { return extract.tag(tags, "addr:street"); }
 
 }  // namespace blockrand::context

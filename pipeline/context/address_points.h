@@ -47,6 +47,15 @@ struct SitePoint {
 /// Entrances, address nodes and trees of an extract (nodes only), in the order of Extract::features.
 std::vector<SitePoint> site_points(const model::Extract& extract, const Project& project);
 
+/// What a building's own tags say of its address: addr:street and addr:housenumber, either may be empty.
+struct BuildingAddress {
+  model::OsmId id;
+  std::string_view street, house_number;
+};
+
+/// The address in the tags of a building; the views live as long as the extract.
+BuildingAddress building_address(const model::Extract& extract, model::OsmId id, model::Range tags);
+
 /// The street in a building's own address, or empty.
 std::string_view address_street(const model::Extract& extract, model::Range tags);
 

@@ -320,7 +320,7 @@ void label_edges(model::Building& building, const SurroundingsIndex& index, std:
   }
   note_arcs(building, edges);
   mark_corners(building, edges);
-  assign_points(building, edges, index);
+  assign_points(building, edges, index, options);
   describe_situation(building, edges, index, address_street);
 }
 

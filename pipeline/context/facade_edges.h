@@ -32,6 +32,7 @@ struct Surroundings {
   std::span<const BlockFigures> figures;  ///< parallel to `blocks`; only the courtyards' polygons and ids are read
   std::span<const PassageWay> passages;
   std::span<const SitePoint> points;
+  std::span<const BuildingAddress> addresses = {};  ///< of the footprints that have one, ascending by id
 };
 
 struct EdgeOptions {
@@ -92,29 +93,34 @@ class SurroundingsIndex {
   std::vector<std::uint32_t> squares_near(const Box& box) const;   ///< indices into squares()
   std::vector<std::uint32_t> passages_near(const Box& box) const;  ///< indices into Surroundings::passages
   std::vector<std::uint32_t> points_near(const Box& box) const;    ///< indices into Surroundings::points, ascending
+  /// Footprints whose box holds a place, grown by `margin` metres: indices into Surroundings::footprints, ascending.
+  std::vector<std::uint32_t> footprints_at(model::Point2 place, double margin) const;
   const std::vector<Yard>& yards() const { return yards_; }
   const std::vector<Square>& squares() const { return squares_; }
   const Box& block_box(std::size_t block) const { return block_boxes_[block]; }
 
  private:
-  struct PointEntry {
+  /// A point, or a footprint whose box comes into the cell.
+  struct CellEntry {
     std::int64_t x = 0, y = 0;  ///< cell
-    std::uint32_t point = 0;
-    friend auto operator<=>(const PointEntry&, const PointEntry&) = default;
+    std::uint32_t index = 0;
+    friend auto operator<=>(const CellEntry&, const CellEntry&) = default;
   };
+  template <class Visit>
+  static void for_each_in(const std::vector<CellEntry>& entries, const Box& box, Visit&& visit);
   Surroundings all_;
   Scene scene_;
   std::vector<Yard> yards_;
   std::vector<Square> squares_;
-  std::vector<Box> passage_boxes_, block_boxes_;
-  std::vector<PointEntry> points_;  ///< sorted
+  std::vector<Box> passage_boxes_, block_boxes_, footprint_boxes_;
+  std::vector<CellEntry> points_, footprints_;  ///< sorted
 };
 
 /// The box of a building's outline grown by `margin` metres.
 SurroundingsIndex::Box box_of(const model::Building& building, double margin);
 
-/// Cuts the edges of `building.outline` where their situation changes and labels every stretch; fills `building.edges`,
-/// `building.trees` and `building.situation`.
+/// Cuts the edges of `building.outline` where their situation changes and labels every stretch; fills `building.edges`
+/// with their entrances and addresses (wall_points.h), `building.trees` and `building.situation`.
 ///
 /// Labels, each the first that applies to a stretch:
 /// * `party_wall`: another building's wall runs against it within EdgeOptions::touching, or it lies in another building.

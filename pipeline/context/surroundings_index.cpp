@@ -12,9 +12,9 @@ namespace {
 using model::Point2;
 using Box = SurroundingsIndex::Box;
 
-constexpr double kPointCell = 16;  ///< m. The size of a house
+constexpr double kCell = 16;  ///< m. The size of a house
 
-std::int64_t cell_of(double metres) { return static_cast<std::int64_t>(std::floor(metres / kPointCell)); }
+std::int64_t cell_of(double metres) { return static_cast<std::int64_t>(std::floor(metres / kCell)); }
 
 void grow(Box& box, std::span<const Point2> points) {
   for (const Point2 p : points) {
@@ -72,6 +72,13 @@ SurroundingsIndex::SurroundingsIndex(const Surroundings& surroundings)
   for (std::uint32_t p = 0; p < all_.points.size(); ++p)
     points_.push_back({cell_of(all_.points[p].place.x), cell_of(all_.points[p].place.y), p});
   std::sort(points_.begin(), points_.end());
+  for (std::uint32_t f = 0; f < all_.footprints.size(); ++f) {
+    const Box& box = footprint_boxes_.emplace_back(box_around(all_.footprints[f].polygon.outer.points));
+    if (all_.footprints[f].polygon.outer.size() == 0) continue;
+    for (std::int64_t x = cell_of(box.low.x); x <= cell_of(box.high.x); ++x)
+      for (std::int64_t y = cell_of(box.low.y); y <= cell_of(box.high.y); ++y) footprints_.push_back({x, y, f});
+  }
+  std::sort(footprints_.begin(), footprints_.end());
 }
 
 bool SurroundingsIndex::contains(const Square& square, Point2 p) const {
@@ -91,15 +98,33 @@ std::vector<std::uint32_t> SurroundingsIndex::passages_near(const Box& box) cons
   return meeting(passage_boxes_, box, [](const Box& b) { return b; });
 }
 
+/// Calls `visit(index)` for the entries of the cells that a box meets.
+template <class Visit>
+void SurroundingsIndex::for_each_in(const std::vector<CellEntry>& entries, const Box& box, Visit&& visit) {
+  for (std::int64_t x = cell_of(box.low.x); x <= cell_of(box.high.x); ++x)
+    for (auto e = std::lower_bound(entries.begin(), entries.end(), CellEntry{x, cell_of(box.low.y), 0});
+         e != entries.end() && e->x == x && e->y <= cell_of(box.high.y); ++e)
+      visit(e->index);
+}
+
 std::vector<std::uint32_t> SurroundingsIndex::points_near(const Box& box) const {
   std::vector<std::uint32_t> out;
-  for (std::int64_t x = cell_of(box.low.x); x <= cell_of(box.high.x); ++x)
-    for (auto e = std::lower_bound(points_.begin(), points_.end(), PointEntry{x, cell_of(box.low.y), 0});
-         e != points_.end() && e->x == x && e->y <= cell_of(box.high.y); ++e) {
-      const Point2 p = all_.points[e->point].place;
-      if (box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y) out.push_back(e->point);
-    }
+  for_each_in(points_, box, [&](std::uint32_t p) {
+    const Point2 place = all_.points[p].place;
+    if (box.meets({place, place})) out.push_back(p);
+  });
   std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::vector<std::uint32_t> SurroundingsIndex::footprints_at(Point2 place, double margin) const {
+  const Box box{{place.x - margin, place.y - margin}, {place.x + margin, place.y + margin}};
+  std::vector<std::uint32_t> out;
+  for_each_in(footprints_, box, [&](std::uint32_t f) {
+    if (box.meets(footprint_boxes_[f])) out.push_back(f);
+  });
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 

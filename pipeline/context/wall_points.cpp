@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
+#include "pipeline/context/point_owner.h"
 #include "pipeline/geometry/polygon.h"
 
 namespace blockrand::context {
@@ -14,9 +16,6 @@ using model::EdgeKind;
 using model::FacadeEdge;
 using model::Point2;
 
-/// m. Distances that differ by less are the same: repair has moved corners.
-constexpr double kSame = 0.05;
-
 int rank(EdgeKind kind) {
   switch (kind) {
     case EdgeKind::street: return 0;
@@ -26,47 +25,110 @@ int rank(EdgeKind kind) {
   }
 }
 
+/// Distances of places to the stretches of a building.
+class Stretches {
+ public:
+  Stretches(const model::Building& building, const std::vector<OutlineEdge>& outline) : building_(building) {
+    std::size_t at = 0;
+    for (const FacadeEdge& f : building.edges) {
+      while (outline[at].polygon != f.polygon || outline[at].ring != f.ring || outline[at].edge != f.edge) ++at;
+      of_.push_back(&outline[at]);
+    }
+  }
+
+  double distance(std::size_t i, Point2 p) const {
+    return geometry::distance_to_segment(p, of_[i]->at(edge(i).start), of_[i]->at(edge(i).end));
+  }
+
+  /// The nearest stretch within `reach` for which `allowed(i)` holds; of those as near the one of the least `key(i)`,
+  /// then the longer, then the earlier.
+  template <class Allowed, class Key>
+  std::optional<std::uint32_t> nearest(Point2 p, double reach, Allowed&& allowed, Key&& key) const {
+    std::vector<std::pair<double, std::uint32_t>> found;
+    double least = reach;
+    for (std::uint32_t i = 0; i < building_.edges.size(); ++i) {
+      if (edge(i).kind == EdgeKind::party_wall || !allowed(i)) continue;
+      found.emplace_back(distance(i, p), i);
+      least = std::min(least, found.back().first);
+    }
+    std::erase_if(found, [&](const auto& f) { return f.first > std::min(reach, least + kSameDistance); });
+    const auto order = [&](std::uint32_t i) { return std::tuple(key(i), -edge(i).length(), i); };
+    const auto best = std::min_element(found.begin(), found.end(), [&](const auto& a, const auto& b) {
+      return order(a.second) < order(b.second);
+    });
+    return best == found.end() ? std::nullopt : std::optional(best->second);
+  }
+
+  bool is_before(std::size_t i, Point2 p) const {
+    const OutlineEdge& e = *of_[i];
+    return (p.x - e.a.x) * e.outward.x + (p.y - e.a.y) * e.outward.y >= 0;
+  }
+  const FacadeEdge& edge(std::size_t i) const { return building_.edges[i]; }
+
+ private:
+  const model::Building& building_;
+  std::vector<const OutlineEdge*> of_;
+};
+
+/// Where repair has put the node, if the outline has it; else where it was mapped.
+Point2 place_at(const model::Building& building, const SitePoint& point) {
+  for (const model::Polygon& polygon : building.outline)
+    if (const auto corner = corner_of_node(polygon, point.id)) return *corner;
+  return point.place;
+}
+
+/// The stretch that an entrance or address of the building belongs to.
+std::optional<std::uint32_t> stretch_of(const SitePoint& point, Point2 place, const Stretches& walls) {
+  const auto at_its_street = [&](std::uint32_t i) { return !point.street.empty() && walls.edge(i).street_name == point.street; };
+  const auto is_street = [&](std::uint32_t i) { return walls.edge(i).kind == EdgeKind::street; };
+  const auto any = [](std::uint32_t) { return true; };
+  const auto by_kind = [&](std::uint32_t i) { return std::pair(!at_its_street(i), rank(walls.edge(i).kind)); };
+  if (const auto near = walls.nearest(place, kEntranceReach, any, by_kind)) return near;
+  if (point.house_number.empty()) return std::nullopt;
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  if (const auto own = walls.nearest(place, kFar, at_its_street, by_kind)) return own;
+  if (const auto front = walls.nearest(place, kFar, is_street, by_kind)) return front;
+  return walls.nearest(place, kFar, any, by_kind);
+}
+
+void add_tree(model::Building& building, const SitePoint& tree, const Stretches& walls) {
+  const auto before = [&](std::uint32_t i) { return walls.is_before(i, tree.place); };
+  const auto by_kind = [&](std::uint32_t i) { return rank(walls.edge(i).kind); };
+  if (const auto best = walls.nearest(tree.place, kTreeReach, before, by_kind))
+    building.trees.push_back({tree.id, tree.place, *best, static_cast<float>(walls.distance(*best, tree.place))});
+}
+
+bool is_within(const SurroundingsIndex::Box& box, Point2 p) {
+  return box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y;
+}
+
 }  // namespace
 
-void assign_points(model::Building& building, const std::vector<OutlineEdge>& outline, const SurroundingsIndex& index) {
+void assign_points(model::Building& building, const std::vector<OutlineEdge>& outline, const SurroundingsIndex& index,
+                   const EdgeOptions& options) {
   building.trees.clear();
   const std::vector<std::uint32_t> near = index.points_near(box_of(building, kTreeReach));
   if (near.empty() || building.edges.empty()) return;
-  std::vector<const OutlineEdge*> of;
-  std::size_t at = 0;
-  for (const FacadeEdge& f : building.edges) {
-    while (outline[at].polygon != f.polygon || outline[at].ring != f.ring || outline[at].edge != f.edge) ++at;
-    of.push_back(&outline[at]);
-  }
+  const SurroundingsIndex::Box own = box_of(building, kEntranceReach);
+  const Stretches walls(building, outline);
   for (const std::uint32_t p : near) {
     const SitePoint& point = index.all().points[p];
-    if (point.kind == SitePointKind::address) continue;
-    const bool tree = point.kind == SitePointKind::tree;
-    const double reach = tree ? kTreeReach : kEntranceReach;
-    std::vector<double> distances(building.edges.size(), std::numeric_limits<double>::infinity());
-    double least = reach;
-    for (std::size_t i = 0; i < building.edges.size(); ++i) {
-      const FacadeEdge& f = building.edges[i];
-      if (f.kind == EdgeKind::party_wall) continue;
-      const OutlineEdge& edge = *of[i];
-      const bool behind = (point.place.x - edge.a.x) * edge.outward.x + (point.place.y - edge.a.y) * edge.outward.y < 0;
-      if (tree && behind) continue;
-      distances[i] = geometry::distance_to_segment(point.place, edge.at(f.start), edge.at(f.end));
-      least = std::min(least, distances[i]);
+    if (point.kind == SitePointKind::tree) {
+      add_tree(building, point, walls);
+      continue;
     }
-    std::size_t best = building.edges.size();
-    const auto key = [&](std::size_t i) {
-      const FacadeEdge& f = building.edges[i];
-      return std::tuple(rank(f.kind), -f.length(), i);
-    };
-    for (std::size_t i = 0; i < building.edges.size(); ++i)
-      if (distances[i] <= reach && distances[i] <= least + kSame && (best == building.edges.size() || key(i) < key(best))) best = i;
-    if (best == building.edges.size()) continue;
-    if (tree)
-      building.trees.push_back({point.id, point.place, static_cast<std::uint32_t>(best), static_cast<float>(distances[best])});
-    else
-      ++building.edges[best].entrances;
+    const bool entrance = point.kind == SitePointKind::entrance;
+    if ((!entrance && point.house_number.empty()) || !is_within(own, point.place)) continue;
+    if (owner_of(point, index, options) != building.osm) continue;
+    const auto stretch = stretch_of(point, place_at(building, point), walls);
+    if (!stretch) continue;
+    FacadeEdge& edge = building.edges[*stretch];
+    edge.points.push_back({point.id, point.place, entrance, point.house_number});
+    edge.entrances += entrance;
   }
+  for (FacadeEdge& edge : building.edges)
+    std::sort(edge.points.begin(), edge.points.end(),
+              [](const model::EdgePoint& a, const model::EdgePoint& b) { return a.id < b.id; });
   std::sort(building.trees.begin(), building.trees.end(),
             [](const model::NearTree& a, const model::NearTree& b) { return a.id < b.id; });
 }

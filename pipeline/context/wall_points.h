@@ -1,4 +1,4 @@
-// Which wall entrances and trees belong to.
+// Which wall entrances, addresses and trees belong to.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,19 @@
 
 namespace blockrand::context {
 
-/// m. Entrances are nodes of the outline, or were meant to be.
-inline constexpr double kEntranceReach = 1;
 /// m. Trees farther from a facade neither hide it nor stand before it.
 inline constexpr double kTreeReach = 15;
 
-/// Counts the entrances of each stretch of `building.edges`, and lists the trees before the building by id.
+/// Fills the points and counts the entrances of each stretch of `building.edges`, and lists the trees before the building
+/// by id.
 ///
-/// An entrance belongs to the nearest stretch within kEntranceReach, party walls apart. Where several are as near (a corner,
-/// a node between two walls) streets come before passages, courtyards, sides, then the longer stretch, then the earlier.
+/// An entrance or an address node with a house number belongs to one building at most (owner_of, point_owner.h), and there
+/// to the nearest stretch within kEntranceReach, party walls apart. Where several are as near (a corner, a node between
+/// two walls) one at the street of its address comes first, then streets, passages, courtyards, sides, then the longer
+/// stretch, then the earlier. A house number deeper within belongs to the nearest stretch at the street of its address;
+/// without one to the nearest street front; without one to the nearest stretch.
 /// A tree belongs to the nearest stretch within kTreeReach that is no party wall and has it in front, not behind.
-void assign_points(model::Building& building, const std::vector<OutlineEdge>& outline, const SurroundingsIndex& surroundings);
+void assign_points(model::Building& building, const std::vector<OutlineEdge>& outline,
+                   const SurroundingsIndex& surroundings, const EdgeOptions& options = {});
 
 }  // namespace blockrand::context

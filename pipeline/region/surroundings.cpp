@@ -1,5 +1,6 @@
 #include "pipeline/region/surroundings.h"
 
+#include <algorithm>
 #include <map>
 
 #include "pipeline/context/facade_edges.h"
@@ -34,9 +35,15 @@ void SurroundingsFinder::label_edges(model::Region& region, std::span<const std:
   constexpr double kReach = context::kEdgeReach;
 
   std::vector<context::Footprint> footprints;
-  for (const std::uint32_t n : buildings_.near(box, kReach))
+  std::vector<context::BuildingAddress> addresses;
+  for (const std::uint32_t n : buildings_.near(box, kReach)) {
+    const model::Range tags = extract_.buildings[footprints_[n].lead].tags;
+    addresses.push_back(context::building_address(extract_, footprints_[n].id, tags));
     for (model::Polygon& polygon : footprints_.polygons(n))
       footprints.push_back({footprints_[n].id, std::move(polygon), std::nullopt, footprints_[n].level.canopy});
+  }
+  std::erase_if(addresses, [](const auto& a) { return a.street.empty() && a.house_number.empty(); });
+  std::sort(addresses.begin(), addresses.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   std::stable_sort(footprints.begin(), footprints.end(),
                    [](const context::Footprint& a, const context::Footprint& b) { return a.id < b.id; });
   std::vector<context::NetworkLine> lines;
@@ -65,7 +72,7 @@ void SurroundingsFinder::label_edges(model::Region& region, std::span<const std:
       figures[found->second].courtyards.push_back(yard.courtyard);
   }
 
-  const context::SurroundingsIndex index({footprints, lines, blocks, figures, passages, points});
+  const context::SurroundingsIndex index({footprints, lines, blocks, figures, passages, points, addresses});
   for (model::Building& building : region.buildings)
     context::label_edges(building, index, context::address_street(extract_, building.tags));
 }

@@ -269,6 +269,8 @@ class ContextRules {
     f.number("arc_radius", 0, 1e6);
     for (const char* flag : {"front", "corner_start", "corner_end", "chamfer"}) f.flag(flag);
     f.count("entrances");
+    f.count("trees");
+    edge_points(f);
     f.object("neighbour");
     f.object("street");
     if (kind != "party_wall" && (!f.null("neighbour") || !f.null("covered_height")))
@@ -294,6 +296,18 @@ class ContextRules {
     if (!(turn <= kDirectionTolerance))
       f.error(fmt::format("orientation is {}, its line looks to {:.1f}", f.text("orientation"), looks < 0 ? looks + 360 : looks));
     if (!outline.footprint.empty() && !lies_on(outline, from, to)) f.error("the stretch is no piece of the outline");
+  }
+
+  /// Entrances and addresses: each at one stretch of one building.
+  void edge_points(Fields& f) {
+    const auto ids = words(f.text("points"));
+    if (f.integer("entrances") > static_cast<std::int64_t>(ids.size()))
+      f.error(fmt::format("{} entrances among {} points", f.text("entrances"), ids.size()));
+    if (ids.empty() && !f.null("house_numbers")) f.error("house numbers without a point that has them");
+    for (const std::string_view id : ids) {
+      if (!is_osm_id(id) || id.front() != 'n') f.error(fmt::format("points \"{}\" is no list of nodes", f.text("points")));
+      if (!points_.emplace(id).second) f.error(fmt::format("its point {} stands at another stretch, too", id));
+    }
   }
 
   static bool lies_on(const Outline& outline, Point2 from, Point2 to) {
@@ -340,7 +354,7 @@ class ContextRules {
   State& s_;
   FindingLog& log_;
   std::int64_t srs_id_;
-  std::unordered_set<std::string> blocks_, courtyards_;
+  std::unordered_set<std::string> blocks_, courtyards_, points_;
 };
 
 }  // namespace
@@ -354,7 +368,7 @@ std::vector<std::string> context_columns(std::string_view table) {
     return {"id",     "building",     "kind",         "confidence",  "length",          "orientation",
             "front",  "neighbour",    "covered_height", "street",    "street_name",     "street_class",
             "street_distance", "street_angle", "visibility", "corner_start", "corner_end", "chamfer",
-            "entrances", "arc_radius", "arc_bulge",   "from_node",   "to_node"};
+            "entrances", "house_numbers", "points", "trees", "arc_radius", "arc_bulge",   "from_node",   "to_node"};
   if (table == "blocks")
     return {"id",          "kind",         "area",             "cut_by_extract_edge", "too_large",
             "buildings",   "built_share",  "tagged_share",     "floor_area_ratio",    "closure",

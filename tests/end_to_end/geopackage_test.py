@@ -203,11 +203,21 @@ class GeoPackage(BuildTest):
                 with gzip.open(os.path.join(self.out, 'explain', name), 'rt', encoding='utf-8') as file:
                     for line in map(json.loads, file):
                         if line['bodies']:
-                            told.update({e['id']: (line['id'], e['kind'], e['length'], e.get('neighbour'), e.get('street'))
+                            told.update({e['id']: (line['id'], e['kind'], e['length'], e.get('neighbour'), e.get('street'),
+                                                   ' '.join(p['id'] for p in e.get('points', [])) or None)
                                          for e in line.get('edges', [])})
-        rows = self.query('SELECT id, building, kind, length, neighbour, street FROM facade_edges')
+        rows = self.query('SELECT id, building, kind, length, neighbour, street, points FROM facade_edges')
         self.assertEqual({row[0]: row[1:] for row in rows}, told)
         self.assertLessEqual({row[2] for row in rows}, EDGE_KINDS)
+
+    def test_every_entrance_and_address_stands_at_one_wall(self):
+        """At one stretch of one building."""
+        rows = self.query('SELECT points, entrances, house_numbers FROM facade_edges WHERE points IS NOT NULL')
+        points = [p for row in rows for p in row[0].split()]
+        self.assertEqual(len(points), len(set(points)))
+        for row in rows:
+            self.assertLessEqual(row[1], len(row[0].split()))
+        self.assertEqual(self.query("SELECT count(*) FROM facade_edges WHERE entrances > 0 AND points IS NULL"), [(0,)])
 
     def test_buildings_stand_in_their_blocks_and_courtyards(self):
         blocks = {b for b, in self.query('SELECT id FROM blocks')}

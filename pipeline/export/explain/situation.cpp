@@ -220,6 +220,24 @@ void append_situation(JsonText& json, const Building& building) {
   json.close('}');
 }
 
+namespace {
+
+void append_points(JsonText& json, const std::vector<model::EdgePoint>& points) {
+  if (points.empty()) return;
+  json.key("points");
+  json.open('[');
+  for (const model::EdgePoint& point : points) {
+    json.open('{');
+    json.string("id", point.id.text());
+    json.flag("entrance", point.entrance);
+    if (!point.house_number.empty()) json.string("house_number", point.house_number);
+    json.close('}');
+  }
+  json.close(']');
+}
+
+}  // namespace
+
 void append_edges(JsonText& json, const Building& building) {
   const std::vector<Stretch> found = stretches(building);
   if (found.empty()) return;
@@ -249,6 +267,7 @@ void append_edges(JsonText& json, const Building& building) {
                                     std::pair("chamfer", e.chamfer)})
       if (set) json.flag(name, true);
     if (e.entrances > 0) json.number("entrances", e.entrances);
+    append_points(json, e.points);
     if (e.arc >= 0 && static_cast<std::size_t>(e.arc) < building.arcs.size())
       json.number("radius", rounded(building.arcs[static_cast<std::size_t>(e.arc)].radius));
     json.close('}');

@@ -10,6 +10,20 @@ namespace {
 /// 0 stands for "not known" in ids of the model.
 void write_id(RowWriter& row, model::OsmId id) { row.text(id.number != 0 ? id.text() : std::string()); }
 
+void write_points(RowWriter& row, const std::vector<model::EdgePoint>& points) {
+  std::vector<std::string> numbers;
+  std::string ids;
+  for (const model::EdgePoint& point : points) {
+    ids += (ids.empty() ? "" : " ") + point.id.text();
+    if (!point.house_number.empty() && std::find(numbers.begin(), numbers.end(), point.house_number) == numbers.end())
+      numbers.push_back(point.house_number);
+  }
+  std::string text;
+  for (const std::string& number : numbers) text += (text.empty() ? "" : "; ") + number;
+  row.text(text);
+  row.text(ids);
+}
+
 void write_node(RowWriter& row, std::int64_t node) {
   if (node != 0)
     row.integer(node);
@@ -45,6 +59,9 @@ void append_edges(RowWriter& row, const model::Building& building) {
     row.flag(e.corner_end);
     row.flag(e.chamfer);
     row.integer(e.entrances);
+    write_points(row, e.points);
+    row.integer(std::count_if(building.trees.begin(), building.trees.end(),
+                              [&](const model::NearTree& tree) { return tree.edge == stretch.index; }));
     if (has_arc) {
       const model::Arc& arc = building.arcs[static_cast<std::size_t>(e.arc)];
       row.real(rounded(arc.radius));

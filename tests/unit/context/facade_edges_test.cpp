@@ -5,6 +5,7 @@
 
 #include <map>
 #include <numeric>
+#include <random>
 
 #include "tests/unit/context/small_town.h"
 
@@ -16,6 +17,7 @@ using model::FacadeEdge;
 using model::Point2;
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 double length_of(const model::Building& b, EdgeKind kind) {
   double sum = 0;
@@ -336,14 +338,14 @@ TEST(FacadeEdges, ShortPiecesAreNotMade) {
 TEST(FacadeEdges, EntrancesAndTreesGoToTheNearestWall) {
   SmallTown t = perimeter_block();
   t.point(700, SitePointKind::entrance, 44, 10);
-  t.point(701, SitePointKind::entrance, 38, 10);  // between two houses: one entrance of each
+  t.point(701, SitePointKind::entrance, 38, 10);  // between two houses: that of the least id
   t.point(702, SitePointKind::entrance, 44, 21.5);
   t.point(703, SitePointKind::entrance, 44, 16);  // in the middle of the house: nobody's
   t.point(704, SitePointKind::tree, 40, 6);
   t.point(705, SitePointKind::tree, 44, 26);
   t.point(706, SitePointKind::tree, 44, 16);      // within the house
   t.label();
-  EXPECT_EQ(t.edge(12, 44, 10).entrances, 2);
+  EXPECT_EQ(t.edge(12, 44, 10).entrances, 1);
   EXPECT_EQ(t.edge(11, 30, 10).entrances, 1);
   EXPECT_EQ(t.edge(12, 44, 22).entrances, 1);
   const model::Building& house = t[12];
@@ -353,6 +355,124 @@ TEST(FacadeEdges, EntrancesAndTreesGoToTheNearestWall) {
   EXPECT_NEAR(house.trees[0].distance, 4, 0.01);
   EXPECT_EQ(house.trees[1].id.number, 705);
   EXPECT_EQ(house.edges[house.trees[1].edge].kind, EdgeKind::courtyard);
+}
+
+/// "w12 street South Street" for every stretch that has the point, whichever building's it is.
+std::vector<std::string> holders(const SmallTown& t, std::int64_t point) {
+  std::vector<std::string> out;
+  for (const model::Building& b : t.buildings)
+    for (const FacadeEdge& f : b.edges)
+      for (const model::EdgePoint& p : f.points)
+        if (p.id.number == point) out.push_back(b.id() + " " + std::string(model::name(f.kind)) + " " + f.street_name);
+  return out;
+}
+
+TEST(EdgePoints, AddressesInAHouseGoToTheWallAtTheirStreet) {
+  SmallTown t = perimeter_block();
+  t.point(700, SitePointKind::address, 44, 16, "South Street", "5");  // in the middle
+  t.point(701, SitePointKind::address, 44, 18, "", "5a");             // no street told, nearer to the yard
+  t.point(702, SitePointKind::address, 44, 21.5, "South Street", "5b");  // at the wall to the yard
+  t.point(703, SitePointKind::address, 44, 9.4, "South Street", "7");    // before the wall
+  t.point(704, SitePointKind::address, 44, 8, "South Street", "9");      // on the pavement: nobody's
+  t.point(705, SitePointKind::address, 16, 13, "West Street", "1");      // in a corner house, nearer to the other street
+  t.point(706, SitePointKind::address, 16, 14, "South Street", "3");
+  t.point(707, SitePointKind::address, 44, 15, "South Street", "");      // no number: no address of a door
+  t.label();
+  EXPECT_THAT(holders(t, 700), ElementsAre("w12 street South Street"));
+  EXPECT_THAT(holders(t, 701), ElementsAre("w12 street South Street"));
+  EXPECT_THAT(holders(t, 702), ElementsAre("w12 courtyard "));
+  EXPECT_THAT(holders(t, 703), ElementsAre("w12 street South Street"));
+  EXPECT_THAT(holders(t, 704), IsEmpty());
+  EXPECT_THAT(holders(t, 705), ElementsAre("w1 street West Street"));
+  EXPECT_THAT(holders(t, 706), ElementsAre("w1 street South Street"));
+  EXPECT_THAT(holders(t, 707), IsEmpty());
+  const std::vector<model::EdgePoint>& points = t.edge(12, 44, 10).points;
+  ASSERT_EQ(points.size(), 3u);
+  EXPECT_EQ(points[0].house_number, "5");
+  EXPECT_EQ(points[0].place, t.at(44, 16));
+  EXPECT_FALSE(points[0].entrance);
+  EXPECT_EQ(t.edge(12, 44, 10).entrances, 0) << "an address alone is no entrance";
+}
+
+TEST(EdgePoints, ACornerGoesToTheWallAtTheStreetOfTheAddress) {
+  for (const char* street : {"West Street", "South Street"}) {
+    SmallTown t = perimeter_block();
+    t.point(700, SitePointKind::entrance, 10, 10, street, "1");
+    t.label();
+    EXPECT_THAT(holders(t, 700), ElementsAre("w1 street " + std::string(street)));
+  }
+}
+
+TEST(EdgePoints, AHouseWithoutAFrontHasItsAddressAtItsNearestWall) {
+  SmallTown t = perimeter_block();
+  t.box(51, 40, 40, 60, 50);
+  t.point(700, SitePointKind::address, 50, 47, "South Street", "5");
+  t.label();
+  EXPECT_THAT(holders(t, 700), ElementsAre("w51 courtyard "));
+  EXPECT_EQ(t.edge(51, 50, 50).points.size(), 1u);
+}
+
+TEST(EdgePoints, ANodeOfTwoHousesIsThatOfTheAddress) {
+  for (const bool twelve : {false, true}) {
+    SmallTown t = perimeter_block();
+    t.point(700, SitePointKind::entrance, 38, 10, "South Street", "5");
+    t.address(11, "South Street", twelve ? "3" : "5");
+    t.address(12, "South Street", twelve ? "5;7" : "7");
+    t.label();
+    EXPECT_THAT(holders(t, 700), ElementsAre(twelve ? "w12 street South Street" : "w11 street South Street"));
+    EXPECT_EQ(t.edge(11, 30, 10).entrances + t.edge(12, 44, 10).entrances, 1);
+  }
+}
+
+TEST(EdgePoints, ANodeOfAnOutlineIsThatBuildingsWhereverRepairMovedTheWall) {
+  SmallTown t = perimeter_block();
+  const std::int64_t node = t[12].outline[0].outer.nodes[1];  // (50, 10), of w12 and w13
+  for (model::Building& b : t.buildings)
+    if (b.osm.number != 12)
+      for (std::int64_t& n : b.outline[0].outer.nodes) n = n == node ? 0 : n;
+  for (Footprint& f : t.footprints)
+    if (f.id.number != 12)
+      for (std::int64_t& n : f.polygon.outer.nodes) n = n == node ? 0 : n;
+  t.point(node, SitePointKind::entrance, 50.5, 10.3);  // within w13
+  t.label();
+  EXPECT_THAT(holders(t, node), ElementsAre("w12 street South Street"));
+}
+
+TEST(EdgePoints, AHouseWhoseWallsAreAllTakenThereLeavesTheNodeToItsNeighbour) {
+  SmallTown t;
+  t.street(901, {{-80, 0}, {80, 0}}, "Street");
+  t.house(5, {{0, 10}, {4, 22}, {-4, 22}});  // a wedge between both: its tip alone reaches the front
+  t.house(11, {{-12, 10}, {0, 10}, {-4, 22}, {-12, 22}});
+  t.house(12, {{0, 10}, {12, 10}, {12, 22}, {4, 22}});
+  t.point(700, SitePointKind::entrance, 0, 10);
+  t.label();
+  EXPECT_THAT(holders(t, 700), ElementsAre("w11 street Street"));
+}
+
+TEST(EdgePoints, StandInOneWallOfOneHouseInAnyOrder) {
+  std::mt19937 random(5);
+  const auto draw = [&](double from, double to) { return from + (to - from) * (random() / 4294967296.0); };
+  SmallTown t = perimeter_block();
+  t.house(61, {{8, 8}, {30, 8}, {30, 30}, {8, 30}}, {}, true);  // a canopy over a corner
+  t.box(62, 40, 12, 44, 16);                                    // stands in another house
+  for (int i = 0; i < 600; ++i)
+    t.point(1000 + i, i % 2 ? SitePointKind::entrance : SitePointKind::address, draw(5, 95), draw(5, 28), "South Street",
+            std::to_string(i));
+  SmallTown other = t;
+  std::shuffle(other.points.begin(), other.points.end(), random);
+  std::shuffle(other.buildings.begin(), other.buildings.end(), random);
+  t.label();
+  other.label();
+  int held = 0;
+  for (int i = 0; i < 600; ++i) {
+    EXPECT_LE(holders(t, 1000 + i).size(), 1u) << i;
+    EXPECT_EQ(holders(t, 1000 + i), holders(other, 1000 + i)) << i;
+    held += !holders(t, 1000 + i).empty();
+  }
+  EXPECT_GT(held, 200);
+  for (const model::Building& b : t.buildings)
+    for (const FacadeEdge& f : b.edges)
+      EXPECT_EQ(f.entrances, std::count_if(f.points.begin(), f.points.end(), [](const auto& p) { return p.entrance; }));
 }
 
 TEST(FacadeEdges, EdgesOfACurveKnowTheirArc) {

@@ -56,8 +56,13 @@ class SmallTown {
     passages.push_back(way);
   }
 
-  void point(std::int64_t id, SitePointKind kind, double x, double y, const std::string& street_name = "") {
-    points.push_back({{model::OsmType::node, id}, kind, at(x, y), street_name, ""});
+  void point(std::int64_t id, SitePointKind kind, double x, double y, const std::string& street_name = "",
+             const std::string& house_number = "") {
+    points.push_back({{model::OsmType::node, id}, kind, at(x, y), street_name, house_number});
+  }
+  /// Of a house; strings must outlive the town.
+  void address(std::int64_t id, std::string_view street_name, std::string_view house_number) {
+    addresses.push_back({{model::OsmType::way, id}, street_name, house_number});
   }
 
   /// Finds blocks and labels every building.
@@ -65,7 +70,8 @@ class SmallTown {
     std::sort(footprints.begin(), footprints.end(), [](const Footprint& a, const Footprint& b) { return a.id < b.id; });
     blocks = find_blocks(lines, {});
     figures = measure_blocks(blocks, footprints, lines);
-    const SurroundingsIndex index({footprints, lines, blocks, figures, passages, points});
+    std::sort(addresses.begin(), addresses.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+    const SurroundingsIndex index({footprints, lines, blocks, figures, passages, points, addresses});
     for (model::Building& b : buildings) label_edges(b, index, address);
   }
 
@@ -102,6 +108,7 @@ class SmallTown {
   std::vector<BlockFigures> figures;
   std::vector<PassageWay> passages;
   std::vector<SitePoint> points;
+  std::vector<BuildingAddress> addresses;
 
  private:
   model::Ring ring(Points points_in, bool counter_clockwise) const {

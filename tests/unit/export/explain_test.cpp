@@ -163,6 +163,10 @@ TEST(ExplainRow, MachinesReadTheSame) {
                             {"street_class", "residential"}, {"street_distance", 11.5}, {"street_angle", 0.2},
                             {"visibility", 1}}));
   EXPECT_EQ(edges[2].at("front"), true);
+  EXPECT_EQ(lines.at("w1").at("edges")[0].at("points"), json({{{"id", "n71"}, {"entrance", true}, {"house_number", "7"}},
+                                                              {{"id", "n72"}, {"entrance", false}, {"house_number", "7a"}},
+                                                              {{"id", "n73"}, {"entrance", false}, {"house_number", "7"}}}));
+  EXPECT_FALSE(edges[2].contains("points"));
   EXPECT_EQ(edges[3].at("neighbour"), "w3");
   EXPECT_EQ(lines.at("w4").at("edges")[2].at("radius"), 6.25);
 }
@@ -173,7 +177,7 @@ TEST(ExplainRow, FrontsWithoutAStreetsNameAndTrees) {
   b.edges[0].street_name.clear();
   b.edges[0].street_class = "living_street";
   b.edges[0].chamfer = true;
-  b.trees.push_back({{model::OsmType::node, 77}, {391040, 5819003}, 0, 3.25f});
+  b.trees = {{{model::OsmType::node, 77}, {391040, 5819003}, 0, 3.25f}};
   const auto lines = lines_of(explain(sample.region(), plain_options()).lines);
   const std::string text = stages_of(lines.at("w3")).at("context");
   EXPECT_THAT(text, HasSubstr("end of a row; front on w900 (living street without a name) (15.0 m, looks S)"));

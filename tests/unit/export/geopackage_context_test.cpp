@@ -151,6 +151,12 @@ TEST_F(ContextLayers, EdgesSayWhatTheyFace) {
               ElementsAre(ElementsAre("6.25", "outward")));
 }
 
+TEST_F(ContextLayers, EdgesHaveTheirEntrancesAddressesAndTrees) {
+  const std::string columns = "SELECT entrances, house_numbers, points, trees FROM facade_edges WHERE id = ";
+  EXPECT_THAT(query(path, columns + "'w1.e10_11'"), ElementsAre(ElementsAre("1", "7; 7a", "n71 n72 n73", "0")));
+  EXPECT_THAT(query(path, columns + "'w3.e30_31'"), ElementsAre(ElementsAre("0", "NULL", "NULL", "2")));
+}
+
 TEST_F(ContextLayers, EdgesAreLinesAlongTheOutline) {
   const std::string blob = query(path, "SELECT geom FROM facade_edges WHERE id = 'w2.e20_21.1'").at(0).at(0);
   // Header with envelope, byte order, type, number of points, two points.

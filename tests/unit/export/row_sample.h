@@ -61,6 +61,9 @@ inline SampleRegion row_sample() {
   face(add_stretch(a, 0, EdgeKind::street));
   a.edges.back().corner_start = true;
   a.edges.back().entrances = 1;
+  a.edges.back().points = {{{model::OsmType::node, 71}, {kRowX + 2, kRowY + 8}, true, "7"},
+                           {{model::OsmType::node, 72}, {kRowX + 4, kRowY + 9}, false, "7a"},
+                           {{model::OsmType::node, 73}, {kRowX + 5, kRowY + 9}, false, "7"}};
   add_stretch(a, 1, EdgeKind::party_wall).neighbour = {model::OsmType::way, 2};
   a.edges.back().covered_height = 16.5f;
   add_stretch(a, 2, EdgeKind::courtyard);
@@ -95,6 +98,8 @@ inline SampleRegion row_sample() {
   add_stretch(c, 3, EdgeKind::party_wall).neighbour = {model::OsmType::way, 2};
   c.situation.position = BuildingPosition::end_of_row;
   c.situation.fronts = {0};
+  c.trees = {{{model::OsmType::node, 81}, {kRowX + 35, kRowY + 3}, 0, 5.0f},
+             {{model::OsmType::node, 82}, {kRowX + 40, kRowY + 3}, 0, 5.0f}};
 
   model::Building& d = add_row_house(sample, 4, 30, 30, 12, 9);
   for (std::uint32_t i = 0; i < 4; ++i) add_stretch(d, i, EdgeKind::courtyard);
