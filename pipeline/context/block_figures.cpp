@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/segment_grid.h"
@@ -114,6 +116,15 @@ std::vector<Segment> street_segments(std::span<const NetworkLine> lines) {
   return out;
 }
 
+/// \param corners  of `building`: all, or one that speaks for all
+double area_within(const Polygon& building, std::span<const Point2> corners, const Polygon& block) {
+  const auto inside = std::count_if(corners.begin(), corners.end(), [&](Point2 p) { return geometry::contains(block, p); });
+  if (inside == std::ssize(corners)) return geometry::area(building);
+  if (inside == 0) return 0;
+  const double common = geometry::common_area(std::span(&building, 1), std::span(&block, 1));
+  return common >= kMinCommonArea ? common : 0;
+}
+
 struct BlockShare {
   std::uint32_t block = 0;
   double area = 0;
@@ -127,14 +138,59 @@ std::vector<BlockShare> shares_of(const Polygon& building, std::span<const Block
                                         index.meets_border(building) ? building.outer.size() : 1);
   for (const std::uint32_t b : index.near(building)) {
     const Polygon& block = blocks[b].polygon;
-    const auto inside = static_cast<std::size_t>(
-        std::count_if(corners.begin(), corners.end(), [&](Point2 p) { return geometry::contains(block, p); }));
-    if (inside == corners.size())
-      out.push_back({b, geometry::area(building)});
-    else if (inside > 0)
-      if (const double common = geometry::common_area(std::span(&building, 1), std::span(&block, 1));
-          common >= kMinCommonArea)
-        out.push_back({b, common});
+    if (const double area = area_within(building, corners, block); area > 0) out.push_back({b, area});
+  }
+  return out;
+}
+
+/// What blocks hold of the buildings.
+struct Contents {
+  std::vector<std::vector<std::uint32_t>> standing;  ///< per block: footprints with more than half of their area in it
+  std::vector<BlockFigures> figures;                 ///< areas and the buildings that belong to each
+};
+
+/// Footprints in the order of ids, of one id in the order of their least corners: sums do not depend on the order given.
+std::vector<std::uint32_t> ordered(std::span<const Footprint> footprints) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t i = 0; i < footprints.size(); ++i)
+    if (footprints[i].polygon.outer.size() >= 3) out.push_back(i);
+  const auto least = [&](std::uint32_t i) {
+    const std::vector<Point2>& points = footprints[i].polygon.outer.points;
+    return *std::min_element(points.begin(), points.end());
+  };
+  std::sort(out.begin(), out.end(), [&](std::uint32_t a, std::uint32_t b) {
+    if (footprints[a].id != footprints[b].id) return footprints[a].id < footprints[b].id;
+    return least(a) < least(b);
+  });
+  return out;
+}
+
+void count(const BlockShare& share, const Footprint& footprint, BlockFigures& figures) {
+  figures.built_area += share.area;
+  if (!footprint.storeys) return;
+  figures.tagged_area += share.area;
+  figures.floor_area += share.area * *footprint.storeys;
+}
+
+Contents contents_of(std::span<const Footprint> footprints, std::span<const Block> blocks, const BlockIndex& index) {
+  Contents out{std::vector<std::vector<std::uint32_t>>(blocks.size()), std::vector<BlockFigures>(blocks.size())};
+  const std::vector<std::uint32_t> order = ordered(footprints);
+  for (std::size_t first = 0, last; first < order.size(); first = last) {
+    double whole = 0;
+    std::map<std::uint32_t, double> held;  // by block
+    for (last = first; last < order.size() && footprints[order[last]].id == footprints[order[first]].id; ++last) {
+      const Footprint& footprint = footprints[order[last]];
+      const double area = geometry::area(footprint.polygon);
+      whole += area;
+      for (const BlockShare& share : shares_of(footprint.polygon, blocks, index)) {
+        held[share.block] += share.area;
+        count(share, footprint, out.figures[share.block]);
+        if (2 * share.area > area) out.standing[share.block].push_back(order[last]);
+      }
+    }
+    for (const auto& [block, area] : held)
+      if (2 * area > whole)
+        for (std::size_t i = first; i < last; ++i) out.figures[block].buildings.push_back(order[i]);
   }
   return out;
 }
@@ -145,6 +201,7 @@ struct Sample {
   double along = 0;                                        ///< m from the beginning of the side
   double weight = 0;                                       ///< m of the perimeter that it stands for
   double depth = std::numeric_limits<double>::infinity();  ///< m to the first wall
+  bool at_street = true;                                   ///< else at a bank, a railway
 };
 
 struct Side {
@@ -172,12 +229,13 @@ double depth_at(Point2 p, Point2 d, double reach, std::span<const Segment> walls
   return best;
 }
 
-/// Where rays of a side meet walls: the lower quartile by length.
+/// Where rays of a side meet walls: the lower quartile by length, of the rays from streets, where there are any.
 double building_line_of(const Side& side) {
+  const bool has_street = std::any_of(side.samples.begin(), side.samples.end(), [](const Sample& s) { return s.at_street; });
   std::vector<std::pair<double, double>> hits;
   double sum = 0;
   for (const Sample& s : side.samples)
-    if (std::isfinite(s.depth)) {
+    if (std::isfinite(s.depth) && s.at_street == has_street) {
       hits.emplace_back(s.depth, s.weight);
       sum += s.weight;
     }
@@ -201,7 +259,8 @@ double corner_cut(Point2 in, Point2 out, double own, double other) {
   return std::max(0.0, (other - own * cosine) / sine);
 }
 
-std::vector<Side> sides_of(std::span<const Point2> ring, std::span<const Segment> walls, const FrontOptions& options) {
+std::vector<Side> sides_of(const Block& block, std::span<const Segment> walls, const FrontOptions& options) {
+  const std::vector<Point2>& ring = block.polygon.outer.points;
   const std::size_t n = ring.size();
   std::vector<Point2> directions(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -234,7 +293,8 @@ std::vector<Side> sides_of(std::span<const Point2> ring, std::span<const Segment
         const double t = length * (s + 0.5) / pieces;
         side.samples.push_back(
             {side.length + t, length / pieces,
-             depth_at({a.x + d.x * t, a.y + d.y * t}, inwards, options.max_depth, walls, grid, near)});
+             depth_at({a.x + d.x * t, a.y + d.y * t}, inwards, options.max_depth, walls, grid, near),
+             block.along_street[i]});
       }
       side.length += length;
     }
@@ -246,7 +306,7 @@ std::vector<Side> sides_of(std::span<const Point2> ring, std::span<const Segment
 
 void measure_front(const Block& block, std::span<const Segment> walls, const FrontOptions& options,
                    BlockFigures& figures) {
-  const std::vector<Side> sides = sides_of(block.polygon.outer.points, walls, options);
+  const std::vector<Side> sides = sides_of(block, walls, options);
   const auto line_of = [&](const Side& s) { return s.building_line >= 0 ? s.building_line : options.half_street; };
   double built = 0;
   for (std::size_t i = 0; i < sides.size(); ++i) {
@@ -258,7 +318,7 @@ void measure_front(const Block& block, std::span<const Segment> walls, const Fro
       to -= corner_cut(side.last, after.first, line_of(side), line_of(after));
     }
     for (const Sample& s : side.samples) {
-      if (s.along < from || s.along > to) continue;
+      if (!s.at_street || s.along < from || s.along > to) continue;
       figures.front_length += s.weight;
       if (side.building_line >= 0 && s.depth <= side.building_line + options.front_tolerance) built += s.weight;
     }
@@ -268,28 +328,16 @@ void measure_front(const Block& block, std::span<const Segment> walls, const Fro
 
 }  // namespace
 
+double area_within(const Polygon& building, const Polygon& block) {
+  return area_within(building, building.outer.points, block);
+}
+
 std::vector<BlockFigures> measure_blocks(std::span<const Block> blocks, std::span<const Footprint> footprints,
                                          std::span<const NetworkLine> lines, const FrontOptions& front,
                                          const CourtyardOptions& courtyard_options) {
-  std::vector<BlockFigures> out(blocks.size());
   const BlockIndex index(blocks);
-  std::vector<std::uint32_t> by_id(footprints.size());
-  for (std::uint32_t i = 0; i < by_id.size(); ++i) by_id[i] = i;
-  std::sort(by_id.begin(), by_id.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return footprints[a].id < footprints[b].id; });
-  for (const std::uint32_t i : by_id) {
-    const Footprint& building = footprints[i];
-    if (building.polygon.outer.size() < 3) continue;
-    const double whole = geometry::area(building.polygon);
-    for (const BlockShare& share : shares_of(building.polygon, blocks, index)) {
-      BlockFigures& figures = out[share.block];
-      if (2 * share.area > whole) figures.buildings.push_back(i);
-      figures.built_area += share.area;
-      if (!building.storeys) continue;
-      figures.tagged_area += share.area;
-      figures.floor_area += share.area * *building.storeys;
-    }
-  }
+  Contents contents = contents_of(footprints, blocks, index);
+  std::vector<BlockFigures>& out = contents.figures;
   const std::vector<Segment> streets = street_segments(lines);
   const geometry::SegmentGrid street_grid(streets, kStreetCell);
   std::vector<std::uint32_t> near;
@@ -301,13 +349,13 @@ std::vector<BlockFigures> measure_blocks(std::span<const Block> blocks, std::spa
     for (const std::uint32_t s : near) streets_here.push_back({streets[s].a, streets[s].b});
     std::vector<Footprint> members;
     std::vector<Segment> walls;
-    for (const std::uint32_t i : figures.buildings) {
+    for (const std::uint32_t i : contents.standing[b]) {
       members.push_back(footprints[i]);
       append_segments(footprints[i].polygon, walls);
     }
     figures.courtyards = find_courtyards(members, streets_here, courtyard_options);
     for (Courtyard& yard : figures.courtyards) {
-      for (std::uint32_t& i : yard.buildings) i = figures.buildings[i];
+      for (std::uint32_t& i : yard.buildings) i = contents.standing[b][i];
       figures.courtyard_area += yard.area;
     }
     if (!blocks[b].gives_ratios()) continue;
@@ -317,7 +365,7 @@ std::vector<BlockFigures> measure_blocks(std::span<const Block> blocks, std::spa
       figures.floor_area_ratio = *figures.built_share * figures.floor_area / figures.tagged_area;
     measure_front(blocks[b], walls, front, figures);
   }
-  return out;
+  return std::move(contents.figures);
 }
 
 }  // namespace blockrand::context

@@ -24,7 +24,7 @@ struct FrontOptions {
 };
 
 struct BlockFigures {
-  std::vector<std::uint32_t> buildings;  ///< indices of the footprints that belong to the block, by OSM id
+  std::vector<std::uint32_t> buildings;  ///< indices of the footprints of buildings that belong to it, by OSM id
   std::vector<Courtyard> courtyards;     ///< `buildings` are indices of footprints
   double built_area = 0;                 ///< m² of footprints within the block
   double tagged_area = 0;                ///< m² of it under buildings with tagged storeys
@@ -41,14 +41,19 @@ struct BlockFigures {
   double front_length = 0;                 ///< m of street front that was measured
 };
 
+/// m² of a polygon of a building that count to a block: all where every corner of its outer ring lies in the block, none
+/// where no corner does, else what both have in common (none below 0.5 m²: drawing noise).
+double area_within(const model::Polygon& building, const model::Polygon& block);
+
 /// Figures of every block, parallel to `blocks`.
 ///
-/// A building belongs to the block that holds more than half of its area; to none where no block does. Where it stands
-/// across a border, each block counts the area within it (of blocks in which a corner of the building lies; a building
-/// with all its corners in a block is counted there wholly).
+/// A building, all its polygons together, belongs to the block that holds more than half of its area; to none where no
+/// block does. Each block counts the area within it (area_within). Courtyards and the front are made by what stands in
+/// the block: polygons with more than half of their own area in it.
 ///
-/// Closure: the perimeter is cut into sides at corners. From samples along a side a ray goes inwards; the building line
-/// of the side is the lower quartile of the distances at which rays meet a wall, and a sample is built when its ray
+/// Closure: along streets and squares (Block::along_street); banks and railways are no front, and a block without a street
+/// has no closure. The perimeter is cut into sides at corners. From samples along a side a ray goes inwards; the building line
+/// of the side is the lower quartile of the distances at which rays from its streets meet a wall, and a sample is built when its ray
 /// meets a wall no more than `front_tolerance` behind that line. Samples beside a corner, whose rays run along the
 /// other street, are left out: a side ends where the building line of its neighbour crosses its own. Islands in the
 /// block are not measured.

@@ -218,6 +218,10 @@ std::vector<Block> find_blocks(std::span<const NetworkLine> lines, std::span<con
          !block.cut_by_extract_edge && end != ends.end() && end->x <= box.high.x; ++end)
       block.cut_by_extract_edge = box.contains(*end) && geometry::contains(face.polygon, *end);
 
+    for (std::size_t i = 0; i < face.polygon.outer.size(); ++i) {
+      const auto found = line_of.find(face.edges[i].line);
+      block.along_street.push_back(found != line_of.end() && is_street(lines[found->second].kind));
+    }
     for (const geometry::BorderLine& border : face.lines)
       if (const auto found = line_of.find(border.id); found != line_of.end())
         block.borders.push_back({found->second, border.left + border.right});

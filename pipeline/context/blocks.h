@@ -62,6 +62,9 @@ struct Block {
   bool cut_by_extract_edge = false;  ///< reaches beyond the data, or a main street ends in it without a cause
   bool too_large = false;            ///< beyond BlockOptions::max_extent
   std::vector<BlockBorder> borders;  ///< ascending by OSM id
+  /// Parallel to the outer ring: whether a street or the outline of a square runs from that point to the next; else it is
+  /// a railway, a river, a shore.
+  std::vector<bool> along_street;
   /// Ratios are for whole blocks of built land only.
   bool gives_ratios() const { return kind == BlockKind::ordinary && !cut_by_extract_edge && !too_large; }
 };

@@ -6,7 +6,6 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/polygon.h"
-#include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::context {
 
@@ -246,15 +245,9 @@ std::string block_of(const model::Building& building, const SurroundingsIndex& i
       if (geometry::contains(blocks[b].polygon, building.outline[0].outer.points[0])) return blocks[b].id;
       continue;
     }
-    std::size_t corners = 0, inside = 0;
-    for (const model::Polygon& polygon : building.outline)
-      for (const Point2 p : polygon.outer.points) {
-        ++corners;
-        inside += geometry::contains(blocks[b].polygon, p);
-      }
-    if (inside == corners) return blocks[b].id;
-    if (inside > 0 && 2 * geometry::common_area(building.outline, std::span(&blocks[b].polygon, 1)) > area)
-      return blocks[b].id;
+    double held = 0;
+    for (const model::Polygon& polygon : building.outline) held += area_within(polygon, blocks[b].polygon);
+    if (2 * held > area) return blocks[b].id;
   }
   return {};
 }

@@ -86,6 +86,46 @@ TEST(BlockFigures, ClosureFallsWithGapsAndHousesBehindDoNotFillThem) {
   EXPECT_NEAR(*first_block(houses).closure, 1 - 24.0 / 360, 0.01) << "4 m behind the front: a front garden";
 }
 
+TEST(BlockFigures, OnlyStreetsHaveAFront) {
+  for (const LineClass water : {LineClass::waterway, LineClass::shore, LineClass::railway, LineClass::coastline}) {
+    // South, east and north are streets with houses; in the west nothing stands for 70 m.
+    std::vector<NetworkLine> lines{street(1, {{0, 0}, {120, 0}, {120, 100}, {0, 100}}), street(2, {{0, 100}, {0, 0}})};
+    auto houses = perimeter_block();
+    houses.pop_back();
+    houses[0] = house(11, 20, 10, 90, 12, 4);
+    houses[2] = house(13, 20, 78, 90, 12, 4);
+    ASSERT_LT(*measure_blocks(find_blocks(lines, {}), houses, lines)[0].closure, 0.9) << "an open street";
+    lines[1].kind = water;
+    const BlockFigures f = measure_blocks(find_blocks(lines, {}), houses, lines)[0];
+    EXPECT_DOUBLE_EQ(*f.closure, 1);
+    EXPECT_NEAR(f.front_length, 90 + 80 + 90, 8);
+    lines[0].kind = water;
+    EXPECT_FALSE(measure_blocks(find_blocks(lines, {}), houses, lines)[0].closure) << "no street, no front";
+  }
+}
+
+TEST(BlockFigures, AStraightSideOfRiverAndStreetHasItsFrontAtTheStreet) {
+  std::vector<NetworkLine> lines{street(1, {{60, 0}, {120, 0}, {120, 100}, {0, 100}, {0, 0}}), street(2, {{0, 0}, {60, 0}})};
+  lines[1].kind = LineClass::waterway;
+  // At the river houses stand 2 m from its line, at the street 12 m: the line of the street's front is its own.
+  const std::vector<Footprint> houses{house(11, 0, 2, 60, 12), house(12, 60, 12, 50, 12)};
+  const BlockFigures f = measure_blocks(find_blocks(lines, {}), houses, lines)[0];
+  // South 50 m, up to the building line in the east; 12 m of the east and 2 m of the west.
+  EXPECT_NEAR(*f.closure * f.front_length, 50 + 12 + 2, 3);
+}
+
+TEST(BlockFigures, SquaresHaveAFront) {
+  std::vector<NetworkLine> lines{street(1, {{0, 0}, {120, 0}, {120, 100}, {0, 100}}), street(2, {{0, 100}, {0, 0}})};
+  lines[1] = street(2, {{0, 0}, {0, 100}, {-60, 100}, {-60, 0}, {0, 0}});
+  lines[1].kind = LineClass::pedestrian;
+  lines[1].area = true;
+  const auto blocks = find_blocks(lines, {});
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    if (blocks[b].kind == BlockKind::ordinary) {
+      EXPECT_NEAR(measure_blocks(blocks, perimeter_block(), lines)[b].front_length, 2 * (100 + 80), 8);
+    }
+}
+
 TEST(BlockFigures, RowsAcrossTheStreetLeaveItOpen) {
   std::vector<Footprint> rows;
   for (int i = 0; i < 4; ++i) rows.push_back(house(30 + i, 15 + i * 27.0, 15, 9, 70));
@@ -111,6 +151,32 @@ TEST(BlockFigures, AHouseAcrossAStreetBelongsWhereMostOfItIs) {
   EXPECT_THAT(figures[1].buildings, IsEmpty()) << "and the one beyond all blocks to none";
   EXPECT_NEAR(figures[0].built_area, 150, 1e-6);
   EXPECT_NEAR(figures[1].built_area, 50, 1e-6) << "each block counts what stands in it";
+}
+
+TEST(BlockFigures, AHouseOfTwoPolygonsBelongsToOneBlock) {
+  const auto lines = two_blocks();
+  const auto blocks = find_blocks(lines, {});
+  // Of 300 m2 two thirds in the west; in the next, half in each: none holds more than half.
+  auto figures = measure_blocks(blocks, std::vector{house(1, 40, 40, 20, 10), house(1, 140, 40, 10, 10)}, lines);
+  EXPECT_THAT(figures[0].buildings, ElementsAre(0, 1));
+  EXPECT_THAT(figures[1].buildings, IsEmpty());
+  EXPECT_NEAR(figures[0].built_area, 200, 1e-6);
+  EXPECT_NEAR(figures[1].built_area, 100, 1e-6) << "each block counts what stands in it";
+  figures = measure_blocks(blocks, std::vector{house(1, 40, 40, 10, 10), house(1, 140, 40, 10, 10)}, lines);
+  EXPECT_THAT(figures[0].buildings, IsEmpty());
+  EXPECT_THAT(figures[1].buildings, IsEmpty());
+}
+
+TEST(BlockFigures, ACourtyardBelongsWhereItsWallsStand) {
+  // The ring stands in the east, most of its building in the west.
+  Footprint ring = house(1, 140, 30, 40, 40);
+  ring.polygon.holes.push_back(house(9, 150, 40, 10, 10).polygon.outer);
+  std::reverse(ring.polygon.holes[0].points.begin(), ring.polygon.holes[0].points.end());
+  const auto lines = two_blocks();
+  const auto figures = measure_blocks(find_blocks(lines, {}), std::vector{house(1, 20, 15, 60, 70), ring}, lines);
+  EXPECT_THAT(figures[0].buildings, ElementsAre(0, 1));
+  EXPECT_THAT(figures[0].courtyards, IsEmpty());
+  EXPECT_EQ(figures[1].courtyards.size(), 1u);
 }
 
 TEST(BlockFigures, WallsOnTheOutlineAreTheFront) {

@@ -135,5 +135,22 @@ TEST(Situation, ShedInAGardenStandsFree) {
   EXPECT_EQ(t[2].situation.block, "");
 }
 
+TEST(Situation, ABuildingOfTwoPolygonsIsInOneBlockAsTheBlockSays) {
+  for (const double depth : {4.0, 12.0}) {
+    SmallTown t = perimeter_block();
+    t.box(51, 40, 40, 60, 50);                                                         // 200 m2 in the block
+    SmallTown beyond;
+    beyond.box(51, 110, 40, 130, 40 + depth);                                          // 80 or 240 m2 over the street
+    t.buildings.back().outline.push_back(beyond.footprints[0].polygon);
+    t.footprints.push_back(beyond.footprints[0]);
+    t.label();
+    ASSERT_EQ(t.blocks.size(), 1u);
+    EXPECT_EQ(t[51].situation.block, depth < 10 ? t.blocks[0].id : "");
+    std::size_t polygons = 0;
+    for (const std::uint32_t i : t.figures[0].buildings) polygons += t.footprints[i].id.number == 51;
+    EXPECT_EQ(polygons, depth < 10 ? 2u : 0u);
+  }
+}
+
 }  // namespace
 }  // namespace blockrand::context
