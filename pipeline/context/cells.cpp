@@ -126,30 +126,39 @@ void CellSums::add(const CellBuilding& b) {
   }
 }
 
-void CellSums::add(const CellSums& o) {
-  buildings += o.buildings;
-  area += o.area;
-  walls += o.walls;
-  party_walls += o.party_walls;
-  tagged += o.tagged;
-  tagged_area += o.tagged_area;
-  storeys += o.storeys;
-  storeys_squared += o.storeys_squared;
-  floor_area += o.floor_area;
-  dated += o.dated;
-  years += o.years;
-  years_squared += o.years_squared;
-  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] += o.sizes[i];
+double covered_share(CellIndex cell, std::span<const model::Point2> coverage) {
+  if (coverage.size() < 3) return 0;
+  // Sutherland and Hodgman (1974): the square, cut by one edge of the convex ring after the other; metres from its corner.
+  const model::Point2 corner = cell.corner();
+  std::vector<model::Point2> rest{{0, 0}, {kCellSize, 0}, {kCellSize, kCellSize}, {0, kCellSize}};
+  for (std::size_t i = 0; i < coverage.size() && !rest.empty(); ++i) {
+    const model::Point2 a{coverage[i].x - corner.x, coverage[i].y - corner.y};
+    const model::Point2 end = coverage[(i + 1) % coverage.size()];
+    const double dx = end.x - corner.x - a.x, dy = end.y - corner.y - a.y;
+    const auto inside = [&](model::Point2 p) { return dx * (p.y - a.y) - dy * (p.x - a.x); };
+    std::vector<model::Point2> cut;
+    for (std::size_t k = 0; k < rest.size(); ++k) {
+      const model::Point2 p = rest[k], q = rest[(k + 1) % rest.size()];
+      const double u = inside(p), v = inside(q);
+      if (u >= 0) cut.push_back(p);
+      if ((u >= 0) != (v >= 0)) cut.push_back({p.x + (q.x - p.x) * u / (u - v), p.y + (q.y - p.y) * u / (u - v)});
+    }
+    rest = std::move(cut);
+  }
+  return rest.empty() ? 0 : std::clamp(geometry::signed_area(rest) / (kCellSize * kCellSize), 0.0, 1.0);
 }
 
-CellFigures figures_of(const CellSums& s) {
+CellFigures figures_of(const CellSums& s, double covered) {
   constexpr double kSquareMetresPerHectare = 10000;
   CellFigures f;
   f.buildings = s.buildings;
+  f.covered_share = covered;
   if (s.buildings == 0) return f;
   const double n = static_cast<double>(s.buildings);
-  f.density = n / (kCellSize * kCellSize / kSquareMetresPerHectare);
-  f.built_share = static_cast<double>(s.area) / kStepsPerUnit / (kCellSize * kCellSize);
+  if (covered >= kMinCovered) {
+    f.density = n / (kCellSize * kCellSize / kSquareMetresPerHectare);
+    f.built_share = static_cast<double>(s.area) / kStepsPerUnit / (kCellSize * kCellSize);
+  }
   f.tagged_share = static_cast<double>(s.tagged) / n;
   f.dated_share = static_cast<double>(s.dated) / n;
   if (s.tagged > 0) {
@@ -157,8 +166,8 @@ CellFigures figures_of(const CellSums& s) {
     f.storeys_mean = storeys.mean / kStoreySteps;
     f.storeys_spread = storeys.deviation / kStoreySteps;
   }
-  if (s.tagged_area > 0)
-    f.floor_area_ratio = f.built_share * static_cast<double>(s.floor_area) / static_cast<double>(s.tagged_area);
+  if (f.built_share && s.tagged_area > 0)
+    f.floor_area_ratio = *f.built_share * static_cast<double>(s.floor_area) / static_cast<double>(s.tagged_area);
   if (s.walls > 0) f.party_wall_share = static_cast<double>(s.party_walls) / static_cast<double>(s.walls);
   if (s.dated > 0) {
     const Spread years = spread_of(s.dated, s.years, s.years_squared);
@@ -175,10 +184,6 @@ Cells cells_of(std::span<const CellBuilding> buildings) {
   Cells cells;
   for (const CellBuilding& b : buildings) cells[cell_of(b.place)].add(b);
   return cells;
-}
-
-void add_cells(Cells& cells, const Cells& more) {
-  for (const auto& [index, sums] : more) cells[index].add(sums);
 }
 
 }  // namespace blockrand::context

@@ -52,8 +52,7 @@ std::optional<int> year_of(std::string_view start_date);
 inline constexpr std::array<double, 20> kFootprintBins = {10,  20,  30,  45,  60,  80,  100,  125,  150,  180,
                                                           220, 270, 330, 400, 500, 650, 1000, 2000, 5000, 10000};
 
-/// Sums over the buildings of a cell. All are integers, so that their order does not matter: cells of two halves of a
-/// region, added, are the cell of the whole.
+/// Sums over the buildings of a cell. All are integers, so that their order does not matter.
 struct CellSums {
   std::int64_t buildings = 0;
   std::int64_t area = 0;                                        ///< 1/1024 m²
@@ -68,18 +67,20 @@ struct CellSums {
   std::array<std::int64_t, kFootprintBins.size() + 1> sizes{};  ///< buildings by footprint, kFootprintBins
 
   void add(const CellBuilding& building);
-  void add(const CellSums& other);
   friend bool operator==(const CellSums&, const CellSums&) = default;
 };
 
 /// What a cell says. Empty values: nobody told.
 struct CellFigures {
   std::int64_t buildings = 0;
-  double density = 0;       ///< buildings per hectare
-  double built_share = 0;   ///< footprint area / cell area; above 1 where a large building reaches out of its cell
+  double covered_share = 1;  ///< of the cell's area lies within the data
+  // By the area of the cell: empty where less than kMinCovered of it is covered.
+  std::optional<double> density;           ///< buildings per hectare
+  std::optional<double> built_share;       ///< footprint area / cell area; above 1 where a large building reaches out of
+                                           ///< its cell
+  std::optional<double> floor_area_ratio;  ///< built share times storeys by area, as good as `tagged_share`
   double tagged_share = 0;  ///< of the buildings have tagged storeys
   std::optional<double> storeys_mean, storeys_spread;  ///< of these buildings; spread is the standard deviation
-  std::optional<double> floor_area_ratio;              ///< built share times storeys by area, as good as `tagged_share`
   std::optional<double> party_wall_share;              ///< of the length of outlines
   double dated_share = 0;                              ///< of the buildings have a year
   std::optional<double> year_mean, year_spread;
@@ -87,14 +88,20 @@ struct CellFigures {
                                                                                          ///< within a bin
 };
 
-CellFigures figures_of(const CellSums& sums);
+/// Of a cell's area. Where less is within the data, buildings by its area would tell of the data's edge, not of the
+/// district.
+inline constexpr double kMinCovered = 0.95;
+
+/// How much of a cell's area lies within `coverage`, from 0 to 1: a convex counter-clockwise ring in metres (coverage_of,
+/// blocks.h), which is pinned for a tile alone, so that a cell's value does not depend on the tile. 0 where it is empty:
+/// fewer than three buildings cover nothing.
+double covered_share(CellIndex cell, std::span<const model::Point2> coverage);
+
+CellFigures figures_of(const CellSums& sums, double covered_share = 1);
 
 /// The cells of a region, ascending.
 using Cells = std::map<CellIndex, CellSums>;
 
 Cells cells_of(std::span<const CellBuilding> buildings);
-
-/// Adds the sums of `more` to those of `cells`: tiles in any order give the same.
-void add_cells(Cells& cells, const Cells& more);
 
 }  // namespace blockrand::context

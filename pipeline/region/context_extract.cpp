@@ -26,7 +26,6 @@ constexpr double kBatchCell = 1000;
 /// m beyond a block's box: buildings that reach into it from outside do so with their boxes.
 constexpr double kBeside = 1;
 
-
 std::optional<double> tagged_storeys(const Extract& extract, const StoredFootprint& f) {
   const auto& storeys = extract.buildings[f.lead].attributes.storeys;
   return storeys ? std::optional<double>(static_cast<double>(*storeys)) : std::nullopt;
@@ -50,10 +49,6 @@ void renumber(std::vector<std::uint32_t>& indices, const std::vector<std::uint32
   indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
 }
 
-struct Measured {
-  std::vector<BlockFigures> figures;
-};
-
 /// Figures of all blocks, batch by batch.
 void measure_all(const Extract& extract, const FootprintStore& store, const FootprintIndex& index, const BoxIndex& lines,
                  int workers, ContextExtract& out) {
@@ -71,7 +66,7 @@ void measure_all(const Extract& extract, const FootprintStore& store, const Foot
 
   out.figures.resize(out.blocks.size());
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2;
-  std::vector<Measured> slots(in_flight);
+  std::vector<std::vector<BlockFigures>> slots(in_flight);
   const auto work = [&](std::size_t i) {
     std::vector<Block> blocks;
     PlanBox box;
@@ -90,16 +85,16 @@ void measure_all(const Extract& extract, const FootprintStore& store, const Foot
       for (Courtyard& yard : f.courtyards) renumber(yard.buildings, numbers);
       renumber(f.buildings, numbers);
     }
-    slots[i % in_flight] = {std::move(figures)};
+    slots[i % in_flight] = std::move(figures);
   };
   const auto consume = [&](std::size_t i) {
-    Measured measured = std::move(slots[i % in_flight]);
+    std::vector<BlockFigures> figures = std::move(slots[i % in_flight]);
     for (std::size_t k = 0; k < batches[i].size(); ++k) {
       const std::uint32_t b = batches[i][k];
-      for (Courtyard& yard : measured.figures[k].courtyards) out.courtyards.push_back({b, std::move(yard)});
-      measured.figures[k].courtyards.clear();
-      for (const std::uint32_t building : measured.figures[k].buildings) out.block_of[building] = b;
-      out.figures[b] = std::move(measured.figures[k]);
+      for (Courtyard& yard : figures[k].courtyards) out.courtyards.push_back({b, std::move(yard)});
+      figures[k].courtyards.clear();
+      for (const std::uint32_t building : figures[k].buildings) out.block_of[building] = b;
+      out.figures[b] = std::move(figures[k]);
     }
   };
   base::ordered_parallel(batches.size(), workers, in_flight, work, consume);
@@ -156,7 +151,7 @@ context::Cells district_cells(const Extract& extract, const FootprintStore& stor
   const base::StringId start_date = extract.strings.find("start_date");
   for (std::uint32_t b = 0; b < store.size(); ++b) {
     const StoredFootprint& f = store[b];
-    if (f.box.empty()) continue;
+    if (!is_built_land(f)) continue;
     context::CellBuilding c;
     const std::vector<model::Polygon> polygons = store.polygons(b);
     for (const model::Polygon& polygon : polygons) {
@@ -197,6 +192,7 @@ ContextExtract context_extract(const Extract& extract, const FootprintStore& foo
   std::sort(out.courtyards.begin(), out.courtyards.end(),
             [](const ExtractCourtyard& a, const ExtractCourtyard& b) { return a.courtyard.id < b.courtyard.id; });
   out.cells = district_cells(extract, footprints);
+  out.coverage.assign(coverage.begin(), coverage.end());
   return out;
 }
 

@@ -35,7 +35,8 @@ struct ContextExtract {
   std::vector<ExtractCourtyard> courtyards;    ///< by id
   std::vector<std::uint32_t> block_of;         ///< per building: the block it belongs to, or kNoIndex. Blocks that are too
                                                ///< large count as none: what reads a part of the extract cannot find them
-  context::Cells cells;
+  context::Cells cells;  ///< of what stands on the ground, as in blocks: no canopies, nothing that floats
+  std::vector<model::Point2> coverage;  ///< as given: how much of a cell the data covers (context::covered_share)
 };
 
 /// \param coverage  of the extract (context::coverage_of), made once and pinned

@@ -41,13 +41,14 @@ export_::BlockRow block_row(const context::Block& block, const context::BlockFig
   return row;
 }
 
-export_::CellRow cell_row(const context::CellIndex& cell, const context::CellSums& sums) {
-  const context::CellFigures f = context::figures_of(sums);
+export_::CellRow cell_row(const context::CellIndex& cell, const context::CellSums& sums, double covered_share) {
+  const context::CellFigures f = context::figures_of(sums, covered_share);
   export_::CellRow row;
   row.id = cell.id();
   row.corner = cell.corner();
   row.size = context::kCellSize;
   row.buildings = f.buildings;
+  row.covered_share = f.covered_share;
   row.density = f.density;
   row.built_share = f.built_share;
   row.tagged_share = f.tagged_share;
@@ -100,7 +101,7 @@ void write_context_layers(export_::GeoPackageWriter& out, const ContextExtract& 
     for (std::uint32_t b = 0; b < store.size(); ++b)
       if (here[b] && !store[b].box.empty()) cells.insert(cell_of_building(store, b));
   for (const auto& [cell, sums] : context.cells)
-    if (!tile || cells.contains(cell)) out.add_cell(cell_row(cell, sums));
+    if (!tile || cells.contains(cell)) out.add_cell(cell_row(cell, sums, context::covered_share(cell, context.coverage)));
 }
 
 }  // namespace blockrand::region

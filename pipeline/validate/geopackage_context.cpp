@@ -24,6 +24,7 @@ constexpr double kOnOutline = 0.002;
 constexpr double kDirectionTolerance = 0.051;
 /// Of shares that are sums: a ten-thousandth is the last decimal, and overlaps of neighbours may add to it.
 constexpr double kShareSlack = 0.001;
+constexpr double kMinCovered = 0.95;  // of a cell that gives ratios by its area
 constexpr double kOnGrid = 1e-6;  // m: corners of cells are whole numbers
 
 template <class Names>
@@ -329,8 +330,12 @@ class ContextRules {
     each("cells", WkbType::polygon, [&](Fields& f, const GeoPackageGeometry& g) {
       f.number("size", 1, 1e5, false);
       f.count("buildings");
-      f.number("density", 0, 1e6, false);
-      f.number("built_share", 0, 1e4, false);  // a large building may reach out of its cell
+      f.number("covered_share", 0, 1, false);
+      f.number("density", 0, 1e6);
+      f.number("built_share", 0, 1e4);  // a large building may reach out of its cell
+      for (const char* ratio : {"density", "built_share", "floor_area_ratio"})
+        if (f.real("covered_share") < kMinCovered && !f.null(ratio))
+          f.error(fmt::format("{} of a cell that the data does not cover", ratio));
       for (const char* share : {"tagged_share", "dated_share"}) f.number(share, 0, 1, false);
       f.number("party_wall_share", 0, 1);
       for (const char* value : {"storeys_mean", "storeys_spread", "floor_area_ratio", "year_mean", "year_spread",
@@ -376,7 +381,7 @@ std::vector<std::string> context_columns(std::string_view table) {
   if (table == "courtyards") return {"id", "block", "area", "closed", "opening", "buildings", "building_ids"};
   if (table == "cells")
     return {"id",           "size",          "buildings",     "density",          "built_share",      "tagged_share",
-            "storeys_mean", "storeys_spread", "floor_area_ratio", "party_wall_share", "dated_share",  "year_mean",
+            "covered_share", "storeys_mean", "storeys_spread", "floor_area_ratio", "party_wall_share", "dated_share",  "year_mean",
             "year_spread",  "footprint_quartile", "footprint_median", "footprint_upper_quartile"};
   return {};
 }

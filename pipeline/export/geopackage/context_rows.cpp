@@ -63,6 +63,7 @@ void append_row(CellTable& table, const CellRow& c) {
   row.text(c.id);
   row.real(c.size);
   row.integer(c.buildings);
+  row.real(share(c.covered_share));
   row.real(share(c.density));
   row.real(share(c.built_share));
   row.real(share(c.tagged_share));

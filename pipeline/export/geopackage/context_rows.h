@@ -47,8 +47,10 @@ struct CellRow {
   model::Point2 corner;    ///< m, south-west, build CRS
   double size = 250;       ///< m, side
   std::int64_t buildings = 0;
-  double density = 0;      ///< buildings per hectare
-  double built_share = 0, tagged_share = 0;
+  double covered_share = 1;  ///< of its area lies within the data; with less than 0.95 it gives no ratios by its area
+  std::optional<double> density;  ///< buildings per hectare
+  std::optional<double> built_share;
+  double tagged_share = 0;
   std::optional<double> storeys_mean, storeys_spread, floor_area_ratio, party_wall_share;
   double dated_share = 0;
   std::optional<double> year_mean, year_spread;

@@ -49,8 +49,8 @@ TEST(Cells, FiguresOfAFewHouses) {
   ASSERT_EQ(cells.size(), 2u);
   const CellFigures f = figures_of(cells.begin()->second);
   EXPECT_EQ(f.buildings, 3);
-  EXPECT_DOUBLE_EQ(f.density, 3 / 6.25);
-  EXPECT_DOUBLE_EQ(f.built_share, 500.0 / 62500);
+  EXPECT_DOUBLE_EQ(*f.density, 3 / 6.25);
+  EXPECT_DOUBLE_EQ(*f.built_share, 500.0 / 62500);
   EXPECT_DOUBLE_EQ(f.tagged_share, 2.0 / 3);
   EXPECT_DOUBLE_EQ(*f.storeys_mean, 5);
   EXPECT_DOUBLE_EQ(*f.storeys_spread, 1);
@@ -74,7 +74,28 @@ TEST(Cells, QuantilesFromBins) {
   EXPECT_DOUBLE_EQ(*hall.footprint_median, 10000) << "the last bin has no upper bound";
 }
 
-TEST(Cells, TilesInAnyOrderGiveTheCellsOfTheWhole) {
+TEST(Cells, KnowHowMuchOfThemTheDataCovers) {
+  const CellIndex cell{0, 0};
+  const std::vector<Point2> all{{-10, -10}, {300, -10}, {300, 300}, {-10, 300}};
+  EXPECT_DOUBLE_EQ(covered_share(cell, all), 1);
+  EXPECT_DOUBLE_EQ(covered_share(cell, std::vector<Point2>{{0, 0}, {250, 0}, {0, 250}}), 0.5);
+  EXPECT_DOUBLE_EQ(covered_share(cell, std::vector<Point2>{{-100, -100}, {100, -100}, {100, 400}, {-100, 400}}), 0.4);
+  EXPECT_DOUBLE_EQ(covered_share(cell, std::vector<Point2>{{50, 50}, {150, 50}, {150, 150}, {50, 150}}), 0.16) << "within";
+  EXPECT_DOUBLE_EQ(covered_share({1, 1}, std::vector<Point2>{{0, 0}, {250, 0}, {0, 250}}), 0);
+  EXPECT_DOUBLE_EQ(covered_share(cell, {}), 0);
+}
+
+TEST(Cells, GiveNoRatiosOfTheirAreaWhereTheDataEnds) {
+  const std::vector<CellBuilding> houses{house({10, 10}, 200, 4, 1890)};
+  const CellSums sums = cells_of(houses).begin()->second;
+  const CellFigures whole = figures_of(sums, 0.95), cut = figures_of(sums, 0.94);
+  EXPECT_TRUE(whole.density && whole.built_share && whole.floor_area_ratio);
+  EXPECT_FALSE(cut.density || cut.built_share || cut.floor_area_ratio);
+  EXPECT_EQ(cut.storeys_mean, whole.storeys_mean) << "the houses that are there tell the same";
+  EXPECT_EQ(cut.covered_share, 0.94);
+}
+
+TEST(Cells, OrderOfBuildingsDoesNotMatter) {
   std::mt19937 random(3);
   const auto draw = [&](double to) { return to * (random() / 4294967296.0); };
   std::vector<CellBuilding> houses;
@@ -88,11 +109,7 @@ TEST(Cells, TilesInAnyOrderGiveTheCellsOfTheWhole) {
   }
   const Cells whole = cells_of(houses);
   std::shuffle(houses.begin(), houses.end(), random);
-  Cells sum;
-  const std::span<const CellBuilding> all(houses);
-  for (const auto& tile : {all.subspan(300), all.subspan(0, 100), all.subspan(100, 200)})
-    add_cells(sum, cells_of(tile));
-  EXPECT_EQ(sum, whole);
+  EXPECT_EQ(cells_of(houses), whole);
   EXPECT_EQ(whole.size(), 16u);
 }
 

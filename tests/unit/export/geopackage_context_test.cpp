@@ -75,6 +75,7 @@ CellRow a_cell() {
   c.id = "c1564_23276";
   c.corner = {391000, 5819000};
   c.buildings = 4;
+  c.covered_share = 0.97123;
   c.density = 0.64;
   c.built_share = 0.0118;
   c.tagged_share = 0.25;
@@ -186,9 +187,9 @@ TEST_F(ContextLayers, BlocksCourtyardsAndCellsHaveTheirFigures) {
                                       "45.0", "500.0", "1", "Kastanienallee; w901")));
   EXPECT_THAT(query(path, "SELECT id, block, area, closed, opening, buildings, building_ids FROM courtyards"),
               ElementsAre(ElementsAre("w1.y7_8", "w900.n5.l", "500.0", "1", "0.0", "2", "w1 w2")));
-  EXPECT_THAT(query(path, "SELECT id, size, buildings, density, built_share, tagged_share, storeys_mean, storeys_spread, "
+  EXPECT_THAT(query(path, "SELECT id, size, buildings, covered_share, density, built_share, tagged_share, storeys_mean, storeys_spread, "
                           "year_mean, footprint_median FROM cells"),
-              ElementsAre(ElementsAre("c1564_23276", "250.0", "4", "0.64", "0.0118", "0.25", "5.0", "NULL", "NULL", "190.5")));
+              ElementsAre(ElementsAre("c1564_23276", "250.0", "4", "0.9712", "0.64", "0.0118", "0.25", "5.0", "NULL", "NULL", "190.5")));
   EXPECT_THAT(query(path, "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'cells'"),
               ElementsAre(ElementsAre("391000.0", "5819000.0", "391250.0", "5819250.0")));
 }

@@ -191,6 +191,8 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{"cell_size", "UPDATE cells SET size = 200.0", "it is no square of 200.0 m on the grid"},
         Damage{"cell_quartiles", "UPDATE cells SET footprint_median = 300.0", "its quartiles of footprints are not in order"},
         Damage{"cell_share", "UPDATE cells SET tagged_share = 1.2", "tagged_share \"1.2\""},
+        Damage{"cell_covered", "UPDATE cells SET covered_share = 1.5", "covered_share \"1.5\""},
+        Damage{"cell_cut", "UPDATE cells SET covered_share = 0.5, built_share = 0.2", "built_share of a cell that the data"},
         Damage{"cell_empty", "UPDATE cells SET buildings = 0", "a cell without buildings"}),
     [](const auto& param) { return param.param.name; });
 
