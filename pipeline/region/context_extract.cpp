@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/geometry/polygon.h"
@@ -101,7 +102,8 @@ void measure_all(const Extract& extract, const FootprintStore& store, const Foot
 }
 
 /// Courtyards among buildings in no block: at the rim of the data, in the open country. Groups of buildings around one
-/// courtyard are no farther from each other than its widest opening.
+/// courtyard are no farther from each other than its widest opening. A building of several polygons may belong to no block
+/// while its polygons stand in some: what blocks have found there is not found again.
 void find_loose_courtyards(const Extract& extract, const FootprintStore& store, const BoxIndex& lines, int workers,
                            ContextExtract& out) {
   FootprintStore loose(store.size());
@@ -131,8 +133,11 @@ void find_loose_courtyards(const Extract& extract, const FootprintStore& store, 
     for (Courtyard& yard : yards) renumber(yard.buildings, numbers);
     slots[i % in_flight] = std::move(yards);
   };
+  std::set<std::string> known;
+  for (const ExtractCourtyard& yard : out.courtyards) known.insert(yard.courtyard.id);
   const auto consume = [&](std::size_t i) {
-    for (Courtyard& yard : slots[i % in_flight]) out.courtyards.push_back({model::kNoIndex, std::move(yard)});
+    for (Courtyard& yard : slots[i % in_flight])
+      if (!known.contains(yard.id)) out.courtyards.push_back({model::kNoIndex, std::move(yard)});
     slots[i % in_flight].clear();
   };
   base::ordered_parallel(groups.size(), workers, in_flight, work, consume);

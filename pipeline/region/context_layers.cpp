@@ -79,9 +79,13 @@ void write_context_layers(export_::GeoPackageWriter& out, const ContextExtract& 
     return !tile || std::any_of(buildings.begin(), buildings.end(), [&](std::uint32_t b) { return here[b]; });
   };
   std::map<std::uint32_t, std::int64_t> courtyards;
-  for (const ExtractCourtyard& yard : context.courtyards) ++courtyards[yard.block];
+  std::set<std::uint32_t> with_courtyard;  // blocks that rows of courtyards name
+  for (const ExtractCourtyard& yard : context.courtyards) {
+    ++courtyards[yard.block];
+    if (any_here(yard.courtyard.buildings)) with_courtyard.insert(yard.block);
+  }
   for (std::uint32_t b = 0; b < context.blocks.size(); ++b)
-    if (any_here(context.figures[b].buildings))
+    if (any_here(context.figures[b].buildings) || with_courtyard.contains(b))
       out.add_block(block_row(context.blocks[b], context.figures[b], context.lines, courtyards[b]));
   for (const ExtractCourtyard& yard : context.courtyards) {
     if (!any_here(yard.courtyard.buildings)) continue;

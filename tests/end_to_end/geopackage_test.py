@@ -11,7 +11,8 @@ import struct
 import sys
 import unittest
 
-from blockrand_run import SAMPLE, BuildTest, call, extract, main, read_json, sha256
+from blockrand_run import SAMPLE, BuildTest, blockrand, call, extract, main, read_json, sha256
+from osm_files import METRE, Node, Relation, Way, house, write_xml
 
 OGRINFO = shutil.which('ogrinfo')
 LAYERS = {'buildings': 'Multi Polygon', 'parts': 'Polygon', 'facade_edges': 'Line String', 'blocks': 'Polygon',
@@ -239,6 +240,46 @@ class GeoPackage(BuildTest):
 
     def test_nothing_lies_beside_it(self):
         self.assertEqual([f for f in os.listdir(self.out) if f.startswith('buildings.gpkg')], ['buildings.gpkg'])
+
+
+def three_rings():
+    """One building of three rings, each in a block of its own: it belongs to none, its courtyards to theirs."""
+    lon, lat, wide = 11.0, 51.5, 1.606
+    objects = []
+
+    def way(number, points, tags, close=False):
+        ids = [100 * number + i for i in range(len(points))]
+        objects.extend(Node(i, lon + x * METRE * wide, lat + y * METRE) for i, (x, y) in zip(ids, points))
+        objects.append(Way(number, ids + ids[:1] if close else ids, tags))
+
+    def square(number, low, high, x):
+        way(number, [(x + low, low), (x + high, low), (x + high, high), (x + low, high)], {}, close=True)
+    grid = {(i, j): Node(1 + 2 * i + j, lon + 100 * i * METRE * wide, lat + 100 * j * METRE) for i in range(4) for j in (0, 1)}
+    objects.extend(grid.values())
+    lines = [[(i, j) for i in range(4)] for j in (0, 1)] + [[(i, 0), (i, 1)] for i in range(4)]
+    for k, line in enumerate(lines):
+        objects.append(Way(50 + k, [grid[at].id for at in line], {'highway': 'residential', 'name': f'Street {k}'}))
+    for i in range(3):
+        square(60 + 2 * i, 30, 70, 100 * i)
+        square(61 + 2 * i, 40, 60, 100 * i)
+    objects.append(Relation(1, [('way', 60 + k, 'inner' if k % 2 else 'outer') for k in range(6)],
+                            {'type': 'multipolygon', 'building': 'yes'}))
+    for k, (x, y) in enumerate(((-200, -200), (500, -200), (500, 300), (-200, 300))):
+        objects += house(k, lon + x * METRE * wide, lat + y * METRE, stretch=wide)
+    return objects
+
+
+class SeveralPolygons(BuildTest):
+    def test_a_courtyard_is_found_once_where_its_walls_stand(self):
+        out = self.build(write_xml(self.path('rings.osm'), three_rings()), 'out')
+        db = sqlite3.connect(os.path.join(out, 'buildings.gpkg'))
+        blocks = db.execute('SELECT id, buildings, courtyards FROM blocks ORDER BY id').fetchall()
+        self.assertEqual([row[1:] for row in blocks], [(0, 1)] * 3)
+        self.assertEqual(sorted(db.execute('SELECT block FROM courtyards').fetchall()), [(row[0],) for row in blocks])
+        self.assertEqual(db.execute("SELECT block FROM buildings WHERE id = 'r1'").fetchall(), [(None,)])
+        db.close()
+        run = blockrand('validate', out)
+        self.assertEqual(run.code, 0, run)
 
 
 class WithoutGeoPackage(BuildTest):
