@@ -128,6 +128,10 @@ void remove_repeats(Ring& ring, const KeptNodes& kept, double duplicate2, RingCl
     out.nodes.push_back(ring.nodes[i]);
   }
   while (out.size() > 1 && distance2(out.points.front(), out.points.back()) <= duplicate2) {
+    if (kept.contains(out.nodes.back()) && !kept.contains(out.nodes.front())) {
+      out.points.front() = out.points.back();
+      out.nodes.front() = out.nodes.back();
+    }
     out.points.pop_back();
     out.nodes.pop_back();
     ++done.duplicates;
@@ -135,7 +139,7 @@ void remove_repeats(Ring& ring, const KeptNodes& kept, double duplicate2, RingCl
   ring = std::move(out);
 }
 
-void remove_spikes(Ring& ring, double duplicate2, double spike2, RingCleaning& done) {
+void remove_spikes(Ring& ring, const KeptNodes& kept, double duplicate2, double spike2, RingCleaning& done) {
   Circle circle(ring.size());
   const auto& p = ring.points;
   std::size_t calm = 0;
@@ -143,7 +147,7 @@ void remove_spikes(Ring& ring, double duplicate2, double spike2, RingCleaning& d
     const std::size_t before = circle.previous(i), after = circle.next(i);
     if (distance2(p[i], p[after]) <= duplicate2) {
       // Removing a spike can bring its two ends together.
-      circle.erase(after);
+      circle.erase(kept.contains(ring.nodes[after]) && !kept.contains(ring.nodes[i]) ? i : after);
       ++done.duplicates;
     } else if (is_spike(p[before], p[i], p[after], spike2)) {
       circle.erase(i);
@@ -261,7 +265,7 @@ RingCleaning clean_ring(Ring& ring, const KeptNodes& kept, const RepairOptions& 
         longest = i;
     turn_to_start(ring, (longest + 1) % n);
     remove_repeats(ring, kept, duplicate2, done);
-    remove_spikes(ring, duplicate2, spike2, done);
+    remove_spikes(ring, kept, duplicate2, spike2, done);
   }
   done.rounds = rounds_of(ring);
   if (done.rounds > 1) {

@@ -263,6 +263,20 @@ TEST(Rings, OfTwoPointsInOnePlaceTheKeptNodeStays) {
   EXPECT_EQ(std::count(r.nodes.begin(), r.nodes.end(), 2), 0);
 }
 
+TEST(Rings, WhereASpikesEndsMeetTheKeptNodeStays) {
+  // The spike leaves the wall at one node and comes back to another one in the same place.
+  for (const std::int64_t kept : {3, 5}) {
+    SCOPED_TRACE(kept);
+    Ring r = ring({{0, 0}, {10, 0}, {10, 4}, {18, 4}, {10, 4}, {10, 8}, {0, 8}});
+    r.nodes = {1, 2, 3, 4, 5, 6, 7};
+    const RingCleaning done = clean_ring(r, KeptNodes(std::vector<std::int64_t>{kept}), {});
+    EXPECT_EQ(done.spikes, 1);
+    EXPECT_EQ(done.duplicates, 1);
+    EXPECT_EQ(r.size(), 5u);
+    EXPECT_EQ(std::count(r.nodes.begin(), r.nodes.end(), kept), 1);
+  }
+}
+
 TEST(Rings, ARoundedBayKeepsItsPoints) {
   // A half circle of radius 4 m in steps of 5 degrees: sagittas of 4 mm, far below what a straight wall may lose.
   std::vector<Point2> points{{-4, 10}, {-10, 10}, {-10, 0}, {10, 0}, {10, 10}, {4, 10}};
