@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/geometry/needles.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/repair/rings.h"
@@ -208,7 +209,8 @@ class Coverings {
     Inner best;
     for (const std::uint32_t s : survivors.near(extents_[b])) {
       const double common = common_if(s, b, kSameShare * std::max(areas_[s], areas_[b]));
-      if (common > best.common || (common > 0 && common == best.common && stronger(s, best.building))) best = {s, common};
+      if (common <= 0 || common < best.common) continue;
+      if (common > best.common || stronger(s, best.building)) best = {s, common};
     }
     return best;
   }
@@ -231,6 +233,7 @@ class Coverings {
     std::vector<Polygon> rest =
         geometry::difference(building.polygons, ground, options_.parts_free_area, options_.ring_clearance).polygons;
     std::erase_if(rest, [&](const Polygon& p) { return geometry::equivalent_width(p) < options_.parts_free_width; });
+    geometry::cut_needles(rest, options_.spike_width);
     restore_nodes(rest, building.polygons);
     restore_nodes(rest, covered);
     double kept = 0;

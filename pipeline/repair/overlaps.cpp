@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "pipeline/geometry/footprint_overlap.h"
+#include "pipeline/geometry/needles.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/repair/rings.h"
@@ -15,6 +16,7 @@ namespace blockrand::repair {
 
 namespace {
 
+using geometry::kOnWall;
 using model::IssueCode;
 using model::Point2;
 using model::Polygon;
@@ -25,8 +27,6 @@ constexpr double kWithin = 0.9;
 /// Of what a building had when it came: where both would lose more than max_loss (a house drawn twice, some metres off),
 /// the weaker one may lose so much, if what is left is as large as the rest of an outline must be.
 constexpr double kMostLoss = 0.8;
-/// m. A new corner of the loser this near to a wall lies on it: rounding moves it half a grid step each way.
-constexpr double kOnWall = 1.5 / model::kGridStepsPerMetre;
 /// How often two buildings are tried: rounding of one cut can open another overlap, of grid steps only.
 constexpr int kTrials = 3;
 
@@ -81,6 +81,7 @@ class Resolver {
   }
 
   void run() {
+    for (std::uint32_t b = 0; b < row_.buildings.size(); ++b) trim(b);
     std::vector<Pair> pairs = all_pairs();
     for (int trial = 0; trial < kTrials && !pairs.empty(); ++trial) {
       std::sort(pairs.begin(), pairs.end());
@@ -158,6 +159,11 @@ class Resolver {
            cut(loser, winner, area, kMostLoss, true);
   }
 
+  /// Walls that moved onto each other (a wedge drawn along a neighbour's wall) leave needles, too.
+  void trim(std::uint32_t b) {
+    if (geometry::cut_needles(row_.buildings[b].polygons, options_.spike_width) > 0) share_points(b, boxes_[b]);
+  }
+
   /// Takes from the loser what the winner has.
   /// \param most    of what the loser came with: so much it may lose
   /// \param around  what is left must be as large as the rest of an outline that its parts leave free
@@ -170,6 +176,8 @@ class Resolver {
     if (rest.polygons.empty()) return false;
     const double noise = rest.dropped_area + drop_strips(rest.polygons, building.polygons.size(), around);
     if (rest.polygons.empty() || noise > options_.max_area_change * before) return false;
+    const bool had_needles = geometry::cut_needles(rest.polygons, options_.spike_width) > 0;
+    weld(building.polygons, polygons(winner), rest.polygons);
     restore_nodes(building.polygons, rest.polygons);
     building.polygons = std::move(rest.polygons);
     if (area >= options_.min_overlap_area)
@@ -178,7 +186,7 @@ class Resolver {
     ++building.record.overlaps_resolved;
     boxes_[loser] = box_of(building.polygons);
     touched_.push_back(loser);
-    share_points(loser, boxes_[winner]);
+    share_points(loser, had_needles ? boxes_[loser] : boxes_[winner]);
     return true;
   }
 
@@ -195,6 +203,48 @@ class Resolver {
       return strip;
     });
     return sum;
+  }
+
+  /// New points a grid step beside a corner of the winner are that corner: the wall between them would be no longer
+  /// than what rounding moves them.
+  static void weld(const std::vector<Polygon>& was, const std::vector<Polygon>& winner, std::vector<Polygon>& now) {
+    std::vector<Point2> old, corners;
+    for_each_ring(was, [&](const Ring& r) { old.insert(old.end(), r.points.begin(), r.points.end()); });
+    for_each_ring(winner, [&](const Ring& r) { corners.insert(corners.end(), r.points.begin(), r.points.end()); });
+    std::sort(old.begin(), old.end());
+    std::sort(corners.begin(), corners.end());
+    const auto weld_ring = [&](Ring& ring) {
+      for (Point2& p : ring.points)
+        if (!std::binary_search(old.begin(), old.end(), p)) p = nearest(corners, p);
+      for (std::size_t i = 0; i < ring.size() && ring.size() > 3;) {
+        if (ring.points[i] != ring.points[(i + 1) % ring.size()]) {
+          ++i;
+          continue;
+        }
+        ring.points.erase(ring.points.begin() + static_cast<std::ptrdiff_t>(i));
+        ring.nodes.erase(ring.nodes.begin() + static_cast<std::ptrdiff_t>(i));
+      }
+    };
+    for (Polygon& p : now) {
+      Polygon welded = p;
+      weld_ring(welded.outer);
+      for (Ring& hole : welded.holes) weld_ring(hole);
+      if (geometry::strictly_simple(welded)) p = std::move(welded);
+    }
+  }
+
+  /// Of sorted corners the one nearest to p, if that is on the same place but for rounding; else p.
+  static Point2 nearest(const std::vector<Point2>& corners, Point2 p) {
+    Point2 best = p;
+    double least = kOnWall;
+    for (auto c = std::lower_bound(corners.begin(), corners.end(), Point2{p.x - kOnWall, -1e300});
+         c != corners.end() && c->x <= p.x + kOnWall; ++c) {
+      const double distance = geometry::distance_to_segment(p, *c, *c);
+      if (distance >= least) continue;
+      least = distance;
+      best = *c;
+    }
+    return best;
   }
 
   /// Points that were the loser's keep their node; those of the cut are made by repair.
@@ -301,7 +351,7 @@ void resolve_overlaps(Row& row, const RepairOptions& options, model::Report& rep
     b.record.overlaps_resolved = 0;
     b.record.overlap_left = 0;
   }
-  if (row.buildings.size() > 1) Resolver(row, options, report).run();
+  Resolver(row, options, report).run();
 }
 
 }  // namespace blockrand::repair

@@ -22,7 +22,8 @@ namespace blockrand::repair {
 /// `parts_free_width` (a house drawn twice); else both stay and OVERLAP_KEPT tells it with the area. One that has another
 /// within itself may lose even more, as an outline does to its parts, on the same condition. What the cut adds on the winner's walls (at most a
 /// grid step beside them) becomes points of the winner, and of others that have the wall. All polygons stay strictly
-/// simple. Overlaps below `min_overlap_area` are treated alike, but make no rows in the report.
+/// simple. New corners a grid step beside a corner of the winner are that corner. Needles narrower than `spike_width`,
+/// which cuts along almost common walls leave, and those that came, are cut off. Overlaps below `min_overlap_area` are treated alike, but make no rows in the report.
 ///
 /// Fills overlaps_resolved (of the loser) and overlap_left of the records. Requires buildings by id.
 void resolve_overlaps(Row& row, const RepairOptions& options, model::Report& report);

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "pipeline/geometry/needles.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/repair/parts_bodies.h"
@@ -137,6 +138,7 @@ void add_rest(Building& building, const std::vector<PartBody>& bodies, const Rep
   std::erase_if(rest.polygons,
                 [&](const Polygon& p) { return geometry::equivalent_width(p) < options.parts_free_width; });
   if (rest.polygons.empty()) return;
+  geometry::cut_needles(rest.polygons, options.spike_width);
   restore_nodes(rest.polygons, building.outline);
   restore_nodes(rest.polygons, covered);
   report.add(building.osm, IssueCode::parts_incomplete, square_metres(area_of(rest.polygons)));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "pipeline/geometry/needles.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "tests/unit/geometry/shapes.h"
 
@@ -36,6 +37,54 @@ TEST(PolygonMeasures, EquivalentWidthOfWings) {
   Polygon block = polygon({{0, 0}, {60, 0}, {60, 60}, {0, 60}});
   block.holes.push_back(ring({{12, 12}, {12, 48}, {48, 48}, {48, 12}}));
   EXPECT_NEAR(equivalent_width(block), 12, 1.0);
+}
+
+TEST(Needles, OnlyWhatTurnsBackOverItselfIsOne) {
+  constexpr double kWidth = 0.02;
+  const auto needles = [&](std::vector<Point2> points) { return find_needles(ring(std::move(points)), kWidth); };
+  EXPECT_TRUE(needles({{0, 0}, {10, 0}, {10, 8}, {0, 8}}).empty());
+  EXPECT_TRUE(needles({{0, 0}, {10, 0}, {10, 1}}).empty()) << "a sharp house";
+  EXPECT_TRUE(needles({{0, 0}, {10, 0}, {10, 0.015625}, {10.015625, 0.015625}, {10.015625, 8}, {0, 8}}).empty())
+      << "a step as wide as long";
+  const auto pointed = needles({{0, 0}, {14, 0}, {10, 0.0078125}, {10, 8}, {0, 8}});
+  ASSERT_EQ(pointed.size(), 1u);
+  EXPECT_TRUE(pointed[0].outward);
+  EXPECT_NEAR(pointed[0].length, 4, 1e-3);
+  const auto blunt = needles({{0, 0}, {14, 0}, {14, 0.0078125}, {10, 0.0078125}, {10, 8}, {0, 8}});
+  ASSERT_EQ(blunt.size(), 1u);
+  EXPECT_NE(blunt[0].first, blunt[0].last);
+  const auto crack = needles({{0, 0}, {10, 0}, {10, 4}, {3, 4}, {10, 4.0078125}, {10, 8}, {0, 8}});
+  ASSERT_EQ(crack.size(), 1u);
+  EXPECT_FALSE(crack[0].outward);
+}
+
+TEST(Needles, AreCutWhereTheyStart) {
+  // 8 mm wide: cut straight across, so that the longer leg stays on its line.
+  Polygon p = polygon({{0, 0}, {14, 0}, {10, 0.0078125}, {10, 8}, {0, 8}});
+  EXPECT_EQ(cut_needles(p, 0.02), 1);
+  EXPECT_EQ(p.outer.points, (std::vector<Point2>{{0, 0}, {10, 0}, {10, 0.0078125}, {10, 8}, {0, 8}}));
+  EXPECT_EQ(p.outer.points.size(), p.outer.nodes.size());
+  // A grid step wide: its start is on the wall.
+  p = polygon({{0, 0}, {14, 0}, {10, 0.0009765625}, {10, 8}, {0, 8}});
+  EXPECT_EQ(cut_needles(p, 0.02), 1);
+  EXPECT_EQ(p.outer.points, (std::vector<Point2>{{0, 0}, {10, 0.0009765625}, {10, 8}, {0, 8}}));
+  // With corners of neighbours on it.
+  p = polygon({{0, 0}, {12, 0}, {14, 0}, {13, 0.0009765625}, {10, 0.001953125}, {10, 8}, {0, 8}});
+  EXPECT_GT(cut_needles(p, 0.02), 0);
+  EXPECT_NEAR(area(p), 80, 0.02);
+  EXPECT_TRUE(strictly_simple(p));
+  for (const Point2 q : p.outer.points) EXPECT_LE(q.x, 12);
+}
+
+TEST(Needles, OfCourtsPointIntoTheHouse) {
+  Polygon p = polygon({{0, 0}, {20, 0}, {20, 20}, {0, 20}});
+  p.holes.push_back(ring({{5, 5}, {5, 10}, {10, 10}, {10, 7}, {15, 6.9921875}, {10, 6.9921875}, {10, 5}}));
+  Polygon crack = p;
+  EXPECT_EQ(cut_needles(crack, 0.02), 0) << "filling cracks could take ground from others";
+  p.holes = {ring({{5, 5}, {5, 10}, {10, 10}, {10, 8.015625}, {6, 8.0078125}, {10, 8}, {10, 5}})};
+  orient(p.holes[0], false);
+  EXPECT_EQ(cut_needles(p, 0.02), 1);
+  EXPECT_TRUE(find_needles(p.holes[0], 0.02).empty());
 }
 
 TEST(PolygonContains, BoundaryIsInside) {

@@ -11,6 +11,7 @@
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/base/parallel.h"
+#include "pipeline/geometry/needles.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/georef/crs.h"
@@ -25,9 +26,26 @@ namespace {
 using model::Polygon;
 
 struct Judged {
-  std::size_t invalid = 0, unreported_overlaps = 0, reported = 0, missing = 0;
+  std::size_t invalid = 0, unreported_overlaps = 0, reported = 0, missing = 0, needles = 0;
   double worst = 0;
 };
+
+/// m. Shorter needles are corners that rounding to the grid has bent.
+constexpr double kLeastNeedle = 0.1;
+
+std::size_t needles_of(const Polygon& polygon, const repair::RepairOptions& options, const std::string& id) {
+  std::size_t count = 0;
+  const auto look = [&](const model::Ring& ring) {
+    for (const geometry::Needle& needle : geometry::find_needles(ring, options.spike_width)) {
+      if (needle.length <= kLeastNeedle) continue;
+      ++count;
+      std::printf("    %s at a corner of %s, %.2f m\n", needle.outward ? "needle" : "crack", id.c_str(), needle.length);
+    }
+  };
+  look(polygon.outer);
+  for (const model::Ring& hole : polygon.holes) look(hole);
+  return count;
+}
 
 Judged judge(const RepairedExtract& repaired, const repair::RepairOptions& options) {
   Judged out;
@@ -40,7 +58,10 @@ Judged judge(const RepairedExtract& repaired, const repair::RepairOptions& optio
       out.missing += store[b].failure == model::IssueCode::none && store[b].settled == model::ObjectState::pending;
       continue;
     }
-    for (const Polygon& p : store.polygons(b)) out.invalid += !geometry::strictly_simple(p);
+    for (const Polygon& p : store.polygons(b)) {
+      out.invalid += !geometry::strictly_simple(p);
+      out.needles += needles_of(p, options, store[b].id.text());
+    }
   }
   std::set<std::uint32_t> reported;
   for (const auto& [a, b] : FootprintIndex(store).pairs(0)) {
@@ -91,6 +112,7 @@ TEST_P(RealExtracts, AreRepaired) {
               static_cast<unsigned long long>(t.at_cuts), static_cast<unsigned long long>(t.squared),
               static_cast<unsigned long long>(t.arcs), seconds);
   EXPECT_EQ(judged.invalid, 0u);
+  EXPECT_EQ(judged.needles, 0u);
   EXPECT_EQ(judged.missing, 0u) << "buildings without an outline and without a reason";
   EXPECT_EQ(judged.unreported_overlaps, 0u) << "largest " << judged.worst << " m2";
   EXPECT_LE(static_cast<double>(judged.reported), std::max(2.0, 0.001 * static_cast<double>(t.outlines)));

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/geometry/footprint_overlap.h"
+#include "pipeline/geometry/needles.h"
 #include "tests/unit/repair/row_support.h"
 
 namespace blockrand::repair::test {
@@ -167,6 +168,49 @@ TEST(Overlaps, StripBehindTheWinnerIsDropped) {
   ASSERT_TRUE(all_valid(row));
   EXPECT_EQ(row.buildings[0].polygons.size(), 1u);
   EXPECT_THAT(area(row.buildings[0]), DoubleNear(220, 1e-9));
+}
+
+TEST(Overlaps, ACutAlongAFrontLeavesNoNeedles) {
+  // Rows of 30 houses, turned by 0.3 to 27 degrees, each a metre over its neighbour: rounding leaves the fronts a grid
+  // step beside each other.
+  constexpr int kHouses = 30;
+  int needles = 0, shared = 0;
+  for (int turn = 1; turn <= 10; ++turn) {
+    SCOPED_TRACE(turn);
+    const double slope = 0.005 * turn * turn, scale = 1 / std::sqrt(1 + slope * slope);
+    const auto turned = [&](double x, double y) {
+      return model::Point2{(x - slope * y) * scale, (slope * x + y) * scale};
+    };
+    std::vector<model::Polygon> houses;
+    for (int i = 0; i < kHouses; ++i)
+      houses.push_back(polygon({turned(6 * i, 0), turned(6 * i + 7, 0), turned(6 * i + 7, 10), turned(6 * i, 10)}));
+    const Row row = resolved(row_of_polygons(houses));
+    ASSERT_TRUE(all_valid(row));
+    double ground = 0;
+    for (std::size_t i = 0; i < row.buildings.size(); ++i) {
+      ground += area(row.buildings[i]);
+      for (const model::Ring& r : rings(row.buildings[i]))
+        needles += static_cast<int>(geometry::find_needles(r, 0.02).size());
+      if (i == 0) continue;
+      EXPECT_FALSE(interiors_meet(row.buildings[i - 1].polygons[0], row.buildings[i].polygons[0]));
+      EXPECT_NEAR(shared_length(row.buildings[i - 1], row.buildings[i]), 10, 0.01);
+      ++shared;
+    }
+    EXPECT_NEAR(ground, 10 * (6 * kHouses + 1), 0.3);
+  }
+  EXPECT_EQ(needles, 0);
+  EXPECT_EQ(shared, 290);
+}
+
+TEST(Overlaps, AWedgeAlongTheNeighboursWallIsCutWhereItStarts) {
+  // w1 runs out in a tip of 4 m and 5 mm beside w2's wall, which keeps a corner where w1 ends.
+  const Row row = resolved(row_of_polygons(
+      {polygon({{0, 0}, {10, 0}, {10, 14}, {9.995, 10}, {0, 10}}), polygon(box(10, 0, 20, 14))}));
+  ASSERT_TRUE(all_valid(row));
+  EXPECT_EQ(row.buildings[0].polygons[0].outer.size(), 5u);
+  EXPECT_TRUE(has_point(row.buildings[0], at(10, 10)));
+  EXPECT_THAT(shared_length(row.buildings[0], row.buildings[1]), DoubleNear(10, 0.01));
+  EXPECT_THAT(area(row.buildings[1]), DoubleNear(140, 1e-9));
 }
 
 TEST(Overlaps, OtherLevelsDoNotConflict) {

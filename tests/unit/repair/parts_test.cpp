@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/geometry/needles.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/repair/parts_bodies.h"
@@ -102,6 +103,29 @@ struct Scene {
 };
 
 using Ids = std::vector<std::string>;
+
+// ---- needles --------------------------------------------------------------------------------------------------------
+
+TEST(PartsNeedles, NeitherRestsNorPartsThatYieldKeepThem) {
+  // A wing and a tower in a house, at many angles: their fronts are the house's but for rounding.
+  for (int turn = 1; turn <= 20; ++turn) {
+    SCOPED_TRACE(turn);
+    const double slope = 0.004 * turn * turn, scale = 1 / std::sqrt(1 + slope * slope);
+    const auto box = [&](double x0, double x1, double y1) {
+      std::vector<Point2> out;
+      for (const Point2 p : {Point2{x0, 0}, Point2{x1, 0}, Point2{x1, y1}, Point2{x0, y1}})
+        out.push_back(model::snap(Point2{(p.x - slope * p.y) * scale, (slope * p.x + p.y) * scale}));
+      return out;
+    };
+    Scene s(box(0, 40, 12));
+    s.part(2, box(7.3, 21.1, 12)).part(3, box(17.7, 23.9, 9)).fit();
+    EXPECT_NEAR(s.area("w1.w2"), 13.8 * 12 - 3.4 * 9, 0.1);
+    EXPECT_GE(s.ids().size(), 3u);
+    for (const BuildingPart& p : s.building.parts)
+      for (const geometry::Needle& needle : geometry::find_needles(p.plan.outer, 0.02))
+        ADD_FAILURE() << p.id << (needle.outward ? " needle " : " crack ") << needle.length << " m";
+  }
+}
 
 // ---- parts follow their outline -------------------------------------------------------------------------------------
 
