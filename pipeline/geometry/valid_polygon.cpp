@@ -332,6 +332,23 @@ ValidPolygons make_valid(std::span<const Ring> rings, const std::vector<bool>& i
   return out;
 }
 
+ValidPolygons outlines_of(const Ring& ring, double min_area, double clearance) {
+  ValidPolygons out;
+  out.changed = true;
+  if (ring.size() < 3) return out;
+  const Point2 origin = ring.points[0];
+  const Geometry raw = geometry_of({ring, {}}, origin), valid = made_valid(raw.get());
+  std::vector<Polygon> pieces;
+  append_polygons(valid.get(), origin, pieces);
+  for (Polygon& p : pieces) p.holes.clear();
+  finish(std::move(pieces), min_area, clearance, out);
+  std::map<Point2, std::int64_t> node_at;
+  for (std::size_t i = 0; i < ring.size(); ++i) node_at.emplace(ring.points[i], ring.nodes[i]);
+  restore_nodes(out.polygons, node_at);
+  sort_polygons(out.polygons);
+  return out;
+}
+
 ValidPolygons difference(std::span<const Polygon> a, std::span<const Polygon> b, double min_area, double clearance) {
   ValidPolygons out;
   if (a.empty()) return out;

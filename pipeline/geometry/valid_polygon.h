@@ -28,6 +28,11 @@ struct ValidPolygons {
 ValidPolygons make_valid(std::span<const model::Ring> rings, const std::vector<bool>& inner, double min_area,
                          double clearance);
 
+/// The outlines of what a ring encloses, as strictly simple polygons; they may overlap where one lies in a court of
+/// another. For rings that cross themselves very often (even_odd.h): MakeValid runs once, and of what it makes the courts,
+/// which touch each other everywhere, are filled before anything is moved apart.
+ValidPolygons outlines_of(const model::Ring& ring, double min_area, double clearance);
+
 /// a minus b, as strictly simple polygons of at least min_area.
 ValidPolygons difference(std::span<const model::Polygon> a, std::span<const model::Polygon> b, double min_area,
                          double clearance);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "pipeline/geometry/even_odd.h"
+#include "pipeline/geometry/footprint_overlap.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/repair/clean_ring.h"
@@ -20,12 +21,16 @@ using model::Point2;
 using model::Polygon;
 using model::Ring;
 
+/// Pieces of a scribble that stay.
+constexpr std::size_t kMostPieces = 32;
+
 /// What happened to the rings of one object.
 struct Mending {
   RingCleaning cleaning;
   int collinear = 0;
   bool changed = false;    ///< rings were mended, beyond points
   bool separated = false;  ///< touching rings were moved apart
+  bool tangled = false;    ///< one of them is a scribble
   double dropped = 0;      ///< m², of slivers
   int slivers = 0;
   std::string more;  ///< remarks for RING_REPAIRED
@@ -118,9 +123,22 @@ void make_canonical(std::vector<Polygon>& polygons) {
   for (std::size_t i = 0; i < sorted.size(); ++i) polygons[i] = std::move(sorted[i].second);
 }
 
+/// Of a scribble the outlines of what it encloses, as far as they come out strictly simple. Its courts mean nothing.
+void mend_tangled(Polygon p, const RepairOptions& options, Mending& done, std::vector<Polygon>& out) {
+  geometry::ValidPolygons valid = geometry::outlines_of(p.outer, options.min_piece_area, options.ring_clearance);
+  done.tangled = true;
+  done.remark("a ring that crosses itself everywhere taken as the outlines of its largest pieces");
+  if (valid.dropped_area > 0) {
+    done.dropped += valid.dropped_area;
+    ++done.slivers;
+  }
+  for (Polygon& piece : valid.polygons) out.push_back(std::move(piece));
+}
+
 /// Makes one outer ring with its holes valid and appends what comes of it.
 void mend(Polygon p, const KeptNodes& kept, const RepairOptions& options, Mending& done, std::vector<Polygon>& out) {
-  make_canonical(p);
+  if (geometry::tangled(p.outer)) return mend_tangled(std::move(p), options, done, out);
+  if (std::erase_if(p.holes, geometry::tangled) > 0) done.remark("courts that cross themselves everywhere ignored");
   geometry::ValidPolygons valid = made_valid({std::move(p.outer)}, options);
   if (!p.holes.empty()) {
     // Subtracting them, rather than mending the polygon as a whole, keeps holes outside from becoming buildings.
@@ -169,16 +187,41 @@ Box box_of(const Polygon& p) {
   return box;
 }
 
+bool meet(const Box& a, const Box& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
+}
+
+/// Of an object with a scribble the largest pieces that have no ground in common; to unite hundreds that touch each other
+/// everywhere and to move them apart again would cost without end.
+void keep_apart(std::vector<Polygon>& polygons, Mending& done) {
+  std::vector<Polygon> kept;
+  std::vector<Box> boxes;
+  for (Polygon& p : polygons) {
+    const Box box = box_of(p);
+    bool free = kept.size() < kMostPieces;
+    for (std::size_t i = 0; i < kept.size() && free; ++i)
+      free = !meet(boxes[i], box) || !geometry::interiors_meet(kept[i], p);
+    if (free) {
+      kept.push_back(std::move(p));
+      boxes.push_back(box);
+      continue;
+    }
+    done.dropped += geometry::area(p);
+    ++done.slivers;
+  }
+  polygons = std::move(kept);
+}
+
 /// Outer rings of one object that overlap or share a wall become one.
 void unite_pieces(std::vector<Polygon>& polygons, const RepairOptions& options, Mending& done) {
   if (polygons.size() < 2) return;
+  if (done.tangled) return keep_apart(polygons, done);
   std::vector<Box> boxes;
   for (const Polygon& p : polygons) boxes.push_back(box_of(p));
   bool near = false;
   for (std::size_t i = 0; i < boxes.size() && !near; ++i)
     for (std::size_t j = i + 1; j < boxes.size() && !near; ++j)
-      near = boxes[i].low.x <= boxes[j].high.x && boxes[j].low.x <= boxes[i].high.x &&
-             boxes[i].low.y <= boxes[j].high.y && boxes[j].low.y <= boxes[i].high.y;
+      near = meet(boxes[i], boxes[j]);
   if (!near) return;
   geometry::ValidPolygons united = geometry::unite(polygons, options.min_piece_area, options.ring_clearance);
   if (united.polygons.empty() || united.polygons.size() == polygons.size()) {
@@ -281,6 +324,7 @@ RepairedRings repair_rings(model::MappedRings rings, model::OsmId id, const Kept
       result.polygons.push_back(std::move(p));
       continue;
     }
+    make_canonical(p);
     double mapped = geometry::even_odd_area(p.outer);
     for (const Ring& hole : p.holes) mapped -= geometry::even_odd_area(hole);
     result.mapped_area += std::max(0.0, mapped);

@@ -290,6 +290,50 @@ TEST(Rings, ARoundedBayKeepsItsPoints) {
   EXPECT_EQ(r.polygons[0].outer.size(), n);
 }
 
+// ---- scribbles ------------------------------------------------------------------------------------------------------
+
+// These took minutes or did not end: the work must be bounded by crossings. What counts here is which way is taken and
+// what comes out; a test that ends has its bound.
+
+TEST(Rings, AStarOf81PointsIsItsOutline) {
+  std::vector<Point2> points;
+  for (int i = 0; i < 81; ++i) {
+    const double angle = 2 * base::kPi * (i * 40 % 81) / 81;
+    points.push_back(model::snap(Point2{50 * base::cos(angle), 50 * base::sin(angle)}));
+  }
+  ASSERT_TRUE(geometry::tangled(ring(points)));
+  model::Report report;
+  const auto r = repair_rings(one(points), kId, {}, {}, report);
+  expect_sound(r);
+  ASSERT_EQ(r.polygons.size(), 1u);
+  EXPECT_EQ(r.polygons[0].outer.size(), 162u);
+  EXPECT_NEAR(area_of(r.polygons), 2618.66, 0.5);  // of the regular star polygon {81/40}
+  EXPECT_NE(detail(report, IssueCode::ring_repaired).find("crosses itself everywhere"), std::string::npos);
+}
+
+TEST(Rings, AScribbleOf1500PointsIsItsLargestPieces) {
+  Random random(17);
+  std::vector<Point2> points;
+  for (int i = 0; i < 1500; ++i) {
+    const double x = 100 * random.unit();
+    points.push_back(model::snap(Point2{x, 100 * random.unit()}));
+  }
+  ASSERT_TRUE(geometry::tangled(ring(points)));
+  auto turned = points;
+  std::rotate(turned.begin(), turned.begin() + 700, turned.end());
+  model::Report first, second;
+  const auto r = repair_rings(one(points), kId, {}, {}, first);
+  expect_sound(r);
+  EXPECT_GT(area_of(r.polygons), 1000);
+  EXPECT_LE(r.polygons.size(), 32u);
+  EXPECT_NEAR(r.mapped_area, 5000, 500) << "half of the square, by the even-odd rule";
+  const auto again = repair_rings(one(turned), kId, {}, {}, second);
+  ASSERT_EQ(again.polygons.size(), r.polygons.size());
+  for (std::size_t i = 0; i < r.polygons.size(); ++i)
+    EXPECT_EQ(again.polygons[i].outer.points, r.polygons[i].outer.points);
+  EXPECT_EQ(first.rows, second.rows);
+}
+
 // ---- properties -----------------------------------------------------------------------------------------------------
 
 /// A star-shaped ring with noise on its points, then with slips of the mouse.
