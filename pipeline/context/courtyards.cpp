@@ -148,7 +148,13 @@ class Walls {
                           after = grid2(segments_[i].b), b = grid2(to);
     // The corner is convex: what is left of both its walls begins inside.
     if (geometry::orientation(before, a, b) > 0 && geometry::orientation(a, after, b) > 0) return false;
+    const Point2 low{std::min(segments_[i].a.x, to.x), std::min(segments_[i].a.y, to.y)},
+        high{std::max(segments_[i].a.x, to.x), std::max(segments_[i].a.y, to.y)};
     for (const std::uint32_t w : near) {
+      const Segment& wall = segments_[w];
+      if (std::max(wall.a.x, wall.b.x) < low.x || std::min(wall.a.x, wall.b.x) > high.x ||
+          std::max(wall.a.y, wall.b.y) < low.y || std::min(wall.a.y, wall.b.y) > high.y)
+        continue;
       // The end on a wall may stick into it by half a grid step; only what crosses well within is blocked.
       if (cross(a, b, grid2(segments_[w].a), grid2(segments_[w].b)) &&
           geometry::distance_to_segment(to, segments_[w].a, segments_[w].b) > kTouching)

@@ -126,8 +126,8 @@ void Scene::add_streets(std::span<const NetworkLine> lines) {
   }
 }
 
-void Scene::test(const Item& item, Point2 from, Point2 d, double reach, Obstacles obstacles, Sight& sight,
-                 std::uint32_t& street_line) {
+inline void Scene::test(const Item& item, Point2 from, Point2 d, double reach, Obstacles obstacles, Sight& sight,
+                        std::uint32_t& street_line) {
   const double ax = item.a.x - from.x, ay = item.a.y - from.y, bx = item.b.x - from.x, by = item.b.y - from.y;
   const double sa = d.x * ay - d.y * ax, sb = d.x * by - d.y * bx;  // sides of the ends with respect to the ray
   if ((sa > 0) == (sb > 0)) return;
