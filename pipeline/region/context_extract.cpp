@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
+#include <tuple>
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/geometry/polygon.h"
@@ -194,8 +196,18 @@ ContextExtract context_extract(const Extract& extract, const FootprintStore& foo
   const FootprintIndex index(footprints);
   measure_all(extract, footprints, index, lines, workers, out);
   find_loose_courtyards(extract, footprints, lines, workers, out);
+  // A building that stands in two blocks has its courtyards in both: the one of the lower id keeps them.
+  const auto key = [&](const ExtractCourtyard& yard) {
+    const bool in_block = yard.block != model::kNoIndex;
+    return std::tuple(std::string_view(yard.courtyard.id), !in_block,
+                      in_block ? std::string_view(out.blocks[yard.block].id) : std::string_view());
+  };
   std::sort(out.courtyards.begin(), out.courtyards.end(),
-            [](const ExtractCourtyard& a, const ExtractCourtyard& b) { return a.courtyard.id < b.courtyard.id; });
+            [&](const ExtractCourtyard& a, const ExtractCourtyard& b) { return key(a) < key(b); });
+  const auto last = std::unique(
+      out.courtyards.begin(), out.courtyards.end(),
+      [](const ExtractCourtyard& a, const ExtractCourtyard& b) { return a.courtyard.id == b.courtyard.id; });
+  out.courtyards.erase(last, out.courtyards.end());
   out.cells = district_cells(extract, footprints);
   out.coverage.assign(coverage.begin(), coverage.end());
   return out;
