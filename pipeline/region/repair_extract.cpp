@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/base/parallel.h"
+#include "pipeline/geometry/needles.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/region/load.h"
@@ -223,6 +224,7 @@ void yield_to_neighbours(std::uint32_t b, std::span<const std::uint32_t> beyond,
   const std::vector<Polygon> ground = geometry::unite(taken, 0, options.ring_clearance).polygons;
   std::vector<Polygon> rest =
       geometry::difference(outline, ground, options.parts_free_area, options.ring_clearance).polygons;
+  geometry::cut_needles(rest, options.spike_width);
   std::erase_if(rest, [&](const Polygon& p) { return geometry::equivalent_width(p) < options.parts_free_width; });
   here.record.area = 0;
   for (const Polygon& p : rest) here.record.area += geometry::area(p);
