@@ -83,6 +83,7 @@ RoofShape nearest_built_shape(RoofShape shape) {
     case RoofShape::dome:
     case RoofShape::onion:
     case RoofShape::spire:
+    case RoofShape::helm:
       return RoofShape::pyramidal;
     case RoofShape::sawtooth:
     case RoofShape::butterfly:
@@ -129,7 +130,7 @@ RoofTry try_roof(const Polygon& plan, RoofShape shape, roofs::RoofMeasures measu
     }
     case RoofShape::pyramidal:
       if (auto roof = roofs::pyramidal_roof(plan, measures)) return {std::move(roof), shape};
-      return {roofs::hipped_roof(plan, measures), RoofShape::hipped, IssueCode::pyramid_as_hip};
+      return {roofs::hipped_roof(plan, measures), RoofShape::hipped, IssueCode::roof_shape_adapted};
     case RoofShape::gabled: {
       if (plan.outer.size() == 4 && plan.holes.empty())
         if (auto roof = roofs::gabled_quadrilateral(plan, measures, eaves_edge(plan, attributes)))
@@ -138,7 +139,7 @@ RoofTry try_roof(const Polygon& plan, RoofShape shape, roofs::RoofMeasures measu
       if (!gabled) return {};
       const bool ring = !plan.holes.empty();
       return {std::move(gabled->roof), gabled->gables > 0 || ring ? shape : RoofShape::hipped,
-              gabled->gables > 0 || ring ? IssueCode::none : IssueCode::gable_as_hip};
+              gabled->gables > 0 || ring ? IssueCode::none : IssueCode::roof_shape_adapted};
     }
     case RoofShape::hipped:
       return {roofs::hipped_roof(plan, measures), shape};
@@ -244,7 +245,7 @@ class MassBuilder {
       if (asked == RoofShape::other)
         note(part, IssueCode::roof_shape_unknown);
       else if (shape != asked)
-        note(part, IssueCode::roof_shape_unsupported, std::string(model::name(asked)) + " as " + std::string(model::name(shape)));
+        note(part, IssueCode::roof_shape_adapted, std::string(model::name(asked)) + " as " + std::string(model::name(shape)));
       const std::optional<Polygon> simplified = simpler(plan, options_.simplify_tolerance);
       for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, simplified ? &*simplified : nullptr}) {
         if (!p) continue;
@@ -258,7 +259,7 @@ class MassBuilder {
         if (shape != RoofShape::gabled) continue;
         attempt = try_roof(*p, RoofShape::hipped, measures, part.attributes);
         if (attempt.roof && accept(part, *p, levels, looks, *attempt.roof, attempt.built)) {
-          note(part, IssueCode::gable_as_hip);
+          note(part, IssueCode::roof_shape_adapted);
           if (p != &plan) note(part, IssueCode::roof_simplified);
           return;
         }

@@ -30,12 +30,11 @@ enum class IssueClass : std::uint8_t {
   X(relation_type, "RELATION_TYPE", reported, "A relation of this type carries no outline of its own.")              \
   X(no_solid, "NO_SOLID", reported, "No valid solid could be made, not even a block.")                               \
   /* simpler than asked */                                                                                           \
-  X(roof_shape_unsupported, "ROOF_SHAPE_UNSUPPORTED", fallback, "This roof shape is built as its nearest relative.") \
+  X(roof_shape_adapted, "ROOF_SHAPE_ADAPTED", fallback, "The plan does not take this shape; a relative was built.")  \
   X(roof_shape_unknown, "ROOF_SHAPE_UNKNOWN", fallback, "The value of roof:shape is in no list; flat was built.")    \
   X(roof_failed, "ROOF_FAILED", fallback, "The roof's solid failed its check; a flat roof was built.")               \
   X(roof_simplified, "ROOF_SIMPLIFIED", fallback, "The roof stands on a simplified plan.")                           \
-  X(gable_as_hip, "GABLE_AS_HIP", fallback, "No gable end fits this plan; hips were built.")                         \
-  X(pyramid_as_hip, "PYRAMID_AS_HIP", fallback, "No apex sees every eaves edge; hips were built.")                   \
+  X(skeleton_fallback, "SKELETON_FALLBACK", fallback, "The weighted skeleton gave up; CGAL's hips were built.")     \
   X(roof_height_clamped, "ROOF_HEIGHT_CLAMPED", fallback, "The roof was higher than the building allows.")           \
   X(lod1_only, "LOD1_ONLY", fallback, "No valid LoD2 solid; a block was built.")                                     \
   X(plan_simplified, "PLAN_SIMPLIFIED", fallback, "The plan was simplified to get a valid solid.")                   \

@@ -15,7 +15,7 @@ namespace blockrand::model {
   X(gambrel, "gambrel") X(pyramidal, "pyramidal") X(crosspitched, "crosspitched") X(sawtooth, "sawtooth")         \
   X(butterfly, "butterfly") X(cone, "cone") X(dome, "dome") X(onion, "onion") X(round, "round")                   \
   X(saltbox, "saltbox") X(double_saltbox, "double_saltbox") X(quadruple_saltbox, "quadruple_saltbox")             \
-  X(spire, "spire") X(many, "many") X(other, "other")
+  X(spire, "spire") X(helm, "helm") X(many, "many") X(other, "other")
 
 /// `other` stands for a value that no list knows.
 enum class RoofShape : std::uint8_t {

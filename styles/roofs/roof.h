@@ -1,10 +1,14 @@
-// Roofs on plans: from a shape and its measures to the surfaces above the eaves.
+// Roofs on plans: from a shape and its measures to the surfaces above the eaves. docs/roofs.md says what each shape is.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "pipeline/model/issue_codes.h"
 #include "pipeline/model/polygon.h"
 #include "pipeline/model/roof_shape.h"
 
@@ -14,11 +18,12 @@ namespace blockrand::roofs {
 struct Roof {
   struct Surface {
     std::int32_t edge = -1;                         ///< the plan edge it rises from; -1 when none
-    std::vector<std::vector<model::Point3>> loops;  ///< counter-clockwise from above; holes follow
+    std::vector<std::vector<model::Point3>> loops;  ///< counter-clockwise from outside; holes follow
+    bool upright = false;                           ///< a piece of wall that stands in the roof: gablet, sawtooth
   };
   std::vector<Surface> surfaces;
   /// For each plan edge the upper end of its wall, from the edge's end back to its start: two points at eaves height
-  /// for most, three for a gable.
+  /// for most, more for a gable.
   std::vector<std::vector<model::Point3>> wall_tops;
 };
 
@@ -28,35 +33,75 @@ struct RoofMeasures {
   double height = 0;  ///< eaves to the highest point
 };
 
+/// What is asked of a roof.
+struct RoofRequest {
+  model::RoofShape shape = model::RoofShape::flat;
+  RoofMeasures measures;
+  std::optional<model::Point2> down;  ///< unit vector down the slope (roof:direction)
+  bool across = false;                ///< roof:orientation=across: the axis is the shorter side
+};
+
+/// What was built.
+struct BuiltRoof {
+  Roof roof;
+  model::RoofShape shape = model::RoofShape::flat;       ///< differs from the asked one where the plan does not take it
+  model::IssueCode note = model::IssueCode::none;        ///< ROOF_SHAPE_ADAPTED, ROOF_SHAPE_UNKNOWN, SKELETON_FALLBACK
+  std::string detail;
+};
+
+/// The roof of `request.shape` on a plan (strictly simple, on the grid). Empty when none can be built, which callers
+/// report; the surfaces' edges match each other and the wall tops point by point.
+std::optional<BuiltRoof> build_roof(const model::Polygon& plan, const RoofRequest& request);
+
+// ---- kinds of roofs, on which build_roof() draws
+
 /// One horizontal surface.
 Roof flat_roof(const model::Polygon& plan, double z);
 
-/// One inclined plane; `down` is the unit vector down the slope. Works on every plan.
-std::optional<Roof> skillion_roof(const model::Polygon& plan, RoofMeasures measures, model::Point2 down);
-
-/// Triangles from every edge to an apex over the centroid. Empty for plans with holes and where the centroid does not
-/// see every edge from inside.
-std::optional<Roof> pyramidal_roof(const model::Polygon& plan, RoofMeasures measures);
-
-/// Equal pitches over all edges by the straight skeleton; on any polygon with holes.
-std::optional<Roof> hipped_roof(const model::Polygon& plan, RoofMeasures measures);
-
-/// As hipped, but every end of a wing is closed by a vertical gable: a skeleton triangle whose ridge can be led on to
-/// its edge (references/feasibility.md, section 2). `gables` tells how many there are; a ring has none and needs none.
-struct GabledRoof {
-  Roof roof;
-  int gables = 0;
+/// Every plan edge's point on a line of the profile below: `at` in [0, 1] of the way, heights as shares of the roof's.
+/// Two entries with one `at` are an upright step.
+struct ProfilePoint {
+  double at = 0, height = 0;
 };
-std::optional<GabledRoof> gabled_roof(const model::Polygon& plan, RoofMeasures measures);
 
-/// Two equal pitches on a convex plan of four corners. The ridge runs as evenly as it can between the eaves edges
-/// `eaves_edge` and the opposite one. Empty when the ridge leaves the plan.
-std::optional<Roof> gabled_quadrilateral(const model::Polygon& plan, RoofMeasures measures, int eaves_edge);
+/// A roof whose height depends on the way along `up` alone: 0 at the plan's first extent in that direction, 1 at its
+/// last; `profile` runs from 0 to 1. Works on every plan with holes; lines of the profile cut it into faces.
+std::optional<Roof> profile_roof(const model::Polygon& plan, RoofMeasures measures, model::Point2 up,
+                                 std::span<const ProfilePoint> profile);
+
+/// A ring of the plan scaled about its apex: `size` in [0, 1], height as a share of the roof's.
+struct ApexRing {
+  double size = 0, height = 0;
+};
+
+/// Rings of the plan, scaled about the centroid, joined by a face per edge; `rings` begin with {1, 0} and end with
+/// {0, 1}. Empty for plans with holes and where the centroid does not see every edge from 0.05 m inside.
+std::optional<Roof> apex_roof(const model::Polygon& plan, RoofMeasures measures, std::span<const ApexRing> rings);
+
+/// A gable over the middle of every edge, `gable_height` of the roof's height high, and ridges from there to the apex over
+/// the centroid. Two faces that share a plane at a corner become one. Empty for plans with holes, concave plans and
+/// those with more than 12 edges.
+std::optional<Roof> crossed_roof(const model::Polygon& plan, RoofMeasures measures, double gable_height);
 
 /// Unit vector of a compass direction in degrees (0 north, 90 east).
 model::Point2 compass_vector(double degrees);
 
 /// A direction down the slope for a lean-to roof that has none tagged: across the longest edge, outwards.
 model::Point2 default_slope(const model::Polygon& plan);
+
+/// Unit vector along the longer side of the smallest rectangle around the plan.
+model::Point2 long_axis(const model::Polygon& plan);
+
+// ---- to be replaced by build_roof()
+
+std::optional<Roof> skillion_roof(const model::Polygon& plan, RoofMeasures measures, model::Point2 down);
+std::optional<Roof> pyramidal_roof(const model::Polygon& plan, RoofMeasures measures);
+std::optional<Roof> hipped_roof(const model::Polygon& plan, RoofMeasures measures);
+struct GabledRoof {
+  Roof roof;
+  int gables = 0;
+};
+std::optional<GabledRoof> gabled_roof(const model::Polygon& plan, RoofMeasures measures);
+std::optional<Roof> gabled_quadrilateral(const model::Polygon& plan, RoofMeasures measures, int eaves_edge);
 
 }  // namespace blockrand::roofs

@@ -15,7 +15,7 @@
 //              "street":…,"street_name":…,"street_distance":…,"visibility":…,"radius":…},…],    where context looked
 //    "attributes":[{"name":"storeys","value":5,"unit":"","source":"neighbours","confidence":0.6,"why":…,
 //                   "lost":[{"value":"4","source":"preset","confidence":0.3,"why":…}]},…],
-//    "bodies":[{"id":"w1","lod":2,"asked_roof":"gabled","built_roof":"hipped","fallbacks":["GABLE_AS_HIP"],…}],
+//    "bodies":[{"id":"w1","lod":2,"asked_roof":"gabled","built_roof":"hipped","fallbacks":["ROOF_SHAPE_ADAPTED"],…}],
 //    "notes":[{"code":"SPIKE_REMOVED","class":"notice","meaning":…,"detail":"1 points"}],
 //    "files":["tiles/15/1/2.glb",…]}
 #pragma once

@@ -21,7 +21,7 @@ region::BuildSummary summary() {
   s.duplicates = 3;
   s.reported = 100;
   s.models_by_lod = {2, 8, 12790};
-  s.issues = {{"GABLE_AS_HIP", 7}, {"NODE_ONLY", 10}, {"OPEN_WAY", 90}, {"VALUE_UNREADABLE", 1234}};
+  s.issues = {{"ROOF_SHAPE_ADAPTED", 7}, {"NODE_ONLY", 10}, {"OPEN_WAY", 90}, {"VALUE_UNREADABLE", 1234}};
   s.files = 45;
   s.bytes = 123'456'789;
   s.seconds = 2;
@@ -60,7 +60,7 @@ TEST(BuildReport, GroupsCodesByWhatTheyMean) {
   const std::string text = build_report(options(), summary());
   EXPECT_THAT(text, ContainsRegex("Not modelled, because\n  OPEN_WAY +90  The way is not closed.*\n  NODE_ONLY +10 "))
       << "most frequent first";
-  EXPECT_THAT(text, ContainsRegex("Simpler than asked\n  GABLE_AS_HIP +7 "));
+  EXPECT_THAT(text, ContainsRegex("Simpler than asked\n  ROOF_SHAPE_ADAPTED +7 "));
   EXPECT_THAT(text, ContainsRegex("Notices\n  VALUE_UNREADABLE +1,234 "));
   region::BuildSummary clean = summary();
   clean.issues.clear();

@@ -128,7 +128,7 @@ TEST(CityGml, AttributesSourcesAndTags) {
   EXPECT_EQ(house.text("DependentLocalityName"), "Prenzlauer Berg");
 
   EXPECT_EQ(building(file, "w40").text("yearOfConstruction"), "");  // "about 1900" is no year
-  EXPECT_EQ(building(file, "w30.w32").text("fallbacks"), "ROOF_FAILED GABLE_AS_HIP");
+  EXPECT_EQ(building(file, "w30.w32").text("fallbacks"), "ROOF_FAILED ROOF_SHAPE_ADAPTED");
   EXPECT_EQ(building(file, "w30.w32").text("osm.building:part"), "tower");
   EXPECT_EQ(building(file, "w30.rest").text("osm.building"), "");  // said once, by the building
   EXPECT_EQ(building(file, "w50.2").text("lod"), "1");

@@ -224,7 +224,7 @@ TEST(CityJson, AttributesSourcesTagsAndAddress) {
                                                                {"ThoroughfareName", "Kastanienallee"},
                                                                {"ThoroughfareNumber", "12"}}}));
   EXPECT_FALSE(found.at("w40").first.at("attributes").contains("yearOfConstruction"));  // "about 1900" is no year
-  EXPECT_EQ(found.at("w30.w32").first.at("attributes").at("fallbacks"), "ROOF_FAILED GABLE_AS_HIP");
+  EXPECT_EQ(found.at("w30.w32").first.at("attributes").at("fallbacks"), "ROOF_FAILED ROOF_SHAPE_ADAPTED");
   EXPECT_EQ(found.at("w30.w32").first.at("attributes").at("osm.building:part"), "tower");
   EXPECT_FALSE(found.at("w30.rest").first.at("attributes").contains("osm.building"));  // said once, by the building
   EXPECT_EQ(found.at("w30").first.at("attributes").at("osm.building"), "cathedral");

@@ -166,7 +166,7 @@ TEST(Glb, TellsWhatIsKnownAboutEachPart) {
   EXPECT_EQ(nave.texts.at("name"), "St. Marien");
   EXPECT_EQ(nlohmann::json::parse(nave.texts.at("building_tags"))["building"], "cathedral");
   const auto& tower = feature(file, "w30.w32");
-  EXPECT_EQ(tower.texts.at("fallbacks"), "ROOF_FAILED GABLE_AS_HIP");
+  EXPECT_EQ(tower.texts.at("fallbacks"), "ROOF_FAILED ROOF_SHAPE_ADAPTED");
   EXPECT_EQ(tower.texts.count("building_tags"), 0u);
   EXPECT_EQ(feature(file, "w60").numbers.at("lod"), 0);
 }

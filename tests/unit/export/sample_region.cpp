@@ -242,7 +242,7 @@ SampleRegion SampleRegion::zoo() {
     model::BuildingPart& tower = z.add_box(b, "w30.w32", x + 52, y + 3, 8, 8, 34.25, 40);
     tower.osm = {model::OsmType::way, 32};
     tower.tags = z.tags({{"building:part", "tower"}});
-    tower.fallbacks = {model::IssueCode::roof_failed, model::IssueCode::gable_as_hip};
+    tower.fallbacks = {model::IssueCode::roof_failed, model::IssueCode::roof_shape_adapted};
     z.add_box(b, "w30.rest", x + 60, y + 14, 5, 5, 34.25, 4);
   }
   {

@@ -233,7 +233,7 @@ TEST(Mass, UnsupportedShapesAreBuiltAsRelativesAndSaySo) {
   t.build();
   EXPECT_EQ(t.part().built_roof, RoofShape::hipped);
   EXPECT_EQ(t.part().attributes.roof_shape.value, RoofShape::mansard);
-  EXPECT_TRUE(t.reported(IssueCode::roof_shape_unsupported));
+  EXPECT_TRUE(t.reported(IssueCode::roof_shape_adapted));
 }
 
 TEST(Mass, ARoofHigherThanItsHouseIsClampedAndReported) {
