@@ -162,7 +162,7 @@ TEST(ApexRoof, RandomPlansClose) {
 
 TEST(LongAxis, LongerSideOfTheSmallestRectangle) {
   for (const double turn : kAngles) {
-    const Point2 axis = long_axis(moved(plans().at("rectangle"), turn, kPlaces[1]));
+    const Point2 axis = geometry::long_axis(moved(plans().at("rectangle"), turn, kPlaces[1]).outer.points);
     const double radians = turn * M_PI / 180;
     EXPECT_NEAR(std::fabs(axis.x * std::cos(radians) + axis.y * std::sin(radians)), 1, 1e-6) << turn;
     EXPECT_NEAR(std::hypot(axis.x, axis.y), 1, 1e-12);

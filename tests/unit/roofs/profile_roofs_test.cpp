@@ -68,19 +68,6 @@ TEST(ProfileRoof, StepAtAReflexCornerSharesItsFootWithTheHigherWall) {
   EXPECT_EQ(roof->wall_tops[3], (std::vector<Point3>{{8, 16, 37.5}, {8, 8, 41}, {8, 8, 39.5}}));
 }
 
-TEST(ProfileRoof, SkillionIsTheOnePlaneOfSkillionRoof) {
-  for (const auto& [name, plan] : plans()) {
-    const Point2 down = compass_vector(30);
-    const auto roof = built(plan, RoofShape::skillion, {-down.x, -down.y});
-    const auto expected = skillion_roof(plan, {36, 4}, down);
-    ASSERT_TRUE(roof && expected) << name;
-    ASSERT_EQ(roof->surfaces.size(), 1u);
-    ASSERT_EQ(roof->wall_tops.size(), expected->wall_tops.size());
-    for (std::size_t i = 0; i < roof->wall_tops.size(); ++i)
-      EXPECT_NEAR(roof->wall_tops[i][0].z, expected->wall_tops[i][0].z, 1e-9) << name;
-  }
-}
-
 TEST(ProfileRoof, RefusesPlansTooNarrowForItsLines) {
   const Polygon narrow = polygon({{0, 0}, {5, 0}, {5, 0.3}, {0, 0.3}});
   EXPECT_TRUE(built(narrow, RoofShape::skillion, {0, 1}));
