@@ -41,18 +41,21 @@ class Tidy {
       Group group{face.edge, face.level, face.upright, face.loops};
       groups_.push_back(std::move(group));
     }
-    drop_columns();
   }
 
   RoofSurfaces run() {
     parent_.resize(nodes_.size());
     std::iota(parent_.begin(), parent_.end(), 0u);
+    align_uprights();
     constexpr int kMostRounds = 12;  // each takes something out; two or three are usual
     for (int round = 0; round < kMostRounds; ++round) {
       const bool contracted = contract();
       const bool inserted = insert();
       if (!contracted && !inserted) break;
     }
+    join_uprights();
+    drop_fins();
+    drop_columns();
     cut_chains();
     RoofSurfaces out;
     for (const Group& group : groups_) emit(group, out);
@@ -100,18 +103,136 @@ class Tidy {
 
   bool same_place(std::uint32_t a, std::uint32_t b) const { return nodes_[a].x == nodes_[b].x && nodes_[a].y == nodes_[b].y; }
 
-  /// Where two gables meet, the corner of the plan is no point of the roof: both walls go straight up to it.
+  bool has_uprights() const {
+    return std::any_of(groups_.begin(), groups_.end(), [](const Group& g) { return g.upright; }) ||
+           std::any_of(chains_.begin(), chains_.end(), [](const Loop& c) { return c.size() > 2; });
+  }
+
+  /// Nodes above each other on upright faces get one place: rounding must not tear their line apart.
+  void align_uprights() {
+    if (!has_uprights()) return;
+    std::vector<std::uint32_t> order(nodes_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return nodes_[a].x != nodes_[b].x ? nodes_[a].x < nodes_[b].x : a < b;
+    });
+    for (std::size_t i = 0; i < order.size(); ++i)
+      for (std::size_t k = i + 1; k < order.size() && nodes_[order[k]].x - nodes_[order[i]].x <= kNarrowestFace; ++k) {
+        const std::uint32_t a = std::min(order[i], order[k]), b = std::max(order[i], order[k]);
+        if (b < corners_ || std::fabs(nodes_[a].y - nodes_[b].y) > kNarrowestFace) continue;
+        nodes_[b].x = nodes_[a].x;
+        nodes_[b].y = nodes_[a].y;
+      }
+  }
+
+  /// A node on the vertical line between two others of an upright face belongs to it as well; a path that runs up such a
+  /// line and back down loses that spur.
+  void join_uprights() {
+    if (!has_uprights()) return;
+    std::vector<Loop*> paths;
+    for (Loop& chain : chains_)
+      if (!chain.empty()) paths.push_back(&chain);
+    for (Group& group : groups_)
+      if (group.upright)
+        for (Loop& loop : group.loops) paths.push_back(&loop);
+    for (Loop* path : paths) {
+      for (std::size_t i = 0; i + 2 < path->size();) {
+        const std::uint32_t a = (*path)[i], b = (*path)[i + 1], c = (*path)[i + 2];
+        const double za = nodes_[a].z, zb = nodes_[b].z, zc = nodes_[c].z;
+        if (same_place(a, b) && same_place(b, c) && (zb - za) * (zc - zb) <= 0) {
+          path->erase(path->begin() + static_cast<std::ptrdiff_t>(i) + 1);
+          if (a == c) path->erase(path->begin() + static_cast<std::ptrdiff_t>(i) + 1);
+          i = i > 0 ? i - 1 : 0;
+        } else {
+          ++i;
+        }
+      }
+    }
+    std::vector<std::uint32_t> used;
+    for (const Loop* path : paths) used.insert(used.end(), path->begin(), path->end());
+    for_each_arc([&](std::uint32_t a, std::uint32_t) { used.push_back(a); });
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    for (Loop* path : paths)
+      for (std::size_t i = 0; i + 1 < path->size(); ++i) {
+        const std::uint32_t a = (*path)[i], b = (*path)[i + 1];
+        if (!same_place(a, b)) continue;
+        // The nearest to a of those between: the others follow.
+        std::optional<std::uint32_t> nearest;
+        for (const std::uint32_t n : used) {
+          if (n == a || n == b || !same_place(n, a) || (nodes_[n].z - nodes_[a].z) * (nodes_[b].z - nodes_[n].z) <= 0) continue;
+          if (!nearest || std::fabs(nodes_[n].z - nodes_[a].z) < std::fabs(nodes_[*nearest].z - nodes_[a].z)) nearest = n;
+        }
+        if (nearest) path->insert(path->begin() + static_cast<std::ptrdiff_t>(i) + 1, *nearest);
+      }
+  }
+
+  /// Two upright faces on one line that look opposite ways and have nothing between them: where a node joins only the two, it
+  /// goes, and the fin with it.
+  void drop_fins() {
+    if (!has_uprights()) return;
+    for (bool again = true; again;) {
+      again = false;
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> ways;  // node and neighbour
+      const auto join = [&](std::uint32_t a, std::uint32_t b) {
+        ways.push_back({a, b});
+        ways.push_back({b, a});
+      };
+      for_each_arc(join);
+      for (const Loop& chain : chains_)
+        for (std::size_t i = 0; i + 1 < chain.size(); ++i) join(chain[i], chain[i + 1]);
+      for (const Loop& chain : chains_)
+        if (!chain.empty())
+          for (const std::uint32_t end : {chain.front(), chain.back()}) ways.push_back({end, kNone});  // the wall below
+      std::sort(ways.begin(), ways.end());
+      ways.erase(std::unique(ways.begin(), ways.end()), ways.end());
+      for (std::size_t i = 0; i < ways.size();) {
+        std::size_t k = i;
+        while (k < ways.size() && ways[k].first == ways[i].first) ++k;
+        const std::uint32_t n = ways[i].first;
+        if (k - i <= 2 && n >= corners_ && ways[k - 1].second != kNone) {
+          remove(n);
+          again = true;
+          break;
+        }
+        i = k;
+      }
+    }
+  }
+  void remove(std::uint32_t node) {
+    const auto without = [&](Loop& path) {
+      std::erase(path, node);
+      path.erase(std::unique(path.begin(), path.end()), path.end());
+    };
+    for (Loop& chain : chains_) without(chain);
+    for (Group& group : groups_) {
+      for (Loop& loop : group.loops) {
+        without(loop);
+        while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+      }
+      std::erase_if(group.loops, [](const Loop& loop) { return loop.size() < 3; });
+    }
+  }
+
+  /// Where two gables meet, the corner of the plan is no point of the roof: both walls go straight up.
   void drop_columns() {
     std::vector<std::uint32_t> ending_at(corners_, kNone);
     for (std::uint32_t e = 0; e < corners_; ++e)
       if (!chains_[e].empty()) ending_at[chains_[e].back()] = e;
     for (std::uint32_t c = 0; c < corners_; ++c) {
-      if (chains_[c].size() < 3 || ending_at[c] == kNone) continue;
+      if (chains_[c].empty() || ending_at[c] == kNone) continue;
       Loop &right = chains_[c], &left = chains_[ending_at[c]];
-      if (left.size() < 3 || !same_place(right[1], c) || left[left.size() - 2] != right[1]) continue;
-      right.erase(right.begin());
-      left.pop_back();
+      while (right.size() > 2 && left.size() > 2 && same_place(right[1], c) && left[left.size() - 2] == right[1] && !in_roof(right[0])) {
+        right.erase(right.begin());
+        left.pop_back();
+      }
     }
+  }
+  bool in_roof(std::uint32_t node) const {
+    for (const Group& group : groups_)
+      for (const Loop& loop : group.loops)
+        if (std::find(loop.begin(), loop.end(), node) != loop.end()) return true;
+    return false;
   }
 
   std::uint32_t root(std::uint32_t n) {
@@ -136,6 +257,20 @@ class Tidy {
       parent_[std::max(a, b)] = std::min(a, b);  // corners have the lowest numbers, so they stay
       any = true;
     });
+    // Nodes of one face that are no neighbours can be as near.
+    for (const Group& group : groups_) {
+      if (group.upright) continue;
+      for (const Loop& loop : group.loops)
+        for (std::size_t i = 0; i < loop.size(); ++i)
+          for (std::size_t k = i + 2; k < loop.size(); ++k) {
+            const std::uint32_t a = root(loop[i]), b = root(loop[k]);
+            if (a == b || (a < corners_ && b < corners_)) continue;
+            const Point3 p = nodes_[a], q = nodes_[b];
+            if (std::fabs(p.x - q.x) > kNarrowestFace || std::fabs(p.y - q.y) > kNarrowestFace || std::fabs(p.z - q.z) > kMergedHeights) continue;
+            parent_[std::max(a, b)] = std::min(a, b);
+            any = true;
+          }
+    }
     if (!any) return false;
     for (Group& group : groups_)
       for (Loop& loop : group.loops)
@@ -315,6 +450,7 @@ class Tidy {
   }
 
   static constexpr std::uint32_t kNone = 0xffffffff;
+  static constexpr double kMergedHeights = 0.02;  ///< m: what a steep face rises over kNarrowestFace
   std::vector<Point3> nodes_;
   std::vector<std::uint32_t> end_of_, group_end_, merged_, parent_;
   std::uint32_t corners_ = 0;

@@ -33,7 +33,7 @@ RoofSurfaces roof_surfaces(const model::Polygon& plan, const WeightedSkeleton& s
 
 /// m. Simultaneous events of walls that are rounded come as several nodes a few millimetres apart. Merging them leaves faces plane
 /// within the checker's 0.01 m.
-inline constexpr double kMergedNodes = 0.008;
+inline constexpr double kMergedNodes = 0.005;
 /// m. Rounding moves a node by 0.7 mm; the checker refuses tips narrower than 2 mm.
 inline constexpr double kNarrowestFace = 0.0035;
 

@@ -241,8 +241,13 @@ class Sweep {
 
   // ---- input
 
+  /// The same inverse slope for all edges, in whole units: walls of whole lengths get speeds in exact proportion, so that regular
+  /// plans have exactly simultaneous events.
   std::int64_t speed(double length, double slope) const {
-    return slope == kUpright ? 0 : static_cast<std::int64_t>(std::llrint(length / slope * kSpeedUnit));
+    if (slope == kUpright) return 0;
+    const double inverse = std::nearbyint(kSpeedUnit / slope);
+    if (length == std::floor(length)) return static_cast<std::int64_t>(length) * static_cast<std::int64_t>(inverse);
+    return static_cast<std::int64_t>(std::llrint(length * inverse));
   }
   bool good(double slope) const { return slope >= kLeastSlope; }
 
@@ -323,6 +328,7 @@ class Sweep {
       active_.push_back(static_cast<std::int32_t>(i));
     }
     now_ = nodes_[vertices_[0].node];
+    first_now_ = nodes_.size();
     return {};
   }
 
@@ -538,8 +544,7 @@ class Sweep {
     if (strands_.size() > 1) changes = true;
     if (!changes) return true;
 
-    const auto node = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.push_back(at);
+    const std::uint32_t node = node_of(at);
     for (const std::int32_t v : there) finish(v, node);
     fresh_.clear();
     if (strands_.size() == 1) {
@@ -644,10 +649,7 @@ class Sweep {
       const auto m = planes_.meet(faster > 0 ? vertex(far).right : vertex(far).left, a, b);
       if (!m) return false;
       // A vertex that has just been made stands at its node.
-      if (!fresh(far) || planes_.along(a, nodes_[node], *m) != 0) {
-        node = static_cast<std::uint32_t>(nodes_.size());
-        nodes_.push_back(*m);
-      }
+      if (!fresh(far) || planes_.along(a, nodes_[node], *m) != 0) node = node_of(*m);
     }
     const std::int32_t replaced = static_cast<std::int32_t>(vertices_.size());
     Vertex v = vertex(far);
@@ -704,7 +706,17 @@ class Sweep {
   std::uint32_t node_at(const Vertex& v, const Meet& height) {
     const auto m = planes_.meet(v.left, v.right, height.p[0]);
     if (!m) return v.node;  // folded ones vanish at their own height, before any change
-    nodes_.push_back(*m);
+    return node_of(*m);
+  }
+
+  /// The node at a point; one for all that happens there at that height.
+  std::uint32_t node_of(const Meet& at) {
+    while (first_now_ < nodes_.size() && planes_.compare_height(nodes_[first_now_], at) != 0) ++first_now_;
+    for (std::size_t i = first_now_; i < nodes_.size(); ++i) {
+      const Meet& m = nodes_[i];
+      if (planes_.side(m.p[0], at) == 0 && planes_.side(m.p[1], at) == 0 && planes_.side(m.p[2], at) == 0) return static_cast<std::uint32_t>(i);
+    }
+    nodes_.push_back(at);
     return static_cast<std::uint32_t>(nodes_.size()) - 1;
   }
   void drop_dead() {
@@ -888,6 +900,7 @@ class Sweep {
   std::vector<Strand> strands_;
   std::vector<Ray> rays_;
   std::vector<Meet> nodes_;
+  std::size_t first_now_ = 0;  ///< the first node at the height of the last event
   std::vector<Segment> segments_;
   std::vector<FaceRecord> faces_;
   std::vector<std::vector<std::uint32_t>> deck_loops_;

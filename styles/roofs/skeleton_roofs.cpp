@@ -315,9 +315,8 @@ class Builder {
       const Point2 out = edges_[i].outwards();
       if (out.x * down.x + out.y * down.y > kMostCosine) all[i] = pitch(1);
     }
-    const auto one_sided = geometry::weighted_skeleton(plan_, all);
-    if (!one_sided) return fallback();
-    const double height = request_.measures.height, slope = height / (kDeckRun * one_sided->height());
+    const geometry::Extent extent = geometry::extent_along(plan_.outer.points, down);
+    const double height = request_.measures.height, slope = height / (kDeckRun * (extent.maximum - extent.minimum));
     for (EdgeProfile& p : all)
       if (p.slope != kUpright) p.slope = slope;
     return finish(geometry::weighted_skeleton(plan_, all, height));
