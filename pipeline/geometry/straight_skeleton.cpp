@@ -1,6 +1,6 @@
 #include "pipeline/geometry/straight_skeleton.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Polygon_2.h>
 #include <CGAL/Polygon_with_holes_2.h>
 #include <CGAL/create_straight_skeleton_from_polygon_with_holes_2.h>
@@ -13,7 +13,7 @@ namespace blockrand::geometry {
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using CgalPolygon = CGAL::Polygon_2<Kernel>;
 using CgalPolygonWithHoles = CGAL::Polygon_with_holes_2<Kernel>;
 
@@ -25,7 +25,7 @@ double StraightSkeleton::height() const {
   return most;
 }
 
-std::optional<StraightSkeleton> straight_skeleton_by_cgal(const model::Polygon& polygon) {
+std::optional<StraightSkeleton> straight_skeleton(const model::Polygon& polygon) {
   std::size_t all_corners = polygon.outer.size();
   for (const model::Ring& hole : polygon.holes) all_corners += hole.size();
   if (polygon.outer.size() < 3 || all_corners > kMostSkeletonCorners) return std::nullopt;
@@ -63,7 +63,7 @@ std::optional<StraightSkeleton> straight_skeleton_by_cgal(const model::Polygon& 
   const auto node = [&](auto vertex) -> std::optional<std::uint32_t> {
     const auto [place, inserted] = node_of.try_emplace(vertex->id(), 0);
     if (!inserted) return place->second;
-    const model::Point2 local{vertex->point().x(), vertex->point().y()};
+    const model::Point2 local{CGAL::to_double(vertex->point().x()), CGAL::to_double(vertex->point().y())};
     if (vertex->is_contour()) {
       const auto found = corner_at.find(local);
       if (found == corner_at.end()) return std::nullopt;

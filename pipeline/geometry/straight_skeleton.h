@@ -1,4 +1,4 @@
-// The straight skeleton of a polygon with holes, as plain data.
+// The unweighted straight skeleton of a polygon with holes by CGAL, as plain data.
 #pragma once
 
 #include <cstddef>
@@ -34,21 +34,9 @@ struct StraightSkeleton {
 inline constexpr std::size_t kMostSkeletonCorners = 700;
 
 /// Straight skeleton of a valid polygon (outer counter-clockwise, holes clockwise, coordinates on the grid), all edges
-/// moving at unit speed. Convex plans of three and four corners, two thirds of all houses, have a closed form; for the
-/// others CGAL computes it (Create_straight_skeleton_2, exact predicates, EPICK). Coordinates are relative to the first
-/// corner on the way; node positions are not rounded.
+/// moving at unit speed, by CGAL (Create_straight_skeleton_2, exact constructions). It is the oracle that
+/// weighted_skeleton() is tested against, and the fallback where that gives up. Node positions are not rounded.
 /// Empty beyond kMostSkeletonCorners, and when CGAL gives up or its faces do not match the edges one to one.
-/// Typical cost 0.1 to 0.5 ms where CGAL works (references/feasibility.md, section 2), below 1 us for the closed form.
 std::optional<StraightSkeleton> straight_skeleton(const model::Polygon& polygon);
-
-/// The same, always by CGAL: what the closed form is tested against.
-std::optional<StraightSkeleton> straight_skeleton_by_cgal(const model::Polygon& polygon);
-
-/// The closed form alone. Empty when the plan has holes, more than four corners, or is not strictly convex.
-///
-/// In a convex quadrilateral the edge whose ends' bisectors meet first vanishes into a node at equal distance from it and
-/// its two neighbours; what is left is a triangle of the other three lines, which ends in the point at equal distance
-/// from these.
-std::optional<StraightSkeleton> straight_skeleton_closed_form(const model::Polygon& polygon);
 
 }  // namespace blockrand::geometry

@@ -1,0 +1,908 @@
+#include "pipeline/geometry/weighted_skeleton.h"
+
+#include <algorithm>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "pipeline/geometry/grid.h"
+
+namespace blockrand::geometry {
+
+namespace {
+
+using model::Point2;
+
+// Exact values. Directions have at most 24 bits, speeds 62, constants 85; the largest product, a comparison along a line, has
+// about 320.
+using Exact = boost::multiprecision::number<
+    boost::multiprecision::cpp_int_backend<512, 512, boost::multiprecision::signed_magnitude, boost::multiprecision::unchecked, void>>;
+
+/// Speeds are whole multiples of 2^-30 grid steps per step of height, for an edge of one step; all else follows exactly.
+constexpr int kSpeedBits = 30;
+constexpr double kSpeedUnit = std::int64_t{1} << kSpeedBits;
+constexpr double kSteps = model::kGridStepsPerMetre;
+/// Relative error of one rounded operation, with room for the few that a bound leaves out.
+constexpr double kEpsilon = 1.2e-16;
+
+Exact exact(Int128 v) {
+  const bool negative = v < 0;
+  const auto magnitude = negative ? -static_cast<unsigned __int128>(v) : static_cast<unsigned __int128>(v);
+  Exact out = static_cast<std::uint64_t>(magnitude >> 64);
+  out <<= 64;
+  out += static_cast<std::uint64_t>(magnitude);
+  return negative ? Exact(-out) : out;
+}
+
+/// Where a moving line is at each height z: a x + b y + c - w z = 0, positive inside. (a, b) is the edge turned left.
+/// All in grid steps; c and w are kept as multiples of 1 / kSpeedUnit.
+struct Plane {
+  std::int64_t a = 0, b = 0;
+  Int128 c = 0;
+  std::int64_t w = 0;
+  double fa = 0, fb = 0, fc = 0, fw = 0;  ///< the same rounded
+  std::uint32_t face = 0;
+  std::int32_t next = -1;  ///< the plane after the next change of slope
+  std::int64_t change = 0; ///< steps: the height of that change
+
+  void round() {
+    fa = static_cast<double>(a);
+    fb = static_cast<double>(b);
+    fc = static_cast<double>(c) / kSpeedUnit;
+    fw = static_cast<double>(w) / kSpeedUnit;
+  }
+};
+
+/// +1 when the edge of q turns left against that of p, -1 right, 0 parallel.
+int turn(const Plane& p, const Plane& q) {
+  return sign(static_cast<Int128>(p.a) * q.b - static_cast<Int128>(p.b) * q.a);
+}
+bool same_way(const Plane& p, const Plane& q) {
+  return static_cast<Int128>(p.a) * q.a + static_cast<Int128>(p.b) * q.b > 0;
+}
+
+/// The common point of three planes, named by them: exact, with a rounded place beside.
+struct Meet {
+  std::int32_t p[3] = {-1, -1, -1};
+  double x = 0, y = 0, z = 0;  ///< steps
+  double error = 0;            ///< steps: bound for each of the three
+};
+
+struct ExactPoint {
+  Exact x, y, z, d;  ///< x / d and y / d in steps / kSpeedUnit, z / d in steps
+};
+
+double det(const double (&u)[3], const double (&v)[3], const double (&w)[3]) {
+  return u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) + u[2] * (v[0] * w[1] - v[1] * w[0]);
+}
+double permanent(const double (&u)[3], const double (&v)[3], const double (&w)[3]) {
+  const auto m = [](double t) { return std::fabs(t); };
+  return m(u[0]) * (m(v[1] * w[2]) + m(v[2] * w[1])) + m(u[1]) * (m(v[0] * w[2]) + m(v[2] * w[0])) +
+         m(u[2]) * (m(v[0] * w[1]) + m(v[1] * w[0]));
+}
+
+class Planes {
+ public:
+  std::vector<Plane> all;
+  const Plane& operator[](std::int32_t i) const { return all[static_cast<std::size_t>(i)]; }
+
+  ExactPoint exact_point(const Meet& m) const {
+    const Plane &p = (*this)[m.p[0]], &q = (*this)[m.p[1]], &r = (*this)[m.p[2]];
+    // Minors of directions fit 128 bits.
+    const Exact pc = exact(p.c), qc = exact(q.c), rc = exact(r.c);
+    const Exact pq = exact(static_cast<Int128>(p.a) * q.b - static_cast<Int128>(q.a) * p.b);
+    const Exact qr = exact(static_cast<Int128>(q.a) * r.b - static_cast<Int128>(r.a) * q.b);
+    const Exact rp = exact(static_cast<Int128>(r.a) * p.b - static_cast<Int128>(p.a) * r.b);
+    ExactPoint out;
+    out.d = qr * p.w + rp * q.w + pq * r.w;
+    out.z = qr * pc + rp * qc + pq * rc;
+    const Exact wpq = exact(0) + pc * q.w - qc * p.w, wqr = qc * r.w - rc * q.w, wrp = rc * p.w - pc * r.w;
+    // x = -det(c, b, w) / d, y = -det(a, c, w) / d; minors of (c, w) expanded along b and a.
+    out.x = wqr * p.b + wrp * q.b + wpq * r.b;
+    out.y = -(wqr * p.a + wrp * q.a + wpq * r.a);
+    if (out.d < 0) {
+      out.d = -out.d;
+      out.x = -out.x;
+      out.y = -out.y;
+      out.z = -out.z;
+    }
+    return out;
+  }
+
+  /// None when the planes have no single common point.
+  std::optional<Meet> meet(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    const Plane &p = (*this)[i], &q = (*this)[j], &r = (*this)[k];
+    const double a[3] = {p.fa, q.fa, r.fa}, b[3] = {p.fb, q.fb, r.fb}, c[3] = {p.fc, q.fc, r.fc}, w[3] = {p.fw, q.fw, r.fw};
+    Meet m;
+    m.p[0] = i, m.p[1] = j, m.p[2] = k;
+    const double d = det(a, b, w), d_error = 12 * kEpsilon * permanent(a, b, w);
+    if (std::fabs(d) > 4 * d_error) {
+      const double least = std::fabs(d) - d_error;
+      m.x = -det(c, b, w) / d;
+      m.y = -det(a, c, w) / d;
+      m.z = det(a, b, c) / d;
+      const double size = std::max({std::fabs(m.x), std::fabs(m.y), std::fabs(m.z)});
+      const double e = 12 * kEpsilon * std::max({permanent(c, b, w), permanent(a, c, w), permanent(a, b, c)});
+      m.error = (e + size * d_error) / least + 2 * kEpsilon * size;
+      constexpr double kGoodEnough = 1e-5;  // steps, 10 nm
+      if (m.error < kGoodEnough) return m;
+    }
+    const ExactPoint point = exact_point(m);
+    if (point.d == 0) return std::nullopt;
+    const double divisor = point.d.convert_to<double>();
+    m.x = point.x.convert_to<double>() / divisor / kSpeedUnit;
+    m.y = point.y.convert_to<double>() / divisor / kSpeedUnit;
+    m.z = point.z.convert_to<double>() / divisor;
+    m.error = 4 * kEpsilon * std::max({std::fabs(m.x), std::fabs(m.y), std::fabs(m.z)});
+    return m;
+  }
+
+  /// Sign of the difference of heights.
+  int compare_height(const Meet& s, const Meet& t) const {
+    if (s.z - t.z > s.error + t.error) return 1;
+    if (t.z - s.z > s.error + t.error) return -1;
+    if (s.p[0] == t.p[0] && s.p[1] == t.p[1] && s.p[2] == t.p[2]) return 0;
+    const ExactPoint u = exact_point(s), v = exact_point(t);
+    const Exact left = u.z * v.d, right = v.z * u.d;
+    return left < right ? -1 : right < left ? 1 : 0;
+  }
+
+  /// On which side of plane k the point lies: +1 where k has not been yet at that height.
+  int side(std::int32_t k, const Meet& m) const {
+    if (k == m.p[0] || k == m.p[1] || k == m.p[2]) return 0;
+    const Plane& p = (*this)[k];
+    const double tx = p.fa * m.x, ty = p.fb * m.y, tz = p.fw * m.z;
+    const double value = tx + ty + p.fc - tz;
+    const double bound = (std::fabs(p.fa) + std::fabs(p.fb) + std::fabs(p.fw)) * m.error +
+                         8 * kEpsilon * (std::fabs(tx) + std::fabs(ty) + std::fabs(p.fc) + std::fabs(tz));
+    if (value > bound) return 1;
+    if (value < -bound) return -1;
+    const ExactPoint u = exact_point(m);
+    const Exact f = u.x * p.a + u.y * p.b + u.d * exact(p.c) - u.z * p.w;
+    return f < 0 ? -1 : f == 0 ? 0 : 1;
+  }
+
+  /// Sign of the way from s to t along the direction of plane k's edge.
+  int along(std::int32_t k, const Meet& s, const Meet& t) const {
+    const Plane& p = (*this)[k];
+    const double value = p.fb * (t.x - s.x) - p.fa * (t.y - s.y);
+    const double bound = (std::fabs(p.fa) + std::fabs(p.fb)) * (s.error + t.error + 4 * kEpsilon * (std::fabs(s.x) + std::fabs(s.y) + std::fabs(t.x) + std::fabs(t.y)));
+    if (value > bound) return 1;
+    if (value < -bound) return -1;
+    const ExactPoint u = exact_point(s), v = exact_point(t);
+    const Exact f = (v.x * u.d - u.x * v.d) * p.b - (v.y * u.d - u.y * v.d) * p.a;
+    return f < 0 ? -1 : f == 0 ? 0 : 1;
+  }
+
+  /// Does p's edge move faster than q's, which has its direction? Ties: 0.
+  int compare_speed(const Plane& p, const Plane& q) const {
+    const auto squared = [](std::int64_t v) { return exact(static_cast<Int128>(v)) * v; };
+    const Exact left = squared(p.w) * (squared(q.a) + squared(q.b)), right = squared(q.w) * (squared(p.a) + squared(p.b));
+    return left < right ? -1 : right < left ? 1 : 0;
+  }
+};
+
+struct Segment {
+  std::uint32_t face, from, to;
+};
+
+/// A corner of the moving polygon.
+struct Vertex {
+  std::int32_t prev = -1, next = -1;
+  std::int32_t left = -1, right = -1;  ///< planes of the edges that end and start here
+  std::uint32_t node = 0;              ///< where it set out
+  bool alive = true;
+  bool reflex = false;
+  bool folded = false;  ///< its edges run back on each other: it stays at its node, and vanishes at this height
+};
+
+struct Event {
+  Meet at;
+  enum class Kind : std::uint8_t { collapse, split, change } kind = Kind::collapse;
+  std::int32_t vertex = -1, other = -1;  ///< collapse: the edge between two vertices; split: vertex and plane
+  std::uint32_t number = 0;
+};
+
+class Sweep {
+ public:
+  Sweep(const model::Polygon& polygon, std::span<const EdgeProfile> profiles, std::optional<double> deck)
+      : polygon_(polygon), profiles_(profiles), deck_(deck) {}
+
+  tl::expected<WeightedSkeleton, SkeletonFailure> run() {
+    if (const auto failure = prepare()) return tl::unexpected(*failure);
+    push_changes(-1);
+    for (const std::int32_t v : active_) push_candidates(v);
+    std::size_t left = 64 + 16 * vertices_.size() * vertices_.size();
+    for (;;) {
+      if (heap_.empty()) return tl::unexpected(SkeletonFailure::unbounded);
+      if (left-- == 0) return tl::unexpected(SkeletonFailure::inconsistent);
+      const Event event = pop();
+      if (event.kind == Event::Kind::change) {
+        if (event.other < 0) {
+          stop(event.at);
+          break;
+        }
+        change(event.at);
+        continue;
+      }
+      const Vertex& v = vertex(event.vertex);
+      if (!v.alive) continue;
+      if (event.kind == Event::Kind::collapse && (!vertex(event.other).alive || v.next != event.other)) continue;
+      now_ = event.at;
+      if (!meet_at(event.at)) return tl::unexpected(SkeletonFailure::inconsistent);
+      if (std::none_of(active_.begin(), active_.end(), [&](std::int32_t i) { return vertex(i).alive; })) break;
+    }
+    return result();
+  }
+
+ private:
+  Vertex& vertex(std::int32_t v) { return vertices_[static_cast<std::size_t>(v)]; }
+  const Vertex& vertex(std::int32_t v) const { return vertices_[static_cast<std::size_t>(v)]; }
+
+  // ---- input
+
+  std::int64_t speed(double length, double slope) const {
+    return slope == kUpright ? 0 : static_cast<std::int64_t>(std::llrint(length / slope * kSpeedUnit));
+  }
+  bool good(double slope) const { return slope >= kLeastSlope; }
+
+  /// Gentler first slope: which of two profiles on one line holds.
+  static bool gentler(const EdgeProfile& p, const EdgeProfile& q) { return p.slope < q.slope; }
+
+  std::optional<SkeletonFailure> prepare() {
+    corners_ = polygon_.outer.points;
+    std::vector<std::size_t> first{0};
+    for (const model::Ring& hole : polygon_.holes) {
+      first.push_back(corners_.size());
+      corners_.insert(corners_.end(), hole.points.begin(), hole.points.end());
+    }
+    first.push_back(corners_.size());
+    const std::size_t n = corners_.size();
+    if (n > kMostWeightedCorners || polygon_.outer.size() < 3) return SkeletonFailure::too_large;
+    if (profiles_.size() != n) return SkeletonFailure::inconsistent;
+    for (const EdgeProfile& p : profiles_) {
+      if (!good(p.slope)) return SkeletonFailure::bad_slope;
+      double height = 0;
+      for (const SlopeChange& c : p.changes) {
+        constexpr double kHighest = 2000;
+        if (!good(c.slope) || !(c.height > height) || c.height > kHighest) return SkeletonFailure::bad_slope;
+        height = c.height;
+      }
+    }
+    origin_ = corners_[0];
+    const Grid2 o = to_grid(origin_);
+    std::vector<Grid2> grid(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      grid[i] = to_grid(corners_[i]) - o;
+      if (std::max(std::llabs(grid[i].x), std::llabs(grid[i].y)) > static_cast<std::int64_t>(kWidestSkeleton * kSteps))
+        return SkeletonFailure::too_large;
+    }
+    planes_.all.reserve(n + 1);
+    planes_.all.push_back({});
+    planes_.all[0].w = 1;  // the ground: z = 0
+    planes_.all[0].round();
+    merged_.resize(n);
+    std::iota(merged_.begin(), merged_.end(), 0u);
+    for (std::size_t r = 0; r + 1 < first.size(); ++r) {
+      const std::size_t begin = first[r], end = first[r + 1], count = end - begin;
+      // Corners that bend no wall are passed over.
+      std::vector<std::size_t> kept;
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t before = kept.empty() ? (i == begin ? end - 1 : i - 1) : kept.back();
+        if (orientation(grid[before], grid[i], grid[i + 1 < end ? i + 1 : begin]) != 0) kept.push_back(i);
+      }
+      if (kept.size() < 3) return SkeletonFailure::too_large;
+      const auto first_vertex = static_cast<std::int32_t>(vertices_.size());
+      const auto kept_count = static_cast<std::int32_t>(kept.size());
+      for (std::int32_t k = 0; k < kept_count; ++k) {
+        const std::size_t from = kept[static_cast<std::size_t>(k)], to = kept[static_cast<std::size_t>((k + 1) % kept_count)];
+        std::size_t lead = from;
+        for (std::size_t i = from; i != to; i = begin + (i - begin + 1) % count) {
+          if (gentler(profiles_[i], profiles_[lead])) lead = i;
+          merged_[i] = static_cast<std::uint32_t>(from);
+        }
+        Vertex v;
+        v.prev = first_vertex + (k + kept_count - 1) % kept_count;
+        v.next = first_vertex + (k + 1) % kept_count;
+        v.right = base_plane(grid[from], grid[to], profiles_[lead], static_cast<std::uint32_t>(from));
+        v.node = static_cast<std::uint32_t>(from);
+        vertices_.push_back(v);
+      }
+    }
+    nodes_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) nodes_[i] = {{-1, -1, -1}, static_cast<double>(grid[i].x), static_cast<double>(grid[i].y), 0, 0};
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      Vertex& v = vertices_[i];
+      v.left = vertex(v.prev).right;
+      const int t = turn(planes_[v.left], planes_[v.right]);
+      if (t == 0) return SkeletonFailure::inconsistent;  // a spike
+      v.reflex = t < 0;
+      Meet& m = nodes_[v.node];
+      m.p[0] = v.left, m.p[1] = v.right, m.p[2] = 0;
+      segments_.push_back({planes_[v.right].face, v.node, vertex(v.next).node});
+      active_.push_back(static_cast<std::int32_t>(i));
+    }
+    now_ = nodes_[vertices_[0].node];
+    return {};
+  }
+
+  /// The plane of an edge, and those it turns into. Edges on one line with one profile share theirs.
+  std::int32_t base_plane(Grid2 from, Grid2 to, const EdgeProfile& profile, std::uint32_t edge) {
+    const std::int64_t dx = to.x - from.x, dy = to.y - from.y;
+    const double length = std::sqrt(static_cast<double>(dx * dx + dy * dy));
+    Plane p;
+    p.a = -dy;
+    p.b = dx;
+    p.c = -(static_cast<Int128>(p.a) * from.x + static_cast<Int128>(p.b) * from.y) * (Int128{1} << kSpeedBits);
+    p.w = speed(length, profile.slope);
+    for (const auto& [other, number, its_profile] : base_planes_) {
+      const Plane& q = planes_[number];
+      if (turn(p, q) == 0 && same_way(p, q) && on_line(q, from) && same(*its_profile, profile)) {
+        return number;
+      }
+    }
+    const auto number = add(p, edge, 0);
+    base_planes_.push_back({edge, number, &profile});
+    std::int32_t last = number;
+    for (std::size_t c = 0; c < profile.changes.size(); ++c) {
+      const std::int64_t height = to_grid(profile.changes[c].height);
+      Plane q = planes_[last];
+      const std::int64_t w = speed(length, profile.changes[c].slope);
+      q.c += static_cast<Int128>(w - q.w) * height;
+      q.w = w;
+      q.next = -1;
+      q.change = 0;
+      const std::int32_t next = add(q, edge, static_cast<std::uint32_t>(c) + 1);
+      planes_.all[static_cast<std::size_t>(last)].next = next;
+      planes_.all[static_cast<std::size_t>(last)].change = height;
+      last = next;
+    }
+    return number;
+  }
+  static bool on_line(const Plane& p, Grid2 at) {
+    return static_cast<Int128>(p.a) * at.x + static_cast<Int128>(p.b) * at.y + (p.c >> kSpeedBits) == 0;
+  }
+  static bool same(const EdgeProfile& p, const EdgeProfile& q) {
+    if (p.slope != q.slope || p.changes.size() != q.changes.size()) return false;
+    for (std::size_t i = 0; i < p.changes.size(); ++i)
+      if (p.changes[i].height != q.changes[i].height || p.changes[i].slope != q.changes[i].slope) return false;
+    return true;
+  }
+  std::int32_t add(Plane p, std::uint32_t edge, std::uint32_t level) {
+    p.face = static_cast<std::uint32_t>(faces_.size());
+    p.round();
+    faces_.push_back({edge, level, p.w == 0, p.face, static_cast<std::int32_t>(planes_.all.size())});
+    planes_.all.push_back(p);
+    return static_cast<std::int32_t>(planes_.all.size()) - 1;
+  }
+
+  // ---- events
+
+  struct Later {
+    const Planes* planes;
+    bool operator()(const Event& s, const Event& t) const {
+      if (const int c = planes->compare_height(s.at, t.at)) return c > 0;
+      const bool sc = s.kind == Event::Kind::change, tc = t.kind == Event::Kind::change;
+      if (sc != tc) return sc;  // what meets at the height of a change, meets before it
+      if (sc && (s.other < 0) != (t.other < 0)) return s.other < 0;
+      return s.number > t.number;
+    }
+  };
+  void push(Event event) {
+    event.number = counter_++;
+    heap_.push_back(event);
+    std::push_heap(heap_.begin(), heap_.end(), Later{&planes_});
+  }
+  Event pop() {
+    std::pop_heap(heap_.begin(), heap_.end(), Later{&planes_});
+    Event e = heap_.back();
+    heap_.pop_back();
+    return e;
+  }
+
+  /// Changes of slope above `height` (steps), and the deck.
+  void push_changes(std::int64_t height) {
+    std::vector<std::int64_t> heights;
+    for (const std::int32_t v : active_) {
+      const Plane& p = planes_[vertex(v).right];
+      if (p.next >= 0 && p.change > height) heights.push_back(p.change);
+    }
+    std::sort(heights.begin(), heights.end());
+    heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+    for (const std::int64_t h : heights) push({level(h), Event::Kind::change, -1, 1, 0});
+    if (deck_) push({level(to_grid(*deck_)), Event::Kind::change, -1, -1, 0});
+  }
+  /// The horizontal plane at a height, as a Meet that stands for the height alone.
+  Meet level(std::int64_t height) {
+    std::int32_t number = -1;
+    for (const auto& [h, p] : levels_)
+      if (h == height) number = p;
+    if (number < 0) {
+      Plane p;
+      p.c = height;
+      p.w = 1;
+      p.round();
+      number = static_cast<std::int32_t>(planes_.all.size());
+      planes_.all.push_back(p);
+      levels_.push_back({height, number});
+    }
+    // Two upright planes that cross anywhere make the height a point.
+    return {{number, axis(0), axis(1)}, 0, 0, static_cast<double>(height), 0};
+  }
+  std::int32_t axis(int which) {
+    if (axes_[which] < 0) {
+      Plane p;
+      (which == 0 ? p.a : p.b) = 1;
+      p.round();
+      axes_[which] = static_cast<std::int32_t>(planes_.all.size());
+      planes_.all.push_back(p);
+    }
+    return axes_[which];
+  }
+
+  void push_collapse(std::int32_t from, std::int32_t to) {
+    const Vertex &v = vertex(from), &w = vertex(to);
+    if (const auto m = planes_.meet(v.left, v.right, w.right); m && planes_.compare_height(*m, now_) >= 0)
+      push({*m, Event::Kind::collapse, from, to, 0});
+  }
+  void push_candidates(std::int32_t number) {
+    push_collapse(number, vertex(number).next);
+    push_collapse(vertex(number).prev, number);
+    if (!vertex(number).reflex) return;
+    const std::int32_t left = vertex(number).left, right = vertex(number).right;
+    const Meet& origin = nodes_[vertex(number).node];
+    ++stamp_;
+    seen_.resize(planes_.all.size(), 0);
+    for (const std::int32_t other : active_) {
+      const std::int32_t k = vertex(other).right;
+      if (!vertex(other).alive || k == left || k == right || seen_[static_cast<std::size_t>(k)] == stamp_) continue;
+      seen_[static_cast<std::size_t>(k)] = stamp_;
+      const auto m = planes_.meet(left, right, k);
+      if (!m || planes_.compare_height(*m, now_) < 0) continue;
+      if (planes_.side(k, origin) == 0) continue;  // it has just left that edge
+      push({*m, Event::Kind::split, number, k, 0});
+    }
+  }
+
+  /// Where a point on the line of the edge that starts at v lies against that start: +1 beyond, 0 at it, -1 before.
+  int from_start(const Vertex& v, const Meet& m) const {
+    if (v.folded) return planes_.along(v.right, nodes_[v.node], m);
+    const int s = planes_.side(v.left, m);
+    return v.reflex ? -s : s;
+  }
+  /// ... and against the end w of its edge: +1 before it.
+  int to_end(const Vertex& w, const Meet& m) const {
+    if (w.folded) return planes_.along(w.left, m, nodes_[w.node]);
+    const int s = planes_.side(w.right, m);
+    return w.reflex ? -s : s;
+  }
+
+  /// What runs through the point: an edge, or a chain of vertices that meet there.
+  struct Strand {
+    std::int32_t in, out;        ///< planes of the edges that arrive and leave
+    std::int32_t before, after;  ///< the vertices at their other ends
+  };
+  struct Ray {
+    std::int64_t dx, dy;
+    bool out;
+    std::uint32_t strand;
+  };
+
+  void finish(std::int32_t number, std::uint32_t node) {
+    Vertex& v = vertex(number);
+    v.alive = false;
+    if (v.node == node) return;
+    segments_.push_back({planes_[v.left].face, v.node, node});
+    segments_.push_back({planes_[v.right].face, node, v.node});
+  }
+
+  /// Cuts and rejoins all that meets in a point now. False when what meets there makes no sense.
+  bool meet_at(const Meet& at) {
+    std::vector<std::int32_t>&there = there_, &through = through_;
+    there.clear();
+    through.clear();
+    std::size_t kept = 0;
+    for (const std::int32_t i : active_) {
+      const Vertex& v = vertex(i);
+      if (!v.alive) continue;
+      active_[kept++] = i;
+      if (planes_.side(v.right, at) != 0) continue;
+      const int s = from_start(v, at);
+      if (s == 0)
+        there.push_back(i);
+      else if (s > 0 && to_end(vertex(v.next), at) > 0)
+        through.push_back(i);
+    }
+    active_.resize(kept);
+    if (there.empty()) return true;
+    ++mark_;
+    marks_.resize(vertices_.size(), 0);
+    const auto marked = [&](std::int32_t v) { return marks_[static_cast<std::size_t>(v)] == mark_; };
+    for (const std::int32_t v : there) marks_[static_cast<std::size_t>(v)] = mark_;
+    strands_.clear();
+    bool changes = false;
+    std::size_t in_chains = 0;
+    for (const std::int32_t v : there) {
+      if (marked(vertex(v).prev)) continue;
+      std::int32_t last = v;
+      ++in_chains;
+      while (marked(vertex(last).next)) {
+        last = vertex(last).next;
+        ++in_chains;
+        changes = true;
+      }
+      strands_.push_back({vertex(v).left, vertex(last).right, vertex(v).prev, vertex(last).next});
+    }
+    if (in_chains != there.size()) changes = true;  // whole loops end here
+    for (const std::int32_t v : through) strands_.push_back({vertex(v).right, vertex(v).right, v, vertex(v).next});
+    if (strands_.size() > 1) changes = true;
+    if (!changes) return true;
+
+    const auto node = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.push_back(at);
+    for (const std::int32_t v : there) finish(v, node);
+    fresh_.clear();
+    if (strands_.size() == 1) {
+      join(strands_[0], strands_[0], node);
+    } else if (strands_.size() > 1) {
+      rays_.clear();
+      for (std::uint32_t s = 0; s < strands_.size(); ++s) {
+        const Plane &in = planes_[strands_[s].in], &out = planes_[strands_[s].out];
+        rays_.push_back({-in.b, in.a, false, s});
+        rays_.push_back({out.b, -out.a, true, s});
+      }
+      std::sort(rays_.begin(), rays_.end(), [](const Ray& p, const Ray& q) {
+        const bool upper_p = p.dy > 0 || (p.dy == 0 && p.dx > 0), upper_q = q.dy > 0 || (q.dy == 0 && q.dx > 0);
+        if (upper_p != upper_q) return upper_p;
+        const Int128 cross = static_cast<Int128>(p.dx) * q.dy - static_cast<Int128>(p.dy) * q.dx;
+        if (cross != 0) return cross > 0;
+        if (p.out != q.out) return p.out;  // a sector without width lies between an edge that leaves and one that arrives
+        return p.strand < q.strand;
+      });
+      // Every sector of the inside begins at an edge that leaves and ends, counter-clockwise, at one that arrives.
+      for (std::size_t i = 0; i < rays_.size(); ++i) {
+        if (!rays_[i].out) continue;
+        const Ray& end = rays_[(i + 1) % rays_.size()];
+        if (end.out) return false;
+        join(strands_[end.strand], strands_[rays_[i].strand], node);
+      }
+    }
+    return settle();
+  }
+
+  /// A new vertex between the edge that arrives with one strand and the one that leaves with another.
+  void join(const Strand& arriving, const Strand& leaving, std::uint32_t node) {
+    Vertex v;
+    v.left = arriving.in;
+    v.right = leaving.out;
+    v.prev = arriving.before;
+    v.next = leaving.after;
+    v.node = node;
+    const auto number = static_cast<std::int32_t>(vertices_.size());
+    vertices_.push_back(v);
+    vertex(v.prev).next = number;
+    vertex(v.next).prev = number;
+    active_.push_back(number);
+    fresh_.push_back(number);
+  }
+
+  /// Looks after new vertices: edges on one line, loops without area; then their next events.
+  bool settle() {
+    for (std::size_t i = 0; i < fresh_.size(); ++i) {
+      const std::int32_t number = fresh_[i];
+      if (!vertex(number).alive) continue;
+      const Plane &left = planes_[vertex(number).left], &right = planes_[vertex(number).right];
+      const int t = turn(left, right);
+      vertex(number).reflex = t < 0;
+      vertex(number).folded = t == 0 && !same_way(left, right);
+      if (t == 0 && same_way(left, right) && !unite(number)) return false;
+    }
+    for (const std::int32_t number : fresh_) {
+      Vertex& v = vertex(number);
+      if (!v.alive) continue;
+      if (v.next == number) return false;
+      if (vertex(v.next).next == number) {
+        // Two edges are left, back on each other: a ridge.
+        const std::uint32_t end = vertex(v.next).node;
+        segments_.push_back({planes_[v.left].face, v.node, end});
+        segments_.push_back({planes_[v.right].face, end, v.node});
+        vertex(v.next).alive = false;
+        v.alive = false;
+      }
+    }
+    for (const std::int32_t number : fresh_)
+      if (vertex(number).alive) push_candidates(number);
+    return true;
+  }
+
+  /// Two edges on one line, running the same way, meet in a vertex: they become one edge.
+  bool unite(std::int32_t number) {
+    const std::int32_t a = vertex(number).left, b = vertex(number).right;
+    const std::int32_t before = vertex(number).prev, after = vertex(number).next;
+    vertex(number).alive = false;
+    if (before == number || before == after) return false;
+    vertex(before).next = after;
+    vertex(after).prev = before;
+    if (a == b) return true;
+    const int faster = planes_.compare_speed(planes_[a], planes_[b]);
+    const std::uint32_t here = vertex(number).node;
+    if (faster == 0) {
+      // One plane under two names (profiles that differ further up): one face from here on.
+      join_faces(planes_[a].face, planes_[b].face);
+      vertex(after).left = a;
+      return true;
+    }
+    // The steeper edge's far end turns to the other plane where it is now.
+    const std::int32_t far = faster > 0 ? after : before;
+    const std::int32_t winner = faster > 0 ? a : b, loser = faster > 0 ? b : a;
+    std::uint32_t node = vertex(far).node;
+    if (!vertex(far).folded) {
+      const auto m = planes_.meet(faster > 0 ? vertex(far).right : vertex(far).left, a, b);
+      if (!m) return false;
+      // A vertex that has just been made stands at its node.
+      if (!fresh(far) || planes_.along(a, nodes_[node], *m) != 0) {
+        node = static_cast<std::uint32_t>(nodes_.size());
+        nodes_.push_back(*m);
+      }
+    }
+    const std::int32_t replaced = static_cast<std::int32_t>(vertices_.size());
+    Vertex v = vertex(far);
+    finish(far, node);
+    v.alive = true;
+    v.node = node;
+    (faster > 0 ? v.left : v.right) = winner;
+    vertices_.push_back(v);
+    vertex(v.prev).next = replaced;
+    vertex(v.next).prev = replaced;
+    active_.push_back(replaced);
+    fresh_.push_back(replaced);
+    const auto [from, to] = faster > 0 ? std::pair(here, node) : std::pair(node, here);
+    segments_.push_back({planes_[loser].face, to, from});
+    segments_.push_back({planes_[winner].face, from, to});
+    return true;
+  }
+  bool fresh(std::int32_t v) const { return std::find(fresh_.begin(), fresh_.end(), v) != fresh_.end(); }
+
+  /// All slopes that change at a height.
+  void change(const Meet& at) {
+    now_ = at;
+    const std::int64_t height = static_cast<std::int64_t>(at.z);
+    drop_dead();
+    const auto changes = [&](std::int32_t p) { return planes_[p].next >= 0 && planes_[p].change == height; };
+    std::vector<std::uint32_t> node(vertices_.size());
+    for (const std::int32_t i : active_) {
+      const Vertex& v = vertex(i);
+      node[static_cast<std::size_t>(i)] = v.node;
+      if (!changes(v.left) && !changes(v.right)) continue;
+      node[static_cast<std::size_t>(i)] = node_at(v, at);
+    }
+    for (const std::int32_t i : active_) {
+      Vertex& v = vertex(i);
+      if (changes(v.right)) {
+        const std::uint32_t from = node[static_cast<std::size_t>(i)], to = node[static_cast<std::size_t>(v.next)];
+        segments_.push_back({planes_[v.right].face, to, from});
+        segments_.push_back({planes_[planes_[v.right].next].face, from, to});
+      }
+      if (node[static_cast<std::size_t>(i)] == v.node) continue;
+      finish(i, node[static_cast<std::size_t>(i)]);
+      v.alive = true;
+      v.node = node[static_cast<std::size_t>(i)];
+    }
+    for (const std::int32_t i : active_) {
+      Vertex& v = vertex(i);
+      if (changes(v.left)) v.left = planes_[v.left].next;
+      if (changes(v.right)) v.right = planes_[v.right].next;
+    }
+    heap_.clear();
+    push_changes(height);
+    for (const std::int32_t i : active_) push_candidates(i);
+  }
+  std::uint32_t node_at(const Vertex& v, const Meet& height) {
+    const auto m = planes_.meet(v.left, v.right, height.p[0]);
+    if (!m) return v.node;  // folded ones vanish at their own height, before any change
+    nodes_.push_back(*m);
+    return static_cast<std::uint32_t>(nodes_.size()) - 1;
+  }
+  void drop_dead() {
+    std::erase_if(active_, [&](std::int32_t v) { return !vertex(v).alive; });
+  }
+
+  /// The deck: what is left of the moving polygon.
+  void stop(const Meet& at) {
+    drop_dead();
+    std::vector<std::uint32_t> node(vertices_.size());
+    for (const std::int32_t i : active_) node[static_cast<std::size_t>(i)] = node_at(vertex(i), at);
+    ++mark_;
+    marks_.resize(vertices_.size(), 0);
+    for (const std::int32_t i : active_) {
+      const Vertex& v = vertex(i);
+      segments_.push_back({planes_[v.right].face, node[static_cast<std::size_t>(v.next)], node[static_cast<std::size_t>(i)]});
+      finish(i, node[static_cast<std::size_t>(i)]);
+      if (marks_[static_cast<std::size_t>(i)] == mark_) continue;
+      std::vector<std::uint32_t> loop;
+      for (std::int32_t w = i; marks_[static_cast<std::size_t>(w)] != mark_; w = vertex(w).next) {
+        marks_[static_cast<std::size_t>(w)] = mark_;
+        loop.push_back(node[static_cast<std::size_t>(w)]);
+      }
+      deck_loops_.push_back(std::move(loop));
+    }
+    active_.clear();
+  }
+
+  // ---- output
+
+  struct FaceRecord {
+    std::uint32_t edge, level;
+    bool upright;
+    std::uint32_t root;  ///< faces that became one
+    std::int32_t plane;
+  };
+  std::uint32_t root(std::uint32_t face) {
+    while (faces_[face].root != face) face = faces_[face].root;
+    return face;
+  }
+  void join_faces(std::uint32_t a, std::uint32_t b) {
+    a = root(a), b = root(b);
+    faces_[std::max(a, b)].root = std::min(a, b);
+  }
+
+  tl::expected<WeightedSkeleton, SkeletonFailure> result() {
+    WeightedSkeleton out;
+    out.merged = merged_;
+    out.nodes.reserve(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const Meet& m = nodes_[i];
+      out.nodes.push_back(i < corners_.size() ? WeightedSkeletonNode{corners_[i], 0}
+                                              : WeightedSkeletonNode{{origin_.x + m.x / kSteps, origin_.y + m.y / kSteps}, m.z / kSteps});
+    }
+    for (Segment& s : segments_) s.face = root(s.face);
+    std::sort(segments_.begin(), segments_.end(), [](const Segment& p, const Segment& q) {
+      return p.face != q.face ? p.face < q.face : p.from != q.from ? p.from < q.from : p.to < q.to;
+    });
+    std::vector<char> used(segments_.size(), 0);
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      if (used[i]) continue;
+      WeightedSkeletonFace face;
+      const FaceRecord& record = faces_[segments_[i].face];
+      face.edge = record.edge;
+      face.level = record.level;
+      face.upright = record.upright;
+      std::vector<std::uint32_t> loop;
+      std::size_t at = i;
+      while (!used[at]) {
+        used[at] = 1;
+        loop.push_back(segments_[at].from);
+        const auto next = following(at, used, i);
+        if (!next) return tl::unexpected(SkeletonFailure::inconsistent);
+        at = *next;
+      }
+      if (at != i) return tl::unexpected(SkeletonFailure::inconsistent);
+      face.loops.push_back(std::move(loop));
+      out.faces.push_back(std::move(face));
+    }
+    add_decks(out);
+    return out;
+  }
+
+  /// The segment that continues a face's boundary; where the face touches itself, the one that keeps the pieces apart.
+  std::optional<std::size_t> following(std::size_t at, const std::vector<char>& used, std::size_t start) const {
+    const Segment& s = segments_[at];
+    const auto begin = std::lower_bound(segments_.begin(), segments_.end(), Segment{s.face, s.to, 0}, [](const Segment& p, const Segment& q) {
+      return p.face != q.face ? p.face < q.face : p.from < q.from;
+    });
+    std::optional<std::size_t> best;
+    double best_angle = 0;
+    const auto place = [&](std::uint32_t n) -> Point2 {
+      const Meet& m = nodes_[n];
+      if (!faces_[s.face].upright) return {m.x, m.y};
+      const Plane& p = planes_[faces_[s.face].plane];
+      const double length = std::hypot(p.fa, p.fb);
+      return {(p.fb * m.x - p.fa * m.y) / length, m.z};
+    };
+    const auto angle = [&](std::uint32_t a, std::uint32_t b) {
+      const Point2 u = place(a), v = place(b);
+      return std::atan2(v.y - u.y, v.x - u.x);
+    };
+    for (auto next = begin; next != segments_.end() && next->face == s.face && next->from == s.to; ++next) {
+      const auto number = static_cast<std::size_t>(next - segments_.begin());
+      if (used[number] && number != start) continue;
+      const bool only = (std::next(next) == segments_.end() || std::next(next)->face != s.face || std::next(next)->from != s.to) && !best;
+      if (only) return number;
+      // How far clockwise from the way back.
+      constexpr double kTurn = 6.283185307179586;
+      double a = angle(s.to, s.from) - angle(s.to, next->to);
+      while (a <= 1e-12) a += kTurn;
+      if (!best || a < best_angle) {
+        best = number;
+        best_angle = a;
+      }
+    }
+    return best;
+  }
+
+  void add_decks(WeightedSkeleton& out) {
+    const auto twice_area = [&](const std::vector<std::uint32_t>& loop) {
+      double sum = 0;
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Meet &p = nodes_[loop[i]], &q = nodes_[loop[(i + 1) % loop.size()]], &o = nodes_[loop[0]];
+        sum += (p.x - o.x) * (q.y - o.y) - (q.x - o.x) * (p.y - o.y);
+      }
+      return sum;
+    };
+    std::vector<std::size_t> decks;
+    for (const auto& loop : deck_loops_) {
+      if (twice_area(loop) <= 0) continue;
+      WeightedSkeletonFace face;
+      face.edge = WeightedSkeletonFace::kDeck;
+      face.loops.push_back(loop);
+      decks.push_back(out.faces.size());
+      out.faces.push_back(std::move(face));
+    }
+    for (const auto& loop : deck_loops_) {
+      if (twice_area(loop) > 0) continue;
+      // The deck around a hole: loops do not cross, so one corner decides.
+      const Meet& at = nodes_[loop[0]];
+      for (const std::size_t d : decks) {
+        bool inside = false;
+        const auto& ring = out.faces[d].loops[0];
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+          const Meet &p = nodes_[ring[i]], &q = nodes_[ring[(i + 1) % ring.size()]];
+          if ((p.y > at.y) != (q.y > at.y) && at.x < p.x + (at.y - p.y) / (q.y - p.y) * (q.x - p.x)) inside = !inside;
+        }
+        if (inside) {
+          out.faces[d].loops.push_back(loop);
+          break;
+        }
+      }
+    }
+  }
+
+  const model::Polygon& polygon_;
+  std::span<const EdgeProfile> profiles_;
+  std::optional<double> deck_;
+  std::vector<Point2> corners_;
+  Point2 origin_;
+  Planes planes_;
+  struct BasePlane {
+    std::uint32_t edge;
+    std::int32_t number;
+    const EdgeProfile* profile;
+  };
+  std::vector<BasePlane> base_planes_;
+  std::vector<std::pair<std::int64_t, std::int32_t>> levels_;
+  std::int32_t axes_[2] = {-1, -1};
+  std::vector<std::uint32_t> merged_;
+  std::vector<Vertex> vertices_;
+  std::vector<std::int32_t> active_, fresh_, there_, through_;
+  std::vector<Strand> strands_;
+  std::vector<Ray> rays_;
+  std::vector<Meet> nodes_;
+  std::vector<Segment> segments_;
+  std::vector<FaceRecord> faces_;
+  std::vector<std::vector<std::uint32_t>> deck_loops_;
+  std::vector<Event> heap_;
+  std::vector<std::uint32_t> seen_, marks_;
+  std::uint32_t stamp_ = 0, mark_ = 0, counter_ = 0;
+  Meet now_;
+};
+
+}  // namespace
+
+double WeightedSkeleton::height() const {
+  double most = 0;
+  for (const WeightedSkeletonNode& n : nodes) most = std::max(most, n.height);
+  return most;
+}
+
+std::string_view name(SkeletonFailure failure) {
+  constexpr std::string_view names[] = {"too large", "bad slope", "unbounded", "inconsistent"};
+  return names[static_cast<int>(failure)];
+}
+
+tl::expected<WeightedSkeleton, SkeletonFailure> weighted_skeleton(const model::Polygon& polygon,
+                                                                  std::span<const EdgeProfile> profiles,
+                                                                  std::optional<double> deck) {
+  return Sweep(polygon, profiles, deck).run();
+}
+
+}  // namespace blockrand::geometry

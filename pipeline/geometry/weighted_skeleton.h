@@ -1,0 +1,88 @@
+// The weighted straight skeleton: roofs of any plan with a pitch for every edge, and pitches that change with height.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "pipeline/model/polygon.h"
+
+namespace blockrand::geometry {
+
+/// Slope of an upright face, a gable: the edge does not move.
+inline constexpr double kUpright = std::numeric_limits<double>::infinity();
+
+/// From `height` on, the roof rises with `slope`.
+struct SlopeChange {
+  double height = 0;  ///< m above the eaves, rounded to the grid; below 2 km
+  double slope = 1;   ///< rise over run, or kUpright
+};
+
+/// How steeply the roof rises from an edge. Changes in rising order of height.
+struct EdgeProfile {
+  double slope = 1;  ///< rise over run: the tangent of the pitch; kUpright for a gable
+  std::vector<SlopeChange> changes;
+};
+
+struct WeightedSkeletonNode {
+  model::Point2 point;  ///< m, not rounded
+  double height = 0;    ///< m above the eaves
+};
+
+/// One plane's region of the roof. Slopes are at least kLeastSlope.
+struct WeightedSkeletonFace {
+  static constexpr std::uint32_t kDeck = 0xffffffff;
+  std::uint32_t edge = 0;   ///< the edge it rises from (the first of several on one line with one profile); kDeck
+  std::uint32_t level = 0;  ///< how many changes of slope lie below it
+  bool upright = false;     ///< stands on its edge's line; no area seen from above
+  /// Counter-clockwise from above (upright ones: from outside), into WeightedSkeleton::nodes. A deck's first loop is its
+  /// outer ring, holes follow; other faces have one loop. Where a plane's region is in pieces, each is a face.
+  std::vector<std::vector<std::uint32_t>> loops;
+};
+
+struct WeightedSkeleton {
+  std::vector<WeightedSkeletonNode> nodes;  ///< the polygon's corners first, in ring order
+  std::vector<WeightedSkeletonFace> faces;  ///< in order of edge and level, decks last
+  std::vector<std::uint32_t> merged;        ///< for each edge the one that it was joined with, itself for most
+  double height() const;                    ///< m, the highest node
+};
+
+enum class SkeletonFailure : std::uint8_t {
+  too_large,     ///< wider than kWidestSkeleton, more corners than kMostWeightedCorners, or no ring of three corners
+  bad_slope,     ///< below kLeastSlope, or changes out of order
+  unbounded,     ///< upright edges leave a part that no slope ever closes
+  inconsistent,  ///< the polygon is not strictly simple, or a mistake of ours
+};
+std::string_view name(SkeletonFailure failure);
+
+inline constexpr double kLeastSlope = 0.005;               ///< rise over run; flatter roofs are flat
+inline constexpr double kWidestSkeleton = 8000;            ///< m; 23 bits of grid steps
+inline constexpr std::size_t kMostWeightedCorners = 5000;  ///< events are looked for in O(corners x reflex corners)
+
+/// Weighted straight skeleton of a strictly simple polygon with holes on the grid.
+///
+/// Every edge's line moves inwards at the speed of its slope's inverse (an upright one not at all), its slope changing at
+/// the heights of its profile; faces are what the moving edges sweep over. Edge, split and vertex events, any number of
+/// them at one time and place, are one case: all that meets in a point is cut there and joined anew, sector by sector.
+/// Guarantees: every event's order and place is decided exactly, in integers, behind a filter of doubles (a slope is
+/// rounded once to a rational number, by less than 1e-6 of itself, then nothing is); so the combinatorial result never
+/// depends on rounding, only coordinates of nodes are rounded, to double precision. Faces cover the polygon without overlap, and
+/// the roof is continuous.
+///
+/// Rules for edges on one line: with the same profile they have one plane, and where their faces meet they are one face.
+/// Of edges with different slopes that come to lie on one line side by side, at the beginning or later, the steeper one
+/// takes the plane of the gentler from that height on (a gable wall met by eaves is a gable up to there).
+///
+/// \param profiles  one per edge, ring by ring, outer ring first; edge i starts at corner i
+/// \param deck      m: at this height the roof ends in a flat deck; none by default
+/// O(n r log n) for n corners, r of them reflex; plans of ten corners take some ten microseconds.
+tl::expected<WeightedSkeleton, SkeletonFailure> weighted_skeleton(const model::Polygon& polygon,
+                                                                  std::span<const EdgeProfile> profiles,
+                                                                  std::optional<double> deck = {});
+
+}  // namespace blockrand::geometry

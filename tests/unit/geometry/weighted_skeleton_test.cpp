@@ -1,0 +1,146 @@
+#include "pipeline/geometry/weighted_skeleton.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/straight_skeleton.h"
+#include "pipeline/geometry/valid_polygon.h"
+#include "tests/unit/geometry/random_plans.h"
+#include "tests/unit/geometry/shapes.h"
+
+namespace blockrand::geometry {
+namespace {
+
+using model::Point2;
+using model::Polygon;
+using testing_shapes::polygon;
+using testing_shapes::random_plan;
+using testing_shapes::ring;
+
+std::size_t edges_of(const Polygon& p) {
+  std::size_t n = p.outer.size();
+  for (const auto& h : p.holes) n += h.size();
+  return n;
+}
+
+std::vector<EdgeProfile> equal(const Polygon& p, double slope = 1) { return std::vector<EdgeProfile>(edges_of(p), {slope, {}}); }
+
+double area_seen_from_above(const WeightedSkeleton& s) {
+  double sum = 0;
+  for (const auto& face : s.faces)
+    for (const auto& loop : face.loops) {
+      std::vector<Point2> points;
+      for (const auto n : loop) points.push_back(s.nodes[n].point);
+      sum += signed_area(points);
+    }
+  return sum;
+}
+
+/// How far a point at a height is from the roof, if it lies in a face of an edge that is as far away as the point is high.
+double distance_to_roof(const Polygon& plan, const WeightedSkeleton& s, Point2 p, double height) {
+  std::vector<std::pair<Point2, Point2>> edges;
+  const auto add = [&](const model::Ring& r) {
+    for (std::size_t i = 0; i < r.size(); ++i) edges.push_back({r.points[i], r.points[(i + 1) % r.size()]});
+  };
+  add(plan.outer);
+  for (const auto& h : plan.holes) add(h);
+  double best = 1e9;
+  for (const auto& face : s.faces) {
+    const auto& loop = face.loops[0];
+    bool inside = false;
+    double border = 1e9;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Point2 a = s.nodes[loop[i]].point, b = s.nodes[loop[(i + 1) % loop.size()]].point;
+      if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+      border = std::min(border, distance_to_segment(p, a, b));
+    }
+    const auto [a, b] = edges[face.edge];
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    const double away = ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)) / length;
+    best = std::min(best, std::max(inside ? 0 : border, std::fabs(away - height)));
+  }
+  return best;
+}
+
+TEST(WeightedSkeleton, HipOfATenBySixPlan) {
+  const Polygon plan = polygon({{0, 0}, {10, 0}, {10, 6}, {0, 6}});
+  const auto s = weighted_skeleton(plan, equal(plan));
+  ASSERT_TRUE(s) << name(s.error());
+  ASSERT_EQ(s->nodes.size(), 6u);
+  ASSERT_EQ(s->faces.size(), 4u);
+  EXPECT_DOUBLE_EQ(s->height(), 3);
+  EXPECT_EQ(s->faces[0].loops[0].size(), 4u);
+  EXPECT_EQ(s->faces[1].loops[0].size(), 3u);
+  EXPECT_NEAR(area_seen_from_above(*s), 60, 1e-9);
+}
+
+TEST(WeightedSkeleton, AgreesWithCgalWhereSlopesAreEqual) {
+  const char* more = std::getenv("BLOCKRAND_MANY");
+  const std::uint64_t rounds = more ? 10000 : 1500;
+  std::uint64_t compared = 0, failed = 0;
+  double worst = 0;
+  for (std::uint64_t i = 0; i < rounds; ++i) {
+    const Polygon plan = random_plan(7, i);
+    const auto ours = weighted_skeleton(plan, equal(plan));
+    ASSERT_TRUE(ours) << i << " " << name(ours.error());
+    EXPECT_NEAR(area_seen_from_above(*ours), area(plan), 1e-6 * area(plan)) << i;
+    const auto theirs = straight_skeleton(plan);
+    if (!theirs) {
+      ++failed;
+      continue;
+    }
+    ++compared;
+    // Every node of theirs lies on our roof: in the face of an edge that it is as far from as it is high. (Where two edges
+    // on one line meet, CGAL has nodes within what is one plane.) And every node of ours on theirs.
+    double off = 0;
+    for (const auto& n : theirs->nodes)
+      if (!n.contour) off = std::max(off, distance_to_roof(plan, *ours, n.point, n.time));
+    for (const auto& n : ours->nodes) {
+      double nearest = 1e9;
+      for (const auto& m : theirs->nodes)
+        nearest = std::min(nearest, std::max(std::hypot(m.point.x - n.point.x, m.point.y - n.point.y), std::fabs(m.time - n.height)));
+      off = std::max(off, nearest);
+    }
+    worst = std::max(worst, off);
+    EXPECT_LT(off, 1e-6) << "polygon " << i << " of " << edges_of(plan) << " corners";
+  }
+  std::printf("%lu polygons compared with CGAL, which gave up on %lu; largest distance of a node %.2g m\n", compared, failed, worst);
+  EXPECT_GT(compared, rounds * 9 / 10);
+}
+
+TEST(WeightedSkeleton, RandomSlopesCoverThePlan) {
+  const char* more = std::getenv("BLOCKRAND_MANY");
+  const std::uint64_t rounds = more ? 100000 : 3000;
+  std::uint64_t failures = 0, unbounded = 0;
+  for (std::uint64_t i = 0; i < rounds; ++i) {
+    const Polygon plan = random_plan(11, i);
+    testing_shapes::Random random(i);
+    std::vector<EdgeProfile> profiles = equal(plan);
+    for (EdgeProfile& p : profiles) {
+      const auto kind = random.next(6);
+      p.slope = kind == 0 ? kUpright : kind == 1 ? 1 : 0.2 + 3 * random.unit();
+      if (kind == 2) p.changes = {{1, 0.5}, {2, kind == 3 ? kUpright : 0.3}};
+      if (kind == 3) p.changes = {{1, 0.5}};
+    }
+    const auto s = weighted_skeleton(plan, profiles, random.next(4) == 0 ? std::optional<double>(1.5) : std::nullopt);
+    if (!s) {
+      if (s.error() == SkeletonFailure::unbounded)
+        ++unbounded;
+      else
+        ++failures;
+      EXPECT_EQ(s.error(), SkeletonFailure::unbounded) << i;
+      continue;
+    }
+    EXPECT_NEAR(area_seen_from_above(*s), area(plan), 1e-6 * area(plan)) << i;
+  }
+  std::printf("%lu polygons with random slopes: %lu failed, %lu closed by no slope\n", rounds, failures, unbounded);
+  EXPECT_EQ(failures, 0u);
+  EXPECT_LT(unbounded, rounds / 50);
+}
+
+}  // namespace
+}  // namespace blockrand::geometry
