@@ -10,6 +10,6 @@ ROOF_GRID_GLB=$out "$program" --gtest_filter='RoofGridPictures.*' >/dev/null
 for glb in "$out"/*.glb; do
   shape=$(basename "$glb" .glb)
   case " ${SHAPES:-$shape} " in *" $shape "*) ;; *) continue ;; esac
-  node "$look/look.mjs" "$out/$shape.png" "$glb" --view "${VIEW:-190}" --fov 30 --size 1800x1000 >/dev/null
+  node "$look/look.mjs" "$out/$shape.png" "$glb" --from "${FROM:-85,150,215}" --to "${TO:-99,5,36}" --fov 34 --size 2000x1100 >/dev/null
   echo "$out/$shape.png"
 done
