@@ -777,6 +777,11 @@ class Sweep {
         at = *next;
       }
       if (at != i) return tl::unexpected(SkeletonFailure::inconsistent);
+      // Of several edges on one line, the first that this piece rises from.
+      std::optional<std::uint32_t> base;
+      for (std::size_t k = 0; k < loop.size(); ++k)
+        if (loop[k] < corners_.size() && loop[(k + 1) % loop.size()] < corners_.size() && (!base || loop[k] < *base)) base = loop[k];
+      if (base) face.edge = *base;
       face.loops.push_back(std::move(loop));
       out.faces.push_back(std::move(face));
     }

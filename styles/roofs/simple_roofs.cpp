@@ -68,6 +68,8 @@ Point2 default_slope(const Polygon& plan) {
   return down;
 }
 
+Point2 long_axis(const Polygon& plan) { return geometry::long_axis(plan.outer.points); }
+
 Roof flat_roof(const Polygon& plan, double z) {
   return single_plane(plan, [z](Point2) { return z; });
 }

@@ -1,165 +1,380 @@
-// Hipped and gabled roofs on any plan, by the straight skeleton.
+#include "styles/roofs/skeleton_roofs.h"
+
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
-#include <set>
 
+#include "pipeline/base/portable_math.h"
+#include "pipeline/geometry/grid.h"
+#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/roof_surfaces.h"
 #include "pipeline/geometry/straight_skeleton.h"
-#include "styles/roofs/roof.h"
+#include "pipeline/geometry/weighted_skeleton.h"
 
 namespace blockrand::roofs {
 
-using geometry::StraightSkeleton;
+namespace {
+
+using geometry::EdgeProfile;
+using geometry::kUpright;
+using geometry::WeightedSkeleton;
+using model::IssueCode;
 using model::Point2;
 using model::Point3;
 using model::Polygon;
+using model::RoofShape;
 
-namespace {
+// Shares of the roof's height and run; docs/roofs.md has them.
+constexpr double kGableShare = 0.6;        ///< of H: where a half-hip begins, a gablet as well
+constexpr double kMansardHeight = 0.65;    ///< of H: the break
+constexpr double kMansardRun = 0.25;       ///< of the largest run: the break
+constexpr double kDeckRun = 0.6;           ///< of the largest run: the deck's border
+constexpr int kVaultSteps = 5;             ///< pitches of a round roof
 
-/// m. Skeleton nodes nearer than this become one: simultaneous events come as several nodes a rounding apart, and a
-/// face edge shorter than a few grid steps would have no reliable direction. Moves a node by less than a roof tile's
-/// tolerance and keeps faces plane within the checker's 0.01 m up to pitches of 60 degrees.
-constexpr double kMergeDistance = 0.005;
-/// The gable's ridge must meet its edge in the middle part; elsewhere a hip looks better than a lopsided gable.
-constexpr double kGableShare = 0.15;
-/// m. A wider end is no gable of a wing but the side of a hall.
-constexpr double kWidestGable = 30.0;
+// Which edges are the ends of wings.
+constexpr double kWidestEnd = 30;          ///< m. A wider end is no gable of a wing but the side of a hall.
+constexpr double kLeastCosine = -0.70710678118654752;  ///< corners of an end from 45 to 135 degrees
+constexpr double kMostCosine = 0.70710678118654752;
 
-/// The skeleton with near nodes merged: `faces[edge]` holds node numbers without repetitions.
-struct Merged {
-  std::vector<geometry::SkeletonNode> nodes;
-  std::vector<std::vector<std::uint32_t>> faces;
+/// The plan's edges, ring by ring.
+struct Edge {
+  Point2 from, to, before, after;  ///< with the neighbouring corners
+  double length = 0;
+  Point2 outwards() const { return {(to.y - from.y) / length, -(to.x - from.x) / length}; }
 };
 
-Merged merge_near_nodes(const StraightSkeleton& skeleton) {
-  std::vector<std::uint32_t> parent(skeleton.nodes.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
+std::vector<Edge> edges_of(const Polygon& plan) {
+  std::vector<Edge> out;
+  const auto add = [&](const model::Ring& ring) {
+    const std::size_t n = ring.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      Edge e{ring.points[i], ring.points[(i + 1) % n], ring.points[(i + n - 1) % n], ring.points[(i + 2) % n], 0};
+      const double dx = e.to.x - e.from.x, dy = e.to.y - e.from.y;
+      e.length = std::sqrt(dx * dx + dy * dy);
+      out.push_back(e);
+    }
   };
-  for (const auto& face : skeleton.faces) {
-    for (std::size_t i = 0; i < face.nodes.size(); ++i) {
-      const std::uint32_t a = face.nodes[i], b = face.nodes[(i + 1) % face.nodes.size()];
-      const auto &na = skeleton.nodes[a], &nb = skeleton.nodes[b];
-      if (na.contour && nb.contour) continue;
-      const double dx = na.point.x - nb.point.x, dy = na.point.y - nb.point.y;
-      if (dx * dx + dy * dy > kMergeDistance * kMergeDistance) continue;
-      const std::uint32_t ra = root(a), rb = root(b);
-      if (ra == rb || (skeleton.nodes[ra].contour && skeleton.nodes[rb].contour)) continue;
-      // Corners have the lowest numbers, so they stay.
-      parent[std::max(ra, rb)] = std::min(ra, rb);
-    }
-  }
-  Merged out;
-  out.nodes = skeleton.nodes;
-  for (const auto& face : skeleton.faces) {
-    std::vector<std::uint32_t> loop;
-    for (const std::uint32_t n : face.nodes) {
-      const std::uint32_t r = root(n);
-      if (loop.empty() || loop.back() != r) loop.push_back(r);
-    }
-    while (loop.size() > 1 && loop.back() == loop.front()) loop.pop_back();
-    out.faces.push_back(std::move(loop));
-  }
+  add(plan.outer);
+  for (const model::Ring& hole : plan.holes) add(hole);
   return out;
 }
 
-struct Height {
-  Point2 point;
-  double above_eaves;
-};
+int turn(Point2 a, Point2 b, Point2 c) {
+  return geometry::orientation(geometry::to_grid(a), geometry::to_grid(b), geometry::to_grid(c));
+}
 
-/// Surfaces over the plan from merged faces, node places and heights; `gable[edge]` holds the node at a gable's top.
-Roof assemble(const Polygon& plan, const Merged& merged, const std::vector<Height>& heights,
-              const std::vector<std::int32_t>& gable, RoofMeasures measures) {
-  double most = 0;
-  for (const auto& face : merged.faces)
-    for (const std::uint32_t n : face) most = std::max(most, heights[n].above_eaves);
-  const double scale = most > 0 ? measures.height / most : 0;
-  const auto point = [&](std::uint32_t n) {
-    return Point3{heights[n].point.x, heights[n].point.y, measures.eaves + scale * heights[n].above_eaves};
-  };
+bool is_convex(const Polygon& plan) {
+  const auto& p = plan.outer.points;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (turn(p[i], p[(i + 1) % p.size()], p[(i + 2) % p.size()]) < 0) return false;
+  return plan.holes.empty();
+}
+
+/// Cosine of the angle at b.
+double cosine(Point2 a, Point2 b, Point2 c) {
+  const double ux = a.x - b.x, uy = a.y - b.y, vx = c.x - b.x, vy = c.y - b.y;
+  return (ux * vx + uy * vy) / std::sqrt((ux * ux + uy * uy) * (vx * vx + vy * vy));
+}
+bool end_corner(Point2 a, Point2 b, Point2 c) {
+  const double k = cosine(a, b, c);
+  return turn(a, b, c) > 0 && k >= kLeastCosine && k <= kMostCosine;
+}
+
+/// The direction of the ridge.
+Point2 ridge_axis(const Polygon& plan, const RoofRequest& request) {
+  Point2 axis = geometry::long_axis(plan.outer.points);
+  const double along = request.down ? std::fabs(request.down->x * axis.x + request.down->y * axis.y) : 0;
+  const double across = request.down ? std::fabs(request.down->x * axis.y - request.down->y * axis.x) : 0;
+  const bool turned = request.down ? along > across : request.across;
+  if (turned) axis = {-axis.y, axis.x};
+  return axis;
+}
+
+/// Keeps of candidates that share a corner the shorter one.
+std::vector<std::uint32_t> without_neighbours(const std::vector<Edge>& edges, std::vector<std::uint32_t> candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return edges[a].length != edges[b].length ? edges[a].length < edges[b].length : a < b;
+  });
+  std::vector<std::uint32_t> kept;
+  for (const std::uint32_t c : candidates) {
+    const bool beside = std::any_of(kept.begin(), kept.end(), [&](std::uint32_t k) {
+      return k == c || edges[k].to == edges[c].from || edges[c].to == edges[k].from;
+    });
+    if (!beside) kept.push_back(c);
+  }
+  std::sort(kept.begin(), kept.end());
+  return kept;
+}
+
+std::vector<EdgeProfile> profiles(std::size_t edges, EdgeProfile eaves, const std::vector<std::uint32_t>& ends, EdgeProfile end) {
+  std::vector<EdgeProfile> out(edges, eaves);
+  for (const std::uint32_t e : ends) out[e] = end;
+  return out;
+}
+
+EdgeProfile upright() { return {kUpright, {}}; }
+EdgeProfile pitch(double slope) { return {slope, {}}; }
+
+/// A quarter of an ellipse over `run`, rising to `height`, in chords of equal angle.
+EdgeProfile vault(double run, double height) {
+  constexpr double kQuarter = 1.57079632679489661923;
+  EdgeProfile out;
+  double x = 0, z = 0;
+  for (int i = 1; i <= kVaultSteps; ++i) {
+    const double angle = kQuarter * i / kVaultSteps;
+    const double to_x = run * (1 - base::cos(angle)), to_z = height * base::sin(angle);
+    const double slope = (to_z - z) / (to_x - x);
+    if (i == 1)
+      out.slope = slope;
+    else
+      out.changes.push_back({z, slope});
+    x = to_x;
+    z = to_z;
+  }
+  return out;
+}
+EdgeProfile broken(double run, double height) {
+  const double low = kMansardHeight * height / (kMansardRun * run);
+  return {low, {{kMansardHeight * height, (1 - kMansardHeight) * height / ((1 - kMansardRun) * run)}}};
+}
+
+Roof to_roof(const Polygon& plan, const WeightedSkeleton& skeleton, RoofMeasures measures) {
+  const double top = skeleton.height();
+  const auto surfaces = geometry::roof_surfaces(plan, skeleton, top > 0 ? measures.height / top : 0);
+  const auto raised = [&](Point3 p) { return Point3{p.x, p.y, measures.eaves + p.z}; };
   Roof roof;
-  std::uint32_t edge = 0;
-  const auto add_ring = [&](const model::Ring& ring) {
-    const std::uint32_t first = edge;
-    for (std::size_t i = 0; i < ring.size(); ++i, ++edge) {
-      const std::uint32_t from = edge, to = first + static_cast<std::uint32_t>((i + 1) % ring.size());
-      if (gable[edge] >= 0) {
-        roof.wall_tops.push_back({point(to), point(static_cast<std::uint32_t>(gable[edge])), point(from)});
-        continue;
-      }
-      roof.wall_tops.push_back({point(to), point(from)});
-      Roof::Surface surface{static_cast<std::int32_t>(edge), {{}}};
-      for (const std::uint32_t n : merged.faces[edge]) surface.loops[0].push_back(point(n));
-      roof.surfaces.push_back(std::move(surface));
+  for (const auto& s : surfaces.surfaces) {
+    Roof::Surface out;
+    out.edge = s.edge == geometry::WeightedSkeletonFace::kDeck ? -1 : static_cast<std::int32_t>(s.edge);
+    out.upright = s.upright;
+    for (const auto& loop : s.loops) {
+      out.loops.emplace_back();
+      for (const Point3 p : loop) out.loops.back().push_back(raised(p));
     }
-  };
-  add_ring(plan.outer);
-  for (const model::Ring& hole : plan.holes) add_ring(hole);
+    roof.surfaces.push_back(std::move(out));
+  }
+  for (const auto& top_points : surfaces.wall_tops) {
+    roof.wall_tops.emplace_back();
+    for (auto p = top_points.rbegin(); p != top_points.rend(); ++p) roof.wall_tops.back().push_back(raised(*p));
+  }
   return roof;
 }
 
-std::vector<Height> heights_of(const Merged& merged) {
-  std::vector<Height> heights;
-  for (const auto& node : merged.nodes) heights.push_back({node.point, node.time});
-  return heights;
+/// CGAL's skeleton in our form.
+std::optional<WeightedSkeleton> by_cgal(const Polygon& plan) {
+  const auto skeleton = geometry::straight_skeleton(plan);
+  if (!skeleton) return std::nullopt;
+  WeightedSkeleton out;
+  for (const auto& n : skeleton->nodes) out.nodes.push_back({n.point, n.time});
+  for (const auto& f : skeleton->faces) {
+    geometry::WeightedSkeletonFace face;
+    face.edge = f.edge;
+    face.loops.push_back(f.nodes);
+    out.faces.push_back(std::move(face));
+  }
+  out.merged.resize(skeleton->faces.size());
+  std::iota(out.merged.begin(), out.merged.end(), 0u);
+  return out;
 }
+
+using Skeleton = tl::expected<WeightedSkeleton, geometry::SkeletonFailure>;
+
+/// Everything about one plan that shapes ask for.
+class Builder {
+ public:
+  Builder(const Polygon& plan, const RoofRequest& request) : plan_(plan), request_(request), edges_(edges_of(plan)) {}
+
+  std::vector<std::uint32_t> ends() const {
+    if (is_convex(plan_)) return axis_ends();
+    const auto hips = geometry::weighted_skeleton(plan_, profiles(edges_.size(), pitch(1), {}, {}));
+    if (!hips) return {};
+    std::vector<std::uint32_t> found;
+    for (const auto& s : geometry::roof_surfaces(plan_, *hips, 1).surfaces) {
+      if (s.loops[0].size() != 3 || s.level != 0) continue;
+      const Edge& e = edges_[s.edge];
+      if (e.length <= kWidestEnd && end_corner(e.before, e.from, e.to) && end_corner(e.from, e.to, e.after)) found.push_back(s.edge);
+    }
+    return without_neighbours(edges_, std::move(found));
+  }
+
+  std::optional<BuiltRoof> build() {
+    const double height = request_.measures.height;
+    const std::size_t n = edges_.size();
+    switch (request_.shape) {
+      case RoofShape::hipped:
+        return finish(geometry::weighted_skeleton(plan_, profiles(n, pitch(1), {}, {})));
+      case RoofShape::gabled:
+        ends_ = ends();
+        return finish(geometry::weighted_skeleton(plan_, profiles(n, pitch(1), ends_, upright())), true);
+      case RoofShape::side_hipped:
+      case RoofShape::side_half_hipped:
+      case RoofShape::half_hipped:
+      case RoofShape::hipped_and_gabled:
+        return with_treated_ends();
+      case RoofShape::mansard: {
+        const double run = largest_run({});
+        return run > 0 ? finish(geometry::weighted_skeleton(plan_, profiles(n, broken(run, height), {}, {}))) : fallback();
+      }
+      case RoofShape::gambrel:
+      case RoofShape::round: {
+        ends_ = ends();
+        const double run = largest_run(ends_);
+        if (run <= 0) return fallback();
+        const EdgeProfile eaves = request_.shape == RoofShape::round ? vault(run, height) : broken(run, height);
+        return finish(geometry::weighted_skeleton(plan_, profiles(n, eaves, ends_, upright())), true);
+      }
+      case RoofShape::double_saltbox:
+      case RoofShape::quadruple_saltbox: {
+        if (request_.shape == RoofShape::double_saltbox) ends_ = ends();
+        const double run = largest_run(ends_);
+        if (run <= 0) return fallback();
+        return finish(geometry::weighted_skeleton(plan_, profiles(n, pitch(height / (kDeckRun * run)), ends_, upright()), height),
+                      request_.shape == RoofShape::double_saltbox);
+      }
+      case RoofShape::saltbox:
+        return saltbox();
+      case RoofShape::dome:
+      case RoofShape::onion: {
+        const double run = largest_run({});
+        return run > 0 ? finish(geometry::weighted_skeleton(plan_, profiles(n, vault(run, height), {}, {}))) : fallback();
+      }
+      default:
+        return std::nullopt;
+    }
+  }
+
+ private:
+  std::vector<std::uint32_t> axis_ends() const {
+    const Point2 axis = ridge_axis(plan_, request_);
+    std::vector<std::uint32_t> found;
+    for (const double way : {1.0, -1.0}) {
+      std::uint32_t best = 0;
+      double most = -2;
+      for (std::uint32_t i = 0; i < edges_.size(); ++i) {
+        const Point2 out = edges_[i].outwards();
+        const double looks = way * (out.x * axis.x + out.y * axis.y);
+        // Edges of one direction in several pieces, or a regular plan: the first of those that look alike.
+        constexpr double kAlike = 1e-3;
+        if (looks > most + kAlike) {
+          most = looks;
+          best = i;
+        }
+      }
+      found.push_back(best);
+    }
+    return without_neighbours(edges_, std::move(found));
+  }
+
+  /// The farthest that a point of the plan lies from the eaves that rise to it, m; 0 when there is no skeleton.
+  double largest_run(const std::vector<std::uint32_t>& ends) const {
+    const auto s = geometry::weighted_skeleton(plan_, profiles(edges_.size(), pitch(1), ends, upright()));
+    return s ? s->height() : 0;
+  }
+
+  std::optional<BuiltRoof> with_treated_ends() {
+    ends_ = ends();
+    const double run = largest_run(ends_), height = request_.measures.height;
+    if (run <= 0) return fallback();
+    const double slope = height / run, change = kGableShare * height;
+    std::vector<EdgeProfile> all = profiles(edges_.size(), pitch(slope), ends_, upright());
+    const EdgeProfile half_hip{kUpright, {{change, slope}}};
+    switch (request_.shape) {
+      case RoofShape::half_hipped:
+        for (const std::uint32_t e : ends_) all[e] = half_hip;
+        break;
+      case RoofShape::hipped_and_gabled:
+        for (const std::uint32_t e : ends_) all[e] = {slope, {{change, kUpright}}};
+        break;
+      default:
+        if (const auto one = single_end()) all[*one] = request_.shape == RoofShape::side_hipped ? pitch(slope) : half_hip;
+    }
+    return finish(geometry::weighted_skeleton(plan_, all), true);
+  }
+
+  /// The end that looks down most where a direction is tagged, the longest otherwise.
+  std::optional<std::uint32_t> single_end() const {
+    std::optional<std::uint32_t> best;
+    double most = 0;
+    for (const std::uint32_t e : ends_) {
+      const Point2 out = edges_[e].outwards();
+      const double value = request_.down ? 2 + out.x * request_.down->x + out.y * request_.down->y : edges_[e].length;
+      constexpr double kAlike = 0.01;  // m, or cosine: rounding decides nothing
+      if (!best || value > most + kAlike) {
+        best = e;
+        most = value;
+      }
+    }
+    return best;
+  }
+
+  std::optional<BuiltRoof> saltbox() {
+    const Point2 down = request_.down ? *request_.down : default_slope(plan_);
+    std::vector<EdgeProfile> all(edges_.size(), upright());
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      const Point2 out = edges_[i].outwards();
+      if (out.x * down.x + out.y * down.y > kMostCosine) all[i] = pitch(1);
+    }
+    const auto one_sided = geometry::weighted_skeleton(plan_, all);
+    if (!one_sided) return fallback();
+    const double height = request_.measures.height, slope = height / (kDeckRun * one_sided->height());
+    for (EdgeProfile& p : all)
+      if (p.slope != kUpright) p.slope = slope;
+    return finish(geometry::weighted_skeleton(plan_, all, height));
+  }
+
+  std::optional<BuiltRoof> finish(const Skeleton& skeleton, bool wants_ends = false) {
+    if (!skeleton) return fallback();
+    BuiltRoof out{to_roof(plan_, *skeleton, request_.measures), request_.shape, IssueCode::none, {}};
+    if (wants_ends && ends_.empty() && plan_.holes.empty()) {
+      out.note = IssueCode::roof_shape_adapted;
+      out.detail = std::string(model::name(request_.shape)) + " without gables: no wing has an end";
+    }
+    return out;
+  }
+
+  std::optional<BuiltRoof> fallback() const {
+    const auto skeleton = by_cgal(plan_);
+    if (!skeleton) return std::nullopt;
+    return BuiltRoof{to_roof(plan_, *skeleton, request_.measures), RoofShape::hipped, IssueCode::skeleton_fallback,
+                     std::string(model::name(request_.shape)) + " as hipped"};
+  }
+
+  const Polygon& plan_;
+  const RoofRequest& request_;
+  std::vector<Edge> edges_;
+  std::vector<std::uint32_t> ends_;
+};
 
 }  // namespace
 
-std::optional<Roof> hipped_roof(const Polygon& plan, RoofMeasures measures) {
-  const auto skeleton = geometry::straight_skeleton(plan);
-  if (!skeleton) return std::nullopt;
-  const Merged merged = merge_near_nodes(*skeleton);
-  return assemble(plan, merged, heights_of(merged), std::vector<std::int32_t>(merged.faces.size(), -1), measures);
+bool rises_from_edges(RoofShape shape) {
+  switch (shape) {
+    case RoofShape::hipped:
+    case RoofShape::gabled:
+    case RoofShape::side_hipped:
+    case RoofShape::side_half_hipped:
+    case RoofShape::half_hipped:
+    case RoofShape::hipped_and_gabled:
+    case RoofShape::mansard:
+    case RoofShape::gambrel:
+    case RoofShape::round:
+    case RoofShape::saltbox:
+    case RoofShape::double_saltbox:
+    case RoofShape::quadruple_saltbox:
+      return true;
+    default:
+      return false;
+  }
 }
 
-std::optional<GabledRoof> gabled_roof(const Polygon& plan, RoofMeasures measures) {
-  const auto skeleton = geometry::straight_skeleton(plan);
-  if (!skeleton) return std::nullopt;
-  const Merged merged = merge_near_nodes(*skeleton);
-  std::vector<std::set<std::uint32_t>> neighbours(merged.nodes.size());
-  for (const auto& face : merged.faces)
-    for (std::size_t i = 0; i < face.size(); ++i) {
-      const std::uint32_t a = face[i], b = face[(i + 1) % face.size()];
-      neighbours[a].insert(b);
-      neighbours[b].insert(a);
-    }
-  std::vector<Height> heights = heights_of(merged);
-  std::vector<std::int32_t> gable(merged.faces.size(), -1);
-  GabledRoof out;
-  for (std::size_t edge = 0; edge < merged.faces.size(); ++edge) {
-    const auto& face = merged.faces[edge];
-    if (face.size() != 3) continue;
-    // The two corners come first; the third node is where the hip's end would meet the ridge.
-    const std::uint32_t a = face[0], b = face[1], n = face[2];
-    if (merged.nodes[n].contour || neighbours[n].size() != 3) continue;
-    std::uint32_t m = n;
-    for (const std::uint32_t k : neighbours[n])
-      if (k != a && k != b) m = k;
-    if (m == n || merged.nodes[m].contour) continue;
-    const Point2 pa = merged.nodes[a].point, pb = merged.nodes[b].point;
-    const Point2 pm = merged.nodes[m].point, pn = merged.nodes[n].point;
-    const double ex = pb.x - pa.x, ey = pb.y - pa.y, dx = pn.x - pm.x, dy = pn.y - pm.y;
-    if (ex * ex + ey * ey > kWidestGable * kWidestGable) continue;
-    const double determinant = dx * ey - dy * ex;
-    if (determinant == 0) continue;
-    // m + t (n - m) = a + u (b - a): the ridge led on beyond n meets the edge.
-    const double t = ((pa.x - pm.x) * ey - (pa.y - pm.y) * ex) / determinant;
-    const double u = ((pa.x - pm.x) * dy - (pa.y - pm.y) * dx) / determinant;
-    if (t <= 1 || u < kGableShare || u > 1 - kGableShare) continue;
-    const double rise = merged.nodes[n].time - merged.nodes[m].time;
-    const double above = merged.nodes[m].time + t * rise;
-    // A ridge that climbs or falls steeply towards the gable belongs to a plan that tapers: keep the hip.
-    if (above < 0.5 * merged.nodes[n].time || above > 2 * merged.nodes[n].time) continue;
-    heights[n] = {{pm.x + t * dx, pm.y + t * dy}, above};
-    gable[edge] = static_cast<std::int32_t>(n);
-    ++out.gables;
-  }
-  out.roof = assemble(plan, merged, heights, gable, measures);
-  return out;
+std::vector<std::uint32_t> wing_ends(const Polygon& plan, const RoofRequest& request) { return Builder(plan, request).ends(); }
+
+std::optional<BuiltRoof> skeleton_roof(const Polygon& plan, const RoofRequest& request) {
+  if (!rises_from_edges(request.shape)) return std::nullopt;
+  return Builder(plan, request).build();
 }
+
+std::optional<BuiltRoof> vaulted_roof(const Polygon& plan, const RoofRequest& request) { return Builder(plan, request).build(); }
 
 }  // namespace blockrand::roofs

@@ -1,0 +1,331 @@
+#include "pipeline/geometry/roof_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "pipeline/geometry/polygon.h"
+
+namespace blockrand::geometry {
+
+namespace {
+
+using model::Point2;
+using model::Point3;
+
+using Loop = std::vector<std::uint32_t>;
+
+double squared(double v) { return v * v; }
+
+/// Loops and the upper ends of walls over shared nodes, while they are being tidied.
+class Tidy {
+ public:
+  Tidy(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale) : merged_(skeleton.merged) {
+    for (const WeightedSkeletonNode& n : skeleton.nodes) nodes_.push_back(model::snap(Point3{n.point.x, n.point.y, n.height * height_scale}));
+    std::uint32_t first = 0;
+    const auto add_ring = [&](const model::Ring& ring) {
+      const auto count = static_cast<std::uint32_t>(ring.size());
+      for (std::uint32_t i = 0; i < count; ++i) end_of_.push_back(first + (i + 1) % count);
+      first += count;
+    };
+    add_ring(plan.outer);
+    for (const model::Ring& hole : plan.holes) add_ring(hole);
+    corners_ = first;
+    group_edges();
+    chains_.resize(corners_);
+    for (std::uint32_t e = 0; e < corners_; ++e)
+      if (merged_[e] == e) chains_[e] = {e, group_end_[e]};
+    for (const WeightedSkeletonFace& face : skeleton.faces) {
+      if (face.upright && face.level == 0 && make_chain(face.loops[0])) continue;
+      Group group{face.edge, face.level, face.upright, face.loops};
+      groups_.push_back(std::move(group));
+    }
+    drop_columns();
+  }
+
+  RoofSurfaces run() {
+    parent_.resize(nodes_.size());
+    std::iota(parent_.begin(), parent_.end(), 0u);
+    constexpr int kMostRounds = 12;  // each takes something out; two or three are usual
+    for (int round = 0; round < kMostRounds; ++round) {
+      const bool contracted = contract();
+      const bool inserted = insert();
+      if (!contracted && !inserted) break;
+    }
+    cut_chains();
+    RoofSurfaces out;
+    for (const Group& group : groups_) emit(group, out);
+    out.wall_tops.resize(corners_);
+    for (std::uint32_t e = 0; e < corners_; ++e)
+      for (const std::uint32_t n : chains_[e]) out.wall_tops[e].push_back(nodes_[n]);
+    return out;
+  }
+
+ private:
+  struct Group {
+    std::uint32_t edge, level;
+    bool upright;
+    std::vector<Loop> loops;
+  };
+
+  /// Edges on one line that are one edge for the skeleton: where the last of them ends.
+  void group_edges() {
+    group_end_.resize(corners_);
+    for (std::uint32_t e = 0; e < corners_; ++e) {
+      std::uint32_t end = end_of_[e];
+      while (end != e && merged_[end] == merged_[e] && merged_[end] != end) end = end_of_[end];
+      group_end_[e] = end;
+    }
+  }
+
+  /// An upright face that stands on one edge becomes the upper end of that edge's wall.
+  bool make_chain(const Loop& loop) {
+    std::optional<std::size_t> base;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const std::uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
+      if (a >= corners_ || merged_[a] != a || group_end_[a] != b) continue;
+      if (base) return false;
+      base = i;
+    }
+    if (!base) return false;
+    const std::uint32_t edge = loop[*base];
+    // The loop has the base, then the top from its end back to its start; the chain runs the other way, without the base.
+    Loop chain{edge};
+    for (std::size_t k = loop.size() - 1; k >= 2; --k) chain.push_back(loop[(*base + k) % loop.size()]);
+    chain.push_back(loop[(*base + 1) % loop.size()]);
+    chains_[edge] = std::move(chain);
+    return true;
+  }
+
+  bool same_place(std::uint32_t a, std::uint32_t b) const { return nodes_[a].x == nodes_[b].x && nodes_[a].y == nodes_[b].y; }
+
+  /// Where two gables meet, the corner of the plan is no point of the roof: both walls go straight up to it.
+  void drop_columns() {
+    std::vector<std::uint32_t> ending_at(corners_, kNone);
+    for (std::uint32_t e = 0; e < corners_; ++e)
+      if (!chains_[e].empty()) ending_at[chains_[e].back()] = e;
+    for (std::uint32_t c = 0; c < corners_; ++c) {
+      if (chains_[c].size() < 3 || ending_at[c] == kNone) continue;
+      Loop &right = chains_[c], &left = chains_[ending_at[c]];
+      if (left.size() < 3 || !same_place(right[1], c) || left[left.size() - 2] != right[1]) continue;
+      right.erase(right.begin());
+      left.pop_back();
+    }
+  }
+
+  std::uint32_t root(std::uint32_t n) {
+    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
+    return n;
+  }
+
+  template <class Visit>
+  void for_each_arc(Visit&& visit) {
+    for (const Group& group : groups_)
+      for (const Loop& loop : group.loops)
+        for (std::size_t i = 0; i < loop.size(); ++i) visit(loop[i], loop[(i + 1) % loop.size()]);
+  }
+
+  bool contract() {
+    bool any = false;
+    for_each_arc([&](std::uint32_t i, std::uint32_t j) {
+      const std::uint32_t a = root(i), b = root(j);
+      if (a == b || (a < corners_ && b < corners_)) return;
+      const Point3 p = nodes_[a], q = nodes_[b];
+      if (squared(p.x - q.x) + squared(p.y - q.y) + squared(p.z - q.z) > squared(kMergedNodes)) return;
+      parent_[std::max(a, b)] = std::min(a, b);  // corners have the lowest numbers, so they stay
+      any = true;
+    });
+    if (!any) return false;
+    for (Group& group : groups_)
+      for (Loop& loop : group.loops)
+        for (std::uint32_t& n : loop) n = root(n);
+    for (Loop& chain : chains_) {
+      for (std::uint32_t& n : chain) n = root(n);
+      chain.erase(std::unique(chain.begin(), chain.end()), chain.end());
+    }
+    split_loops();
+    return true;
+  }
+
+  /// Loops that touch themselves fall into pieces; pieces without area vanish.
+  void split_loops() {
+    for (Group& group : groups_) {
+      std::vector<Loop> out;
+      for (Loop& loop : group.loops) split(std::move(loop), out);
+      group.loops = std::move(out);
+    }
+  }
+  static void split(Loop loop, std::vector<Loop>& out) {
+    // A stack of nodes: coming back to one cuts off what lies between.
+    Loop path;
+    for (const std::uint32_t n : loop) {
+      const auto before = std::find(path.begin(), path.end(), n);
+      if (before != path.end()) {
+        if (path.end() - before >= 3) out.emplace_back(before, path.end());
+        path.erase(before, path.end());
+      }
+      path.push_back(n);
+    }
+    if (path.size() >= 3) out.push_back(std::move(path));
+  }
+
+  /// How far p lies from the segment from a to b seen from above, squared; infinite beside its ends.
+  double squared_distance(Point3 p, Point3 a, Point3 b) const {
+    const double dx = b.x - a.x, dy = b.y - a.y, length = dx * dx + dy * dy;
+    const double t = (p.x - a.x) * dx + (p.y - a.y) * dy;
+    if (t <= 0 || t >= length) return INFINITY;
+    return squared(dx * (p.y - a.y) - dy * (p.x - a.x)) / length;
+  }
+
+  bool insert() {
+    bool any = false;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (groups_[g].upright) continue;
+      for (std::size_t l = 0; l < groups_[g].loops.size(); ++l) {
+        if (const auto found = narrow_place(groups_[g].loops[l])) {
+          put_on(found->node, found->from, found->to);
+          any = true;
+        }
+      }
+    }
+    if (any) split_loops();
+    return any;
+  }
+
+  struct Narrow {
+    std::uint32_t node, from, to;
+  };
+  std::optional<Narrow> narrow_place(const Loop& loop) const {
+    const std::size_t n = loop.size();
+    std::optional<Narrow> best;
+    double least = squared(kNarrowestFace);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::uint32_t a = loop[i], b = loop[(i + 1) % n];
+      const Point3 pa = nodes_[a], pb = nodes_[b];
+      const double x0 = std::min(pa.x, pb.x) - kNarrowestFace, x1 = std::max(pa.x, pb.x) + kNarrowestFace;
+      const double y0 = std::min(pa.y, pb.y) - kNarrowestFace, y1 = std::max(pa.y, pb.y) + kNarrowestFace;
+      for (std::size_t k = 0; k < n; ++k) {
+        const std::uint32_t p = loop[k];
+        if (p == a || p == b || (p < corners_ && a < corners_ && b < corners_)) continue;
+        const Point3 at = nodes_[p];
+        if (at.x < x0 || at.x > x1 || at.y < y0 || at.y > y1) continue;
+        const double d = squared_distance(at, pa, pb);
+        if (d < least) {
+          least = d;
+          best = Narrow{p, a, b};
+        }
+      }
+    }
+    return best;
+  }
+
+  /// Puts a node on the border between two others, wherever that occurs.
+  void put_on(std::uint32_t node, std::uint32_t a, std::uint32_t b) {
+    const auto between = [&](Loop& path, bool closed) {
+      for (std::size_t i = 0; i + (closed ? 0 : 1) < path.size(); ++i) {
+        const std::uint32_t p = path[i], q = path[(i + 1) % path.size()];
+        if ((p == a && q == b) || (p == b && q == a)) {
+          path.insert(path.begin() + static_cast<std::ptrdiff_t>(i) + 1, node);
+          ++i;
+        }
+      }
+    };
+    for (Group& group : groups_)
+      for (Loop& loop : group.loops) between(loop, true);
+    for (Loop& chain : chains_) between(chain, false);
+  }
+
+  /// Corners that the skeleton passed over get their place in the upper end of the wall, which is cut there.
+  void cut_chains() {
+    for (std::uint32_t e = 0; e < corners_; ++e) {
+      if (merged_[e] != e || group_end_[e] == end_of_[e]) continue;
+      std::uint32_t edge = e;
+      for (std::uint32_t c = end_of_[e]; c != group_end_[e]; c = end_of_[c]) {
+        Loop& chain = chains_[edge];
+        const std::size_t at = place_in(chain, c);
+        chains_[c].assign(chain.begin() + static_cast<std::ptrdiff_t>(at), chain.end());
+        chain.resize(at + 1);
+        edge = c;
+      }
+    }
+  }
+  /// Index of corner c's node in a chain that runs along its wall; made where there is none.
+  std::size_t place_in(Loop& chain, std::uint32_t c) {
+    const Point3 at = nodes_[c], first = nodes_[chain.front()], last = nodes_[chain.back()];
+    const double dx = last.x - first.x, dy = last.y - first.y;
+    const auto way = [&](Point3 p) { return (p.x - first.x) * dx + (p.y - first.y) * dy; };
+    std::size_t i = 0;
+    while (i + 2 < chain.size() && way(nodes_[chain[i + 1]]) <= way(at)) ++i;
+    const std::uint32_t a = chain[i], b = chain[i + 1];
+    const Point3 p = nodes_[a], q = nodes_[b];
+    const double span = way(q) - way(p);
+    const double t = span > 0 ? std::clamp((way(at) - way(p)) / span, 0.0, 1.0) : 0;
+    std::uint32_t node = c;
+    const double z = p.z + t * (q.z - p.z);
+    if (z > 0) {
+      node = static_cast<std::uint32_t>(nodes_.size());
+      nodes_.push_back(model::snap(Point3{at.x, at.y, z}));
+    }
+    put_on(node, a, b);
+    return static_cast<std::size_t>(std::find(chain.begin(), chain.end(), node) - chain.begin());
+  }
+
+  void emit(const Group& group, RoofSurfaces& out) const {
+    const auto points = [&](const Loop& loop) {
+      std::vector<Point3> path;
+      for (const std::uint32_t n : loop) path.push_back(nodes_[n]);
+      return path;
+    };
+    if (group.edge != WeightedSkeletonFace::kDeck) {
+      for (const Loop& loop : group.loops) out.surfaces.push_back({group.edge, group.level, group.upright, {points(loop)}});
+      return;
+    }
+    // A deck: pieces of outer rings first, holes to the piece around them.
+    const auto twice_area = [&](const Loop& loop) {
+      double sum = 0;
+      const Point3 o = nodes_[loop[0]];
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Point3 p = nodes_[loop[i]], q = nodes_[loop[(i + 1) % loop.size()]];
+        sum += (p.x - o.x) * (q.y - o.y) - (q.x - o.x) * (p.y - o.y);
+      }
+      return sum;
+    };
+    const std::size_t first = out.surfaces.size();
+    for (const Loop& loop : group.loops)
+      if (twice_area(loop) > 0) out.surfaces.push_back({group.edge, group.level, false, {points(loop)}});
+    for (const Loop& loop : group.loops) {
+      if (twice_area(loop) > 0) continue;
+      for (std::size_t s = first; s < out.surfaces.size(); ++s) {
+        std::vector<Point2> ring;
+        for (const Point3 p : out.surfaces[s].loops[0]) ring.push_back({p.x, p.y});
+        if (!inside(ring, nodes_[loop[0]])) continue;
+        out.surfaces[s].loops.push_back(points(loop));
+        break;
+      }
+    }
+  }
+  static bool inside(const std::vector<Point2>& ring, Point3 at) {
+    bool in = false;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point2 p = ring[i], q = ring[(i + 1) % ring.size()];
+      if ((p.y > at.y) != (q.y > at.y) && at.x < p.x + (at.y - p.y) / (q.y - p.y) * (q.x - p.x)) in = !in;
+    }
+    return in;
+  }
+
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  std::vector<Point3> nodes_;
+  std::vector<std::uint32_t> end_of_, group_end_, merged_, parent_;
+  std::uint32_t corners_ = 0;
+  std::vector<Group> groups_;
+  std::vector<Loop> chains_;  ///< for each edge that leads its group the upper end of the wall, from start to end
+};
+
+}  // namespace
+
+RoofSurfaces roof_surfaces(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale) {
+  return Tidy(plan, skeleton, height_scale).run();
+}
+
+}  // namespace blockrand::geometry
