@@ -41,8 +41,8 @@ Solid envelope(const Polygon& plan, double bottom, const roofs::Roof& roof, cons
   for (const Ring& hole : plan.holes) walls(hole);
 
   for (const auto& surface : roof.surfaces) {
-    Face face = looks.roof;
-    face.edge = surface.edge;
+    Face face = surface.upright ? looks.wall : looks.roof;
+    face.edge = surface.upright ? -1 : surface.edge;
     builder.add_face(surface.loops, face);
   }
   return builder.take();

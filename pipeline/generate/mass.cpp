@@ -56,96 +56,14 @@ std::optional<Polygon> simpler(const Polygon& plan, double tolerance) {
   return out;
 }
 
-/// The shape that stands for one that later work will build as it is.
-RoofShape nearest_built_shape(RoofShape shape) {
-  switch (shape) {
-    case RoofShape::flat:
-    case RoofShape::gabled:
-    case RoofShape::hipped:
-    case RoofShape::pyramidal:
-    case RoofShape::skillion:
-      return shape;
-    case RoofShape::gabled_height_moved:
-    case RoofShape::gambrel:
-    case RoofShape::round:
-    case RoofShape::saltbox:
-    case RoofShape::double_saltbox:
-    case RoofShape::quadruple_saltbox:
-    case RoofShape::half_hipped:
-    case RoofShape::side_half_hipped:
-    case RoofShape::crosspitched:
-      return RoofShape::gabled;
-    case RoofShape::mansard:
-    case RoofShape::side_hipped:
-    case RoofShape::hipped_and_gabled:
-      return RoofShape::hipped;
-    case RoofShape::cone:
-    case RoofShape::dome:
-    case RoofShape::onion:
-    case RoofShape::spire:
-    case RoofShape::helm:
-      return RoofShape::pyramidal;
-    case RoofShape::sawtooth:
-    case RoofShape::butterfly:
-    case RoofShape::many:
-    case RoofShape::other:
-      return RoofShape::flat;
-  }
-  return RoofShape::flat;
-}
-
-/// Which of the first two edges of a four-cornered plan carries the eaves.
-int eaves_edge(const Polygon& plan, const model::Attributes& attributes) {
-  const auto length = [&](int i) {
-    const Point2 a = plan.outer.points[static_cast<std::size_t>(i)], b = plan.outer.points[static_cast<std::size_t>((i + 1) % 4)];
-    return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
-  };
-  if (attributes.roof_direction) {
-    // The direction points down the slope: the eaves are the edges it crosses most squarely.
-    const Point2 down = roofs::compass_vector(attributes.roof_direction->value);
-    const auto squareness = [&](int i) {
-      const Point2 a = plan.outer.points[static_cast<std::size_t>(i)], b = plan.outer.points[static_cast<std::size_t>((i + 1) % 4)];
-      return std::fabs((b.y - a.y) * down.x - (b.x - a.x) * down.y) / std::max(length(i), 1e-9);
-    };
-    return squareness(0) >= squareness(1) ? 0 : 1;
-  }
-  const bool first_is_longer = length(0) + length(2) >= length(1) + length(3);
-  const bool along = attributes.roof_orientation.value == RoofOrientation::along;
-  return first_is_longer == along ? 0 : 1;
-}
-
-/// What came out of one try at a roof.
-struct RoofTry {
-  std::optional<roofs::Roof> roof;
-  RoofShape built = RoofShape::flat;
-  IssueCode note = IssueCode::none;
-};
-
-RoofTry try_roof(const Polygon& plan, RoofShape shape, roofs::RoofMeasures measures, const model::Attributes& attributes) {
-  switch (shape) {
-    case RoofShape::skillion: {
-      const Point2 down = attributes.roof_direction ? roofs::compass_vector(attributes.roof_direction->value)
-                                                    : roofs::default_slope(plan);
-      return {roofs::skillion_roof(plan, measures, down), shape};
-    }
-    case RoofShape::pyramidal:
-      if (auto roof = roofs::pyramidal_roof(plan, measures)) return {std::move(roof), shape};
-      return {roofs::hipped_roof(plan, measures), RoofShape::hipped, IssueCode::roof_shape_adapted};
-    case RoofShape::gabled: {
-      if (plan.outer.size() == 4 && plan.holes.empty())
-        if (auto roof = roofs::gabled_quadrilateral(plan, measures, eaves_edge(plan, attributes)))
-          return {std::move(roof), shape};
-      auto gabled = roofs::gabled_roof(plan, measures);
-      if (!gabled) return {};
-      const bool ring = !plan.holes.empty();
-      return {std::move(gabled->roof), gabled->gables > 0 || ring ? shape : RoofShape::hipped,
-              gabled->gables > 0 || ring ? IssueCode::none : IssueCode::roof_shape_adapted};
-    }
-    case RoofShape::hipped:
-      return {roofs::hipped_roof(plan, measures), shape};
-    default:
-      return {roofs::flat_roof(plan, measures.eaves + measures.height), RoofShape::flat};
-  }
+/// What is asked of the roof.
+roofs::RoofRequest request_of(const model::Attributes& attributes, RoofShape shape, roofs::RoofMeasures measures) {
+  roofs::RoofRequest request;
+  request.shape = shape;
+  request.measures = measures;
+  if (attributes.roof_direction) request.down = roofs::compass_vector(attributes.roof_direction->value);
+  request.across = attributes.roof_orientation.value == RoofOrientation::across;
+  return request;
 }
 
 class MassBuilder {
@@ -241,30 +159,19 @@ class MassBuilder {
     const RoofShape asked = part.attributes.roof_shape.value;
     const roofs::RoofMeasures measures{levels.eaves, levels.top - levels.eaves};
     if (asked != RoofShape::flat && measures.height > 0) {
-      const RoofShape shape = nearest_built_shape(asked);
-      if (asked == RoofShape::other)
-        note(part, IssueCode::roof_shape_unknown);
-      else if (shape != asked)
-        note(part, IssueCode::roof_shape_adapted, std::string(model::name(asked)) + " as " + std::string(model::name(shape)));
       const std::optional<Polygon> simplified = simpler(plan, options_.simplify_tolerance);
       for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, simplified ? &*simplified : nullptr}) {
         if (!p) continue;
-        RoofTry attempt = try_roof(*p, shape, measures, part.attributes);
-        if (attempt.roof && accept(part, *p, levels, looks, *attempt.roof, attempt.built)) {
-          if (attempt.note != IssueCode::none) note(part, attempt.note);
-          if (p != &plan) note(part, IssueCode::roof_simplified);
-          return;
-        }
-        // A lopsided gable can cut into another wing; the plain hips of the same plan do not.
-        if (shape != RoofShape::gabled) continue;
-        attempt = try_roof(*p, RoofShape::hipped, measures, part.attributes);
-        if (attempt.roof && accept(part, *p, levels, looks, *attempt.roof, attempt.built)) {
-          note(part, IssueCode::roof_shape_adapted);
+        for (const RoofShape shape : {asked, RoofShape::hipped}) {
+          const auto built = roofs::build_roof(*p, request_of(part.attributes, shape, measures));
+          if (!built || !accept(part, *p, levels, looks, built->roof, built->shape)) continue;
+          if (built->note != IssueCode::none) note(part, built->note, built->detail);
+          if (shape != asked) note(part, IssueCode::roof_shape_adapted, std::string(model::name(asked)) + " as hipped: its solid is not valid");
           if (p != &plan) note(part, IssueCode::roof_simplified);
           return;
         }
       }
-      if (shape != RoofShape::flat) note(part, IssueCode::roof_failed, std::string(model::name(shape)));
+      note(part, IssueCode::roof_failed, std::string(model::name(asked)));
     }
     // A flat roof in place of a pitched one ends at half its height, so that the volume stays.
     const double top = asked == RoofShape::flat ? levels.top : model::snap((levels.eaves + levels.top) / 2);

@@ -612,6 +612,9 @@ class Sweep {
     }
     for (const std::int32_t number : fresh_)
       if (vertex(number).alive) push_candidates(number);
+    for (const std::int32_t number : longer_)
+      if (vertex(number).alive) push_collapse(number, vertex(number).next);
+    longer_.clear();
     return true;
   }
 
@@ -623,6 +626,7 @@ class Sweep {
     if (before == number || before == after) return false;
     vertex(before).next = after;
     vertex(after).prev = before;
+    longer_.push_back(before);
     if (a == b) return true;
     const int faster = planes_.compare_speed(planes_[a], planes_[b]);
     const std::uint32_t here = vertex(number).node;
@@ -878,7 +882,9 @@ class Sweep {
   std::int32_t axes_[2] = {-1, -1};
   std::vector<std::uint32_t> merged_;
   std::vector<Vertex> vertices_;
-  std::vector<std::int32_t> active_, fresh_, there_, through_;
+  std::vector<std::int32_t> active_, there_, through_;
+  std::vector<std::int32_t> fresh_;   ///< vertices made by the event at hand
+  std::vector<std::int32_t> longer_;  ///< starts of edges that became one with the next
   std::vector<Strand> strands_;
   std::vector<Ray> rays_;
   std::vector<Meet> nodes_;

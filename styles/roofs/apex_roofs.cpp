@@ -16,7 +16,8 @@ using model::RoofShape;
 
 namespace {
 
-constexpr double kLeastDistance = 0.05;  // m from the apex to each edge. A nearer one would get a face that stands upright.
+constexpr double kLeastDistance =
+    0.05;  // m from the apex to each edge. A nearer one would get a face that stands upright.
 /// m. A ring is left out where an edge of it would be shorter: rounding moves ring points by up to 0.7 mm, and the
 /// checker wants faces of four corners nowhere narrower than 2 mm.
 constexpr double kShortestRingEdge = 0.01;
@@ -30,9 +31,7 @@ constexpr double kNarrowestGable = 0.02;       // m. Its peak would stand within
 /// m off their common plane. Half of what the checker allows: the rest is for rounding.
 constexpr double kOnePlane = 0.005;
 
-double length(Point2 a, Point2 b) {
-  return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
-}
+double length(Point2 a, Point2 b) { return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y)); }
 
 /// The centroid on the grid, when it sees every edge of the plan well from inside.
 std::optional<Point2> apex_over(const Polygon& plan) {
@@ -80,11 +79,16 @@ constexpr ApexRing kSpire[] = {{1, 0}, {0.5, 0.15}, {0, 1}};
 std::span<const ApexRing> apex_rings(RoofShape shape) {
   switch (shape) {
     case RoofShape::pyramidal:
-    case RoofShape::cone: return kPyramid;
-    case RoofShape::dome: return kDome;
-    case RoofShape::onion: return kOnion;
-    case RoofShape::spire: return kSpire;
-    default: return {};
+    case RoofShape::cone:
+      return kPyramid;
+    case RoofShape::dome:
+      return kDome;
+    case RoofShape::onion:
+      return kOnion;
+    case RoofShape::spire:
+      return kSpire;
+    default:
+      return {};
   }
 }
 
@@ -95,8 +99,7 @@ std::optional<Roof> apex_roof(const Polygon& plan, RoofMeasures measures, std::s
   const std::size_t n = points.size();
 
   const double shortest = shortest_edge(plan);
-  const double limit =
-      std::clamp(kSmallestRingOfFinePlans * shortest, kShortestRingEdgeOfFinePlans, kShortestRingEdge);
+  const double limit = std::clamp(kSmallestRingOfFinePlans * shortest, kShortestRingEdgeOfFinePlans, kShortestRingEdge);
   std::vector<std::vector<Point3>> levels;
   for (const ApexRing& ring : rings.first(rings.size() - 1)) {
     const double z = measures.eaves + measures.height * ring.height;
@@ -106,9 +109,10 @@ std::optional<Roof> apex_roof(const Polygon& plan, RoofMeasures measures, std::s
     }
     std::vector<Point3> level;
     for (const Point2 p : points) {
-      const Point2 at = levels.empty() ? p
-                                       : model::snap(Point2{apex->x + ring.size * (p.x - apex->x),
-                                                            apex->y + ring.size * (p.y - apex->y)});
+      const Point2 at =
+          levels.empty()
+              ? p
+              : model::snap(Point2{apex->x + ring.size * (p.x - apex->x), apex->y + ring.size * (p.y - apex->y)});
       level.push_back({at.x, at.y, z});
     }
     levels.push_back(std::move(level));

@@ -6,7 +6,9 @@
 // are traced from edges and chords by sectors around each point, without looking at coordinates again.
 //
 // A line that comes into trouble (touches a corner from one side only, passes a corner narrowly, runs out of step with
-// itself) is tried again a little beside its place.
+// itself) is tried again up to 3 cm beside its place; heights on it stay those of the profile.
+//
+// Refused: strips narrower than 0.1 m, steps lower than 0.01 m, and plans in which no such line is found.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,13 +28,15 @@ using model::RoofShape;
 
 namespace {
 
-constexpr double kOnLine = 0.004;     // m. Nearer corners lie on the line; keeps faces plane within half the checker's 0.01.
-constexpr double kClear = 0.003;      // m between a chord and all that it does not touch: the checker's 2 mm and rounding
-constexpr double kComfort = 0.010;    // m. A line that passes a corner more narrowly looks for a better place.
-constexpr double kShift = 0.008;      // m. Steps of that search, to both sides in turn.
-constexpr int kMostShifts = 6;        // to each side
-constexpr double kNarrowestStrip = 0.2;  // m. Twice the farthest shift of its two lines.
-constexpr double kLeastStep = 0.01;   // m. Lower upright steps, and roofs, would be narrower than rounding keeps apart.
+constexpr double kOnLine =
+    0.004;  // m. Nearer corners lie on the line; keeps faces plane within half the checker's 0.01.
+constexpr double kClear = 0.003;    // m between a chord and all that it does not touch: the checker's 2 mm and rounding
+constexpr double kComfort = 0.010;  // m. A line that passes a corner more narrowly looks for a better place.
+constexpr double kShift = 0.008;    // m. Steps of that search, to both sides in turn.
+constexpr int kMostShifts = 4;      // to each side; of 240,000 random plans none needed more
+constexpr double kNarrowestStrip = 0.1;  // m. Leaves 4 cm where its two lines shift towards each other.
+constexpr double kNarrowestPlan = 0.02;  // m. Such a wall takes no roof but a flat one.
+constexpr double kLeastStep = 0.01;  // m. Lower upright steps, and roofs, would be narrower than rounding keeps apart.
 
 /// A corner of the plan.
 struct Corner {
@@ -47,16 +51,16 @@ struct Item {
   Point2 point;
   std::uint32_t corner = 0;  ///< the corner, or the corner at which the crossed edge begins
   bool crossing = false;
-  int out = 0, in = 0;                     ///< directions in which the boundary leads on and from which it comes
+  int out = 0, in = 0;                       ///< directions in which the boundary leads on and from which it comes
   bool forwards = false, backwards = false;  ///< the line runs inside the plan there
 };
 
 /// A line of the profile in its place, with what it does to the plan.
 struct Cut {
   double across = 0;
-  std::vector<Item> items;                                     ///< in order along the line
+  std::vector<Item> items;                                      ///< in order along the line
   std::vector<std::pair<std::uint32_t, std::uint32_t>> chords;  ///< items, the first one backwards
-  double gap = 0;                                              ///< m to the nearest corner that is not on the line
+  double gap = 0;                                               ///< m to the nearest corner that is not on the line
 };
 
 /// The plan as a profile sees it.
@@ -154,9 +158,8 @@ std::optional<Cut> cut(const Frame& frame, double across) {
       out.items.push_back(item);
     }
   }
-  std::sort(out.items.begin(), out.items.end(), [](const Item& a, const Item& b) {
-    return a.along != b.along ? a.along < b.along : a.corner < b.corner;
-  });
+  std::sort(out.items.begin(), out.items.end(),
+            [](const Item& a, const Item& b) { return a.along != b.along ? a.along < b.along : a.corner < b.corner; });
   bool inside = false;
   for (std::uint32_t i = 0; i < out.items.size(); ++i) {
     if (out.items[i].backwards != inside) return std::nullopt;
@@ -285,7 +288,8 @@ class Subdivision {
     }
   }
 
-  /// Half-edges: the boundary's by the vertex where they start, then each chord forwards (above it) and back (below it).
+  /// Half-edges: the boundary's by the vertex where they start, then each chord forwards (above it) and back (below
+  /// it).
   bool link_half_edges() {
     const auto n = static_cast<std::uint32_t>(vertices_.size());
     const std::size_t count = n + 2 * chords_.size();
@@ -346,8 +350,7 @@ class Subdivision {
     }
     for (Hole& hole : holes) {
       std::size_t f = 0;
-      while (f < outlines.size() &&
-             !(strip_of[f] == hole.strip && geometry::contains(outlines[f], hole.loop[0].xy())))
+      while (f < outlines.size() && !(strip_of[f] == hole.strip && geometry::contains(outlines[f], hole.loop[0].xy())))
         ++f;
       if (f == outlines.size()) return false;
       roof.surfaces[f].loops.push_back(std::move(hole.loop));
@@ -411,9 +414,12 @@ class Subdivision {
 
 std::vector<ProfilePoint> profile_points(RoofShape shape, double width_across) {
   switch (shape) {
-    case RoofShape::skillion: return {{0, 0}, {1, 1}};
-    case RoofShape::butterfly: return {{0, 1}, {0.5, 0}, {1, 1}};
-    case RoofShape::gabled_height_moved: return {{0, 0}, {0.5, 0.7}, {0.5, 1}, {1, 0.3}};
+    case RoofShape::skillion:
+      return {{0, 0}, {1, 1}};
+    case RoofShape::butterfly:
+      return {{0, 1}, {0.5, 0}, {1, 1}};
+    case RoofShape::gabled_height_moved:
+      return {{0, 0}, {0.5, 0.7}, {0.5, 1}, {1, 0.3}};
     case RoofShape::sawtooth: {
       constexpr double kToothWidth = 5;  // m, docs/roofs.md
       const int teeth = std::max(2, static_cast<int>(std::lround(width_across / kToothWidth)));
@@ -424,7 +430,8 @@ std::vector<ProfilePoint> profile_points(RoofShape shape, double width_across) {
       }
       return points;
     }
-    default: return {};
+    default:
+      return {};
   }
 }
 
@@ -432,7 +439,7 @@ std::optional<Roof> profile_roof(const Polygon& plan, RoofMeasures measures, Poi
                                  std::span<const ProfilePoint> profile) {
   if (plan.outer.size() < 3 || profile.size() < 2 || measures.height < kLeastStep) return std::nullopt;
   const Frame frame = frame_of(plan, up);
-  if (frame.width < kNarrowestStrip) return std::nullopt;
+  if (frame.width < kNarrowestPlan) return std::nullopt;
 
   std::vector<Strip> strips;
   const auto z = [&](double share) { return measures.eaves + measures.height * share; };
@@ -440,13 +447,15 @@ std::optional<Roof> profile_roof(const Polygon& plan, RoofMeasures measures, Poi
     const ProfilePoint &a = profile[i], &b = profile[i + 1];
     if (a.at == b.at) continue;
     const Strip strip{a.at * frame.width, b.at * frame.width, z(a.height), z(b.height)};
-    if (strip.to - strip.from < kNarrowestStrip) return std::nullopt;
     if (!strips.empty()) {
       const double step = std::fabs(strip.z_from - strips.back().z_to);
       if (step != 0 && step < kLeastStep) return std::nullopt;
     }
     strips.push_back(strip);
   }
+  if (strips.size() > 1)
+    for (const Strip& strip : strips)
+      if (strip.to - strip.from < kNarrowestStrip) return std::nullopt;
   std::vector<Cut> cuts;
   for (std::size_t k = 0; k + 1 < strips.size(); ++k) {
     auto found = cut_near(frame, strips[k].to);

@@ -89,19 +89,4 @@ model::Point2 compass_vector(double degrees);
 /// A direction down the slope for a lean-to roof that has none tagged: across the longest edge, outwards.
 model::Point2 default_slope(const model::Polygon& plan);
 
-/// Unit vector along the longer side of the smallest rectangle around the plan.
-model::Point2 long_axis(const model::Polygon& plan);
-
-// ---- to be replaced by build_roof()
-
-std::optional<Roof> skillion_roof(const model::Polygon& plan, RoofMeasures measures, model::Point2 down);
-std::optional<Roof> pyramidal_roof(const model::Polygon& plan, RoofMeasures measures);
-std::optional<Roof> hipped_roof(const model::Polygon& plan, RoofMeasures measures);
-struct GabledRoof {
-  Roof roof;
-  int gables = 0;
-};
-std::optional<GabledRoof> gabled_roof(const model::Polygon& plan, RoofMeasures measures);
-std::optional<Roof> gabled_quadrilateral(const model::Polygon& plan, RoofMeasures measures, int eaves_edge);
-
 }  // namespace blockrand::roofs

@@ -1,4 +1,5 @@
-// The numbers behind the shapes of docs/roofs.md that are given by a table: rings around an apex, heights across a plan.
+// The numbers behind the shapes of docs/roofs.md that are given by a table: rings around an apex, heights across a
+// plan.
 #pragma once
 
 #include <span>

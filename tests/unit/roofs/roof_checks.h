@@ -76,8 +76,7 @@ inline Polygon moved(const Polygon& plan, double degrees, Point2 by) {
 inline Polygon regular(int n, double radius) {
   std::vector<Point2> points;
   for (int i = 0; i < n; ++i)
-    points.push_back(
-        model::snap(Point2{radius * std::cos(2 * M_PI * i / n), radius * std::sin(2 * M_PI * i / n)}));
+    points.push_back(model::snap(Point2{radius * std::cos(2 * M_PI * i / n), radius * std::sin(2 * M_PI * i / n)}));
   return polygon(std::move(points));
 }
 
@@ -95,8 +94,8 @@ inline std::map<std::string, Polygon> plans() {
       {"turret of 24 corners", regular(24, 2)},
       {"edges along the middle line",
        polygon({{0, 0}, {6, 0}, {6, 5}, {9, 5}, {9, 0}, {20, 0}, {20, 5}, {15, 5}, {15, 10}, {3, 10}, {3, 5}, {0, 5}})},
-      {"notches that touch the middle line", polygon({{0, 0}, {4, 0}, {6, 5}, {8, 0}, {20, 0}, {20, 10}, {16, 10},
-                                                      {14, 5}, {12, 10}, {0, 10}})},
+      {"notches that touch the middle line",
+       polygon({{0, 0}, {4, 0}, {6, 5}, {8, 0}, {20, 0}, {20, 10}, {16, 10}, {14, 5}, {12, 10}, {0, 10}})},
       {"short edges", polygon({{0, 0}, {12, 0}, {12.3, 0.3}, {12.3, 9}, {12, 9.3}, {0, 9.3}, {-0.3, 9}, {-0.3, 0.3}})},
       {"star", polygon({{10, 0}, {3, 2}, {0, 10}, {-3, 2}, {-10, 0}, {-3, -2}, {0, -10}, {3, -2}})},
   };
@@ -118,14 +117,15 @@ inline constexpr double kAngles[] = {0, 7, 33, 45, 90, 133.7};
 inline std::vector<Point2> noisy_ring(Random& random, int corners, double least, double most) {
   std::vector<Point2> points;
   for (int i = 0; i < corners; ++i) {
-    const double angle = 2 * M_PI * (i + 0.6 * random.unit()) / corners, radius = least + (most - least) * random.unit();
+    const double angle = 2 * M_PI * (i + 0.6 * random.unit()) / corners,
+                 radius = least + (most - least) * random.unit();
     points.push_back(model::snap(Point2{radius * std::cos(angle), radius * std::sin(angle)}));
   }
   return points;
 }
 
-/// Skylines on both sides of a band with heights of whole metres, and square courts: many corners and edges lie exactly on
-/// lines at simple shares of the width.
+/// Skylines on both sides of a band with heights of whole metres, and square courts: many corners and edges lie exactly
+/// on lines at simple shares of the width.
 inline Polygon skyline(Random& random) {
   const int columns = 2 + static_cast<int>(random.next(6));
   std::vector<Point2> below, above;
@@ -161,7 +161,9 @@ inline Polygon random_plan(Random& random) {
   for (;;) {
     Polygon plan;
     switch (random.next(3)) {
-      case 0: plan = skyline(random); break;
+      case 0:
+        plan = skyline(random);
+        break;
       case 1: {
         plan = polygon(noisy_ring(random, 4 + static_cast<int>(random.next(30)), 6, 20));
         if (random.next(2) == 0) {
@@ -174,7 +176,8 @@ inline Polygon random_plan(Random& random) {
         }
         break;
       }
-      default: plan = polygon(noisy_ring(random, 3 + static_cast<int>(random.next(60)), 2, 3 + 20 * random.unit()));
+      default:
+        plan = polygon(noisy_ring(random, 3 + static_cast<int>(random.next(60)), 2, 3 + 20 * random.unit()));
     }
     const double angle = random.next(3) == 0 ? 90.0 * static_cast<double>(random.next(4)) : 360 * random.unit();
     plan = moved(plan, angle, kPlaces[random.next(3)]);
