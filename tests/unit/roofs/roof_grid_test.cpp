@@ -209,6 +209,13 @@ struct Measured {
   std::string fault;       ///< the first thing wrong besides the counts
 };
 
+/// What stands for a shape that the plan does not take.
+RoofShape relative(RoofShape asked) {
+  if (asked == RoofShape::crosspitched) return RoofShape::gabled;
+  if (asked == RoofShape::dome || asked == RoofShape::onion) return RoofShape::dome;
+  return RoofShape::hipped;
+}
+
 Measured measure(const BuildingPart& part, const Polygon& plan, RoofShape asked, bool may_adapt) {
   constexpr double kLeastWidth = 0.11, kLeastSlope = 0.0349;  // m; tan 2 degrees
   Measured out;
@@ -230,7 +237,7 @@ Measured measure(const BuildingPart& part, const Polygon& plan, RoofShape asked,
     else
       fault(std::string(model::info(code).text));
   }
-  if ((part.built_roof == asked) == may_adapt) fault("built " + std::string(model::name(part.built_roof)));
+  if (part.built_roof != (may_adapt ? relative(asked) : asked)) fault("built " + std::string(model::name(part.built_roof)));
 
   const Solid& solid = part.lod2;
   const double eaves = asked == RoofShape::flat ? kTop : kTop - kRoofHeight;
