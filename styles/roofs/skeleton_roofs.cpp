@@ -36,6 +36,7 @@ constexpr int kVaultSteps = 5;             ///< pitches of a round roof
 constexpr double kWidestEnd = 30;          ///< m. A wider end is no gable of a wing but the side of a hall.
 constexpr double kLeastCosine = -0.70710678118654752;  ///< corners of an end from 45 to 135 degrees
 constexpr double kMostCosine = 0.70710678118654752;
+constexpr double kSquareEnough = 0.8660254037844386;   ///< cosine of the 30 degrees by which a ridge may leave its end obliquely
 
 /// The plan's edges, ring by ring.
 struct Edge {
@@ -189,11 +190,14 @@ class Builder {
     if (is_convex(plan_)) return axis_ends();
     const auto hips = geometry::weighted_skeleton(plan_, profiles(edges_.size(), pitch(1), {}, {}));
     if (!hips) return {};
+    const auto surfaces = geometry::roof_surfaces(plan_, *hips, 1).surfaces;
     std::vector<std::uint32_t> found;
-    for (const auto& s : geometry::roof_surfaces(plan_, *hips, 1).surfaces) {
-      if (s.loops[0].size() != 3 || s.level != 0) continue;
+    for (const auto& s : surfaces) {
+      if (s.loops[0].size() != 3) continue;
       const Edge& e = edges_[s.edge];
-      if (e.length <= kWidestEnd && end_corner(e.before, e.from, e.to) && end_corner(e.from, e.to, e.after)) found.push_back(s.edge);
+      if (e.length <= kWidestEnd && end_corner(e.before, e.from, e.to) && end_corner(e.from, e.to, e.after) &&
+          ridge_leaves(surfaces, s.loops[0], e))
+        found.push_back(s.edge);
     }
     return without_neighbours(edges_, std::move(found));
   }
@@ -245,6 +249,25 @@ class Builder {
   }
 
  private:
+  /// Does a ridge go on from the top of a hip's triangle, about square to its edge? A piece of a long wall between two
+  /// steps has a triangle, too, but the ridge passes it.
+  static bool ridge_leaves(const std::vector<geometry::RoofSurfaces::Surface>& surfaces, const std::vector<Point3>& triangle,
+                           const Edge& edge) {
+    Point3 top = triangle[0];
+    for (const Point3 p : triangle)
+      if (p.z > top.z) top = p;
+    const Point2 out = edge.outwards();
+    for (const auto& s : surfaces)
+      for (const auto& loop : s.loops)
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+          const Point3 a = loop[i], b = loop[(i + 1) % loop.size()];
+          if (a != top || b.z <= 0) continue;
+          const double dx = b.x - a.x, dy = b.y - a.y, length = std::sqrt(dx * dx + dy * dy);
+          if (-(dx * out.x + dy * out.y) >= kSquareEnough * length) return true;
+        }
+    return false;
+  }
+
   std::vector<std::uint32_t> axis_ends() const {
     const Point2 axis = ridge_axis(plan_, request_);
     std::vector<std::uint32_t> found;
