@@ -87,7 +87,10 @@ std::optional<BuiltRoof> build_roof(const Polygon& plan, const RoofRequest& requ
     }
     default: {
       BuiltRoof out = as_asked(flat_roof(plan, measures.eaves + measures.height), RoofShape::flat);
-      if (request.shape == RoofShape::other || request.shape == RoofShape::many) out.note = IssueCode::roof_shape_unknown;
+      if (request.shape == RoofShape::other || request.shape == RoofShape::many) {
+        out.note = IssueCode::roof_shape_unknown;
+        out.detail = request.shape == RoofShape::many ? "many" : "";
+      }
       return out;
     }
   }
