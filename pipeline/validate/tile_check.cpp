@@ -11,11 +11,13 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "pipeline/geometry/solid_defect.h"
 #include "pipeline/validate/attribute_names.h"
 #include "pipeline/validate/cityjson.h"
 #include "pipeline/validate/file_bytes.h"
 #include "pipeline/validate/glb.h"
 #include "pipeline/validate/ids.h"
+#include "pipeline/validate/overlaps.h"
 #include "pipeline/validate/places.h"
 #include "pipeline/validate/solids.h"
 
@@ -50,6 +52,7 @@ class Checker {
     read_cityjson_tile();
     check_bounds();
     judge_solids();
+    check_overlaps();
     compare();
     check_geopackage();
     check_explained();
@@ -231,6 +234,24 @@ class Checker {
     for (const ReadSolid& solid : body.solids) {
       ++out_.judged;
       note(judge(solid), file, body.id, fmt::format("LoD {}", solid.lod), out_.findings);
+    }
+  }
+
+  /// Parts of one building, in the first format that has them; where two formats differ, that is a finding already.
+  void check_overlaps() {
+    const auto told = [&](const std::string& id) {
+      return context_.overlapping &&
+             (context_.overlapping->count(owner(id)) || context_.overlapping->count(building_of(id)));
+    };
+    std::size_t format = 0;
+    const Contents* c = model(format);
+    if (!c || context_.record.lod == 0) return;
+    for (PartsOverlap& o : format == kGltf ? find_overlaps(*glb_, out_.pairs) : find_overlaps(*c, out_.pairs)) {
+      if (told(o.first) || told(o.second))
+        out_.told_overlaps.push_back(o.first + " " + o.detail);
+      else
+        out_.findings.push_back({Check::solids_overlap, files_.path[format], std::move(o.first), std::move(o.detail),
+                                 geometry::kPartsOverlapCode});
     }
   }
 

@@ -54,7 +54,6 @@ TEST(CommonVolume, OfBoxes) {
   EXPECT_NEAR(common(a, a), 480, 1e-6);
   EXPECT_NEAR(common(a, box(at(9, 7, 5), 10, 10, 10)), 1, 1e-8);
   EXPECT_NEAR(common(a, box(at(2, 2, 2), 1, 1, 1)), 1, 1e-8);
-  EXPECT_EQ(common(a, box(at(10, 0, 0), 5, 8, 6)), 0);
   EXPECT_NEAR(common(a, box(at(10, 0, 0), 5, 8, 6)), 0, 1e-9);
   EXPECT_NEAR(common(a, box(at(0, 0, 6), 10, 8, 6)), 0, 1e-9);
   EXPECT_NEAR(common(a, box(at(-5, -5, 3), 50, 50, 1)), 80, 1e-7);
@@ -122,8 +121,6 @@ TEST(OverlapOf, OverlapsAreFound) {
   EXPECT_TRUE(overlap(gabled_house(kFar, 12, 9, 5, 9), box(at(4, 4, 8), 1, 1, 5))) << "a tower that begins below the ridge";
   EXPECT_FALSE(overlap(gabled_house(kFar, 12, 9, 5, 9), box(at(4, 0, 8), 1, 1, 5))) << "above the eaves, beside the ridge";
   // A cube in common beside a long wall that overlaps by rounding.
-  SolidBuilder b;
-  (void)b;
   EXPECT_TRUE(overlap(courtyard_block(kFar, 40, 20, 18), box(at(10 - 3 * kStep, 9.5, 0), 20, 20, 18)));
 }
 
