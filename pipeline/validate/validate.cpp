@@ -294,10 +294,8 @@ class Run {
     if (judged_ > 0) checked("solids", "own checker and CGAL", judged_, "solids");
     if (pairs_ > 0) checked("parts", "no two of a building overlap", pairs_, "pairs whose boxes meet");
     if (!told_overlaps_.empty()) {
-      // Both stand as mapped: repair leaves overlaps where nothing would be left of a part.
       constexpr std::size_t kShown = 10;
-      std::string note = fmt::format("{} of parts overlap as they are mapped, and the report says so (PARTS_OVERLAP, "
-                                     "OVERLAP_KEPT): ",
+      std::string note = fmt::format("{} of parts overlap, and the report says so (PARTS_OVERLAP, OVERLAP_KEPT): ",
                                      told_overlaps_.size() == 1 ? "1 pair" : fmt::format("{} pairs", told_overlaps_.size()));
       for (std::size_t i = 0; i < std::min(kShown, told_overlaps_.size()); ++i)
         note += (i > 0 ? "; " : "") + told_overlaps_[i];
