@@ -72,6 +72,7 @@ std::vector<PartsOverlap> compare(std::map<std::string_view, std::vector<Body>>&
   for (auto& [building, bodies] : buildings)
     for (std::size_t i = 0; i < bodies.size(); ++i)
       for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+        if (bodies[i].id == bodies[j].id) continue;  // one body twice, which is a finding already
         std::string where;
         bool compared = false;
         for (Shape& a : bodies[i].shapes)

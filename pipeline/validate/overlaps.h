@@ -16,7 +16,7 @@ struct PartsOverlap {
 };
 
 /// All pairs of bodies of a building whose solids of one level of detail overlap by more than a tolerance (1 cm deep,
-/// 0.01 m³; geometry/solid_overlap.h). Solids that cannot be triangulated are passed over: they are SOLID_INVALID.
+/// 0.01 m³; geometry/solid_overlap.h). What solids that are invalid give means nothing.
 /// \param pairs  increased by the pairs whose boxes meet, which were compared
 std::vector<PartsOverlap> find_overlaps(const Contents& contents, std::uint64_t& pairs);
 /// The same for the meshes of a GLB.

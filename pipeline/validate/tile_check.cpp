@@ -206,7 +206,9 @@ class Checker {
           (lod != body.attributes.end() && lod->second == "0"))
         continue;
       ++out_.judged;
-      note(judge(glb_->triangles[i]), files_.path[kGltf], body.id, "mesh", out_.findings);
+      const Verdict verdict = judge(glb_->triangles[i]);
+      if (!verdict.valid()) unsound_.insert(body.id);
+      note(verdict, files_.path[kGltf], body.id, "mesh", out_.findings);
     }
   }
 
@@ -233,7 +235,9 @@ class Checker {
   void judge_body(const ReadBody& body, const std::string& file) {
     for (const ReadSolid& solid : body.solids) {
       ++out_.judged;
-      note(judge(solid), file, body.id, fmt::format("LoD {}", solid.lod), out_.findings);
+      const Verdict verdict = judge(solid);
+      if (!verdict.valid()) unsound_.insert(body.id);
+      note(verdict, file, body.id, fmt::format("LoD {}", solid.lod), out_.findings);
     }
   }
 
@@ -247,6 +251,8 @@ class Checker {
     const Contents* c = model(format);
     if (!c || context_.record.lod == 0) return;
     for (PartsOverlap& o : format == kGltf ? find_overlaps(*glb_, out_.pairs) : find_overlaps(*c, out_.pairs)) {
+      // What encloses nothing cannot overlap.
+      if (unsound_.count(o.first) || unsound_.count(o.second)) continue;
       if (told(o.first) || told(o.second))
         out_.told_overlaps.push_back(o.first + " " + o.detail);
       else
@@ -523,6 +529,7 @@ class Checker {
   std::optional<Contents> contents_[kTileFormats];
   const TilesetEntry* entry_ = nullptr;
   Matrix transform_ = kIdentity;
+  std::set<std::string> unsound_;  // bodies with a solid that a judge refused
 };
 
 }  // namespace
