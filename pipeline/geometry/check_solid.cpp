@@ -289,10 +289,11 @@ double off_plane(const Solid& solid, const Face& face, const FacePlane& plane) {
   return most;
 }
 
-// A fold: val3dity's own tolerance. Triangles are told from rounding by their heights above the plane: corners on the grid
-// lie within 0.87 steps of it, so that thin triangles may lean as they like as long as their corners stay within two.
-constexpr double kFoldCosine = 0.93969262078590838;                // cos(20 degrees)
-constexpr double kRounding = 2 / model::kGridStepsPerMetre;        // m between the highest and the lowest corner
+// A fold: val3dity's own tolerance. Folds are told from rounding by the heights of a triangle's corners above the plane.
+// Rounding a point moves it up to 0.87 steps; roofs round twice, in plan and in height: two corners come to lie up to 3.5
+// steps apart. So thin triangles may lean as they like as long as their corners stay within four.
+constexpr double kFoldCosine = 0.93969262078590838;          // cos(20 degrees)
+constexpr double kRounding = 4 / model::kGridStepsPerMetre;  // m between the highest and the lowest corner
 
 /// How far the corners of the most folded triangle lie apart along the normal, in metres; 0 where none is folded.
 double fold(const Solid& solid, std::span<const std::array<std::uint32_t, 3>> triangles, const FacePlane& plane) {
