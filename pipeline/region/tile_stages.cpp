@@ -8,6 +8,7 @@
 
 #include "pipeline/context/facade_edges.h"
 #include "pipeline/generate/mass.h"
+#include "pipeline/generate/part_overlaps.h"
 #include "pipeline/generate/resolve.h"
 #include "pipeline/region/load.h"
 #include "pipeline/repair/parts.h"
@@ -121,6 +122,7 @@ Region run_tile(std::size_t shard, const TileInputs& in) {
         region.report.add(b.osm, model::IssueCode::terrain_missing);
   cover_party_walls(region, in);
   generate::build_masses(region, in.defaults, in.generate, in.lod);
+  generate::tell_part_overlaps(region);
   return region;
 }
 

@@ -12,6 +12,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "pipeline/geometry/solid_defect.h"
 #include "pipeline/validate/attribute_names.h"
 #include "pipeline/validate/citygml_names.h"
 #include "pipeline/validate/ids.h"
@@ -19,6 +20,7 @@
 namespace blockrand::validate {
 namespace {
 
+using geometry::SolidDefect;
 using model::Point3;
 
 constexpr double kLargestCoordinate = 1e9;  // m; beyond is no projected CRS
@@ -114,11 +116,14 @@ class Parser {
     std::size_t polygon = 0;
   };
 
-  void found(Check check, std::string what, std::string object) {
+  void found(Check check, std::string what, std::string object, int number = 0) {
     if (++found_ > 1000) return;  // of one file
-    out_.contents.findings.push_back({check, name_, std::move(object), fmt::format("line {}: {}", line_, what)});
+    out_.contents.findings.push_back({check, name_, std::move(object), fmt::format("line {}: {}", line_, what), number});
   }
   void rule(std::string what, std::string object) { found(Check::citygml_rule, std::move(what), std::move(object)); }
+  void defect(SolidDefect what) {
+    found(Check::citygml_rule, fmt::format("{} {}", iso_code(what), name(what)), object(), iso_code(what));
+  }
 
   std::string_view parent(std::size_t up = 1) const {
     return stack_.size() > up ? stack_[stack_.size() - 1 - up] : std::string_view();
@@ -256,12 +261,12 @@ class Parser {
     }
     if (off > kGridTolerance)
       found(Check::off_grid, fmt::format("a coordinate lies {:.6f} m off the 1/1024 m grid", off), object());
-    if (ring.size() < 4) return rule(fmt::format("a ring of {} points", ring.size()), object());
-    if (ring.front() != ring.back()) return rule("a ring that is not closed", object());
+    if (ring.size() < 4) return defect(SolidDefect::too_few_points);
+    if (ring.front() != ring.back()) return defect(SolidDefect::ring_open);
     ring.pop_back();
     for (std::size_t i = 0; i < ring.size(); ++i)
       if (ring[i] == ring[(i + 1) % ring.size()]) {
-        rule("a ring with a point twice in a row", object());
+        defect(SolidDefect::same_points);
         break;
       }
     if (!in_polygon_) return rule("a ring outside of a polygon", object());

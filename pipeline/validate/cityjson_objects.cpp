@@ -7,6 +7,7 @@
 #include <set>
 
 #include "pipeline/base/text.h"
+#include "pipeline/geometry/solid_defect.h"
 #include "pipeline/validate/attribute_names.h"
 #include "pipeline/validate/ids.h"
 
@@ -318,6 +319,10 @@ class ObjectReader {
       rule(where_ + ' ' + std::move(detail));
       return false;
     };
+    const auto defect = [&](geometry::SolidDefect what) {
+      findings_.rule(id_, fmt::format("{} has a ring: {} {}", where_, iso_code(what), name(what)), iso_code(what));
+      return false;
+    };
     if (!ring.is_array()) return wrong("has boundaries of the wrong depth");
     std::vector<std::uint64_t> indices;
     for (const Json& v : ring) {
@@ -329,10 +334,10 @@ class ObjectReader {
       scope_.used[*index] = true;
     }
     if (std::set<std::uint64_t>(indices.begin(), indices.end()).size() < 3)
-      return wrong(fmt::format("has a ring of {} vertices", indices.size()));
+      return defect(geometry::SolidDefect::too_few_points);
     if (indices.front() == indices.back()) return wrong("has a ring whose last vertex repeats the first");
     if (std::adjacent_find(indices.begin(), indices.end()) != indices.end())
-      return wrong("has a ring with a vertex twice in a row");
+      return defect(geometry::SolidDefect::same_points);
     auto& points = polygon.rings.emplace_back();
     for (const std::uint64_t i : indices) points.push_back(scope_.vertices[i]);
     return true;

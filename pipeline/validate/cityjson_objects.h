@@ -17,9 +17,12 @@ namespace blockrand::validate {
 class CityJsonFindings {
  public:
   CityJsonFindings(std::string file, Contents& out) : file_(std::move(file)), out_(out) {}
-  void rule(std::string object, std::string detail) { add(Check::cityjson_rule, std::move(object), std::move(detail)); }
-  void add(Check check, std::string object, std::string detail) {
-    if (out_.findings.size() < kMost) out_.findings.push_back({check, file_, std::move(object), std::move(detail)});
+  void rule(std::string object, std::string detail, int number = 0) {
+    add(Check::cityjson_rule, std::move(object), std::move(detail), number);
+  }
+  void add(Check check, std::string object, std::string detail, int number = 0) {
+    if (out_.findings.size() < kMost)
+      out_.findings.push_back({check, file_, std::move(object), std::move(detail), number});
   }
 
  private:

@@ -79,6 +79,7 @@ class Reader {
       if (!is_osm_id(id)) wrong(id, "is no id");
       if (!known(code)) wrong(id, fmt::format("the code {} has no meaning", code));
       ++issues_[code];
+      if (code == "PARTS_OVERLAP" || code == "OVERLAP_KEPT") report_.overlapping.insert(id);
       (only_moves(code) ? report_.moved : report_.mended).insert(id);
     }
   }

@@ -17,11 +17,11 @@ namespace {
 using model::Point3;
 
 template <class Judge>
-std::string said_by(const Judge& judge) {
+auto said_by(const Judge& judge) -> decltype(judge()) {
   try {
     return judge();
   } catch (const std::exception& error) {
-    return std::string("the judge gave up: ") + error.what();
+    return {std::string("the judge gave up: ") + error.what()};
   }
 }
 
@@ -50,13 +50,25 @@ bool compact(const std::vector<Point3>& sorted, double largest) {
   return true;
 }
 
-std::string own_verdict(const ReadSolid& read) {
+constexpr double kLargestSolid = 100000, kLargestMesh = 30000;  // m, so that exact arithmetic can work on them
+
+/// Our own checker's word.
+struct Own {
+  std::string text;
+  int number = 0;
+};
+Own own(const geometry::SolidCheck& check) {
+  return check.valid() ? Own{} : Own{check.text(), check.code()};
+}
+
+/// Nothing where it has no points, or is too large.
+std::optional<model::Solid> solid_of(const ReadSolid& read) {
   std::vector<Point3> points;
   for (const ReadPolygon& polygon : read.polygons)
     for (const auto& ring : polygon.rings) points.insert(points.end(), ring.begin(), ring.end());
-  if (points.empty()) return "no faces";
+  if (points.empty()) return std::nullopt;
   const Welder index(std::move(points));
-  if (!compact(index.points(), 100000)) return "a body of more than 100 km";
+  if (!compact(index.points(), kLargestSolid)) return std::nullopt;
   model::Solid solid;
   solid.vertices = index.points();
   for (const ReadPolygon& polygon : read.polygons) {
@@ -70,10 +82,15 @@ std::string own_verdict(const ReadSolid& read) {
     }
     solid.faces.push_back(face);
   }
-  const auto triangles = geometry::triangulate(solid);
-  if (!triangles) return "a face is no simple polygon";
-  const geometry::SolidCheck check = geometry::check_solid(solid, *triangles);
-  return check.valid() ? "" : check.text();
+  return solid;
+}
+
+Own own_verdict(const ReadSolid& read) {
+  if (std::all_of(read.polygons.begin(), read.polygons.end(), [](const ReadPolygon& p) { return p.rings.empty(); }))
+    return own(geometry::SolidCheck{geometry::SolidDefect::empty});
+  const auto solid = solid_of(read);
+  if (!solid) return {"a body of more than 100 km"};
+  return own(geometry::check_solid(*solid));
 }
 
 std::string cgal_verdict(const ReadSolid& read) {
@@ -83,23 +100,16 @@ std::string cgal_verdict(const ReadSolid& read) {
   return geometry::judge_solid(polygons);
 }
 
-std::string own_verdict(const std::vector<GlbTriangle>& read) {
+Own own_verdict(const std::vector<GlbTriangle>& read) {
   constexpr double kSteps = 65536;  // per metre; positions are floats
-  std::vector<Point3> points;
-  points.reserve(read.size() * 3);
-  for (const GlbTriangle& t : read) points.insert(points.end(), t.corners.begin(), t.corners.end());
-  const Welder index(std::move(points));
-  if (!compact(index.points(), 30000)) return "a body of more than 30 km";
-  const Point3 o = index.points().front();
+  const auto mesh = read_mesh(read);
+  if (!mesh) return {"a body of more than 30 km"};
+  const Point3 o = mesh->vertices.front();
   std::vector<geometry::Grid3> vertices;
-  for (const Point3& p : index.points())
+  for (const Point3& p : mesh->vertices)
     vertices.push_back(
         {std::llrint((p.x - o.x) * kSteps), std::llrint((p.y - o.y) * kSteps), std::llrint((p.z - o.z) * kSteps)});
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const GlbTriangle& t : read)
-    triangles.push_back({index(t.corners[0]), index(t.corners[1]), index(t.corners[2])});
-  const geometry::SolidCheck check = geometry::check_mesh(vertices, triangles);
-  return check.valid() ? "" : check.text();
+  return own(geometry::check_mesh(vertices, mesh->triangles));
 }
 
 std::string cgal_verdict(const std::vector<GlbTriangle>& read) {
@@ -109,26 +119,55 @@ std::string cgal_verdict(const std::vector<GlbTriangle>& read) {
   return geometry::judge_triangles(triangles);
 }
 
+template <class OwnJudge, class CgalJudge>
+Verdict verdict_by(const OwnJudge& own_judge, const CgalJudge& cgal_judge) {
+  Own said = said_by(own_judge);
+  return {std::move(said.text), said_by(cgal_judge), said.number};
+}
+
 }  // namespace
 
 std::string Verdict::text() const {
   return fmt::format("own checker: {}; CGAL: {}", own.empty() ? "valid" : own, cgal.empty() ? "valid" : cgal);
 }
 
+std::optional<ReadMesh> read_mesh(const ReadSolid& read) {
+  auto solid = solid_of(read);
+  if (!solid || std::any_of(solid->faces.begin(), solid->faces.end(),
+                            [](const model::Face& face) { return face.loop_count == 0; }))
+    return std::nullopt;
+  auto triangles = geometry::triangulate(*solid);
+  if (!triangles) return std::nullopt;
+  return ReadMesh{std::move(solid->vertices), std::move(triangles->triangles)};
+}
+
+std::optional<ReadMesh> read_mesh(const std::vector<GlbTriangle>& read) {
+  std::vector<Point3> points;
+  points.reserve(read.size() * 3);
+  for (const GlbTriangle& t : read) points.insert(points.end(), t.corners.begin(), t.corners.end());
+  if (points.empty()) return std::nullopt;
+  const Welder index(std::move(points));
+  if (!compact(index.points(), kLargestMesh)) return std::nullopt;
+  ReadMesh out{index.points(), {}};
+  for (const GlbTriangle& t : read) out.triangles.push_back({index(t.corners[0]), index(t.corners[1]), index(t.corners[2])});
+  return out;
+}
+
 Verdict judge(const ReadSolid& solid) {
-  return {said_by([&] { return own_verdict(solid); }), said_by([&] { return cgal_verdict(solid); })};
+  return verdict_by([&] { return own_verdict(solid); }, [&] { return cgal_verdict(solid); });
 }
 
 Verdict judge(const std::vector<GlbTriangle>& triangles) {
-  if (triangles.empty()) return {"no faces", "no faces"};
-  return {said_by([&] { return own_verdict(triangles); }), said_by([&] { return cgal_verdict(triangles); })};
+  if (triangles.empty()) return {own(geometry::SolidCheck{geometry::SolidDefect::empty}).text, "no faces", iso_code(geometry::SolidDefect::empty)};
+  return verdict_by([&] { return own_verdict(triangles); }, [&] { return cgal_verdict(triangles); });
 }
 
 void note(const Verdict& verdict, const std::string& file, const std::string& object, const std::string& which,
           std::vector<Finding>& findings) {
   if (verdict.valid()) return;
   findings.push_back(
-      {verdict.agreed() ? Check::solid_invalid : Check::judges_disagree, file, object, which + ": " + verdict.text()});
+      {verdict.agreed() ? Check::solid_invalid : Check::judges_disagree, file, object, which + ": " + verdict.text(),
+       verdict.number});
 }
 
 }  // namespace blockrand::validate

@@ -1,6 +1,9 @@
 // What the two judges of solids say: our own checker, in exact arithmetic, and CGAL.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +15,7 @@ namespace blockrand::validate {
 /// Empty texts: valid.
 struct Verdict {
   std::string own, cgal;
+  int number = 0;  ///< of the defect that our own checker found (geometry/solid_defect.h); 0 where it found none
   bool valid() const { return own.empty() && cgal.empty(); }
   bool agreed() const { return own.empty() == cgal.empty(); }
   std::string text() const;
@@ -22,6 +26,15 @@ Verdict judge(const ReadSolid& solid);
 
 /// Of a mesh of triangles, whose corners are equal only when their coordinates are.
 Verdict judge(const std::vector<GlbTriangle>& triangles);
+
+/// A surface of triangles, equal points being one vertex.
+struct ReadMesh {
+  std::vector<model::Point3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+/// Nothing where a face cannot be triangulated, or the body is larger than the judges take.
+std::optional<ReadMesh> read_mesh(const ReadSolid& solid);
+std::optional<ReadMesh> read_mesh(const std::vector<GlbTriangle>& triangles);
 
 /// The finding that a verdict makes, or nothing: SOLID_INVALID, or JUDGES_DISAGREE where only one of them objects.
 void note(const Verdict& verdict, const std::string& file, const std::string& object, const std::string& which,

@@ -75,9 +75,11 @@ std::string validation_json(const ValidateOptions& options, const Validation& v)
     if (const std::uint64_t count = v.findings.count(static_cast<Check>(c)); count > 0)
       j["counts"][std::string(kChecks[c].text)] = count;
   j["findings"] = Ordered::array();
-  for (const Finding& f : v.findings.kept())
-    j["findings"].push_back(
-        {{"code", info(f.check).text}, {"file", f.file}, {"object", f.object}, {"detail", f.detail}});
+  for (const Finding& f : v.findings.kept()) {
+    Ordered row = {{"code", info(f.check).text}, {"file", f.file}, {"object", f.object}, {"detail", f.detail}};
+    if (f.number > 0) row["number"] = f.number;
+    j["findings"].push_back(std::move(row));
+  }
   return j.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

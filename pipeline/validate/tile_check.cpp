@@ -11,11 +11,13 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "pipeline/geometry/solid_defect.h"
 #include "pipeline/validate/attribute_names.h"
 #include "pipeline/validate/cityjson.h"
 #include "pipeline/validate/file_bytes.h"
 #include "pipeline/validate/glb.h"
 #include "pipeline/validate/ids.h"
+#include "pipeline/validate/overlaps.h"
 #include "pipeline/validate/places.h"
 #include "pipeline/validate/solids.h"
 
@@ -50,6 +52,7 @@ class Checker {
     read_cityjson_tile();
     check_bounds();
     judge_solids();
+    check_overlaps();
     compare();
     check_geopackage();
     check_explained();
@@ -203,7 +206,9 @@ class Checker {
           (lod != body.attributes.end() && lod->second == "0"))
         continue;
       ++out_.judged;
-      note(judge(glb_->triangles[i]), files_.path[kGltf], body.id, "mesh", out_.findings);
+      const Verdict verdict = judge(glb_->triangles[i]);
+      if (!verdict.valid()) unsound_.insert(body.id);
+      note(verdict, files_.path[kGltf], body.id, "mesh", out_.findings);
     }
   }
 
@@ -230,7 +235,29 @@ class Checker {
   void judge_body(const ReadBody& body, const std::string& file) {
     for (const ReadSolid& solid : body.solids) {
       ++out_.judged;
-      note(judge(solid), file, body.id, fmt::format("LoD {}", solid.lod), out_.findings);
+      const Verdict verdict = judge(solid);
+      if (!verdict.valid()) unsound_.insert(body.id);
+      note(verdict, file, body.id, fmt::format("LoD {}", solid.lod), out_.findings);
+    }
+  }
+
+  /// Parts of one building, in the first format that has them; where two formats differ, that is a finding already.
+  void check_overlaps() {
+    const auto told = [&](const std::string& id) {
+      return context_.overlapping &&
+             (context_.overlapping->count(owner(id)) || context_.overlapping->count(building_of(id)));
+    };
+    std::size_t format = 0;
+    const Contents* c = model(format);
+    if (!c || context_.record.lod == 0) return;
+    for (PartsOverlap& o : format == kGltf ? find_overlaps(*glb_, out_.pairs) : find_overlaps(*c, out_.pairs)) {
+      // What encloses nothing cannot overlap.
+      if (unsound_.count(o.first) || unsound_.count(o.second)) continue;
+      if (told(o.first) || told(o.second))
+        out_.told_overlaps.push_back(o.first + " " + o.detail);
+      else
+        out_.findings.push_back({Check::solids_overlap, files_.path[format], std::move(o.first), std::move(o.detail),
+                                 geometry::kPartsOverlapCode});
     }
   }
 
@@ -502,6 +529,7 @@ class Checker {
   std::optional<Contents> contents_[kTileFormats];
   const TilesetEntry* entry_ = nullptr;
   Matrix transform_ = kIdentity;
+  std::set<std::string> unsound_;  // bodies with a solid that a judge refused
 };
 
 }  // namespace

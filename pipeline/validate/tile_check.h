@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,8 @@ struct PositionResult {
 struct TileResult {
   std::vector<Finding> findings;
   FormatCounts counts[kTileFormats];
+  std::uint64_t pairs = 0;                                    ///< pairs of parts that may overlap
+  std::vector<std::string> told_overlaps;                     ///< "w1.w2 601 overlaps …": the report says so as well
   std::uint64_t judged = 0;                                   ///< solids that were given to both judges
   std::uint64_t triangles = 0, attributes = 0, compared = 0;  ///< pairs of bodies in two formats
   std::uint64_t explained = 0;                                ///< records in explain/
@@ -80,6 +83,7 @@ struct TileContext {
   georef::WitnessPool* witness = nullptr;    ///< PROJ with the operation of build.json; null where it cannot be used
   georef::WitnessPool* positions = nullptr;  ///< PROJ with the operation that the positions are compared by
   const georef::Geoid& geoid;
+  const std::set<std::string>* overlapping = nullptr;  ///< objects of which the report tells an overlap
   GeoPackageReader* geopackage = nullptr;  ///< null: not there, or unreadable
   const ExplanationIndex* explanations = nullptr;
 };

@@ -292,6 +292,16 @@ class Run {
               "bodies in buildings.gpkg");
     if (index_) checked("explain/", "one record a building, with the values of the model", explained_, "records");
     if (judged_ > 0) checked("solids", "own checker and CGAL", judged_, "solids");
+    if (pairs_ > 0) checked("parts", "no two of a building overlap", pairs_, "pairs whose boxes meet");
+    if (!told_overlaps_.empty()) {
+      constexpr std::size_t kShown = 10;
+      std::string note = fmt::format("{} of parts overlap, and the report says so (PARTS_OVERLAP, OVERLAP_KEPT): ",
+                                     told_overlaps_.size() == 1 ? "1 pair" : fmt::format("{} pairs", told_overlaps_.size()));
+      for (std::size_t i = 0; i < std::min(kShown, told_overlaps_.size()); ++i)
+        note += (i > 0 ? "; " : "") + told_overlaps_[i];
+      if (told_overlaps_.size() > kShown) note += "; …";
+      v_.notes.push_back(std::move(note));
+    }
     if (compared_ > 0)
       checked("content", "attributes, geometry and colours of one format against another", compared_,
               "pairs of bodies");
@@ -323,6 +333,7 @@ class Run {
             pinned_ ? &*pinned_ : nullptr,
             positions_,
             geoid_,
+            report_ ? &report_->overlapping : nullptr,
             geopackage_.get(),
             index_ ? &*index_ : nullptr};
   }
@@ -340,6 +351,8 @@ class Run {
     explained_ += tile.explained;
     for (std::string& id : tile.buildings) buildings_.insert(std::move(id));
     judged_ += tile.judged;
+    pairs_ += tile.pairs;
+    std::move(tile.told_overlaps.begin(), tile.told_overlaps.end(), std::back_inserter(told_overlaps_));
     compared_ += tile.compared;
     positions_found_.insert(positions_found_.end(), std::make_move_iterator(tile.positions.begin()),
                             std::make_move_iterator(tile.positions.end()));
@@ -533,7 +546,8 @@ class Run {
   BodyDigests digests_[kTileFormats];
   std::unordered_set<std::size_t>
       ids_[kTileFormats];  ///< hashes: a city's ids as texts would take the memory of a tile
-  std::uint64_t judged_ = 0, compared_ = 0;
+  std::uint64_t judged_ = 0, compared_ = 0, pairs_ = 0;
+  std::vector<std::string> told_overlaps_;
   std::map<std::string, std::map<std::string, std::uint64_t>> sources_;
   std::map<std::string, std::uint64_t> roofs_;
   std::vector<PositionResult> positions_found_;

@@ -339,7 +339,8 @@ class Damages(Validated):
 
     def test_a_flipped_face(self):
         d = self.damaged()
-        self.found(d, 'SOLID_INVALID GEOMETRY_DIFFERS', d.ring(lambda r: r[::-1]))
+        result = self.found(d, 'SOLID_INVALID GEOMETRY_DIFFERS', d.ring(lambda r: r[::-1]), '307 polygon wrong orientation')
+        self.assertIn(307, [f.get('number') for f in result['findings']])
 
     def test_a_moved_corner(self):
         d = self.damaged()
@@ -348,7 +349,7 @@ class Damages(Validated):
             ring[0][2] -= 0.5
             ring[-1][2] -= 0.5
             return ring
-        self.found(d, 'SOLID_INVALID GEOMETRY_DIFFERS', d.ring(move))
+        self.found(d, 'SOLID_INVALID GEOMETRY_DIFFERS', d.ring(move), '203 not planar')
 
     def test_a_corner_off_the_grid(self):
         d = self.damaged()
@@ -392,7 +393,7 @@ class Damages(Validated):
             start = text.index('<gml:surfaceMember>', at)
             end = text.index('</gml:surfaceMember>', start) + len('</gml:surfaceMember>')
             return text[:start] + text[end:]
-        self.found(d, 'SOLID_INVALID GEOMETRY_DIFFERS', d.building(drop))
+        self.found(d, 'SOLID_INVALID GEOMETRY_DIFFERS', d.building(drop), '302 shell not closed')
 
     def test_a_building_that_is_missing(self):
         d = self.damaged()
@@ -416,7 +417,7 @@ class Damages(Validated):
 
     def test_an_open_ring(self):
         d = self.damaged()
-        self.found(d, 'CITYGML_RULE SOLID_INVALID GEOMETRY_DIFFERS', d.ring(lambda r: r[:-1]), 'not closed')
+        self.found(d, 'CITYGML_RULE SOLID_INVALID GEOMETRY_DIFFERS', d.ring(lambda r: r[:-1]), '103 ring not closed')
 
     def test_an_unknown_source(self):
         d = self.damaged()
@@ -714,6 +715,39 @@ class Positions(Validated):
         wrong = self.place('wrong.osm', EMPTY)
         self.refused(blockrand('validate', out, '--extract', wrong), 1, 'sha-256')
         self.refused(blockrand('validate', out, '--extract', self.path('none.osm')), 2, 'none.osm')
+
+
+class Overlaps(Validated):
+    """A slab mapped into a higher part: repair leaves it, since nobody says how thick it is."""
+    MAP = """<osm version="0.6">
+      <node id="1" lat="51.47000" lon="11.03000"/><node id="2" lat="51.47000" lon="11.03040"/>
+      <node id="3" lat="51.47020" lon="11.03040"/><node id="4" lat="51.47020" lon="11.03000"/>
+      <node id="5" lat="51.47000" lon="11.03020"/><node id="6" lat="51.47020" lon="11.03020"/>
+      <way id="10"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/><tag k="building" v="yes"/></way>
+      <way id="11"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/>
+        <tag k="building:part" v="roof"/><tag k="height" v="9"/></way>
+      <way id="12"><nd ref="1"/><nd ref="5"/><nd ref="6"/><nd ref="4"/><nd ref="1"/>
+        <tag k="building:part" v="yes"/><tag k="height" v="15"/></way>
+    </osm>"""
+
+    def test_one_that_the_report_tells(self):
+        for formats in ('citygml,cityjson', 'gltf'):
+            with self.subTest(formats=formats):
+                result = self.sound(self.build(self.place('overlap.osm', self.MAP), formats, '--formats', formats))
+                self.assertTrue(any('601 overlaps w10.w12' in n for n in result['notes']), result['notes'])
+
+    def test_one_that_the_report_does_not_tell(self):
+        out = self.build(self.place('overlap.osm', self.MAP), 'untold', '--formats', 'citygml', '--no-report')
+        d = Damaged(out, self.path('untold_damaged'))
+
+        def forget(report):
+            report['notices'] = [r for r in report['notices'] if r['code'] != 'OVERLAP_KEPT']
+        d.json('report.json', forget)
+        d.json('build.json', lambda b: b['issues'].pop('OVERLAP_KEPT'))
+        d.seal()
+        result = self.validate(d.folder)
+        found = [f for f in result['findings'] if f['code'] == 'SOLIDS_OVERLAP']
+        self.assertEqual([(f['object'], f['number']) for f in found], [('w10.w11', 601)], result['findings'])
 
 
 class Sound(Validated):

@@ -20,9 +20,20 @@ model::Solid courtyard_block(model::Point3 at, double outer, double inner, doubl
 struct BrokenSolid {
   std::string name;
   model::Solid solid;
+  int code = 0;             ///< what it is told as (geometry/solid_defect.h)
+  bool seen_by_cgal = true;  ///< false: the second judge has no word on it
 };
 
-/// At least fifty solids, each broken in one way that a judge must notice.
+/// At least eighty solids, each broken in one way that a judge must notice. Every class of defects is there but 103, which
+/// only files can have.
 std::vector<BrokenSolid> broken_solids();
+
+struct SoundSolid {
+  std::string name;
+  model::Solid solid;
+};
+
+/// Neighbours of the broken ones: by a hair not broken.
+std::vector<SoundSolid> sound_solids();
 
 }  // namespace blockrand::testing_shapes

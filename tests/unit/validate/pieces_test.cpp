@@ -2,10 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "pipeline/base/error.h"
 #include "pipeline/export/gzip.h"
+#include "pipeline/geometry/solid_defect.h"
 #include "pipeline/georef/frames.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/georef/witness.h"
@@ -14,6 +19,7 @@
 #include "pipeline/validate/file_bytes.h"
 #include "pipeline/validate/finding_log.h"
 #include "pipeline/validate/ids.h"
+#include "pipeline/validate/overlaps.h"
 #include "pipeline/validate/positions.h"
 #include "pipeline/validate/solids.h"
 #include "pipeline/validate/tileset.h"
@@ -151,6 +157,71 @@ TEST(Judges, AgreeOnACube) {
   far.polygons[1].rings[0][0] = {1e8, 0, 10};
   EXPECT_FALSE(judge(far).own.empty());
   EXPECT_FALSE(judge(ReadSolid{}).valid());
+}
+
+TEST(Judges, GiveTheNumberOfTheDefect) {
+  ReadSolid open = cube();
+  open.polygons.pop_back();
+  EXPECT_EQ(judge(open).number, 302);
+  EXPECT_THAT(judge(open).text(), testing::HasSubstr("302 shell not closed"));
+  ReadSolid bent = cube();
+  std::swap(bent.polygons[0].rings[0][0], bent.polygons[0].rings[0][1]);
+  EXPECT_EQ(judge(bent).number, 104);
+  EXPECT_EQ(judge(cube()).number, 0);
+  EXPECT_EQ(judge(ReadSolid{}).number, 902);
+  ReadSolid hollow = cube();
+  hollow.polygons[0].rings.clear();
+  EXPECT_EQ(judge(hollow).number, 101);
+  std::vector<Finding> findings;
+  note(judge(open), "a.gml", "w1", "LoD 2", findings);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].number, 302);
+}
+
+TEST(Overlaps, OfPartsOfOneBuilding) {
+  const auto moved = [](double by, const char* id, const char* building) {
+    ReadBody body;
+    body.id = id;
+    body.building = building;
+    ReadSolid solid = cube();
+    for (ReadPolygon& p : solid.polygons)
+      for (auto& ring : p.rings)
+        for (Point3& q : ring) q.x += by;
+    body.solids = {solid};
+    return body;
+  };
+  const auto overlaps = [](std::vector<ReadBody> bodies) {
+    Contents c;
+    c.bodies = std::move(bodies);
+    std::uint64_t pairs = 0;
+    return find_overlaps(c, pairs);
+  };
+  const Point3 corner = cube().polygons[0].rings[0][0];
+  double side = 0;
+  const ReadSolid whole = cube();
+  for (const ReadPolygon& p : whole.polygons)
+    for (const Point3& q : p.rings[0]) side = std::max(side, std::fabs(q.x - corner.x));
+  EXPECT_TRUE(overlaps({moved(0, "w1.w2", "w1"), moved(side, "w1.w3", "w1")}).empty());
+  EXPECT_TRUE(overlaps({moved(0, "w1.w2", "w1"), moved(side / 2, "w4.w3", "w4")}).empty()) << "another building";
+  const auto found = overlaps({moved(0, "w1.w2", "w1"), moved(side / 2, "w1.w3", "w1")});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].first, "w1.w2");
+  EXPECT_THAT(found[0].detail, testing::StartsWith("601 overlaps w1.w3: "));
+}
+
+TEST(Documentation, ListsEveryFindingAndEveryNumber) {
+  std::ifstream file(BLOCKRAND_SOURCE_DIR "/docs/validate.md");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  ASSERT_FALSE(text.empty());
+  for (const CheckInfo& c : kChecks) {
+    const std::string row = fmt::format("| `{}` | {} |\n", c.text, c.meaning);
+    EXPECT_NE(text.find(row), std::string::npos) << "docs/validate.md lacks the row " << row;
+  }
+  for (const geometry::SolidDefectInfo& d : geometry::kSolidDefects) {
+    if (d.number == 0) continue;
+    const std::string row = fmt::format("| {} | {} | {} |\n", d.number, d.name, d.meaning);
+    EXPECT_NE(text.find(row), std::string::npos) << "docs/validate.md lacks the row " << row;
+  }
 }
 
 TEST(Compare, OrderAndFirstPointsDoNotMatter) {
