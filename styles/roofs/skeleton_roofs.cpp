@@ -289,7 +289,7 @@ class Builder {
   std::vector<std::uint32_t> axis_ends() const {
     const Point2 axis = ridge_axis(plan_, request_);
     const auto count = static_cast<std::uint32_t>(plan_.outer.size());
-    std::vector<std::vector<std::uint32_t>> sides;
+    std::vector<std::uint32_t> found;
     for (const double way : {1.0, -1.0}) {
       const Point2 towards{way * axis.x, way * axis.y};
       const geometry::Extent extent = geometry::extent_along(plan_.outer.points, towards);
@@ -311,42 +311,13 @@ class Builder {
         }
       }
       looks_along[best] = 1;
-      sides.push_back(run_of_walls(looks_along));
+      for (std::uint32_t i = 0; i < count; ++i)
+        if (looks_along[i]) found.push_back(i);
     }
-    std::vector<std::uint32_t> found;
-    for (const auto& side : sides) found.insert(found.end(), side.begin(), side.end());
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
     // The two ends of a triangle share a corner: the shorter one is it.
-    if (sides[0].size() == 1 && sides[1].size() == 1) return without_neighbours(edges_, std::move(found));
-    return found;
-  }
-
-  /// The shortest way along the outer ring over all marked walls, with what lies between them (the sides of a recess); the
-  /// longest of them alone where that is more than they are.
-  std::vector<std::uint32_t> run_of_walls(const std::vector<char>& marked) const {
-    const auto count = static_cast<std::uint32_t>(marked.size());
-    std::uint32_t longest_gap = 0, after_gap = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      if (!marked[i]) continue;
-      std::uint32_t gap = 0;
-      while (gap < count && !marked[(i + count - 1 - gap) % count]) ++gap;
-      if (gap >= longest_gap) {
-        longest_gap = gap;
-        after_gap = i;
-      }
-    }
-    std::vector<std::uint32_t> run;
-    double ours = 0, others = 0;
-    std::uint32_t longest = after_gap;
-    for (std::uint32_t k = 0; k < count - longest_gap; ++k) {
-      const std::uint32_t i = (after_gap + k) % count;
-      run.push_back(i);
-      (marked[i] ? ours : others) += edges_[i].length;
-      if (marked[i] && edges_[i].length > edges_[longest].length) longest = i;
-    }
-    if (others > ours) return {longest};
-    return run;
+    return found.size() == 2 ? without_neighbours(edges_, std::move(found)) : found;
   }
 
   /// The farthest that a point of the plan lies from the eaves that rise to it, m; 0 when there is no skeleton.
