@@ -155,6 +155,19 @@ class MassBuilder {
     return true;
   }
 
+  /// One shape on one plan; tidied more coarsely where its solid fails the check.
+  bool build_roof(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks, RoofShape shape) {
+    roofs::RoofRequest request = request_of(part.attributes, shape, {levels.eaves, levels.top - levels.eaves});
+    for (const double coarseness : roofs::kCoarseness) {
+      request.coarseness = coarseness;
+      const auto built = roofs::build_roof(plan, request);
+      if (!built || !accept(part, plan, levels, looks, built->roof, built->shape)) continue;
+      if (built->note != IssueCode::none) note(part, built->note, built->detail);
+      return true;
+    }
+    return false;
+  }
+
   void build_lod2(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks) {
     const RoofShape asked = part.attributes.roof_shape.value;
     const roofs::RoofMeasures measures{levels.eaves, levels.top - levels.eaves};
@@ -162,14 +175,13 @@ class MassBuilder {
       const std::optional<Polygon> simplified = simpler(plan, options_.simplify_tolerance);
       for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, simplified ? &*simplified : nullptr}) {
         if (!p) continue;
-        for (const RoofShape shape : {asked, RoofShape::hipped}) {
-          const auto built = roofs::build_roof(*p, request_of(part.attributes, shape, measures));
-          if (!built || !accept(part, *p, levels, looks, built->roof, built->shape)) continue;
-          if (built->note != IssueCode::none) note(part, built->note, built->detail);
-          if (shape != asked) note(part, IssueCode::roof_shape_adapted, std::string(model::name(asked)) + " as hipped: its solid is not valid");
-          if (p != &plan) note(part, IssueCode::roof_simplified);
-          return;
-        }
+        if (!build_roof(part, *p, levels, looks, asked)) continue;
+        if (p != &plan) note(part, IssueCode::roof_simplified);
+        return;
+      }
+      if (build_roof(part, plan, levels, looks, RoofShape::hipped)) {
+        note(part, IssueCode::roof_shape_adapted, std::string(model::name(asked)) + " as hipped: its solid is not valid");
+        return;
       }
       note(part, IssueCode::roof_failed, std::string(model::name(asked)));
     }

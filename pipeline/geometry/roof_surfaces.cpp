@@ -21,7 +21,8 @@ double squared(double v) { return v * v; }
 /// Loops and the upper ends of walls over shared nodes, while they are being tidied.
 class Tidy {
  public:
-  Tidy(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale) : merged_(skeleton.merged) {
+  Tidy(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale, double coarseness)
+      : near_(coarseness * kMergedNodes), narrow_(coarseness * kNarrowestFace), level_(coarseness * kMergedHeights), merged_(skeleton.merged) {
     for (const WeightedSkeletonNode& n : skeleton.nodes) nodes_.push_back(model::snap(Point3{n.point.x, n.point.y, n.height * height_scale}));
     std::uint32_t first = 0;
     const auto add_ring = [&](const model::Ring& ring) {
@@ -118,9 +119,9 @@ class Tidy {
       return nodes_[a].x != nodes_[b].x ? nodes_[a].x < nodes_[b].x : a < b;
     });
     for (std::size_t i = 0; i < order.size(); ++i)
-      for (std::size_t k = i + 1; k < order.size() && nodes_[order[k]].x - nodes_[order[i]].x <= kNarrowestFace; ++k) {
+      for (std::size_t k = i + 1; k < order.size() && nodes_[order[k]].x - nodes_[order[i]].x <= narrow_; ++k) {
         const std::uint32_t a = std::min(order[i], order[k]), b = std::max(order[i], order[k]);
-        if (b < corners_ || std::fabs(nodes_[a].y - nodes_[b].y) > kNarrowestFace) continue;
+        if (b < corners_ || std::fabs(nodes_[a].y - nodes_[b].y) > narrow_) continue;
         nodes_[b].x = nodes_[a].x;
         nodes_[b].y = nodes_[a].y;
       }
@@ -254,7 +255,7 @@ class Tidy {
       const std::uint32_t a = root(i), b = root(j);
       if (a == b || (a < corners_ && b < corners_)) return;
       const Point3 p = nodes_[a], q = nodes_[b];
-      if (squared(p.x - q.x) + squared(p.y - q.y) + squared(p.z - q.z) > squared(kMergedNodes)) return;
+      if (squared(p.x - q.x) + squared(p.y - q.y) + squared(p.z - q.z) > squared(near_)) return;
       parent_[std::max(a, b)] = std::min(a, b);  // corners have the lowest numbers, so they stay
       any = true;
     });
@@ -267,7 +268,7 @@ class Tidy {
             const std::uint32_t a = root(loop[i]), b = root(loop[k]);
             if (a == b || (a < corners_ && b < corners_)) continue;
             const Point3 p = nodes_[a], q = nodes_[b];
-            if (std::fabs(p.x - q.x) > kNarrowestFace || std::fabs(p.y - q.y) > kNarrowestFace || std::fabs(p.z - q.z) > kMergedHeights) continue;
+            if (std::fabs(p.x - q.x) > narrow_ || std::fabs(p.y - q.y) > narrow_ || std::fabs(p.z - q.z) > level_) continue;
             parent_[std::max(a, b)] = std::min(a, b);
             any = true;
           }
@@ -335,12 +336,12 @@ class Tidy {
   std::optional<Narrow> narrow_place(const Loop& loop) const {
     const std::size_t n = loop.size();
     std::optional<Narrow> best;
-    double least = squared(kNarrowestFace);
+    double least = squared(narrow_);
     for (std::size_t i = 0; i < n; ++i) {
       const std::uint32_t a = loop[i], b = loop[(i + 1) % n];
       const Point3 pa = nodes_[a], pb = nodes_[b];
-      const double x0 = std::min(pa.x, pb.x) - kNarrowestFace, x1 = std::max(pa.x, pb.x) + kNarrowestFace;
-      const double y0 = std::min(pa.y, pb.y) - kNarrowestFace, y1 = std::max(pa.y, pb.y) + kNarrowestFace;
+      const double x0 = std::min(pa.x, pb.x) - narrow_, x1 = std::max(pa.x, pb.x) + narrow_;
+      const double y0 = std::min(pa.y, pb.y) - narrow_, y1 = std::max(pa.y, pb.y) + narrow_;
       for (std::size_t k = 0; k < n; ++k) {
         const std::uint32_t p = loop[k];
         if (p == a || p == b || (p < corners_ && a < corners_ && b < corners_)) continue;
@@ -532,6 +533,7 @@ class Tidy {
   static constexpr double kOneLine = 0.01;         ///< m: as plans lose corners that bend no wall
   static constexpr double kOnePlane = 0.005;       ///< m: half of what the checker allows
   static constexpr double kMergedHeights = 0.02;  ///< m: what a steep face rises over kNarrowestFace
+  double near_, narrow_, level_;                   ///< m: kMergedNodes, kNarrowestFace, kMergedHeights, or coarser
   std::vector<Point3> nodes_;
   std::vector<std::uint32_t> end_of_, group_end_, merged_, parent_;
   std::uint32_t corners_ = 0;
@@ -541,8 +543,8 @@ class Tidy {
 
 }  // namespace
 
-RoofSurfaces roof_surfaces(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale) {
-  return Tidy(plan, skeleton, height_scale).run();
+RoofSurfaces roof_surfaces(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale, double coarseness) {
+  return Tidy(plan, skeleton, height_scale, coarseness).run();
 }
 
 }  // namespace blockrand::geometry

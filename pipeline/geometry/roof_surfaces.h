@@ -29,7 +29,8 @@ struct RoofSurfaces {
 /// keep the same points on both sides.
 ///
 /// \param height_scale  heights are multiplied by this
-RoofSurfaces roof_surfaces(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale);
+/// \param coarseness    both distances are multiplied by this: for a second try where the solid fails its check
+RoofSurfaces roof_surfaces(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale, double coarseness = 1);
 
 /// m. Simultaneous events of walls that are rounded come as several nodes a few millimetres apart. Merging them leaves faces plane
 /// within the checker's 0.01 m.

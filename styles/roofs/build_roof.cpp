@@ -33,7 +33,7 @@ BuiltRoof as_asked(Roof roof, RoofShape shape) { return {std::move(roof), shape,
 /// The way up across the plan of the shapes with one profile.
 Point2 way_up(const Polygon& plan, const RoofRequest& request) {
   if (request.down) return {-request.down->x, -request.down->y};
-  if (request.shape == RoofShape::skillion || request.shape == RoofShape::sawtooth) {
+  if (request.shape == RoofShape::skillion || request.shape == RoofShape::saltbox || request.shape == RoofShape::sawtooth) {
     const Point2 down = default_slope(plan);
     return {-down.x, -down.y};
   }
@@ -76,6 +76,7 @@ std::optional<BuiltRoof> build_roof(const Polygon& plan, const RoofRequest& requ
       if (auto roof = crossed_roof(plan, measures, 0.5)) return as_asked(std::move(*roof), request.shape);
       return adapted(plan, request, RoofShape::hipped);
     case RoofShape::skillion:
+    case RoofShape::saltbox:
     case RoofShape::butterfly:
     case RoofShape::gabled_height_moved:
     case RoofShape::sawtooth: {

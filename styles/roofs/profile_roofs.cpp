@@ -415,6 +415,8 @@ std::vector<ProfilePoint> profile_points(RoofShape shape, double width_across) {
   switch (shape) {
     case RoofShape::skillion:
       return {{0, 0}, {1, 1}};
+    case RoofShape::saltbox:
+      return {{0, 0}, {0.6, 1}, {1, 1}};
     case RoofShape::butterfly:
       return {{0, 1}, {0.5, 0}, {1, 1}};
     case RoofShape::gabled_height_moved:

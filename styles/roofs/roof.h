@@ -39,6 +39,7 @@ struct RoofRequest {
   RoofMeasures measures;
   std::optional<model::Point2> down;  ///< unit vector down the slope (roof:direction)
   bool across = false;                ///< roof:orientation=across: the axis is the shorter side
+  double coarseness = 1;              ///< geometry::roof_surfaces(); for a second try
 };
 
 /// What was built.
@@ -52,6 +53,9 @@ struct BuiltRoof {
 /// The roof of `request.shape` on a plan (strictly simple, on the grid). Empty when none can be built, which callers
 /// report; the surfaces' edges match each other and the wall tops point by point.
 std::optional<BuiltRoof> build_roof(const model::Polygon& plan, const RoofRequest& request);
+
+/// Coarseness of the tries at one roof, until its solid is valid. At 3, nodes of a centimetre and a half are one.
+inline constexpr double kCoarseness[] = {1, 3};
 
 // ---- kinds of roofs, on which build_roof() draws
 

@@ -13,7 +13,7 @@ namespace blockrand::roofs {
 /// Rings of pyramidal, cone, dome, onion and spire for apex_roof(); empty for all other shapes.
 std::span<const ApexRing> apex_rings(model::RoofShape shape);
 
-/// Heights of skillion, butterfly, gabled_height_moved and sawtooth for profile_roof(); empty for all other shapes.
+/// Heights of skillion, saltbox, butterfly, gabled_height_moved and sawtooth for profile_roof(); empty for all other shapes.
 /// \param width_across  m. The plan's extent in the direction of the profile; decides the number of sawtooth's teeth.
 std::vector<ProfilePoint> profile_points(model::RoofShape shape, double width_across);
 

@@ -155,9 +155,9 @@ EdgeProfile broken(double run, double height) {
   return {low, {{kMansardHeight * height, (1 - kMansardHeight) * height / ((1 - kMansardRun) * run)}}};
 }
 
-Roof to_roof(const Polygon& plan, const WeightedSkeleton& skeleton, RoofMeasures measures) {
+Roof to_roof(const Polygon& plan, const WeightedSkeleton& skeleton, RoofMeasures measures, double coarseness) {
   const double top = skeleton.height();
-  const auto surfaces = geometry::roof_surfaces(plan, skeleton, top > 0 ? measures.height / top : 0);
+  const auto surfaces = geometry::roof_surfaces(plan, skeleton, top > 0 ? measures.height / top : 0, coarseness);
   const auto raised = [&](Point3 p) { return Point3{p.x, p.y, measures.eaves + p.z}; };
   Roof roof;
   for (const auto& s : surfaces.surfaces) {
@@ -253,8 +253,6 @@ class Builder {
         return finish(geometry::weighted_skeleton(plan_, profiles(n, pitch(height / (kDeckRun * run)), ends_, upright()), height),
                       request_.shape == RoofShape::double_saltbox);
       }
-      case RoofShape::saltbox:
-        return saltbox();
       case RoofShape::dome:
       case RoofShape::onion: {
         const double run = largest_run({});
@@ -362,23 +360,9 @@ class Builder {
     return best;
   }
 
-  std::optional<BuiltRoof> saltbox() {
-    const Point2 down = request_.down ? *request_.down : default_slope(plan_);
-    std::vector<EdgeProfile> all(edges_.size(), upright());
-    for (std::size_t i = 0; i < edges_.size(); ++i) {
-      const Point2 out = edges_[i].outwards();
-      if (out.x * down.x + out.y * down.y > kMostCosine) all[i] = pitch(1);
-    }
-    const geometry::Extent extent = geometry::extent_along(plan_.outer.points, down);
-    const double height = request_.measures.height, slope = height / (kDeckRun * (extent.maximum - extent.minimum));
-    for (EdgeProfile& p : all)
-      if (p.slope != kUpright) p.slope = slope;
-    return finish(geometry::weighted_skeleton(plan_, all, height));
-  }
-
   std::optional<BuiltRoof> finish(const Skeleton& skeleton, bool wants_ends = false) {
     if (!skeleton) return fallback();
-    BuiltRoof out{to_roof(plan_, *skeleton, request_.measures), request_.shape, IssueCode::none, {}};
+    BuiltRoof out{to_roof(plan_, *skeleton, request_.measures, request_.coarseness), request_.shape, IssueCode::none, {}};
     if (wants_ends && ends_.empty() && plan_.holes.empty()) {
       out.note = IssueCode::roof_shape_adapted;
       out.detail = std::string(model::name(request_.shape)) + " without gables: no wing has an end";
@@ -389,7 +373,7 @@ class Builder {
   std::optional<BuiltRoof> fallback() const {
     const auto skeleton = by_cgal(plan_);
     if (!skeleton) return std::nullopt;
-    return BuiltRoof{to_roof(plan_, *skeleton, request_.measures), RoofShape::hipped, IssueCode::skeleton_fallback,
+    return BuiltRoof{to_roof(plan_, *skeleton, request_.measures, request_.coarseness), RoofShape::hipped, IssueCode::skeleton_fallback,
                      std::string(model::name(request_.shape)) + " as hipped"};
   }
 
@@ -412,7 +396,6 @@ bool rises_from_edges(RoofShape shape) {
     case RoofShape::mansard:
     case RoofShape::gambrel:
     case RoofShape::round:
-    case RoofShape::saltbox:
     case RoofShape::double_saltbox:
     case RoofShape::quadruple_saltbox:
       return true;

@@ -227,12 +227,13 @@ TEST(Mass, CanopiesAreSlabsWithoutWallsBelow) {
   EXPECT_NEAR(bottom(t.part().lod2), 38.7, 0.001);
 }
 
-TEST(Mass, UnsupportedShapesAreBuiltAsRelativesAndSaySo) {
+TEST(Mass, ARoofThatThePlanDoesNotTakeSaysSo) {
   Town t;
-  t.add(kHouse).roof_shape = RoofShape::mansard;
+  t.add({{0, 0}, {30, 0}, {30, 20}, {22, 20}, {22, 8}, {8, 8}, {8, 20}, {0, 20}}).roof_shape = RoofShape::pyramidal;
   t.build();
   EXPECT_EQ(t.part().built_roof, RoofShape::hipped);
-  EXPECT_EQ(t.part().attributes.roof_shape.value, RoofShape::mansard);
+  EXPECT_EQ(t.part().lod, 2);
+  EXPECT_EQ(t.part().attributes.roof_shape.value, RoofShape::pyramidal);
   EXPECT_TRUE(t.reported(IssueCode::roof_shape_adapted));
 }
 

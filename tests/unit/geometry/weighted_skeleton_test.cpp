@@ -78,6 +78,40 @@ TEST(WeightedSkeleton, HipOfATenBySixPlan) {
   EXPECT_NEAR(area_seen_from_above(*s), 60, 1e-9);
 }
 
+TEST(WeightedSkeleton, EdgesOnOneLineTakeTheGentlerSlope) {
+  // From the beginning: two halves of one wall.
+  Polygon plan = polygon({{0, 0}, {5, 0}, {10, 0}, {10, 6}, {0, 6}});
+  std::vector<EdgeProfile> profiles = equal(plan);
+  profiles[1].slope = kUpright;
+  auto s = weighted_skeleton(plan, profiles);
+  ASSERT_TRUE(s);
+  EXPECT_EQ(s->faces.size(), 4u);
+  EXPECT_EQ(s->merged, (std::vector<std::uint32_t>{0, 0, 2, 3, 4}));
+  // Later: eaves at y = 0 meet the line of a gable at y = 1 when they are 1 m high; from there on it is a roof as well.
+  plan = polygon({{0, 1}, {4, 1}, {4, 0}, {10, 0}, {10, 7}, {0, 7}});
+  profiles = equal(plan);
+  profiles[0].slope = kUpright;
+  s = weighted_skeleton(plan, profiles);
+  ASSERT_TRUE(s) << name(s.error());
+  EXPECT_NEAR(area_seen_from_above(*s), area(plan), 1e-9);
+  for (const auto& face : s->faces) {
+    if (!face.upright) continue;
+    for (const auto n : face.loops[0]) EXPECT_LE(s->nodes[n].height, 1 + 1e-9);
+  }
+  EXPECT_NEAR(s->height(), 3.5, 1e-9);
+}
+
+TEST(WeightedSkeleton, SaysWhyItGivesUp) {
+  const Polygon plan = polygon({{0, 0}, {10, 0}, {10, 6}, {0, 6}});
+  EXPECT_EQ(weighted_skeleton(plan, equal(plan, kUpright)).error(), SkeletonFailure::unbounded);
+  EXPECT_EQ(weighted_skeleton(plan, equal(plan, 0)).error(), SkeletonFailure::bad_slope);
+  EXPECT_EQ(weighted_skeleton(polygon({{0, 0}, {9000, 0}, {9000, 6}, {0, 6}}), equal(plan)).error(), SkeletonFailure::too_large);
+  EXPECT_EQ(weighted_skeleton(polygon({{0, 0}, {10, 0}}), std::vector<EdgeProfile>(2)).error(), SkeletonFailure::too_large);
+  std::vector<EdgeProfile> falling = equal(plan);
+  falling[0].changes = {{2, 1}, {1, 2}};
+  EXPECT_EQ(weighted_skeleton(plan, falling).error(), SkeletonFailure::bad_slope);
+}
+
 TEST(WeightedSkeleton, AgreesWithCgalWhereSlopesAreEqual) {
   const char* more = std::getenv("BLOCKRAND_MANY");
   const std::uint64_t rounds = more ? 10000 : 1500;

@@ -195,11 +195,11 @@ const std::vector<Damage>& damages() {
          json& ring = l.geometry(2)["boundaries"][0][1][0];
          ring.push_back(ring[0]);
        }},
-      {"has a ring of 2 vertices",
+      {"has a ring: 101 too few points",
        [](Lines& l) {
          l.geometry(2)["boundaries"][0][1][0] = {0, 1};
        }},
-      {"a vertex twice in a row",
+      {"has a ring: 102 consecutive points the same",
        [](Lines& l) {
          json& ring = l.geometry(2)["boundaries"][0][1][0];
          ring.insert(ring.begin() + 1, ring[0]);
