@@ -75,6 +75,7 @@ std::string_view roof_type_code(model::RoofShape shape) {
     case hipped_and_gabled:
     case crosspitched:
     case butterfly:
+    case lined:
     case many: return "1130";  // "combination of roof forms"
     case other: return {};
   }
