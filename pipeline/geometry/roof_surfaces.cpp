@@ -57,6 +57,7 @@ class Tidy {
     drop_fins();
     drop_columns();
     cut_chains();
+    join_planes();
     RoofSurfaces out;
     for (const Group& group : groups_) emit(group, out);
     out.wall_tops.resize(corners_);
@@ -406,6 +407,84 @@ class Tidy {
     return static_cast<std::size_t>(std::find(chain.begin(), chain.end(), node) - chain.begin());
   }
 
+  /// Do two edges lie on one line, to what rounding leaves of that?
+  bool on_one_line(std::uint32_t e, std::uint32_t f) const {
+    const Point3 a = nodes_[e], b = nodes_[end_of_[e]], c = nodes_[f], d = nodes_[end_of_[f]];
+    const double dx = b.x - a.x, dy = b.y - a.y, length = std::sqrt(dx * dx + dy * dy);
+    if (dx * (d.x - c.x) + dy * (d.y - c.y) <= 0) return false;
+    const auto off = [&](Point3 p) { return std::fabs(dx * (p.y - a.y) - dy * (p.x - a.x)) / length; };
+    return off(c) < kOneLine && off(d) < kOneLine;
+  }
+  /// How far the nodes of a loop lie off the plane of another one, m.
+  double off_plane(const Loop& of, const Loop& loop) const {
+    double nx = 0, ny = 0, nz = 0, mx = 0, my = 0, mz = 0;
+    const Point3 o = nodes_[of[0]];
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      const Point3 p = nodes_[of[i]], q = nodes_[of[(i + 1) % of.size()]];
+      const double ax = p.x - o.x, ay = p.y - o.y, az = p.z - o.z, bx = q.x - o.x, by = q.y - o.y, bz = q.z - o.z;
+      nx += ay * bz - az * by;
+      ny += az * bx - ax * bz;
+      nz += ax * by - ay * bx;
+      mx += ax, my += ay, mz += az;
+    }
+    const double length = std::sqrt(nx * nx + ny * ny + nz * nz), n = static_cast<double>(of.size());
+    if (length == 0) return INFINITY;
+    double most = 0;
+    for (const std::uint32_t i : loop) {
+      const Point3 p = nodes_[i];
+      most = std::max(most, std::fabs((p.x - o.x - mx / n) * nx + (p.y - o.y - my / n) * ny + (p.z - o.z - mz / n) * nz) / length);
+    }
+    return most;
+  }
+
+  /// Neighbouring faces of edges on one line are one plane: exactly so for the skeleton where the line is exact, here where
+  /// rounding has bent it.
+  void join_planes() {
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      for (std::size_t h = g + 1; h < groups_.size(); ++h) {
+        Group &a = groups_[g], &b = groups_[h];
+        if (a.upright || b.upright || a.level != b.level || a.edge >= corners_ || b.edge >= corners_ || a.edge == b.edge) continue;
+        if (a.loops.size() != 1 || b.loops.size() != 1 || !on_one_line(a.edge, b.edge)) continue;
+        if (std::max(off_plane(a.loops[0], b.loops[0]), off_plane(b.loops[0], a.loops[0])) > kOnePlane) continue;
+        if (auto both = united(a.loops[0], b.loops[0])) {
+          a.loops[0] = std::move(*both);
+          groups_.erase(groups_.begin() + static_cast<std::ptrdiff_t>(h));
+          h = g;  // the larger face may have further neighbours
+        }
+      }
+  }
+  /// The loop around two that share one run of arcs; none where they do not, or touch elsewhere as well.
+  static std::optional<Loop> united(const Loop& a, const Loop& b) {
+    const auto has_arc = [](const Loop& loop, std::uint32_t from, std::uint32_t to) {
+      for (std::size_t i = 0; i < loop.size(); ++i)
+        if (loop[i] == from && loop[(i + 1) % loop.size()] == to) return true;
+      return false;
+    };
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> arcs;
+    const auto add = [&](const Loop& loop, const Loop& other) {
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const std::uint32_t from = loop[i], to = loop[(i + 1) % loop.size()];
+        if (!has_arc(other, to, from)) arcs.push_back({from, to});
+      }
+    };
+    add(a, b);
+    if (arcs.size() == a.size()) return std::nullopt;
+    add(b, a);
+    std::sort(arcs.begin(), arcs.end());
+    for (std::size_t i = 0; i + 1 < arcs.size(); ++i)
+      if (arcs[i].first == arcs[i + 1].first) return std::nullopt;
+    Loop out;
+    std::uint32_t at = arcs[0].first;
+    do {
+      out.push_back(at);
+      const auto next = std::lower_bound(arcs.begin(), arcs.end(), std::pair(at, 0u));
+      if (next == arcs.end() || next->first != at) return std::nullopt;
+      at = next->second;
+    } while (at != arcs[0].first && out.size() <= arcs.size());
+    if (out.size() != arcs.size()) return std::nullopt;
+    return out;
+  }
+
   void emit(const Group& group, RoofSurfaces& out) const {
     const auto points = [&](const Loop& loop) {
       std::vector<Point3> path;
@@ -450,6 +529,8 @@ class Tidy {
   }
 
   static constexpr std::uint32_t kNone = 0xffffffff;
+  static constexpr double kOneLine = 0.01;         ///< m: as plans lose corners that bend no wall
+  static constexpr double kOnePlane = 0.005;       ///< m: half of what the checker allows
   static constexpr double kMergedHeights = 0.02;  ///< m: what a steep face rises over kNarrowestFace
   std::vector<Point3> nodes_;
   std::vector<std::uint32_t> end_of_, group_end_, merged_, parent_;

@@ -37,7 +37,7 @@ struct WeightedSkeletonNode {
 /// One plane's region of the roof. Slopes are at least kLeastSlope.
 struct WeightedSkeletonFace {
   static constexpr std::uint32_t kDeck = 0xffffffff;
-  std::uint32_t edge = 0;   ///< the edge it rises from (the first of several on one line with one profile); kDeck
+  std::uint32_t edge = 0;   ///< the edge it rises from (of several on one line the first one); kDeck
   std::uint32_t level = 0;  ///< how many changes of slope lie below it
   bool upright = false;     ///< stands on its edge's line; no area seen from above
   /// Counter-clockwise from above (upright ones: from outside), into WeightedSkeleton::nodes. A deck's first loop is its
@@ -48,7 +48,7 @@ struct WeightedSkeletonFace {
 struct WeightedSkeleton {
   std::vector<WeightedSkeletonNode> nodes;  ///< the polygon's corners first, in ring order
   std::vector<WeightedSkeletonFace> faces;  ///< in order of edge and level, decks last
-  std::vector<std::uint32_t> merged;        ///< for each edge the one that it was joined with, itself for most
+  std::vector<std::uint32_t> merged;        ///< for each edge the one that it continues on one line, itself for most
   double height() const;                    ///< m, the highest node
 };
 

@@ -16,8 +16,7 @@ using model::RoofShape;
 
 namespace {
 
-constexpr double kLeastDistance =
-    0.05;  // m from the apex to each edge. A nearer one would get a face that stands upright.
+constexpr double kLeastDistance = 0.05;  // m from apex to edge. A nearer one would get a face that stands upright.
 /// m. A ring is left out where an edge of it would be shorter: rounding moves ring points by up to 0.7 mm, and the
 /// checker wants faces of four corners nowhere narrower than 2 mm.
 constexpr double kShortestRingEdge = 0.01;

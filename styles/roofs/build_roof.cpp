@@ -38,7 +38,14 @@ Point2 way_up(const Polygon& plan, const RoofRequest& request) {
     return {-down.x, -down.y};
   }
   const Point2 axis = geometry::long_axis(plan.outer.points);
-  return request.across ? axis : Point2{-axis.y, axis.x};
+  const Point2 up = request.across ? axis : Point2{-axis.y, axis.x};
+  // Low where the longest edge looks, so that turning a plan turns its roof; where that edge lies along the way, where its
+  // following corner lies.
+  const Point2 down = default_slope(plan);
+  double against = up.x * down.x + up.y * down.y;
+  constexpr double kSquare = 0.1;
+  if (std::fabs(against) < kSquare) against = up.x * -down.y + up.y * down.x;
+  return against > 0 ? Point2{-up.x, -up.y} : up;
 }
 
 }  // namespace
@@ -80,7 +87,10 @@ std::optional<BuiltRoof> build_roof(const Polygon& plan, const RoofRequest& requ
     }
     default: {
       BuiltRoof out = as_asked(flat_roof(plan, measures.eaves + measures.height), RoofShape::flat);
-      if (request.shape == RoofShape::other || request.shape == RoofShape::many) out.note = IssueCode::roof_shape_unknown;
+      if (request.shape == RoofShape::other || request.shape == RoofShape::many) {
+        out.note = IssueCode::roof_shape_unknown;
+        out.detail = request.shape == RoofShape::many ? "many" : "";
+      }
       return out;
     }
   }

@@ -28,12 +28,11 @@ using model::RoofShape;
 
 namespace {
 
-constexpr double kOnLine =
-    0.004;  // m. Nearer corners lie on the line; keeps faces plane within half the checker's 0.01.
+constexpr double kOnLine = 0.004;   // m. Nearer corners lie on the line; half of what faces may be off their plane.
 constexpr double kClear = 0.003;    // m between a chord and all that it does not touch: the checker's 2 mm and rounding
 constexpr double kComfort = 0.010;  // m. A line that passes a corner more narrowly looks for a better place.
 constexpr double kShift = 0.008;    // m. Steps of that search, to both sides in turn.
-constexpr int kMostShifts = 4;      // to each side; of 240,000 random plans none needed more
+constexpr int kMostShifts = 4;      // to each side; of 240,000 roofs on random plans none needed more
 constexpr double kNarrowestStrip = 0.1;  // m. Leaves 4 cm where its two lines shift towards each other.
 constexpr double kNarrowestPlan = 0.02;  // m. Such a wall takes no roof but a flat one.
 constexpr double kLeastStep = 0.01;  // m. Lower upright steps, and roofs, would be narrower than rounding keeps apart.

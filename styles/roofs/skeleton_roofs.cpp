@@ -36,6 +36,11 @@ constexpr int kVaultSteps = 5;             ///< pitches of a round roof
 constexpr double kWidestEnd = 30;          ///< m. A wider end is no gable of a wing but the side of a hall.
 constexpr double kLeastCosine = -0.70710678118654752;  ///< corners of an end from 45 to 135 degrees
 constexpr double kMostCosine = 0.70710678118654752;
+constexpr double kCompact = 0.88;          ///< of the hull's area: a plan with recesses and bends, but one wing (an L has 0.8)
+constexpr double kAlmostCompact = 0.7;     ///< ... and one in which no end of a wing was found
+constexpr double kAlongAxis = 0.94;        ///< cosine of 20 degrees: pieces of a bent end wall
+constexpr double kEndZone = 0.25;          ///< of the plan's length: an end wall with a recess
+constexpr double kSquareEnough = 0.8660254037844386;   ///< cosine of the 30 degrees by which a ridge may leave its end obliquely
 
 /// The plan's edges, ring by ring.
 struct Edge {
@@ -64,11 +69,22 @@ int turn(Point2 a, Point2 b, Point2 c) {
   return geometry::orientation(geometry::to_grid(a), geometry::to_grid(b), geometry::to_grid(c));
 }
 
-bool is_convex(const Polygon& plan) {
-  const auto& p = plan.outer.points;
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (turn(p[i], p[(i + 1) % p.size()], p[(i + 2) % p.size()]) < 0) return false;
-  return plan.holes.empty();
+/// The plan's area by that of its convex hull; 0 with holes.
+double compactness(const Polygon& plan) {
+  if (!plan.holes.empty()) return 0;
+  std::vector<Point2> points = plan.outer.points;
+  std::sort(points.begin(), points.end());
+  std::vector<Point2> hull;
+  for (int half = 0; half < 2; ++half) {
+    const std::size_t start = hull.size();
+    for (const Point2 p : points) {
+      while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), p) <= 0) hull.pop_back();
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return geometry::signed_area(plan.outer.points) / geometry::signed_area(hull);
 }
 
 /// Cosine of the angle at b.
@@ -186,15 +202,20 @@ class Builder {
   Builder(const Polygon& plan, const RoofRequest& request) : plan_(plan), request_(request), edges_(edges_of(plan)) {}
 
   std::vector<std::uint32_t> ends() const {
-    if (is_convex(plan_)) return axis_ends();
+    const double compact = compactness(plan_);
+    if (compact >= kCompact) return axis_ends();
     const auto hips = geometry::weighted_skeleton(plan_, profiles(edges_.size(), pitch(1), {}, {}));
     if (!hips) return {};
+    const auto surfaces = geometry::roof_surfaces(plan_, *hips, 1).surfaces;
     std::vector<std::uint32_t> found;
-    for (const auto& s : geometry::roof_surfaces(plan_, *hips, 1).surfaces) {
-      if (s.loops[0].size() != 3 || s.level != 0) continue;
+    for (const auto& s : surfaces) {
+      if (s.loops[0].size() != 3) continue;
       const Edge& e = edges_[s.edge];
-      if (e.length <= kWidestEnd && end_corner(e.before, e.from, e.to) && end_corner(e.from, e.to, e.after)) found.push_back(s.edge);
+      if (e.length <= kWidestEnd && end_corner(e.before, e.from, e.to) && end_corner(e.from, e.to, e.after) &&
+          ridge_leaves(surfaces, s.loops[0], e))
+        found.push_back(s.edge);
     }
+    if (found.empty() && compact >= kAlmostCompact) return axis_ends();
     return without_neighbours(edges_, std::move(found));
   }
 
@@ -245,25 +266,87 @@ class Builder {
   }
 
  private:
+  /// Does a ridge go on from the top of a hip's triangle, about square to its edge? A piece of a long wall between two
+  /// steps has a triangle, too, but the ridge passes it.
+  static bool ridge_leaves(const std::vector<geometry::RoofSurfaces::Surface>& surfaces, const std::vector<Point3>& triangle,
+                           const Edge& edge) {
+    Point3 top = triangle[0];
+    for (const Point3 p : triangle)
+      if (p.z > top.z) top = p;
+    const Point2 out = edge.outwards();
+    for (const auto& s : surfaces)
+      for (const auto& loop : s.loops)
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+          const Point3 a = loop[i], b = loop[(i + 1) % loop.size()];
+          if (a != top || b.z <= 0) continue;
+          const double dx = b.x - a.x, dy = b.y - a.y, length = std::sqrt(dx * dx + dy * dy);
+          if (-(dx * out.x + dy * out.y) >= kSquareEnough * length) return true;
+        }
+    return false;
+  }
+
+  /// The two ends of a plan that is one wing: the walls that look along its axis and against it.
   std::vector<std::uint32_t> axis_ends() const {
     const Point2 axis = ridge_axis(plan_, request_);
-    std::vector<std::uint32_t> found;
+    const auto count = static_cast<std::uint32_t>(plan_.outer.size());
+    std::vector<std::vector<std::uint32_t>> sides;
     for (const double way : {1.0, -1.0}) {
+      const Point2 towards{way * axis.x, way * axis.y};
+      const geometry::Extent extent = geometry::extent_along(plan_.outer.points, towards);
+      const double zone = extent.maximum - kEndZone * (extent.maximum - extent.minimum);
       std::uint32_t best = 0;
       double most = -2;
-      for (std::uint32_t i = 0; i < edges_.size(); ++i) {
-        const Point2 out = edges_[i].outwards();
-        const double looks = way * (out.x * axis.x + out.y * axis.y);
-        // Edges of one direction in several pieces, or a regular plan: the first of those that look alike.
+      std::vector<char> looks_along(count, 0);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const Edge& e = edges_[i];
+        const Point2 out = e.outwards();
+        const double looks = out.x * towards.x + out.y * towards.y;
+        const double place = ((e.from.x + e.to.x) * towards.x + (e.from.y + e.to.y) * towards.y) / 2;
+        looks_along[i] = looks >= kAlongAxis && place >= zone;
+        // Of several that look alike, as on a regular plan, the first.
         constexpr double kAlike = 1e-3;
-        if (looks > most + kAlike) {
+        if (place >= zone && looks > most + kAlike) {
           most = looks;
           best = i;
         }
       }
-      found.push_back(best);
+      looks_along[best] = 1;
+      sides.push_back(run_of_walls(looks_along));
     }
-    return without_neighbours(edges_, std::move(found));
+    std::vector<std::uint32_t> found;
+    for (const auto& side : sides) found.insert(found.end(), side.begin(), side.end());
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    // The two ends of a triangle share a corner: the shorter one is it.
+    if (sides[0].size() == 1 && sides[1].size() == 1) return without_neighbours(edges_, std::move(found));
+    return found;
+  }
+
+  /// The shortest way along the outer ring over all marked walls, with what lies between them (the sides of a recess); the
+  /// longest of them alone where that is more than they are.
+  std::vector<std::uint32_t> run_of_walls(const std::vector<char>& marked) const {
+    const auto count = static_cast<std::uint32_t>(marked.size());
+    std::uint32_t longest_gap = 0, after_gap = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (!marked[i]) continue;
+      std::uint32_t gap = 0;
+      while (gap < count && !marked[(i + count - 1 - gap) % count]) ++gap;
+      if (gap >= longest_gap) {
+        longest_gap = gap;
+        after_gap = i;
+      }
+    }
+    std::vector<std::uint32_t> run;
+    double ours = 0, others = 0;
+    std::uint32_t longest = after_gap;
+    for (std::uint32_t k = 0; k < count - longest_gap; ++k) {
+      const std::uint32_t i = (after_gap + k) % count;
+      run.push_back(i);
+      (marked[i] ? ours : others) += edges_[i].length;
+      if (marked[i] && edges_[i].length > edges_[longest].length) longest = i;
+    }
+    if (others > ours) return {longest};
+    return run;
   }
 
   /// The farthest that a point of the plan lies from the eaves that rise to it, m; 0 when there is no skeleton.

@@ -6,6 +6,7 @@
 #include "pipeline/geometry/straight_skeleton.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/geometry/weighted_skeleton.h"
 #include "styles/roofs/roof.h"
 #include "tests/unit/geometry/shapes.h"
 
@@ -27,27 +28,39 @@ model::Polygon plan(int kind) {
   }
 }
 
-void skeleton(benchmark::State& state) {
+roofs::Roof hips(const model::Polygon& p) {
+  roofs::RoofRequest request;
+  request.shape = model::RoofShape::hipped;
+  request.measures = {36, 4};
+  return roofs::build_roof(p, request)->roof;
+}
+
+void weighted_skeleton(benchmark::State& state) {
   const auto p = plan(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(geometry::straight_skeleton(p));
+  const std::vector<geometry::EdgeProfile> profiles(p.outer.size() + (p.holes.empty() ? 0 : p.holes[0].size()), {0.84, {}});
+  for (auto _ : state) benchmark::DoNotOptimize(geometry::weighted_skeleton(p, profiles));
 }
 void skeleton_by_cgal(benchmark::State& state) {
   const auto p = plan(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(geometry::straight_skeleton_by_cgal(p));
+  for (auto _ : state) benchmark::DoNotOptimize(geometry::straight_skeleton(p));
+}
+void hipped_roof(benchmark::State& state) {
+  const auto p = plan(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(hips(p));
 }
 void envelope_of_hips(benchmark::State& state) {
   const auto p = plan(static_cast<int>(state.range(0)));
-  const auto roof = roofs::hipped_roof(p, {36, 4});
-  for (auto _ : state) benchmark::DoNotOptimize(generate::envelope(p, 30, *roof, {}));
+  const auto roof = hips(p);
+  for (auto _ : state) benchmark::DoNotOptimize(generate::envelope(p, 30, roof, {}));
 }
 void triangulate(benchmark::State& state) {
   const auto p = plan(static_cast<int>(state.range(0)));
-  const auto solid = generate::envelope(p, 30, *roofs::hipped_roof(p, {36, 4}), {});
+  const auto solid = generate::envelope(p, 30, hips(p), {});
   for (auto _ : state) benchmark::DoNotOptimize(geometry::triangulate(solid));
 }
 void check(benchmark::State& state) {
   const auto p = plan(static_cast<int>(state.range(0)));
-  const auto solid = generate::envelope(p, 30, *roofs::hipped_roof(p, {36, 4}), {});
+  const auto solid = generate::envelope(p, 30, hips(p), {});
   const auto triangles = geometry::triangulate(solid);
   for (auto _ : state) benchmark::DoNotOptimize(geometry::check_solid(solid, *triangles));
 }
@@ -59,7 +72,8 @@ void strictly_simple(benchmark::State& state) {
 }  // namespace
 
 // 0: four corners, 1: L, 2: courtyard.
-BENCHMARK(skeleton)->DenseRange(0, 2);
+BENCHMARK(weighted_skeleton)->DenseRange(0, 2);
+BENCHMARK(hipped_roof)->DenseRange(0, 2);
 BENCHMARK(skeleton_by_cgal)->DenseRange(0, 2);
 BENCHMARK(envelope_of_hips)->DenseRange(0, 2);
 BENCHMARK(triangulate)->DenseRange(0, 2);

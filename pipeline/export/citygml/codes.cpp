@@ -74,6 +74,7 @@ std::string_view roof_type_code(model::RoofShape shape) {
     case spire: return "1120";  // "pyramidal broach roof"
     case hipped_and_gabled:
     case crosspitched:
+    case helm:
     case butterfly:
     case lined:
     case many: return "1130";  // "combination of roof forms"

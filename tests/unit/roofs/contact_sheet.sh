@@ -1,0 +1,15 @@
+#!/bin/sh
+# One picture per roof shape with all plans of grid.txt side by side, rows of five from the north.
+#   contact_sheet.sh TEST_PROGRAM OUT_FOLDER      for example: contact_sheet.sh build/ci/tests/test_roof_grid /tmp/roofs
+# LOOK is a copy of ../shared/tools/render in which `npm install` has run. SHAPES limits which: SHAPES="gabled onion".
+set -eu
+program=$1 out=$2
+look=${LOOK:?"a copy of shared/tools/render with its node_modules"}
+mkdir -p "$out"
+ROOF_GRID_GLB=$out "$program" --gtest_filter='RoofGridPictures.*' >/dev/null
+for glb in "$out"/*.glb; do
+  shape=$(basename "$glb" .glb)
+  case " ${SHAPES:-$shape} " in *" $shape "*) ;; *) continue ;; esac
+  node "$look/look.mjs" "$out/$shape.png" "$glb" --from "${FROM:-85,150,215}" --to "${TO:-99,5,36}" --fov 34 --size 2000x1100 >/dev/null
+  echo "$out/$shape.png"
+done
