@@ -158,6 +158,11 @@ class MassBuilder {
   void build_lod2(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks) {
     const RoofShape asked = part.attributes.roof_shape.value;
     const roofs::RoofMeasures measures{levels.eaves, levels.top - levels.eaves};
+    if (asked != RoofShape::flat && measures.height > 0 && !part.roof_lines.empty()) {
+      const auto lined = roofs::lined_roof(plan, measures, part.roof_lines);
+      if (lined && accept(part, plan, levels, looks, *lined, RoofShape::lined)) return;
+      note(part, IssueCode::roof_lines_ignored, lined ? "their solid is not valid" : "they do not fit each other or the plan");
+    }
     if (asked != RoofShape::flat && measures.height > 0) {
       const std::optional<Polygon> simplified = simpler(plan, options_.simplify_tolerance);
       for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, simplified ? &*simplified : nullptr}) {

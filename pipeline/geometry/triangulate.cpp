@@ -134,7 +134,8 @@ std::optional<std::vector<Triangle>> triangulate_with_lines(std::span<const Grid
       for (const std::uint32_t i : line) vertex(i);
     if (cdt.number_of_vertices() != used) return std::nullopt;  // two points at one place
     for (const auto& [a, b] : walls) cdt.insert_constraint(vertex(a), vertex(b));
-    for (const auto& line : lines) cdt.insert_constraint(vertex(line[0]), vertex(line[1]));
+    for (const auto& line : lines)
+      if (line[0] != line[1]) cdt.insert_constraint(vertex(line[0]), vertex(line[1]));
   } catch (const Cdt::Intersection_of_constraints_exception&) {
     return std::nullopt;
   }
@@ -142,7 +143,7 @@ std::optional<std::vector<Triangle>> triangulate_with_lines(std::span<const Grid
   for (const auto& [a, b] : walls)
     if (!cdt.is_edge(vertex(a), vertex(b))) return std::nullopt;
   for (const auto& line : lines)
-    if (!cdt.is_edge(vertex(line[0]), vertex(line[1]))) return std::nullopt;
+    if (line[0] != line[1] && !cdt.is_edge(vertex(line[0]), vertex(line[1]))) return std::nullopt;
   mark_nesting(cdt, [&](Cdt::Face_handle face, int i) {
     return walls.contains(std::minmax(face->vertex(Cdt::cw(i))->info(), face->vertex(Cdt::ccw(i))->info()));
   });
