@@ -111,7 +111,9 @@ class MassBuilder {
     auto& a = part.attributes;
     const double ground = a.ground_height.value;
     double top = a.height.value, bottom = std::max(a.min_height.value, 0.0);
-    if (bottom > 0 && bottom > top - options_.min_wall_height) {
+    // A slab thinner than a wall's minimum is thickened below; only one without any thickness contradicts itself.
+    constexpr double kNoThickness = 0.01;  // m
+    if (bottom > 0 && bottom > top - kNoThickness) {
       note(part, IssueCode::values_conflict, fmt::format("min_height {:.2f} m under height {:.2f} m", bottom, top));
       bottom = std::max(0.0, top - std::max(options_.min_wall_height, a.storey_height.value));
     }
@@ -124,7 +126,8 @@ class MassBuilder {
     }
     const double room = top - bottom - (part.canopy ? std::min(options_.canopy_thickness, (top - bottom) / 2) : options_.min_wall_height);
     if (roof > room) {
-      if (a.roof_height.source == model::Source::tag)
+      // A roof that fills its part, as those of domes do, stands on a low wall without a word.
+      if (a.roof_height.source == model::Source::tag && roof - room > options_.min_wall_height + kNoThickness)
         note(part, IssueCode::roof_height_clamped, fmt::format("{:.2f} m of {:.2f} m", std::max(room, 0.0), roof));
       roof = std::max(room, 0.0);
     }

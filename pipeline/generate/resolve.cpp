@@ -117,7 +117,11 @@ struct Resolver {
 
   Sourced<double> storeys() {
     std::vector<Choice<double>> choices;
-    if (own.storeys) choices.push_back({*own.storeys, Source::tag, kTagConfidence, "tagged"});
+    if (const double below = storeys_below(own, preset.storey_height); below > 0)
+      choices.push_back({below + *own.storeys, Source::implied, kImpliedConfidence,
+                         fmt::format("{:g} tagged storeys above {:g} skipped ones", *own.storeys, below)});
+    else if (own.storeys)
+      choices.push_back({*own.storeys, Source::tag, kTagConfidence, "tagged"});
     if (outline && !own.height && outline->storeys)
       choices.push_back({*outline->storeys, Source::implied, kOutlineConfidence, "the outline's storeys"});
     if (const auto opinion = in.neighbours.storeys(place(), group, id, options.neighbour_minimum))
@@ -366,7 +370,7 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
                  own_tags && building.osm != part.osm ? &building.mapped : nullptr, own_use ? in.defaults.use(part_use) : preset,
                  group, plan, building.osm};
       part.attributes = r.resolve(ground);
-      for (TagConflict& c : tag_conflicts(part.mapped, part.attributes.roof_shape.value, part.plan, !part.roof_lines.empty())) {
+      for (TagConflict& c : tag_conflicts(part.mapped, {part.attributes.roof_shape.value, part.plan, r.preset.storey_height, !part.roof_lines.empty()})) {
         model::ReportRow row{part.osm, c.code, std::move(c.text)};
         // Pieces of one outline have the same tags.
         if (std::find(conflicts.begin(), conflicts.end(), row) == conflicts.end()) conflicts.push_back(std::move(row));

@@ -79,9 +79,9 @@ std::string shape_text(RoofShape shape) { return "roof:shape=" + std::string(mod
 
 class Finder {
  public:
-  Finder(const MappedAttributes& tags, RoofShape shape, const Polygon& plan, bool ridges)
-      : tags_(tags), shape_(shape), plan_(plan), ridges_(ridges),
-        plain_(plan.outer.size() >= 3 && roofs::has_plain_extents(plan)) {}
+  Finder(const MappedAttributes& tags, const TaggedRoof& roof)
+      : tags_(tags), shape_(roof.shape), plan_(roof.plan), storey_height_(roof.storey_height), ridges_(roof.ridges),
+        plain_(roof.plan.outer.size() >= 3 && roofs::has_plain_extents(roof.plan)) {}
 
   std::vector<TagConflict> find() {
     if (tags_.roof_shape == RoofShape::flat) {
@@ -172,6 +172,10 @@ class Finder {
   }
 
   void storeys() {
+    if (storeys_below(tags_, storey_height_) > 0)
+      note("building:levels={:g} ends below {}: taken for the part's own storeys", *tags_.storeys,
+           tags_.min_height ? fmt::format("min_height={:g}", *tags_.min_height)
+                            : fmt::format("building:min_level={:g}", *tags_.min_storey));
     if (!tags_.height || !tags_.storeys || *tags_.storeys < 1) return;
     double roof = 0;
     std::string with;
@@ -192,6 +196,7 @@ class Finder {
   const MappedAttributes& tags_;
   const RoofShape shape_;
   const Polygon& plan_;
+  const double storey_height_;
   const bool ridges_;
   const bool plain_;  ///< the plan tells how far slopes run
   std::vector<TagConflict> out_;
@@ -225,9 +230,17 @@ std::optional<double> height_of_angle(const MappedAttributes& tags, RoofShape sh
   return slope.run * base::tan(*angle * base::kRadiansPerDegree) / slope.rise;
 }
 
-std::vector<TagConflict> tag_conflicts(const MappedAttributes& tags, RoofShape shape, const Polygon& plan, bool ridges) {
-  return Finder(tags, shape, plan, ridges).find();
+double storeys_below(const MappedAttributes& tags, double storey_height) {
+  if (tags.height || !tags.storeys || *tags.storeys <= 0) return 0;
+  double below = 0;
+  if (tags.min_height)
+    below = std::floor(*tags.min_height / storey_height + 0.5);
+  else if (tags.min_storey)
+    below = *tags.min_storey;
+  return below >= *tags.storeys ? below : 0;
 }
+
+std::vector<TagConflict> tag_conflicts(const MappedAttributes& tags, const TaggedRoof& roof) { return Finder(tags, roof).find(); }
 
 double roof_limit(const MappedAttributes& tags, double height) {
   const double whole = std::max(height - tags.min_height.value_or(0), 0.0);

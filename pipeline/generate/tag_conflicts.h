@@ -39,10 +39,20 @@ struct TagConflict {
   std::string text;  ///< both values and which of them won
 };
 
+/// The scheme counts storeys from the ground. Where building:levels ends at or below building:min_level or min_height and no height
+/// is tagged, the mapper has counted the part's own: the number of storeys that lie below them; 0 otherwise.
+/// \param storey_height  m
+double storeys_below(const model::MappedAttributes& tags, double storey_height);
+
+/// What tags are held against.
+struct TaggedRoof {
+  model::RoofShape shape = model::RoofShape::flat;  ///< that is asked for
+  const model::Polygon& plan;
+  double storey_height = 3;                         ///< m
+  bool ridges = false;                              ///< roof:ridge ways lie on the plan
+};
+
 /// The contradictions among one object's tags, each once, in a fixed order.
-/// \param shape   of the roof that is asked for
-/// \param ridges  roof:ridge ways lie on the plan
-std::vector<TagConflict> tag_conflicts(const model::MappedAttributes& tags, model::RoofShape shape, const model::Polygon& plan,
-                                       bool ridges);
+std::vector<TagConflict> tag_conflicts(const model::MappedAttributes& tags, const TaggedRoof& roof);
 
 }  // namespace blockrand::generate

@@ -113,6 +113,7 @@ std::optional<std::vector<Triangle>> triangulate_with_lines(std::span<const Grid
                                                             std::span<const std::vector<std::uint32_t>> loops,
                                                             std::span<const std::array<std::uint32_t, 2>> lines) {
   Cdt cdt;
+  cdt.infinite_vertex()->info() = ~std::uint32_t{0};  // no index; walls are told by the indices of their ends
   std::vector<Cdt::Vertex_handle> handles(points.size());
   std::size_t used = 0;
   const Grid2 origin = points[loops[0][0]];

@@ -244,7 +244,7 @@ TEST(Mass, ARoofHigherThanItsHouseIsClampedAndReported) {
   tags.roof_shape = RoofShape::gabled;
   t.build();
   EXPECT_DOUBLE_EQ(top(t.part().lod2), 38);
-  EXPECT_TRUE(t.reported(IssueCode::roof_height_clamped));
+  EXPECT_TRUE(t.reported(IssueCode::values_conflict));
 }
 
 TEST(Mass, EveryShapeOnEveryPlanGivesAValidSolid) {
