@@ -114,7 +114,8 @@ class MassBuilder {
     // A slab thinner than a wall's minimum is thickened below; only one without any thickness contradicts itself.
     constexpr double kNoThickness = 0.01;  // m
     if (bottom > 0 && bottom > top - kNoThickness) {
-      note(part, IssueCode::values_conflict, fmt::format("min_height {:.2f} m under height {:.2f} m", bottom, top));
+      if (!part.mapped.height || !part.mapped.min_height)  // else resolve_attributes has reported them
+        note(part, IssueCode::values_conflict, fmt::format("underside at {:.2f} m, top at {:.2f} m", bottom, top));
       bottom = std::max(0.0, top - std::max(options_.min_wall_height, a.storey_height.value));
     }
     if (top < bottom + options_.min_wall_height) top = bottom + options_.min_wall_height;

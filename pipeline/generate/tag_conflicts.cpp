@@ -140,7 +140,7 @@ class Finder {
 
     if (!tags_.height) return;
     const double whole = *tags_.height - tags_.min_height.value_or(0);
-    if (whole <= 0) return;  // reported where the walls are made
+    if (whole <= 0) return;  // reported below
     if (height && *height > whole + kNoRoofHeight)
       note("roof:height={:g} against height={:g}{}: height won", *height, *tags_.height, above_minimum());
     const double limit = roof_limit(tags_, *tags_.height);
@@ -176,7 +176,11 @@ class Finder {
       note("building:levels={:g} ends below {}: taken for the part's own storeys", *tags_.storeys,
            tags_.min_height ? fmt::format("min_height={:g}", *tags_.min_height)
                             : fmt::format("building:min_level={:g}", *tags_.min_storey));
-    if (!tags_.height || !tags_.storeys || *tags_.storeys < 1) return;
+    if (tags_.height && tags_.min_height && *tags_.min_height > 0 && *tags_.min_height >= *tags_.height) {
+      note("min_height={:g} against height={:g}: height won", *tags_.min_height, *tags_.height);
+      return;
+    }
+    if (!tags_.height || !tags_.storeys || *tags_.storeys < 2) return;  // one storey may be a low shed
     double roof = 0;
     std::string with;
     if (shape_ != RoofShape::flat) {

@@ -229,6 +229,7 @@ class LinedRoof {
   void add_faces(std::vector<Triangle> triangles, Roof& roof) const {
     for (Triangle& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     std::sort(triangles.begin(), triangles.end());
+    raise_flat(triangles);
     const auto twice_area = [&](const Triangle& t) {
       const Point2 a = nodes_[t[0]].point, b = nodes_[t[1]].point, c = nodes_[t[2]].point;
       return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -262,6 +263,46 @@ class LinedRoof {
         for (const Triangle& t : members) add_face({{t[0], t[1], t[2]}}, roof);
       }
     }
+  }
+
+  /// A triangle at eaves height that no line bounds against a sloped one joins that slope: the diagonal that they share is
+  /// replaced by the other one, as long as fewer flat triangles come of it.
+  void raise_flat(std::vector<Triangle>& triangles) const {
+    const auto flat = [&](const Triangle& t) {
+      return std::all_of(t.begin(), t.end(), [&](std::uint32_t i) { return nodes_[i].z == 0; });
+    };
+    std::map<Pair, std::uint32_t> beside;
+    const auto enter = [&](std::uint32_t t) {
+      for (int k = 0; k < 3; ++k) beside[{triangles[t][k], triangles[t][(k + 1) % 3]}] = t;
+    };
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) enter(t);
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (std::uint32_t t = 0; t < triangles.size(); ++t)
+        for (int k = 0; k < 3 && flat(triangles[t]); ++k) {
+          const std::uint32_t a = triangles[t][k], b = triangles[t][(k + 1) % 3], c = triangles[t][(k + 2) % 3];
+          const auto other = beside.find({b, a});
+          if (other == beside.end() || segments_.contains(undirected(a, b)) || flat(triangles[other->second])) continue;
+          const std::uint32_t o = other->second;
+          const Triangle& opposite = triangles[o];
+          const std::uint32_t d = *std::find_if(opposite.begin(), opposite.end(), [&](std::uint32_t i) { return i != a && i != b; });
+          if (nodes_[d].z == 0 || !leaves_room(a, d, c) || !leaves_room(d, b, c)) continue;
+          beside.erase({a, b});
+          beside.erase({b, a});
+          triangles[t] = {a, d, c};
+          triangles[o] = {d, b, c};
+          enter(t);
+          enter(o);
+          changed = true;
+        }
+    }
+  }
+
+  /// True for counter-clockwise triangles that are nowhere narrower than kSame.
+  bool leaves_room(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+    const Point2 a = nodes_[i].point, b = nodes_[j].point, c = nodes_[k].point;
+    const double twice_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    return twice_area > kSame * std::max({distance(a, b), distance(b, c), distance(c, a)});
   }
 
   bool in_plane(const Triangle& plane, const Triangle& other) const {

@@ -162,6 +162,10 @@ TEST(TagConflicts, StoreysMustFitTheHeight) {
   tags.height = 10;
   tags.storeys = 4;
   EXPECT_THAT(texts(tags), IsEmpty());
+  tags.storeys = 1;
+  tags.height = 1.5f;
+  EXPECT_THAT(texts(tags), IsEmpty()) << "a low shed";
+  tags.height = 10;
   tags.storeys = 8;
   EXPECT_THAT(texts(tags), ElementsAre("VALUES_CONFLICT: height=10 against building:levels=8, 1.2 m each: height won"));
   tags.roof_shape = RoofShape::gabled;
@@ -170,6 +174,17 @@ TEST(TagConflicts, StoreysMustFitTheHeight) {
   EXPECT_THAT(texts(tags), IsEmpty());
   tags.roof_height = 6;
   EXPECT_THAT(texts(tags), ElementsAre(HasSubstr("height=10 and roof:height=6 against building:levels=3, 1.3 m each")));
+}
+
+TEST(TagConflicts, TheUndersideLiesBelowTheTop) {
+  auto tags = tagged(RoofShape::flat);
+  tags.height = 30;
+  tags.min_height = 30;
+  tags.storeys = 10;
+  EXPECT_THAT(texts(tags), ElementsAre("VALUES_CONFLICT: min_height=30 against height=30: height won"));
+  tags.min_height = 29.9f;
+  tags.storeys = std::nullopt;
+  EXPECT_THAT(texts(tags), IsEmpty()) << "a thin slab";
 }
 
 TEST(TagConflicts, StoreysOfAPartThatWereCountedFromItsUnderside) {

@@ -121,6 +121,17 @@ TEST(LinedRoof, ApexIsAtFullHeight) {
   EXPECT_NEAR(height_at(*roof, {16, 5}), 4, 1e-3);
 }
 
+TEST(LinedRoof, NothingLiesFlatAtTheEavesThatASlopeCanTake) {
+  // A ridge over a stem with bays beside its end (w490887948 in Triesen): Delaunay triangles would span the eaves.
+  const Polygon plan = polygon({{2.3125, 4.5}, {1.875, 1.1875}, {12.375, 0}, {13.875, 13.3125}, {0.625, 14.6875}, {0, 9.375}, {4.1875, 8.875},
+                                {3.6875, 4.3125}});
+  const auto roof = lined_roof(plan, {36, 2}, std::vector{ridge({{4.0625, 7.734375}, {13.125, 6.65625}})});
+  ASSERT_TRUE(roof);
+  EXPECT_EQ(verdict(plan, *roof), "none");
+  EXPECT_GT(height_at(*roof, {7, 10}), 0.5);
+  EXPECT_GT(height_at(*roof, {8, 3}), 0.5);
+}
+
 TEST(LinedRoof, CourtyardWithARidgeAllAround) {
   Polygon plan = polygon({{0, 0}, {40, 0}, {40, 30}, {0, 30}});
   plan.holes.push_back(ring({{10, 10}, {10, 20}, {30, 20}, {30, 10}}));
