@@ -256,10 +256,17 @@ struct Resolver {
       if (a.roof_shape.value == RoofShape::flat) walls += a.roof_storeys.value * a.storey_height.value;
       if (walls <= 0 && a.roof_height.value <= 0) walls = a.storey_height.value;
       const bool from_tags = a.storeys.source == Source::tag;
+      std::string why = fmt::format("{:g} storeys of {:.1f} m and a roof of {:.1f} m", a.storeys.value, a.storey_height.value,
+                                    a.roof_height.value);
+      // Assumed storeys stand above the tagged underside, at least one of them; of a canopy, its slab.
+      const double under = own.min_height.value_or(own.min_storey.value_or(0) * a.storey_height.value);
+      const double least = text(own.use) == "roof" ? options.canopy_thickness : a.storey_height.value;
+      if (!own.storeys && under > 0 && walls < under + least) {
+        walls = under + least;
+        why = fmt::format("{:.1f} m above an underside at {:.1f} m, and a roof of {:.1f} m", least, under, a.roof_height.value);
+      }
       a.height = make<double>(walls + a.roof_height.value, from_tags ? Source::implied : a.storeys.source,
-                              from_tags ? 0.6 : a.storeys.confidence,
-                              fmt::format("{:g} storeys of {:.1f} m and a roof of {:.1f} m", a.storeys.value,
-                                          a.storey_height.value, a.roof_height.value));
+                              from_tags ? 0.6 : a.storeys.confidence, std::move(why));
     }
 
     if (own.min_height) {

@@ -20,9 +20,9 @@ namespace {
 
 // Two heights contradict each other when they differ by more than both: mappers estimate, storeys differ, and eaves
 // hang over.
-constexpr double kApart = 0.5;           ///< m
-constexpr double kApartShare = 0.25;     ///< of the larger one
-constexpr double kRoughShare = 0.5;      ///< the same where the plan tells the run of the slope only roughly
+constexpr double kApart = 0.5;        ///< m
+constexpr double kApartShare = 0.25;  ///< of the larger one
+constexpr double kRoughShare = 0.5;   ///< the same where the plan tells the run of the slope only roughly
 /// m. On a flat roof, roof:height up to this is the parapet: balustrades are 0.9 to 1.1 m high.
 constexpr double kParapet = 1.2;
 constexpr double kFlatPitch = 10;        ///< degrees. Flat roofs drain; the German rules for them end here.
@@ -39,7 +39,8 @@ bool apart(double a, double b, double share) {
 }
 
 bool stands_around_apex(RoofShape shape) {
-  return shape == RoofShape::pyramidal || shape == RoofShape::cone || shape == RoofShape::spire || shape == RoofShape::helm;
+  return shape == RoofShape::pyramidal || shape == RoofShape::cone || shape == RoofShape::spire ||
+         shape == RoofShape::helm;
 }
 
 /// Roofs that have one pitch from the eaves up, so that an angle gives a height without doubt.
@@ -80,7 +81,11 @@ std::string shape_text(RoofShape shape) { return "roof:shape=" + std::string(mod
 class Finder {
  public:
   Finder(const MappedAttributes& tags, const TaggedRoof& roof)
-      : tags_(tags), shape_(roof.shape), plan_(roof.plan), storey_height_(roof.storey_height), ridges_(roof.ridges),
+      : tags_(tags),
+        shape_(roof.shape),
+        plan_(roof.plan),
+        storey_height_(roof.storey_height),
+        ridges_(roof.ridges),
         plain_(roof.plan.outer.size() >= 3 && roofs::has_plain_extents(roof.plan)) {}
 
   std::vector<TagConflict> find() {
@@ -122,21 +127,24 @@ class Finder {
     if (tags_.roof_angle) {
       const double limit = stands_around_apex(shape_) ? kSteepestSpire : kSteepestRoof;
       if (*tags_.roof_angle > limit)
-        out_.push_back({IssueCode::value_clamped, fmt::format("roof:angle={:g}, limited to {:g}", *tags_.roof_angle, limit)});
+        out_.push_back(
+            {IssueCode::value_clamped, fmt::format("roof:angle={:g}, limited to {:g}", *tags_.roof_angle, limit)});
     }
     // What an angle means hangs on the shape, which must not be a guess.
     std::optional<double> from_angle;
     if (tags_.roof_shape && has_one_pitch(shape_)) from_angle = height_of_angle(tags_, shape_, plan_);
     const double share = plain_ ? kApartShare : kRoughShare;
     if (height && from_angle && apart(*height, *from_angle, share))
-      note("roof:height={:g} against roof:angle={:g}, which gives {:.1f} m: roof:height won", *height, *tags_.roof_angle, *from_angle);
+      note("roof:height={:g} against roof:angle={:g}, which gives {:.1f} m: roof:height won", *height,
+           *tags_.roof_angle, *from_angle);
 
     const double inner = tags_.roof_storeys.value_or(0) * kLowestRoofStorey;
     if (height && *height < inner)
       note("roof:height={:g} has no room for roof:levels={:g}: roof:height won", *height, *tags_.roof_storeys);
-    else if (!height && from_angle && share == kApartShare && *from_angle < inner && apart(*from_angle, inner, kApartShare))
-      note("roof:angle={:g} gives {:.1f} m, no room for roof:levels={:g}: roof:angle won", *tags_.roof_angle, *from_angle,
-           *tags_.roof_storeys);
+    else if (!height && from_angle && share == kApartShare && *from_angle < inner &&
+             apart(*from_angle, inner, kApartShare))
+      note("roof:angle={:g} gives {:.1f} m, no room for roof:levels={:g}: roof:angle won", *tags_.roof_angle,
+           *from_angle, *tags_.roof_storeys);
 
     if (!tags_.height) return;
     const double whole = *tags_.height - tags_.min_height.value_or(0);
@@ -146,11 +154,13 @@ class Finder {
     const double limit = roof_limit(tags_, *tags_.height);
     if (!height && from_angle && *from_angle > limit && apart(*from_angle, limit, share))
       note("roof:angle={:g} gives {:.1f} m, height={:g}{} leaves {:.1f} m: height won", *tags_.roof_angle, *from_angle,
-           *tags_.height, tags_.storeys ? fmt::format(" with building:levels={:g}", *tags_.storeys) : above_minimum(), limit);
+           *tags_.height, tags_.storeys ? fmt::format(" with building:levels={:g}", *tags_.storeys) : above_minimum(),
+           limit);
   }
 
   std::string above_minimum() const {
-    return tags_.min_height && *tags_.min_height > 0 ? fmt::format(" above min_height={:g}", *tags_.min_height) : std::string();
+    return tags_.min_height && *tags_.min_height > 0 ? fmt::format(" above min_height={:g}", *tags_.min_height)
+                                                     : std::string();
   }
 
   void directions() {
@@ -166,9 +176,11 @@ class Finder {
     const bool falls_across = std::fabs(down.x * axis.y - down.y * axis.x) > kAlong;
     const bool ridge_along = *tags_.roof_orientation == RoofOrientation::along;
     if (falls_along && ridge_along)
-      note("roof:direction={:g} falls along the longer side against roof:orientation=along: roof:direction won", *tags_.roof_direction);
+      note("roof:direction={:g} falls along the longer side against roof:orientation=along: roof:direction won",
+           *tags_.roof_direction);
     if (falls_across && !ridge_along)
-      note("roof:direction={:g} falls across the longer side against roof:orientation=across: roof:direction won", *tags_.roof_direction);
+      note("roof:direction={:g} falls across the longer side against roof:orientation=across: roof:direction won",
+           *tags_.roof_direction);
   }
 
   void storeys() {
@@ -194,7 +206,8 @@ class Finder {
     }
     const double each = (*tags_.height - roof) / *tags_.storeys;
     if (each >= kLeastStorey || roof > *tags_.height) return;
-    note("height={:g}{} against building:levels={:g}, {:.1f} m each: height won", *tags_.height, with, *tags_.storeys, each);
+    note("height={:g}{} against building:levels={:g}, {:.1f} m each: height won", *tags_.height, with, *tags_.storeys,
+         each);
   }
 
   const MappedAttributes& tags_;
@@ -244,7 +257,9 @@ double storeys_below(const MappedAttributes& tags, double storey_height) {
   return below >= *tags.storeys ? below : 0;
 }
 
-std::vector<TagConflict> tag_conflicts(const MappedAttributes& tags, const TaggedRoof& roof) { return Finder(tags, roof).find(); }
+std::vector<TagConflict> tag_conflicts(const MappedAttributes& tags, const TaggedRoof& roof) {
+  return Finder(tags, roof).find();
+}
 
 double roof_limit(const MappedAttributes& tags, double height) {
   const double whole = std::max(height - tags.min_height.value_or(0), 0.0);

@@ -29,7 +29,8 @@ std::optional<double> useful_roof_angle(const model::MappedAttributes& tags, mod
 roofs::RoofRequest tagged_request(const model::MappedAttributes& tags, model::RoofShape shape);
 
 /// The height that roof:angle gives over the main slope, m; empty without a useful angle or on plans without area.
-std::optional<double> height_of_angle(const model::MappedAttributes& tags, model::RoofShape shape, const model::Polygon& plan);
+std::optional<double> height_of_angle(const model::MappedAttributes& tags, model::RoofShape shape,
+                                      const model::Polygon& plan);
 
 /// What the tags' height allows for a roof whose height comes from its angle: less than all, and space for the storeys.
 double roof_limit(const model::MappedAttributes& tags, double height);
@@ -39,17 +40,17 @@ struct TagConflict {
   std::string text;  ///< both values and which of them won
 };
 
-/// The scheme counts storeys from the ground. Where building:levels ends at or below building:min_level or min_height and no height
-/// is tagged, the mapper has counted the part's own: the number of storeys that lie below them; 0 otherwise.
-/// \param storey_height  m
+/// The scheme counts storeys from the ground. Where building:levels ends at or below building:min_level or min_height
+/// and no height is tagged, the mapper has counted the part's own: the number of storeys that lie below them; 0
+/// otherwise. \param storey_height  m
 double storeys_below(const model::MappedAttributes& tags, double storey_height);
 
 /// What tags are held against.
 struct TaggedRoof {
   model::RoofShape shape = model::RoofShape::flat;  ///< that is asked for
   const model::Polygon& plan;
-  double storey_height = 3;                         ///< m
-  bool ridges = false;                              ///< roof:ridge ways lie on the plan
+  double storey_height = 3;  ///< m
+  bool ridges = false;       ///< roof:ridge ways lie on the plan
 };
 
 /// The contradictions among one object's tags, each once, in a fixed order.

@@ -122,7 +122,8 @@ void fit_roof_lines(model::Building& building, const std::vector<RoofLine>& near
       continue;
     }
     std::move(along[i].begin(), along[i].end(), std::back_inserter(part.roof_lines));
-    std::stable_sort(part.roof_lines.begin(), part.roof_lines.end(), [](const RoofLine& a, const RoofLine& b) { return a.id < b.id; });
+    std::stable_sort(part.roof_lines.begin(), part.roof_lines.end(),
+                     [](const RoofLine& a, const RoofLine& b) { return a.id < b.id; });
   }
 }
 
@@ -138,7 +139,8 @@ RoofLineFinder::RoofLineFinder(const model::Extract& extract, const georef::Proj
     line.kind = node ? RoofLineKind::apex : !ridge.empty() && ridge != "no" ? RoofLineKind::ridge : RoofLineKind::edge;
     for (const model::MappedRing& ring : extract.rings_of(feature.rings)) {
       line.points.clear();
-      for (const model::Location v : extract.vertices_of(ring)) line.points.push_back(model::snap(projection.forward(v)));
+      for (const model::Location v : extract.vertices_of(ring))
+        line.points.push_back(model::snap(projection.forward(v)));
       const auto nodes = extract.nodes_of(ring);
       line.nodes.assign(nodes.begin(), nodes.end());
       if (line.points.size() >= (node ? 1u : 2u)) lines_.push_back(line);

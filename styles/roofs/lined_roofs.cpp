@@ -239,8 +239,9 @@ class LinedRoof {
       for (int k = 0; k < 3; ++k) beside[{triangles[t][k], triangles[t][(k + 1) % 3]}] = t;
     std::vector<std::uint32_t> order(triangles.size());
     for (std::uint32_t t = 0; t < order.size(); ++t) order[t] = t;
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return twice_area(triangles[a]) > twice_area(triangles[b]); });
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return twice_area(triangles[a]) > twice_area(triangles[b]);
+    });
     std::vector<bool> taken(triangles.size(), false);
     for (const std::uint32_t seed : order) {
       if (taken[seed]) continue;
@@ -265,8 +266,8 @@ class LinedRoof {
     }
   }
 
-  /// A triangle at eaves height that no line bounds against a sloped one joins that slope: the diagonal that they share is
-  /// replaced by the other one, as long as fewer flat triangles come of it.
+  /// A triangle at eaves height that no line bounds against a sloped one joins that slope: the diagonal that they share
+  /// is replaced by the other one, as long as fewer flat triangles come of it.
   void raise_flat(std::vector<Triangle>& triangles) const {
     const auto flat = [&](const Triangle& t) {
       return std::all_of(t.begin(), t.end(), [&](std::uint32_t i) { return nodes_[i].z == 0; });
@@ -285,7 +286,8 @@ class LinedRoof {
           if (other == beside.end() || segments_.contains(undirected(a, b)) || flat(triangles[other->second])) continue;
           const std::uint32_t o = other->second;
           const Triangle& opposite = triangles[o];
-          const std::uint32_t d = *std::find_if(opposite.begin(), opposite.end(), [&](std::uint32_t i) { return i != a && i != b; });
+          const std::uint32_t d =
+              *std::find_if(opposite.begin(), opposite.end(), [&](std::uint32_t i) { return i != a && i != b; });
           if (nodes_[d].z == 0 || !leaves_room(a, d, c) || !leaves_room(d, b, c)) continue;
           beside.erase({a, b});
           beside.erase({b, a});
@@ -369,7 +371,8 @@ class LinedRoof {
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       const Edge& edge = edges_[e];
       const auto on = [&](std::uint32_t i) {
-        return i == edge.from || i == edge.to || std::find(edge.between.begin(), edge.between.end(), i) != edge.between.end();
+        return i == edge.from || i == edge.to ||
+               std::find(edge.between.begin(), edge.between.end(), i) != edge.between.end();
       };
       if (on(a) && on(b)) return static_cast<std::int32_t>(e);
     }

@@ -37,7 +37,8 @@ double half_span(const Polygon& plan, const RoofRequest& request) {
 /// The plan's extent down a slope that a profile across the plan gives.
 double way_down(const Polygon& plan, const RoofRequest& request) {
   if (request.down) return extent(plan, *request.down);
-  if (request.shape == RoofShape::skillion || request.shape == RoofShape::sawtooth || request.shape == RoofShape::saltbox)
+  if (request.shape == RoofShape::skillion || request.shape == RoofShape::sawtooth ||
+      request.shape == RoofShape::saltbox)
     return extent(plan, default_slope(plan));
   const Point2 axis = geometry::long_axis(plan.outer.points);
   return extent(plan, request.across ? axis : Point2{-axis.y, axis.x});

@@ -40,7 +40,9 @@ TEST(TagConflicts, HeightAgainstAngle) {
   tags.roof_height = 4;  // a fifth less: eaves and guesses
   EXPECT_THAT(texts(tags), IsEmpty());
   tags.roof_height = 2.5f;
-  EXPECT_THAT(texts(tags), ElementsAre("VALUES_CONFLICT: roof:height=2.5 against roof:angle=45, which gives 5.0 m: roof:height won"));
+  EXPECT_THAT(
+      texts(tags),
+      ElementsAre("VALUES_CONFLICT: roof:height=2.5 against roof:angle=45, which gives 5.0 m: roof:height won"));
   tags.roof_angle = 5;  // 0.4 m
   tags.roof_height = 0.8f;
   EXPECT_THAT(texts(tags), IsEmpty()) << "half a metre is nothing";
@@ -75,10 +77,12 @@ TEST(TagConflicts, StoreysInTheRoofAreWeak) {
   tags.roof_height = 1.2f;
   EXPECT_THAT(texts(tags), IsEmpty());
   tags.roof_storeys = 3;
-  EXPECT_THAT(texts(tags), ElementsAre("VALUES_CONFLICT: roof:height=1.2 has no room for roof:levels=3: roof:height won"));
+  EXPECT_THAT(texts(tags),
+              ElementsAre("VALUES_CONFLICT: roof:height=1.2 has no room for roof:levels=3: roof:height won"));
   tags.roof_height = std::nullopt;
   tags.roof_angle = 10;  // 0.9 m
-  EXPECT_THAT(texts(tags), ElementsAre("VALUES_CONFLICT: roof:angle=10 gives 0.9 m, no room for roof:levels=3: roof:angle won"));
+  EXPECT_THAT(texts(tags),
+              ElementsAre("VALUES_CONFLICT: roof:angle=10 gives 0.9 m, no room for roof:levels=3: roof:angle won"));
 }
 
 TEST(TagConflicts, ARoofMayFillItsBuildingButNotMore) {
@@ -87,13 +91,15 @@ TEST(TagConflicts, ARoofMayFillItsBuildingButNotMore) {
   tags.roof_height = 10;
   EXPECT_THAT(texts(tags), IsEmpty());
   tags.min_height = 4;
-  EXPECT_THAT(texts(tags), ElementsAre("VALUES_CONFLICT: roof:height=10 against height=10 above min_height=4: height won"));
+  EXPECT_THAT(texts(tags),
+              ElementsAre("VALUES_CONFLICT: roof:height=10 against height=10 above min_height=4: height won"));
   tags.roof_height = 6;
   EXPECT_THAT(texts(tags), IsEmpty());
   tags = tagged(RoofShape::gabled);
   tags.height = 4;
   tags.roof_angle = 60;
-  EXPECT_THAT(texts(tags), ElementsAre("VALUES_CONFLICT: roof:angle=60 gives 8.7 m, height=4 leaves 4.0 m: height won"));
+  EXPECT_THAT(texts(tags),
+              ElementsAre("VALUES_CONFLICT: roof:angle=60 gives 8.7 m, height=4 leaves 4.0 m: height won"));
   tags.height = 12;
   tags.storeys = 3;
   EXPECT_THAT(texts(tags), ElementsAre(HasSubstr("height=12 with building:levels=3 leaves 5.4 m: height won")));
@@ -191,7 +197,10 @@ TEST(TagConflicts, StoreysOfAPartThatWereCountedFromItsUnderside) {
   auto tags = tagged(RoofShape::flat);
   tags.storeys = 2;
   tags.min_storey = 4;
-  EXPECT_THAT(texts(tags), ElementsAre("VALUES_CONFLICT: building:levels=2 ends below building:min_level=4: taken for the part's own storeys"));
+  EXPECT_THAT(
+      texts(tags),
+      ElementsAre(
+          "VALUES_CONFLICT: building:levels=2 ends below building:min_level=4: taken for the part's own storeys"));
   EXPECT_EQ(storeys_below(tags, 3), 4);
   tags.min_height = 15;
   EXPECT_EQ(storeys_below(tags, 3), 5);

@@ -51,7 +51,8 @@ TEST(RoofLines, EndsBesideCornersGoThere) {
 TEST(RoofLines, LieOnTheSmallestPlanThatHoldsThem) {
   model::Building b;
   b.parts = {part({{0, 0}, {40, 0}, {40, 20}, {0, 20}}), part(kHouse)};
-  fit_roof_lines(b, {line(1, RoofLineKind::ridge, {{0, 5}, {20, 5}}), line(2, RoofLineKind::ridge, {{25, 3}, {35, 3}})});
+  fit_roof_lines(b,
+                 {line(1, RoofLineKind::ridge, {{0, 5}, {20, 5}}), line(2, RoofLineKind::ridge, {{25, 3}, {35, 3}})});
   ASSERT_EQ(b.parts[0].roof_lines.size(), 1u);
   EXPECT_EQ(b.parts[0].roof_lines[0].id.number, 2);
   ASSERT_EQ(b.parts[1].roof_lines.size(), 1u);

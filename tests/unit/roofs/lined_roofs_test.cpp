@@ -75,14 +75,16 @@ TEST(LinedRoof, RidgeAloneGetsHips) {
 }
 
 TEST(LinedRoof, HipsAndRidge) {
-  const auto roof = lined_roof(kHouse, {36, 4}, std::vector{ridge({{4, 5}, {15, 5}}), edge({{0, 0}, {4, 5}}), edge({{4, 5}, {0, 10}}),
-                                                         edge({{20, 0}, {15, 5}}), edge({{15, 5}, {20, 10}})});
+  const auto roof = lined_roof(kHouse, {36, 4},
+                               std::vector{ridge({{4, 5}, {15, 5}}), edge({{0, 0}, {4, 5}}), edge({{4, 5}, {0, 10}}),
+                                           edge({{20, 0}, {15, 5}}), edge({{15, 5}, {20, 10}})});
   judge(kHouse, roof, 4);
 }
 
 TEST(LinedRoof, RidgesOfAnAngleWithHipAndValley) {
   const Polygon plan = polygon({{0, 0}, {20, 0}, {20, 8}, {8, 8}, {8, 18}, {0, 18}});
-  const auto roof = lined_roof(plan, {36, 4}, std::vector{ridge({{20, 4}, {4, 4}, {4, 18}}), edge({{0, 0}, {4, 4}}), edge({{4, 4}, {8, 8}})});
+  const auto roof = lined_roof(
+      plan, {36, 4}, std::vector{ridge({{20, 4}, {4, 4}, {4, 18}}), edge({{0, 0}, {4, 4}}), edge({{4, 4}, {8, 8}})});
   judge(plan, roof, 4);
   EXPECT_NEAR(height_at(*roof, {14, 2}), 2, 1e-3);
   EXPECT_NEAR(height_at(*roof, {2, 14}), 2, 1e-3);
@@ -90,8 +92,9 @@ TEST(LinedRoof, RidgesOfAnAngleWithHipAndValley) {
 
 TEST(LinedRoof, RidgesMeetInTheMiddleOfAnother) {
   // A dormer's ridge that ends on the main one without a common node, 8 mm beside it.
-  const auto roof = lined_roof(kHouse, {36, 4}, std::vector{ridge({{0, 5}, {20, 5}}), ridge({{10, 0}, {10, 5.0078125}}),
-                                                         edge({{7, 0}, {10, 5}}), edge({{13, 0}, {10, 5}})});
+  const auto roof = lined_roof(kHouse, {36, 4},
+                               std::vector{ridge({{0, 5}, {20, 5}}), ridge({{10, 0}, {10, 5.0078125}}),
+                                           edge({{7, 0}, {10, 5}}), edge({{13, 0}, {10, 5}})});
   judge(kHouse, roof, 5);
   EXPECT_EQ(roof->wall_tops[0].size(), 5u);
 }
@@ -99,8 +102,10 @@ TEST(LinedRoof, RidgesMeetInTheMiddleOfAnother) {
 TEST(LinedRoof, ABreakBetweenEavesAndRidgeLiesBetween) {
   // A mansard: a ring of edges, joined to corners and ridge.
   std::vector<RoofLine> lines{ridge({{7, 5}, {13, 5}}), edge({{2, 2}, {18, 2}, {18, 8}, {2, 8}, {2, 2}})};
-  for (const auto& [corner, brk, end] : {std::tuple{Point2{0, 0}, Point2{2, 2}, Point2{7, 5}}, {{20, 0}, {18, 2}, {13, 5}},
-                                         {{20, 10}, {18, 8}, {13, 5}}, {{0, 10}, {2, 8}, {7, 5}}})
+  for (const auto& [corner, brk, end] : {std::tuple{Point2{0, 0}, Point2{2, 2}, Point2{7, 5}},
+                                         {{20, 0}, {18, 2}, {13, 5}},
+                                         {{20, 10}, {18, 8}, {13, 5}},
+                                         {{0, 10}, {2, 8}, {7, 5}}})
     lines.push_back(edge({corner, brk, end}));
   const auto roof = lined_roof(kHouse, {36, 4}, lines);
   judge(kHouse, roof, 8);
@@ -123,7 +128,13 @@ TEST(LinedRoof, ApexIsAtFullHeight) {
 
 TEST(LinedRoof, NothingLiesFlatAtTheEavesThatASlopeCanTake) {
   // A ridge over a stem with bays beside its end (w490887948 in Triesen): Delaunay triangles would span the eaves.
-  const Polygon plan = polygon({{2.3125, 4.5}, {1.875, 1.1875}, {12.375, 0}, {13.875, 13.3125}, {0.625, 14.6875}, {0, 9.375}, {4.1875, 8.875},
+  const Polygon plan = polygon({{2.3125, 4.5},
+                                {1.875, 1.1875},
+                                {12.375, 0},
+                                {13.875, 13.3125},
+                                {0.625, 14.6875},
+                                {0, 9.375},
+                                {4.1875, 8.875},
                                 {3.6875, 4.3125}});
   const auto roof = lined_roof(plan, {36, 2}, std::vector{ridge({{4.0625, 7.734375}, {13.125, 6.65625}})});
   ASSERT_TRUE(roof);
@@ -143,10 +154,13 @@ TEST(LinedRoof, RefusesWhatMakesNoRoof) {
   const RoofMeasures m{36, 4};
   EXPECT_FALSE(lined_roof(kHouse, m, std::vector{edge({{0, 0}, {20, 10}})})) << "no ridge";
   EXPECT_FALSE(lined_roof(kHouse, m, std::vector{ridge({{0, 5}, {25, 5}})})) << "leaves the plan";
-  EXPECT_FALSE(lined_roof(kHouse, m, std::vector{ridge({{0, 5}, {20, 5}}), edge({{0, 0}, {20, 10}})})) << "cross without a node";
-  EXPECT_FALSE(lined_roof(kHouse, m, std::vector{ridge({{0, 5}, {20, 5}}), edge({{3, 2}, {8, 3}})})) << "hangs in the air";
+  EXPECT_FALSE(lined_roof(kHouse, m, std::vector{ridge({{0, 5}, {20, 5}}), edge({{0, 0}, {20, 10}})}))
+      << "cross without a node";
+  EXPECT_FALSE(lined_roof(kHouse, m, std::vector{ridge({{0, 5}, {20, 5}}), edge({{3, 2}, {8, 3}})}))
+      << "hangs in the air";
   const Polygon u = plans().at("U");
-  EXPECT_FALSE(lined_roof(u, m, std::vector{ridge({{4, 20}, {4, 4}}), edge({{8, 20}, {22, 20}})})) << "bridges the court";
+  EXPECT_FALSE(lined_roof(u, m, std::vector{ridge({{4, 20}, {4, 4}}), edge({{8, 20}, {22, 20}})}))
+      << "bridges the court";
 }
 
 TEST(LinedRoof, EveryRoofOfTheGridCanBeDrawn) {
@@ -165,7 +179,8 @@ TEST(LinedRoof, EveryRoofOfTheGridCanBeDrawn) {
     if (random.next(2) == 0) {
       lines = {ridge({at(0, v), at(0.4, v + 0.1 * random.unit()), at(1, v)})};
     } else {
-      lines = {ridge({at(left, v), at(right, v)}), edge({at(0, 0), at(left, v), at(0, 1)}), edge({at(1, 0), at(right, v), at(1, 1)})};
+      lines = {ridge({at(left, v), at(right, v)}), edge({at(0, 0), at(left, v), at(0, 1)}),
+               edge({at(1, 0), at(right, v), at(1, 1)})};
       if (random.next(2) == 0) lines.push_back(ridge({at((left + right) / 2, v), at((left + right) / 2, 0)}));
     }
     const auto roof = lined_roof(plan, {36, 1 + 6 * random.unit()}, lines);

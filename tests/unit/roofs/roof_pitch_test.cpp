@@ -27,8 +27,8 @@ double run(const Polygon& plan, const RoofRequest& asked) {
 }
 
 TEST(MainSlope, RunsHalfTheWidthBelowARidge) {
-  for (const RoofShape shape : {RoofShape::gabled, RoofShape::hipped, RoofShape::half_hipped, RoofShape::mansard, RoofShape::round,
-                                RoofShape::pyramidal, RoofShape::dome, RoofShape::spire})
+  for (const RoofShape shape : {RoofShape::gabled, RoofShape::hipped, RoofShape::half_hipped, RoofShape::mansard,
+                                RoofShape::round, RoofShape::pyramidal, RoofShape::dome, RoofShape::spire})
     EXPECT_NEAR(run(kHouse, request(shape)), 5, 1e-9) << model::name(shape);
   EXPECT_NEAR(run(kHouse, request(RoofShape::gabled, {}, true)), 10, 1e-9);
   EXPECT_NEAR(run(kHouse, request(RoofShape::gabled, 90)), 10, 1e-9);
@@ -72,10 +72,10 @@ double steepest(const Roof& roof) {
 
 TEST(MainSlope, GivesTheBuiltRoofItsPitch) {
   for (const RoofShape shape :
-       {RoofShape::gabled, RoofShape::hipped, RoofShape::half_hipped, RoofShape::side_hipped, RoofShape::hipped_and_gabled,
-        RoofShape::skillion, RoofShape::mansard, RoofShape::gambrel, RoofShape::saltbox, RoofShape::double_saltbox,
-        RoofShape::quadruple_saltbox, RoofShape::butterfly, RoofShape::sawtooth, RoofShape::gabled_height_moved,
-        RoofShape::pyramidal, RoofShape::crosspitched})
+       {RoofShape::gabled, RoofShape::hipped, RoofShape::half_hipped, RoofShape::side_hipped,
+        RoofShape::hipped_and_gabled, RoofShape::skillion, RoofShape::mansard, RoofShape::gambrel, RoofShape::saltbox,
+        RoofShape::double_saltbox, RoofShape::quadruple_saltbox, RoofShape::butterfly, RoofShape::sawtooth,
+        RoofShape::gabled_height_moved, RoofShape::pyramidal, RoofShape::crosspitched})
     for (const bool across : {false, true}) {
       RoofRequest asked = request(shape, {}, across);
       const MainSlope slope = main_slope(kHouse, asked, true);
