@@ -111,8 +111,11 @@ class MassBuilder {
     auto& a = part.attributes;
     const double ground = a.ground_height.value;
     double top = a.height.value, bottom = std::max(a.min_height.value, 0.0);
-    if (bottom > 0 && bottom > top - options_.min_wall_height) {
-      note(part, IssueCode::values_conflict, fmt::format("min_height {:.2f} m under height {:.2f} m", bottom, top));
+    // A slab thinner than a wall's minimum is thickened below; only one without any thickness contradicts itself.
+    constexpr double kNoThickness = 0.01;  // m
+    if (bottom > 0 && bottom > top - kNoThickness) {
+      if (!part.mapped.height || !part.mapped.min_height)  // else resolve_attributes has reported them
+        note(part, IssueCode::values_conflict, fmt::format("underside at {:.2f} m, top at {:.2f} m", bottom, top));
       bottom = std::max(0.0, top - std::max(options_.min_wall_height, a.storey_height.value));
     }
     if (top < bottom + options_.min_wall_height) top = bottom + options_.min_wall_height;
@@ -124,7 +127,8 @@ class MassBuilder {
     }
     const double room = top - bottom - (part.canopy ? std::min(options_.canopy_thickness, (top - bottom) / 2) : options_.min_wall_height);
     if (roof > room) {
-      if (a.roof_height.source == model::Source::tag)
+      // A roof that fills its part, as those of domes do, stands on a low wall without a word.
+      if (a.roof_height.source == model::Source::tag && roof - room > options_.min_wall_height + kNoThickness)
         note(part, IssueCode::roof_height_clamped, fmt::format("{:.2f} m of {:.2f} m", std::max(room, 0.0), roof));
       roof = std::max(room, 0.0);
     }
@@ -171,6 +175,11 @@ class MassBuilder {
   void build_lod2(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks) {
     const RoofShape asked = part.attributes.roof_shape.value;
     const roofs::RoofMeasures measures{levels.eaves, levels.top - levels.eaves};
+    if (asked != RoofShape::flat && measures.height > 0 && !part.roof_lines.empty()) {
+      const auto lined = roofs::lined_roof(plan, measures, part.roof_lines);
+      if (lined && accept(part, plan, levels, looks, *lined, RoofShape::lined)) return;
+      note(part, IssueCode::roof_lines_ignored, lined ? "their solid is not valid" : "they do not fit each other or the plan");
+    }
     if (asked != RoofShape::flat && measures.height > 0) {
       const std::optional<Polygon> simplified = simpler(plan, options_.simplify_tolerance);
       for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, simplified ? &*simplified : nullptr}) {

@@ -7,6 +7,7 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/base/random.h"
+#include "pipeline/generate/tag_conflicts.h"
 #include "pipeline/geometry/polygon.h"
 
 namespace blockrand::generate {
@@ -32,10 +33,31 @@ constexpr float kGeometryConfidence = 0.4f;
 constexpr float kPresetConfidence = 0.3f;
 constexpr float kDefaultConfidence = 0.1f;
 
-/// m. No inhabited storey is lower; a roof gives way before its storeys do.
-constexpr double kLowestStorey = 2.2;
+double tangent(double degrees) { return base::tan(degrees * base::kRadiansPerDegree); }
 
-double tangent(double degrees) { return base::tan(degrees * (3.14159265358979323846 / 180)); }
+/// Pitch of roofs that no tag measures, degrees; of mansard and gambrel that of the lower slope. The sources stand in
+/// references/styles.md, section 2.7.
+double usual_pitch(RoofShape shape, double ridged) {
+  switch (shape) {
+    case RoofShape::skillion:
+    case RoofShape::butterfly: return std::min(ridged, 10.0);  // lean-to roofs of side wings: 5 to 20
+    case RoofShape::sawtooth: return 30;                       // workshops: 30 to 60, over teeth of 5 m
+    case RoofShape::saltbox:
+    case RoofShape::gabled_height_moved: return std::min(ridged, 30.0);
+    // The steep strip of a Berlin roof is 2 to 5 m high; over 0.6 of half a house's depth 45 degrees give 3 to 4 m.
+    case RoofShape::double_saltbox:
+    case RoofShape::quadruple_saltbox: return 45;
+    case RoofShape::mansard:
+    case RoofShape::gambrel: return 65;  // 60 to 80; the upper slope then has 20
+    case RoofShape::round: return 30;    // halls: the rise is a quarter to a third of the span
+    case RoofShape::dome: return 45;     // half a sphere
+    case RoofShape::cone:
+    case RoofShape::onion: return 55;
+    case RoofShape::helm: return 60;
+    case RoofShape::spire: return 70;
+    default: return ridged;
+  }
+}
 
 /// One thing that an attribute could be.
 template <class T>
@@ -95,7 +117,11 @@ struct Resolver {
 
   Sourced<double> storeys() {
     std::vector<Choice<double>> choices;
-    if (own.storeys) choices.push_back({*own.storeys, Source::tag, kTagConfidence, "tagged"});
+    if (const double below = storeys_below(own, preset.storey_height); below > 0)
+      choices.push_back({below + *own.storeys, Source::implied, kImpliedConfidence,
+                         fmt::format("{:g} tagged storeys above {:g} skipped ones", *own.storeys, below)});
+    else if (own.storeys)
+      choices.push_back({*own.storeys, Source::tag, kTagConfidence, "tagged"});
     if (outline && !own.height && outline->storeys)
       choices.push_back({*outline->storeys, Source::implied, kOutlineConfidence, "the outline's storeys"});
     if (const auto opinion = in.neighbours.storeys(place(), group, id, options.neighbour_minimum))
@@ -111,11 +137,20 @@ struct Resolver {
            (own.roof_height && *own.roof_height >= 1);
   }
 
+  const model::Polygon& plan() const {
+    static const model::Polygon none;
+    return plans.empty() ? none : plans[0];
+  }
+
   double width() const { return plans.empty() ? 0 : geometry::equivalent_width(plans[0]); }
 
   Sourced<RoofShape> roof_shape() {
     std::vector<Choice<RoofShape>> choices;
     if (own.roof_shape) choices.push_back({*own.roof_shape, Source::tag, kTagConfidence, "tagged"});
+    if (part && !part->roof_lines.empty())
+      choices.push_back({RoofShape::gabled, Source::implied, kImpliedConfidence, "ridges are mapped"});
+    if ((own.roof_height && *own.roof_height < kNoRoofHeight) || (own.roof_angle && *own.roof_angle < kNoRoofAngle))
+      choices.push_back({RoofShape::flat, Source::implied, kImpliedConfidence, "the roof's tagged height or angle is 0"});
     if (own.roof_orientation || own.roof_direction || tags_speak_of_slope()) {
       // A direction alone means one slope, storeys or an angle mean two.
       const bool one_slope = own.roof_direction && !own.roof_orientation && !tags_speak_of_slope();
@@ -139,31 +174,48 @@ struct Resolver {
     return first(std::move(choices));
   }
 
-  /// Horizontal run of the roof's slope: half the plan's width, or all of it for one slope.
-  double run(RoofShape shape) const {
-    const double w = width();
-    if (shape != RoofShape::skillion) return w / 2;
-    return w;
-  }
-
   Sourced<double> roof_height(RoofShape shape, double storey_height) {
     if (shape == RoofShape::flat) return make<double>(0, Source::implied, kImpliedConfidence, "flat roof");
     std::vector<Choice<double>> choices;
-    if (own.roof_height) choices.push_back({*own.roof_height, Source::tag, kTagConfidence, "tagged"});
-    if (own.roof_angle)
-      choices.push_back({run(shape) * tangent(std::clamp<double>(*own.roof_angle, 0, 80)), Source::implied, kImpliedConfidence,
-                         fmt::format("a tagged pitch of {:g} degrees over a run of {:.1f} m", *own.roof_angle, run(shape))});
+    if (const auto tagged = useful_roof_height(own, shape)) choices.push_back({*tagged, Source::tag, kTagConfidence, "tagged"});
+    if (const auto given = height_of_angle(own, shape, plan()))
+      choices.push_back({*given, Source::implied, kImpliedConfidence, fmt::format("a tagged pitch of {:g} degrees", *own.roof_angle)});
     if (own.roof_storeys && *own.roof_storeys > 0)
       choices.push_back({*own.roof_storeys * storey_height, Source::implied, kImpliedConfidence,
                          fmt::format("{:g} tagged storeys in the roof", *own.roof_storeys)});
-    // Lean-to roofs are flatter than ridged ones; towers' pyramids and cones are steeper.
-    double pitch = preset.roof_pitch;
-    if (shape == RoofShape::skillion) pitch = std::min(pitch, 15.0);
-    if (shape == RoofShape::onion || shape == RoofShape::dome) pitch = 45;
-    pitch = std::min(pitch, options.max_roof_pitch);
-    choices.push_back({run(shape) * tangent(pitch), preset_source(), preset_confidence(),
-                       fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, run(shape))});
+    const double pitch = std::min(usual_pitch(shape, preset.roof_pitch), options.max_roof_pitch);
+    const roofs::MainSlope slope =
+        plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), tagged_request(own, shape), true);
+    choices.push_back({slope.run * tangent(pitch) / slope.rise, preset_source(), preset_confidence(),
+                       fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, slope.run)});
     return first(std::move(choices));
+  }
+
+  /// The roof's height against the building's: a measured roof is limited by what is there, a pitch by the storeys as
+  /// well; storeys in the roof and usual pitches give way to what height and storeys leave by up to a third.
+  void fit_roof_height(Attributes& a, bool storeys_known) {
+    const double wanted = a.roof_height.value;
+    const double whole = std::max(a.height.value - own.min_height.value_or(0), 0.0);
+    double roof = wanted;
+    std::string why = "what height and storeys leave";
+    if (useful_roof_height(own, a.roof_shape.value)) {
+      if (wanted <= whole + kNoRoofHeight) return;  // the part may be all roof; walls take their minimum when it is built
+      roof = whole;
+      why = "what the height leaves";
+    } else if (useful_roof_angle(own, a.roof_shape.value)) {
+      roof = std::min(wanted, roof_limit(own, a.height.value));
+    } else {
+      roof = std::min(wanted, 0.6 * whole);
+      if (storeys_known && a.storeys.value > 0) {
+        const double left = a.height.value - a.storeys.value * preset.storey_height;
+        roof = std::clamp(left, wanted * 2 / 3, wanted * 4 / 3);
+        roof = std::min(roof, std::max(a.height.value - a.storeys.value * kLowestStorey, 0.1 * whole));
+      }
+    }
+    if (roof == wanted) return;
+    a.roof_height = make<double>(std::max(roof, 0.0), Source::implied, kImpliedConfidence, std::move(why),
+                                 {{a.roof_height.source, a.roof_height.confidence, fmt::format("{:.2f}", wanted),
+                                   region.evidence[a.roof_height.evidence].text}});
   }
 
   /// Storeys, heights and roof, which hang together.
@@ -174,8 +226,6 @@ struct Resolver {
     a.roof_storeys = own.roof_storeys ? make<double>(*own.roof_storeys, Source::tag, kTagConfidence, "tagged")
                                       : make<double>(0, Source::default_, kDefaultConfidence, "none tagged");
     a.roof_height = roof_height(a.roof_shape.value, std::min(preset.storey_height, 3.0));
-    const bool roof_is_tagged = a.roof_height.source == Source::tag;
-
     const MappedAttributes* height_from = own.height ? &own : outline && !has_own_height() && outline->height ? outline : nullptr;
     if (height_from) {
       const Choice<double> from_storeys{a.storeys.value * a.storey_height.value + a.roof_height.value, a.storeys.source,
@@ -186,19 +236,7 @@ struct Resolver {
                      ? first<double>({{*own.height, Source::tag, kTagConfidence, "tagged"}, from_storeys})
                      : first<double>({{*outline->height, Source::implied, kOutlineConfidence, "the outline's height"}, from_storeys});
       const bool storeys_known = a.storeys.source == Source::tag || a.storeys.source == Source::implied;
-      if (a.roof_shape.value != RoofShape::flat && !roof_is_tagged) {
-        const double wanted = a.roof_height.value;
-        double roof = std::min(wanted, 0.6 * a.height.value);
-        if (storeys_known && a.storeys.value > 0) {
-          const double left = a.height.value - a.storeys.value * preset.storey_height;
-          roof = std::clamp(left, wanted * 2 / 3, wanted * 4 / 3);
-          roof = std::min(roof, std::max(a.height.value - a.storeys.value * kLowestStorey, 0.1 * a.height.value));
-        }
-        if (roof != wanted)
-          a.roof_height = make<double>(std::max(roof, 0.0), Source::implied, kImpliedConfidence, "what height and storeys leave",
-                                       {{a.roof_height.source, a.roof_height.confidence, fmt::format("{:.2f}", wanted),
-                                         region.evidence[a.roof_height.evidence].text}});
-      }
+      if (a.roof_shape.value != RoofShape::flat) fit_roof_height(a, storeys_known);
       const double walls = std::max(a.height.value - a.roof_height.value, 0.0);
       if (storeys_known && a.storeys.value > 0) {
         a.storey_height = first<double>({{walls / a.storeys.value, Source::implied, kImpliedConfidence, "height over storeys"},
@@ -218,10 +256,17 @@ struct Resolver {
       if (a.roof_shape.value == RoofShape::flat) walls += a.roof_storeys.value * a.storey_height.value;
       if (walls <= 0 && a.roof_height.value <= 0) walls = a.storey_height.value;
       const bool from_tags = a.storeys.source == Source::tag;
+      std::string why = fmt::format("{:g} storeys of {:.1f} m and a roof of {:.1f} m", a.storeys.value, a.storey_height.value,
+                                    a.roof_height.value);
+      // Assumed storeys stand above the tagged underside, at least one of them; of a canopy, its slab.
+      const double under = own.min_height.value_or(own.min_storey.value_or(0) * a.storey_height.value);
+      const double least = text(own.use) == "roof" ? options.canopy_thickness : a.storey_height.value;
+      if (!own.storeys && under > 0 && walls < under + least) {
+        walls = under + least;
+        why = fmt::format("{:.1f} m above an underside at {:.1f} m, and a roof of {:.1f} m", least, under, a.roof_height.value);
+      }
       a.height = make<double>(walls + a.roof_height.value, from_tags ? Source::implied : a.storeys.source,
-                              from_tags ? 0.6 : a.storeys.confidence,
-                              fmt::format("{:g} storeys of {:.1f} m and a roof of {:.1f} m", a.storeys.value,
-                                          a.storey_height.value, a.roof_height.value));
+                              from_tags ? 0.6 : a.storeys.confidence, std::move(why));
     }
 
     if (own.min_height) {
@@ -321,6 +366,7 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
     const UseDefaults& preset = small ? in.defaults.small : in.defaults.use(use);
     const std::uint8_t group = neighbour_group(in.defaults, use, area);
 
+    std::vector<model::ReportRow> conflicts;
     for (BuildingPart& part : building.parts) {
       const bool own_tags = building.has_mapped_parts && !part.rest;
       const std::string_view part_use = use_text(part.mapped);
@@ -331,8 +377,14 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
                  own_tags && building.osm != part.osm ? &building.mapped : nullptr, own_use ? in.defaults.use(part_use) : preset,
                  group, plan, building.osm};
       part.attributes = r.resolve(ground);
+      for (TagConflict& c : tag_conflicts(part.mapped, {part.attributes.roof_shape.value, part.plan, r.preset.storey_height, !part.roof_lines.empty()})) {
+        model::ReportRow row{part.osm, c.code, std::move(c.text)};
+        // Pieces of one outline have the same tags.
+        if (std::find(conflicts.begin(), conflicts.end(), row) == conflicts.end()) conflicts.push_back(std::move(row));
+      }
       part.canopy = part_use == "roof" || (own_tags && part_use == "yes" && use == "roof");
     }
+    region.report.append({std::move(conflicts)});
     Resolver whole{region, in, options, building, nullptr, building.mapped, nullptr, preset, group, building.outline, building.osm};
     building.attributes = whole.resolve(ground);
     if (building.parts.size() == 1 && !building.has_mapped_parts) {

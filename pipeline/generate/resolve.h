@@ -28,8 +28,10 @@ std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, dou
 /// follows from another tag; the outline's tag (for parts); the median or majority of at least `neighbour_minimum`
 /// tagged neighbours; the defaults of the building's use; the defaults of all. Conventions: `MappedAttributes`.
 ///
-/// Heights hang together: height = storeys x storey height + roof height. Where `height` and `storeys` are both tagged,
-/// the roof takes what the storeys leave, within a third of its preset pitch; where only `height` is, storeys follow.
+/// Heights hang together: height = storeys x storey height + roof height. The roof's is that of roof:height, else
+/// roof:angle, else roof:levels, else a usual pitch; the last two give way by up to a third to what tagged height and
+/// storeys leave; where only `height` is tagged, storeys follow. Tags that contradict each other are reported
+/// (docs/roofs.md, "Tags").
 /// Reach: GenerateOptions::neighbour_reach.
 void resolve_attributes(model::Region& region, const ResolveInputs& inputs, const GenerateOptions& options);
 

@@ -6,6 +6,8 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <algorithm>
+#include <set>
+#include <utility>
 #include <vector>
 
 namespace blockrand::geometry {
@@ -21,8 +23,10 @@ using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, DataStructure, CG
 
 constexpr int kUnvisited = -1;
 
-/// Marks each face with how many constraints separate it from the outside.
-void mark_nesting(Cdt& cdt) {
+/// Marks each face with how many walls separate it from the outside.
+/// \param is_wall  of the edge opposite vertex i of a face
+template <class IsWall>
+void mark_nesting(Cdt& cdt, IsWall&& is_wall) {
   for (auto f = cdt.all_faces_begin(); f != cdt.all_faces_end(); ++f) f->info() = kUnvisited;
   std::vector<Cdt::Face_handle> layer{cdt.infinite_face()}, next_layer;
   for (int level = 0; !layer.empty(); ++level) {
@@ -34,7 +38,7 @@ void mark_nesting(Cdt& cdt) {
       for (int i = 0; i < 3; ++i) {
         const Cdt::Face_handle other = face->neighbor(i);
         if (other->info() != kUnvisited) continue;
-        (cdt.is_constrained({face, i}) ? next_layer : layer).push_back(other);
+        (is_wall(face, i) ? next_layer : layer).push_back(other);
       }
     }
     layer.swap(next_layer);
@@ -95,13 +99,58 @@ std::optional<std::vector<Triangle>> triangulate(std::span<const Grid2> points,
   } catch (const Cdt::Intersection_of_constraints_exception&) {
     return std::nullopt;
   }
-  mark_nesting(cdt);
+  mark_nesting(cdt, [&](Cdt::Face_handle face, int i) { return cdt.is_constrained({face, i}); });
   for (auto f = cdt.finite_faces_begin(); f != cdt.finite_faces_end(); ++f) {
     if (f->info() % 2 == 0) continue;
     out.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
   }
   // Euler: n vertices in h + 1 loops give n + 2h - 2 triangles; anything else means that loops touch or nest wrongly.
   if (out.size() != expected + 2 * (loops.size() - 1) - 2) return std::nullopt;
+  return out;
+}
+
+std::optional<std::vector<Triangle>> triangulate_with_lines(std::span<const Grid2> points,
+                                                            std::span<const std::vector<std::uint32_t>> loops,
+                                                            std::span<const std::array<std::uint32_t, 2>> lines) {
+  Cdt cdt;
+  cdt.infinite_vertex()->info() = ~std::uint32_t{0};  // no index; walls are told by the indices of their ends
+  std::vector<Cdt::Vertex_handle> handles(points.size());
+  std::size_t used = 0;
+  const Grid2 origin = points[loops[0][0]];
+  const auto vertex = [&](std::uint32_t i) {
+    if (handles[i] != Cdt::Vertex_handle()) return handles[i];
+    const Grid2 p = points[i] - origin;
+    handles[i] = cdt.insert(Kernel::Point_2(static_cast<double>(p.x), static_cast<double>(p.y)));
+    handles[i]->info() = i;
+    ++used;
+    return handles[i];
+  };
+  std::set<std::pair<std::uint32_t, std::uint32_t>> walls;
+  for (const auto& loop : loops)
+    for (std::size_t k = 0; k < loop.size(); ++k) walls.insert(std::minmax(loop[k], loop[(k + 1) % loop.size()]));
+  try {
+    for (const auto& loop : loops)
+      for (const std::uint32_t i : loop) vertex(i);
+    for (const auto& line : lines)
+      for (const std::uint32_t i : line) vertex(i);
+    if (cdt.number_of_vertices() != used) return std::nullopt;  // two points at one place
+    for (const auto& [a, b] : walls) cdt.insert_constraint(vertex(a), vertex(b));
+    for (const auto& line : lines)
+      if (line[0] != line[1]) cdt.insert_constraint(vertex(line[0]), vertex(line[1]));
+  } catch (const Cdt::Intersection_of_constraints_exception&) {
+    return std::nullopt;
+  }
+  // CGAL cuts a constraint that runs through a point without a word.
+  for (const auto& [a, b] : walls)
+    if (!cdt.is_edge(vertex(a), vertex(b))) return std::nullopt;
+  for (const auto& line : lines)
+    if (line[0] != line[1] && !cdt.is_edge(vertex(line[0]), vertex(line[1]))) return std::nullopt;
+  mark_nesting(cdt, [&](Cdt::Face_handle face, int i) {
+    return walls.contains(std::minmax(face->vertex(Cdt::cw(i))->info(), face->vertex(Cdt::ccw(i))->info()));
+  });
+  std::vector<Triangle> out;
+  for (auto f = cdt.finite_faces_begin(); f != cdt.finite_faces_end(); ++f)
+    if (f->info() % 2 == 1) out.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
   return out;
 }
 

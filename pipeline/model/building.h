@@ -10,6 +10,7 @@
 #include "pipeline/model/colour.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/model/polygon.h"
+#include "pipeline/model/roof_line.h"
 #include "pipeline/model/roof_shape.h"
 #include "pipeline/model/solid.h"
 #include "pipeline/model/sourced.h"
@@ -188,6 +189,7 @@ struct BuildingPart {
   MappedRings rings;       ///< of a mapped part, until repair
   Polygon plan;            ///< repaired
   bool rest = false;       ///< what mapped parts leave of the outline
+  std::vector<RoofLine> roof_lines;  ///< drawn on this plan, fitted to it, by id; with a ridge among them, or none
   Attributes attributes;
   bool canopy = false;     ///< building=roof: a closed slab without walls
   RoofShape built_roof = RoofShape::flat;

@@ -33,6 +33,7 @@ enum class IssueClass : std::uint8_t {
   X(roof_shape_adapted, "ROOF_SHAPE_ADAPTED", fallback, "The plan does not take this shape; a relative was built.")  \
   X(roof_shape_unknown, "ROOF_SHAPE_UNKNOWN", fallback, "The value of roof:shape is in no list; flat was built.")    \
   X(roof_failed, "ROOF_FAILED", fallback, "The roof's solid failed its check; a flat roof was built.")               \
+  X(roof_lines_ignored, "ROOF_LINES_IGNORED", fallback, "The mapped ridges and edges make no roof; its shape was built.") \
   X(roof_simplified, "ROOF_SIMPLIFIED", fallback, "The roof stands on a simplified plan.")                           \
   X(skeleton_fallback, "SKELETON_FALLBACK", fallback, "The weighted skeleton gave up; CGAL's hips were built.")     \
   X(roof_height_clamped, "ROOF_HEIGHT_CLAMPED", fallback, "The roof was higher than the building allows.")           \

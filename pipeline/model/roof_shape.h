@@ -15,9 +15,11 @@ namespace blockrand::model {
   X(gambrel, "gambrel") X(pyramidal, "pyramidal") X(crosspitched, "crosspitched") X(sawtooth, "sawtooth")         \
   X(butterfly, "butterfly") X(cone, "cone") X(dome, "dome") X(onion, "onion") X(round, "round")                   \
   X(saltbox, "saltbox") X(double_saltbox, "double_saltbox") X(quadruple_saltbox, "quadruple_saltbox")             \
-  X(spire, "spire") X(helm, "helm") X(many, "many") X(other, "other")
+  X(spire, "spire") X(helm, "helm") X(many, "many") X(other, "other")               \
+  X(lined, "lined")
 
-/// `other` stands for a value that no list knows.
+/// `other` stands for a value that no list knows; `lined` is built from roof:ridge and roof:edge ways, and no tag's
+/// value.
 enum class RoofShape : std::uint8_t {
 #define X(id, text) id,
   BLOCKRAND_ROOF_SHAPES(X)

@@ -287,6 +287,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const ContextExtract context = context_extract(extract, repaired.footprints, facts.coverage, projection, workers, progress);
   malloc_trim(0);
   const SurroundingsFinder surroundings(extract, repaired.footprints, context);
+  const RoofLineFinder roof_lines(extract, projection);
   const BuildingNumbers numbers(repaired.footprints);
   const context::TaggedNeighbours neighbours(tagged_buildings(extract, defaults, projection), options.generate.neighbour_reach);
   const std::vector<std::size_t> todo = shards_to_build(shards, tile);
@@ -375,7 +376,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
 
   std::atomic<std::int64_t> context_time = 0;
   const TileInputs inputs{extract,      shards,         projection, defaults,      kept,
-                          repaired,     context,        surroundings, numbers,     neighbours,
+                          repaired,     context,        surroundings, roof_lines,  numbers, neighbours,
                           options.repair, options.generate, options.seed, options.lod, terrain.has_value(), ground_height,
                           context_time};
   const auto work = [&](std::size_t i) {

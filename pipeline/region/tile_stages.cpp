@@ -55,6 +55,7 @@ Region prepare(const Shard& shard, std::span<const std::uint32_t> numbers, const
     }
     repair::fit_parts(building, before, in.kept, in.repair, region.part_failures, region.report);
   }
+  in.roof_lines.fit(region);
   return region;
 }
 

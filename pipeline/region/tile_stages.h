@@ -14,6 +14,7 @@
 #include "pipeline/model/region.h"
 #include "pipeline/region/context_extract.h"
 #include "pipeline/region/repair_extract.h"
+#include "pipeline/region/roof_lines.h"
 #include "pipeline/region/shard.h"
 #include "pipeline/region/surroundings.h"
 #include "pipeline/repair/kept_nodes.h"
@@ -42,6 +43,7 @@ struct TileInputs {
   const RepairedExtract& repaired;
   const ContextExtract& context;
   const SurroundingsFinder& surroundings;
+  const RoofLineFinder& roof_lines;
   const BuildingNumbers& numbers;
   const context::TaggedNeighbours& neighbours;
   const repair::RepairOptions& repair;

@@ -10,6 +10,7 @@
 
 #include "pipeline/model/issue_codes.h"
 #include "pipeline/model/polygon.h"
+#include "pipeline/model/roof_line.h"
 #include "pipeline/model/roof_shape.h"
 
 namespace blockrand::roofs {
@@ -86,6 +87,24 @@ std::optional<Roof> apex_roof(const model::Polygon& plan, RoofMeasures measures,
 /// the centroid. Two faces that share a plane at a corner become one. Empty for plans with holes, concave plans and
 /// those with more than 12 edges.
 std::optional<Roof> crossed_roof(const model::Polygon& plan, RoofMeasures measures, double gable_height);
+
+/// The slope that a roof's pitch speaks of: how far it runs horizontally and which share of the roof's height it climbs.
+struct MainSlope {
+  double run = 0;   ///< m
+  double rise = 1;  ///< share of the roof's height
+};
+
+/// The main slope of `request.shape` on a plan (docs/roofs.md, "Tags"), from the plan's extents alone: exact on
+/// rectangles, near on other plans of one wing. `request.measures` is not read.
+/// \param steep  of mansard and gambrel, the lower slope; else all of the way up
+MainSlope main_slope(const model::Polygon& plan, const RoofRequest& request, bool steep);
+
+/// True for plans of one wing: their extents tell how far slopes run and in which direction.
+bool has_plain_extents(const model::Polygon& plan);
+
+/// The roof that roof:ridge, roof:edge and roof:apex draw (docs/roofs.md, "Lines"), from points on the grid. Empty when there is
+/// no ridge, when lines cross where they have no common point, leave the plan, or hang in the air.
+std::optional<Roof> lined_roof(const model::Polygon& plan, RoofMeasures measures, std::span<const model::RoofLine> lines);
 
 /// Unit vector of a compass direction in degrees (0 north, 90 east).
 model::Point2 compass_vector(double degrees);

@@ -10,6 +10,11 @@
 
 namespace blockrand::roofs {
 
+// Shares of the roof's height (H) and largest run at which pitches change.
+inline constexpr double kMansardHeight = 0.65;  ///< of H: the break of mansard and gambrel
+inline constexpr double kMansardRun = 0.25;     ///< of the largest run: the same
+inline constexpr double kDeckRun = 0.6;         ///< of the largest run: the border of the saltboxes' deck
+
 /// Rings of pyramidal, cone, dome, onion and spire for apex_roof(); empty for all other shapes.
 std::span<const ApexRing> apex_rings(model::RoofShape shape);
 

@@ -11,6 +11,7 @@
 #include "pipeline/geometry/roof_surfaces.h"
 #include "pipeline/geometry/straight_skeleton.h"
 #include "pipeline/geometry/weighted_skeleton.h"
+#include "styles/roofs/shape_tables.h"
 
 namespace blockrand::roofs {
 
@@ -27,9 +28,6 @@ using model::RoofShape;
 
 // Shares of the roof's height and run; docs/roofs.md has them.
 constexpr double kGableShare = 0.6;        ///< of H: where a half-hip begins, a gablet as well
-constexpr double kMansardHeight = 0.65;    ///< of H: the break
-constexpr double kMansardRun = 0.25;       ///< of the largest run: the break
-constexpr double kDeckRun = 0.6;           ///< of the largest run: the deck's border
 constexpr int kVaultSteps = 5;             ///< pitches of a round roof
 
 // Which edges are the ends of wings.
@@ -95,16 +93,6 @@ double cosine(Point2 a, Point2 b, Point2 c) {
 bool end_corner(Point2 a, Point2 b, Point2 c) {
   const double k = cosine(a, b, c);
   return turn(a, b, c) > 0 && k >= kLeastCosine && k <= kMostCosine;
-}
-
-/// The direction of the ridge.
-Point2 ridge_axis(const Polygon& plan, const RoofRequest& request) {
-  Point2 axis = geometry::long_axis(plan.outer.points);
-  const double along = request.down ? std::fabs(request.down->x * axis.x + request.down->y * axis.y) : 0;
-  const double across = request.down ? std::fabs(request.down->x * axis.y - request.down->y * axis.x) : 0;
-  const bool turned = request.down ? along > across : request.across;
-  if (turned) axis = {-axis.y, axis.x};
-  return axis;
 }
 
 /// Keeps of candidates that share a corner the shorter one.
@@ -384,6 +372,17 @@ class Builder {
 };
 
 }  // namespace
+
+bool is_one_wing(const Polygon& plan) { return compactness(plan) >= kCompact; }
+
+Point2 ridge_axis(const Polygon& plan, const RoofRequest& request) {
+  Point2 axis = geometry::long_axis(plan.outer.points);
+  const double along = request.down ? std::fabs(request.down->x * axis.x + request.down->y * axis.y) : 0;
+  const double across = request.down ? std::fabs(request.down->x * axis.y - request.down->y * axis.x) : 0;
+  const bool turned = request.down ? along > across : request.across;
+  if (turned) axis = {-axis.y, axis.x};
+  return axis;
+}
 
 bool rises_from_edges(RoofShape shape) {
   switch (shape) {

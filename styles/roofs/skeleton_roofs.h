@@ -11,6 +11,13 @@ namespace blockrand::roofs {
 /// True for the shapes that docs/roofs.md makes by the weighted straight skeleton.
 bool rises_from_edges(model::RoofShape shape);
 
+/// True for plans that fill enough of their convex hull to be one wing: the axis tells where its ridge runs.
+bool is_one_wing(const model::Polygon& plan);
+
+/// Unit vector along which the ridge of such a plan runs: the longer side of the smallest rectangle around it, turned by
+/// roof:orientation=across or a roof:direction that runs more along than across.
+model::Point2 ridge_axis(const model::Polygon& plan, const RoofRequest& request);
+
 /// One of those shapes on a plan. Where the plan has no end of a wing, gables are left out. Where the weighted skeleton
 /// gives up, hips by CGAL's (SKELETON_FALLBACK); empty when that gives up as well.
 std::optional<BuiltRoof> skeleton_roof(const model::Polygon& plan, const RoofRequest& request);

@@ -76,6 +76,7 @@ std::string_view roof_type_code(model::RoofShape shape) {
     case crosspitched:
     case helm:
     case butterfly:
+    case lined:
     case many: return "1130";  // "combination of roof forms"
     case other: return {};
   }

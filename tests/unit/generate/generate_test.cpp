@@ -227,6 +227,26 @@ TEST(Mass, CanopiesAreSlabsWithoutWallsBelow) {
   EXPECT_NEAR(bottom(t.part().lod2), 38.7, 0.001);
 }
 
+TEST(Mass, WhatHasAnUndersideAndNoHeightStandsAboveIt) {
+  Town t;
+  t.add(kHouse).min_height = 12;
+  t.add({{50, 0}, {60, 0}, {60, 9}, {50, 9}}, "roof").min_height = 5;
+  auto& part = t.add({{100, 0}, {110, 0}, {110, 9}, {100, 9}});
+  part.storeys = 2;  // counted from its underside
+  part.min_storey = 4;
+  part.roof_shape = RoofShape::flat;
+  t.build();
+  EXPECT_DOUBLE_EQ(bottom(t.part(0).lod2), 46);
+  EXPECT_GT(top(t.part(0).lod2), 48);
+  EXPECT_DOUBLE_EQ(bottom(t.part(1).lod2), 39);
+  EXPECT_NEAR(top(t.part(1).lod2), 39.3, 0.001);
+  const double storey = t.part(2).attributes.storey_height.value;
+  EXPECT_NEAR(bottom(t.part(2).lod2), 34 + 4 * storey, 0.001);
+  EXPECT_NEAR(top(t.part(2).lod2), 34 + 6 * storey, 0.001);
+  EXPECT_EQ(std::count_if(t.region.report.rows.begin(), t.region.report.rows.end(),
+                          [](const auto& r) { return r.code == IssueCode::values_conflict; }), 1);
+}
+
 TEST(Mass, ARoofThatThePlanDoesNotTakeSaysSo) {
   Town t;
   t.add({{0, 0}, {30, 0}, {30, 20}, {22, 20}, {22, 8}, {8, 8}, {8, 20}, {0, 20}}).roof_shape = RoofShape::pyramidal;
@@ -245,7 +265,7 @@ TEST(Mass, ARoofHigherThanItsHouseIsClampedAndReported) {
   tags.roof_shape = RoofShape::gabled;
   t.build();
   EXPECT_DOUBLE_EQ(top(t.part().lod2), 38);
-  EXPECT_TRUE(t.reported(IssueCode::roof_height_clamped));
+  EXPECT_TRUE(t.reported(IssueCode::values_conflict));
 }
 
 TEST(Mass, EveryShapeOnEveryPlanGivesAValidSolid) {
