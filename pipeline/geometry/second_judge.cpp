@@ -9,6 +9,7 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -97,6 +98,14 @@ std::string judge_soup(const std::vector<Kernel::Point_3>& points,
   return reached == mesh.number_of_faces() ? "" : "more than one shell";
 }
 
+/// m. Farther from the origin lies nothing on Earth; squares and products of such numbers leave what doubles hold, and GMP
+/// ends the program on infinities.
+constexpr double kFarthest = 1e8;
+
+bool on_earth(const model::Point3& p) {
+  return std::fabs(p.x) < kFarthest && std::fabs(p.y) < kFarthest && std::fabs(p.z) < kFarthest;
+}
+
 }  // namespace
 
 std::string judge_solid(const std::vector<PolygonRings>& polygons) {
@@ -106,7 +115,9 @@ std::string judge_solid(const std::vector<PolygonRings>& polygons) {
     for (const auto& ring : polygon) {
       if (ring.size() < 3) return "a ring with fewer than three points";
       for (const model::Point3& p : ring)
-        if (index.emplace(p, points.size()).second) points.emplace_back(p.x, p.y, p.z);
+        if (!on_earth(p))
+          return "a coordinate beyond all measure";
+        else if (index.emplace(p, points.size()).second) points.emplace_back(p.x, p.y, p.z);
     }
   std::vector<std::vector<std::size_t>> triangles;
   for (const auto& polygon : polygons)
@@ -121,6 +132,7 @@ std::string judge_triangles(const std::vector<std::vector<model::Point3>>& trian
   for (const auto& t : triangles) {
     std::vector<std::size_t> corner;
     for (const model::Point3& p : t) {
+      if (!on_earth(p)) return "a coordinate beyond all measure";
       const auto [place, inserted] = index.emplace(p, points.size());
       if (inserted) points.emplace_back(p.x, p.y, p.z);
       corner.push_back(place->second);

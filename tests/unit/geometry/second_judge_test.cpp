@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/unit/geometry/broken_solids.h"
 
 namespace blockrand::geometry {
@@ -38,6 +40,15 @@ TEST(SecondJudge, FindsEveryBrokenSolidButTheOnesItCannotSee) {
     // the same point for it.
     if (!broken.seen_by_cgal) continue;
     EXPECT_NE(judge_solid(polygons_of(broken.solid)), "") << broken.name;
+  }
+}
+
+TEST(SecondJudge, CoordinatesBeyondAllMeasureEndInAVerdict) {
+  for (const double wrong : {1e200, -1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    auto polygons = polygons_of(testing_shapes::box({0, 0, 0}, 10, 8, 6));
+    polygons[2][0][1].x = wrong;
+    EXPECT_EQ(judge_solid(polygons), "a coordinate beyond all measure");
+    EXPECT_EQ(judge_triangles({{{0, 0, 0}, {1, 0, 0}, {wrong, 1, 0}}}), "a coordinate beyond all measure");
   }
 }
 
