@@ -41,8 +41,7 @@ struct Face {
 /// alone: not on the order of lines, their direction (but for left and right), or how they are cut into pieces. It is
 /// local: a face depends only on lines that come into its bounding box, since every edge of its boundary is part of a
 /// closed ring within that box.
-///
-/// \throws std::runtime_error when GEOS gives up (out of memory; not for any input on the grid)
+/// O(n log n) for n pieces of lines, and holes times faces for what hangs together by itself.
 std::vector<Face> faces_of_lines(std::span<const DividingLine> lines);
 
 /// A point inside the polygon, on the grid, well away from the boundary where the polygon is wide. For polygons

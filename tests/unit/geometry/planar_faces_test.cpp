@@ -1,6 +1,7 @@
 #include "pipeline/geometry/planar_faces.h"
 
 #include <gmock/gmock.h>
+#include <geos_c.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -232,6 +233,75 @@ TEST(SegmentGrid, FindsWhatComesNearAndNotTheRest) {
             << i;
     }
   EXPECT_LT(visited, segments.size() * 13 * 14 / 4);
+}
+
+// ---- GEOS's polygonizer as the oracle
+
+std::vector<Point2> ring_of(GEOSContextHandle_t geos, const GEOSGeometry* ring, bool counter_clockwise) {
+  std::vector<Point2> out;
+  const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(geos, ring);
+  unsigned n = 0;
+  GEOSCoordSeq_getSize_r(geos, sequence, &n);
+  for (unsigned i = 0; i + 1 < n; ++i) {
+    Point2 p;
+    GEOSCoordSeq_getXY_r(geos, sequence, i, &p.x, &p.y);
+    out.push_back(p);
+  }
+  if ((signed_area(out) > 0) != counter_clockwise) std::reverse(out.begin(), out.end());
+  std::rotate(out.begin(), std::min_element(out.begin(), out.end()), out.end());
+  return out;
+}
+
+using Rings = std::vector<std::vector<Point2>>;  // outer ring, then holes in order
+
+std::vector<Rings> faces_by_geos(const std::vector<DividingLine>& lines) {
+  GEOSContextHandle_t geos = GEOS_init_r();
+  std::vector<GEOSGeometry*> parts;
+  const auto edges = noded_edges(lines);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (i > 0 && edges[i].a == edges[i - 1].a && edges[i].b == edges[i - 1].b) continue;
+    GEOSCoordSequence* sequence = GEOSCoordSeq_create_r(geos, 2, 2);
+    GEOSCoordSeq_setXY_r(geos, sequence, 0, edges[i].a.x, edges[i].a.y);
+    GEOSCoordSeq_setXY_r(geos, sequence, 1, edges[i].b.x, edges[i].b.y);
+    parts.push_back(GEOSGeom_createLineString_r(geos, sequence));
+  }
+  GEOSGeometry* all = GEOSGeom_createCollection_r(geos, GEOS_MULTILINESTRING, parts.data(), static_cast<unsigned>(parts.size()));
+  const GEOSGeometry* const input[] = {all};
+  GEOSGeometry* faces = GEOSPolygonize_r(geos, input, 1);
+  std::vector<Rings> out;
+  for (int i = 0; i < GEOSGetNumGeometries_r(geos, faces); ++i) {
+    const GEOSGeometry* g = GEOSGetGeometryN_r(geos, faces, i);
+    Rings rings;
+    for (int h = 0; h < GEOSGetNumInteriorRings_r(geos, g); ++h)
+      rings.push_back(ring_of(geos, GEOSGetInteriorRingN_r(geos, g, h), false));
+    std::sort(rings.begin(), rings.end());
+    rings.insert(rings.begin(), ring_of(geos, GEOSGetExteriorRing_r(geos, g), true));
+    out.push_back(std::move(rings));
+  }
+  std::sort(out.begin(), out.end());
+  GEOSGeom_destroy_r(geos, faces);
+  GEOSGeom_destroy_r(geos, all);
+  GEOS_finish_r(geos);
+  return out;
+}
+
+TEST(FacesOfLines, AreThoseOfGeos) {
+  for (unsigned seed = 100; seed < 160; ++seed) {
+    std::mt19937 random(seed);
+    // Sparse ones have bridges, dead ends and islands; dense ones many crossings. Squares on whole metres touch in corners.
+    auto lines = tangle(seed, 2 + static_cast<int>(seed % 30) * 2, 200);
+    for (int i = 0; i < 25; ++i)
+      lines.push_back(square(2000 + static_cast<std::uint64_t>(i), 10.0 * static_cast<double>(random() % 25), 10.0 * static_cast<double>(random() % 25),
+                             10.0 * static_cast<double>(1 + random() % 3)));
+    std::vector<Rings> ours;
+    for (const Face& face : faces_of_lines(lines)) {
+      Rings rings{face.polygon.outer.points};
+      for (const auto& hole : face.polygon.holes) rings.push_back(hole.points);
+      ours.push_back(std::move(rings));
+    }
+    std::sort(ours.begin(), ours.end());
+    EXPECT_EQ(ours, faces_by_geos(lines)) << "seed " << seed;
+  }
 }
 
 }  // namespace
