@@ -7,6 +7,7 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/base/random.h"
+#include "pipeline/generate/ridge_direction.h"
 #include "pipeline/geometry/polygon.h"
 
 namespace blockrand::generate {
@@ -19,6 +20,7 @@ using model::BuildingPart;
 using model::Colour;
 using model::MappedAttributes;
 using model::Region;
+using model::RoofOrientation;
 using model::RoofShape;
 using model::Source;
 using model::Sourced;
@@ -29,6 +31,8 @@ constexpr float kTagConfidence = 0.95f;
 constexpr float kImpliedConfidence = 0.8f;
 constexpr float kOutlineConfidence = 0.7f;
 constexpr float kGeometryConfidence = 0.4f;
+/// Ridges run from party wall to party wall in 315 of 334 cases in The Hague; other towns are less uniform.
+constexpr float kPartyWallConfidence = 0.8f;
 constexpr float kPresetConfidence = 0.3f;
 constexpr float kDefaultConfidence = 0.1f;
 
@@ -48,6 +52,7 @@ struct Choice {
 
 std::string text_of(double value) { return fmt::format("{:g}", value); }
 std::string text_of(RoofShape value) { return std::string(model::name(value)); }
+std::string text_of(RoofOrientation value) { return value == RoofOrientation::across ? "across" : "along"; }
 std::string text_of(const Colour& value) { return model::text(value); }
 std::string text_of(const std::string& value) { return value; }
 
@@ -139,20 +144,33 @@ struct Resolver {
     return first(std::move(choices));
   }
 
-  /// Horizontal run of the roof's slope: half the plan's width, or all of it for one slope.
-  double run(RoofShape shape) const {
-    const double w = width();
-    if (shape != RoofShape::skillion) return w / 2;
-    return w;
+  Sourced<RoofOrientation> roof_orientation(RoofShape shape) {
+    std::vector<Choice<RoofOrientation>> choices;
+    if (own.roof_orientation) choices.push_back({*own.roof_orientation, Source::tag, kTagConfidence, "tagged"});
+    const bool inside = building.situation.position == model::BuildingPosition::side_wing;  // leans on its long wall
+    if (shape != RoofShape::flat && !own.roof_direction && !inside && !plans.empty() &&
+        ridge_runs_across(plans[0], party_walls_at(building, plans[0]), preset.pitched_width))
+      choices.push_back({RoofOrientation::across, Source::geometry, kPartyWallConfidence, "from party wall to party wall"});
+    choices.push_back({RoofOrientation::along, Source::default_, kDefaultConfidence, "along the longer side"});
+    return first(std::move(choices));
   }
 
-  Sourced<double> roof_height(RoofShape shape, double storey_height) {
+  /// Horizontal run of the roof's slope: half the plan's width, or all of it for one slope.
+  double run(RoofShape shape, RoofOrientation orientation) const {
+    const double w = width();
+    if (shape == RoofShape::skillion) return w;
+    if (orientation == RoofOrientation::along || plans.empty() || shape == RoofShape::hipped) return w / 2;
+    const geometry::Extent length = geometry::extent_along(plans[0].outer.points, geometry::long_axis(plans[0].outer.points));
+    return (length.maximum - length.minimum) / 2;
+  }
+
+  Sourced<double> roof_height(RoofShape shape, RoofOrientation orientation, double storey_height) {
     if (shape == RoofShape::flat) return make<double>(0, Source::implied, kImpliedConfidence, "flat roof");
     std::vector<Choice<double>> choices;
     if (own.roof_height) choices.push_back({*own.roof_height, Source::tag, kTagConfidence, "tagged"});
     if (own.roof_angle)
-      choices.push_back({run(shape) * tangent(std::clamp<double>(*own.roof_angle, 0, 80)), Source::implied, kImpliedConfidence,
-                         fmt::format("a tagged pitch of {:g} degrees over a run of {:.1f} m", *own.roof_angle, run(shape))});
+      choices.push_back({run(shape, orientation) * tangent(std::clamp<double>(*own.roof_angle, 0, 80)), Source::implied, kImpliedConfidence,
+                         fmt::format("a tagged pitch of {:g} degrees over a run of {:.1f} m", *own.roof_angle, run(shape, orientation))});
     if (own.roof_storeys && *own.roof_storeys > 0)
       choices.push_back({*own.roof_storeys * storey_height, Source::implied, kImpliedConfidence,
                          fmt::format("{:g} tagged storeys in the roof", *own.roof_storeys)});
@@ -161,19 +179,20 @@ struct Resolver {
     if (shape == RoofShape::skillion) pitch = std::min(pitch, 15.0);
     if (shape == RoofShape::onion || shape == RoofShape::dome) pitch = 45;
     pitch = std::min(pitch, options.max_roof_pitch);
-    choices.push_back({run(shape) * tangent(pitch), preset_source(), preset_confidence(),
-                       fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, run(shape))});
+    choices.push_back({run(shape, orientation) * tangent(pitch), preset_source(), preset_confidence(),
+                       fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, run(shape, orientation))});
     return first(std::move(choices));
   }
 
   /// Storeys, heights and roof, which hang together.
   void heights(Attributes& a) {
     a.roof_shape = roof_shape();
+    a.roof_orientation = roof_orientation(a.roof_shape.value);
     a.storeys = storeys();
     a.storey_height = make<double>(preset.storey_height, preset_source(), preset_confidence(), preset_name());
     a.roof_storeys = own.roof_storeys ? make<double>(*own.roof_storeys, Source::tag, kTagConfidence, "tagged")
                                       : make<double>(0, Source::default_, kDefaultConfidence, "none tagged");
-    a.roof_height = roof_height(a.roof_shape.value, std::min(preset.storey_height, 3.0));
+    a.roof_height = roof_height(a.roof_shape.value, a.roof_orientation.value, std::min(preset.storey_height, 3.0));
     const bool roof_is_tagged = a.roof_height.source == Source::tag;
 
     const MappedAttributes* height_from = own.height ? &own : outline && !has_own_height() && outline->height ? outline : nullptr;
@@ -280,9 +299,6 @@ struct Resolver {
                          : make(std::string("yes"), Source::default_, kDefaultConfidence, "not tagged");
     a.ground_height = ground;
     heights(a);
-    a.roof_orientation = own.roof_orientation
-                             ? make(*own.roof_orientation, Source::tag, kTagConfidence, "tagged")
-                             : make(model::RoofOrientation::along, Source::default_, kDefaultConfidence, "along the longer side");
     if (own.roof_direction) a.roof_direction = make<double>(*own.roof_direction, Source::tag, kTagConfidence, "tagged");
     looks(a);
     return a;

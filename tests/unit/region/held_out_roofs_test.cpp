@@ -10,6 +10,7 @@
 
 #include "pipeline/base/random.h"
 #include "pipeline/generate/resolve.h"
+#include "pipeline/geometry/polygon.h"
 #include "pipeline/region/load.h"
 #include "tests/unit/region/built_town.h"
 
@@ -55,9 +56,17 @@ Class class_of(RoofShape shape) {
 /// The fold of a building: all its parts are hidden with it.
 int fold_of(OsmId building) { return static_cast<int>(base::random_bits(1, building.key(), "fold") % kFolds); }
 
-void hide(MappedAttributes& mapped, bool all_roof_tags) {
+/// What of a roof's tags is hidden.
+enum class Hidden { shape, form, direction };
+
+void hide(MappedAttributes& mapped, Hidden what) {
+  if (what == Hidden::direction) {
+    mapped.roof_direction.reset();
+    mapped.roof_orientation.reset();
+    return;
+  }
   mapped.roof_shape.reset();
-  if (!all_roof_tags) return;
+  if (what == Hidden::shape) return;
   mapped.roof_storeys.reset();
   mapped.roof_angle.reset();
   mapped.roof_height.reset();
@@ -121,6 +130,7 @@ using BySource = std::map<std::string, Confusion>;
 struct HeldOut {
   Confusion shape_hidden, all_hidden;  ///< roof:shape alone; all roof:* that speak of form
   BySource sources;                    ///< of all_hidden
+  std::array<std::array<int, 2>, 2> ridges{};  ///< along, across: as tagged, as inferred with the shape's tag at hand
 };
 
 template <class Visit>
@@ -147,7 +157,7 @@ HeldOut hold_out(const fs::path& file) {
   const auto ground = [](const Building&) { return model::Sourced<double>{}; };
   for (std::size_t shard = 0; shard < town.shards().size(); ++shard) {
     const model::Region region = town.tile(shard, 0);
-    for (const bool all : {false, true})
+    for (const Hidden what : {Hidden::shape, Hidden::form, Hidden::direction})
       for (int fold = 0; fold < kFolds; ++fold) {
         model::Region hidden;
         hidden.extract = region.extract;
@@ -156,8 +166,8 @@ HeldOut hold_out(const fs::path& file) {
           for_each_tagged(b, [&](const BuildingPart&, RoofShape) { asked = true; });
           if (!asked || fold_of(b.osm) != fold) continue;
           hidden.buildings.push_back(b);
-          hide(hidden.buildings.back().mapped, all);
-          for (BuildingPart& part : hidden.buildings.back().parts) hide(part.mapped, all);
+          hide(hidden.buildings.back().mapped, what);
+          for (BuildingPart& part : hidden.buildings.back().parts) hide(part.mapped, what);
         }
         generate::resolve_attributes(
             hidden, {town.defaults(), neighbours[static_cast<std::size_t>(fold)], 1, ground}, usual_generation());
@@ -166,8 +176,24 @@ HeldOut hold_out(const fs::path& file) {
           if (next == hidden.buildings.size() || hidden.buildings[next].osm != b.osm) continue;
           const Building& guess = hidden.buildings[next++];
           for_each_tagged(b, [&](const BuildingPart& part, RoofShape truth) {
-            const auto& inferred = guess.parts[static_cast<std::size_t>(&part - b.parts.data())].attributes.roof_shape;
+            const model::Attributes& attributes = guess.parts[static_cast<std::size_t>(&part - b.parts.data())].attributes;
+            if (what == Hidden::direction) {
+              const auto& tags = b.has_mapped_parts ? part.mapped : b.mapped;
+              const Class c = class_of(truth);
+              if (!tags.roof_orientation || (c != gabled && c != half_hipped && c != mansard_like)) return;
+              ++out.ridges[static_cast<std::size_t>(*tags.roof_orientation)][static_cast<std::size_t>(attributes.roof_orientation.value)];
+              return;
+            }
+            const bool all = what == Hidden::form;
+            const auto& inferred = attributes.roof_shape;
             ++(all ? out.all_hidden : out.shape_hidden).count[class_of(truth)][class_of(inferred.value)];
+            if (std::getenv("BLOCKRAND_ROOF_CASES") && all) {
+              const auto& plan = part.plan;
+              std::printf("CASE,%s,%s,%s,%s,%s,%.0f,%.1f,%g,%d,%s,%d,%.1f,%s,%s\n", file.stem().c_str(), b.osm.text().c_str(), kClassNames[class_of(truth)],
+                          kClassNames[class_of(inferred.value)], std::string(model::name(inferred.source)).c_str(), geometry::area(plan),
+                          geometry::equivalent_width(plan), attributes.storeys.value, static_cast<int>(attributes.storeys.source == model::Source::tag),
+                          attributes.use.value.c_str(), b.has_mapped_parts, b.situation.party_wall_length, std::string(model::name(b.situation.position)).c_str(), std::string(model::name(truth)).c_str());
+            }
             if (all) ++out.sources[std::string(model::name(inferred.source))].count[class_of(truth)][class_of(inferred.value)];
           });
         }
@@ -191,7 +217,8 @@ TEST_P(HeldOutRoofs, AreInferred) {
   print((std::string(GetParam().file) + ", all tags of the roof's form hidden").c_str(), held.all_hidden);
   print_matrix(held.all_hidden);
   for (const auto& [source, confusion] : held.sources) print(("  by " + source).c_str(), confusion);
-  ASSERT_GT(held.all_hidden.total(), 10);
+  std::printf("  tagged roof:orientation of ridged roofs: along %d right of %d, across %d right of %d\n", held.ridges[0][0],
+              held.ridges[0][0] + held.ridges[0][1], held.ridges[1][1], held.ridges[1][0] + held.ridges[1][1]);
   EXPECT_GE(held.all_hidden.accuracy(), GetParam().least);
 }
 

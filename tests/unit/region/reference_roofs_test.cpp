@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 
+#include "pipeline/generate/ridge_direction.h"
 #include "pipeline/geometry/polygon.h"
 #include "styles/roofs/roof.h"
 #include "tests/unit/region/built_town.h"
@@ -260,12 +261,12 @@ void print_best_shapes(const std::vector<RoofCase>& all) {
     for (const auto& [shape, n] : shapes) std::printf(" %s %d,", shape.c_str(), n);
     std::printf("\n");
   }
-  int along = 0, across = 0;
+  int same = 0, turned = 0;
   for (const RoofCase& c : all) {
     if (c.asked != RoofShape::gabled || c.seen != "gabled" || !c.as_asked || !c.other_way) continue;
-    ++(common_directions(c.form.directions, c.as_asked->form.directions) == 2 ? along : across);
+    ++(common_directions(c.form.directions, c.as_asked->form.directions) == 2 ? same : turned);
   }
-  std::printf("  gabled roofs asked for and seen: ridge along the longer side %d, otherwise %d\n", along, across);
+  std::printf("  gabled roofs asked for and seen: ridge as the survey's %d, otherwise %d\n", same, turned);
 }
 
 // ---- towns ----------------------------------------------------------------------------------------------------------
@@ -443,26 +444,65 @@ TEST(ReferenceRoofs, OfTownsStandAtTheSurveysHeights) {
   print_surfaces(all);
 }
 
-/// The Hague: no OSM, but roofs of many shapes whose type, ridge and eaves are surveyed part by part. The builder alone.
+/// Building of a part: "GUID_…_2" is part 2 of "GUID_…".
+std::string owner_of(const std::string& part) {
+  const std::size_t end = part.rfind('_');
+  return end != std::string::npos && part.size() - end <= 4 ? part.substr(0, end) : part;
+}
+
+/// The walls of a surveyed part at which another building stands, found by points 0.2 m outside every half metre.
+std::vector<generate::WallStretch> party_walls(const SurveyedRoof& roof, const std::vector<SurveyedRoof>& all) {
+  std::vector<const SurveyedRoof*> near;
+  for (const SurveyedRoof& other : all)
+    if (other.box.near(roof.box, 0.2) && owner_of(other.id) != owner_of(roof.id)) near.push_back(&other);
+  std::vector<generate::WallStretch> out;
+  const model::Ring& ring = roof.plan[0].outer;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
+    const double l = std::hypot(b.x - a.x, b.y - a.y);
+    const int steps = std::max(1, static_cast<int>(l / 0.5));
+    const auto at = [&](double t) { return Point2{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)}; };
+    for (int k = 0; k < steps; ++k) {
+      const Point2 m = at((k + 0.5) / steps), beside{m.x + 0.2 * (b.y - a.y) / l, m.y - 0.2 * (b.x - a.x) / l};
+      const bool covered = std::any_of(near.begin(), near.end(), [&](const SurveyedRoof* other) {
+        return std::any_of(other->plan.begin(), other->plan.end(), [&](const Polygon& p) { return geometry::contains(p, beside); });
+      });
+      if (covered) out.push_back({at(static_cast<double>(k) / steps), at((k + 1.0) / steps)});
+    }
+  }
+  return out;
+}
+
+/// The Hague: no OSM, but roofs of many shapes whose type, ridge and eaves are surveyed part by part. The builder, and
+/// the rule for ridges, alone.
 TEST(ReferenceRoofs, OfTheHagueAreTheSurveysSurfaces) {
   const fs::path file = kData / "reference/cityjson/DenHaag_01.json";
   if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
-  std::vector<RoofCase> all;
-  for (const SurveyedRoof& survey : read_cityjson_roofs(file)) {
+  const auto surveyed = read_cityjson_roofs(file);
+  const double widest = generate::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs").use("house").pitched_width;
+  std::map<bool, std::vector<RoofCase>> all;  // with the rule for ridges, without
+  for (const SurveyedRoof& survey : surveyed) {
     const auto shape = shape_of_code(survey.roof_type);
     const auto heights = heights_of(survey.roof, survey.plan, survey.ground);
     if (!shape || *shape == RoofShape::flat || !heights) continue;
-    roofs::RoofRequest asked;
-    asked.shape = *shape;
-    RoofCase c = make_case(survey.plan, survey, *heights, asked);
-    if (c.as_asked) all.push_back(std::move(c));
+    for (const bool ruled : {false, true}) {
+      roofs::RoofRequest asked;
+      asked.shape = *shape;
+      asked.across = ruled && generate::ridge_runs_across(survey.plan[0], party_walls(survey, surveyed), widest);
+      RoofCase c = make_case(survey.plan, survey, *heights, asked);
+      if (c.as_asked) all[ruled].push_back(std::move(c));
+    }
   }
-  std::printf("The Hague: the surveyed roof type on the surveyed ground, with the survey's ridge and eaves\n");
-  print_case_head();
-  print_cases("all", all, [](const RoofCase&) { return true; });
-  print_split(all, [](const RoofCase& c) { return "type: " + std::string(model::name(c.asked)); });
-  print_split(all, [](const RoofCase& c) { return std::string(model::name(c.asked)) + ", seen: " + c.seen; });
-  print_best_shapes(all);
+  std::map<std::string, CaseSummary> by_type;
+  for (const bool ruled : {false, true}) {
+    std::printf("The Hague: the surveyed roof type on the surveyed ground, with the survey's ridge and eaves; ridges %s\n",
+                ruled ? "from party wall to party wall" : "along the longer side");
+    print_case_head();
+    print_cases("all", all[ruled], [](const RoofCase&) { return true; });
+    by_type = print_split(all[ruled], [](const RoofCase& c) { return "type: " + std::string(model::name(c.asked)); });
+    print_split(all[ruled], [](const RoofCase& c) { return std::string(model::name(c.asked)) + ", seen: " + c.seen; });
+    print_best_shapes(all[ruled]);
+  }
 }
 
 }  // namespace
