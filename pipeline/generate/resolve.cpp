@@ -36,6 +36,11 @@ constexpr float kPartyWallConfidence = 0.8f;
 constexpr float kPresetConfidence = 0.3f;
 constexpr float kDefaultConfidence = 0.1f;
 
+/// Full storeys under rafters: Berlin's building codes from 1887 allowed five and 22 m to the eaves, post-war ones call what has
+/// its highest floor above 22 m a tower. Of 37 tagged roofs of houses with seven storeys and more 37 are flat, of 30 with
+/// six 14 (tests/bench/RESULTS.md, "Roofs against references").
+constexpr float kMostStoreysUnderRafters = 6;
+
 /// m. No inhabited storey is lower; a roof gives way before its storeys do.
 constexpr double kLowestStorey = 2.2;
 
@@ -132,6 +137,9 @@ struct Resolver {
     if (outline && has_own_height())
       choices.push_back({RoofShape::flat, Source::implied, kGeometryConfidence, "a part with a height and no roof tags ends flat"});
     const bool wide = width() > preset.pitched_width;
+    const auto& counted = own.storeys || !outline || has_own_height() ? own.storeys : outline->storeys;
+    if (preset.roof_shape != RoofShape::flat && counted && *counted > kMostStoreysUnderRafters)
+      choices.push_back({RoofShape::flat, Source::geometry, kImpliedConfidence, fmt::format("{:g} storeys are too many for rafters", *counted)});
     const auto opinion = in.neighbours.roof_shape(place(), group, id, options.neighbour_minimum);
     if (opinion && opinion->share >= 0.5 && (opinion->value == RoofShape::flat || !wide))
       choices.push_back({opinion->value, Source::neighbours, 0.2 + 0.5 * opinion->share,
