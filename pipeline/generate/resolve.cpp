@@ -126,11 +126,15 @@ struct Resolver {
   Sourced<RoofShape> roof_shape() {
     std::vector<Choice<RoofShape>> choices;
     if (own.roof_shape) choices.push_back({*own.roof_shape, Source::tag, kTagConfidence, "tagged"});
+    const auto opinion = in.neighbours.roof_shape(place(), group, id, options.neighbour_minimum);
+    const bool agreed = opinion && opinion->share >= 0.5;
     if (own.roof_orientation || own.roof_direction || tags_speak_of_slope()) {
-      // A direction alone means one slope, storeys or an angle mean two.
+      // A direction alone means one slope, storeys or an angle mean two, or what sloped roof is usual here.
       const bool one_slope = own.roof_direction && !own.roof_orientation && !tags_speak_of_slope();
-      choices.push_back({one_slope ? RoofShape::skillion : RoofShape::gabled, Source::implied, kImpliedConfidence,
-                         "other roof tags speak of a slope"});
+      const bool as_usual = agreed && opinion->value != RoofShape::flat && opinion->value != RoofShape::other;
+      choices.push_back({one_slope ? RoofShape::skillion : as_usual ? opinion->value : RoofShape::gabled, Source::implied,
+                         kImpliedConfidence,
+                         as_usual && !one_slope ? "other roof tags speak of a slope, neighbours of this one" : "other roof tags speak of a slope"});
     }
     if (outline && outline->roof_shape && !has_own_height())
       choices.push_back({*outline->roof_shape, Source::implied, kOutlineConfidence, "the outline's roof"});
@@ -140,8 +144,7 @@ struct Resolver {
     const auto& counted = own.storeys || !outline || has_own_height() ? own.storeys : outline->storeys;
     if (preset.roof_shape != RoofShape::flat && counted && *counted > kMostStoreysUnderRafters)
       choices.push_back({RoofShape::flat, Source::geometry, kImpliedConfidence, fmt::format("{:g} storeys are too many for rafters", *counted)});
-    const auto opinion = in.neighbours.roof_shape(place(), group, id, options.neighbour_minimum);
-    if (opinion && opinion->share >= 0.5 && (opinion->value == RoofShape::flat || !wide))
+    if (agreed && (opinion->value == RoofShape::flat || !wide))
       choices.push_back({opinion->value, Source::neighbours, 0.2 + 0.5 * opinion->share,
                          fmt::format("{:.0f} % of {} neighbours within {:.0f} m", 100 * opinion->share, opinion->voices,
                                      in.neighbours.reach())});
