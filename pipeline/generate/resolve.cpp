@@ -37,8 +37,8 @@ constexpr float kPresetConfidence = 0.3f;
 constexpr float kDefaultConfidence = 0.1f;
 
 /// Full storeys under rafters: Berlin's building codes from 1887 allowed five and 22 m to the eaves, post-war ones call what has
-/// its highest floor above 22 m a tower. Of 37 tagged roofs of houses with seven storeys and more 37 are flat, of 30 with
-/// six 14 (tests/bench/RESULTS.md, "Roofs against references").
+/// its highest floor above 22 m a tower. Of 37 houses with seven storeys and more that looked sloped 37 are tagged flat, of 29
+/// with six 14 (tests/bench/RESULTS.md, "Roofs against references").
 constexpr float kMostStoreysUnderRafters = 6;
 
 /// m. No inhabited storey is lower; a roof gives way before its storeys do.

@@ -30,6 +30,7 @@ std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, dou
 ///
 /// Heights hang together: height = storeys x storey height + roof height. Where `height` and `storeys` are both tagged,
 /// the roof takes what the storeys leave, within a third of its preset pitch; where only `height` is, storeys follow.
+/// Ridges run across the longer side in rows (ridge_direction.h): `edges` must be labelled before.
 /// Reach: GenerateOptions::neighbour_reach.
 void resolve_attributes(model::Region& region, const ResolveInputs& inputs, const GenerateOptions& options);
 

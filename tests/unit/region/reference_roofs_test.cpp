@@ -1,11 +1,13 @@
 // Are our roofs those that surveyors found? Ridge and eaves of what is built from OSM against surveyed and hand-built
 // models on the same ground, and, with the survey's own ridge, eaves and shape given to the builder of roofs, one surface
-// against the other. Skipped where the data is absent. docs: tests/bench/RESULTS.md, "Roofs against references".
+// against the other. Skipped where the data is absent. Figures: tests/bench/RESULTS.md, "Roofs
+// against references". BLOCKRAND_ROOF_CASES=1 prints every building.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -388,6 +390,14 @@ void print_heights(const std::vector<Match>& all) {
                   std::string(model::name(m.on_map.best->shape)).c_str());
 }
 
+/// Median of the error of the ridge, whatever its sign.
+double ridge_error(const std::vector<Match>& all, const std::function<bool(const Match&)>& which) {
+  Errors e;
+  for (const Match& m : all)
+    if (which(m)) e.values.push_back(m.ours.ridge - m.survey.ridge);
+  return e.median_error();
+}
+
 std::vector<RoofCase> cases(const std::vector<Match>& all, RoofCase Match::* which) {
   std::vector<RoofCase> out;
   for (const Match& m : all) out.push_back(m.*which);
@@ -431,17 +441,22 @@ void print_shapes(const std::vector<Match>& all) {
 TEST(ReferenceRoofs, OfTownsStandAtTheSurveysHeights) {
   std::vector<Match> all;
   for (const SurveySet& set : {kBerlin, kIngolstadt, kPariserPlatz}) {
-    if (!is_here(set)) continue;
+    if (!is_here(set)) GTEST_SKIP() << "no surveyed models or extracts";
     auto matches = match(set);
     print_heights(matches);
     print_surfaces(matches);
     print_shapes(matches);
     std::move(matches.begin(), matches.end(), std::back_inserter(all));
   }
-  if (all.empty()) GTEST_SKIP() << "no surveyed models or extracts";
   std::printf("All together\n");
   print_heights(all);
   print_surfaces(all);
+  // Measured: 101 matches; 7.1 m, of offices whose storeys are higher than 3 m; 60 of 69 slopes, 44 where 62 were asked for.
+  EXPECT_GT(all.size(), 80u);
+  EXPECT_LT(ridge_error(all, [](const Match& m) { return m.tagged != "untagged"; }), 8.5);
+  const auto map = cases(all, &Match::on_map);
+  EXPECT_GT(print_cases("all but stepped", map, [](const RoofCase& c) { return c.seen != "flat, stepped"; }).found, 0.8);
+  EXPECT_LT(print_cases("gabled", map, [](const RoofCase& c) { return c.seen == "gabled"; }).median_rms, 0.9);
 }
 
 /// Building of a part: "GUID_…_2" is part 2 of "GUID_…".
@@ -503,6 +518,13 @@ TEST(ReferenceRoofs, OfTheHagueAreTheSurveysSurfaces) {
     print_split(all[ruled], [](const RoofCase& c) { return std::string(model::name(c.asked)) + ", seen: " + c.seen; });
     print_best_shapes(all[ruled]);
   }
+  // Measured 0.01 m and 88 %, 0.13 m and 99 %, 0.66 m, 0.11 m; with ridges along the longer side 1.10 m and 16 % of gabled roofs.
+  EXPECT_LT(by_type.at("type: gabled").median_rms, 0.05);
+  EXPECT_GT(by_type.at("type: gabled").found, 0.83);
+  EXPECT_LT(by_type.at("type: hipped").median_rms, 0.2);
+  EXPECT_GT(by_type.at("type: hipped").found, 0.95);
+  EXPECT_LT(by_type.at("type: pyramidal").median_rms, 0.8);
+  EXPECT_LT(by_type.at("type: skillion").median_rms, 0.2);
 }
 
 }  // namespace
