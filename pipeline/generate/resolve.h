@@ -32,6 +32,7 @@ std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, dou
 /// roof:angle, else roof:levels, else a usual pitch; the last two give way by up to a third to what tagged height and
 /// storeys leave; where only `height` is tagged, storeys follow. Tags that contradict each other are reported
 /// (docs/roofs.md, "Tags").
+/// Ridges run across the longer side in rows (ridge_direction.h): `edges` must be labelled before.
 /// Reach: GenerateOptions::neighbour_reach.
 void resolve_attributes(model::Region& region, const ResolveInputs& inputs, const GenerateOptions& options);
 

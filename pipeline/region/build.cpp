@@ -35,6 +35,7 @@
 #include "pipeline/region/context_extract.h"
 #include "pipeline/region/context_layers.h"
 #include "pipeline/region/documents.h"
+#include "pipeline/region/load.h"
 #include "pipeline/region/outcome.h"
 #include "pipeline/region/pictures.h"
 #include "pipeline/region/plan_picture.h"
@@ -71,40 +72,6 @@ std::uint64_t current_rss_bytes() {
   std::uint64_t total = 0, resident = 0;
   statm >> total >> resident;
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
-
-// ---- region-wide tables ---------------------------------------------------------------------------------------------
-
-std::vector<context::TaggedBuilding> tagged_buildings(const Extract& extract, const generate::Defaults& defaults,
-                                                      const georef::Projection& projection) {
-  std::vector<context::TaggedBuilding> out;
-  for (const MappedBuilding& b : extract.buildings) {
-    if (b.kind != ObjectKind::building || b.state != ObjectState::pending || b.rings.count == 0) continue;
-    if (!b.attributes.storeys && !b.attributes.roof_shape) continue;
-    std::vector<model::Point2> ring;
-    for (const model::Location v : extract.vertices_of(extract.rings[b.rings.first]))
-      ring.push_back(model::snap(projection.forward(v)));
-    context::TaggedBuilding t;
-    t.id = b.id;
-    t.place = ring.front();
-    t.group = generate::neighbour_group(defaults, extract.strings.view(b.attributes.use),
-                                        std::fabs(geometry::signed_area(ring)));
-    t.storeys = b.attributes.storeys;
-    t.roof_shape = b.attributes.roof_shape;
-    out.push_back(t);
-  }
-  return out;
-}
-
-/// The middle of each building: where the data is.
-std::vector<model::Point2> building_places(const Extract& extract, const georef::Projection& projection) {
-  std::vector<model::Point2> places;
-  for (const MappedBuilding& b : extract.buildings) {
-    if (b.rings.count == 0 || b.state != ObjectState::pending) continue;
-    const model::Point2 p = projection.forward(box_centre(extract, b));
-    if (std::isfinite(p.x) && std::isfinite(p.y)) places.push_back(model::snap(p));
-  }
-  return places;
 }
 
 bool is_building(const MappedBuilding& b) { return b.kind == ObjectKind::building; }

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "pipeline/generate/resolve.h"
+#include "pipeline/geometry/polygon.h"
+
 namespace blockrand::region {
 
 namespace {
@@ -75,6 +78,37 @@ model::Region load_region(const Extract& extract, const Shard& shard, const geor
     region.buildings.push_back(std::move(building));
   }
   return region;
+}
+
+std::vector<context::TaggedBuilding> tagged_buildings(const model::Extract& extract, const generate::Defaults& defaults,
+                                                      const georef::Projection& projection) {
+  std::vector<context::TaggedBuilding> out;
+  for (const model::MappedBuilding& b : extract.buildings) {
+    if (b.kind != model::ObjectKind::building || b.state != model::ObjectState::pending || b.rings.count == 0) continue;
+    if (!b.attributes.storeys && !b.attributes.roof_shape) continue;
+    std::vector<model::Point2> ring;
+    for (const model::Location v : extract.vertices_of(extract.rings[b.rings.first]))
+      ring.push_back(model::snap(projection.forward(v)));
+    context::TaggedBuilding t;
+    t.id = b.id;
+    t.place = ring.front();
+    t.group = generate::neighbour_group(defaults, extract.strings.view(b.attributes.use),
+                                        std::fabs(geometry::signed_area(ring)));
+    t.storeys = b.attributes.storeys;
+    t.roof_shape = b.attributes.roof_shape;
+    out.push_back(t);
+  }
+  return out;
+}
+
+std::vector<model::Point2> building_places(const model::Extract& extract, const georef::Projection& projection) {
+  std::vector<model::Point2> places;
+  for (const model::MappedBuilding& b : extract.buildings) {
+    if (b.rings.count == 0 || b.state != model::ObjectState::pending) continue;
+    const model::Point2 p = projection.forward(box_centre(extract, b));
+    if (std::isfinite(p.x) && std::isfinite(p.y)) places.push_back(model::snap(p));
+  }
+  return places;
 }
 
 }  // namespace blockrand::region

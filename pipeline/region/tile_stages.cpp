@@ -95,6 +95,7 @@ void cover_party_walls(Region& region, const TileInputs& in) {
   Region halo;
   if (!beside.seeds.empty()) {
     halo = prepare(beside, numbers, in);
+    in.surroundings.label_edges(halo, numbers);  // party walls turn ridges, and with them heights
     resolve(halo, in);
   }
   for (Building& building : region.buildings)

@@ -181,6 +181,48 @@ TEST(Resolve, WideHallsAreFlat) {
   EXPECT_EQ(t.part().attributes.roof_shape.source, Source::geometry);
 }
 
+TEST(Resolve, TowersAreFlatAndTenementsAreNot) {
+  Town t;
+  t.add(kHouse, "apartments").storeys = 7;
+  t.add({{30, 0}, {42, 0}, {42, 9}, {30, 9}}, "apartments").storeys = 6;
+  auto& tagged = t.add({{60, 0}, {72, 0}, {72, 9}, {60, 9}}, "apartments");
+  tagged.storeys = 7;
+  tagged.roof_shape = RoofShape::gabled;
+  t.build();
+  EXPECT_EQ(t.part(0).built_roof, RoofShape::flat);
+  EXPECT_EQ(t.part(0).attributes.roof_shape.source, Source::geometry);
+  EXPECT_EQ(t.part(1).built_roof, RoofShape::gabled);
+  EXPECT_EQ(t.part(2).built_roof, RoofShape::gabled);
+}
+
+TEST(Resolve, ADeepRowHouseHasItsRidgeFromPartyWallToPartyWall) {
+  const auto house = [](bool in_row, std::optional<model::RoofOrientation> tagged) {
+    Town t;
+    auto& tags = t.add({{0, 0}, {6, 0}, {6, 10}, {0, 10}});
+    tags.storeys = 2;
+    tags.roof_shape = RoofShape::gabled;
+    tags.roof_orientation = tagged;
+    for (const std::uint32_t number : {1u, 3u}) {
+      if (!in_row) break;
+      model::FacadeEdge e;
+      e.edge = number;
+      e.kind = model::EdgeKind::party_wall;
+      e.end = 10;
+      t.region.buildings.back().edges.push_back(e);
+    }
+    t.build();
+    return t.part().attributes;
+  };
+  const auto row = house(true, {}), alone = house(false, {}), tagged = house(true, model::RoofOrientation::along);
+  EXPECT_EQ(row.roof_orientation.value, model::RoofOrientation::across);
+  EXPECT_EQ(row.roof_orientation.source, Source::geometry);
+  EXPECT_EQ(alone.roof_orientation.value, model::RoofOrientation::along);
+  EXPECT_EQ(tagged.roof_orientation.source, Source::tag);
+  EXPECT_EQ(tagged.roof_orientation.value, model::RoofOrientation::along);
+  // The same pitch over a longer run.
+  EXPECT_NEAR(row.roof_height.value / tagged.roof_height.value, 10.0 / 6.0, 1e-6);
+}
+
 TEST(Resolve, ColoursAreDrawnPerBuildingNotPerRun) {
   Town a, b;
   for (int i = 0; i < 12; ++i) {
