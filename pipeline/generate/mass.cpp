@@ -132,7 +132,12 @@ class MassBuilder {
         note(part, IssueCode::roof_height_clamped, fmt::format("{:.2f} m of {:.2f} m", std::max(room, 0.0), roof));
       roof = std::max(room, 0.0);
     }
-    if (roof < options_.min_roof_height) roof = 0;
+    if (roof < options_.min_roof_height) {
+      if (a.roof_shape.value != RoofShape::flat && a.roof_shape.source == model::Source::tag)
+        note(part, IssueCode::roof_height_clamped,
+             fmt::format("{} of {:.2f} m is too low for a slope: flat", model::name(a.roof_shape.value), std::max(roof, 0.0)));
+      roof = 0;
+    }
     return {model::snap(ground + bottom), model::snap(ground + top - roof), model::snap(ground + top)};
   }
 
@@ -188,7 +193,7 @@ class MassBuilder {
         if (p != &plan) note(part, IssueCode::roof_simplified);
         return;
       }
-      if (build_roof(part, plan, levels, looks, RoofShape::hipped)) {
+      if (asked != RoofShape::hipped && build_roof(part, plan, levels, looks, RoofShape::hipped)) {
         note(part, IssueCode::roof_shape_adapted, std::string(model::name(asked)) + " as hipped: its solid is not valid");
         return;
       }

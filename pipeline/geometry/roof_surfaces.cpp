@@ -48,8 +48,9 @@ class Tidy {
     parent_.resize(nodes_.size());
     std::iota(parent_.begin(), parent_.end(), 0u);
     align_uprights();
-    constexpr int kMostRounds = 12;  // each takes something out; two or three are usual
-    for (int round = 0; round < kMostRounds; ++round) {
+    // Each round takes something out of every face that needs it; two or three are usual.
+    const std::size_t most_rounds = 12 + nodes_.size();
+    for (std::size_t round = 0; round < most_rounds; ++round) {
       const bool contracted = contract();
       const bool inserted = insert();
       if (!contracted && !inserted) break;
@@ -492,11 +493,11 @@ class Tidy {
       for (const std::uint32_t n : loop) path.push_back(nodes_[n]);
       return path;
     };
-    if (group.edge != WeightedSkeletonFace::kDeck) {
+    if (group.loops.size() == 1 || group.upright) {
       for (const Loop& loop : group.loops) out.surfaces.push_back({group.edge, group.level, group.upright, {points(loop)}});
       return;
     }
-    // A deck: pieces of outer rings first, holes to the piece around them.
+    // Pieces of outer rings first, holes to the piece around them.
     const auto twice_area = [&](const Loop& loop) {
       double sum = 0;
       const Point3 o = nodes_[loop[0]];

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/grid.h"
 
 namespace blockrand::geometry {
@@ -133,7 +134,8 @@ class Planes {
     m.x = point.x.convert_to<double>() / divisor / kSpeedUnit;
     m.y = point.y.convert_to<double>() / divisor / kSpeedUnit;
     m.z = point.z.convert_to<double>() / divisor;
-    m.error = 4 * kEpsilon * std::max({std::fabs(m.x), std::fabs(m.y), std::fabs(m.z)});
+    // Conversions add up limb by limb: a few roundings for each of numerator and divisor.
+    m.error = 10 * kEpsilon * std::max({std::fabs(m.x), std::fabs(m.y), std::fabs(m.z)});
     return m;
   }
 
@@ -249,10 +251,24 @@ class Sweep {
     if (length == std::floor(length)) return static_cast<std::int64_t>(length) * static_cast<std::int64_t>(inverse);
     return static_cast<std::int64_t>(std::llrint(length * inverse));
   }
-  bool good(double slope) const { return slope >= kLeastSlope; }
+  static bool good(double slope) { return slope == kUpright || (slope >= kLeastSlope && slope <= kSteepestSlope); }
+  static bool good_height(double metres) {
+    constexpr double kHighest = 2000;
+    return metres > 0 && metres <= kHighest && to_grid(metres) > 0;
+  }
 
-  /// Gentler first slope: which of two profiles on one line holds.
-  static bool gentler(const EdgeProfile& p, const EdgeProfile& q) { return p.slope < q.slope; }
+  /// Which of two profiles on one line holds: the gentler one where they first differ, from below.
+  static bool gentler(const EdgeProfile& p, const EdgeProfile& q) {
+    double slope_p = p.slope, slope_q = q.slope;
+    std::size_t i = 0, k = 0;
+    while (slope_p == slope_q && (i < p.changes.size() || k < q.changes.size())) {
+      const double next_p = i < p.changes.size() ? p.changes[i].height : kUpright;
+      const double next_q = k < q.changes.size() ? q.changes[k].height : kUpright;
+      if (next_p <= next_q) slope_p = p.changes[i++].slope;
+      if (next_q <= next_p) slope_q = q.changes[k++].slope;
+    }
+    return slope_p < slope_q;
+  }
 
   std::optional<SkeletonFailure> prepare() {
     corners_ = polygon_.outer.points;
@@ -267,13 +283,13 @@ class Sweep {
     if (profiles_.size() != n) return SkeletonFailure::inconsistent;
     for (const EdgeProfile& p : profiles_) {
       if (!good(p.slope)) return SkeletonFailure::bad_slope;
-      double height = 0;
+      std::int64_t height = 0;
       for (const SlopeChange& c : p.changes) {
-        constexpr double kHighest = 2000;
-        if (!good(c.slope) || !(c.height > height) || c.height > kHighest) return SkeletonFailure::bad_slope;
-        height = c.height;
+        if (!good(c.slope) || !good_height(c.height) || to_grid(c.height) <= height) return SkeletonFailure::bad_slope;
+        height = to_grid(c.height);
       }
     }
+    if (deck_ && !good_height(*deck_)) return SkeletonFailure::bad_slope;
     origin_ = corners_[0];
     const Grid2 o = to_grid(origin_);
     std::vector<Grid2> grid(n);
@@ -801,6 +817,7 @@ class Sweep {
       face.loops.push_back(std::move(loop));
       out.faces.push_back(std::move(face));
     }
+    put_holes_in_faces(out);
     add_decks(out);
     return out;
   }
@@ -817,12 +834,12 @@ class Sweep {
       const Meet& m = nodes_[n];
       if (!faces_[s.face].upright) return {m.x, m.y};
       const Plane& p = planes_[faces_[s.face].plane];
-      const double length = std::hypot(p.fa, p.fb);
+      const double length = std::sqrt(p.fa * p.fa + p.fb * p.fb);
       return {(p.fb * m.x - p.fa * m.y) / length, m.z};
     };
     const auto angle = [&](std::uint32_t a, std::uint32_t b) {
       const Point2 u = place(a), v = place(b);
-      return std::atan2(v.y - u.y, v.x - u.x);
+      return base::atan2(v.y - u.y, v.x - u.x);
     };
     for (auto next = begin; next != segments_.end() && next->face == s.face && next->from == s.to; ++next) {
       const auto number = static_cast<std::size_t>(next - segments_.begin());
@@ -841,15 +858,53 @@ class Sweep {
     return best;
   }
 
-  void add_decks(WeightedSkeleton& out) {
-    const auto twice_area = [&](const std::vector<std::uint32_t>& loop) {
-      double sum = 0;
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const Meet &p = nodes_[loop[i]], &q = nodes_[loop[(i + 1) % loop.size()]], &o = nodes_[loop[0]];
-        sum += (p.x - o.x) * (q.y - o.y) - (q.x - o.x) * (p.y - o.y);
-      }
-      return sum;
-    };
+  double twice_area(const std::vector<std::uint32_t>& loop) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Meet &p = nodes_[loop[i]], &q = nodes_[loop[(i + 1) % loop.size()]], &o = nodes_[loop[0]];
+      sum += (p.x - o.x) * (q.y - o.y) - (q.x - o.x) * (p.y - o.y);
+    }
+    return sum;
+  }
+  bool inside(const std::vector<std::uint32_t>& ring, const Meet& at) const {
+    bool in = false;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Meet &p = nodes_[ring[i]], &q = nodes_[ring[(i + 1) % ring.size()]];
+      if ((p.y > at.y) != (q.y > at.y) && at.x < p.x + (at.y - p.y) / (q.y - p.y) * (q.x - p.x)) in = !in;
+    }
+    return in;
+  }
+
+  /// A plane that has flowed around something and met behind it has a loop that runs clockwise: a hole of another of its
+  /// loops.
+  void put_holes_in_faces(WeightedSkeleton& out) const {
+    constexpr double kLeastHole = 1;  // square steps; below it is the rounding of a loop without area
+    for (std::size_t h = 0; h < out.faces.size();) {
+      WeightedSkeletonFace& hole = out.faces[h];
+      bool moved = false;
+      if (!hole.upright && twice_area(hole.loops[0]) < -kLeastHole)
+        for (WeightedSkeletonFace& face : out.faces) {
+          if (&face == &hole || face.upright || face.level != hole.level || face_of(face) != face_of(hole)) continue;
+          if (twice_area(face.loops[0]) <= 0 || !inside(face.loops[0], nodes_[hole.loops[0][0]])) continue;
+          face.loops.push_back(std::move(hole.loops[0]));
+          moved = true;
+          break;
+        }
+      if (moved)
+        out.faces.erase(out.faces.begin() + static_cast<std::ptrdiff_t>(h));
+      else
+        ++h;
+    }
+  }
+  /// The face record that a piece belongs to: pieces come in the order of their records.
+  std::uint32_t face_of(const WeightedSkeletonFace& face) const {
+    const std::uint32_t a = face.loops[0][0], b = face.loops[0][1];
+    for (const Segment& s : segments_)
+      if (s.from == a && s.to == b) return s.face;
+    return WeightedSkeletonFace::kDeck;
+  }
+
+  void add_decks(WeightedSkeleton& out) const {
     std::vector<std::size_t> decks;
     for (const auto& loop : deck_loops_) {
       if (twice_area(loop) <= 0) continue;
@@ -862,18 +917,10 @@ class Sweep {
     for (const auto& loop : deck_loops_) {
       if (twice_area(loop) > 0) continue;
       // The deck around a hole: loops do not cross, so one corner decides.
-      const Meet& at = nodes_[loop[0]];
       for (const std::size_t d : decks) {
-        bool inside = false;
-        const auto& ring = out.faces[d].loops[0];
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-          const Meet &p = nodes_[ring[i]], &q = nodes_[ring[(i + 1) % ring.size()]];
-          if ((p.y > at.y) != (q.y > at.y) && at.x < p.x + (at.y - p.y) / (q.y - p.y) * (q.x - p.x)) inside = !inside;
-        }
-        if (inside) {
-          out.faces[d].loops.push_back(loop);
-          break;
-        }
+        if (!inside(out.faces[d].loops[0], nodes_[loop[0]])) continue;
+        out.faces[d].loops.push_back(loop);
+        break;
       }
     }
   }

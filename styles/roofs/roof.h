@@ -55,8 +55,10 @@ struct BuiltRoof {
 /// report; the surfaces' edges match each other and the wall tops point by point.
 std::optional<BuiltRoof> build_roof(const model::Polygon& plan, const RoofRequest& request);
 
-/// Coarseness of the tries at one roof, until its solid is valid. At 3, nodes of a centimetre and a half are one.
-inline constexpr double kCoarseness[] = {1, 3};
+/// Coarseness of the tries at one roof, until its solid is valid. At 3, nodes of a centimetre and a half are one, at 10
+/// those of five: coordinates in OpenStreetMap are multiples of 1e-7 degrees, a centimetre, so what is regular on the ground
+/// has events that lie centimetres apart.
+inline constexpr double kCoarseness[] = {1, 3, 10};
 
 // ---- kinds of roofs, on which build_roof() draws
 

@@ -208,7 +208,8 @@ class Builder {
   }
 
   std::optional<BuiltRoof> build() {
-    const double height = request_.measures.height;
+    // Profiles rise to the largest run, at 45 degrees on the whole; the skeleton's plan depends on the ratios of slopes alone, and
+    // heights are scaled to what is asked at the end.
     const std::size_t n = edges_.size();
     switch (request_.shape) {
       case RoofShape::hipped:
@@ -223,14 +224,14 @@ class Builder {
         return with_treated_ends();
       case RoofShape::mansard: {
         const double run = largest_run({});
-        return run > 0 ? finish(geometry::weighted_skeleton(plan_, profiles(n, broken(run, height), {}, {}))) : fallback();
+        return run > 0 ? finish(geometry::weighted_skeleton(plan_, profiles(n, broken(run, run), {}, {}))) : fallback();
       }
       case RoofShape::gambrel:
       case RoofShape::round: {
         ends_ = ends();
         const double run = largest_run(ends_);
         if (run <= 0) return fallback();
-        const EdgeProfile eaves = request_.shape == RoofShape::round ? vault(run, height) : broken(run, height);
+        const EdgeProfile eaves = request_.shape == RoofShape::round ? vault(run, run) : broken(run, run);
         return finish(geometry::weighted_skeleton(plan_, profiles(n, eaves, ends_, upright())), true);
       }
       case RoofShape::double_saltbox:
@@ -238,13 +239,13 @@ class Builder {
         if (request_.shape == RoofShape::double_saltbox) ends_ = ends();
         const double run = largest_run(ends_);
         if (run <= 0) return fallback();
-        return finish(geometry::weighted_skeleton(plan_, profiles(n, pitch(height / (kDeckRun * run)), ends_, upright()), height),
+        return finish(geometry::weighted_skeleton(plan_, profiles(n, pitch(1 / kDeckRun), ends_, upright()), run),
                       request_.shape == RoofShape::double_saltbox);
       }
       case RoofShape::dome:
       case RoofShape::onion: {
         const double run = largest_run({});
-        return run > 0 ? finish(geometry::weighted_skeleton(plan_, profiles(n, vault(run, height), {}, {}))) : fallback();
+        return run > 0 ? finish(geometry::weighted_skeleton(plan_, profiles(n, vault(run, run), {}, {}))) : fallback();
       }
       default:
         return std::nullopt;
@@ -314,9 +315,9 @@ class Builder {
 
   std::optional<BuiltRoof> with_treated_ends() {
     ends_ = ends();
-    const double run = largest_run(ends_), height = request_.measures.height;
+    const double run = largest_run(ends_);
     if (run <= 0) return fallback();
-    const double slope = height / run, change = kGableShare * height;
+    const double slope = 1, change = kGableShare * run;
     std::vector<EdgeProfile> all = profiles(edges_.size(), pitch(slope), ends_, upright());
     const EdgeProfile half_hip{kUpright, {{change, slope}}};
     switch (request_.shape) {

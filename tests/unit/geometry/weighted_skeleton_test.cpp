@@ -40,6 +40,17 @@ double area_seen_from_above(const WeightedSkeleton& s) {
   return sum;
 }
 
+/// Faces whose outer loop runs clockwise. (That areas add up says little: every arc is there both ways.)
+std::size_t faces_that_look_down(const WeightedSkeleton& s) {
+  std::size_t count = 0;
+  for (const auto& face : s.faces) {
+    std::vector<Point2> points;
+    for (const auto n : face.loops[0]) points.push_back(s.nodes[n].point);
+    count += !face.upright && signed_area(points) < -1e-6;
+  }
+  return count;
+}
+
 /// How far a point at a height is from the roof, if it lies in a face of an edge that is as far away as the point is high.
 double distance_to_roof(const Polygon& plan, const WeightedSkeleton& s, Point2 p, double height) {
   std::vector<std::pair<Point2, Point2>> edges;
@@ -110,6 +121,11 @@ TEST(WeightedSkeleton, SaysWhyItGivesUp) {
   std::vector<EdgeProfile> falling = equal(plan);
   falling[0].changes = {{2, 1}, {1, 2}};
   EXPECT_EQ(weighted_skeleton(plan, falling).error(), SkeletonFailure::bad_slope);
+  falling[0].changes = {{2, 2}, {2.0004, 0.3}};  // one height on the grid
+  EXPECT_EQ(weighted_skeleton(plan, falling).error(), SkeletonFailure::bad_slope);
+  EXPECT_EQ(weighted_skeleton(plan, equal(plan, 1e6)).error(), SkeletonFailure::bad_slope);
+  for (const double deck : {-1.0, 0.0, 0.0001, 1e16, std::nan("")})
+    EXPECT_EQ(weighted_skeleton(plan, equal(plan), deck).error(), SkeletonFailure::bad_slope) << deck;
 }
 
 TEST(WeightedSkeleton, AgreesWithCgalWhereSlopesAreEqual) {
@@ -157,8 +173,9 @@ TEST(WeightedSkeleton, RandomSlopesCoverThePlan) {
     for (EdgeProfile& p : profiles) {
       const auto kind = random.next(6);
       p.slope = kind == 0 ? kUpright : kind == 1 ? 1 : 0.2 + 3 * random.unit();
-      if (kind == 2) p.changes = {{1, 0.5}, {2, kind == 3 ? kUpright : 0.3}};
+      if (kind == 2) p.changes = {{1, 0.5}, {2, i % 2 ? kUpright : 0.3}};
       if (kind == 3) p.changes = {{1, 0.5}};
+      if (p.slope == kUpright && i % 3 == 0) p.changes = {{0.7, 0.9}};
     }
     const auto s = weighted_skeleton(plan, profiles, random.next(4) == 0 ? std::optional<double>(1.5) : std::nullopt);
     if (!s) {
@@ -170,6 +187,7 @@ TEST(WeightedSkeleton, RandomSlopesCoverThePlan) {
       continue;
     }
     EXPECT_NEAR(area_seen_from_above(*s), area(plan), 1e-6 * area(plan)) << i;
+    EXPECT_EQ(faces_that_look_down(*s), 0u) << i;
   }
   std::printf("%lu polygons with random slopes: %lu failed, %lu closed by no slope\n", rounds, failures, unbounded);
   EXPECT_EQ(failures, 0u);

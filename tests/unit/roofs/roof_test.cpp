@@ -130,6 +130,34 @@ TEST(SkillionRoof, ShedHasOneHighWall) {
   EXPECT_DOUBLE_EQ(built->roof.wall_tops[2][0].z, 39);
 }
 
+// Regular plans as they are mapped: corners are multiples of 1e-7 degrees, about a centimetre.
+TEST(HippedRoof, RegularPlansAtThePrecisionOfTheMap) {
+  std::size_t built = 0, refused = 0;
+  for (int corners = 5; corners <= 12; ++corners)
+    for (const bool is_star : {false, true})
+      for (int turn = 0; turn < 10; ++turn) {
+        std::vector<Point2> points;
+        const int count = is_star ? 2 * corners : corners;
+        for (int i = 0; i < count; ++i) {
+          const double angle = 2 * M_PI * (i + 0.1 * turn) / count, radius = is_star && i % 2 ? 8 : 20;
+          const auto mapped = [](double metres, double unit) { return std::round(metres / unit) * unit; };
+          points.push_back(model::snap(Point2{391000 + mapped(radius * std::cos(angle), 0.0068), 5819000 + mapped(radius * std::sin(angle), 0.0111)}));
+        }
+        const Polygon plan = polygon(points);
+        bool valid = false;
+        for (const double coarseness : kCoarseness) {
+          RoofRequest asked = request(RoofShape::hipped);
+          asked.coarseness = coarseness;
+          const auto roof = build_roof(plan, asked);
+          valid = valid || (roof && verdict(plan, roof->roof) == "none");
+        }
+        ++built;
+        refused += !valid;
+      }
+  std::printf("%zu of %zu regular plans refused\n", refused, built);
+  EXPECT_LE(refused, built / 25);
+}
+
 // Every shape that rises from the edges, on random polygons with holes: no crash, no invalid solid, few fallbacks.
 TEST(RandomRoofs, AreValidOrCounted) {
   const bool many = std::getenv("BLOCKRAND_MANY") != nullptr;
