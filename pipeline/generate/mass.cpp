@@ -56,6 +56,9 @@ std::optional<Polygon> simpler(const Polygon& plan, double tolerance) {
   return out;
 }
 
+/// Values of roof:shape that name no shape.
+bool is_unknown(RoofShape shape) { return shape == RoofShape::other || shape == RoofShape::many; }
+
 /// What is asked of the roof.
 roofs::RoofRequest request_of(const model::Attributes& attributes, RoofShape shape, roofs::RoofMeasures measures) {
   roofs::RoofRequest request;
@@ -133,7 +136,7 @@ class MassBuilder {
       roof = std::max(room, 0.0);
     }
     if (roof < options_.min_roof_height) {
-      if (a.roof_shape.value != RoofShape::flat && a.roof_shape.source == model::Source::tag)
+      if (a.roof_shape.value != RoofShape::flat && !is_unknown(a.roof_shape.value) && a.roof_shape.source == model::Source::tag)
         note(part, IssueCode::roof_height_clamped,
              fmt::format("{} of {:.2f} m is too low for a slope: flat", model::name(a.roof_shape.value), std::max(roof, 0.0)));
       roof = 0;
@@ -179,13 +182,14 @@ class MassBuilder {
 
   void build_lod2(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks) {
     const RoofShape asked = part.attributes.roof_shape.value;
+    if (is_unknown(asked)) note(part, IssueCode::roof_shape_unknown, asked == RoofShape::many ? "many" : "");
     const roofs::RoofMeasures measures{levels.eaves, levels.top - levels.eaves};
     if (asked != RoofShape::flat && measures.height > 0 && !part.roof_lines.empty()) {
       const auto lined = roofs::lined_roof(plan, measures, part.roof_lines);
       if (lined && accept(part, plan, levels, looks, *lined, RoofShape::lined)) return;
       note(part, IssueCode::roof_lines_ignored, lined ? "their solid is not valid" : "they do not fit each other or the plan");
     }
-    if (asked != RoofShape::flat && measures.height > 0) {
+    if (asked != RoofShape::flat && !is_unknown(asked) && measures.height > 0) {
       const std::optional<Polygon> simplified = simpler(plan, options_.simplify_tolerance);
       for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, simplified ? &*simplified : nullptr}) {
         if (!p) continue;
@@ -200,7 +204,7 @@ class MassBuilder {
       note(part, IssueCode::roof_failed, std::string(model::name(asked)));
     }
     // A flat roof in place of a pitched one ends at half its height, so that the volume stays.
-    const double top = asked == RoofShape::flat ? levels.top : model::snap((levels.eaves + levels.top) / 2);
+    const double top = asked == RoofShape::flat || is_unknown(asked) ? levels.top : model::snap((levels.eaves + levels.top) / 2);
     if (accept(part, plan, levels, looks, roofs::flat_roof(plan, top), RoofShape::flat)) return;
     for (const double tolerance : {options_.simplify_tolerance, 2 * options_.simplify_tolerance}) {
       const std::optional<Polygon> simplified = simpler(part.plan, tolerance);
