@@ -16,8 +16,7 @@ using model::BuildingPart;
 
 double overlap(const model::Solid& a, const model::SolidTriangles& ta, const model::Solid& b,
                const model::SolidTriangles& tb) {
-  const geometry::SolidOverlap found =
-      geometry::overlap_of({a.vertices, ta.triangles}, {b.vertices, tb.triangles});
+  const geometry::SolidOverlap found = geometry::overlap_of({a.vertices, ta.triangles}, {b.vertices, tb.triangles});
   return found.overlap ? found.volume : 0;
 }
 

@@ -14,11 +14,11 @@ struct WallStretch {
   model::Point2 a, b;
 };
 
-/// True when the ridge runs across the plan's longer side: neighbours stand at its long sides (at both, or at most of one)
-/// and at none of its short sides, as at a deep house in a row, whose eaves face street and garden and whose gables stand
-/// on the party walls. Of 252 gabled roofs of The Hague between two such neighbours 251 run so, of 82 with one 64
-/// (tests/bench/RESULTS.md, "Roofs against references"). Never for plans longer than `widest` m, which the rafters
-/// would have to span.
+/// True when the ridge runs across the plan's longer side: neighbours stand at its long sides (at both, or at most of
+/// one) and at none of its short sides, as at a deep house in a row, whose eaves face street and garden and whose
+/// gables stand on the party walls. Of 252 gabled roofs of The Hague between two such neighbours 251 run so, of 82 with
+/// one 64 (tests/bench/RESULTS.md, "Roofs against references"). Never for plans longer than `widest` m, which the
+/// rafters would have to span.
 bool ridge_runs_across(const model::Polygon& plan, std::span<const WallStretch> party_walls, double widest);
 
 /// The party walls of a building that stand at one of its plans. Empty before context has labelled its edges.

@@ -25,7 +25,8 @@ struct Edge {
 enum class Meeting { none, point, stretch, crossing };
 
 Meeting meeting(const Edge& e, const Edge& f) {
-  if (std::max(std::min(e.a.y, e.b.y), std::min(f.a.y, f.b.y)) > std::min(std::max(e.a.y, e.b.y), std::max(f.a.y, f.b.y)))
+  if (std::max(std::min(e.a.y, e.b.y), std::min(f.a.y, f.b.y)) >
+      std::min(std::max(e.a.y, e.b.y), std::max(f.a.y, f.b.y)))
     return Meeting::none;
   const int o1 = orientation(e.a, e.b, f.a), o2 = orientation(e.a, e.b, f.b);
   const int o3 = orientation(f.a, f.b, e.a), o4 = orientation(f.a, f.b, e.b);
@@ -35,7 +36,8 @@ Meeting meeting(const Edge& e, const Edge& f) {
     const auto high = std::min(std::max(e.a, e.b), std::max(f.a, f.b));
     return low < high ? Meeting::stretch : low == high ? Meeting::point : Meeting::none;
   }
-  return on_segment(e.a, e.b, f.a) || on_segment(e.a, e.b, f.b) || on_segment(f.a, f.b, e.a) || on_segment(f.a, f.b, e.b)
+  return on_segment(e.a, e.b, f.a) || on_segment(e.a, e.b, f.b) || on_segment(f.a, f.b, e.a) ||
+                 on_segment(f.a, f.b, e.b)
              ? Meeting::point
              : Meeting::none;
 }
@@ -64,8 +66,8 @@ Side side_of(const std::vector<Grid2>& ring, Grid2 p) {
   return inside ? Side::inside : Side::outside;
 }
 
-/// Where a ring lies seen from another: its corners and middles of edges (coordinates are even). Both inside and outside
-/// where it crosses through corners.
+/// Where a ring lies seen from another: its corners and middles of edges (coordinates are even). Both inside and
+/// outside where it crosses through corners.
 struct Where {
   bool inside = false, outside = false;
 };
@@ -188,7 +190,8 @@ RingsDefect find_rings_defect(std::span<const std::vector<Grid2>> given) {
     }
   if (outside.first >= 0) return outside;
   if (nested.first >= 0) return nested;
-  if (has_cycle(touches, rings.size())) return {SolidDefect::face_split, touching.begin()->first, touching.begin()->second};
+  if (has_cycle(touches, rings.size()))
+    return {SolidDefect::face_split, touching.begin()->first, touching.begin()->second};
   if (!touching.empty()) return {SolidDefect::rings_meet, touching.begin()->first, touching.begin()->second};
   for (int b = 1; b < count; ++b)
     if ((twice_area(ring(0)) > 0) == (twice_area(ring(b)) > 0)) return {SolidDefect::hole_turned, b};

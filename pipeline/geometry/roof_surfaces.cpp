@@ -22,8 +22,12 @@ double squared(double v) { return v * v; }
 class Tidy {
  public:
   Tidy(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale, double coarseness)
-      : near_(coarseness * kMergedNodes), narrow_(coarseness * kNarrowestFace), level_(coarseness * kMergedHeights), merged_(skeleton.merged) {
-    for (const WeightedSkeletonNode& n : skeleton.nodes) nodes_.push_back(model::snap(Point3{n.point.x, n.point.y, n.height * height_scale}));
+      : near_(coarseness * kMergedNodes),
+        narrow_(coarseness * kNarrowestFace),
+        level_(coarseness * kMergedHeights),
+        merged_(skeleton.merged) {
+    for (const WeightedSkeletonNode& n : skeleton.nodes)
+      nodes_.push_back(model::snap(Point3{n.point.x, n.point.y, n.height * height_scale}));
     std::uint32_t first = 0;
     const auto add_ring = [&](const model::Ring& ring) {
       const auto count = static_cast<std::uint32_t>(ring.size());
@@ -96,7 +100,8 @@ class Tidy {
     }
     if (!base) return false;
     const std::uint32_t edge = loop[*base];
-    // The loop has the base, then the top from its end back to its start; the chain runs the other way, without the base.
+    // The loop has the base, then the top from its end back to its start; the chain runs the other way, without the
+    // base.
     Loop chain{edge};
     for (std::size_t k = loop.size() - 1; k >= 2; --k) chain.push_back(loop[(*base + k) % loop.size()]);
     chain.push_back(loop[(*base + 1) % loop.size()]);
@@ -104,7 +109,9 @@ class Tidy {
     return true;
   }
 
-  bool same_place(std::uint32_t a, std::uint32_t b) const { return nodes_[a].x == nodes_[b].x && nodes_[a].y == nodes_[b].y; }
+  bool same_place(std::uint32_t a, std::uint32_t b) const {
+    return nodes_[a].x == nodes_[b].x && nodes_[a].y == nodes_[b].y;
+  }
 
   bool has_uprights() const {
     return std::any_of(groups_.begin(), groups_.end(), [](const Group& g) { return g.upright; }) ||
@@ -128,8 +135,8 @@ class Tidy {
       }
   }
 
-  /// A node on the vertical line between two others of an upright face belongs to it as well; a path that runs up such a
-  /// line and back down loses that spur.
+  /// A node on the vertical line between two others of an upright face belongs to it as well; a path that runs up such
+  /// a line and back down loses that spur.
   void join_uprights() {
     if (!has_uprights()) return;
     std::vector<Loop*> paths;
@@ -163,15 +170,17 @@ class Tidy {
         // The nearest to a of those between: the others follow.
         std::optional<std::uint32_t> nearest;
         for (const std::uint32_t n : used) {
-          if (n == a || n == b || !same_place(n, a) || (nodes_[n].z - nodes_[a].z) * (nodes_[b].z - nodes_[n].z) <= 0) continue;
-          if (!nearest || std::fabs(nodes_[n].z - nodes_[a].z) < std::fabs(nodes_[*nearest].z - nodes_[a].z)) nearest = n;
+          if (n == a || n == b || !same_place(n, a) || (nodes_[n].z - nodes_[a].z) * (nodes_[b].z - nodes_[n].z) <= 0)
+            continue;
+          if (!nearest || std::fabs(nodes_[n].z - nodes_[a].z) < std::fabs(nodes_[*nearest].z - nodes_[a].z))
+            nearest = n;
         }
         if (nearest) path->insert(path->begin() + static_cast<std::ptrdiff_t>(i) + 1, *nearest);
       }
   }
 
-  /// Two upright faces on one line that look opposite ways and have nothing between them: where a node joins only the two, it
-  /// goes, and the fin with it.
+  /// Two upright faces on one line that look opposite ways and have nothing between them: where a node joins only the
+  /// two, it goes, and the fin with it.
   void drop_fins() {
     if (!has_uprights()) return;
     for (bool again = true; again;) {
@@ -225,7 +234,8 @@ class Tidy {
     for (std::uint32_t c = 0; c < corners_; ++c) {
       if (chains_[c].empty() || ending_at[c] == kNone) continue;
       Loop &right = chains_[c], &left = chains_[ending_at[c]];
-      while (right.size() > 2 && left.size() > 2 && same_place(right[1], c) && left[left.size() - 2] == right[1] && !in_roof(right[0])) {
+      while (right.size() > 2 && left.size() > 2 && same_place(right[1], c) && left[left.size() - 2] == right[1] &&
+             !in_roof(right[0])) {
         right.erase(right.begin());
         left.pop_back();
       }
@@ -269,7 +279,8 @@ class Tidy {
             const std::uint32_t a = root(loop[i]), b = root(loop[k]);
             if (a == b || (a < corners_ && b < corners_)) continue;
             const Point3 p = nodes_[a], q = nodes_[b];
-            if (std::fabs(p.x - q.x) > narrow_ || std::fabs(p.y - q.y) > narrow_ || std::fabs(p.z - q.z) > level_) continue;
+            if (std::fabs(p.x - q.x) > narrow_ || std::fabs(p.y - q.y) > narrow_ || std::fabs(p.z - q.z) > level_)
+              continue;
             parent_[std::max(a, b)] = std::min(a, b);
             any = true;
           }
@@ -434,18 +445,21 @@ class Tidy {
     double most = 0;
     for (const std::uint32_t i : loop) {
       const Point3 p = nodes_[i];
-      most = std::max(most, std::fabs((p.x - o.x - mx / n) * nx + (p.y - o.y - my / n) * ny + (p.z - o.z - mz / n) * nz) / length);
+      most = std::max(
+          most, std::fabs((p.x - o.x - mx / n) * nx + (p.y - o.y - my / n) * ny + (p.z - o.z - mz / n) * nz) / length);
     }
     return most;
   }
 
-  /// Neighbouring faces of edges on one line are one plane: exactly so for the skeleton where the line is exact, here where
-  /// rounding has bent it.
+  /// Neighbouring faces of edges on one line are one plane: exactly so for the skeleton where the line is exact, here
+  /// where rounding has bent it.
   void join_planes() {
     for (std::size_t g = 0; g < groups_.size(); ++g)
       for (std::size_t h = g + 1; h < groups_.size(); ++h) {
         Group &a = groups_[g], &b = groups_[h];
-        if (a.upright || b.upright || a.level != b.level || a.edge >= corners_ || b.edge >= corners_ || a.edge == b.edge) continue;
+        if (a.upright || b.upright || a.level != b.level || a.edge >= corners_ || b.edge >= corners_ ||
+            a.edge == b.edge)
+          continue;
         if (a.loops.size() != 1 || b.loops.size() != 1 || !on_one_line(a.edge, b.edge)) continue;
         if (std::max(off_plane(a.loops[0], b.loops[0]), off_plane(b.loops[0], a.loops[0])) > kOnePlane) continue;
         if (auto both = united(a.loops[0], b.loops[0])) {
@@ -494,7 +508,8 @@ class Tidy {
       return path;
     };
     if (group.loops.size() == 1 || group.upright) {
-      for (const Loop& loop : group.loops) out.surfaces.push_back({group.edge, group.level, group.upright, {points(loop)}});
+      for (const Loop& loop : group.loops)
+        out.surfaces.push_back({group.edge, group.level, group.upright, {points(loop)}});
       return;
     }
     // Pieces of outer rings first, holes to the piece around them.
@@ -531,10 +546,10 @@ class Tidy {
   }
 
   static constexpr std::uint32_t kNone = 0xffffffff;
-  static constexpr double kOneLine = 0.01;         ///< m: as plans lose corners that bend no wall
-  static constexpr double kOnePlane = 0.005;       ///< m: half of what the checker allows
+  static constexpr double kOneLine = 0.01;        ///< m: as plans lose corners that bend no wall
+  static constexpr double kOnePlane = 0.005;      ///< m: half of what the checker allows
   static constexpr double kMergedHeights = 0.02;  ///< m: what a steep face rises over kNarrowestFace
-  double near_, narrow_, level_;                   ///< m: kMergedNodes, kNarrowestFace, kMergedHeights, or coarser
+  double near_, narrow_, level_;                  ///< m: kMergedNodes, kNarrowestFace, kMergedHeights, or coarser
   std::vector<Point3> nodes_;
   std::vector<std::uint32_t> end_of_, group_end_, merged_, parent_;
   std::uint32_t corners_ = 0;
@@ -544,7 +559,8 @@ class Tidy {
 
 }  // namespace
 
-RoofSurfaces roof_surfaces(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale, double coarseness) {
+RoofSurfaces roof_surfaces(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale,
+                           double coarseness) {
   return Tidy(plan, skeleton, height_scale, coarseness).run();
 }
 

@@ -13,7 +13,7 @@ namespace blockrand::geometry {
 /// Surfaces over a plan. Edges are numbered as the plan's.
 struct RoofSurfaces {
   struct Surface {
-    std::uint32_t edge = 0;   ///< WeightedSkeletonFace::edge
+    std::uint32_t edge = 0;  ///< WeightedSkeletonFace::edge
     std::uint32_t level = 0;
     bool upright = false;
     std::vector<std::vector<model::Point3>> loops;  ///< counter-clockwise from outside, holes follow; z above the eaves
@@ -30,10 +30,11 @@ struct RoofSurfaces {
 ///
 /// \param height_scale  heights are multiplied by this
 /// \param coarseness    both distances are multiplied by this: for a second try where the solid fails its check
-RoofSurfaces roof_surfaces(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale, double coarseness = 1);
+RoofSurfaces roof_surfaces(const model::Polygon& plan, const WeightedSkeleton& skeleton, double height_scale,
+                           double coarseness = 1);
 
-/// m. Simultaneous events of walls that are rounded come as several nodes a few millimetres apart. Merging them leaves faces plane
-/// within the checker's 0.01 m.
+/// m. Simultaneous events of walls that are rounded come as several nodes a few millimetres apart. Merging them leaves
+/// faces plane within the checker's 0.01 m.
 inline constexpr double kMergedNodes = 0.005;
 /// m. Rounding moves a node by 0.7 mm; the checker refuses tips narrower than 2 mm.
 inline constexpr double kNarrowestFace = 0.0035;

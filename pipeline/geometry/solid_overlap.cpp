@@ -32,11 +32,11 @@ Box box_of(std::span<const Point3> points) {
 
 /// A triangle as a height over its plan.
 struct Sheet {
-  double x[3], y[3];          // counter-clockwise in plan
-  double x0, x1, y0, y1;      // box
-  double z0, z1;              // lowest and highest corner
+  double x[3], y[3];              // counter-clockwise in plan
+  double x0, x1, y0, y1;          // box
+  double z0, z1;                  // lowest and highest corner
   double at_z, slope_x, slope_y;  // height over the first corner, and slopes
-  int sign;                   // +1: the solid begins here (it faces down), -1: it ends
+  int sign;                       // +1: the solid begins here (it faces down), -1: it ends
   double height(double px, double py) const {
     // Of a sheet that stands nearly upright, slopes times rounding could lead anywhere.
     return std::clamp(at_z + slope_x * (px - x[0]) + slope_y * (py - y[0]), z0, z1);
@@ -170,8 +170,8 @@ std::vector<Point3> shrunk(const ClosedMesh& mesh, double by) {
     const double wx = vx - ux, wy = vy - uy, wz = vz - uz;
     double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
     const double size = std::sqrt(nx * nx + ny * ny + nz * nz);
-    const double longest = std::sqrt(std::max({ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz,
-                                               wx * wx + wy * wy + wz * wz}));
+    const double longest =
+        std::sqrt(std::max({ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz, wx * wx + wy * wy + wz * wz}));
     if (!(size > 0)) continue;
     nx /= size, ny /= size, nz /= size;
     const double w = std::min(1.0, size / longest / kFullHeight);
@@ -211,9 +211,9 @@ double common_volume(const ClosedMesh& a, const ClosedMesh& b) {
     common.min[k] = std::max(box_a.min[k], box_b.min[k]);
     common.max[k] = std::min(box_a.max[k], box_b.max[k]);
   }
-  // Over a point of the plan, a solid is the sum of steps: up by one where it begins, down where it ends. The length that
-  // both have in common there is the integral of the product of both sums, which is the sum over pairs of steps of minus
-  // the larger height, with the sign of both. So the volume is a sum over pairs of triangles.
+  // Over a point of the plan, a solid is the sum of steps: up by one where it begins, down where it ends. The length
+  // that both have in common there is the integral of the product of both sums, which is the sum over pairs of steps of
+  // minus the larger height, with the sign of both. So the volume is a sum over pairs of triangles.
   const Point3 origin{common.min[0], common.min[1], common.min[2]};
   const std::vector<Sheet> sheets_a = sheets_of(a, origin, common), sheets_b = sheets_of(b, origin, common);
   double widest = 0, sum = 0;

@@ -30,9 +30,9 @@ struct SolidOverlap {
   bool overlap = false;
 };
 
-/// Do two solids overlap by more than a tolerance? Every wall of both is moved inwards by half of `depth`; what both still
-/// enclose counts. So parts that share a wall, stand on each other, or reach into each other by a rounded corner do not
-/// overlap, however large the wall. Solids thinner than `depth` have no inside that counts.
+/// Do two solids overlap by more than a tolerance? Every wall of both is moved inwards by half of `depth`; what both
+/// still enclose counts. So parts that share a wall, stand on each other, or reach into each other by a rounded corner
+/// do not overlap, however large the wall. Solids thinner than `depth` have no inside that counts.
 SolidOverlap overlap_of(const ClosedMesh& a, const ClosedMesh& b, const OverlapOptions& options = {});
 
 }  // namespace blockrand::geometry

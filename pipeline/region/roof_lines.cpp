@@ -115,9 +115,10 @@ void fit_roof_lines(model::Building& building, const std::vector<RoofLine>& near
       // A ridge that begins well inside a part and fits none stays as it is: no roof comes of it, which is told.
       for (std::size_t i = 0; i < building.parts.size(); ++i) {
         const Polygon& plan = building.parts[i].plan;
-        const bool begins_here = plan.outer.size() >= 3 && std::any_of(line.points.begin(), line.points.end(), [&](Point2 p) {
-          return geometry::contains(plan, p) && nearest_on_boundary(plan, p, 0).distance > kRoofLineReach;
-        });
+        const bool begins_here =
+            plan.outer.size() >= 3 && std::any_of(line.points.begin(), line.points.end(), [&](Point2 p) {
+              return geometry::contains(plan, p) && nearest_on_boundary(plan, p, 0).distance > kRoofLineReach;
+            });
         if (!begins_here || (fitted && geometry::area(plan) >= geometry::area(building.parts[owner].plan))) continue;
         owner = i;
         fitted = line;

@@ -82,7 +82,8 @@ std::vector<PartsOverlap> compare(std::map<std::string_view, std::vector<Body>>&
             if (!one || !other) continue;
             compared = true;
             const geometry::SolidOverlap found = geometry::overlap_of(view(*one), view(*other), options);
-            if (found.overlap) where += fmt::format("{} {:.2f} m³ in {}", where.empty() ? ":" : ",", found.volume, a.lod);
+            if (found.overlap)
+              where += fmt::format("{} {:.2f} m³ in {}", where.empty() ? ":" : ",", found.volume, a.lod);
           }
         pairs += compared;
         if (!where.empty())

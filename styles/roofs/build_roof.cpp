@@ -33,14 +33,15 @@ BuiltRoof as_asked(Roof roof, RoofShape shape) { return {std::move(roof), shape,
 /// The way up across the plan of the shapes with one profile.
 Point2 way_up(const Polygon& plan, const RoofRequest& request) {
   if (request.down) return {-request.down->x, -request.down->y};
-  if (request.shape == RoofShape::skillion || request.shape == RoofShape::saltbox || request.shape == RoofShape::sawtooth) {
+  if (request.shape == RoofShape::skillion || request.shape == RoofShape::saltbox ||
+      request.shape == RoofShape::sawtooth) {
     const Point2 down = default_slope(plan);
     return {-down.x, -down.y};
   }
   const Point2 axis = geometry::long_axis(plan.outer.points);
   const Point2 up = request.across ? axis : Point2{-axis.y, axis.x};
-  // Low where the longest edge looks, so that turning a plan turns its roof; where that edge lies along the way, where its
-  // following corner lies.
+  // Low where the longest edge looks, so that turning a plan turns its roof; where that edge lies along the way, where
+  // its following corner lies.
   const Point2 down = default_slope(plan);
   double against = up.x * down.x + up.y * down.y;
   constexpr double kSquare = 0.1;
@@ -59,8 +60,10 @@ std::optional<BuiltRoof> build_roof(const Polygon& plan, const RoofRequest& requ
     case RoofShape::spire:
     case RoofShape::dome:
     case RoofShape::onion: {
-      if (auto roof = apex_roof(plan, measures, apex_rings(request.shape))) return as_asked(std::move(*roof), request.shape);
-      if (request.shape != RoofShape::dome && request.shape != RoofShape::onion) return adapted(plan, request, RoofShape::hipped);
+      if (auto roof = apex_roof(plan, measures, apex_rings(request.shape)))
+        return as_asked(std::move(*roof), request.shape);
+      if (request.shape != RoofShape::dome && request.shape != RoofShape::onion)
+        return adapted(plan, request, RoofShape::hipped);
       auto built = vaulted_roof(plan, request);
       if (built && built->note == IssueCode::none) {
         built->note = IssueCode::roof_shape_adapted;

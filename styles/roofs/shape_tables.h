@@ -18,8 +18,9 @@ inline constexpr double kDeckRun = 0.6;         ///< of the largest run: the bor
 /// Rings of pyramidal, cone, dome, onion and spire for apex_roof(); empty for all other shapes.
 std::span<const ApexRing> apex_rings(model::RoofShape shape);
 
-/// Heights of skillion, saltbox, butterfly, gabled_height_moved and sawtooth for profile_roof(); empty for all other shapes.
-/// \param width_across  m. The plan's extent in the direction of the profile; decides the number of sawtooth's teeth.
+/// Heights of skillion, saltbox, butterfly, gabled_height_moved and sawtooth for profile_roof(); empty for all other
+/// shapes. \param width_across  m. The plan's extent in the direction of the profile; decides the number of sawtooth's
+/// teeth.
 std::vector<ProfilePoint> profile_points(model::RoofShape shape, double width_across);
 
 }  // namespace blockrand::roofs

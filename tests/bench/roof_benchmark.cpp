@@ -87,9 +87,11 @@ void measure(const std::vector<model::Polygon>& plans, model::RoofShape shape) {
     }
     refused += !valid;
   }
-  std::printf("| %-19s | %7.0f roofs/s | %zu of %zu | %6zu adapted | %3zu skeleton fallbacks | %3zu at the second try | %3zu refused (%.4f %%) |\n",
-              std::string(model::name(shape)).c_str(), static_cast<double>(plans.size()) / seconds, built, plans.size(), adapted,
-              fallbacks, coarser, refused, 100.0 * static_cast<double>(refused) / static_cast<double>(plans.size()));
+  std::printf(
+      "| %-19s | %7.0f roofs/s | %zu of %zu | %6zu adapted | %3zu skeleton fallbacks | %3zu at the second try | %3zu "
+      "refused (%.4f %%) |\n",
+      std::string(model::name(shape)).c_str(), static_cast<double>(plans.size()) / seconds, built, plans.size(),
+      adapted, fallbacks, coarser, refused, 100.0 * static_cast<double>(refused) / static_cast<double>(plans.size()));
   std::fflush(stdout);
 }
 
@@ -103,7 +105,8 @@ int main(int argc, char** argv) {
   const auto plans = repaired_plans(argv[1]);
   std::size_t corners = 0;
   for (const auto& p : plans) corners += p.outer.size();
-  std::printf("%zu plans, %.2f corners\n", plans.size(), static_cast<double>(corners) / static_cast<double>(plans.size()));
+  std::printf("%zu plans, %.2f corners\n", plans.size(),
+              static_cast<double>(corners) / static_cast<double>(plans.size()));
   const std::string wanted = argc > 2 ? argv[2] : "hipped";
   if (wanted == "hipped") {
     const std::size_t step = std::max<std::size_t>(1, plans.size() / 5000);
@@ -111,7 +114,8 @@ int main(int argc, char** argv) {
     const auto start = std::chrono::steady_clock::now();
     for (std::size_t i = 0; i < plans.size(); i += step, ++tried)
       if (plans[i].outer.size() < 200) (void)geometry::straight_skeleton(plans[i]);
-    std::printf("CGAL's skeleton alone (EPECK), every %zu-th plan: %.0f/s\n", step, static_cast<double>(tried) / seconds_since(start));
+    std::printf("CGAL's skeleton alone (EPECK), every %zu-th plan: %.0f/s\n", step,
+                static_cast<double>(tried) / seconds_since(start));
   }
   for (int s = 0; s < static_cast<int>(model::RoofShape::many); ++s) {
     const auto shape = static_cast<model::RoofShape>(s);

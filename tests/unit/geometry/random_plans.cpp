@@ -81,18 +81,23 @@ std::optional<Polygon> grid_plan(Random& random, bool turned_too) {
   for (int i = 0; i < h; ++i) ys.push_back(ys.back() + unit * static_cast<double>(1 + random.next(3)));
   std::vector<char> cell(static_cast<std::size_t>(w * h));
   for (auto& c : cell) c = random.next(10) < 7;
-  const auto in = [&](int x, int y) { return x >= 0 && y >= 0 && x < w && y < h && cell[static_cast<std::size_t>(y * w + x)]; };
+  const auto in = [&](int x, int y) {
+    return x >= 0 && y >= 0 && x < w && y < h && cell[static_cast<std::size_t>(y * w + x)];
+  };
   std::map<std::pair<int, int>, std::pair<int, int>> next;  // along the boundary, inside on the left
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       if (!in(x, y)) continue;
-      const auto add = [&](int ax, int ay, int bx, int by) { return next.emplace(std::pair(ax, ay), std::pair(bx, by)).second; };
+      const auto add = [&](int ax, int ay, int bx, int by) {
+        return next.emplace(std::pair(ax, ay), std::pair(bx, by)).second;
+      };
       if (!in(x, y - 1) && !add(x, y, x + 1, y)) return std::nullopt;
       if (!in(x + 1, y) && !add(x + 1, y, x + 1, y + 1)) return std::nullopt;
       if (!in(x, y + 1) && !add(x + 1, y + 1, x, y + 1)) return std::nullopt;
       if (!in(x - 1, y) && !add(x, y + 1, x, y)) return std::nullopt;
     }
-  const double angle = 2 * M_PI * random.unit(), c = turned_too ? std::cos(angle) : 1, s = turned_too ? std::sin(angle) : 0;
+  const double angle = 2 * M_PI * random.unit(), c = turned_too ? std::cos(angle) : 1,
+               s = turned_too ? std::sin(angle) : 0;
   std::vector<Ring> rings;
   while (!next.empty()) {
     std::vector<Point2> points;
@@ -131,7 +136,9 @@ std::optional<Polygon> grid_plan(Random& random, bool turned_too) {
 Polygon random_plan(std::uint64_t seed, std::uint64_t number) {
   for (std::uint64_t again = 0;; ++again) {
     Random random(seed * 1000003 + number * 64 + again);
-    const auto plan = number % 4 == 0 ? star_plan(random) : number % 4 == 1 ? tangle_plan(random) : grid_plan(random, number % 4 == 3);
+    const auto plan = number % 4 == 0   ? star_plan(random)
+                      : number % 4 == 1 ? tangle_plan(random)
+                                        : grid_plan(random, number % 4 == 3);
     if (plan && plan->outer.size() >= 3 && geometry::strictly_simple(*plan)) return *plan;
   }
 }

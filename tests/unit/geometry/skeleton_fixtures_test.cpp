@@ -110,8 +110,8 @@ TEST(SkeletonFixtures, C8MitreOfARightAngle) {
 }
 
 TEST(SkeletonFixtures, C9WallOffsetAtReflexCornersToo) {
-  // All corners of walls w thick move by w times the root of 2, the reflex one of an L as well. The plane at height w * slope
-  // is the offset, whatever the slope.
+  // All corners of walls w thick move by w times the root of 2, the reflex one of an L as well. The plane at height w *
+  // slope is the offset, whatever the slope.
   constexpr double kWidth = 0.5, kSlope = 4;
   const Polygon plan = polygon({{0, 0}, {20, 0}, {20, 8}, {8, 8}, {8, 18}, {0, 18}});
   const auto s = weighted_skeleton(plan, all(plan, {kSlope, {}}), kWidth * kSlope);

@@ -84,12 +84,14 @@ TEST(CommonVolume, OfRoofsCourtyardsAndOverhangs) {
 TEST(CommonVolume, AgreesWithTheVolumeOfTurnedSolids) {
   testing_shapes::Random random(7);
   for (int i = 0; i < 50; ++i) {
-    const Mesh a(turned(gabled_house(kFar, 5 + 10 * random.unit(), 4 + 10 * random.unit(), 3, 4 + 4 * random.unit()), 6 * random.unit()));
+    const Mesh a(turned(gabled_house(kFar, 5 + 10 * random.unit(), 4 + 10 * random.unit(), 3, 4 + 4 * random.unit()),
+                        6 * random.unit()));
     EXPECT_NEAR(common_volume(a.view(), a.view()), volume(a.solid, a.triangles), 1e-6);
     // Cut in two by a box that covers one side of it: both pieces together are the whole.
     const double x = 10 * random.unit() - 5;
     const Mesh left(box(at(x - 100, -100, -10), 100, 200, 100)), right(box(at(x, -100, -10), 100, 200, 100));
-    EXPECT_NEAR(common_volume(a.view(), left.view()) + common_volume(a.view(), right.view()), volume(a.solid, a.triangles), 1e-6);
+    EXPECT_NEAR(common_volume(a.view(), left.view()) + common_volume(a.view(), right.view()),
+                volume(a.solid, a.triangles), 1e-6);
   }
 }
 
@@ -104,7 +106,8 @@ TEST(OverlapOf, NeighboursDoNot) {
   // A wall of 300 m by 100 m: the volume of rounding is large, and no overlap.
   EXPECT_FALSE(overlap(box(kFar, 300, 300, 100), box(at(300 - 4 * kStep, 0, 0), 300, 300, 100)));
   // In a courtyard that fits but for rounding on all four sides.
-  EXPECT_FALSE(overlap(courtyard_block(kFar, 40, 20, 18), box(at(10 - 3 * kStep, 10 - 3 * kStep, 0), 20 + 6 * kStep, 20 + 6 * kStep, 18)));
+  EXPECT_FALSE(overlap(courtyard_block(kFar, 40, 20, 18),
+                       box(at(10 - 3 * kStep, 10 - 3 * kStep, 0), 20 + 6 * kStep, 20 + 6 * kStep, 18)));
   // Two roofs back to back.
   EXPECT_FALSE(overlap(gabled_house(kFar, 12, 9, 5, 9), gabled_house(at(0, 9 - 2 * kStep, 0), 12, 9, 5, 9)));
   // A tower on the ridge's wall, a loft on a roof: the roof's own solid as the hull of another.
@@ -118,8 +121,10 @@ TEST(OverlapOf, OverlapsAreFound) {
   EXPECT_TRUE(overlap(a, box(at(2, 2, 2), 1, 1, 1))) << "inside";
   EXPECT_TRUE(overlap(a, box(at(2, 2, -10), 0.2, 0.2, 30))) << "a mast through it";
   EXPECT_FALSE(overlap(a, box(at(2, 2, -10), 8 * kStep, 8 * kStep, 30))) << "a wire through it";
-  EXPECT_TRUE(overlap(gabled_house(kFar, 12, 9, 5, 9), box(at(4, 4, 8), 1, 1, 5))) << "a tower that begins below the ridge";
-  EXPECT_FALSE(overlap(gabled_house(kFar, 12, 9, 5, 9), box(at(4, 0, 8), 1, 1, 5))) << "above the eaves, beside the ridge";
+  EXPECT_TRUE(overlap(gabled_house(kFar, 12, 9, 5, 9), box(at(4, 4, 8), 1, 1, 5)))
+      << "a tower that begins below the ridge";
+  EXPECT_FALSE(overlap(gabled_house(kFar, 12, 9, 5, 9), box(at(4, 0, 8), 1, 1, 5)))
+      << "above the eaves, beside the ridge";
   // A cube in common beside a long wall that overlaps by rounding.
   EXPECT_TRUE(overlap(courtyard_block(kFar, 40, 20, 18), box(at(10 - 3 * kStep, 9.5, 0), 20, 20, 18)));
 }

@@ -27,7 +27,9 @@ std::size_t edges_of(const Polygon& p) {
   return n;
 }
 
-std::vector<EdgeProfile> equal(const Polygon& p, double slope = 1) { return std::vector<EdgeProfile>(edges_of(p), {slope, {}}); }
+std::vector<EdgeProfile> equal(const Polygon& p, double slope = 1) {
+  return std::vector<EdgeProfile>(edges_of(p), {slope, {}});
+}
 
 double area_seen_from_above(const WeightedSkeleton& s) {
   double sum = 0;
@@ -51,7 +53,8 @@ std::size_t faces_that_look_down(const WeightedSkeleton& s) {
   return count;
 }
 
-/// How far a point at a height is from the roof, if it lies in a face of an edge that is as far away as the point is high.
+/// How far a point at a height is from the roof, if it lies in a face of an edge that is as far away as the point is
+/// high.
 double distance_to_roof(const Polygon& plan, const WeightedSkeleton& s, Point2 p, double height) {
   std::vector<std::pair<Point2, Point2>> edges;
   const auto add = [&](const model::Ring& r) {
@@ -116,8 +119,10 @@ TEST(WeightedSkeleton, SaysWhyItGivesUp) {
   const Polygon plan = polygon({{0, 0}, {10, 0}, {10, 6}, {0, 6}});
   EXPECT_EQ(weighted_skeleton(plan, equal(plan, kUpright)).error(), SkeletonFailure::unbounded);
   EXPECT_EQ(weighted_skeleton(plan, equal(plan, 0)).error(), SkeletonFailure::bad_slope);
-  EXPECT_EQ(weighted_skeleton(polygon({{0, 0}, {9000, 0}, {9000, 6}, {0, 6}}), equal(plan)).error(), SkeletonFailure::too_large);
-  EXPECT_EQ(weighted_skeleton(polygon({{0, 0}, {10, 0}}), std::vector<EdgeProfile>(2)).error(), SkeletonFailure::too_large);
+  EXPECT_EQ(weighted_skeleton(polygon({{0, 0}, {9000, 0}, {9000, 6}, {0, 6}}), equal(plan)).error(),
+            SkeletonFailure::too_large);
+  EXPECT_EQ(weighted_skeleton(polygon({{0, 0}, {10, 0}}), std::vector<EdgeProfile>(2)).error(),
+            SkeletonFailure::too_large);
   std::vector<EdgeProfile> falling = equal(plan);
   falling[0].changes = {{2, 1}, {1, 2}};
   EXPECT_EQ(weighted_skeleton(plan, falling).error(), SkeletonFailure::bad_slope);
@@ -144,21 +149,23 @@ TEST(WeightedSkeleton, AgreesWithCgalWhereSlopesAreEqual) {
       continue;
     }
     ++compared;
-    // Every node of theirs lies on our roof: in the face of an edge that it is as far from as it is high. (Where two edges
-    // on one line meet, CGAL has nodes within what is one plane.) And every node of ours on theirs.
+    // Every node of theirs lies on our roof: in the face of an edge that it is as far from as it is high. (Where two
+    // edges on one line meet, CGAL has nodes within what is one plane.) And every node of ours on theirs.
     double off = 0;
     for (const auto& n : theirs->nodes)
       if (!n.contour) off = std::max(off, distance_to_roof(plan, *ours, n.point, n.time));
     for (const auto& n : ours->nodes) {
       double nearest = 1e9;
       for (const auto& m : theirs->nodes)
-        nearest = std::min(nearest, std::max(std::hypot(m.point.x - n.point.x, m.point.y - n.point.y), std::fabs(m.time - n.height)));
+        nearest = std::min(
+            nearest, std::max(std::hypot(m.point.x - n.point.x, m.point.y - n.point.y), std::fabs(m.time - n.height)));
       off = std::max(off, nearest);
     }
     worst = std::max(worst, off);
     EXPECT_LT(off, 1e-6) << "polygon " << i << " of " << edges_of(plan) << " corners";
   }
-  std::printf("%lu polygons compared with CGAL, which gave up on %lu; largest distance of a node %.2g m\n", compared, failed, worst);
+  std::printf("%lu polygons compared with CGAL, which gave up on %lu; largest distance of a node %.2g m\n", compared,
+              failed, worst);
   EXPECT_GT(compared, rounds * 9 / 10);
 }
 

@@ -50,12 +50,17 @@ struct BuiltTown::State {
   context::TaggedNeighbours neighbours;
 
   explicit State(const std::filesystem::path& file)
-      : extract(importers::osm::read_extract(file.string())), projection(projection_of(extract)),
-        shards(shards_of(extract)), kept(extract),
+      : extract(importers::osm::read_extract(file.string())),
+        projection(projection_of(extract)),
+        shards(shards_of(extract)),
+        kept(extract),
         repaired(repair_extract(extract, shards, projection, kept, repair, workers, progress)),
-        context(context_extract(extract, repaired.footprints, context::coverage_of(building_places(extract, projection)),
-                                projection, workers, progress)),
-        surroundings(extract, repaired.footprints, context), roof_lines(extract, projection), numbers(repaired.footprints),
+        context(context_extract(extract, repaired.footprints,
+                                context::coverage_of(building_places(extract, projection)), projection, workers,
+                                progress)),
+        surroundings(extract, repaired.footprints, context),
+        roof_lines(extract, projection),
+        numbers(repaired.footprints),
         neighbours(tagged_buildings(extract, defaults, projection), usual_generation().neighbour_reach) {}
 };
 

@@ -1,6 +1,6 @@
 // Is the roof shape that we infer the one that is there? Tags of roof:shape are hidden, fold by fold, from the building
-// that has them and from its neighbours; what is inferred in their place is held against them. Skipped without the data.
-// BLOCKRAND_ROOF_CASES=1 prints every case.
+// that has them and from its neighbours; what is inferred in their place is held against them. Skipped without the
+// data. BLOCKRAND_ROOF_CASES=1 prints every case.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,23 +35,31 @@ constexpr std::array<const char*, kClasses> kClassNames = {"flat",         "gabl
 
 Class class_of(RoofShape shape) {
   switch (shape) {
-    case RoofShape::flat: return flat;
+    case RoofShape::flat:
+      return flat;
     case RoofShape::gabled:
-    case RoofShape::gabled_height_moved: return gabled;
+    case RoofShape::gabled_height_moved:
+      return gabled;
     case RoofShape::hipped:
-    case RoofShape::side_hipped: return hipped;
+    case RoofShape::side_hipped:
+      return hipped;
     case RoofShape::half_hipped:
     case RoofShape::side_half_hipped:
-    case RoofShape::hipped_and_gabled: return half_hipped;
+    case RoofShape::hipped_and_gabled:
+      return half_hipped;
     case RoofShape::mansard:
     case RoofShape::gambrel:
     case RoofShape::saltbox:
     case RoofShape::double_saltbox:
-    case RoofShape::quadruple_saltbox: return mansard_like;
-    case RoofShape::skillion: return skillion;
+    case RoofShape::quadruple_saltbox:
+      return mansard_like;
+    case RoofShape::skillion:
+      return skillion;
     case RoofShape::pyramidal:
-    case RoofShape::cone: return pyramidal;
-    default: return other;
+    case RoofShape::cone:
+      return pyramidal;
+    default:
+      return other;
   }
 }
 
@@ -130,8 +138,8 @@ void print_matrix(const Confusion& c) {
 using BySource = std::map<std::string, Confusion>;
 
 struct HeldOut {
-  Confusion shape_hidden, all_hidden;  ///< roof:shape alone; all roof:* that speak of form
-  BySource sources;                    ///< of all_hidden
+  Confusion shape_hidden, all_hidden;          ///< roof:shape alone; all roof:* that speak of form
+  BySource sources;                            ///< of all_hidden
   std::array<std::array<int, 2>, 2> ridges{};  ///< along, across: as tagged, as inferred with the shape's tag at hand
 };
 
@@ -171,19 +179,21 @@ HeldOut hold_out(const fs::path& file) {
           hide(hidden.buildings.back().mapped, what);
           for (BuildingPart& part : hidden.buildings.back().parts) hide(part.mapped, what);
         }
-        generate::resolve_attributes(
-            hidden, {town.defaults(), neighbours[static_cast<std::size_t>(fold)], 1, ground}, usual_generation());
+        generate::resolve_attributes(hidden, {town.defaults(), neighbours[static_cast<std::size_t>(fold)], 1, ground},
+                                     usual_generation());
         std::size_t next = 0;
         for (const Building& b : region.buildings) {
           if (next == hidden.buildings.size() || hidden.buildings[next].osm != b.osm) continue;
           const Building& guess = hidden.buildings[next++];
           for_each_tagged(b, [&](const BuildingPart& part, RoofShape truth) {
-            const model::Attributes& attributes = guess.parts[static_cast<std::size_t>(&part - b.parts.data())].attributes;
+            const model::Attributes& attributes =
+                guess.parts[static_cast<std::size_t>(&part - b.parts.data())].attributes;
             if (what == Hidden::direction) {
               const auto& tags = b.has_mapped_parts ? part.mapped : b.mapped;
               const Class c = class_of(truth);
               if (!tags.roof_orientation || (c != gabled && c != half_hipped && c != mansard_like)) return;
-              ++out.ridges[static_cast<std::size_t>(*tags.roof_orientation)][static_cast<std::size_t>(attributes.roof_orientation.value)];
+              ++out.ridges[static_cast<std::size_t>(*tags.roof_orientation)]
+                          [static_cast<std::size_t>(attributes.roof_orientation.value)];
               return;
             }
             const bool all = what == Hidden::form;
@@ -191,12 +201,17 @@ HeldOut hold_out(const fs::path& file) {
             ++(all ? out.all_hidden : out.shape_hidden).count[class_of(truth)][class_of(inferred.value)];
             if (std::getenv("BLOCKRAND_ROOF_CASES") && all) {
               const auto& plan = part.plan;
-              std::printf("CASE,%s,%s,%s,%s,%s,%.0f,%.1f,%g,%d,%s,%d,%.1f,%s,%s\n", file.stem().c_str(), b.osm.text().c_str(), kClassNames[class_of(truth)],
-                          kClassNames[class_of(inferred.value)], std::string(model::name(inferred.source)).c_str(), geometry::area(plan),
-                          geometry::equivalent_width(plan), attributes.storeys.value, static_cast<int>(attributes.storeys.source == model::Source::tag),
-                          attributes.use.value.c_str(), b.has_mapped_parts, b.situation.party_wall_length, std::string(model::name(b.situation.position)).c_str(), std::string(model::name(truth)).c_str());
+              std::printf("CASE,%s,%s,%s,%s,%s,%.0f,%.1f,%g,%d,%s,%d,%.1f,%s,%s\n", file.stem().c_str(),
+                          b.osm.text().c_str(), kClassNames[class_of(truth)], kClassNames[class_of(inferred.value)],
+                          std::string(model::name(inferred.source)).c_str(), geometry::area(plan),
+                          geometry::equivalent_width(plan), attributes.storeys.value,
+                          static_cast<int>(attributes.storeys.source == model::Source::tag),
+                          attributes.use.value.c_str(), b.has_mapped_parts, b.situation.party_wall_length,
+                          std::string(model::name(b.situation.position)).c_str(),
+                          std::string(model::name(truth)).c_str());
             }
-            if (all) ++out.sources[std::string(model::name(inferred.source))].count[class_of(truth)][class_of(inferred.value)];
+            if (all)
+              ++out.sources[std::string(model::name(inferred.source))].count[class_of(truth)][class_of(inferred.value)];
           });
         }
       }
@@ -220,30 +235,30 @@ TEST_P(HeldOutRoofs, AreInferred) {
   print((std::string(GetParam().file) + ", all tags of the roof's form hidden").c_str(), held.all_hidden);
   print_matrix(held.all_hidden);
   for (const auto& [source, confusion] : held.sources) print(("  by " + source).c_str(), confusion);
-  std::printf("  tagged roof:orientation of ridged roofs: along %d right of %d, across %d right of %d\n", held.ridges[0][0],
-              held.ridges[0][0] + held.ridges[0][1], held.ridges[1][1], held.ridges[1][0] + held.ridges[1][1]);
+  std::printf("  tagged roof:orientation of ridged roofs: along %d right of %d, across %d right of %d\n",
+              held.ridges[0][0], held.ridges[0][0] + held.ridges[0][1], held.ridges[1][1],
+              held.ridges[1][0] + held.ridges[1][1]);
   EXPECT_GE(held.shape_hidden.accuracy(), GetParam().without_shape);
   EXPECT_GE(held.all_hidden.accuracy(), GetParam().without_form);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Small, HeldOutRoofs,
-    testing::Values(HeldOutSet{"dortmund-innenstadt.osm.gz", 0.78, 0.78},
-                    HeldOutSet{"berlin-mitte-2014.osm.pbf", 0.94, 0.94},
-                    HeldOutSet{"ingolstadt-altstadt.osm", 0.49, 0.48},
-                    HeldOutSet{"husum_altstadt.osm.pbf", 0.60, 0.53},
-                    HeldOutSet{"lauf-2020-clipped.osm.pbf", 0.85, 0.81},
-                    HeldOutSet{"berlin-luisenstadt-2021.osm", 0.53, 0.51},
-                    HeldOutSet{"berlin_karl_marx_allee.osm.pbf", 0.43, 0.39},
-                    HeldOutSet{"berlin_frankfurter_allee.osm.pbf", 0.64, 0.66},
-                    HeldOutSet{"helsinki-centre-2019.osm.pbf", 0.43, 0.28},
-                    HeldOutSet{"liechtenstein-2022-12.osm.pbf", 0.68, 0.60}),
-    [](const auto& tested) {
-      std::string name = tested.param.file;
-      for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-      return name;
-    });
+INSTANTIATE_TEST_SUITE_P(Small, HeldOutRoofs,
+                         testing::Values(HeldOutSet{"dortmund-innenstadt.osm.gz", 0.78, 0.78},
+                                         HeldOutSet{"berlin-mitte-2014.osm.pbf", 0.94, 0.94},
+                                         HeldOutSet{"ingolstadt-altstadt.osm", 0.49, 0.48},
+                                         HeldOutSet{"husum_altstadt.osm.pbf", 0.60, 0.53},
+                                         HeldOutSet{"lauf-2020-clipped.osm.pbf", 0.85, 0.81},
+                                         HeldOutSet{"berlin-luisenstadt-2021.osm", 0.53, 0.51},
+                                         HeldOutSet{"berlin_karl_marx_allee.osm.pbf", 0.43, 0.39},
+                                         HeldOutSet{"berlin_frankfurter_allee.osm.pbf", 0.64, 0.66},
+                                         HeldOutSet{"helsinki-centre-2019.osm.pbf", 0.43, 0.28},
+                                         HeldOutSet{"liechtenstein-2022-12.osm.pbf", 0.68, 0.60}),
+                         [](const auto& tested) {
+                           std::string name = tested.param.file;
+                           for (char& c : name)
+                             if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+                           return name;
+                         });
 
 INSTANTIATE_TEST_SUITE_P(City, HeldOutRoofs, testing::Values(HeldOutSet{"berlin-2014-06.osm.pbf", 0.76, 0.81}));
 

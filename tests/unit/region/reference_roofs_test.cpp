@@ -1,7 +1,7 @@
 // Are our roofs those that surveyors found? Ridge and eaves of what is built from OSM against surveyed and hand-built
-// models on the same ground, and, with the survey's own ridge, eaves and shape given to the builder of roofs, one surface
-// against the other. Skipped where the data is absent. Figures: tests/bench/RESULTS.md, "Roofs
-// against references". BLOCKRAND_ROOF_CASES=1 prints every building.
+// models on the same ground, and, with the survey's own ridge, eaves and shape given to the builder of roofs, one
+// surface against the other. Skipped where the data is absent. Figures: tests/bench/RESULTS.md, "Roofs against
+// references". BLOCKRAND_ROOF_CASES=1 prints every building.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,8 +44,12 @@ struct Errors {
     for (const double v : values) sum += f(v);
     return values.empty() ? 0 : sum / static_cast<double>(values.size());
   }
-  double mae() const { return mean_of([](double v) { return std::fabs(v); }); }
-  double rmse() const { return std::sqrt(mean_of([](double v) { return v * v; })); }
+  double mae() const {
+    return mean_of([](double v) { return std::fabs(v); });
+  }
+  double rmse() const {
+    return std::sqrt(mean_of([](double v) { return v * v; }));
+  }
   double median_error() const {
     std::vector<double> a;
     for (const double v : values) a.push_back(std::fabs(v));
@@ -53,8 +57,8 @@ struct Errors {
   }
   std::string text() const {
     char out[120];
-    std::snprintf(out, sizeof out, "%+.2f | %.2f | %.2f | %+.1f / %+.1f / %+.1f", bias(), mae(), rmse(), quantile(values, 0.05),
-                  quantile(values, 0.5), quantile(values, 0.95));
+    std::snprintf(out, sizeof out, "%+.2f | %.2f | %.2f | %+.1f / %+.1f / %+.1f", bias(), mae(), rmse(),
+                  quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95));
     return out;
   }
 };
@@ -77,7 +81,9 @@ RoofShape seen_shape(const RoofForm& form) {
     if (!opposite(d[0], d[1])) return RoofShape::other;
     return form.two_pitches ? RoofShape::gambrel : RoofShape::gabled;
   }
-  if (d.size() == 3) return opposite(d[0], d[1]) || opposite(d[0], d[2]) || opposite(d[1], d[2]) ? RoofShape::side_hipped : RoofShape::other;
+  if (d.size() == 3)
+    return opposite(d[0], d[1]) || opposite(d[0], d[2]) || opposite(d[1], d[2]) ? RoofShape::side_hipped
+                                                                                : RoofShape::other;
   if (d.size() == 4) return form.two_pitches ? RoofShape::mansard : RoofShape::hipped;
   return RoofShape::other;
 }
@@ -91,9 +97,10 @@ std::string seen_name(const RoofForm& form) {
 /// SIG3D's codes of roof types, as the Dutch and newer Berlin models have them, and ALKIS's.
 std::optional<RoofShape> shape_of_code(const std::string& code) {
   static const std::map<std::string, RoofShape> shapes = {
-      {"1000", RoofShape::flat},     {"1010", RoofShape::skillion},    {"1030", RoofShape::gabled}, {"1040", RoofShape::hipped},
-      {"1050", RoofShape::half_hipped}, {"1060", RoofShape::mansard},  {"1070", RoofShape::pyramidal}, {"2100", RoofShape::skillion},
-      {"3100", RoofShape::gabled},   {"3200", RoofShape::hipped},      {"3300", RoofShape::half_hipped}, {"3400", RoofShape::mansard},
+      {"1000", RoofShape::flat},      {"1010", RoofShape::skillion},    {"1030", RoofShape::gabled},
+      {"1040", RoofShape::hipped},    {"1050", RoofShape::half_hipped}, {"1060", RoofShape::mansard},
+      {"1070", RoofShape::pyramidal}, {"2100", RoofShape::skillion},    {"3100", RoofShape::gabled},
+      {"3200", RoofShape::hipped},    {"3300", RoofShape::half_hipped}, {"3400", RoofShape::mansard},
       {"3500", RoofShape::pyramidal}};
   const auto found = shapes.find(code);
   return found == shapes.end() ? std::nullopt : std::optional(found->second);
@@ -101,8 +108,10 @@ std::optional<RoofShape> shape_of_code(const std::string& code) {
 
 // ---- roofs with the survey's heights --------------------------------------------------------------------------------
 
-/// The builder's roof on all polygons of a plan; empty where one fails. A roof of no height is flat at the ridge's height.
-std::optional<RoofSurfaces> build_on(const std::vector<Polygon>& plans, roofs::RoofRequest request, RoofShape* built = nullptr) {
+/// The builder's roof on all polygons of a plan; empty where one fails. A roof of no height is flat at the ridge's
+/// height.
+std::optional<RoofSurfaces> build_on(const std::vector<Polygon>& plans, roofs::RoofRequest request,
+                                     RoofShape* built = nullptr) {
   if (request.measures.height < 0.1) request.shape = RoofShape::flat;
   RoofSurfaces out;
   for (const Polygon& plan : plans) {
@@ -126,8 +135,8 @@ struct Attempt {
   RoofForm form;
 };
 
-std::optional<Attempt> attempt(const std::vector<Polygon>& plan, const roofs::RoofRequest& request, const RoofSurfaces& survey,
-                               std::span<const Point2> points) {
+std::optional<Attempt> attempt(const std::vector<Polygon>& plan, const roofs::RoofRequest& request,
+                               const RoofSurfaces& survey, std::span<const Point2> points) {
   Attempt out;
   const auto roof = build_on(plan, request, &out.shape);
   if (!roof) return std::nullopt;
@@ -139,9 +148,12 @@ std::optional<Attempt> attempt(const std::vector<Polygon>& plan, const roofs::Ro
 }
 
 /// Shapes that the best one is chosen of.
-constexpr RoofShape kTried[] = {RoofShape::flat,    RoofShape::gabled,      RoofShape::hipped, RoofShape::half_hipped,
-                                RoofShape::side_hipped, RoofShape::mansard, RoofShape::gambrel, RoofShape::pyramidal,
-                                RoofShape::double_saltbox, RoofShape::quadruple_saltbox, RoofShape::skillion, RoofShape::round};
+constexpr RoofShape kTried[] = {RoofShape::flat,           RoofShape::gabled,
+                                RoofShape::hipped,         RoofShape::half_hipped,
+                                RoofShape::side_hipped,    RoofShape::mansard,
+                                RoofShape::gambrel,        RoofShape::pyramidal,
+                                RoofShape::double_saltbox, RoofShape::quadruple_saltbox,
+                                RoofShape::skillion,       RoofShape::round};
 
 /// The way of the survey's steepest share: what roof:direction would say.
 roofs::RoofRequest request_with(RoofShape shape, const RoofHeights& heights, double ground) {
@@ -185,13 +197,14 @@ struct RoofCase {
   std::string id, seen, code;
   RoofForm form;
   RoofShape asked = RoofShape::flat;
-  std::optional<Attempt> as_asked;      ///< the shape that is asked for, with the default direction
-  std::optional<Attempt> other_way;     ///< the same across, or the lean-to's best direction
-  std::optional<Attempt> best;          ///< of all
+  std::optional<Attempt> as_asked;   ///< the shape that is asked for, with the default direction
+  std::optional<Attempt> other_way;  ///< the same across, or the lean-to's best direction
+  std::optional<Attempt> best;       ///< of all
   std::size_t points = 0;
 };
 
-RoofCase make_case(const std::vector<Polygon>& plan, const SurveyedRoof& survey, const RoofHeights& heights, roofs::RoofRequest asked) {
+RoofCase make_case(const std::vector<Polygon>& plan, const SurveyedRoof& survey, const RoofHeights& heights,
+                   roofs::RoofRequest asked) {
   RoofCase out;
   const auto points = common_grid(plan, survey.plan);
   out.points = points.size();
@@ -210,8 +223,11 @@ RoofCase make_case(const std::vector<Polygon>& plan, const SurveyedRoof& survey,
 }
 
 void print_case_head() {
-  std::printf("| which | roofs | survey's spread, m | mean difference, m | RMS, m | median RMS | with the best direction: median RMS | "
-              "best of all shapes: median RMS | main slopes found | wrongly built |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| which | roofs | survey's spread, m | mean difference, m | RMS, m | median RMS | with the best direction: "
+      "median RMS | "
+      "best of all shapes: median RMS | main slopes found | wrongly built "
+      "|\n|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
 struct CaseSummary {
@@ -219,7 +235,8 @@ struct CaseSummary {
   double median_rms = 0, median_best = 0, median_way = 0, found = 0;
 };
 
-CaseSummary print_cases(const std::string& name, const std::vector<RoofCase>& all, const std::function<bool(const RoofCase&)>& which) {
+CaseSummary print_cases(const std::string& name, const std::vector<RoofCase>& all,
+                        const std::function<bool(const RoofCase&)>& which) {
   std::vector<double> spread, mean, rms, way, best;
   int there = 0, found = 0, ours = 0;
   double squares = 0;
@@ -238,9 +255,10 @@ CaseSummary print_cases(const std::string& name, const std::vector<RoofCase>& al
   CaseSummary out{rms.size(), quantile(rms, 0.5), quantile(best, 0.5), quantile(way, 0.5),
                   there ? static_cast<double>(found) / there : 1};
   if (rms.empty()) return out;
-  std::printf("| %s | %zu | %.2f | %+.2f | %.2f | %.2f | %.2f | %.2f | %d of %d | %d of %d |\n", name.c_str(), rms.size(),
-              quantile(spread, 0.5), quantile(mean, 0.5), std::sqrt(squares / static_cast<double>(rms.size())), out.median_rms, out.median_way,
-              out.median_best, found, there, ours - found, ours);
+  std::printf("| %s | %zu | %.2f | %+.2f | %.2f | %.2f | %.2f | %.2f | %d of %d | %d of %d |\n", name.c_str(),
+              rms.size(), quantile(spread, 0.5), quantile(mean, 0.5),
+              std::sqrt(squares / static_cast<double>(rms.size())), out.median_rms, out.median_way, out.median_best,
+              found, there, ours - found, ours);
   return out;
 }
 
@@ -282,7 +300,9 @@ constexpr SurveySet kBerlin{"Berlin", "berlin-mitte-2014.osm.pbf", "berlin-lod2"
 constexpr SurveySet kIngolstadt{"Ingolstadt", "ingolstadt-altstadt.osm", "ingolstadt-lod3"};
 constexpr SurveySet kPariserPlatz{"Pariser Platz", "berlin-pariser-platz-2014.osm.pbf", "berlin-pariser-platz"};
 
-bool is_here(const SurveySet& set) { return fs::exists(kData / "osm" / set.extract) && fs::exists(kData / "reference" / set.survey); }
+bool is_here(const SurveySet& set) {
+  return fs::exists(kData / "osm" / set.extract) && fs::exists(kData / "reference" / set.survey);
+}
 
 /// A building of OSM and a surveyed one that stand for each other.
 struct Match {
@@ -323,7 +343,8 @@ std::vector<Match> match(const SurveySet& set) {
     RoofSurfaces ours;
     for (const auto& part : b->parts)
       if (part.lod >= 1) add_roof_of(part.lod >= 2 ? part.lod2 : part.lod1, ours);
-    const auto our_heights = heights_of(ours, b->outline, 0), survey_heights = heights_of(survey.roof, survey.plan, survey.ground);
+    const auto our_heights = heights_of(ours, b->outline, 0),
+               survey_heights = heights_of(survey.roof, survey.plan, survey.ground);
     if (!our_heights || !survey_heights) continue;
     Match one;
     one.id = b->osm.text();
@@ -348,7 +369,8 @@ std::vector<Match> match(const SurveySet& set) {
     if (b->has_mapped_parts) one.on_map.as_asked.reset();
     out.push_back(std::move(one));
   }
-  std::printf("%s: %zu surveyed roofs, %zu matched one to one, %zu measured\n", set.name, surveyed.size(), pairs, out.size());
+  std::printf("%s: %zu surveyed roofs, %zu matched one to one, %zu measured\n", set.name, surveyed.size(), pairs,
+              out.size());
   return out;
 }
 
@@ -356,7 +378,8 @@ struct HeightErrors {
   Errors ridge, eaves, mean;
 };
 
-HeightErrors print_heights(const std::string& name, const std::vector<Match>& all, const std::function<bool(const Match&)>& which) {
+HeightErrors print_heights(const std::string& name, const std::vector<Match>& all,
+                           const std::function<bool(const Match&)>& which) {
   HeightErrors e;
   for (const Match& m : all) {
     if (!which(m)) continue;
@@ -365,14 +388,16 @@ HeightErrors print_heights(const std::string& name, const std::vector<Match>& al
     e.mean.values.push_back(m.ours.mean - m.survey.mean);
   }
   if (!e.ridge.values.empty())
-    std::printf("| %s | %zu | %s | %s | %s |\n", name.c_str(), e.ridge.values.size(), e.ridge.text().c_str(), e.eaves.text().c_str(),
-                e.mean.text().c_str());
+    std::printf("| %s | %zu | %s | %s | %s |\n", name.c_str(), e.ridge.values.size(), e.ridge.text().c_str(),
+                e.eaves.text().c_str(), e.mean.text().c_str());
   return e;
 }
 
 void print_heights(const std::vector<Match>& all) {
-  std::printf("| which | buildings | ridge: bias | MAE | RMSE | 5/50/95 %% | eaves: bias | MAE | RMSE | 5/50/95 %% | mean roof: bias | MAE "
-              "| RMSE | 5/50/95 %% |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| which | buildings | ridge: bias | MAE | RMSE | 5/50/95 %% | eaves: bias | MAE | RMSE | 5/50/95 %% | mean "
+      "roof: bias | MAE "
+      "| RMSE | 5/50/95 %% |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   print_heights("all", all, [](const Match&) { return true; });
   const auto split = [&](const char* prefix, const std::function<std::string(const Match&)>& key) {
     std::map<std::string, int> keys;
@@ -384,10 +409,13 @@ void print_heights(const std::vector<Match>& all) {
   split("built: ", [](const Match& m) { return m.built; });
   for (const Match& m : all)
     if (std::getenv("BLOCKRAND_ROOF_CASES"))
-      std::printf("  %s %s built %s, seen %s, code %s: ridge %.1f / %.1f eaves %.1f / %.1f mean %.1f / %.1f; rms %.2f best %.2f %s\n", m.id.c_str(),
-                  m.tagged.c_str(), m.built.c_str(), m.seen.c_str(), m.code.c_str(), m.ours.ridge, m.survey.ridge, m.ours.eaves, m.survey.eaves,
-                  m.ours.mean, m.survey.mean, m.on_map.as_asked ? m.on_map.as_asked->error.rms : -1, m.on_map.best->error.rms,
-                  std::string(model::name(m.on_map.best->shape)).c_str());
+      std::printf(
+          "  %s %s built %s, seen %s, code %s: ridge %.1f / %.1f eaves %.1f / %.1f mean %.1f / %.1f; rms %.2f best "
+          "%.2f %s\n",
+          m.id.c_str(), m.tagged.c_str(), m.built.c_str(), m.seen.c_str(), m.code.c_str(), m.ours.ridge, m.survey.ridge,
+          m.ours.eaves, m.survey.eaves, m.ours.mean, m.survey.mean,
+          m.on_map.as_asked ? m.on_map.as_asked->error.rms : -1, m.on_map.best->error.rms,
+          std::string(model::name(m.on_map.best->shape)).c_str());
 }
 
 /// Median of the error of the ridge, whatever its sign.
@@ -398,7 +426,7 @@ double ridge_error(const std::vector<Match>& all, const std::function<bool(const
   return e.median_error();
 }
 
-std::vector<RoofCase> cases(const std::vector<Match>& all, RoofCase Match::* which) {
+std::vector<RoofCase> cases(const std::vector<Match>& all, RoofCase Match::*which) {
   std::vector<RoofCase> out;
   for (const Match& m : all) out.push_back(m.*which);
   return out;
@@ -451,11 +479,13 @@ TEST(ReferenceRoofs, OfTownsStandAtTheSurveysHeights) {
   std::printf("All together\n");
   print_heights(all);
   print_surfaces(all);
-  // Measured: 101 matches; 7.1 m, of offices whose storeys are higher than 3 m; 60 of 69 slopes, 44 where 62 were asked for.
+  // Measured: 101 matches; 7.1 m, of offices whose storeys are higher than 3 m; 60 of 69 slopes, 44 where 62 were asked
+  // for.
   EXPECT_GT(all.size(), 80u);
   EXPECT_LT(ridge_error(all, [](const Match& m) { return m.tagged != "untagged"; }), 8.5);
   const auto map = cases(all, &Match::on_map);
-  EXPECT_GT(print_cases("all but stepped", map, [](const RoofCase& c) { return c.seen != "flat, stepped"; }).found, 0.8);
+  EXPECT_GT(print_cases("all but stepped", map, [](const RoofCase& c) { return c.seen != "flat, stepped"; }).found,
+            0.8);
   EXPECT_LT(print_cases("gabled", map, [](const RoofCase& c) { return c.seen == "gabled"; }).median_rms, 0.9);
 }
 
@@ -480,7 +510,8 @@ std::vector<generate::WallStretch> party_walls(const SurveyedRoof& roof, const s
     for (int k = 0; k < steps; ++k) {
       const Point2 m = at((k + 0.5) / steps), beside{m.x + 0.2 * (b.y - a.y) / l, m.y - 0.2 * (b.x - a.x) / l};
       const bool covered = std::any_of(near.begin(), near.end(), [&](const SurveyedRoof* other) {
-        return std::any_of(other->plan.begin(), other->plan.end(), [&](const Polygon& p) { return geometry::contains(p, beside); });
+        return std::any_of(other->plan.begin(), other->plan.end(),
+                           [&](const Polygon& p) { return geometry::contains(p, beside); });
       });
       if (covered) out.push_back({at(static_cast<double>(k) / steps), at((k + 1.0) / steps)});
     }
@@ -494,7 +525,8 @@ TEST(ReferenceRoofs, OfTheHagueAreTheSurveysSurfaces) {
   const fs::path file = kData / "reference/cityjson/DenHaag_01.json";
   if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
   const auto surveyed = read_cityjson_roofs(file);
-  const double widest = generate::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs").use("house").pitched_width;
+  const double widest =
+      generate::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs").use("house").pitched_width;
   std::map<bool, std::vector<RoofCase>> all;  // with the rule for ridges, without
   for (const SurveyedRoof& survey : surveyed) {
     const auto shape = shape_of_code(survey.roof_type);
@@ -510,15 +542,17 @@ TEST(ReferenceRoofs, OfTheHagueAreTheSurveysSurfaces) {
   }
   std::map<std::string, CaseSummary> by_type;
   for (const bool ruled : {false, true}) {
-    std::printf("The Hague: the surveyed roof type on the surveyed ground, with the survey's ridge and eaves; ridges %s\n",
-                ruled ? "from party wall to party wall" : "along the longer side");
+    std::printf(
+        "The Hague: the surveyed roof type on the surveyed ground, with the survey's ridge and eaves; ridges %s\n",
+        ruled ? "from party wall to party wall" : "along the longer side");
     print_case_head();
     print_cases("all", all[ruled], [](const RoofCase&) { return true; });
     by_type = print_split(all[ruled], [](const RoofCase& c) { return "type: " + std::string(model::name(c.asked)); });
     print_split(all[ruled], [](const RoofCase& c) { return std::string(model::name(c.asked)) + ", seen: " + c.seen; });
     print_best_shapes(all[ruled]);
   }
-  // Measured 0.01 m and 88 %, 0.13 m and 99 %, 0.66 m, 0.11 m; with ridges along the longer side 1.10 m and 16 % of gabled roofs.
+  // Measured 0.01 m and 88 %, 0.13 m and 99 %, 0.66 m, 0.11 m; with ridges along the longer side 1.10 m and 16 % of
+  // gabled roofs.
   EXPECT_LT(by_type.at("type: gabled").median_rms, 0.05);
   EXPECT_GT(by_type.at("type: gabled").found, 0.83);
   EXPECT_LT(by_type.at("type: hipped").median_rms, 0.2);

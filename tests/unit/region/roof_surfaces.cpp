@@ -181,7 +181,9 @@ std::optional<RoofHeights> heights_of(const RoofSurfaces& roof, const std::vecto
   return out;
 }
 
-std::vector<Point2> common_grid(const std::vector<Polygon>& a, const std::vector<Polygon>& b) { return grid(a, b, 0.5); }
+std::vector<Point2> common_grid(const std::vector<Polygon>& a, const std::vector<Polygon>& b) {
+  return grid(a, b, 0.5);
+}
 
 RoofForm form_of(const RoofSurfaces& roof, std::span<const Point2> points) {
   RoofForm out;

@@ -22,8 +22,8 @@ inline constexpr double kFlatSlope = 0.0875;
 class RoofSurfaces {
  public:
   struct Hit {
-    double z = 0;           ///< m
-    model::Point2 uphill;   ///< gradient of z: its length is the tangent of the slope
+    double z = 0;          ///< m
+    model::Point2 uphill;  ///< gradient of z: its length is the tangent of the slope
   };
   /// A flat face by its boundary rings, the outer one first, in any direction; walls are left out.
   void add(const std::vector<std::vector<model::Point3>>& rings);
@@ -50,7 +50,7 @@ RoofSurfaces surfaces_of(const roofs::Roof& roof);
 struct RoofHeights {
   double ridge = 0;  ///< highest point
   double eaves = 0;
-  double mean = 0;   ///< over the plan: volume over area
+  double mean = 0;  ///< over the plan: volume over area
 };
 
 /// Ridge: the highest corner of a roof face. Eaves: the outline is walked in steps of 0.5 m; a step counts where the
@@ -58,19 +58,20 @@ struct RoofHeights {
 /// gables and the high side of lean-to roofs do not; its height is that of the plane 0.3 m inside, continued to the
 /// outline, so that overhangs and walls a little beside the survey's do not matter; the median of the steps is the
 /// eaves' height. Empty when the roof covers less than half of the outline or plan.
-std::optional<RoofHeights> heights_of(const RoofSurfaces& roof, const std::vector<model::Polygon>& outline, double ground);
+std::optional<RoofHeights> heights_of(const RoofSurfaces& roof, const std::vector<model::Polygon>& outline,
+                                      double ground);
 
-/// Points of a square grid of 0.5 m (coarser on plans over 1,000 m²: at most about 4,000 points) that lie in both plans, 0.5 m
-/// and more from both outlines.
+/// Points of a square grid of 0.5 m (coarser on plans over 1,000 m²: at most about 4,000 points) that lie in both
+/// plans, 0.5 m and more from both outlines.
 std::vector<model::Point2> common_grid(const std::vector<model::Polygon>& a, const std::vector<model::Polygon>& b);
 
 /// Roof form as the planes show it, whatever it is called.
 struct RoofForm {
-  double sloped = 0;                ///< share of the points with a slope of 5 degrees and more
-  double spread = 0;                ///< m, standard deviation of the height: error of the best horizontal roof
-  std::vector<double> directions;   ///< degrees clockwise from north, down the slope: into which 8 % of the points slope
-  bool two_pitches = false;         ///< each of the two main directions has pitches 15 degrees apart
-  double pitch = 0;                 ///< degrees, mean of the sloped points
+  double sloped = 0;               ///< share of the points with a slope of 5 degrees and more
+  double spread = 0;               ///< m, standard deviation of the height: error of the best horizontal roof
+  std::vector<double> directions;  ///< degrees clockwise from north, down the slope: into which 8 % of the points slope
+  bool two_pitches = false;        ///< each of the two main directions has pitches 15 degrees apart
+  double pitch = 0;                ///< degrees, mean of the sloped points
 };
 RoofForm form_of(const RoofSurfaces& roof, std::span<const model::Point2> points);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-
 #include <nlohmann/json.hpp>
 
 #include "importers/reference/citygml.h"
@@ -107,7 +106,9 @@ std::vector<SurveyedRoof> read_cityjson_roofs(const fs::path& file) {
   const auto& translate = json["transform"]["translate"];
   const auto point = [&](const nlohmann::json& index) {
     const auto& v = json["vertices"][index.get<std::size_t>()];
-    const auto at = [&](std::size_t k) { return v[k].get<double>() * scale[k].get<double>() + translate[k].get<double>(); };
+    const auto at = [&](std::size_t k) {
+      return v[k].get<double>() * scale[k].get<double>() + translate[k].get<double>();
+    };
     return Point3{at(0), at(1), at(2)};
   };
   std::vector<SurveyedRoof> out;

@@ -101,7 +101,8 @@ Grid read_grid() {
       table = true;
       std::size_t column = 0;
       for (std::string name; words >> name; ++column)
-        if (grid.plans.at(column).first != name) throw std::runtime_error("columns in another order than plans: " + name);
+        if (grid.plans.at(column).first != name)
+          throw std::runtime_error("columns in another order than plans: " + name);
     } else {
       throw std::runtime_error("not understood: " + line);
     }
@@ -237,7 +238,8 @@ Measured measure(const BuildingPart& part, const Polygon& plan, RoofShape asked,
     else
       fault(std::string(model::info(code).text));
   }
-  if (part.built_roof != (may_adapt ? relative(asked) : asked)) fault("built " + std::string(model::name(part.built_roof)));
+  if (part.built_roof != (may_adapt ? relative(asked) : asked))
+    fault("built " + std::string(model::name(part.built_roof)));
 
   const Solid& solid = part.lod2;
   const double eaves = asked == RoofShape::flat ? kTop : kTop - kRoofHeight;
@@ -252,7 +254,8 @@ Measured measure(const BuildingPart& part, const Polygon& plan, RoofShape asked,
     }
     if (face.kind != SurfaceKind::roof) continue;
     ++out.counts.faces;
-    for (const std::uint32_t i : solid.indices_of(solid.loops_of(face)[0])) lowest = std::min(lowest, solid.vertices[i].z);
+    for (const std::uint32_t i : solid.indices_of(solid.loops_of(face)[0]))
+      lowest = std::min(lowest, solid.vertices[i].z);
     const Vector n = doubled_area(solid, face);
     covered += n.z / 2;  // bulging onions look down in places: these take off what the bulge adds
     if (std::hypot(n.x, n.y) <= kLeastSlope * std::fabs(n.z)) continue;
@@ -266,10 +269,14 @@ Measured measure(const BuildingPart& part, const Polygon& plan, RoofShape asked,
   std::size_t edges = plan.outer.size();
   for (const model::Ring& hole : plan.holes) edges += hole.size();
   std::ostringstream wrong;
-  if (std::fabs(highest - kTop) > 0.002) wrong << "top " << highest;
-  else if (lowest < eaves - 0.002) wrong << "roof down to " << lowest;
-  else if (std::fabs(covered - area) > 0.001 * area) wrong << "covers " << covered << " of " << area;
-  else if (walls != edges) wrong << walls << " walls";
+  if (std::fabs(highest - kTop) > 0.002)
+    wrong << "top " << highest;
+  else if (lowest < eaves - 0.002)
+    wrong << "roof down to " << lowest;
+  else if (std::fabs(covered - area) > 0.001 * area)
+    wrong << "covers " << covered << " of " << area;
+  else if (walls != edges)
+    wrong << walls << " walls";
   if (!wrong.str().empty()) fault(wrong.str());
   return out;
 }
@@ -310,10 +317,12 @@ class PrintsTheGrid : public testing::Environment {
   void TearDown() override {
     std::size_t bad = 0;
     for (const auto& [shape, cells] : results)
-      bad += static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), [](const auto& c) { return c != "ok"; }));
+      bad +=
+          static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), [](const auto& c) { return c != "ok"; }));
     if (bad == 0) return;
     std::vector<std::string> reasons;  // numbered, so that the table stays narrow
-    std::cout << std::left << "\nRoof grid: faces/directions+upright*adapted. " << bad << " cells are not as in grid.txt.\n"
+    std::cout << std::left << "\nRoof grid: faces/directions+upright*adapted. " << bad
+              << " cells are not as in grid.txt.\n"
               << std::setw(20) << "";
     for (const auto& [name, plan] : grid().plans) std::cout << std::setw(10) << name.substr(0, 9);
     for (const auto& [shape, cells] : results) {
@@ -383,7 +392,8 @@ TEST(RoofGridPictures, WritesAModelPerShape) {
   for (std::size_t i = 0; i < grid().plans.size(); ++i) {
     Polygon plan = grid().plans[i].second;
     if (i % 5 == 0) x = 0;
-    const auto across = geometry::extent_along(plan.outer.points, {1, 0}), up = geometry::extent_along(plan.outer.points, {0, 1});
+    const auto across = geometry::extent_along(plan.outer.points, {1, 0}),
+               up = geometry::extent_along(plan.outer.points, {0, 1});
     const Point2 by{x - across.minimum, -kRow * static_cast<double>(i / 5) - up.minimum};
     const auto move = [&](model::Ring& ring) {
       for (Point2& p : ring.points) p = model::snap(Point2{p.x + by.x, p.y + by.y});
