@@ -181,23 +181,29 @@ double area_of(model::OsmId id, const SurroundingsIndex& index) {
 struct PartyWalls {
   double left = 0, right = 0, across = 0;
 };
-PartyWalls party_walls(const model::Building& building, const Edges& outline, const SurroundingsIndex& index, Point2 ahead) {
+PartyWalls party_walls(const model::Building& building, const Edges& outline, Point2 ahead) {
   PartyWalls out;
-  std::map<model::OsmId, bool> counts;
   for (const FacadeEdge& f : building.edges) {
-    if (f.kind != EdgeKind::party_wall) continue;
-    const auto [known, fresh] = counts.try_emplace(f.neighbour, true);
-    if (fresh) known->second = area_of(f.neighbour, index) >= kOutbuildingArea;
-    if (!known->second) continue;
+    if (f.kind != EdgeKind::party_wall || f.outbuilding) continue;
     const double side = cross(ahead, outline[f].outward);
     (side > kSidewards ? out.left : side < -kSidewards ? out.right : out.across) += f.length();
   }
   return out;
 }
 
-BuildingPosition position_of(const model::Building& building, const Edges& outline, const SurroundingsIndex& index,
-                             Point2 ahead, bool has_front) {
-  const PartyWalls walls = party_walls(building, outline, index, ahead);
+/// Marks party walls with neighbours that are too small for houses.
+void mark_outbuildings(model::Building& building, const SurroundingsIndex& index) {
+  std::map<model::OsmId, bool> small;
+  for (FacadeEdge& f : building.edges) {
+    if (f.kind != EdgeKind::party_wall) continue;
+    const auto [known, fresh] = small.try_emplace(f.neighbour, false);
+    if (fresh) known->second = area_of(f.neighbour, index) < kOutbuildingArea;
+    f.outbuilding = known->second;
+  }
+}
+
+BuildingPosition position_of(const model::Building& building, const Edges& outline, Point2 ahead, bool has_front) {
+  const PartyWalls walls = party_walls(building, outline, ahead);
   if (has_front) {
     const bool corner = std::any_of(building.edges.begin(), building.edges.end(),
                                     [](const FacadeEdge& f) { return f.corner_start || f.corner_end; });
@@ -338,7 +344,8 @@ void describe_situation(model::Building& building, const std::vector<OutlineEdge
   }
   for (const FacadeEdge& f : building.edges)
     if (f.kind == EdgeKind::party_wall) s.party_wall_length += f.length();
-  s.position = position_of(building, of, index, ahead, !s.fronts.empty());
+  mark_outbuildings(building, index);
+  s.position = position_of(building, of, ahead, !s.fronts.empty());
   s.block = block_of(building, index);
   s.courtyards = courtyards_of(building, of, index);
 }

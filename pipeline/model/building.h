@@ -100,6 +100,7 @@ struct FacadeEdge {
   float confidence = 0;                     ///< of `kind`, [0, 1]
   OsmId neighbour;                          ///< party wall: of whom; number 0 otherwise
   float covered_height = 0;                 ///< m, party wall: what the neighbour covers, known once heights are resolved
+  bool outbuilding = false;                 ///< party wall: the neighbour is too small for a house (kOutbuildingArea)
   OsmId street;                             ///< the street it faces (street, passage; also of a side or courtyard that
                                             ///< looks out on one); number 0 where none
   std::string street_name, street_class;    ///< of it; class as context::LineClass is written
@@ -188,6 +189,8 @@ struct BuildingPart {
   MappedAttributes mapped; ///< what its tags say
   MappedRings rings;       ///< of a mapped part, until repair
   Polygon plan;            ///< repaired
+  Polygon roof_plan;       ///< `plan` without points that bend no wall: what walls and roofs stand on
+  std::vector<RoofEdge> roof_edges;  ///< of roof_plan, ring by ring; empty before context has labelled the outline
   bool rest = false;       ///< what mapped parts leave of the outline
   std::vector<RoofLine> roof_lines;  ///< drawn on this plan, fitted to it, by id; with a ridge among them, or none
   Attributes attributes;

@@ -16,10 +16,10 @@ namespace blockrand::model {
   X(butterfly, "butterfly") X(cone, "cone") X(dome, "dome") X(onion, "onion") X(round, "round")                   \
   X(saltbox, "saltbox") X(double_saltbox, "double_saltbox") X(quadruple_saltbox, "quadruple_saltbox")             \
   X(spire, "spire") X(helm, "helm") X(many, "many") X(other, "other")               \
-  X(lined, "lined")
+  X(lined, "lined") X(berlin, "berlin")
 
 /// `other` stands for a value that no list knows; `lined` is built from roof:ridge and roof:edge ways, and no tag's
-/// value.
+/// value; `berlin` is the Berliner Dach, steep to the street and low to the yard, which has no value of its own in OSM.
 enum class RoofShape : std::uint8_t {
 #define X(id, text) id,
   BLOCKRAND_ROOF_SHAPES(X)
@@ -41,5 +41,13 @@ constexpr std::optional<RoofShape> roof_shape(std::string_view text) {
 }
 
 enum class RoofOrientation : std::uint8_t { along, across };
+
+/// What an edge of a plan means to the roof above it.
+enum class RoofEdge : std::uint8_t {
+  open,       ///< a free side: eaves or a gable
+  street,     ///< looks on a street
+  courtyard,  ///< looks on a courtyard
+  party_wall, ///< a neighbour's wall: the roof ends upright there
+};
 
 }  // namespace blockrand::model

@@ -10,6 +10,7 @@
 
 #include "pipeline/model/issue_codes.h"
 #include "pipeline/model/polygon.h"
+#include "pipeline/model/roof_element.h"
 #include "pipeline/model/roof_line.h"
 #include "pipeline/model/roof_shape.h"
 
@@ -21,11 +22,14 @@ struct Roof {
     std::int32_t edge = -1;                         ///< the plan edge it rises from; -1 when none
     std::vector<std::vector<model::Point3>> loops;  ///< counter-clockwise from outside; holes follow
     bool upright = false;                           ///< a piece of wall that stands in the roof: gablet, sawtooth
+    std::int32_t element = -1;                      ///< the element it belongs to (its cheek, front, roof): Roof::elements
   };
   std::vector<Surface> surfaces;
   /// For each plan edge the upper end of its wall, from the edge's end back to its start: two points at eaves height
   /// for most, more for a gable.
   std::vector<std::vector<model::Point3>> wall_tops;
+  /// What was built into the surfaces: dormers and cross gables. The roof stays one closed surface with them.
+  std::vector<model::RoofElementKind> elements;
 };
 
 /// Measures of a roof. Heights in metres.
@@ -41,6 +45,7 @@ struct RoofRequest {
   std::optional<model::Point2> down;  ///< unit vector down the slope (roof:direction)
   bool across = false;                ///< roof:orientation=across: the axis is the shorter side
   double coarseness = 1;              ///< geometry::roof_surfaces(); for a second try
+  std::vector<model::RoofEdge> edges; ///< one per plan edge, ring by ring; empty: all open
 };
 
 /// What was built.

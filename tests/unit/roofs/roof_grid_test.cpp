@@ -358,7 +358,7 @@ std::vector<RoofShape> shapes() {
   for (std::size_t i = 0; i < std::size(model::kRoofShapeNames); ++i)
     // `lined` has lines of its own on every plan; the last two name no shape.
     if (const auto shape = static_cast<RoofShape>(i);
-        shape != RoofShape::lined && shape != RoofShape::many && shape != RoofShape::other)
+        shape != RoofShape::lined && shape != RoofShape::berlin && shape != RoofShape::many && shape != RoofShape::other)
       out.push_back(shape);
   return out;
 }
