@@ -58,7 +58,8 @@ std::string_view roof_type_code(model::RoofShape shape) {
     case gabled:
     case saltbox:
     case double_saltbox:
-    case quadruple_saltbox: return "1030";
+    case quadruple_saltbox:
+    case berlin: return "1030";
     case hipped:
     case side_hipped: return "1040";
     case half_hipped:

@@ -355,6 +355,7 @@ int roof_class(const MapBuilding& b) {
     case RoofShape::saltbox:
     case RoofShape::double_saltbox:
     case RoofShape::quadruple_saltbox:
+    case RoofShape::berlin:
     case RoofShape::crosspitched:
       return 2;
     case RoofShape::hipped:
