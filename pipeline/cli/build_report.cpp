@@ -46,6 +46,21 @@ std::string code_rows(const region::BuildSummary& summary, IssueClass wanted, co
   return text;
 }
 
+/// How sloped roofs stand in their rows; nothing where there are no rows.
+std::string roofscape_rows(const generate::Roofscape& r) {
+  if (r.mid_row + r.corner_houses + r.meetings + r.party_eaves == 0) return {};
+  std::string text = "\nSloped roofs in rows\n";
+  const auto share = [](std::uint64_t part, std::uint64_t whole) {
+    return whole == 0 ? std::string("-") : fmt::format("{:.1f} %", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+  };
+  text += row("mid-row houses", r.mid_row,
+              fmt::format("eaves to the street {}, to the rear {}", share(r.eaves_to_street, r.mid_row), share(r.eaves_to_rear, r.with_rear)));
+  text += row("corner houses", r.corner_houses, fmt::format("the ridge turns in {}", share(r.turned, r.corner_houses)));
+  text += row("eaves at neighbours", r.party_eaves, fmt::format("{} of them as mapped", with_thousands(r.party_eaves_mapped)));
+  text += row("slopes that meet", r.meetings, fmt::format("{} of them more than 1 cm apart", with_thousands(r.apart)));
+  return text;
+}
+
 double rate(const region::BuildSummary& s) {
   return s.seconds > 0 ? static_cast<double>(s.buildings_in + s.parts_in) / s.seconds : 0;
 }
@@ -69,6 +84,7 @@ std::string build_report(const region::BuildOptions& options, const region::Buil
   for (std::size_t lod = s.models_by_lod.size(); lod-- > 0;)
     if (static_cast<int>(lod) <= options.lod || s.models_by_lod[lod] > 0)
       text += row(fmt::format("LoD {}", lod), s.models_by_lod[lod], "");
+  text += roofscape_rows(s.roofscape);
   text += code_rows(s, IssueClass::reported, "Not modelled, because");
   text += code_rows(s, IssueClass::fallback, "Simpler than asked");
   text += code_rows(s, IssueClass::notice, "Notices");

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "pipeline/generate/envelope.h"
+#include "pipeline/generate/resolve.h"
+#include "pipeline/generate/roof_edges.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/triangulate.h"
@@ -47,25 +49,21 @@ std::optional<Checked> checked(Solid solid) {
   return Checked{std::move(solid), std::move(*triangles)};
 }
 
-/// The plan without points that bend no wall. Empty when the simpler plan is no simple polygon any more.
-std::optional<Polygon> simpler(const Polygon& plan, double tolerance) {
-  Polygon out = plan;
-  geometry::remove_collinear(out.outer, tolerance);
-  for (Ring& hole : out.holes) geometry::remove_collinear(hole, tolerance);
-  if (!geometry::strictly_simple(out)) return std::nullopt;
-  return out;
-}
-
 /// Values of roof:shape that name no shape.
 bool is_unknown(RoofShape shape) { return shape == RoofShape::other || shape == RoofShape::many; }
 
-/// What is asked of the roof.
-roofs::RoofRequest request_of(const model::Attributes& attributes, RoofShape shape, roofs::RoofMeasures measures) {
+/// What is asked of the roof; not yet its measures and the plan's edges.
+roofs::RoofRequest request_of(const model::Attributes& attributes, RoofShape shape) {
   roofs::RoofRequest request;
   request.shape = shape;
-  request.measures = measures;
   if (attributes.roof_direction) request.down = roofs::compass_vector(attributes.roof_direction->value);
   request.across = attributes.roof_orientation.value == RoofOrientation::across;
+  request.shape_is_mapped = attributes.roof_shape.source == model::Source::tag;
+  request.axis_is_mapped = attributes.roof_direction || attributes.roof_orientation.source == model::Source::tag;
+  // An attic storey where nobody measured the roof.
+  const bool usual = attributes.roof_height.source == model::Source::preset ||
+                     attributes.roof_height.source == model::Source::default_;
+  if (usual) request.attic = attic_height(attributes.storey_height.value);
   return request;
 }
 
@@ -74,15 +72,14 @@ class MassBuilder {
   MassBuilder(Region& region, const Defaults& defaults, const GenerateOptions& options)
       : region_(region), defaults_(defaults), options_(options) {}
 
-  void build(BuildingPart& part, int lod) {
+  void build(const model::Building& building, BuildingPart& part, int lod) {
     if (part.plan.outer.size() < 3) return;
+    building_ = &building;
     part.lod = 0;
     const EnvelopeLooks looks = looks_of(part);
     const Levels levels = levels_of(part);
-    std::optional<Polygon> plan = simpler(part.plan, options_.collinear_tolerance);
-    if (!plan) plan = part.plan;
-    if (lod >= 1) build_lod1(part, *plan, levels, looks);
-    if (lod >= 2) build_lod2(part, *plan, levels, looks);
+    if (lod >= 1) build_lod1(part, part.roof_plan, levels, looks);
+    if (lod >= 2) build_lod2(part, part.roof_plan, levels, looks);
     if (part.lod < lod)
       note(part, part.lod == 1 ? IssueCode::lod1_only : IssueCode::no_solid);
   }
@@ -168,8 +165,8 @@ class MassBuilder {
   }
 
   /// One shape on one plan; tidied more coarsely where its solid fails the check.
-  bool build_roof(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks, RoofShape shape) {
-    roofs::RoofRequest request = request_of(part.attributes, shape, {levels.eaves, levels.top - levels.eaves});
+  bool build_roof(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks, roofs::RoofRequest request) {
+    request.measures = {levels.eaves, levels.top - levels.eaves};
     for (const double coarseness : roofs::kCoarseness) {
       request.coarseness = coarseness;
       const auto built = roofs::build_roof(plan, request);
@@ -190,14 +187,26 @@ class MassBuilder {
       note(part, IssueCode::roof_lines_ignored, lined ? "their solid is not valid" : "they do not fit each other or the plan");
     }
     if (asked != RoofShape::flat && !is_unknown(asked) && measures.height > 0) {
-      const std::optional<Polygon> simplified = simpler(plan, options_.simplify_tolerance);
-      for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, simplified ? &*simplified : nullptr}) {
-        if (!p) continue;
-        if (!build_roof(part, *p, levels, looks, asked)) continue;
-        if (p != &plan) note(part, IssueCode::roof_simplified);
-        return;
+      const std::optional<Polygon> simplified = simpler_plan(plan, options_.simplify_tolerance);
+      roofs::RoofRequest request = request_of(part.attributes, asked);
+      const auto in_row = [&](const Polygon& p) {
+        return &p == &part.roof_plan ? part.roof_edges : roof_edges(*building_, p);
+      };
+      const bool row = std::find(part.roof_edges.begin(), part.roof_edges.end(), model::RoofEdge::party_wall) != part.roof_edges.end();
+      for (const bool heeds_row : {true, false}) {
+        if (!heeds_row && !row) continue;
+        for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, simplified ? &*simplified : nullptr}) {
+          if (!p) continue;
+          request.edges = heeds_row ? in_row(*p) : std::vector<model::RoofEdge>{};
+          if (!build_roof(part, *p, levels, looks, request)) continue;
+          if (p != &plan) note(part, IssueCode::roof_simplified);
+          if (!heeds_row) note(part, IssueCode::roof_row_ignored);
+          return;
+        }
       }
-      if (asked != RoofShape::hipped && build_roof(part, plan, levels, looks, RoofShape::hipped)) {
+      request.shape = RoofShape::hipped;
+      request.edges.clear();
+      if (asked != RoofShape::hipped && build_roof(part, plan, levels, looks, request)) {
         note(part, IssueCode::roof_shape_adapted, std::string(model::name(asked)) + " as hipped: its solid is not valid");
         return;
       }
@@ -207,7 +216,7 @@ class MassBuilder {
     const double top = asked == RoofShape::flat || is_unknown(asked) ? levels.top : model::snap((levels.eaves + levels.top) / 2);
     if (accept(part, plan, levels, looks, roofs::flat_roof(plan, top), RoofShape::flat)) return;
     for (const double tolerance : {options_.simplify_tolerance, 2 * options_.simplify_tolerance}) {
-      const std::optional<Polygon> simplified = simpler(part.plan, tolerance);
+      const std::optional<Polygon> simplified = simpler_plan(part.plan, tolerance);
       if (simplified && accept(part, *simplified, levels, looks, roofs::flat_roof(*simplified, top), RoofShape::flat)) {
         note(part, IssueCode::plan_simplified);
         return;
@@ -218,6 +227,7 @@ class MassBuilder {
   Region& region_;
   const Defaults& defaults_;
   const GenerateOptions& options_;
+  const model::Building* building_ = nullptr;
 };
 
 }  // namespace
@@ -226,7 +236,7 @@ void build_masses(Region& region, const Defaults& defaults, const GenerateOption
   MassBuilder builder(region, defaults, options);
   for (model::Building& building : region.buildings) {
     if (!building.owned) continue;
-    for (BuildingPart& part : building.parts) builder.build(part, lod);
+    for (BuildingPart& part : building.parts) builder.build(building, part, lod);
   }
 }
 

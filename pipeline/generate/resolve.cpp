@@ -7,9 +7,10 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/base/random.h"
-#include "pipeline/generate/ridge_direction.h"
+#include "pipeline/generate/roof_edges.h"
 #include "pipeline/generate/tag_conflicts.h"
 #include "pipeline/geometry/polygon.h"
+#include "styles/roofs/roof_sides.h"
 
 namespace blockrand::generate {
 
@@ -37,6 +38,9 @@ constexpr float kPartyWallConfidence = 0.8f;
 constexpr float kPresetConfidence = 0.3f;
 constexpr float kDefaultConfidence = 0.1f;
 
+/// degrees. Wings of half depth lean on the neighbour's wall at 5 to 20 (styles.md 2.7).
+constexpr double kLeanPitch = 12;
+
 double tangent(double degrees) { return base::tan(degrees * base::kRadiansPerDegree); }
 
 /// Full storeys under rafters: Berlin's building codes from 1887 allowed five and 22 m to the eaves, post-war ones call what has
@@ -57,8 +61,9 @@ double usual_pitch(RoofShape shape, double ridged) {
     // The steep strip of a Berlin roof is 2 to 5 m high; over 0.6 of half a house's depth 45 degrees give 3 to 4 m.
     case RoofShape::double_saltbox:
     case RoofShape::quadruple_saltbox: return 45;
+    case RoofShape::berlin: return 45;  // has pitches of its own
     case RoofShape::mansard:
-    case RoofShape::gambrel: return 65;  // 60 to 80; the upper slope then has 20
+    case RoofShape::gambrel: return 65;  // where it is too low for an attic storey
     case RoofShape::round: return 30;    // halls: the rise is a quarter to a third of the span
     case RoofShape::dome: return 45;     // half a sphere
     case RoofShape::cone:
@@ -153,6 +158,8 @@ struct Resolver {
     return plans.empty() ? none : plans[0];
   }
 
+  const std::vector<model::RoofEdge>& row() const { return part ? part->roof_edges : kNoRoofEdges; }
+
   double width() const { return plans.empty() ? 0 : geometry::equivalent_width(plans[0]); }
 
   Sourced<RoofShape> roof_shape() {
@@ -194,10 +201,14 @@ struct Resolver {
   Sourced<RoofOrientation> roof_orientation(RoofShape shape) {
     std::vector<Choice<RoofOrientation>> choices;
     if (own.roof_orientation) choices.push_back({*own.roof_orientation, Source::tag, kTagConfidence, "tagged"});
-    const bool inside = building.situation.position == model::BuildingPosition::side_wing;  // leans on its long wall
-    if (shape != RoofShape::flat && !own.roof_direction && !inside && !plans.empty() &&
-        ridge_runs_across(plans[0], party_walls_at(building, plans[0]), preset.pitched_width))
-      choices.push_back({RoofOrientation::across, Source::geometry, kPartyWallConfidence, "from party wall to party wall"});
+    if (shape != RoofShape::flat && !own.roof_direction && part && plan().outer.size() >= 3) {
+      if (const auto axis = roofs::row_axis(plan(), tagged_request(own, shape, part->roof_edges))) {
+        const model::Point2 longer = geometry::long_axis(plan().outer.points);
+        const bool across = std::fabs(axis->x * longer.x + axis->y * longer.y) < std::fabs(axis->x * longer.y - axis->y * longer.x);
+        choices.push_back({across ? RoofOrientation::across : RoofOrientation::along, Source::geometry, kPartyWallConfidence,
+                           "the ridge follows the row"});
+      }
+    }
     choices.push_back({RoofOrientation::along, Source::default_, kDefaultConfidence, "along the longer side"});
     return first(std::move(choices));
   }
@@ -206,18 +217,37 @@ struct Resolver {
     if (shape == RoofShape::flat) return make<double>(0, Source::implied, kImpliedConfidence, "flat roof");
     std::vector<Choice<double>> choices;
     if (const auto tagged = useful_roof_height(own, shape)) choices.push_back({*tagged, Source::tag, kTagConfidence, "tagged"});
-    if (const auto given = height_of_angle(own, shape, plan()))
+    if (const auto given = height_of_angle(own, shape, plan(), row()))
       choices.push_back({*given, Source::implied, kImpliedConfidence, fmt::format("a tagged pitch of {:g} degrees", *own.roof_angle)});
     if (own.roof_storeys && *own.roof_storeys > 0)
       choices.push_back({*own.roof_storeys * storey_height, Source::implied, kImpliedConfidence,
                          fmt::format("{:g} tagged storeys in the roof", *own.roof_storeys)});
-    const double pitch = std::min(usual_pitch(shape, preset.roof_pitch), options.max_roof_pitch);
-    roofs::RoofRequest request = tagged_request(own, shape);
+    choices.push_back(usual_height(shape, orientation));
+    return first(std::move(choices));
+  }
+
+  /// What roofs of this shape usually measure.
+  Choice<double> usual_height(RoofShape shape, RoofOrientation orientation) {
+    roofs::RoofRequest request = tagged_request(own, shape, row());
     request.across = orientation == RoofOrientation::across;
     const roofs::MainSlope slope = plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
-    choices.push_back({slope.run * tangent(pitch) / slope.rise, preset_source(), preset_confidence(),
-                       fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, slope.run)});
-    return first(std::move(choices));
+    if (shape == RoofShape::berlin)
+      return {slope.run, preset_source(), preset_confidence(), "60 degrees to the street, 8 to the yard, a knee wall there"};
+    if (shape == RoofShape::mansard || shape == RoofShape::gambrel) {
+      const double run = roofs::main_slope(plan(), request, false).run, attic = attic_height(preset.storey_height);
+      // Below an attic's height there is no storey in it: the pitch alone counts.
+      if (run * roofs::kMansardSteep > 2 * attic)
+        return {roofs::mansard_height(run, attic), preset_source(), preset_confidence(),
+                fmt::format("an attic storey of {:.1f} m behind 68 degrees, 26 above, over a run of {:.1f} m", attic, run)};
+    }
+    double pitch = std::min(usual_pitch(shape, preset.roof_pitch), options.max_roof_pitch);
+    if (slope.leans && pitch <= preset.roof_pitch) pitch = std::min(pitch, kLeanPitch);
+    const double height = slope.run * tangent(pitch) / slope.rise;
+    if (height > options.max_usual_roof_height && pitch <= preset.roof_pitch)
+      return {options.max_usual_roof_height, preset_source(), preset_confidence(),
+              fmt::format("the highest usual roof, over a run of {:.1f} m", slope.run)};
+    return {height, preset_source(), preset_confidence(),
+            fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, slope.run)};
   }
 
   /// The roof's height against the building's: a measured roof is limited by what is there, a pitch by the storeys as
@@ -377,6 +407,8 @@ double area_of(const std::vector<model::Polygon>& plans) {
 
 }  // namespace
 
+double attic_height(double storey_height) { return std::clamp(storey_height, 2.2, 2.8); }
+
 std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, double area) {
   return area < defaults.small_area && use == "yes" ? defaults.small.group : defaults.use(use).group;
 }
@@ -384,6 +416,7 @@ std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, dou
 void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateOptions& options) {
   const auto use_text = [&](const MappedAttributes& mapped) { return region.extract->strings.view(mapped.use); };
   for (Building& building : region.buildings) {
+    prepare_roof_plans(building, options.collinear_tolerance);
     Sourced<double> ground = in.ground_height(building);
     ground.evidence = region.evidence.add({ground_reason(ground.source), {}});
     const std::string_view use = use_text(building.mapped);
@@ -399,12 +432,12 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
       const std::string_view part_use = use_text(part.mapped);
       // building:part=yes says nothing; a use of its own does.
       const bool own_use = own_tags && in.defaults.uses.contains(part_use) && part_use != "yes";
-      const std::vector<model::Polygon> plan{part.plan};
+      const std::vector<model::Polygon> plan{part.roof_plan};
       Resolver r{region, in, options, building, &part, part.mapped,
                  own_tags && building.osm != part.osm ? &building.mapped : nullptr, own_use ? in.defaults.use(part_use) : preset,
                  group, plan, building.osm};
       part.attributes = r.resolve(ground);
-      for (TagConflict& c : tag_conflicts(part.mapped, {part.attributes.roof_shape.value, part.plan, r.preset.storey_height, !part.roof_lines.empty()})) {
+      for (TagConflict& c : tag_conflicts(part.mapped, {part.attributes.roof_shape.value, part.roof_plan, r.preset.storey_height, !part.roof_lines.empty(), part.roof_edges})) {
         model::ReportRow row{part.osm, c.code, std::move(c.text)};
         // Pieces of one outline have the same tags.
         if (std::find(conflicts.begin(), conflicts.end(), row) == conflicts.end()) conflicts.push_back(std::move(row));

@@ -21,6 +21,10 @@ struct ResolveInputs {
   std::function<model::Sourced<double>(const model::Building&)> ground_height;
 };
 
+/// m. Of the storey behind a mansard's steep slopes, where floors are `storey_height` apart: attics are lower (styles.md 2.7:
+/// the break lies 2.2 to 2.8 m above the floor).
+double attic_height(double storey_height);
+
 /// Which group's neighbours speak for a building whose use is `use` and whose footprint measures `area` m².
 std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, double area);
 
@@ -32,7 +36,8 @@ std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, dou
 /// roof:angle, else roof:levels, else a usual pitch; the last two give way by up to a third to what tagged height and
 /// storeys leave; where only `height` is tagged, storeys follow. Tags that contradict each other are reported
 /// (docs/roofs.md, "Tags").
-/// Ridges run across the longer side in rows (ridge_direction.h): `edges` must be labelled before.
+/// In rows ridges run from party wall to party wall (roof_sides.h): `edges` must be labelled before. Fills roof_plan and
+/// roof_edges of the parts.
 /// Reach: GenerateOptions::neighbour_reach.
 void resolve_attributes(model::Region& region, const ResolveInputs& inputs, const GenerateOptions& options);
 

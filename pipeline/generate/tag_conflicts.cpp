@@ -84,6 +84,7 @@ class Finder {
       : tags_(tags),
         shape_(roof.shape),
         plan_(roof.plan),
+        edges_(roof.edges),
         storey_height_(roof.storey_height),
         ridges_(roof.ridges),
         plain_(roof.plan.outer.size() >= 3 && roofs::has_plain_extents(roof.plan)) {}
@@ -132,7 +133,7 @@ class Finder {
     }
     // What an angle means hangs on the shape, which must not be a guess.
     std::optional<double> from_angle;
-    if (tags_.roof_shape && has_one_pitch(shape_)) from_angle = height_of_angle(tags_, shape_, plan_);
+    if (tags_.roof_shape && has_one_pitch(shape_)) from_angle = height_of_angle(tags_, shape_, plan_, edges_);
     const double share = plain_ ? kApartShare : kRoughShare;
     if (height && from_angle && apart(*height, *from_angle, share))
       note("roof:height={:g} against roof:angle={:g}, which gives {:.1f} m: roof:height won", *height,
@@ -213,6 +214,7 @@ class Finder {
   const MappedAttributes& tags_;
   const RoofShape shape_;
   const Polygon& plan_;
+  const std::vector<model::RoofEdge>& edges_;
   const double storey_height_;
   const bool ridges_;
   const bool plain_;  ///< the plan tells how far slopes run
@@ -231,19 +233,23 @@ std::optional<double> useful_roof_angle(const MappedAttributes& tags, RoofShape 
   return std::min<double>(*tags.roof_angle, stands_around_apex(shape) ? kSteepestSpire : kSteepestRoof);
 }
 
-roofs::RoofRequest tagged_request(const MappedAttributes& tags, RoofShape shape) {
+roofs::RoofRequest tagged_request(const MappedAttributes& tags, RoofShape shape, const std::vector<model::RoofEdge>& edges) {
   roofs::RoofRequest request;
   request.shape = shape;
+  request.edges = edges;
+  request.shape_is_mapped = tags.roof_shape.has_value();
+  request.axis_is_mapped = tags.roof_direction || tags.roof_orientation;
   if (tags.roof_direction) request.down = roofs::compass_vector(*tags.roof_direction);
   request.across = tags.roof_orientation == RoofOrientation::across;
   return request;
 }
 
-std::optional<double> height_of_angle(const MappedAttributes& tags, RoofShape shape, const Polygon& plan) {
+std::optional<double> height_of_angle(const MappedAttributes& tags, RoofShape shape, const Polygon& plan,
+                                      const std::vector<model::RoofEdge>& edges) {
   const auto angle = useful_roof_angle(tags, shape);
   if (!angle || plan.outer.size() < 3) return std::nullopt;
   constexpr double kSteepSlope = 55;  // degrees: a broken roof's pitch beyond is that of its lower slope
-  const roofs::MainSlope slope = roofs::main_slope(plan, tagged_request(tags, shape), *angle > kSteepSlope);
+  const roofs::MainSlope slope = roofs::main_slope(plan, tagged_request(tags, shape, edges), *angle > kSteepSlope);
   return slope.run * base::tan(*angle * base::kRadiansPerDegree) / slope.rise;
 }
 

@@ -25,12 +25,13 @@ std::optional<double> useful_roof_height(const model::MappedAttributes& tags, mo
 /// roof:angle where it says something about a roof of this shape, limited to what stands. Degrees
 std::optional<double> useful_roof_angle(const model::MappedAttributes& tags, model::RoofShape shape);
 
-/// What is asked of the roof by tags alone.
-roofs::RoofRequest tagged_request(const model::MappedAttributes& tags, model::RoofShape shape);
+/// What is asked of the roof by tags and the row. \param edges  of the plan, or none (RoofRequest::edges)
+roofs::RoofRequest tagged_request(const model::MappedAttributes& tags, model::RoofShape shape,
+                                  const std::vector<model::RoofEdge>& edges = {});
 
 /// The height that roof:angle gives over the main slope, m; empty without a useful angle or on plans without area.
 std::optional<double> height_of_angle(const model::MappedAttributes& tags, model::RoofShape shape,
-                                      const model::Polygon& plan);
+                                      const model::Polygon& plan, const std::vector<model::RoofEdge>& edges = {});
 
 /// What the tags' height allows for a roof whose height comes from its angle: less than all, and space for the storeys.
 double roof_limit(const model::MappedAttributes& tags, double height);
@@ -45,12 +46,15 @@ struct TagConflict {
 /// otherwise. \param storey_height  m
 double storeys_below(const model::MappedAttributes& tags, double storey_height);
 
+inline const std::vector<model::RoofEdge> kNoRoofEdges;
+
 /// What tags are held against.
 struct TaggedRoof {
   model::RoofShape shape = model::RoofShape::flat;  ///< that is asked for
   const model::Polygon& plan;
   double storey_height = 3;  ///< m
   bool ridges = false;       ///< roof:ridge ways lie on the plan
+  const std::vector<model::RoofEdge>& edges = kNoRoofEdges;  ///< of the plan
 };
 
 /// The contradictions among one object's tags, each once, in a fixed order.

@@ -39,8 +39,9 @@ struct Event {
 
 class Sweep {
  public:
-  Sweep(const model::Polygon& polygon, std::span<const EdgeProfile> profiles, std::optional<double> deck)
-      : polygon_(polygon), profiles_(profiles), deck_(deck) {}
+  Sweep(const model::Polygon& polygon, std::span<const EdgeProfile> profiles, std::optional<double> deck,
+        std::span<const CornerEaves> corner_eaves)
+      : polygon_(polygon), profiles_(profiles), deck_(deck), corner_eaves_(corner_eaves) {}
 
   tl::expected<WeightedSkeleton, SkeletonFailure> run() {
     if (const auto failure = prepare()) return tl::unexpected(*failure);
@@ -84,6 +85,15 @@ class Sweep {
     return static_cast<std::int64_t>(std::llrint(length * inverse));
   }
   static bool good(double slope) { return slope == kUpright || (slope >= kLeastSlope && slope <= kSteepestSlope); }
+  static bool good(const EdgeProfile& profile) {
+    if (!good(profile.slope)) return false;
+    std::int64_t height = 0;
+    for (const SlopeChange& c : profile.changes) {
+      if (!good(c.slope) || !good_height(c.height) || to_grid(c.height) <= height) return false;
+      height = to_grid(c.height);
+    }
+    return true;
+  }
   static bool good_height(double metres) {
     constexpr double kHighest = 2000;
     return metres > 0 && metres <= kHighest && to_grid(metres) > 0;
@@ -113,14 +123,10 @@ class Sweep {
     const std::size_t n = corners_.size();
     if (n > kMostWeightedCorners || polygon_.outer.size() < 3) return SkeletonFailure::too_large;
     if (profiles_.size() != n) return SkeletonFailure::inconsistent;
-    for (const EdgeProfile& p : profiles_) {
-      if (!good(p.slope)) return SkeletonFailure::bad_slope;
-      std::int64_t height = 0;
-      for (const SlopeChange& c : p.changes) {
-        if (!good(c.slope) || !good_height(c.height) || to_grid(c.height) <= height) return SkeletonFailure::bad_slope;
-        height = to_grid(c.height);
-      }
-    }
+    for (const EdgeProfile& p : profiles_)
+      if (!good(p)) return SkeletonFailure::bad_slope;
+    for (const CornerEaves& c : corner_eaves_)
+      if (c.corner >= n || c.profile.slope == kUpright || !good(c.profile)) return SkeletonFailure::bad_slope;
     if (deck_ && !good_height(*deck_)) return SkeletonFailure::bad_slope;
     origin_ = corners_[0];
     const Grid2 o = to_grid(origin_);
@@ -177,9 +183,46 @@ class Sweep {
       segments_.push_back({planes_[v.right].face, v.node, vertex(v.next).node});
       active_.push_back(static_cast<std::int32_t>(i));
     }
+    for (const CornerEaves& c : corner_eaves_)
+      if (!add_corner_eaves(c)) return SkeletonFailure::bad_slope;
     now_ = nodes_[vertices_[0].node];
     first_now_ = nodes_.size();
     return {};
+  }
+
+  /// Puts two edges without length between the edges of a corner: the one that ends here, then one that runs as the edge
+  /// that starts here, one that runs as the edge that ends here, and the one that starts here.
+  bool add_corner_eaves(const CornerEaves& eaves) {
+    const auto found = std::find_if(active_.begin(), active_.end(),
+                                    [&](std::int32_t v) { return vertex(v).node == eaves.corner; });
+    if (found == active_.end()) return false;
+    const std::int32_t first = *found;
+    const std::int32_t before = vertex(first).left, after = vertex(first).right, next = vertex(first).next;
+    const auto stays_upright = [&](std::int32_t p) { return planes_[p].w == 0 && planes_[p].next < 0; };
+    if (vertex(first).reflex || !stays_upright(before) || !stays_upright(after)) return false;
+    const std::int32_t outwards = plane_beside(after, eaves), back = plane_beside(before, eaves);
+    const auto middle = static_cast<std::int32_t>(vertices_.size()), last = middle + 1;
+    vertices_.push_back({first, last, outwards, back, eaves.corner, true, true, false});
+    vertices_.push_back({middle, next, back, after, eaves.corner, true, false, false});
+    vertex(first).right = outwards;
+    vertex(first).next = middle;
+    vertex(next).prev = last;
+    active_.push_back(middle);
+    active_.push_back(last);
+    return true;
+  }
+  /// A sloping plane on the line of an upright one.
+  std::int32_t plane_beside(std::int32_t upright, const CornerEaves& eaves) {
+    const Plane& u = planes_[upright];
+    const double length = std::sqrt(static_cast<double>(u.a * u.a + u.b * u.b));
+    Plane p;
+    p.a = u.a;
+    p.b = u.b;
+    p.c = u.c;
+    p.w = speed(length, eaves.profile.slope);
+    const std::int32_t number = add(p, WeightedSkeletonFace::kCorner, 0);
+    add_changes(number, length, eaves.profile, WeightedSkeletonFace::kCorner);
+    return number;
   }
 
   /// The plane of an edge, and those it turns into. Edges on one line with one profile share theirs.
@@ -199,6 +242,10 @@ class Sweep {
     }
     const auto number = add(p, edge, 0);
     base_planes_.push_back({edge, number, &profile});
+    add_changes(number, length, profile, edge);
+    return number;
+  }
+  void add_changes(std::int32_t number, double length, const EdgeProfile& profile, std::uint32_t edge) {
     std::int32_t last = number;
     for (std::size_t c = 0; c < profile.changes.size(); ++c) {
       const std::int64_t height = to_grid(profile.changes[c].height);
@@ -213,7 +260,6 @@ class Sweep {
       planes_.all[static_cast<std::size_t>(last)].change = height;
       last = next;
     }
-    return number;
   }
   static bool on_line(const Plane& p, Grid2 at) {
     return static_cast<Int128>(p.a) * at.x + static_cast<Int128>(p.b) * at.y + (p.c >> kSpeedBits) == 0;
@@ -298,6 +344,8 @@ class Sweep {
 
   void push_collapse(std::int32_t from, std::int32_t to) {
     const Vertex &v = vertex(from), &w = vertex(to);
+    // Eaves without length set out from one node and grow.
+    if (v.node == w.node && v.node < corners_.size() && planes_[v.right].w != 0) return;
     if (const auto m = planes_.meet(v.left, v.right, w.right); m && planes_.compare_height(*m, now_) >= 0)
       push({*m, Event::Kind::collapse, from, to, 0});
   }
@@ -770,6 +818,7 @@ class Sweep {
   const model::Polygon& polygon_;
   std::span<const EdgeProfile> profiles_;
   std::optional<double> deck_;
+  std::span<const CornerEaves> corner_eaves_;
   std::vector<Point2> corners_;
   Point2 origin_;
   Planes planes_;
@@ -814,8 +863,9 @@ std::string_view name(SkeletonFailure failure) {
 
 tl::expected<WeightedSkeleton, SkeletonFailure> weighted_skeleton(const model::Polygon& polygon,
                                                                   std::span<const EdgeProfile> profiles,
-                                                                  std::optional<double> deck) {
-  return Sweep(polygon, profiles, deck).run();
+                                                                  std::optional<double> deck,
+                                                                  std::span<const CornerEaves> corners) {
+  return Sweep(polygon, profiles, deck, corners).run();
 }
 
 }  // namespace blockrand::geometry

@@ -29,6 +29,13 @@ struct EdgeProfile {
   std::vector<SlopeChange> changes;
 };
 
+/// Eaves without length in a corner between two upright edges, one along each of them: from there two slopes rise, with
+/// a valley between them. So the roof of a corner house falls to the yard that touches its plan in one point.
+struct CornerEaves {
+  std::uint32_t corner = 0;  ///< convex; the edges that end and start here are upright and stay so
+  EdgeProfile profile;       ///< of both slopes
+};
+
 struct WeightedSkeletonNode {
   model::Point2 point;  ///< m, not rounded
   double height = 0;    ///< m above the eaves
@@ -37,7 +44,8 @@ struct WeightedSkeletonNode {
 /// One plane's region of the roof.
 struct WeightedSkeletonFace {
   static constexpr std::uint32_t kDeck = 0xffffffff;
-  std::uint32_t edge = 0;   ///< the edge it rises from (of several on one line the first one); kDeck
+  static constexpr std::uint32_t kCorner = 0xfffffffe;
+  std::uint32_t edge = 0;   ///< the edge it rises from (of several on one line the first one); kDeck; kCorner (CornerEaves)
   std::uint32_t level = 0;  ///< how many changes of slope lie below it
   bool upright = false;     ///< stands on its edge's line; no area seen from above
   /// Counter-clockwise from above (upright ones: from outside), into WeightedSkeleton::nodes. The first loop is the
@@ -56,7 +64,8 @@ struct WeightedSkeleton {
 enum class SkeletonFailure : std::uint8_t {
   too_large,     ///< farther than kWidestSkeleton from the first corner, more corners than kMostWeightedCorners, or no
                  ///< ring of three corners
-  bad_slope,     ///< beyond kLeastSlope and kSteepestSlope, changes out of order, changes or a deck below one grid step
+  bad_slope,     ///< beyond kLeastSlope and kSteepestSlope, changes out of order, changes or a deck below one grid step,
+                 ///< CornerEaves at a corner that does not take them
   unbounded,     ///< upright edges leave a part that no slope ever closes
   inconsistent,  ///< the polygon is not strictly simple, or a mistake of ours
 };
@@ -84,9 +93,11 @@ inline constexpr std::size_t kMostWeightedCorners = 5000;  ///< events are looke
 ///
 /// \param profiles  one per edge, ring by ring, outer ring first; edge i starts at corner i
 /// \param deck      m: at this height the roof ends in a flat deck; none by default
+/// \param corners   eaves without length, no two in one corner
 /// O(n r log n) for n corners, r of them reflex; plans of ten corners take some ten microseconds.
 tl::expected<WeightedSkeleton, SkeletonFailure> weighted_skeleton(const model::Polygon& polygon,
                                                                   std::span<const EdgeProfile> profiles,
-                                                                  std::optional<double> deck = {});
+                                                                  std::optional<double> deck = {},
+                                                                  std::span<const CornerEaves> corners = {});
 
 }  // namespace blockrand::geometry

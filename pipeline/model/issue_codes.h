@@ -36,6 +36,7 @@ enum class IssueClass : std::uint8_t {
   X(roof_lines_ignored, "ROOF_LINES_IGNORED", fallback, "The mapped ridges and edges make no roof; its shape was built.") \
   X(roof_simplified, "ROOF_SIMPLIFIED", fallback, "The roof stands on a simplified plan.")                           \
   X(skeleton_fallback, "SKELETON_FALLBACK", fallback, "The weighted skeleton gave up; CGAL's hips were built.")     \
+  X(roof_row_ignored, "ROOF_ROW_IGNORED", fallback, "No valid roof between the party walls; it falls to all sides.")  \
   X(roof_height_clamped, "ROOF_HEIGHT_CLAMPED", fallback, "The roof was higher than the building allows.")           \
   X(lod1_only, "LOD1_ONLY", fallback, "No valid LoD2 solid; a block was built.")                                     \
   X(plan_simplified, "PLAN_SIMPLIFIED", fallback, "The plan was simplified to get a valid solid.")                   \

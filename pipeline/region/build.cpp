@@ -298,6 +298,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   std::vector<export_::TileEntry> tiles;
   std::vector<ExplainedObject> explained;
   std::vector<PartySide> party_sides;
+  std::vector<generate::SlopeEnd> slope_ends;
   Region whole;  // for --single-glb
   std::uint64_t done = 0;
 
@@ -388,6 +389,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     for (const auto& [object, building] : result.output.explained) explained.push_back({object, building, shards[todo[i]].tile});
     const std::vector<PartySide>& sides = result.statistics.party_sides;
     party_sides.insert(party_sides.end(), sides.begin(), sides.end());
+    slope_ends.insert(slope_ends.end(), result.statistics.slope_ends.begin(), result.statistics.slope_ends.end());
     region::add(record.statistics, result.statistics.sums);
     summary.below_quality = summary.below_quality || result.outcomes.below_quality;
     if (options.single_glb) {
@@ -404,6 +406,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   };
   base::ordered_parallel(todo.size(), workers, in_flight, work, consume);
   settle_party_walls(std::move(party_sides), record.statistics);
+  generate::settle_slope_ends(slope_ends, record.statistics.roofscape);
+  summary.roofscape = record.statistics.roofscape;
   if (tile) forget_others(extract, tile->id, rows);
   summary.buildings_in = static_cast<std::uint64_t>(std::count_if(extract.buildings.begin(), extract.buildings.end(), is_building));
   summary.parts_in = extract.buildings.size() - summary.buildings_in;

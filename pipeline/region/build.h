@@ -10,6 +10,7 @@
 
 #include "pipeline/base/progress.h"
 #include "pipeline/generate/options.h"
+#include "pipeline/generate/roofscape.h"
 #include "pipeline/repair/options.h"
 
 namespace blockrand::region {
@@ -50,6 +51,7 @@ struct BuildSummary {
   std::uint64_t models = 0, represented = 0, duplicates = 0, reported = 0;
   std::array<std::uint64_t, 3> models_by_lod{};   ///< objects whose best solid is LoD 0, 1, 2
   std::map<std::string, std::uint64_t> issues;    ///< rows by code
+  generate::Roofscape roofscape;                  ///< how roofs stand in their rows
   std::uint64_t files = 0, bytes = 0;             ///< written
   double seconds = 0;
   std::uint64_t peak_rss_bytes = 0;

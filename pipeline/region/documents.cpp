@@ -139,6 +139,19 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
       j["statistics"]["positions"][model::name(static_cast<model::BuildingPosition>(k))] = t.positions[k];
   j["statistics"]["roofs"] = Json::object();
   for (const auto& [shape, count] : t.roofs) j["statistics"]["roofs"][shape] = count;
+  const generate::Roofscape& roofs = t.roofscape;
+  j["statistics"]["roofscape"] = {{"mid_row", roofs.mid_row},
+                                  {"eaves_to_street", roofs.eaves_to_street},
+                                  {"with_rear", roofs.with_rear},
+                                  {"eaves_to_rear", roofs.eaves_to_rear},
+                                  {"corner_houses", roofs.corner_houses},
+                                  {"corner_houses_turned", roofs.turned},
+                                  {"eaves_at_party_walls", roofs.party_eaves},
+                                  {"eaves_at_party_walls_as_mapped", roofs.party_eaves_mapped},
+                                  {"eaves_at_party_walls_m", rounded(roofs.party_eaves_length)},
+                                  {"slopes_that_should_meet", roofs.meetings},
+                                  {"slopes_apart", roofs.apart},
+                                  {"slopes_apart_most_m", roofs.widest}};
   j["statistics"]["sources"] = Json::object();
   for (const auto& [attribute, sources] : t.sources) {
     Json& row = j["statistics"]["sources"][attribute] = Json::object();

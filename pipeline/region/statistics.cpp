@@ -70,6 +70,9 @@ TileStatistics count_statistics(const model::Region& region) {
           [](const char*, const char*) {});
     }
   }
+  generate::RoofscapeCount roofs = generate::count_roofscape(region);
+  s.roofscape = roofs.sums;
+  out.slope_ends = std::move(roofs.open);
   return out;
 }
 
@@ -89,6 +92,7 @@ void add(Statistics& sum, const Statistics& s) {
   for (const auto& [attribute, sources] : s.sources)
     for (const auto& [source, count] : sources) sum.sources[attribute][source] += count;
   for (const auto& [shape, count] : s.roofs) sum.roofs[shape] += count;
+  generate::add(sum.roofscape, s.roofscape);
 }
 
 void settle_party_walls(std::vector<PartySide> sides, Statistics& sum) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/generate/roofscape.h"
 #include "pipeline/model/region.h"
 
 namespace blockrand::region {
@@ -27,6 +28,7 @@ struct Statistics {
   std::array<std::uint64_t, model::kEdgeKindCount> edges{};  ///< stretches of outlines by model::EdgeKind
   std::array<double, model::kEdgeKindCount> edge_length{};   ///< m
   std::array<std::uint64_t, model::kBuildingPositionCount> positions{};  ///< buildings by model::BuildingPosition
+  generate::Roofscape roofscape;
 };
 
 /// One building's side of a shared wall.
@@ -39,6 +41,7 @@ struct PartySide {
 struct TileStatistics {
   Statistics sums;
   std::vector<PartySide> party_sides;
+  std::vector<generate::SlopeEnd> slope_ends;  ///< whose neighbours are not in the tile
 };
 
 TileStatistics count_statistics(const model::Region& region);

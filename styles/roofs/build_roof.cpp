@@ -35,14 +35,14 @@ Point2 way_up(const Polygon& plan, const RoofRequest& request) {
   if (request.down) return {-request.down->x, -request.down->y};
   if (request.shape == RoofShape::skillion || request.shape == RoofShape::saltbox ||
       request.shape == RoofShape::sawtooth) {
-    const Point2 down = default_slope(plan);
+    const Point2 down = default_slope(plan, request.edges);
     return {-down.x, -down.y};
   }
   const Point2 axis = geometry::long_axis(plan.outer.points);
   const Point2 up = request.across ? axis : Point2{-axis.y, axis.x};
   // Low where the longest edge looks, so that turning a plan turns its roof; where that edge lies along the way, where
   // its following corner lies.
-  const Point2 down = default_slope(plan);
+  const Point2 down = default_slope(plan, request.edges);
   double against = up.x * down.x + up.y * down.y;
   constexpr double kSquare = 0.1;
   if (std::fabs(against) < kSquare) against = up.x * -down.y + up.y * down.x;

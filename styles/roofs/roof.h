@@ -44,8 +44,12 @@ struct RoofRequest {
   RoofMeasures measures;
   std::optional<model::Point2> down;  ///< unit vector down the slope (roof:direction)
   bool across = false;                ///< roof:orientation=across: the axis is the shorter side
+  double attic = 0;                   ///< m, mansard and gambrel: height of the break above the eaves; 0: by the table
   double coarseness = 1;              ///< geometry::roof_surfaces(); for a second try
-  std::vector<model::RoofEdge> edges; ///< one per plan edge, ring by ring; empty: all open
+  /// One per plan edge, ring by ring; empty: all open. Party walls turn ridges and make lean-to roofs (roof_sides.h).
+  std::vector<model::RoofEdge> edges;
+  bool shape_is_mapped = false;  ///< tagged: the roof keeps the slopes and gables of its shape whatever the row is like
+  bool axis_is_mapped = false;   ///< `down` and `across` are: ridges run that way, eaves along party walls or not
 };
 
 /// What was built.
@@ -99,12 +103,20 @@ std::optional<Roof> crossed_roof(const model::Polygon& plan, RoofMeasures measur
 struct MainSlope {
   double run = 0;   ///< m
   double rise = 1;  ///< share of the roof's height
+  bool leans = false;  ///< of a lean-to in a row, whose usual pitch is gentler
 };
 
-/// The main slope of `request.shape` on a plan (docs/roofs.md, "Tags"), from the plan's extents alone: exact on
-/// rectangles, near on other plans of one wing. `request.measures` is not read.
+/// The main slope of `request.shape` on a plan (docs/roofs.md, "Tags"). Of plans of one wing that stand free, from their extents
+/// alone: exact on rectangles, near on others. In rows and on plans of several wings, from the skeleton, so that a pitch is
+/// exactly that of the roof. `request.measures` is not read.
 /// \param steep  of mansard and gambrel, the lower slope; else all of the way up
 MainSlope main_slope(const model::Polygon& plan, const RoofRequest& request, bool steep);
+
+/// m. Height of a mansard over `run` m with an attic storey of `attic` m behind its steep slopes, at the usual pitches of
+/// 68 and 26 degrees (styles.md 2.7).
+double mansard_height(double run, double attic);
+inline constexpr double kMansardSteep = 2.4750868534162964;   ///< tangent of 68 degrees
+inline constexpr double kMansardGentle = 0.48773258856586144; ///< tangent of 26 degrees
 
 /// True for plans of one wing: their extents tell how far slopes run and in which direction.
 bool has_plain_extents(const model::Polygon& plan);
@@ -116,7 +128,9 @@ std::optional<Roof> lined_roof(const model::Polygon& plan, RoofMeasures measures
 /// Unit vector of a compass direction in degrees (0 north, 90 east).
 model::Point2 compass_vector(double degrees);
 
-/// A direction down the slope for a lean-to roof that has none tagged: across the longest edge, outwards.
-model::Point2 default_slope(const model::Polygon& plan);
+/// A direction down the slope for a lean-to roof that has none tagged: across the longest edge that is no party wall,
+/// outwards. Where there are party walls, edges opposite to one come first, and those that face no street before others:
+/// the high side stands on the fire wall, water runs to the yard.
+model::Point2 default_slope(const model::Polygon& plan, const std::vector<model::RoofEdge>& edges = {});
 
 }  // namespace blockrand::roofs

@@ -5,6 +5,7 @@
 #include "pipeline/geometry/polygon.h"
 #include "styles/roofs/roof.h"
 #include "styles/roofs/shape_tables.h"
+#include "styles/roofs/roof_sides.h"
 #include "styles/roofs/skeleton_roofs.h"
 
 namespace blockrand::roofs {
@@ -29,7 +30,7 @@ double half_width(const Polygon& plan) {
 
 /// The way from the eaves to a ridge between two gables.
 double half_span(const Polygon& plan, const RoofRequest& request) {
-  if (!is_one_wing(plan)) return half_width(plan);  // the ends of wings decide, not the axis
+  if (!is_one_wing(plan)) return half_width(plan);  // no skeleton: extents tell roughly
   const Point2 axis = ridge_axis(plan, request);
   return extent(plan, {-axis.y, axis.x}) / 2;
 }
@@ -39,16 +40,41 @@ double way_down(const Polygon& plan, const RoofRequest& request) {
   if (request.down) return extent(plan, *request.down);
   if (request.shape == RoofShape::skillion || request.shape == RoofShape::sawtooth ||
       request.shape == RoofShape::saltbox)
-    return extent(plan, default_slope(plan));
+    return extent(plan, default_slope(plan, request.edges));
   const Point2 axis = geometry::long_axis(plan.outer.points);
   return extent(plan, request.across ? axis : Point2{-axis.y, axis.x});
 }
 
+/// Do extents tell how far the slopes run, or does it take the skeleton?
+bool needs_skeleton(const Polygon& plan, const RoofRequest& request) {
+  if (!rises_from_edges(request.shape)) return false;
+  const bool in_row = std::find(request.edges.begin(), request.edges.end(), model::RoofEdge::party_wall) != request.edges.end();
+  return in_row || request.shape == RoofShape::berlin || !is_one_wing(plan);
+}
+
 }  // namespace
+
+double mansard_height(double run, double attic) {
+  return attic + std::max(0.0, run - attic / kMansardSteep) * kMansardGentle;
+}
 
 bool has_plain_extents(const Polygon& plan) { return is_one_wing(plan); }
 
 MainSlope main_slope(const Polygon& plan, const RoofRequest& request, bool steep) {
+  if (needs_skeleton(plan, request)) {
+    if (const SkeletonRun s = skeleton_run(plan, request); s.run > 0) {
+      switch (request.shape) {
+        case RoofShape::gambrel:
+        case RoofShape::mansard:
+          return steep ? MainSlope{kMansardRun * s.run, kMansardHeight, s.leans} : MainSlope{s.run, 1, s.leans};
+        case RoofShape::double_saltbox:
+        case RoofShape::quadruple_saltbox:
+          return {kDeckRun * s.run, 1, s.leans};
+        default:
+          return {s.run, 1, s.leans};
+      }
+    }
+  }
   switch (request.shape) {
     case RoofShape::flat:
     case RoofShape::many:

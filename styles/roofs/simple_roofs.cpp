@@ -3,6 +3,7 @@
 
 #include "pipeline/base/portable_math.h"
 #include "styles/roofs/roof.h"
+#include "styles/roofs/wing_ends.h"
 
 namespace blockrand::roofs {
 
@@ -42,17 +43,32 @@ Point2 compass_vector(double degrees) {
   return {base::sin(degrees * kRadiansPerDegree), base::cos(degrees * kRadiansPerDegree)};
 }
 
-Point2 default_slope(const Polygon& plan) {
-  double longest = -1;
-  Point2 down{0, -1};
-  const auto& points = plan.outer.points;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Point2 a = points[i], b = points[(i + 1) % points.size()];
-    const double length = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
-    if (length > longest) {
-      longest = length;
-      down = {(b.y - a.y) / length, -(b.x - a.x) / length};
+Point2 default_slope(const Polygon& plan, const std::vector<model::RoofEdge>& edges) {
+  const std::vector<PlanEdge> all = plan_edges(plan);
+  const std::size_t n = plan.outer.size();
+  const bool known = edges.size() == all.size();
+  const auto is = [&](std::size_t e, model::RoofEdge kind) { return known && edges[e] == kind; };
+  // How much party wall looks the other way, m.
+  const auto opposite = [&](std::size_t e) {
+    double length = 0;
+    for (std::size_t f = 0; f < n; ++f) {
+      if (!is(f, model::RoofEdge::party_wall)) continue;
+      const Point2 u = all[e].outwards(), v = all[f].outwards();
+      constexpr double kOpposite = -0.7;  // cosine of about 135 degrees
+      if (u.x * v.x + u.y * v.y < kOpposite) length += all[f].length;
     }
+    return length;
+  };
+  Point2 down{0, -1};
+  double best = -1;
+  int best_rank = -1;
+  for (std::size_t e = 0; e < n; ++e) {
+    const bool leans = !is(e, model::RoofEdge::party_wall) && opposite(e) > all[e].length / 2;
+    const int rank = is(e, model::RoofEdge::party_wall) ? 0 : !leans ? 1 : is(e, model::RoofEdge::street) ? 2 : 3;
+    if (rank < best_rank || (rank == best_rank && all[e].length <= best)) continue;
+    best_rank = rank;
+    best = all[e].length;
+    down = all[e].outwards();
   }
   return down;
 }

@@ -1,0 +1,389 @@
+#include "styles/roofs/roof_sides.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pipeline/geometry/grid.h"
+#include "pipeline/geometry/polygon.h"
+
+namespace blockrand::roofs {
+
+using model::Point2;
+using model::Polygon;
+using model::RoofEdge;
+
+namespace {
+
+constexpr double kStraight = 0.93969262078590838;   ///< cosine of 20 degrees: walls that bend less are one wall
+constexpr double kOwnShare = 0.5;                   ///< of such a wall: what makes it a party wall
+constexpr double kShortReturn = 2.0;                ///< m. Between party walls: steps of a fire wall, light shafts
+constexpr double kLooksAlong = 0.70710678118654752; ///< cosine of 45 degrees
+constexpr double kTurns = 0.86602540378443865;      ///< cosine of 30 degrees: streets that differ by more meet at a corner
+constexpr double kLeastFront = 3.0;                 ///< m. A shorter stretch on another street makes no corner house
+constexpr double kCoveredEnd = 0.3;                 ///< of the plan's width: less party wall leaves an end free
+constexpr double kNeighbour = 0.3;                  ///< of a side: less is a corner or a shed, no neighbour
+constexpr double kMostOfSide = 0.5;                 ///< of the one long side that must be covered where the other is free
+constexpr double kOblong = 1.4;                     ///< length by width: longer wings lean on a wall at their long side
+
+double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
+Point2 negated(Point2 a) { return {-a.x, -a.y}; }
+
+/// First edge of each ring, and one past the last.
+std::vector<std::size_t> ring_starts(const Polygon& plan) {
+  std::vector<std::size_t> out{0, plan.outer.size()};
+  for (const model::Ring& hole : plan.holes) out.push_back(out.back() + hole.size());
+  return out;
+}
+
+class Finder {
+ public:
+  Finder(const Polygon& plan, const RoofRequest& request)
+      : plan_(plan), request_(request), edges_(plan_edges(plan)), rings_(ring_starts(plan)) {}
+
+  RoofSides sides(bool wants_gables) {
+    RoofSides out;
+    out.sides.assign(edges_.size(), RoofSide::eaves);
+    if (request_.edges.size() == edges_.size()) find_party_walls();
+    if (!any_party()) {
+      if (wants_gables)
+        for (const std::uint32_t e : wing_ends(plan_, request_)) out.sides[e] = RoofSide::gable;
+      return out;
+    }
+    if (request_.axis_is_mapped && is_one_wing(plan_)) keep_party_walls_along(ridge_axis(plan_, request_));
+    lay(wants_gables, out);
+    if (request_.shape_is_mapped && (out.leans || !out.has(RoofSide::eaves))) {
+      // Two slopes are mapped: one of them ends at a neighbour's wall.
+      keep_party_walls_along(ridge_axis(plan_, request_));
+      lay(wants_gables, out);
+    }
+    return out;
+  }
+
+  std::optional<Point2> axis() {
+    if (request_.edges.size() == edges_.size()) find_party_walls();
+    if (!any_party() || request_.axis_is_mapped || !is_one_wing(plan_)) return std::nullopt;
+    return ridge();
+  }
+
+ private:
+  bool any_party() const { return std::find(party_.begin(), party_.end(), 1) != party_.end(); }
+  RoofEdge kind(std::size_t e) const { return request_.edges[e]; }
+
+  /// Calls visit(first, count) for each run of edges of a ring that are one wall; edges are counted round the ring.
+  template <class Visit>
+  void for_each_wall(std::size_t begin, std::size_t end, Visit&& visit) const {
+    const std::size_t n = end - begin;
+    const auto bends = [&](std::size_t i) {  // between edge i and the next one
+      return dot(edges_[begin + i].along(), edges_[begin + (i + 1) % n].along()) < kStraight;
+    };
+    std::size_t first = n;
+    for (std::size_t i = 0; i < n && first == n; ++i)
+      if (bends(i)) first = (i + 1) % n;
+    if (first == n) first = 0;
+    for (std::size_t done = 0; done < n;) {
+      std::size_t count = 1;
+      while (done + count < n && !bends((first + done + count - 1) % n)) ++count;
+      visit((first + done) % n, count);
+      done += count;
+    }
+  }
+
+  void find_party_walls() {
+    party_.assign(edges_.size(), 0);
+    for (std::size_t r = 0; r + 1 < rings_.size(); ++r) {
+      const std::size_t begin = rings_[r], n = rings_[r + 1] - begin;
+      for_each_wall(begin, begin + n, [&](std::size_t first, std::size_t count) {
+        double own = 0, all = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+          const std::size_t e = begin + (first + k) % n;
+          all += edges_[e].length;
+          if (kind(e) == RoofEdge::party_wall) own += edges_[e].length;
+        }
+        if (own < kOwnShare * all) return;
+        for (std::size_t k = 0; k < count; ++k) party_[begin + (first + k) % n] = 1;
+      });
+      join_returns(begin, n);
+    }
+  }
+
+  /// Short chains of edges between two party walls of a ring.
+  void join_returns(std::size_t begin, std::size_t n) {
+    const std::vector<char> before(party_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                   party_.begin() + static_cast<std::ptrdiff_t>(begin + n));
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!before[i] || before[(i + 1) % n]) continue;
+      double length = 0;
+      std::size_t count = 1;
+      bool street = false;
+      for (; count < n && !before[(i + count) % n]; ++count) {
+        const std::size_t e = begin + (i + count) % n;
+        length += edges_[e].length;
+        street = street || kind(e) == RoofEdge::street;
+      }
+      if (street || length > kShortReturn) continue;
+      for (std::size_t k = 1; k < count; ++k) party_[begin + (i + k) % n] = 1;
+    }
+  }
+
+  void keep_party_walls_along(Point2 axis) {
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+      if (party_[e] && std::fabs(dot(edges_[e].outwards(), axis)) < kLooksAlong) party_[e] = 0;
+  }
+
+  // ---- streets
+
+  /// The longest street front, and whether another one runs elsewhere.
+  struct Streets {
+    std::optional<std::size_t> main;
+    bool corner = false;
+  };
+  Streets streets() const {
+    Streets out;
+    const auto fronts = [&](auto&& visit) {
+      for (std::size_t e = 0; e < edges_.size(); ++e)
+        if (kind(e) == RoofEdge::street && !party_[e]) visit(e);
+    };
+    double longest = 0;
+    fronts([&](std::size_t e) {
+      // Pieces of one front count together.
+      double length = 0;
+      fronts([&](std::size_t f) {
+        if (dot(edges_[e].along(), edges_[f].along()) >= kStraight) length += edges_[f].length;
+      });
+      constexpr double kLonger = 0.01;  // m: rounding decides nothing
+      if (length > longest + kLonger || (length > longest - kLonger && edges_[e].length > edges_[*out.main].length + kLonger)) {
+        longest = length;
+        out.main = e;
+      }
+    });
+    if (!out.main) return out;
+    double other = 0;
+    fronts([&](std::size_t e) {
+      if (std::fabs(dot(edges_[e].along(), edges_[*out.main].along())) < kTurns) other += edges_[e].length;
+    });
+    out.corner = other >= kLeastFront;
+    return out;
+  }
+
+  /// Do party walls look in directions that differ by more than what one row has?
+  bool turning(Point2 axis) const {
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+      if (party_[e] && edges_[e].length > kShortReturn && std::fabs(dot(edges_[e].outwards(), axis)) < kLooksAlong)
+        return true;
+    return false;
+  }
+
+  /// The party wall that is longest.
+  Point2 main_party_wall() const {
+    std::size_t best = edges_.size();
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+      if (party_[e] && (best == edges_.size() || edges_[e].length > edges_[best].length + 0.01)) best = e;
+    return edges_[best].outwards();
+  }
+
+  Point2 ridge() const {
+    if (request_.axis_is_mapped) return ridge_axis(plan_, request_);
+    const Streets s = streets();
+    if (s.corner) return main_party_wall();
+    if (s.main) return edges_[*s.main].along();
+    if (const auto between = ridge_between(plan_, edges_, party_)) return *between;
+    return ridge_axis(plan_, request_);
+  }
+
+  // ---- the sides
+
+  void lay(bool wants_gables, RoofSides& out) const {
+    std::fill(out.sides.begin(), out.sides.end(), RoofSide::eaves);
+    out.corner.reset();
+    out.leans = false;
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+      if (party_[e]) out.sides[e] = RoofSide::party;
+    if (wants_gables) {
+      if (is_one_wing(plan_))
+        end_one_wing(out);
+      else
+        for (const std::uint32_t e : wing_ends(plan_, request_)) make_gable(e, out);
+      // A plan without eaves has too many gables.
+      if (!out.has(RoofSide::eaves))
+        for (RoofSide& s : out.sides)
+          if (s == RoofSide::gable) s = RoofSide::eaves;
+    }
+    find_lean_sides(out);
+  }
+
+  void make_gable(std::uint32_t e, RoofSides& out) const {
+    if (out.sides[e] != RoofSide::eaves) return;
+    if (kind(e) == RoofEdge::street && !request_.shape_is_mapped) return;
+    out.sides[e] = RoofSide::gable;
+  }
+
+  void end_one_wing(RoofSides& out) const {
+    const Point2 axis = ridge();
+    const geometry::Extent across = geometry::extent_along(plan_.outer.points, {-axis.y, axis.x});
+    const double width = across.maximum - across.minimum;
+    const bool turns = !request_.axis_is_mapped && streets().corner && turning(axis);
+    for (const double way : {1.0, -1.0}) {
+      const Point2 towards{way * axis.x, way * axis.y};
+      double covered = 0;
+      for (std::size_t e = 0; e < edges_.size(); ++e)
+        if (party_[e] && dot(edges_[e].outwards(), towards) >= kLooksAlong) covered += edges_[e].length;
+      if (covered < kCoveredEnd * width && turns) continue;
+      for (const std::uint32_t e : ends_towards(plan_, edges_, towards)) {
+        // What the end's best edge is, where no edge looks that way, may be the side of a triangle.
+        if (dot(edges_[e].outwards(), towards) >= kLooksAlong) make_gable(e, out);
+      }
+    }
+  }
+
+  /// The first edge that a way into the plan meets.
+  std::optional<std::size_t> opposite(std::size_t e, double share) const {
+    const PlanEdge& from = edges_[e];
+    const Point2 in = negated(from.outwards());
+    const Point2 p{from.from.x + share * (from.to.x - from.from.x), from.from.y + share * (from.to.y - from.from.y)};
+    std::optional<std::size_t> found;
+    double nearest = 0;
+    for (std::size_t f = 0; f < edges_.size(); ++f) {
+      if (f == e) continue;
+      const PlanEdge& other = edges_[f];
+      const Point2 a{other.from.x - p.x, other.from.y - p.y}, b{other.to.x - p.x, other.to.y - p.y};
+      const double ca = in.x * a.y - in.y * a.x, cb = in.x * b.y - in.y * b.x;
+      if ((ca > 0) == (cb > 0)) continue;
+      const double t = ca / (ca - cb);
+      const double way = (a.x + t * (b.x - a.x)) * in.x + (a.y + t * (b.y - a.y)) * in.y;
+      if (way <= 0 || (found && way >= nearest)) continue;
+      nearest = way;
+      found = f;
+    }
+    return found;
+  }
+
+  /// Do eaves look the other way behind some of this edge, before the party wall?
+  bool has_eaves_behind(std::size_t e, const RoofSides& out) const {
+    const PlanEdge& from = edges_[e];
+    const Point2 along = from.along(), in = negated(from.outwards());
+    for (std::size_t f = 0; f < edges_.size(); ++f) {
+      if (f == e || out.sides[f] == RoofSide::party || out.sides[f] == RoofSide::gable) continue;
+      const PlanEdge& other = edges_[f];
+      if (dot(other.outwards(), in) < kLooksAlong) continue;
+      const auto place = [&](Point2 p) { return Point2{dot({p.x - from.from.x, p.y - from.from.y}, along),
+                                                       dot({p.x - from.from.x, p.y - from.from.y}, in)}; };
+      const Point2 a = place(other.from), b = place(other.to);
+      constexpr double kBehind = 0.05;  // m
+      if (std::min(a.x, b.x) < from.length - kBehind && std::max(a.x, b.x) > kBehind && std::max(a.y, b.y) > kBehind)
+        return true;
+    }
+    return false;
+  }
+
+  void find_lean_sides(RoofSides& out) const {
+    std::vector<char> lean(edges_.size(), 0);
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (out.sides[e] != RoofSide::eaves) continue;
+      int party = 0;
+      for (const double share : {0.25, 0.5, 0.75}) {
+        const auto met = opposite(e, share);
+        party += met && out.sides[*met] == RoofSide::party &&
+                 dot(edges_[*met].outwards(), edges_[e].outwards()) < -kLooksAlong;
+      }
+      lean[e] = party >= 2 && !has_eaves_behind(e, out);
+    }
+    const Streets s = streets();
+    if (s.corner && fronts_lean(lean, out)) {
+      out.corner = yard_corner(out);
+      if (out.corner) return;  // the fronts face the yard's eaves now
+    }
+    bool all = true;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (out.sides[e] != RoofSide::eaves) continue;
+      if (lean[e])
+        out.sides[e] = RoofSide::lean;
+      else if (edges_[e].length > kShortReturn)
+        all = false;
+    }
+    out.leans = all && out.has(RoofSide::lean);
+  }
+
+  bool fronts_lean(const std::vector<char>& lean, const RoofSides& out) const {
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+      if (kind(e) == RoofEdge::street && out.sides[e] == RoofSide::eaves && edges_[e].length >= kLeastFront && !lean[e])
+        return false;
+    return true;
+  }
+
+  /// The corner between two party walls of the outer ring that lies farthest from the street fronts.
+  std::optional<std::uint32_t> yard_corner(const RoofSides& out) const {
+    std::optional<std::uint32_t> best;
+    double most = 0;
+    const std::size_t n = plan_.outer.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const PlanEdge &before = edges_[(i + n - 1) % n], &after = edges_[i];
+      if (out.sides[(i + n - 1) % n] != RoofSide::party || out.sides[i] != RoofSide::party) continue;
+      const Point2 u = before.along(), v = after.along();
+      if (u.x * v.y - u.y * v.x < kLooksAlong) continue;  // convex, from 45 to 135 degrees
+      double nearest = -1;
+      for (std::size_t e = 0; e < edges_.size(); ++e) {
+        if (kind(e) != RoofEdge::street || out.sides[e] != RoofSide::eaves) continue;
+        const double d = geometry::distance_to_segment(after.from, edges_[e].from, edges_[e].to);
+        if (nearest < 0 || d < nearest) nearest = d;
+      }
+      if (nearest > most + 0.01) {
+        most = nearest;
+        best = static_cast<std::uint32_t>(i);
+      }
+    }
+    return best;
+  }
+
+  const Polygon& plan_;
+  const RoofRequest& request_;
+  std::vector<PlanEdge> edges_;
+  std::vector<std::size_t> rings_;
+  std::vector<char> party_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> RoofSides::which(RoofSide side) const {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t e = 0; e < sides.size(); ++e)
+    if (sides[e] == side) out.push_back(e);
+  return out;
+}
+
+bool RoofSides::has(RoofSide side) const { return std::find(sides.begin(), sides.end(), side) != sides.end(); }
+
+std::optional<Point2> ridge_between(const Polygon& plan, const std::vector<PlanEdge>& edges, const std::vector<char>& party) {
+  const Point2 axis = geometry::long_axis(plan.outer.points), side{-axis.y, axis.x};
+  const auto extent = [&](Point2 direction) {
+    const auto e = geometry::extent_along(plan.outer.points, direction);
+    return e.maximum - e.minimum;
+  };
+  const double length = extent(axis), width = extent(side);
+  if (width <= 0) return std::nullopt;
+  // Covered length of the long sides that look left and right of the axis, and of the short sides behind and ahead.
+  std::array<double, 2> long_sides{}, short_sides{};
+  bool any = false;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (!party[e]) continue;
+    any = true;
+    const double along = dot(edges[e].along(), axis), across = dot(edges[e].along(), side);
+    if (std::fabs(along) > std::fabs(across))
+      long_sides[along > 0] += std::fabs(along) * edges[e].length;
+    else
+      short_sides[across > 0] += std::fabs(across) * edges[e].length;
+  }
+  if (!any) return std::nullopt;
+  if (std::max(short_sides[0], short_sides[1]) > kNeighbour * width) return axis;
+  const auto [less, more] = std::minmax(long_sides[0], long_sides[1]);
+  if (less > kNeighbour * length || (more > kMostOfSide * length && length <= kOblong * width)) return side;
+  return axis;
+}
+
+std::optional<Point2> row_axis(const Polygon& plan, const RoofRequest& request) { return Finder(plan, request).axis(); }
+
+RoofSides roof_sides(const Polygon& plan, const RoofRequest& request, bool wants_gables) {
+  return Finder(plan, request).sides(wants_gables);
+}
+
+}  // namespace blockrand::roofs
