@@ -167,6 +167,12 @@ class MassBuilder {
   /// One shape on one plan; tidied more coarsely where its solid fails the check.
   bool build_roof(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks, roofs::RoofRequest request) {
     request.measures = {levels.eaves, levels.top - levels.eaves};
+    // Where the roof of whole facades does not come out valid, every bay gets slopes of its own.
+    for (const bool along : {true, false})
+      if (request.along_eaves_lines = along; build_tidied(part, plan, levels, looks, request)) return true;
+    return false;
+  }
+  bool build_tidied(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks, roofs::RoofRequest request) {
     for (const double coarseness : roofs::kCoarseness) {
       request.coarseness = coarseness;
       const auto built = roofs::build_roof(plan, request);

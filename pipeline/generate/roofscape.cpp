@@ -23,7 +23,13 @@ using model::SurfaceKind;
 
 constexpr double kLeastFall = 0.03;       ///< rise over run: flatter faces drain nowhere in particular
 constexpr double kOverEdge = 0.5;         ///< cosine of 60 degrees: water that runs more along an edge than over it
+constexpr double kLevel = 0.1;            ///< rise over run: eaves are level, to what a bay's plane leaves of that
 constexpr double kMost = 0.5;             ///< of a front
+constexpr double kRearShare = 0.75;       ///< of a facade that looks away from the street: wings stand against its eaves
+constexpr double kLooksAway = -0.70710678118654752;
+constexpr double kSameFacade = 0.97814760073380569;  ///< cosine of 12 degrees
+constexpr double kFacadeDepth = 1.5;      ///< m, of what belongs to one facade
+constexpr double kHouseDepth = 20;        ///< m. Farther from the front stand wings, whose ends may be gables.
 constexpr double kLeastPartyEaves = 1.0;  ///< m. Shorter ones are corners
 constexpr double kLeastFront = 3.0;       ///< m of front on each street of a corner house
 constexpr double kOtherStreet = 0.86602540378443865;  ///< cosine of 30 degrees
@@ -106,7 +112,9 @@ class House {
         const double steep = std::sqrt(dot(*down, *down));
         if (steep < kLeastFall || dot(*down, out) < kOverEdge * steep) continue;
         const Point3 p = s.vertices[loop[i]], q = s.vertices[loop[i - 1]];
-        w.eaves += std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
+        const double length = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
+        if (std::fabs(q.z - p.z) > kLevel * length) continue;  // water runs along it
+        w.eaves += length;
       }
       walls_.push_back(std::move(w));
     }
@@ -125,6 +133,30 @@ struct Lengths {
   }
   bool mostly_eaves() const { return eaves >= kMost * wall; }
 };
+
+/// The longest wall on a street, or null.
+const Wall* main_front(const std::vector<Wall>& walls) {
+  const Wall* front = nullptr;
+  for (const Wall& w : walls)
+    if (w.kind == RoofEdge::street && (!front || w.length > front->length)) front = &w;
+  return front;
+}
+
+/// Is most of the facade that a party wall belongs to one? Where a neighbour touches a corner of a free facade, the eaves
+/// run on past it.
+bool neighbours_facade(const std::vector<Wall>& walls, const Wall& wall) {
+  double own = 0, all = 0;
+  const Point2 out = wall.outwards();
+  const auto near = [&](Point2 p) { return std::fabs(dot({p.x - wall.from.x, p.y - wall.from.y}, out)) <= kFacadeDepth; };
+  for (const Wall& w : walls) {
+    if (dot(w.outwards(), out) < kSameFacade || !near(w.from) || !near(w.to)) continue;
+    all += w.length;
+    if (w.kind == RoofEdge::party_wall) own += w.length;
+  }
+  const Wall* front = main_front(walls);
+  const bool rear = front && dot(out, front->outwards()) < kLooksAway;
+  return own >= (rear ? kRearShare : kMost) * all;
+}
 
 /// The degrees that were asked where no tag measures the roof: slopes of one shape have the same ones.
 double usual_pitch_of(const BuildingPart& part) {
@@ -165,6 +197,12 @@ void find_ends(const std::vector<Wall>& walls, const BuildingPart& part, std::ve
   }
 }
 
+/// m behind the line of a front.
+double depth_of(const Wall& front, const Wall& wall) {
+  const Point2 out = front.outwards();
+  return -dot({(wall.from.x + wall.to.x) / 2 - front.from.x, (wall.from.y + wall.to.y) / 2 - front.from.y}, out);
+}
+
 double height_at(const SlopeEnd& end, double along) {
   for (std::uint32_t i = 1; i < end.count; ++i) {
     const auto& a = end.profile[i - 1];
@@ -178,10 +216,10 @@ double height_at(const SlopeEnd& end, double along) {
 std::optional<double> distance_between(const SlopeEnd& a, const SlopeEnd& b) {
   if (std::fabs(a.z - b.z) > kSameHeight || dot(a.wall, b.wall) < kSameDirection || dot(a.eaves, b.eaves) > -kSameDirection)
     return std::nullopt;
-  const bool asked_alike = a.usual > 0 && a.usual == b.usual && std::fabs(a.pitch - b.pitch) < 0.1 * a.pitch;
+  const bool asked_alike = a.usual > 0 && a.usual == b.usual && std::fabs(a.pitch - b.pitch) < 0.05 * a.pitch;
   if (!asked_alike && std::fabs(a.pitch - b.pitch) > kSamePitch) return std::nullopt;
-  // As far as both slopes rise.
-  const double reach = std::min(a.profile[a.count - 1][0], b.profile[b.count - 1][0]);
+  // As far as both slopes are the ones that rise from the eaves.
+  const double reach = std::min(a.profile[1][0], b.profile[1][0]);
   double most = std::fabs(a.z - b.z);
   const auto compare = [&](double s) {
     if (s <= reach) most = std::max(most, std::fabs(a.z + height_at(a, s) - b.z - height_at(b, s)));
@@ -206,7 +244,7 @@ RoofscapeCount count_roofscape(const model::Region& region) {
 
       double party = 0;
       for (const Wall& w : walls)
-        if (w.kind == RoofEdge::party_wall) party += w.eaves;
+        if (w.kind == RoofEdge::party_wall && w.eaves > 0 && neighbours_facade(walls, w)) party += w.eaves;
       if (party > kLeastPartyEaves) {
         ++s.party_eaves;
         const model::Attributes& a = part.attributes;
@@ -217,16 +255,14 @@ RoofscapeCount count_roofscape(const model::Region& region) {
       find_ends(walls, part, out.open);
 
       // Fronts by the street they look at: the longest, what looks its way, and what looks elsewhere.
-      const Wall* front = nullptr;
-      for (const Wall& w : walls)
-        if (w.kind == RoofEdge::street && (!front || w.length > front->length)) front = &w;
+      const Wall* front = main_front(walls);
       if (!front) continue;
       Lengths main, other, rear;
       for (const Wall& w : walls) {
         const double looks = dot(w.outwards(), front->outwards());
         if (w.kind == RoofEdge::street)
           (looks >= kOtherStreet ? main : other).add(w);
-        else if (w.kind != RoofEdge::party_wall && looks < kRear)
+        else if (w.kind != RoofEdge::party_wall && looks < kRear && depth_of(*front, w) <= kHouseDepth)
           rear.add(w);
       }
       if (building.situation.position == model::BuildingPosition::mid_row) {

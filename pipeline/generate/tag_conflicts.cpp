@@ -237,6 +237,7 @@ roofs::RoofRequest tagged_request(const MappedAttributes& tags, RoofShape shape,
   roofs::RoofRequest request;
   request.shape = shape;
   request.edges = edges;
+  request.along_eaves_lines = true;
   request.shape_is_mapped = tags.roof_shape.has_value();
   request.axis_is_mapped = tags.roof_direction || tags.roof_orientation;
   if (tags.roof_direction) request.down = roofs::compass_vector(*tags.roof_direction);

@@ -49,7 +49,7 @@ double way_down(const Polygon& plan, const RoofRequest& request) {
 bool needs_skeleton(const Polygon& plan, const RoofRequest& request) {
   if (!rises_from_edges(request.shape)) return false;
   const bool in_row = std::find(request.edges.begin(), request.edges.end(), model::RoofEdge::party_wall) != request.edges.end();
-  return in_row || request.shape == RoofShape::berlin || !is_one_wing(plan);
+  return in_row || request.along_eaves_lines || request.shape == RoofShape::berlin || !is_one_wing(plan);
 }
 
 }  // namespace

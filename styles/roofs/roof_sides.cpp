@@ -6,6 +6,7 @@
 
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon.h"
+#include "styles/roofs/eaves_lines.h"
 
 namespace blockrand::roofs {
 
@@ -16,7 +17,7 @@ using model::RoofEdge;
 namespace {
 
 constexpr double kStraight = 0.93969262078590838;   ///< cosine of 20 degrees: walls that bend less are one wall
-constexpr double kOwnShare = 0.5;                   ///< of such a wall: what makes it a party wall
+constexpr double kOwnShare = 0.5, kRearShare = 0.75;  ///< of such a wall: what makes it a party wall
 constexpr double kShortReturn = 2.0;                ///< m. Between party walls: steps of a fire wall, light shafts
 constexpr double kLooksAlong = 0.70710678118654752; ///< cosine of 45 degrees
 constexpr double kTurns = 0.86602540378443865;      ///< cosine of 30 degrees: streets that differ by more meet at a corner
@@ -91,16 +92,19 @@ class Finder {
 
   void find_party_walls() {
     party_.assign(edges_.size(), 0);
+    const auto street = street_outlook(edges_, request_.edges);
     for (std::size_t r = 0; r + 1 < rings_.size(); ++r) {
       const std::size_t begin = rings_[r], n = rings_[r + 1] - begin;
       for_each_wall(begin, begin + n, [&](std::size_t first, std::size_t count) {
         double own = 0, all = 0;
+        std::size_t longest = begin + first;
         for (std::size_t k = 0; k < count; ++k) {
           const std::size_t e = begin + (first + k) % n;
+          if (edges_[e].length > edges_[longest].length) longest = e;
           all += edges_[e].length;
           if (kind(e) == RoofEdge::party_wall) own += edges_[e].length;
         }
-        if (own < kOwnShare * all) return;
+        if (own < party_share_of(edges_[longest], street) * all) return;
         for (std::size_t k = 0; k < count; ++k) party_[begin + (first + k) % n] = 1;
       });
       join_returns(begin, n);
@@ -230,8 +234,11 @@ class Finder {
         if (party_[e] && dot(edges_[e].outwards(), towards) >= kLooksAlong) covered += edges_[e].length;
       if (covered < kCoveredEnd * width && turns) continue;
       for (const std::uint32_t e : ends_towards(plan_, edges_, towards)) {
-        // What the end's best edge is, where no edge looks that way, may be the side of a triangle.
-        if (dot(edges_[e].outwards(), towards) >= kLooksAlong) make_gable(e, out);
+        // What the end's best edge is, where no edge looks that way, may be the side of a triangle; short ones are the
+        // sides of a bay.
+        if (dot(edges_[e].outwards(), towards) < kLooksAlong) continue;
+        if (edges_[e].length < std::min(kShortReturn, kCoveredEnd * width)) continue;
+        make_gable(e, out);
       }
     }
   }
@@ -353,6 +360,18 @@ std::vector<std::uint32_t> RoofSides::which(RoofSide side) const {
 
 bool RoofSides::has(RoofSide side) const { return std::find(sides.begin(), sides.end(), side) != sides.end(); }
 
+std::optional<Point2> street_outlook(const std::vector<PlanEdge>& edges, const std::vector<RoofEdge>& kinds) {
+  std::optional<std::size_t> longest;
+  if (kinds.size() != edges.size()) return std::nullopt;
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    if (kinds[e] == RoofEdge::street && (!longest || edges[e].length > edges[*longest].length)) longest = e;
+  return longest ? std::optional(edges[*longest].outwards()) : std::nullopt;
+}
+
+double party_share_of(const PlanEdge& facade, std::optional<Point2> street) {
+  return street && dot(facade.outwards(), *street) < -kLooksAlong ? kRearShare : kOwnShare;
+}
+
 std::optional<Point2> ridge_between(const Polygon& plan, const std::vector<PlanEdge>& edges, const std::vector<char>& party) {
   const Point2 axis = geometry::long_axis(plan.outer.points), side{-axis.y, axis.x};
   const auto extent = [&](Point2 direction) {
@@ -380,7 +399,16 @@ std::optional<Point2> ridge_between(const Polygon& plan, const std::vector<PlanE
   return axis;
 }
 
-std::optional<Point2> row_axis(const Polygon& plan, const RoofRequest& request) { return Finder(plan, request).axis(); }
+std::optional<Point2> row_axis(const Polygon& plan, const RoofRequest& request) {
+  if (request.along_eaves_lines) {
+    if (const auto eaves = eaves_plan(plan, request.edges)) {
+      RoofRequest whole = request;
+      whole.edges = eaves->edges;
+      return Finder(eaves->plan, whole).axis();
+    }
+  }
+  return Finder(plan, request).axis();
+}
 
 RoofSides roof_sides(const Polygon& plan, const RoofRequest& request, bool wants_gables) {
   return Finder(plan, request).sides(wants_gables);

@@ -31,7 +31,7 @@ struct RoofSides {
 /// The sides of a roof whose ridges run between gables (`wants_gables`), or that falls to all free sides.
 ///
 /// Without party walls: wing_ends(). With them, by these rules, in this order:
-/// * Edges that bend by less than 20 degrees are one wall: a party wall when half of it is one. Returns of less than 2 m
+/// * Edges that bend by less than 20 degrees are one wall: a party wall when enough of it is (party_share_of()). Returns of less than 2 m
 ///   between two party walls belong to them.
 /// * Where roof:direction or roof:orientation say how the ridge runs, party walls along it stay eaves.
 /// * The ridge of a plan of one wing runs along its street; at a street corner, and without a street, from the party
@@ -42,6 +42,13 @@ struct RoofSides {
 /// * A mapped shape with a ridge keeps it: where all eaves would be the foot of a lean-to, party walls that do not look
 ///   along the plan's axis stay eaves.
 RoofSides roof_sides(const model::Polygon& plan, const RoofRequest& request, bool wants_gables);
+
+/// Which way the longest street front looks; none without one.
+std::optional<model::Point2> street_outlook(const std::vector<PlanEdge>& edges, const std::vector<model::RoofEdge>& kinds);
+
+/// The share of a facade that makes it a party wall: half; three quarters where it looks away from the street, since wings
+/// and rear buildings that are mapped for themselves stand against the rear eaves of their front house.
+double party_share_of(const PlanEdge& facade, std::optional<model::Point2> street);
 
 /// Unit vector along which the ridge of a plan of one wing runs between its party walls where no street tells: across the
 /// longer side when neighbours stand at both long sides (at 0.3 of each), or at more than half of one of a plan no longer

@@ -11,6 +11,7 @@
 #include "pipeline/geometry/roof_surfaces.h"
 #include "pipeline/geometry/straight_skeleton.h"
 #include "pipeline/geometry/weighted_skeleton.h"
+#include "styles/roofs/eaves_lines.h"
 #include "styles/roofs/roof_sides.h"
 #include "styles/roofs/shape_tables.h"
 
@@ -278,6 +279,13 @@ class Builder {
   RoofSides sides_;
 };
 
+/// The request for the plan's eaves lines.
+RoofRequest on_facades(RoofRequest request, const EavesPlan& eaves) {
+  request.edges = eaves.edges;
+  request.along_eaves_lines = false;
+  return request;
+}
+
 }  // namespace
 
 bool rises_from_edges(RoofShape shape) {
@@ -302,10 +310,40 @@ bool rises_from_edges(RoofShape shape) {
 
 std::optional<BuiltRoof> skeleton_roof(const Polygon& plan, const RoofRequest& request) {
   if (!rises_from_edges(request.shape)) return std::nullopt;
+  if (request.along_eaves_lines) {
+    if (const auto eaves = eaves_plan(plan, request.edges)) {
+      const RoofRequest whole = on_facades(request, *eaves);
+      auto built = Builder(eaves->plan, whole).build();
+      if (built && built->note != IssueCode::skeleton_fallback) {
+        if (auto roof = onto_plan(built->roof, *eaves, plan)) {
+          built->roof = std::move(*roof);
+          return built;
+        }
+      }
+    }
+  }
   return Builder(plan, request).build();
 }
 
+namespace {
+
+bool goes_onto(const Builder& builder, const EavesPlan& eaves, const Polygon& plan) {
+  const auto built = builder.build();
+  return built && built->note != IssueCode::skeleton_fallback && onto_plan(built->roof, eaves, plan);
+}
+
+}  // namespace
+
 SkeletonRun skeleton_run(const Polygon& plan, const RoofRequest& request) {
+  if (request.along_eaves_lines) {
+    if (const auto eaves = eaves_plan(plan, request.edges)) {
+      RoofRequest whole = on_facades(request, *eaves);
+      whole.measures = {0, geometry::equivalent_width(plan) / 2};  // of the usual steepness
+      const Builder builder(eaves->plan, whole);
+      // The roof that will be built, and not one that turns out not to fit the plan.
+      if (const double run = builder.largest_run(); run > 0 && goes_onto(builder, *eaves, plan)) return {run, builder.leans()};
+    }
+  }
   const Builder builder(plan, request);
   return {builder.largest_run(), builder.leans()};
 }
