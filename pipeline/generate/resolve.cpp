@@ -102,6 +102,7 @@ struct Resolver {
   std::uint8_t group;
   const std::vector<model::Polygon>& plans;
   model::OsmId id;
+  double usual_pitch_asked = 0;         ///< degrees, of usual_height()
 
   template <class T>
   Sourced<T> make(T value, Source source, double confidence, std::string why, std::vector<model::Candidate> lost = {}) {
@@ -187,6 +188,8 @@ struct Resolver {
     const auto& counted = own.storeys || !outline || has_own_height() ? own.storeys : outline->storeys;
     if (preset.roof_shape != RoofShape::flat && counted && *counted > kMostStoreysUnderRafters)
       choices.push_back({RoofShape::flat, Source::geometry, kImpliedConfidence, fmt::format("{:g} storeys are too many for rafters", *counted)});
+    if (preset.roof_shape != RoofShape::flat && part && roofs::is_enclosed(plan(), part->roof_edges))
+      choices.push_back({RoofShape::flat, Source::geometry, kImpliedConfidence, "neighbours stand at all sides: no side for eaves"});
     if (agreed && (opinion->value == RoofShape::flat || !wide))
       choices.push_back({opinion->value, Source::neighbours, 0.2 + 0.5 * opinion->share,
                          fmt::format("{:.0f} % of {} neighbours within {:.0f} m", 100 * opinion->share, opinion->voices,
@@ -243,9 +246,12 @@ struct Resolver {
     double pitch = std::min(usual_pitch(shape, preset.roof_pitch), options.max_roof_pitch);
     if (slope.leans && pitch <= preset.roof_pitch) pitch = std::min(pitch, kLeanPitch);
     const double height = slope.run * tangent(pitch) / slope.rise;
-    if (height > options.max_usual_roof_height && pitch <= preset.roof_pitch)
+    usual_pitch_asked = pitch;
+    if (height > options.max_usual_roof_height && pitch <= preset.roof_pitch) {
+      usual_pitch_asked = 0;
       return {options.max_usual_roof_height, preset_source(), preset_confidence(),
               fmt::format("the highest usual roof, over a run of {:.1f} m", slope.run)};
+    }
     return {height, preset_source(), preset_confidence(),
             fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, slope.run)};
   }
@@ -437,6 +443,8 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
                  own_tags && building.osm != part.osm ? &building.mapped : nullptr, own_use ? in.defaults.use(part_use) : preset,
                  group, plan, building.osm};
       part.attributes = r.resolve(ground);
+      const Source measured = part.attributes.roof_height.source;
+      if (measured == Source::preset || measured == Source::default_) part.usual_pitch = r.usual_pitch_asked;
       for (TagConflict& c : tag_conflicts(part.mapped, {part.attributes.roof_shape.value, part.roof_plan, r.preset.storey_height, !part.roof_lines.empty(), part.roof_edges})) {
         model::ReportRow row{part.osm, c.code, std::move(c.text)};
         // Pieces of one outline have the same tags.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 
@@ -28,9 +29,11 @@ constexpr double kMost = 0.5;             ///< of a front
 constexpr double kRearShare = 0.75;       ///< of a facade that looks away from the street: wings stand against its eaves
 constexpr double kLooksAway = -0.70710678118654752;
 constexpr double kSameFacade = 0.97814760073380569;  ///< cosine of 12 degrees
-constexpr double kFacadeDepth = 1.5;      ///< m, of what belongs to one facade
+constexpr double kFacadeDepth = 2.5;      ///< m, of what belongs to one facade
+constexpr double kEavesZone = 1.5;        ///< m above the lowest wall top: a level wall top higher up is no eaves
 constexpr double kHouseDepth = 20;        ///< m. Farther from the front stand wings, whose ends may be gables.
 constexpr double kLeastPartyEaves = 1.0;  ///< m. Shorter ones are corners
+constexpr double kReturn = 2.5;           ///< m. Shorter party walls are returns of a fire wall: the roof runs on over them.
 constexpr double kLeastFront = 3.0;       ///< m of front on each street of a corner house
 constexpr double kOtherStreet = 0.86602540378443865;  ///< cosine of 30 degrees
 constexpr double kRear = -0.5;            ///< cosine against the front of what looks to the rear
@@ -118,6 +121,10 @@ class House {
       }
       walls_.push_back(std::move(w));
     }
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const Wall& w : walls_) lowest = std::min({lowest, w.top.front().z, w.top.back().z});
+    for (Wall& w : walls_)
+      if (std::min(w.top.front().z, w.top.back().z) > lowest + kEavesZone) w.eaves = 0;
   }
 
   const model::Building& building_;
@@ -158,13 +165,6 @@ bool neighbours_facade(const std::vector<Wall>& walls, const Wall& wall) {
   return own >= (rear ? kRearShare : kMost) * all;
 }
 
-/// The degrees that were asked where no tag measures the roof: slopes of one shape have the same ones.
-double usual_pitch_of(const BuildingPart& part) {
-  const auto source = part.attributes.roof_height.source;
-  if (source != model::Source::preset && source != model::Source::default_) return 0;
-  return 1 + static_cast<double>(static_cast<int>(part.built_roof));
-}
-
 void find_ends(const std::vector<Wall>& walls, const BuildingPart& part, std::vector<SlopeEnd>& out) {
   for (const Wall& w : walls) {
     if (w.kind != RoofEdge::party_wall || w.eaves > 0) continue;
@@ -191,9 +191,31 @@ void find_ends(const std::vector<Wall>& walls, const BuildingPart& part, std::ve
       if (end.count < 2 || end.profile[1][0] <= 0) continue;
       end.pitch = end.profile[1][1] / end.profile[1][0];
       if (end.pitch < kLeastFall) continue;
-      end.usual = usual_pitch_of(part);
+      end.usual = part.usual_pitch;
       out.push_back(end);
     }
+  }
+}
+
+/// Shapes that have eaves at two sides of a house at least.
+bool falls_both_ways(model::RoofShape shape) {
+  using enum model::RoofShape;
+  switch (shape) {
+    case gabled:
+    case hipped:
+    case half_hipped:
+    case side_hipped:
+    case side_half_hipped:
+    case hipped_and_gabled:
+    case mansard:
+    case gambrel:
+    case round:
+    case double_saltbox:
+    case quadruple_saltbox:
+    case berlin:
+      return true;
+    default:
+      return false;
   }
 }
 
@@ -244,7 +266,7 @@ RoofscapeCount count_roofscape(const model::Region& region) {
 
       double party = 0;
       for (const Wall& w : walls)
-        if (w.kind == RoofEdge::party_wall && w.eaves > 0 && neighbours_facade(walls, w)) party += w.eaves;
+        if (w.kind == RoofEdge::party_wall && w.eaves > kLeastPartyEaves && w.length > kReturn && neighbours_facade(walls, w)) party += w.eaves;
       if (party > kLeastPartyEaves) {
         ++s.party_eaves;
         const model::Attributes& a = part.attributes;
@@ -265,6 +287,7 @@ RoofscapeCount count_roofscape(const model::Region& region) {
         else if (w.kind != RoofEdge::party_wall && looks < kRear && depth_of(*front, w) <= kHouseDepth)
           rear.add(w);
       }
+      if (!falls_both_ways(part.attributes.roof_shape.value)) continue;
       if (building.situation.position == model::BuildingPosition::mid_row) {
         ++s.mid_row;
         s.eaves_to_street += main.mostly_eaves();

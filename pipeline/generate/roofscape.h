@@ -10,7 +10,8 @@
 
 namespace blockrand::generate {
 
-/// Sums over houses without mapped parts whose roof is not flat.
+/// Sums over houses without mapped parts whose roof is not flat; of mid-row and corner houses, those whose shape has eaves
+/// at two sides.
 struct Roofscape {
   std::uint64_t mid_row = 0;          ///< between two neighbours, with a front on a street
   std::uint64_t eaves_to_street = 0;  ///< of them: water runs to the street from at least half of the front
@@ -36,7 +37,7 @@ struct SlopeEnd {
   double z = 0;                ///< m, eaves
   model::Point2 wall, eaves;   ///< unit vectors from the corner: along the party wall; along the eaves, away from it
   double pitch = 0;            ///< rise over run along the wall, of what stands
-  double usual = 0;            ///< degrees; what was asked where no tag measures the roof, 0 otherwise
+  double usual = 0;            ///< BuildingPart::usual_pitch
   std::uint32_t count = 0;     ///< of `profile`
   std::array<std::array<double, 2>, 4> profile{};  ///< m along the wall, m above the eaves; up to the highest point
 };

@@ -130,8 +130,8 @@ std::optional<Roof> lined_roof(const model::Polygon& plan, RoofMeasures measures
 model::Point2 compass_vector(double degrees);
 
 /// A direction down the slope for a lean-to roof that has none tagged: across the longest edge that is no party wall,
-/// outwards. Where there are party walls, edges opposite to one come first, and those that face no street before others:
-/// the high side stands on the fire wall, water runs to the yard.
+/// outwards. In a row, away from the street if a wall is free there; else away from a party wall, but not to the street if
+/// that can be avoided: the high side stands on the fire wall, water runs to the yard.
 model::Point2 default_slope(const model::Polygon& plan, const std::vector<model::RoofEdge>& edges = {});
 
 }  // namespace blockrand::roofs

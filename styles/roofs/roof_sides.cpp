@@ -22,6 +22,7 @@ constexpr double kShortReturn = 2.0;                ///< m. Between party walls:
 constexpr double kLooksAlong = 0.70710678118654752; ///< cosine of 45 degrees
 constexpr double kTurns = 0.86602540378443865;      ///< cosine of 30 degrees: streets that differ by more meet at a corner
 constexpr double kLeastFront = 3.0;                 ///< m. A shorter stretch on another street makes no corner house
+constexpr double kLeastOpen = 0.1;                  ///< of the outline: less open wall is a light shaft, no side for eaves
 constexpr double kCoveredEnd = 0.3;                 ///< of the plan's width: less party wall leaves an end free
 constexpr double kNeighbour = 0.3;                  ///< of a side: less is a corner or a shed, no neighbour
 constexpr double kMostOfSide = 0.5;                 ///< of the one long side that must be covered where the other is free
@@ -408,6 +409,19 @@ std::optional<Point2> row_axis(const Polygon& plan, const RoofRequest& request) 
     }
   }
   return Finder(plan, request).axis();
+}
+
+bool is_enclosed(const Polygon& plan, const std::vector<RoofEdge>& edges) {
+  const std::vector<PlanEdge> all = plan_edges(plan);
+  if (edges.size() != all.size()) return false;
+  double open = 0, whole = 0;
+  for (std::size_t e = 0; e < all.size(); ++e) {
+    whole += all[e].length;
+    if (edges[e] == RoofEdge::party_wall) continue;
+    if (edges[e] == RoofEdge::street) return false;
+    open += all[e].length;
+  }
+  return open <= kShortReturn || open <= kLeastOpen * whole;
 }
 
 RoofSides roof_sides(const Polygon& plan, const RoofRequest& request, bool wants_gables) {

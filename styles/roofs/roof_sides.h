@@ -57,6 +57,9 @@ double party_share_of(const PlanEdge& facade, std::optional<model::Point2> stree
 std::optional<model::Point2> ridge_between(const model::Polygon& plan, const std::vector<PlanEdge>& edges,
                                            const std::vector<char>& party);
 
+/// True where neighbours stand at all sides of a plan: no eaves can be had, water runs off inside.
+bool is_enclosed(const model::Polygon& plan, const std::vector<model::RoofEdge>& edges);
+
 /// The direction of the ridge of a plan of one wing in a row, as roof_sides() lays it; none where party walls say nothing.
 std::optional<model::Point2> row_axis(const model::Polygon& plan, const RoofRequest& request);
 

@@ -1,9 +1,10 @@
 // Flat roofs, and directions.
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/base/portable_math.h"
 #include "styles/roofs/roof.h"
-#include "styles/roofs/wing_ends.h"
+#include "styles/roofs/roof_sides.h"
 
 namespace blockrand::roofs {
 
@@ -59,12 +60,21 @@ Point2 default_slope(const Polygon& plan, const std::vector<model::RoofEdge>& ed
     }
     return length;
   };
+  const auto street = known ? street_outlook(all, edges) : std::nullopt;
+  const bool in_row = known && std::find(edges.begin(), edges.end(), model::RoofEdge::party_wall) != edges.end();
   Point2 down{0, -1};
   double best = -1;
   int best_rank = -1;
   for (std::size_t e = 0; e < n; ++e) {
-    const bool leans = !is(e, model::RoofEdge::party_wall) && opposite(e) > all[e].length / 2;
-    const int rank = is(e, model::RoofEdge::party_wall) ? 0 : !leans ? 1 : is(e, model::RoofEdge::street) ? 2 : 3;
+    const bool party = is(e, model::RoofEdge::party_wall);
+    const bool leans = !party && opposite(e) > all[e].length / 2;
+    const double away = street ? -(all[e].outwards().x * street->x + all[e].outwards().y * street->y) : 0;
+    constexpr double kAway = 0.7;  // cosine of about 45 degrees
+    const int rank = party                                                   ? 0
+                     : in_row && away > kAway                                ? 4
+                     : leans && !is(e, model::RoofEdge::street)              ? 3
+                     : in_row && is(e, model::RoofEdge::street)              ? 2
+                                                                             : 1;
     if (rank < best_rank || (rank == best_rank && all[e].length <= best)) continue;
     best_rank = rank;
     best = all[e].length;
