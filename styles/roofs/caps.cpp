@@ -202,6 +202,16 @@ class Caps {
 
   void place_feet(Line& line) {
     const Point2 along = unit(minus(line.to.xy(), line.from.xy()));
+    // A cap that is wider than the overhang's edge ends at the wall.
+    const auto too_wide = [&](const OverhangCorner* c) {
+      if (!c) return false;
+      const auto beyond = [&](Point2 edge, double length) {
+        return length * std::fabs(cross(edge, along)) < options_.width / 2;
+      };
+      return beyond(c->before, c->length_before) || beyond(c->after, c->length_after);
+    };
+    if (too_wide(line.beyond_from)) line.beyond_from = nullptr;
+    if (too_wide(line.beyond_to)) line.beyond_to = nullptr;
     const auto feet = [&](Half& half, Point3 start, Point3 end, Point2 way, const std::optional<Point2>& cut_start,
                           const std::optional<Point2>& cut_end) {
       const auto& loop = loop_of(half.at);
@@ -238,8 +248,29 @@ class Caps {
     return {end_of(l), start_of(l), l.right.end_foot, l.right.start_foot};
   }
 
+  /// The same, on to the edge of the overhang and cut along it.
+  std::vector<Point2> extended(const Line& l, bool left) const {
+    auto o = outline(l, left);
+    const Point2 way = unit(minus(o[1], o[0])), across{-way.y, way.x};
+    const auto extend = [&](const OverhangCorner* c, bool at_start) {
+      if (!c) return;
+      // Seen outwards, a ring runs from right to left: what leaves the corner lies on the left.
+      const Point2 edge = at_start ? c->before : c->after;
+      const double along_edge = dot(edge, across);
+      if (std::fabs(along_edge) < kLeastAcross) return;
+      const Point2 tip = c->outer.xy();
+      o[at_start ? 0 : 1] = tip;
+      o[at_start ? 3 : 2] = moved(tip, edge, options_.width / 2 / along_edge);
+    };
+    const bool cut_start = left ? l.cut_from.has_value() : l.cut_to.has_value(),
+               cut_end = left ? l.cut_to.has_value() : l.cut_from.has_value();
+    if (!cut_start) extend(left ? l.beyond_from : l.beyond_to, true);
+    if (!cut_end) extend(left ? l.beyond_to : l.beyond_from, false);
+    return o;
+  }
+
   bool drop_conflicts() {
-    std::set<std::size_t> bad;
+    std::set<std::size_t> bad, back;
     std::map<std::uint32_t, std::vector<std::pair<std::size_t, bool>>> by_surface;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (!lines_[i].capped) continue;
@@ -260,14 +291,20 @@ class Caps {
     for (const auto& [surface, halves] : by_surface)
       for (std::size_t i = 0; i < halves.size(); ++i)
         for (std::size_t k = i + 1; k < halves.size(); ++k)
-          if (!bad.contains(halves[i].first) && !bad.contains(halves[k].first) &&
-              convex_overlap(outline(lines_[halves[i].first], halves[i].second),
-                             outline(lines_[halves[k].first], halves[k].second), kTouch)) {
+          if (!bad.contains(halves[i].first) && !bad.contains(halves[k].first)) {
+            const auto [one, one_left] = halves[i];
+            const auto [other, other_left] = halves[k];
+            if (!convex_overlap(extended(lines_[one], one_left), extended(lines_[other], other_left), kTouch)) continue;
+            if (!convex_overlap(outline(lines_[one], one_left), outline(lines_[other], other_left), kTouch)) {
+              back.insert({one, other});
+              continue;
+            }
             // The shorter one gives way.
             const bool first = length_of(lines_[halves[i].first]) < length_of(lines_[halves[k].first]);
             bad.insert(first ? halves[i].first : halves[k].first);
           }
-    bool dropped = false;
+    bool dropped = !back.empty();
+    for (const std::size_t i : back) lines_[i].beyond_from = lines_[i].beyond_to = nullptr;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (bad.contains(i)) lines_[i].capped = false;
       if (!lines_[i].capped && counted_.insert(i).second) dropped = true;
@@ -290,24 +327,9 @@ class Caps {
     const double rises = (line.to.z - line.from.z) / length_of(line);
     const auto ridge = [&](Point2 p) { return line.from.z + rises * dot(minus(p, line.from.xy()), along); };
     const auto side = [&](const Half& half, bool left) {
-      auto o = outline(line, left);
+      const auto o = extended(line, left);
       const Point2 way = unit(minus(o[1], o[0])), across{-way.y, way.x};
       const double fall = -dot(half.plane.gradient, across) * options_.width / 2;
-      // On to the edge of the overhang, cut along it.
-      const auto extend = [&](const OverhangCorner* c, bool at_start) {
-        if (!c) return;
-        // Seen outwards, a ring runs from right to left: what leaves the corner lies on the left.
-        const Point2 edge = at_start ? c->before : c->after;
-        const double along_edge = dot(edge, across);
-        if (std::fabs(along_edge) < kLeastAcross) return;
-        const Point2 tip = c->outer.xy();
-        o[at_start ? 0 : 1] = tip;
-        o[at_start ? 3 : 2] = moved(tip, edge, options_.width / 2 / along_edge);
-      };
-      const bool cut_start = left ? line.cut_from.has_value() : line.cut_to.has_value(),
-                 cut_end = left ? line.cut_to.has_value() : line.cut_from.has_value();
-      if (!cut_start) extend(left ? line.beyond_from : line.beyond_to, true);
-      if (!cut_end) extend(left ? line.beyond_to : line.beyond_from, false);
       const auto corner = [&](bool at_start, double share) {
         const Point2 node = o[at_start ? 0 : 1], foot = o[at_start ? 3 : 2];
         const Point2 p = model::snap(Point2{node.x + share * (foot.x - node.x), node.y + share * (foot.y - node.y)});

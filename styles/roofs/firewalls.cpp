@@ -68,7 +68,7 @@ std::vector<Stretch> open_stretches(std::uint32_t edge, const HeightLine& own, c
 }  // namespace
 
 BuiltFirewalls firewalls(const model::Polygon& plan, const Roof& roof, std::span<const FirewallSide> sides,
-                         const FirewallOptions& options) {
+                         std::span<const std::vector<Point2>> keep_clear, const FirewallOptions& options) {
   const auto edges = plan_edges(plan);
   std::vector<HeightLine> own(edges.size());
   for (const TopSegment& s : top_segments(plan, roof)) {
@@ -114,7 +114,11 @@ BuiltFirewalls firewalls(const model::Polygon& plan, const Roof& roof, std::span
   std::vector<std::uint32_t> edge_of;
   std::vector<RoofPlane> planes;
   for (const auto& surface : roof.surfaces) planes.push_back(surface.upright ? RoofPlane{} : plane_of(surface));
-  for (const RoofPiece& piece : pieces_under(roof, out.places)) {
+  // What lies in something else's place belongs to that: the first region that holds a piece counts.
+  std::vector<std::vector<Point2>> regions(keep_clear.begin(), keep_clear.end());
+  regions.insert(regions.end(), out.places.begin(), out.places.end());
+  for (const RoofPiece& piece : pieces_under(roof, regions)) {
+    if (piece.region < keep_clear.size()) continue;
     const RoofPlane& plane = planes[static_cast<std::size_t>(piece.surface)];
     PlanCell cell;
     const auto add = [&](const model::Ring& ring) {
@@ -127,7 +131,7 @@ BuiltFirewalls firewalls(const model::Polygon& plan, const Roof& roof, std::span
     add(piece.plan.outer);
     for (const auto& hole : piece.plan.holes) add(hole);
     cells.push_back(std::move(cell));
-    edge_of.push_back(stretches[piece.region].edge);
+    edge_of.push_back(stretches[piece.region - keep_clear.size()].edge);
   }
   CellBodies made = bodies_of_cells(cells, {SurfaceKind::roof, SurfaceKind::wall, SurfaceKind::closure});
   for (model::Solid& solid : made.solids) out.elements.bodies.push_back({RoofElementKind::firewall, std::move(solid)});

@@ -30,15 +30,16 @@ struct FirewallSide {
   std::vector<NeighbourTop> neighbour;  ///< rising along; level beyond its ends; empty for nothing: the wall stands bare
 };
 
-/// Firewalls along party walls, on those stretches where the neighbour's top is lower than our roof: from the roof's surface
-/// up to `height` above it, following the roof. Walls of neighbouring edges are one body. `asked` counts plan edges that have such a
-/// stretch.
-/// \param sides  one per plan edge, ring by ring
 struct BuiltFirewalls {
-  BuiltElements elements;
+  BuiltElements elements;  ///< `asked` counts plan edges that have a stretch with a lower neighbour
   std::vector<std::vector<model::Point2>> places;  ///< convex pieces of the plan that they stand on, counter-clockwise
 };
+
+/// Firewalls along party walls, on those stretches where the neighbour's top is lower than our roof: from the roof's
+/// surface up to `height` above it, following the roof. Walls of neighbouring edges are one body.
+/// \param sides  one per plan edge, ring by ring
+/// \param keep_clear  convex pieces of the plan (counter-clockwise) where other things stand: gables. Walls end before them.
 BuiltFirewalls firewalls(const model::Polygon& plan, const Roof& roof, std::span<const FirewallSide> sides,
-                         const FirewallOptions& options = {});
+                         std::span<const std::vector<model::Point2>> keep_clear, const FirewallOptions& options = {});
 
 }  // namespace blockrand::roofs

@@ -70,7 +70,7 @@ class Overhangs {
         s.step_after = tops[s.after].from != s.top.to;
         if (std::fabs(s.top.to.z - s.top.from.z) > kRising * s.top.length()) s.kind = RoofElementKind::verge;
         const OverhangRoom room = rooms.empty() ? OverhangRoom{} : rooms[s.top.edge];
-        if (room.edge != RoofEdge::party_wall) {
+        if (room.edge != RoofEdge::party_wall && room.room > 0) {
           s.asked = s.kind == RoofElementKind::verge ? options.verge : options.eaves;
           const double steepness = std::fabs(dot(s.top.gradient, s.top.outward()));
           s.reach = std::min(s.asked, room.room);
@@ -120,7 +120,9 @@ class Overhangs {
       if (s.reach == 0 || next.reach == 0 || !s.joined_after) continue;
       const double z = height(s, s.top.to, s.end), other = height(next, next.top.from, next.start);
       if (std::fabs(z - other) > kSameHeight) continue;
-      out.corners.push_back({s.top.to, {s.end.x, s.end.y, z}, s.top.along, next.top.along});
+      out.corners.push_back({s.top.to, {s.end.x, s.end.y, z}, s.top.along, next.top.along,
+                             std::hypot(s.end.x - s.start.x, s.end.y - s.start.y),
+                             std::hypot(next.end.x - next.start.x, next.end.y - next.start.y)});
     }
     return out;
   }

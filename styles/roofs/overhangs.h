@@ -24,17 +24,18 @@ struct OverhangOptions {
 /// What limits the overhang of a plan edge.
 struct OverhangRoom {
   model::RoofEdge edge = model::RoofEdge::open;  ///< party walls have none
-  double room = 1e9;                             ///< m to what stands before the wall; 0 keeps the edge bare (a gable of its own)
+  double room = 1e9;                             ///< m to what stands before the wall, as far as the overhang may go; 0: none is asked for
 };
 
 /// Where the eaves and verges on both sides of a point of the outline meet in one point: a hip or ridge goes on to there.
 struct OverhangCorner {
   model::Point3 inner, outer;    ///< m, of the upper side: on the wall; at the edge of the overhang
   model::Point2 before, after;   ///< unit vectors along the outer edge, in the ring's direction, before and after it
+  double length_before = 0, length_after = 0;  ///< m, of the outer edges
 };
 
 struct BuiltOverhangs {
-  BuiltElements elements;              ///< kinds eaves and verge; `asked` counts plan edges that are no party walls
+  BuiltElements elements;              ///< kinds eaves and verge; `asked` counts plan edges with room that are no party walls
   std::vector<OverhangCorner> corners;
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pipeline/geometry/grid.h"
+#include "pipeline/geometry/planar_faces.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/roof_surfaces.h"
 #include "pipeline/geometry/weighted_skeleton.h"
@@ -35,7 +36,7 @@ struct Border {
 
 /// The strips of all borders with a parapet, of `width` metres, as pieces of the deck; `surface` is the border's number.
 std::optional<std::vector<RoofPiece>> strips(const Polygon& deck, const std::vector<Border>& borders, double width,
-                                             double coarseness) {
+                                             std::span<const std::vector<Point2>> keep_clear, double coarseness) {
   std::vector<geometry::EdgeProfile> profiles;
   for (const Border& b : borders) profiles.push_back({b.height > 0 ? 1.0 : geometry::kUpright, {}});
   const auto skeleton = geometry::weighted_skeleton(deck, profiles, width);
@@ -65,6 +66,10 @@ std::optional<std::vector<RoofPiece>> strips(const Polygon& deck, const std::vec
     const Point2 p = b.shape.to, in = b.shape.inward();
     cuts.push_back({p, {p.x + in.x * 2 * width, p.y + in.y * 2 * width}});
   }
+  for (const auto& place : keep_clear) {
+    cuts.push_back(place);
+    cuts.back().push_back(place.front());
+  }
   std::vector<RoofPiece> out;
   if (cuts.empty()) {
     for (std::size_t i = 0; i < pieces.size(); ++i)
@@ -72,9 +77,11 @@ std::optional<std::vector<RoofPiece>> strips(const Polygon& deck, const std::vec
     return out;
   }
   for (RoofPiece& piece : pieces_of(pieces, cuts)) {
+    const Point2 inside = geometry::inner_point(piece.plan);
+    if (std::any_of(keep_clear.begin(), keep_clear.end(), [&](const auto& k) { return geometry::contains(k, inside); }))
+      continue;
     // Of the borders on its line the one that lies beside it.
     const std::uint32_t line = skeleton->merged[border_of[static_cast<std::size_t>(piece.surface)]];
-    const Point2 inside = geometry::centroid(piece.plan.outer.points);
     double nearest = 1e18;
     for (std::size_t i = 0; i < borders.size(); ++i) {
       if (skeleton->merged[i] != line) continue;
@@ -91,7 +98,8 @@ std::optional<std::vector<RoofPiece>> strips(const Polygon& deck, const std::vec
 }  // namespace
 
 BuiltElements parapets(const Polygon& plan, const Roof& roof, std::span<const RoofEdge> edges,
-                       const std::vector<bool>& bare, const ParapetOptions& options) {
+                       const std::vector<bool>& bare, std::span<const std::vector<Point2>> keep_clear,
+                       const ParapetOptions& options) {
   std::map<std::pair<Grid3, Grid3>, std::uint32_t> edge_at;
   for (const TopSegment& s : top_segments(plan, roof))
     edge_at[{geometry::to_grid(s.from), geometry::to_grid(s.to)}] = s.edge;
@@ -138,7 +146,7 @@ BuiltElements parapets(const Polygon& plan, const Roof& roof, std::span<const Ro
     std::optional<std::vector<RoofPiece>> pieces;
     CellBodies made;
     for (const double coarseness : kCoarseness) {
-      pieces = strips(deck, borders, options.width, coarseness);
+      pieces = strips(deck, borders, options.width, keep_clear, coarseness);
       if (!pieces) continue;
       std::vector<PlanCell> cells;
       for (const RoofPiece& piece : *pieces) {

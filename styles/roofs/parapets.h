@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "pipeline/model/polygon.h"
 #include "pipeline/model/roof_line.h"
@@ -23,8 +24,11 @@ struct ParapetOptions {
 /// one, else a body for each run. Mitred at corners, cut along the next wall at open ends. Where the roof is narrower than two
 /// widths, both become one. `asked` counts borders of level surfaces on plan edges.
 /// \param edges  one per plan edge, ring by ring; empty for all open
-/// \param bare  one per plan edge: true where something else stands; empty for none
+/// \param bare  one per plan edge: true where something else stands on it; empty for none
+/// \param keep_clear  convex pieces of the plan (counter-clockwise) where other things stand: firewalls, gables. Parapets end
+///                    before them.
 BuiltElements parapets(const model::Polygon& plan, const Roof& roof, std::span<const model::RoofEdge> edges,
-                       const std::vector<bool>& bare, const ParapetOptions& options = {});
+                       const std::vector<bool>& bare, std::span<const std::vector<model::Point2>> keep_clear,
+                       const ParapetOptions& options = {});
 
 }  // namespace blockrand::roofs

@@ -49,7 +49,7 @@ Roof gable_roof(const Polygon& plan, double eaves = 10, double height = 5) {
 
 TEST(Parapets, OneRingWithAHoleOnARectangle) {
   const Roof roof = flat_roof(kRectangle, kTop);
-  const auto built = parapets(kRectangle, roof, {}, {}, {.height = 0.6, .width = 0.25});
+  const auto built = parapets(kRectangle, roof, {}, {}, {}, {.height = 0.6, .width = 0.25});
   ASSERT_EQ(built.bodies.size(), 1u);
   EXPECT_EQ(built.asked, 4);
   EXPECT_EQ(fault_on(kRectangle, roof, built), "");
@@ -66,12 +66,12 @@ TEST(Parapets, OneRingWithAHoleOnARectangle) {
 TEST(Parapets, LeavePartyWallsOpen) {
   const Roof roof = flat_roof(kRectangle, kTop);
   const std::vector<RoofEdge> edges{RoofEdge::street, RoofEdge::party_wall, RoofEdge::courtyard, RoofEdge::party_wall};
-  const auto open = parapets(kRectangle, roof, edges, {}, {.height = 0.5, .width = 0.25});
+  const auto open = parapets(kRectangle, roof, edges, {}, {}, {.height = 0.5, .width = 0.25});
   EXPECT_EQ(open.bodies.size(), 2u);
   EXPECT_EQ(open.asked, 2);
   EXPECT_NEAR(volume(open), 2 * 20 * 0.25 * 0.5, 0.02);
   EXPECT_EQ(fault_on(kRectangle, roof, open), "");
-  const auto lower = parapets(kRectangle, roof, edges, {}, {.height = 0.5, .width = 0.25, .party_wall_height = 0.3});
+  const auto lower = parapets(kRectangle, roof, edges, {}, {}, {.height = 0.5, .width = 0.25, .party_wall_height = 0.3});
   ASSERT_EQ(lower.bodies.size(), 1u);
   EXPECT_EQ(fault_on(kRectangle, roof, lower), "");
   // Mitred, so that each wall has half of both corners' squares.
@@ -80,7 +80,7 @@ TEST(Parapets, LeavePartyWallsOpen) {
 
 TEST(Parapets, BareEdgesHaveNone) {
   const Roof roof = flat_roof(kRectangle, kTop);
-  const auto built = parapets(kRectangle, roof, {}, {true, false, false, false});
+  const auto built = parapets(kRectangle, roof, {}, {true, false, false, false}, {});
   ASSERT_EQ(built.bodies.size(), 1u);
   EXPECT_EQ(built.asked, 3);
   EXPECT_EQ(fault_on(kRectangle, roof, built), "");
@@ -90,7 +90,7 @@ TEST(Parapets, CourtsHaveTheirOwnRing) {
   Polygon plan = polygon({{0, 0}, {20, 0}, {20, 20}, {0, 20}});
   plan.holes.push_back(ring({{8, 8}, {8, 12}, {12, 12}, {12, 8}}));
   const Roof roof = flat_roof(plan, kTop);
-  const auto built = parapets(plan, roof, {}, {}, {.height = 0.5, .width = 0.25});
+  const auto built = parapets(plan, roof, {}, {}, {}, {.height = 0.5, .width = 0.25});
   EXPECT_EQ(built.bodies.size(), 2u);
   EXPECT_EQ(fault_on(plan, roof, built), "");
   EXPECT_NEAR(volume(built), (400 - 19.5 * 19.5 + 4.5 * 4.5 - 16) * 0.5, 0.03);
@@ -100,7 +100,7 @@ TEST(Parapets, NarrowPartsAreFilled) {
   // A tongue of 0.4 m, narrower than two walls.
   const Polygon plan = polygon({{0, 0}, {10, 0}, {10, 4}, {16, 4}, {16, 4.4}, {10, 4.4}, {10, 8}, {0, 8}});
   const Roof roof = flat_roof(plan, kTop);
-  const auto built = parapets(plan, roof, {}, {}, {.height = 0.5, .width = 0.3});
+  const auto built = parapets(plan, roof, {}, {}, {}, {.height = 0.5, .width = 0.3});
   EXPECT_EQ(built.refused, 0);
   EXPECT_EQ(fault_on(plan, roof, built), "");
   EXPECT_NEAR(volume(built), (80 - 9.4 * 7.4 + 6 * 0.4) * 0.5, 0.06);
@@ -109,7 +109,7 @@ TEST(Parapets, NarrowPartsAreFilled) {
 TEST(Parapets, AreSolidOnPlansNarrowerThanTwoWalls) {
   const Polygon plan = polygon({{0, 0}, {10, 0}, {10, 0.5}, {0, 0.5}});
   const Roof roof = flat_roof(plan, kTop);
-  const auto built = parapets(plan, roof, {}, {}, {.height = 0.5, .width = 0.3});
+  const auto built = parapets(plan, roof, {}, {}, {}, {.height = 0.5, .width = 0.3});
   ASSERT_EQ(built.bodies.size(), 1u);
   EXPECT_NEAR(volume(built), 10 * 0.5 * 0.5, 0.01);
 }
@@ -118,7 +118,7 @@ TEST(Parapets, EndWhereTheNeighbourBeginsOnAStraightWall) {
   const Polygon plan = polygon({{0, 0}, {8, 0}, {20, 0}, {20, 10}, {0, 10}});
   const std::vector<RoofEdge> edges{RoofEdge::open, RoofEdge::party_wall, RoofEdge::open, RoofEdge::open, RoofEdge::open};
   const Roof roof = flat_roof(plan, kTop);
-  const auto built = parapets(plan, roof, edges, {}, {.height = 0.5, .width = 0.25});
+  const auto built = parapets(plan, roof, edges, {}, {}, {.height = 0.5, .width = 0.25});
   EXPECT_EQ(fault_on(plan, roof, built), "");
   for (const auto& body : built.bodies)
     for (const Point3& p : body.solid.vertices)
@@ -133,17 +133,17 @@ TEST(Parapets, StandOnTheBordersOfADeckAlone) {
   request.shape = RoofShape::double_saltbox;
   request.measures = {10, 3};
   const Roof roof = build_roof(kRectangle, request)->roof;
-  const auto built = parapets(kRectangle, roof, {}, {});
+  const auto built = parapets(kRectangle, roof, {}, {}, {});
   EXPECT_EQ(built.asked, 2);  // where the deck ends at both gables
   EXPECT_EQ(built.bodies.size(), 2u);
   EXPECT_EQ(fault_on(kRectangle, roof, built), "");
-  const auto around = parapets(kRectangle, roof, {}, {}, {.around_decks = true});
+  const auto around = parapets(kRectangle, roof, {}, {}, {}, {.around_decks = true});
   EXPECT_EQ(around.bodies.size(), 1u);
   EXPECT_EQ(fault_on(kRectangle, roof, around), "");
 }
 
 TEST(Parapets, NoneOnSlopes) {
-  EXPECT_TRUE(parapets(kRectangle, gable_roof(kRectangle), {}, {}).bodies.empty());
+  EXPECT_TRUE(parapets(kRectangle, gable_roof(kRectangle), {}, {}, {}).bodies.empty());
 }
 
 TEST(Parapets, AreValidOnRandomPlans) {
@@ -158,7 +158,7 @@ TEST(Parapets, AreValidOnRandomPlans) {
     for (RoofEdge& e : edges)
       if (random.next(4) == 0) e = RoofEdge::party_wall;
     for (const double party : {0.0, 0.3}) {
-      const auto built = parapets(plan, roof, edges, {}, {.party_wall_height = party});
+      const auto built = parapets(plan, roof, edges, {}, {}, {.party_wall_height = party});
       ASSERT_EQ(fault_on(plan, roof, built), "") << "plan " << i;
       asked += built.asked;
       refused += built.refused;
@@ -171,7 +171,7 @@ TEST(Parapets, AreValidOnRandomPlans) {
 TEST(Parapets, RingOfSixHundredCorners) {
   const Polygon plan = roof_checks::regular(600, 40);
   const Roof roof = flat_roof(plan, kTop);
-  const auto built = parapets(plan, roof, {}, {});
+  const auto built = parapets(plan, roof, {}, {}, {});
   ASSERT_EQ(built.bodies.size(), 1u);
   EXPECT_EQ(built.refused, 0);
   EXPECT_NEAR(volume(built), 3.14159 * (40 * 40 - 39.7 * 39.7) * 0.5, 0.5);
@@ -187,7 +187,7 @@ std::vector<FirewallSide> sides(std::size_t count, std::initializer_list<std::si
 
 TEST(Firewalls, FollowTheGable) {
   const Roof roof = gable_roof(kRectangle);
-  const auto built = firewalls(kRectangle, roof, sides(4, {1, 3}));
+  const auto built = firewalls(kRectangle, roof, sides(4, {1, 3}), {});
   EXPECT_EQ(built.elements.bodies.size(), 2u);
   EXPECT_EQ(built.elements.asked, 2);
   EXPECT_EQ(fault_on(kRectangle, roof, built.elements), "");
@@ -206,9 +206,9 @@ TEST(Firewalls, NoneWhereTheNeighbourIsAsHigh) {
   const Roof roof = gable_roof(kRectangle);
   auto both = sides(4, {1});
   both[1].neighbour = {{0, 10}, {5, 15}, {10, 10}};
-  EXPECT_EQ(firewalls(kRectangle, roof, both).elements.asked, 0);
+  EXPECT_EQ(firewalls(kRectangle, roof, both, {}).elements.asked, 0);
   both[1].neighbour = {{0, 20}};
-  EXPECT_EQ(firewalls(kRectangle, roof, both).elements.asked, 0);
+  EXPECT_EQ(firewalls(kRectangle, roof, both, {}).elements.asked, 0);
 }
 
 TEST(Firewalls, StandOnTheStretchesThatAreHigher) {
@@ -216,7 +216,7 @@ TEST(Firewalls, StandOnTheStretchesThatAreHigher) {
   const Roof roof = gable_roof(kRectangle);
   auto one = sides(4, {1});
   one[1].neighbour = {{0, 12.45}};
-  const auto built = firewalls(kRectangle, roof, one);
+  const auto built = firewalls(kRectangle, roof, one, {});
   ASSERT_EQ(built.elements.bodies.size(), 1u);
   EXPECT_EQ(fault_on(kRectangle, roof, built.elements), "");
   double least = 1e9, most = -1e9;
@@ -230,12 +230,12 @@ TEST(Firewalls, StandOnTheStretchesThatAreHigher) {
 
 TEST(Firewalls, CornersAreOneBody) {
   const Roof roof = flat_roof(kRectangle, kTop);
-  const auto built = firewalls(kRectangle, roof, sides(4, {0, 1}));
+  const auto built = firewalls(kRectangle, roof, sides(4, {0, 1}), {});
   ASSERT_EQ(built.elements.bodies.size(), 1u);
   EXPECT_NEAR(volume(built.elements), (20 + 10 - 0.25) * 0.25 * 0.3, 0.01);
   const Polygon l = polygon({{0, 0}, {20, 0}, {20, 8}, {8, 8}, {8, 18}, {0, 18}});
   const Roof flat = flat_roof(l, kTop);
-  const auto inner = firewalls(l, flat, sides(6, {2, 3}));  // the inner corner
+  const auto inner = firewalls(l, flat, sides(6, {2, 3}), {});  // the inner corner
   ASSERT_EQ(inner.elements.bodies.size(), 1u);
   EXPECT_EQ(fault_on(l, flat, inner.elements), "");
   EXPECT_NEAR(volume(inner.elements), (12 + 10 + 0.25) * 0.25 * 0.3, 0.01);
@@ -265,8 +265,8 @@ TEST_P(FirewallsAndParapets, AreValidAndTouchOnly) {
           edges[i] = RoofEdge::party_wall;
           if (random.next(2) == 0) party[i].neighbour = {{0, 9 + 6 * random.unit()}, {8, 9 + 6 * random.unit()}};
         }
-      const auto walls = firewalls(place, built->roof, party);
-      const auto around = parapets(place, built->roof, edges, {});
+      const auto walls = firewalls(place, built->roof, party, {});
+      const auto around = parapets(place, built->roof, edges, {}, {});
       EXPECT_EQ(fault(house, walls.elements.bodies), "") << name << " at " << angle;
       EXPECT_EQ(fault(house, around.bodies), "") << name << " at " << angle;
       asked += walls.elements.asked;
