@@ -65,7 +65,7 @@ class Caps {
  public:
   Caps(const Roof& roof, std::span<const OverhangCorner> corners, std::span<const std::vector<Point2>> keep_clear,
        const CapOptions& options)
-      : roof_(roof), options_(options) {
+      : roof_(roof), keep_clear_(keep_clear.begin(), keep_clear.end()), options_(options) {
     for (std::uint32_t s = 0; s < roof.surfaces.size(); ++s)
       for (std::uint32_t l = 0; l < roof.surfaces[s].loops.size(); ++l) {
         const auto& loop = roof.surfaces[s].loops[l];
@@ -79,7 +79,7 @@ class Caps {
       if (twin == edges_.end()) continue;
       if (auto line = line_of(at, twin->second)) {
         ++asked_;
-        cut(*line, keep_clear);
+        cut(*line);
         line_at_[edge] = line_at_[{edge.second, edge.first}] = lines_.size();
         lines_.push_back(*line);
       }
@@ -145,11 +145,11 @@ class Caps {
   }
 
   /// Ends a line before what stands on it.
-  void cut(Line& line, std::span<const std::vector<Point2>> keep_clear) const {
+  void cut(Line& line) const {
     const Point2 from = line.from.xy(), along = unit(minus(line.to.xy(), from));
     const double length = length_of(line), half = options_.width / 2 + kTouch;
     double start = 0, end = length;
-    for (const auto& piece : keep_clear) {
+    for (const auto& piece : keep_clear_) {
       // What of the piece lies in the cap's band, along the line.
       double first = 1e9, last = -1e9;
       for (std::size_t i = 0; i < piece.size(); ++i) {
@@ -271,6 +271,7 @@ class Caps {
 
   bool drop_conflicts() {
     std::set<std::size_t> bad, back;
+    bool changed = false;
     std::map<std::uint32_t, std::vector<std::pair<std::size_t, bool>>> by_surface;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (!lines_[i].capped) continue;
@@ -288,6 +289,23 @@ class Caps {
             if (segment_enters(o, loop[k].xy(), loop[(k + 1) % loop.size()].xy(), kTouch)) bad.insert(i);
       }
     }
+    // Where an oblique end comes into something's place, a square one may not.
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      Line& l = lines_[i];
+      if (!l.capped || bad.contains(i)) continue;
+      for (const auto& piece : keep_clear_) {
+        if (!convex_overlap(extended(l, true), piece, kTouch) && !convex_overlap(extended(l, false), piece, kTouch))
+          continue;
+        if (l.cut_from && l.cut_to) {
+          bad.insert(i);
+        } else {
+          if (!l.cut_from) l.cut_from = l.from.xy();
+          if (!l.cut_to) l.cut_to = l.to.xy();
+          changed = true;
+        }
+        break;
+      }
+    }
     for (const auto& [surface, halves] : by_surface)
       for (std::size_t i = 0; i < halves.size(); ++i)
         for (std::size_t k = i + 1; k < halves.size(); ++k)
@@ -303,13 +321,13 @@ class Caps {
             const bool first = length_of(lines_[halves[i].first]) < length_of(lines_[halves[k].first]);
             bad.insert(first ? halves[i].first : halves[k].first);
           }
-    bool dropped = !back.empty();
+    changed = changed || !back.empty();
     for (const std::size_t i : back) lines_[i].beyond_from = lines_[i].beyond_to = nullptr;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (bad.contains(i)) lines_[i].capped = false;
-      if (!lines_[i].capped && counted_.insert(i).second) dropped = true;
+      if (!lines_[i].capped && counted_.insert(i).second) changed = true;
     }
-    return dropped;
+    return changed;
   }
 
   /// Height of the cap above the roof at a share of the way from ridge (0) to foot (1) that falls by `fall` on it.
@@ -353,6 +371,7 @@ class Caps {
   }
 
   const Roof& roof_;
+  std::vector<std::vector<Point2>> keep_clear_;
   CapOptions options_;
   std::map<Edge, EdgeAt> edges_;
   std::map<Grid3, const OverhangCorner*> corners_;

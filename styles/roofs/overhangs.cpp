@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include "pipeline/geometry/polygon.h"
 #include "styles/roofs/roof_outline.h"
 
 namespace blockrand::roofs {
@@ -57,7 +58,7 @@ class Overhangs {
  public:
   Overhangs(const model::Polygon& plan, const Roof& roof, std::span<const OverhangRoom> rooms,
             const OverhangOptions& options)
-      : edges_(plan_edges(plan)), options_(options) {
+      : plan_(plan), edges_(plan_edges(plan)), options_(options) {
     const auto tops = top_segments(plan, roof);
     for (std::size_t i = 0; i < tops.size();) {
       std::size_t end = i;
@@ -208,7 +209,9 @@ class Overhangs {
         continue;
       if (segment_enters(outline, e.from, e.to, kTouch)) return true;
     }
-    return false;
+    // A gable that goes on over lower parts of the roof, beyond its plan edge.
+    return geometry::contains(plan_, {(s.top.from.x + s.top.to.x + s.start.x + s.end.x) / 4,
+                                      (s.top.from.y + s.top.to.y + s.start.y + s.end.y) / 4});
   }
 
   static std::pair<Point2, Point2> box(const Strip& s) {
@@ -260,6 +263,7 @@ class Overhangs {
     }
   }
 
+  const model::Polygon& plan_;
   std::vector<PlanEdge> edges_;
   std::vector<Strip> strips_;
   OverhangOptions options_;
