@@ -21,14 +21,14 @@ using model::SurfaceKind;
 
 namespace {
 
-constexpr double kFalls = 0.0349;     ///< tan 2 degrees: a surface that falls less from a line is level
-constexpr double kRising = 0.0524;    ///< tan 3 degrees: a line that rises more is a hip
-constexpr double kTouch = 0.003;      ///< m: what overlaps by less touches
-constexpr double kShortest = 0.02;    ///< m: a foot shorter than this is none
-constexpr double kBluntest = 2.6;     ///< rad (150 degrees): beyond, an end is square instead of cut along an edge
-constexpr double kSharpest = 0.17;    ///< rad (10 degrees): an end this pointed is none
-constexpr double kLeastAcross = 0.17; ///< sine of 10 degrees: an edge nearer to the line's direction cuts nothing
-constexpr double kGoesOn = 0.01;      ///< sine: an overhang's corner this far off the line continues it
+constexpr double kFalls = 0.0349;      ///< tan 2 degrees: a surface that falls less from a line is level
+constexpr double kRising = 0.0524;     ///< tan 3 degrees: a line that rises more is a hip
+constexpr double kTouch = 0.003;       ///< m: what overlaps by less touches
+constexpr double kShortest = 0.02;     ///< m: a foot shorter than this is none
+constexpr double kBluntest = 2.6;      ///< rad (150 degrees): beyond, an end is square instead of cut along an edge
+constexpr double kSharpest = 0.17;     ///< rad (10 degrees): an end this pointed is none
+constexpr double kLeastAcross = 0.17;  ///< sine of 10 degrees: an edge nearer to the line's direction cuts nothing
+constexpr double kGoesOn = 0.01;       ///< sine: an overhang's corner this far off the line continues it
 
 double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
@@ -49,13 +49,13 @@ using Edge = std::pair<Grid3, Grid3>;
 struct Half {
   EdgeAt at;
   RoofPlane plane;
-  Point2 start_foot, end_foot;   ///< of the cap on this side, in plan
+  Point2 start_foot, end_foot;  ///< of the cap on this side, in plan
 };
 
 struct Line {
   Point3 from, to;
   bool capped = true;
-  Half left, right;              ///< `right` runs from `to` to `from`
+  Half left, right;                        ///< `right` runs from `to` to `from`
   std::optional<Point2> cut_from, cut_to;  ///< where something stands on the line
   const OverhangCorner* beyond_from = nullptr;
   const OverhangCorner* beyond_to = nullptr;
@@ -158,9 +158,12 @@ class Caps {
         const double lp = cross(along, p), lq = cross(along, q);
         for (const double side : {1.0, -1.0}) {
           const double a = half - side * lp, b = half - side * lq;  // within when not negative
-          if (a < 0 && b < 0) u = 2;
-          else if (a < 0) u = std::max(u, a / (a - b));
-          else if (b < 0) v = std::min(v, a / (a - b));
+          if (a < 0 && b < 0)
+            u = 2;
+          else if (a < 0)
+            u = std::max(u, a / (a - b));
+          else if (b < 0)
+            v = std::min(v, a / (a - b));
         }
         if (u > v) continue;
         for (const double share : {u, v}) {
@@ -171,8 +174,10 @@ class Caps {
       }
       if (first >= end || last <= start) continue;
       // The longer one of both rests stays.
-      if (first - start > end - last) end = first;
-      else start = last;
+      if (first - start > end - last)
+        end = first;
+      else
+        start = last;
     }
     if (end - start < options_.least_length) {
       line.capped = false;

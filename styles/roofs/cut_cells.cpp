@@ -35,8 +35,10 @@ Polygon plan_of(const Roof::Surface& surface) {
     model::Ring ring;
     for (const auto& p : surface.loops[l]) ring.points.push_back(p.xy());
     ring.nodes.assign(ring.points.size(), 0);
-    if (l == 0) out.outer = std::move(ring);
-    else out.holes.push_back(std::move(ring));
+    if (l == 0)
+      out.outer = std::move(ring);
+    else
+      out.holes.push_back(std::move(ring));
   }
   return out;
 }

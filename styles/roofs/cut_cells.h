@@ -18,7 +18,8 @@ struct RoofPiece {
   std::uint32_t region = 0;   ///< the first of the regions that hold it
 };
 
-/// What of convex regions (counter-clockwise) lies under the roof, cut along the borders of its surfaces and of all regions.
+/// What of convex regions (counter-clockwise) lies under the roof, cut along the borders of its surfaces and of all
+/// regions.
 std::vector<RoofPiece> pieces_under(const Roof& roof, std::span<const std::vector<model::Point2>> regions);
 
 /// Polygons (outer counter-clockwise, holes clockwise) cut by the borders of each other and by lines; `surface` is the

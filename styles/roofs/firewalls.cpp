@@ -34,8 +34,8 @@ struct Stretch {
 };
 
 /// Where the neighbour is lower.
-std::vector<Stretch> open_stretches(std::uint32_t edge, const HeightLine& own, const HeightLine& neighbour, double length,
-                                    const FirewallOptions& options) {
+std::vector<Stretch> open_stretches(std::uint32_t edge, const HeightLine& own, const HeightLine& neighbour,
+                                    double length, const FirewallOptions& options) {
   if (neighbour.empty()) return {{edge, 0, length}};
   std::vector<double> places{0, length};
   for (const auto* line : {&own, &neighbour})
@@ -71,10 +71,13 @@ BuiltFirewalls firewalls(const model::Polygon& plan, const Roof& roof, std::span
                          std::span<const std::vector<Point2>> keep_clear, const FirewallOptions& options) {
   const auto edges = plan_edges(plan);
   std::vector<HeightLine> own(edges.size());
+  std::vector<std::vector<std::pair<double, Point2>>> tops(edges.size());
   for (const TopSegment& s : top_segments(plan, roof)) {
     const PlanEdge& e = edges[s.edge];
-    for (const model::Point3& p : {s.from, s.to})
+    for (const model::Point3& p : {s.from, s.to}) {
       own[s.edge].push_back({(p.x - e.from.x) * e.along.x + (p.y - e.from.y) * e.along.y, p.z});
+      tops[s.edge].push_back({own[s.edge].back().along, p.xy()});
+    }
   }
   std::vector<Stretch> stretches;
   for (std::uint32_t i = 0; i < edges.size() && i < sides.size(); ++i)
@@ -84,12 +87,14 @@ BuiltFirewalls firewalls(const model::Polygon& plan, const Roof& roof, std::span
 
   BuiltFirewalls out;
   std::set<std::uint32_t> asked, built;
+  std::vector<std::vector<Point2>> strips;
   for (const Stretch& s : stretches) {
     asked.insert(s.edge);
     const PlanEdge& e = edges[s.edge];
     const Point2 in = e.inward();
     const auto at = [&](double along, double deep) {
-      return model::snap(Point2{e.from.x + e.along.x * along + in.x * deep, e.from.y + e.along.y * along + in.y * deep});
+      return model::snap(
+          Point2{e.from.x + e.along.x * along + in.x * deep, e.from.y + e.along.y * along + in.y * deep});
     };
     // At inner corners both walls go on to where their inner faces meet.
     const auto reaches = [&](std::uint32_t edge, bool its_end) {
@@ -107,6 +112,17 @@ BuiltFirewalls firewalls(const model::Polygon& plan, const Roof& roof, std::span
     if (s.end > e.length - 1e-6 && reaches(e.after, false)) end += beyond(e.along, edges[e.after].along);
     const Point2 first = s.start < 1e-6 ? e.from : at(s.start, 0), last = s.end > e.length - 1e-6 ? e.to : at(s.end, 0);
     out.places.push_back({first, last, at(end, options.thickness), at(start, options.thickness)});
+    // Points of the wall's upper end lie off the edge's line by their rounding; the strip keeps to them.
+    std::vector<Point2> region{first};
+    constexpr double kApart = 0.003;  // m
+    double before = s.start;
+    for (const auto& [along, p] : tops[s.edge])
+      if (along > before + kApart && along < s.end - kApart) {
+        region.push_back(p);
+        before = along;
+      }
+    region.insert(region.end(), out.places.back().begin() + 1, out.places.back().end());
+    strips.push_back(std::move(region));
   }
   out.elements.asked = static_cast<int>(asked.size());
   if (stretches.empty()) return out;
@@ -116,7 +132,7 @@ BuiltFirewalls firewalls(const model::Polygon& plan, const Roof& roof, std::span
   for (const auto& surface : roof.surfaces) planes.push_back(surface.upright ? RoofPlane{} : plane_of(surface));
   // What lies in something else's place belongs to that: the first region that holds a piece counts.
   std::vector<std::vector<Point2>> regions(keep_clear.begin(), keep_clear.end());
-  regions.insert(regions.end(), out.places.begin(), out.places.end());
+  regions.insert(regions.end(), strips.begin(), strips.end());
   for (const RoofPiece& piece : pieces_under(roof, regions)) {
     if (piece.region < keep_clear.size()) continue;
     const RoofPlane& plane = planes[static_cast<std::size_t>(piece.surface)];

@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kMostEdges = 400;  ///< of the roof behind a gable; their crossings are looked for in pairs
 constexpr double kSamePlace = 1e-6;      ///< m
 constexpr double kBefore = 0.01;         ///< m before the edge: walls that are not quite straight
+constexpr double kClear = 0.02;          ///< m: a level piece shorter than this is no side of a solid
 constexpr double kStraight = 0.002;      ///< m: a point of a silhouette this near to its neighbours' line bends nothing
 
 /// What of a ring lies where `inside` is not negative (Sutherland and Hodgman).
@@ -64,7 +65,8 @@ double highest_until(std::span<const OutlinePoint> s, double along) {
   return most;
 }
 
-/// One flank of a stepped outline: how far in each level but the top one reaches. Empty where the roof there is too steep.
+/// One flank of a stepped outline: how far in each level but the top one reaches. Empty where the roof there is too
+/// steep.
 std::optional<std::vector<double>> flank(std::span<const OutlinePoint> silhouette, std::span<const double> levels,
                                          double lead, double least, double overtop) {
   const double width = silhouette.back().along;
@@ -100,7 +102,8 @@ std::vector<OutlinePoint> half_outline(std::span<const double> ends, std::span<c
       out.push_back({end, low});
       out.push_back({end, high});
     } else {
-      const double start = k == 0 && lead > 0 ? lead : before, middle = (start + end) / 2, half = (low + high) / 2;
+      const double start = k == 0 && lead > 0 ? lead + kClear : before, middle = (start + end) / 2,
+                   half = (low + high) / 2;
       if (start > out.back().along) out.push_back({start, low});
       for (int i = 1; i <= options.segments; ++i)
         out.push_back(bezier({start, low}, {middle, low}, {middle, half}, static_cast<double>(i) / options.segments));
@@ -145,7 +148,8 @@ std::vector<OutlinePoint> roof_silhouette(const Roof& roof, const PlanEdge& edge
   }
   for (std::size_t i = 0; i < lines.size(); ++i)
     for (std::size_t k = i + 1; k < lines.size(); ++k) {
-      const double start = std::max(lines[i].a.along, lines[k].a.along), end = std::min(lines[i].b.along, lines[k].b.along);
+      const double start = std::max(lines[i].a.along, lines[k].a.along),
+                   end = std::min(lines[i].b.along, lines[k].b.along);
       if (end - start < kSamePlace) continue;
       const double at_start = height_on(lines[i], start) - height_on(lines[k], start),
                    at_end = height_on(lines[i], end) - height_on(lines[k], end);
@@ -158,7 +162,8 @@ std::vector<OutlinePoint> roof_silhouette(const Roof& roof, const PlanEdge& edge
     if (!all.empty() && s - all.back().along < kSamePlace) continue;
     double most = -1e18;
     for (const Line& l : lines)
-      if (l.a.along <= s + kSamePlace && s <= l.b.along + kSamePlace) most = std::max(most, height_on(l, std::clamp(s, l.a.along, l.b.along)));
+      if (l.a.along <= s + kSamePlace && s <= l.b.along + kSamePlace)
+        most = std::max(most, height_on(l, std::clamp(s, l.a.along, l.b.along)));
     if (most > -1e17) all.push_back({s, most});
   }
   std::vector<OutlinePoint> out;
@@ -186,7 +191,8 @@ std::optional<std::vector<OutlinePoint>> gable_outline(std::span<const OutlinePo
   double top = silhouette.front().height;
   for (const OutlinePoint& p : silhouette) top = std::max(top, p.height);
   const double eaves = std::min(silhouette.front().height, silhouette.back().height);
-  const double least = stepped ? options.least_tread : 4 * options.least_tread;  // a curve takes the tread of several steps
+  const double least =
+      stepped ? options.least_tread : 4 * options.least_tread;  // a curve takes the tread of several steps
   // A roof that rises steeply from the eaves (a mansard) lifts the first level, so that it has a tread.
   const double first_tread = least + std::max(lead_in, lead_out);
   double lifted = eaves;

@@ -23,8 +23,8 @@ using model::SurfaceKind;
 
 namespace {
 
-constexpr double kTouch = 0.003;     ///< m: what overlaps by less touches
-constexpr double kLeastAcross = 0.5; ///< sine of 30 degrees: sharper corners have no room for a wall's end
+constexpr double kTouch = 0.003;      ///< m: what overlaps by less touches
+constexpr double kLeastAcross = 0.5;  ///< sine of 30 degrees: sharper corners have no room for a wall's end
 
 /// The piece of plan behind an edge that a wall stands on: both ends of the edge, then back.
 struct Strip {
@@ -36,7 +36,8 @@ std::optional<Strip> strip_behind(const std::vector<PlanEdge>& edges, std::uint3
   const PlanEdge& e = edges[number];
   const Point2 in = e.inward();
   const auto lead = [&](Point2 neighbour, Point2 along) -> std::optional<double> {
-    const double leans = neighbour.x * along.x + neighbour.y * along.y, across = neighbour.x * in.x + neighbour.y * in.y;
+    const double leans = neighbour.x * along.x + neighbour.y * along.y,
+                 across = neighbour.x * in.x + neighbour.y * in.y;
     if (leans <= 0) return 0.0;
     if (across < kLeastAcross) return std::nullopt;
     return thickness * leans / across;
@@ -45,7 +46,8 @@ std::optional<Strip> strip_behind(const std::vector<PlanEdge>& edges, std::uint3
   const auto lead_in = lead({-before.x, -before.y}, e.along), lead_out = lead(after, {-e.along.x, -e.along.y});
   if (!lead_in || !lead_out || *lead_in + *lead_out > e.length / 2) return std::nullopt;
   const auto back = [&](double along) {
-    return model::snap(Point2{e.from.x + e.along.x * along + in.x * thickness, e.from.y + e.along.y * along + in.y * thickness});
+    return model::snap(
+        Point2{e.from.x + e.along.x * along + in.x * thickness, e.from.y + e.along.y * along + in.y * thickness});
   };
   Strip out{{e.from, e.to, back(e.length - *lead_out), back(*lead_in)}, *lead_in, *lead_out};
   const std::vector<Point2> convex(out.corners.begin(), out.corners.end());
@@ -60,8 +62,9 @@ struct Bed {
   std::array<std::vector<Point3>, 4> borders;            ///< each with both its ends
 };
 
-std::optional<Bed> bed_of(const Roof& roof, const Strip& strip) {
-  const std::vector<std::vector<Point2>> regions{{strip.corners.begin(), strip.corners.end()}};
+std::optional<Bed> bed_of(const Roof& roof, const Strip& strip, const std::vector<Point2>& front) {
+  std::vector<std::vector<Point2>> regions(1, front);
+  regions[0].insert(regions[0].end(), strip.corners.begin() + 1, strip.corners.end());
   std::map<Grid2, Point3> points;
   std::map<Grid2, Grid2> next;
   std::map<std::pair<Grid2, Grid2>, bool> border;
@@ -78,8 +81,10 @@ std::optional<Bed> bed_of(const Roof& roof, const Strip& strip) {
         const auto [found, fresh] = points.emplace(a, here);
         if (!fresh && std::fabs(found->second.z - here.z) > 2 * kSameHeight) return false;  // a step in the roof
         loops.back().push_back(found->second);
-        if (const auto twin = border.find({b, a}); twin != border.end()) border.erase(twin);
-        else border[{a, b}] = true;
+        if (const auto twin = border.find({b, a}); twin != border.end())
+          border.erase(twin);
+        else
+          border[{a, b}] = true;
       }
       return true;
     };
@@ -129,11 +134,14 @@ std::optional<model::Solid> wall_on(const Bed& bed, const PlanEdge& edge, const 
     const OutlinePoint& p = outline[i];
     const bool first = p.along <= 0, last = p.along >= edge.length;
     const auto at = [&](double deep) {
-      return Point3{edge.from.x + edge.along.x * p.along + in.x * deep, edge.from.y + edge.along.y * p.along + in.y * deep, p.height};
+      return Point3{edge.from.x + edge.along.x * p.along + in.x * deep,
+                    edge.from.y + edge.along.y * p.along + in.y * deep, p.height};
     };
     Point3 f = at(0), b = at(thickness);
-    if (first) f = {strip.corners[0].x, strip.corners[0].y, p.height}, b = {strip.corners[3].x, strip.corners[3].y, p.height};
-    if (last) f = {strip.corners[1].x, strip.corners[1].y, p.height}, b = {strip.corners[2].x, strip.corners[2].y, p.height};
+    if (first)
+      f = {strip.corners[0].x, strip.corners[0].y, p.height}, b = {strip.corners[3].x, strip.corners[3].y, p.height};
+    if (last)
+      f = {strip.corners[1].x, strip.corners[1].y, p.height}, b = {strip.corners[2].x, strip.corners[2].y, p.height};
     front.push_back(model::snap(f));
     back.push_back(model::snap(b));
   }
@@ -183,7 +191,16 @@ BuiltGable ornamental_gable(const model::Polygon& plan, const Roof& roof, std::u
     out.refusal = GableRefusal::no_room;
     return out;
   }
-  const auto bed = bed_of(roof, *strip);
+  // Points of the wall's upper end lie off the edge's line by their rounding; the strip keeps to them.
+  std::vector<Point2> front{edge.from};
+  const auto& top = roof.wall_tops[number];
+  for (std::size_t i = top.size(); i-- > 0;) {
+    const Point2 p = top[i].xy();
+    const double along = (p.x - edge.from.x) * edge.along.x + (p.y - edge.from.y) * edge.along.y;
+    const double before = (front.back().x - edge.from.x) * edge.along.x + (front.back().y - edge.from.y) * edge.along.y;
+    if (along > before + kTouch && along < edge.length - kTouch) front.push_back(p);
+  }
+  const auto bed = bed_of(roof, *strip, front);
   if (!bed) {
     out.refusal = GableRefusal::no_body;
     return out;
@@ -195,8 +212,10 @@ BuiltGable ornamental_gable(const model::Polygon& plan, const Roof& roof, std::u
         lowest = std::min(lowest, p.z);
         highest = std::max(highest, p.z);
       }
-    out.outline = attic_outline(edge.length, std::max(lowest + options.attic_height, highest + options.overtop), options);
-  } else if (auto outline = gable_outline(roof_silhouette(roof, edge, edge.length), strip->lead_in, strip->lead_out, options)) {
+    out.outline =
+        attic_outline(edge.length, std::max(lowest + options.attic_height, highest + options.overtop), options);
+  } else if (auto outline =
+                 gable_outline(roof_silhouette(roof, edge, edge.length), strip->lead_in, strip->lead_out, options)) {
     out.outline = std::move(*outline);
   } else {
     out.refusal = GableRefusal::form;

@@ -32,14 +32,12 @@ Point2 moved(Point2 p, Point2 by, double length) { return {p.x + by.x * length, 
 struct Strip {
   TopSegment top;
   RoofElementKind kind = RoofElementKind::eaves;
-  double asked = 0, reach = 0;         ///< m
-  std::uint32_t before = 0, after = 0; ///< neighbours in the ring
-  bool step_after = false;             ///< an upright step lies between this one and the next
-  Point2 start, end;                   ///< outer corners
-  bool joined_after = false;           ///< shares its outer corner with the next one
-  std::vector<Point2> outline() const {
-    return {top.from.xy(), start, end, top.to.xy()};
-  }
+  double asked = 0, reach = 0;          ///< m
+  std::uint32_t before = 0, after = 0;  ///< neighbours in the ring
+  bool step_after = false;              ///< an upright step lies between this one and the next
+  Point2 start, end;                    ///< outer corners
+  bool joined_after = false;            ///< shares its outer corner with the next one
+  std::vector<Point2> outline() const { return {top.from.xy(), start, end, top.to.xy()}; }
 };
 
 /// Where a strip ends at an edge that has none: as a vector from the corner to the outer one, for a reach of 1 m.
@@ -91,8 +89,10 @@ class Overhangs {
     for (const Strip& s : strips_) {
       if (s.asked == 0) continue;
       asked.insert(s.top.edge);
-      if (s.reach == 0) bare.insert(s.top.edge);
-      else if (s.reach < s.asked - 1e-9) shortened.insert(s.top.edge);
+      if (s.reach == 0)
+        bare.insert(s.top.edge);
+      else if (s.reach < s.asked - 1e-9)
+        shortened.insert(s.top.edge);
     }
     for (const RoofElementKind kind : {RoofElementKind::eaves, RoofElementKind::verge}) {
       std::vector<PlanCell> cells;
@@ -113,15 +113,20 @@ class Overhangs {
       if (s.reach > 0) built.insert(s.top.edge);
     out.elements.asked = static_cast<int>(asked.size());
     for (const std::uint32_t edge : asked) {
-      if (!built.contains(edge)) ++out.elements.refused;
-      else if (shortened.contains(edge) || bare.contains(edge)) ++out.elements.shortened;
+      if (!built.contains(edge))
+        ++out.elements.refused;
+      else if (shortened.contains(edge) || bare.contains(edge))
+        ++out.elements.shortened;
     }
     for (const Strip& s : strips_) {
       const Strip& next = strips_[s.after];
       if (s.reach == 0 || next.reach == 0 || !s.joined_after) continue;
       const double z = height(s, s.top.to, s.end), other = height(next, next.top.from, next.start);
       if (std::fabs(z - other) > kSameHeight) continue;
-      out.corners.push_back({s.top.to, {s.end.x, s.end.y, z}, s.top.along, next.top.along,
+      out.corners.push_back({s.top.to,
+                             {s.end.x, s.end.y, z},
+                             s.top.along,
+                             next.top.along,
                              std::hypot(s.end.x - s.start.x, s.end.y - s.start.y),
                              std::hypot(next.end.x - next.start.x, next.end.y - next.start.y)});
     }
@@ -151,7 +156,8 @@ class Overhangs {
     const bool same_edge = s.top.edge == next.top.edge;
     if (s.reach == 0 || next.reach == 0) {
       const bool straight = same_edge || std::fabs(cross(s.top.along, next.top.along)) < kSameLine;
-      if (s.reach > 0) s.end = model::snap(moved(corner, straight ? n : bare_end(n, s.top.along, next.top.along), s.reach));
+      if (s.reach > 0)
+        s.end = model::snap(moved(corner, straight ? n : bare_end(n, s.top.along, next.top.along), s.reach));
       if (next.reach > 0) {
         const Point2 back{-next.top.along.x, -next.top.along.y}, other{-s.top.along.x, -s.top.along.y};
         next.start = model::snap(moved(corner, straight ? m : bare_end(m, back, other), next.reach));
@@ -181,7 +187,8 @@ class Overhangs {
     if (std::fabs(turn) >= kSameLine) {
       const double way = (next.reach - s.reach * dot(n, m)) / dot(s.top.along, m);
       const Point2 meet = moved(moved(corner, n, s.reach), s.top.along, way);
-      if (turn < 0 || std::hypot(meet.x - corner.x, meet.y - corner.y) <= options_.longest_mitre * std::max(s.reach, next.reach)) {
+      if (turn < 0 ||
+          std::hypot(meet.x - corner.x, meet.y - corner.y) <= options_.longest_mitre * std::max(s.reach, next.reach)) {
         s.end = next.start = model::snap(meet);
         s.joined_after = true;
         return;

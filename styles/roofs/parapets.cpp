@@ -34,7 +34,8 @@ struct Border {
   double height = 0;                  ///< m, of its parapet; 0 for none
 };
 
-/// The strips of all borders with a parapet, of `width` metres, as pieces of the deck; `surface` is the border's number.
+/// The strips of all borders with a parapet, of `width` metres, as pieces of the deck; `surface` is the border's
+/// number.
 std::optional<std::vector<RoofPiece>> strips(const Polygon& deck, const std::vector<Border>& borders, double width,
                                              std::span<const std::vector<Point2>> keep_clear, double coarseness) {
   std::vector<geometry::EdgeProfile> profiles;
@@ -51,8 +52,10 @@ std::optional<std::vector<RoofPiece>> strips(const Polygon& deck, const std::vec
       model::Ring ring;
       for (const Point3& p : surface.loops[l]) ring.points.push_back(p.xy());
       ring.nodes.assign(ring.points.size(), 0);
-      if (l == 0) piece.outer = std::move(ring);
-      else piece.holes.push_back(std::move(ring));
+      if (l == 0)
+        piece.outer = std::move(ring);
+      else
+        piece.holes.push_back(std::move(ring));
     }
     pieces.push_back(std::move(piece));
     border_of.push_back(surface.edge);
@@ -112,8 +115,10 @@ BuiltElements parapets(const Polygon& plan, const Roof& roof, std::span<const Ro
       model::Ring ring;
       for (const Point3& p : surface.loops[l]) ring.points.push_back(p.xy());
       ring.nodes.assign(ring.points.size(), 0);
-      if (l == 0) deck.outer = std::move(ring);
-      else deck.holes.push_back(std::move(ring));
+      if (l == 0)
+        deck.outer = std::move(ring);
+      else
+        deck.holes.push_back(std::move(ring));
     }
     std::vector<Border> borders;
     for (const PlanEdge& shape : plan_edges(deck)) borders.push_back({shape, {}, 0});
@@ -169,7 +174,8 @@ BuiltElements parapets(const Polygon& plan, const Roof& roof, std::span<const Ro
     // Edges on one line may have one piece in common: what counts is whether a wall stands right behind the edge.
     const auto stands_at = [&](const Border& b) {
       constexpr double kBehind = 0.005;  // m
-      const Point2 in = b.shape.inward(), middle{(b.shape.from.x + b.shape.to.x) / 2, (b.shape.from.y + b.shape.to.y) / 2};
+      const Point2 in = b.shape.inward(),
+                   middle{(b.shape.from.x + b.shape.to.x) / 2, (b.shape.from.y + b.shape.to.y) / 2};
       const Point2 behind{middle.x + in.x * kBehind, middle.y + in.y * kBehind};
       for (std::size_t i = 0; i < pieces->size(); ++i)
         if (!std::binary_search(made.lost.begin(), made.lost.end(), static_cast<std::uint32_t>(i)) &&

@@ -70,7 +70,9 @@ double off_plane(const std::vector<std::vector<Grid3>>& loops, const std::array<
   for (const auto& loop : loops)
     for (const Grid3 p : loop) {
       const Grid3 d = p - o;
-      const double h = (n[0] * static_cast<double>(d.x) + n[1] * static_cast<double>(d.y) + n[2] * static_cast<double>(d.z)) / length;
+      const double h =
+          (n[0] * static_cast<double>(d.x) + n[1] * static_cast<double>(d.y) + n[2] * static_cast<double>(d.z)) /
+          length;
       least = std::min(least, h);
       most = std::max(most, h);
     }
@@ -117,11 +119,14 @@ class Assembly {
           const Grid2 place = geometry::to_grid(c.place);
           const auto& at = same.at(place);
           if (!corners.empty() && corners.back().place == place) continue;
-          corners.push_back({place, at.at(geometry::to_grid(c.under)), at.at(geometry::to_grid(c.top)), c.against_building});
+          corners.push_back(
+              {place, at.at(geometry::to_grid(c.under)), at.at(geometry::to_grid(c.top)), c.against_building});
         }
         while (corners.size() > 1 && corners.back().place == corners.front().place) corners.pop_back();
-        if (corners.size() >= 3) made.push_back(std::move(corners));
-        else if (made.empty()) break;  // without an outer loop there is nothing
+        if (corners.size() >= 3)
+          made.push_back(std::move(corners));
+        else if (made.empty())
+          break;  // without an outer loop there is nothing
       }
       cells_.push_back(std::move(made));
     }

@@ -15,9 +15,9 @@ namespace blockrand::roofs {
 /// common corners at the same places.
 struct PlanCell {
   struct Corner {
-    model::Point2 place;             ///< m, on the grid
-    double under = 0, top = 0;       ///< m, z of the body's underside and upper side here; equal ones make an edge
-    bool against_building = false;   ///< the side that begins here touches the building: a closure, not a wall
+    model::Point2 place;            ///< m, on the grid
+    double under = 0, top = 0;      ///< m, z of the body's underside and upper side here; equal ones make an edge
+    bool against_building = false;  ///< the side that begins here touches the building: a closure, not a wall
   };
   std::vector<std::vector<Corner>> loops;  ///< outer one counter-clockwise from above, holes clockwise
 };
@@ -37,8 +37,8 @@ struct BodyLooks {
   model::SurfaceKind under = model::SurfaceKind::closure;
 };
 
-/// Heights nearer than this at one place are one height: m. Planes of a roof meet to the rounding of their points, 1 mm, or 3 mm where
-/// they are steep.
+/// Heights nearer than this at one place are one height: m. Planes of a roof meet to the rounding of their points, 1
+/// mm, or 3 mm where they are steep.
 inline constexpr double kSameHeight = 3.5 / model::kGridStepsPerMetre;
 
 /// The cells as closed bodies: cells with a common side, of which each covers some of the other's, are one body, and

@@ -43,7 +43,9 @@ std::pair<double, double> inside_range(const std::vector<Point2>& convex, Point2
     const Point2 a = convex[i], b = convex[(i + 1) % convex.size()];
     const double length = std::hypot(b.x - a.x, b.y - a.y);
     if (length == 0) continue;
-    const auto left = [&](Point2 r) { return ((b.x - a.x) * (r.y - a.y) - (b.y - a.y) * (r.x - a.x)) / length - depth; };
+    const auto left = [&](Point2 r) {
+      return ((b.x - a.x) * (r.y - a.y) - (b.y - a.y) * (r.x - a.x)) / length - depth;
+    };
     const double at_p = left(p), at_q = left(q);
     if (at_p < 0 && at_q < 0) return {1, 0};
     if (at_p < 0) first = std::max(first, at_p / (at_p - at_q));
@@ -156,7 +158,9 @@ bool convex_overlap(const std::vector<Point2>& a, const std::vector<Point2>& b, 
     const double n = static_cast<double>(p.size());
     return Point2{p[0].x + sum.x / n, p[0].y + sum.y / n};
   };
-  const auto holds = [&](const std::vector<Point2>& one, Point2 m) { return segment_enters(one, m, {m.x + 1e-6, m.y}, depth); };
+  const auto holds = [&](const std::vector<Point2>& one, Point2 m) {
+    return segment_enters(one, m, {m.x + 1e-6, m.y}, depth);
+  };
   return holds(a, middle(b)) && holds(b, middle(a));
 }
 

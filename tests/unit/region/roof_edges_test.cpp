@@ -1,5 +1,5 @@
-// Eaves, verges, caps, parapets, firewalls and ornamental gables on all roofs of real extracts: every body is valid, and
-// none reaches into its house. Skipped without the data. BLOCKRAND_ROOF_CASES=1 prints what is refused,
+// Eaves, verges, caps, parapets, firewalls and ornamental gables on all roofs of real extracts: every body is valid,
+// and none reaches into its house. Skipped without the data. BLOCKRAND_ROOF_CASES=1 prints what is refused,
 // ROOF_EDGES_GLB=<folder> writes a GLB per extract.
 #include <gtest/gtest.h>
 
@@ -60,8 +60,10 @@ std::optional<Standing> read_back(const model::Building& building, const Buildin
   // The underside runs from its ring's last corner back.
   for (std::size_t l = 0; l < loops.size(); ++l) {
     model::Ring ring = ring_of(solid, loops[l]);
-    if (l == 0) out.plan.outer = std::move(ring);
-    else out.plan.holes.push_back(std::move(ring));
+    if (l == 0)
+      out.plan.outer = std::move(ring);
+    else
+      out.plan.holes.push_back(std::move(ring));
   }
   std::size_t count = out.plan.outer.size();
   for (const auto& hole : out.plan.holes) count += hole.size();
@@ -123,10 +125,12 @@ std::vector<Neighbourhood> neighbourhoods(const Standing& self, const std::vecto
     const int samples = std::max(2, static_cast<int>(e.length / kEvery));
     int touching = 0;
     for (int i = 0; i <= samples; ++i) {
-      const double s = std::clamp(e.length * i / samples, std::min(0.02, e.length / 3), e.length - std::min(0.02, e.length / 3));
+      const double s =
+          std::clamp(e.length * i / samples, std::min(0.02, e.length / 3), e.length - std::min(0.02, e.length / 3));
       double height = -1e9;
       for (double out_by = kTouching; out_by <= kFarthest; out_by += kTouching) {
-        const Point2 p{e.from.x + e.along.x * s - e.inward().x * out_by, e.from.y + e.along.y * s - e.inward().y * out_by};
+        const Point2 p{e.from.x + e.along.x * s - e.inward().x * out_by,
+                       e.from.y + e.along.y * s - e.inward().y * out_by};
         const bool hit = std::any_of(others.begin(), others.end(), [&](const Standing* o) {
           if (p.x < o->low.x || p.x > o->high.x || p.y < o->low.y || p.y > o->high.y || !geometry::contains(o->plan, p))
             return false;
@@ -159,8 +163,8 @@ struct Tally {
 
 struct RealExtract {
   const char* file;
-  int least_parts;        ///< roofs that must be dressed
-  double most_refused;    ///< share of what is asked
+  int least_parts;      ///< roofs that must be dressed
+  double most_refused;  ///< share of what is asked
 };
 
 class RoofEdges : public testing::TestWithParam<RealExtract> {};
@@ -186,22 +190,26 @@ TEST_P(RoofEdges, AllBodiesAreValid) {
     std::vector<Standing> standing;
     for (const model::Building& b : region.buildings)
       for (const BuildingPart& p : b.parts) {
-        if (auto s = read_back(b, p)) standing.push_back(std::move(*s));
-        else if (b.owned && p.lod == 2 && !p.canopy) ++unread;
+        if (auto s = read_back(b, p))
+          standing.push_back(std::move(*s));
+        else if (b.owned && p.lod == 2 && !p.canopy)
+          ++unread;
       }
     for (const Standing& s : standing) {
       if (!s.building->owned) continue;
       ++parts;
       std::vector<const Standing*> near;
       for (const Standing& o : standing)
-        if (&o != &s && o.low.x < s.high.x + 1 && s.low.x < o.high.x + 1 && o.low.y < s.high.y + 1 && s.low.y < o.high.y + 1)
+        if (&o != &s && o.low.x < s.high.x + 1 && s.low.x < o.high.x + 1 && o.low.y < s.high.y + 1 &&
+            s.low.y < o.high.y + 1)
           near.push_back(&o);
       const auto around = neighbourhoods(s, near);
       std::optional<std::pair<std::uint32_t, roofs::GableOptions>> gable;
       if (const auto drawn = roofs::draw_gable(1, s.part->osm.key(), s.part->built_roof))
         if (const auto edge = roof_checks::gable_edge(s.plan, s.roof, around)) gable.emplace(*edge, *drawn);
       const DressedRoof dressed = roof_checks::dress(s.plan, s.roof, around, gable);
-      if (gable) ++by_gable[std::string(roofs::name(gable->second.form)) + (dressed.gables.refused ? " refused" : "")];
+      constexpr const char* reasons[] = {"", ": no such outline", ": no room", ": no body"};
+      if (gable) ++by_gable[std::string(roofs::name(gable->second.form)) + reasons[static_cast<int>(dressed.refusal)]];
       gables.add(dressed.gables);
       firewalls.add(dressed.firewalls);
       parapets.add(dressed.parapets);
@@ -220,7 +228,8 @@ TEST_P(RoofEdges, AllBodiesAreValid) {
       }
       if (const std::string fault = roof_checks::fault(s.part->lod2, dressed.bodies); !fault.empty()) {
         ++reaching;
-        std::printf("%s (%s): %s\n", s.part->id.c_str(), std::string(model::name(s.part->built_roof)).c_str(), fault.c_str());
+        std::printf("%s (%s): %s\n", s.part->id.c_str(), std::string(model::name(s.part->built_roof)).c_str(),
+                    fault.c_str());
       }
       if (folder) {
         if (picture.buildings[0].parts.empty()) origin = s.low;
@@ -239,18 +248,28 @@ TEST_P(RoofEdges, AllBodiesAreValid) {
           picture.buildings[0].parts.push_back(std::move(p));
         };
         add(s.part->lod2, true, {});
-        constexpr model::Colour colours[] = {{}, {}, {}, {}, {190, 190, 196}, {206, 160, 120}, {150, 96, 84},
-                                             {214, 196, 170}, {214, 196, 170}, {110, 46, 36}, {110, 46, 36}};
+        constexpr model::Colour colours[] = {{},
+                                             {},
+                                             {},
+                                             {},
+                                             {190, 190, 196},
+                                             {206, 160, 120},
+                                             {150, 96, 84},
+                                             {214, 196, 170},
+                                             {214, 196, 170},
+                                             {110, 46, 36},
+                                             {110, 46, 36}};
         for (const auto& body : dressed.bodies) add(body.solid, false, colours[static_cast<int>(body.kind)]);
       }
     }
   }
-  std::printf("%s: %d roofs (%d more are no envelope with upright walls), %d bodies\n", GetParam().file, parts, unread, bodies);
+  std::printf("%s: %d roofs (%d more are no envelope with upright walls), %d bodies\n", GetParam().file, parts, unread,
+              bodies);
   std::printf("| element | asked | shortened | refused |\n|---|---|---|---|\n");
   Tally all;
-  for (const auto& [name, tally] : {std::pair("gables", &gables), std::pair("firewalls", &firewalls),
-                                    std::pair("parapets", &parapets), std::pair("eaves and verges", &overhangs),
-                                    std::pair("ridge and hip caps", &caps)}) {
+  for (const auto& [name, tally] :
+       {std::pair("gables", &gables), std::pair("firewalls", &firewalls), std::pair("parapets", &parapets),
+        std::pair("eaves and verges", &overhangs), std::pair("ridge and hip caps", &caps)}) {
     std::printf("| %s | %d | %d | %d |\n", name, tally->asked, tally->shortened, tally->refused);
     all.asked += tally->asked;
     all.refused += tally->refused;

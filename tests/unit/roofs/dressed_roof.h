@@ -24,10 +24,11 @@ struct Neighbourhood {
 struct DressedRoof {
   std::vector<model::RoofInstallation> bodies;
   roofs::BuiltElements gables, firewalls, parapets, overhangs, caps;  ///< counts; the bodies are all in `bodies`
+  roofs::GableRefusal refusal = roofs::GableRefusal::none;
 };
 
-/// Gables first, then firewalls between them, parapets between those, overhangs where nothing else stands, caps up to all of them.
-/// \param gable  an edge and what is to stand on it
+/// Gables first, then firewalls between them, parapets between those, overhangs where nothing else stands, caps up to
+/// all of them. \param gable  an edge and what is to stand on it
 inline DressedRoof dress(const model::Polygon& plan, const roofs::Roof& roof, const std::vector<Neighbourhood>& around,
                          const std::optional<std::pair<std::uint32_t, roofs::GableOptions>>& gable) {
   DressedRoof out;
@@ -42,6 +43,7 @@ inline DressedRoof dress(const model::Polygon& plan, const roofs::Roof& roof, co
   if (gable) {
     auto built = roofs::ornamental_gable(plan, roof, gable->first, gable->second);
     roofs::BuiltElements counts;
+    out.refusal = built.refusal;
     counts.asked = 1;
     if (built.body) {
       bare[gable->first] = true;

@@ -1,6 +1,10 @@
 // What every body on a roof must keep, measured on the finished solids alone.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,13 +31,6 @@ inline double volume(const model::Solid& solid) {
   return triangles ? geometry::volume(solid, *triangles) : -1;
 }
 
-/// m³ in common, deeper than 1 cm (geometry::OverlapOptions).
-inline double overlap(const model::Solid& a, const model::Solid& b) {
-  const auto ta = geometry::triangulate(a), tb = geometry::triangulate(b);
-  if (!ta || !tb) return 1e9;
-  return geometry::overlap_of({a.vertices, ta->triangles}, {b.vertices, tb->triangles}).volume;
-}
-
 /// m² of a solid's faces of one kind.
 inline double area(const model::Solid& solid, model::SurfaceKind kind) {
   double sum = 0;
@@ -51,39 +48,52 @@ inline double area(const model::Solid& solid, model::SurfaceKind kind) {
   return sum;
 }
 
-inline bool boxes_meet(const model::Solid& a, const model::Solid& b) {
-  const auto box = [](const model::Solid& s) {
-    std::array<double, 6> out{1e18, 1e18, 1e18, -1e18, -1e18, -1e18};
+/// A solid made ready for many comparisons.
+struct Measured {
+  const model::Solid* solid = nullptr;
+  std::optional<model::SolidTriangles> triangles;
+  std::array<double, 6> box{1e18, 1e18, 1e18, -1e18, -1e18, -1e18};
+
+  explicit Measured(const model::Solid& s) : solid(&s), triangles(geometry::triangulate(s)) {
     for (const auto& p : s.vertices) {
       const double v[] = {p.x, p.y, p.z};
       for (std::size_t i = 0; i < 3; ++i) {
-        out[i] = std::min(out[i], v[i]);
-        out[i + 3] = std::max(out[i + 3], v[i]);
+        box[i] = std::min(box[i], v[i]);
+        box[i + 3] = std::max(box[i + 3], v[i]);
       }
     }
-    return out;
-  };
-  const auto p = box(a), q = box(b);
-  for (std::size_t i = 0; i < 3; ++i)
-    if (p[i] > q[i + 3] || q[i] > p[i + 3]) return false;
-  return true;
-}
+  }
+  bool near(const Measured& o) const {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (box[i] > o.box[i + 3] || o.box[i] > box[i + 3]) return false;
+    return true;
+  }
+  double overlap(const Measured& o) const {
+    if (!triangles || !o.triangles) return 1e9;
+    return near(o) ? geometry::overlap_of({solid->vertices, triangles->triangles},
+                                          {o.solid->vertices, o.triangles->triangles})
+                         .volume
+                   : 0;
+  }
+};
 
 /// "" when all bodies are valid and none reaches into another or into the building (overlaps of 1e-6 m³ are the
 /// rounding of overlap_of itself).
 inline std::string fault(const model::Solid& building, const Bodies& bodies) {
   constexpr double kNothing = 1e-6;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
+  const Measured house(building);
+  std::vector<Measured> all;
+  for (const auto& body : bodies) all.emplace_back(body.solid);
+  for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string who = std::string(model::name(bodies[i].kind)) + " " + std::to_string(i);
-    if (const std::string v = verdict(bodies[i].solid); v != "none") return who + ": " + v;
-    if (boxes_meet(bodies[i].solid, building))
-      if (const double v = overlap(bodies[i].solid, building); v > kNothing)
-        return who + " in the building by " + std::to_string(v);
+    if (!all[i].triangles) return who + ": a face is no simple polygon";
+    const auto check = geometry::check_solid(bodies[i].solid, *all[i].triangles);
+    if (!check.valid()) return who + ": " + check.text();
+    if (const double v = all[i].overlap(house); v > kNothing) return who + " in the building by " + std::to_string(v);
     for (std::size_t k = 0; k < i; ++k)
-      if (boxes_meet(bodies[i].solid, bodies[k].solid))
-        if (const double v = overlap(bodies[i].solid, bodies[k].solid); v > kNothing)
-          return who + " in " + std::string(model::name(bodies[k].kind)) + " " + std::to_string(k) + " by " +
-                 std::to_string(v);
+      if (const double v = all[i].overlap(all[k]); v > kNothing)
+        return who + " in " + std::string(model::name(bodies[k].kind)) + " " + std::to_string(k) + " by " +
+               std::to_string(v);
   }
   return "";
 }

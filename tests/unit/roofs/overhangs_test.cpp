@@ -119,6 +119,44 @@ TEST(Overhangs, EndsBeforeAnObliquePartyWallsLine) {
     }
 }
 
+TEST(Overhangs, EdgesOnOneLineHaveOneBoardAndOneFace) {
+  const Polygon plan = polygon({{0, 0}, {7, 0}, {13, 0}, {20, 0}, {20, 10}, {0, 10}});
+  const Roof roof = roof_on(plan, RoofShape::hipped, 5);
+  const auto built = overhangs(plan, roof, {});
+  ASSERT_EQ(built.elements.bodies.size(), 1u);
+  EXPECT_EQ(built.elements.asked, 6);
+  EXPECT_EQ(built.elements.bodies[0].solid.faces.size(), 16u);
+  EXPECT_EQ(fault(generate::envelope(plan, 0, roof, {}), built.elements.bodies), "");
+}
+
+TEST(Overhangs, RoomBeforeTheWallIsKept) {
+  const Roof roof = roof_on(kRectangle, RoofShape::hipped);
+  std::vector<OverhangRoom> rooms(4);
+  rooms[0].room = 0.15;
+  rooms[2].room = 0;
+  const auto built = overhangs(kRectangle, roof, rooms);
+  EXPECT_EQ(built.elements.asked, 3);
+  EXPECT_EQ(built.elements.shortened, 1);
+  double low = 0, high = 0;
+  for (const auto& body : built.elements.bodies)
+    for (const Point3& p : body.solid.vertices) {
+      low = std::min(low, p.y);
+      high = std::max(high, p.y);
+    }
+  EXPECT_NEAR(low, -0.15, 0.001);
+  EXPECT_LE(high, 10.001);
+}
+
+TEST(Overhangs, SharpCornersAreCutSquare) {
+  // 14 degrees at the origin: the mitre would reach 3.3 m beyond it.
+  const Polygon plan = polygon({{0, 0}, {20, 0}, {20, 5}});
+  const Roof roof = roof_on(plan, RoofShape::hipped, 1);
+  const auto built = overhangs(plan, roof, {});
+  EXPECT_EQ(fault(generate::envelope(plan, 0, roof, {}), built.elements.bodies), "");
+  for (const auto& body : built.elements.bodies)
+    for (const Point3& p : body.solid.vertices) EXPECT_GE(p.x, -0.41);
+}
+
 TEST(Overhangs, NarrowCourtsGetLess) {
   Polygon plan = polygon({{0, 0}, {20, 0}, {20, 20}, {0, 20}});
   plan.holes.push_back(testing_shapes::ring({{9.7, 6}, {9.7, 14}, {10.3, 14}, {10.3, 6}}));

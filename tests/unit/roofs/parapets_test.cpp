@@ -71,7 +71,8 @@ TEST(Parapets, LeavePartyWallsOpen) {
   EXPECT_EQ(open.asked, 2);
   EXPECT_NEAR(volume(open), 2 * 20 * 0.25 * 0.5, 0.02);
   EXPECT_EQ(fault_on(kRectangle, roof, open), "");
-  const auto lower = parapets(kRectangle, roof, edges, {}, {}, {.height = 0.5, .width = 0.25, .party_wall_height = 0.3});
+  const auto lower =
+      parapets(kRectangle, roof, edges, {}, {}, {.height = 0.5, .width = 0.25, .party_wall_height = 0.3});
   ASSERT_EQ(lower.bodies.size(), 1u);
   EXPECT_EQ(fault_on(kRectangle, roof, lower), "");
   // Mitred, so that each wall has half of both corners' squares.
@@ -116,7 +117,8 @@ TEST(Parapets, AreSolidOnPlansNarrowerThanTwoWalls) {
 
 TEST(Parapets, EndWhereTheNeighbourBeginsOnAStraightWall) {
   const Polygon plan = polygon({{0, 0}, {8, 0}, {20, 0}, {20, 10}, {0, 10}});
-  const std::vector<RoofEdge> edges{RoofEdge::open, RoofEdge::party_wall, RoofEdge::open, RoofEdge::open, RoofEdge::open};
+  const std::vector<RoofEdge> edges{RoofEdge::open, RoofEdge::party_wall, RoofEdge::open, RoofEdge::open,
+                                    RoofEdge::open};
   const Roof roof = flat_roof(plan, kTop);
   const auto built = parapets(plan, roof, edges, {}, {}, {.height = 0.5, .width = 0.25});
   EXPECT_EQ(fault_on(plan, roof, built), "");
@@ -142,9 +144,7 @@ TEST(Parapets, StandOnTheBordersOfADeckAlone) {
   EXPECT_EQ(fault_on(kRectangle, roof, around), "");
 }
 
-TEST(Parapets, NoneOnSlopes) {
-  EXPECT_TRUE(parapets(kRectangle, gable_roof(kRectangle), {}, {}, {}).bodies.empty());
-}
+TEST(Parapets, NoneOnSlopes) { EXPECT_TRUE(parapets(kRectangle, gable_roof(kRectangle), {}, {}, {}).bodies.empty()); }
 
 TEST(Parapets, AreValidOnRandomPlans) {
   Random random(61);
