@@ -94,6 +94,86 @@ TEST(GableOutline, SteepRoofsLiftTheFirstLevel) {
   EXPECT_GE((*outline)[1].along, 0.1);
 }
 
+TEST(GableOutline, MiddleStepIsWidestOnFlaredRoofs) {
+  // Low at the eaves, steep at the top: by height alone the lowest treads would be the widest.
+  const std::vector<OutlinePoint> flared{{0, 10}, {3, 10.6}, {4, 14}, {5, 10.6}, {8, 10}};
+  for (int steps = 3; steps <= 5; ++steps) {
+    const auto outline = gable_outline(flared, 0, 0, {.steps = steps});
+    ASSERT_TRUE(outline);
+    const double middle = (*outline)[outline->size() / 2].along - (*outline)[outline->size() / 2 - 1].along;
+    EXPECT_GE((*outline)[1].along, 8.0 / (2 * steps - 1) - 1e-9);
+    for (std::size_t i = 1; i < outline->size(); i += 2)
+      EXPECT_GE(middle, (*outline)[i].along - (*outline)[i - 1].along - 1e-9) << steps;
+  }
+}
+
+TEST(GableOutline, OvertopsAnySilhouette) {
+  Random random(23);
+  int built = 0, refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    // One top, both flanks rising to it at any rate: mansards, flares, trapezoids, one-sided roofs.
+    const double width = 4 + 10 * random.unit(), height = 1 + 8 * random.unit(), peak = width * random.unit();
+    std::vector<OutlinePoint> line;
+    const int left = 1 + static_cast<int>(random.next(4)), right = 1 + static_cast<int>(random.next(4));
+    const auto shares = [&](int count) {
+      std::vector<double> out;
+      for (int k = 0; k < count; ++k) out.push_back(random.unit());
+      std::sort(out.begin(), out.end());
+      return out;
+    };
+    const auto left_at = shares(left), left_up = shares(left), right_at = shares(right), right_up = shares(right);
+    line.push_back({0, 10});
+    for (int k = 0; k < left; ++k)
+      line.push_back({peak * left_at[static_cast<std::size_t>(k)], 10 + height * left_up[static_cast<std::size_t>(k)]});
+    line.push_back({peak, 10 + height});
+    for (int k = right; k-- > 0;)
+      line.push_back({width - (width - peak) * right_at[static_cast<std::size_t>(k)],
+                      10 + height * right_up[static_cast<std::size_t>(k)]});
+    line.push_back({width, 10});
+    const GableOptions options{.form = random.next(2) == 0 ? GableForm::stepped : GableForm::curved,
+                               .steps = 3 + static_cast<int>(random.next(3)),
+                               .curves = 1 + static_cast<int>(random.next(2))};
+    const auto outline = gable_outline(line, 0, 0, options);
+    if (!outline) {
+      ++refused;
+      continue;
+    }
+    ++built;
+    const auto lowest_at = [](std::span<const OutlinePoint> points, double along, bool lowest) {
+      double out = lowest ? 1e9 : -1e9;
+      for (std::size_t k = 1; k < points.size(); ++k) {
+        const OutlinePoint &a = points[k - 1], &b = points[k];
+        if (along < a.along || along > b.along) continue;
+        const double share = b.along > a.along ? (along - a.along) / (b.along - a.along) : 0;
+        const double here = a.height + share * (b.height - a.height);
+        const double least = b.along > a.along ? here : std::min(a.height, b.height);
+        out = lowest ? std::min(out, least) : std::max(out, here);
+      }
+      return out;
+    };
+    for (int k = 0; k <= 200; ++k) {
+      const double along = width * k / 200;
+      ASSERT_GE(lowest_at(*outline, along, true), lowest_at(line, along, false) + options.overtop - 1e-6)
+          << i << " at " << along;
+    }
+    for (std::size_t k = 1; k < outline->size(); ++k) ASSERT_GE((*outline)[k].along, (*outline)[k - 1].along);
+    if (options.form != GableForm::stepped) continue;
+    double middle = 0, widest = 0, top = 0;
+    std::set<long> levels;
+    for (std::size_t k = 1; k < outline->size(); ++k) {
+      const OutlinePoint &a = (*outline)[k - 1], &b = (*outline)[k];
+      if (a.height != b.height) continue;
+      levels.insert(std::lround(a.height * 1000));
+      if (a.height > top) top = a.height, middle = b.along - a.along;
+      widest = std::max(widest, b.along - a.along);
+    }
+    ASSERT_EQ(static_cast<int>(levels.size()), options.steps) << i;
+    ASSERT_GE(middle, widest - 1e-9) << i;
+  }
+  std::printf("outlines on random silhouettes: %d built, %d refused\n", built, refused);
+  EXPECT_GT(built, 1000);
+}
+
 TEST(RoofSilhouette, HalfHipShowsItsRidge) {
   const Roof roof = roof_on(kHouse, RoofShape::half_hipped, 4);
   const auto edges = plan_edges(kHouse);

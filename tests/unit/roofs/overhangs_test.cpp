@@ -129,6 +129,16 @@ TEST(Overhangs, EdgesOnOneLineHaveOneBoardAndOneFace) {
   EXPECT_EQ(fault(generate::envelope(plan, 0, roof, {}), built.elements.bodies), "");
 }
 
+TEST(Overhangs, RoundingMakesNoSteps) {
+  for (const double angle : roof_checks::kAngles) {
+    const Polygon plan = roof_checks::moved(kRectangle, angle, roof_checks::kPlaces[1]);
+    const Roof roof = roof_on(plan, RoofShape::hipped, 6.7);
+    const auto built = overhangs(plan, roof, {});
+    ASSERT_EQ(built.elements.bodies.size(), 1u) << angle;
+    EXPECT_EQ(built.elements.bodies[0].solid.faces.size(), 16u) << angle;
+  }
+}
+
 TEST(Overhangs, RoomBeforeTheWallIsKept) {
   const Roof roof = roof_on(kRectangle, RoofShape::hipped);
   std::vector<OverhangRoom> rooms(4);
@@ -165,6 +175,23 @@ TEST(Overhangs, NarrowCourtsGetLess) {
   EXPECT_EQ(fault(generate::envelope(plan, 0, roof, {}), built.elements.bodies), "");
   EXPECT_EQ(built.elements.asked, 8);
   EXPECT_GE(built.elements.shortened, 2);
+}
+
+TEST(Overhangs, DoNotReachTheOtherSideOfASlot) {
+  // A slot of 0.25 m between two arms; the far arm's wall is bare.
+  const Polygon plan = polygon({{0, 0}, {12.25, 0}, {12.25, 12}, {6.25, 12}, {6.25, 5}, {6, 5}, {6, 12}, {0, 12}});
+  const Roof roof = roof_on(plan, RoofShape::hipped, 3);
+  std::vector<OverhangRoom> rooms(8);
+  rooms[3].room = rooms[4].room = 0;
+  const auto built = overhangs(plan, roof, rooms);
+  EXPECT_EQ(fault(generate::envelope(plan, 0, roof, {}), built.elements.bodies), "");
+  EXPECT_GE(built.elements.shortened, 1);
+  EXPECT_EQ(built.elements.refused, 0);
+  for (const auto& body : built.elements.bodies)
+    for (const Point3& p : body.solid.vertices)
+      if (p.y < 11.9 && p.y > 5.1) {
+        EXPECT_FALSE(p.x > 6.21 && p.x < 12.2) << p.x;
+      }
 }
 
 TEST(Overhangs, SteepSlopesComeDownNoFartherThanTold) {
