@@ -28,6 +28,8 @@ double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
 Point2 moved(Point2 p, Point2 by, double length) { return {p.x + by.x * length, p.y + by.y * length}; }
 
+bool rises(const TopSegment& top) { return std::fabs(top.to.z - top.from.z) > kRising * top.length(); }
+
 /// The strip before one top segment.
 struct Strip {
   TopSegment top;
@@ -58,6 +60,9 @@ class Overhangs {
             const OverhangOptions& options)
       : plan_(plan), edges_(plan_edges(plan)), options_(options) {
     const auto tops = top_segments(plan, roof);
+    std::set<std::uint32_t> gables;
+    for (const TopSegment& top : tops)
+      if (rises(top)) gables.insert(top.edge);
     for (std::size_t i = 0; i < tops.size();) {
       std::size_t end = i;
       while (end < tops.size() && tops[end].ring == tops[i].ring) ++end;
@@ -67,7 +72,10 @@ class Overhangs {
         s.before = static_cast<std::uint32_t>(k == i ? end - 1 : k - 1);
         s.after = static_cast<std::uint32_t>(k + 1 == end ? i : k + 1);
         s.step_after = tops[s.after].from != s.top.to;
-        if (std::fabs(s.top.to.z - s.top.from.z) > kRising * s.top.length()) s.kind = RoofElementKind::verge;
+        // Where a deck ends in a gable, its border is the gable's.
+        const bool deck = s.top.surface >= 0 && gables.contains(s.top.edge) &&
+                          is_level(roof.surfaces[static_cast<std::size_t>(s.top.surface)]);
+        if (rises(s.top) || deck) s.kind = RoofElementKind::verge;
         const OverhangRoom room = rooms.empty() ? OverhangRoom{} : rooms[s.top.edge];
         if (room.edge != RoofEdge::party_wall && room.room > 0) {
           s.asked = s.kind == RoofElementKind::verge ? options.verge : options.eaves;

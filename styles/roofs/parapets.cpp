@@ -27,6 +27,8 @@ using model::SurfaceKind;
 
 namespace {
 
+constexpr double kRising = 0.0524;  ///< tan 3 degrees: a wall top steeper than this is a gable's
+
 /// A border of a level surface.
 struct Border {
   PlanEdge shape;
@@ -104,8 +106,11 @@ BuiltElements parapets(const Polygon& plan, const Roof& roof, std::span<const Ro
                        const std::vector<bool>& bare, std::span<const std::vector<Point2>> keep_clear,
                        const ParapetOptions& options) {
   std::map<std::pair<Grid3, Grid3>, std::uint32_t> edge_at;
-  for (const TopSegment& s : top_segments(plan, roof))
+  std::set<std::uint32_t> gables;
+  for (const TopSegment& s : top_segments(plan, roof)) {
     edge_at[{geometry::to_grid(s.from), geometry::to_grid(s.to)}] = s.edge;
+    if (std::fabs(s.to.z - s.from.z) > kRising * s.length()) gables.insert(s.edge);
+  }
   BuiltElements out;
   std::set<std::uint32_t> asked, lost;
   for (const Roof::Surface& surface : roof.surfaces) {
@@ -135,6 +140,7 @@ BuiltElements parapets(const Polygon& plan, const Roof& roof, std::span<const Ro
           const bool party = !edges.empty() && edges[found->second] == RoofEdge::party_wall;
           border.height = party ? options.party_wall_height : options.height;
           if (!bare.empty() && bare[found->second]) border.height = 0;
+          if (!options.on_gables && gables.contains(found->second)) border.height = 0;
         }
         any = any || border.height > 0;
       }

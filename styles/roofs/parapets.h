@@ -18,6 +18,7 @@ struct ParapetOptions {
   double party_wall_height =
       0;  ///< m, on party walls; 0 leaves them open: the edge where a neighbour attaches (Finkenzeller 3.4.1).
   double least_length = 0.10;  ///< m. Shorter stretches between open ends have none.
+  bool on_gables = false;      ///< also where a deck ends in a gable: there the verge runs through [P]
   bool around_decks = false;   ///< also where a deck's edge is the break of a sloped roof, not a wall
 };
 

@@ -116,39 +116,49 @@ std::optional<double> height_over(const Standing& s, Point2 p) {
   return std::nullopt;
 }
 
-/// What stands before each edge of a plan, felt for with points every half metre.
+/// What stands before each edge of a plan, felt for with points every half metre, and 0.4 m beyond its free corners,
+/// where a mitre goes.
 std::vector<Neighbourhood> neighbourhoods(const Standing& self, const std::vector<const Standing*>& others) {
   constexpr double kTouching = 0.05, kFarthest = 0.6, kEvery = 0.5;  // m
+  const auto edges = roofs::plan_edges(self.plan);
+  const auto holder = [&](Point2 p) -> const Standing* {
+    for (const Standing* o : others)
+      if (p.x >= o->low.x && p.x <= o->high.x && p.y >= o->low.y && p.y <= o->high.y && geometry::contains(o->plan, p))
+        return o;
+    return nullptr;
+  };
+  const auto before = [](const roofs::PlanEdge& e, double along, double by) {
+    return Point2{e.from.x + e.along.x * along - e.inward().x * by, e.from.y + e.along.y * along - e.inward().y * by};
+  };
+  const auto feel = [&](const roofs::PlanEdge& e, double along, Neighbourhood& n) {
+    for (double by = kTouching; by <= kFarthest; by += kTouching)
+      if (holder(before(e, along, by))) {
+        n.room = std::min(n.room, by - kTouching);
+        return;
+      }
+  };
   std::vector<Neighbourhood> out;
-  for (const roofs::PlanEdge& e : roofs::plan_edges(self.plan)) {
+  for (const roofs::PlanEdge& e : edges) {
     Neighbourhood n;
     const int samples = std::max(2, static_cast<int>(e.length / kEvery));
+    const double inset = std::min(0.02, e.length / 3);
     int touching = 0;
     for (int i = 0; i <= samples; ++i) {
-      const double s =
-          std::clamp(e.length * i / samples, std::min(0.02, e.length / 3), e.length - std::min(0.02, e.length / 3));
-      double height = -1e9;
-      for (double out_by = kTouching; out_by <= kFarthest; out_by += kTouching) {
-        const Point2 p{e.from.x + e.along.x * s - e.inward().x * out_by,
-                       e.from.y + e.along.y * s - e.inward().y * out_by};
-        const bool hit = std::any_of(others.begin(), others.end(), [&](const Standing* o) {
-          if (p.x < o->low.x || p.x > o->high.x || p.y < o->low.y || p.y > o->high.y || !geometry::contains(o->plan, p))
-            return false;
-          if (out_by == kTouching)
-            if (const auto z = height_over(*o, p)) height = std::max(height, *z);
-          return true;
-        });
-        if (!hit) continue;
-        n.room = std::min(n.room, out_by - kTouching);
-        if (out_by == kTouching) ++touching;
-        break;
-      }
-      n.neighbour.push_back({s, height});
+      const double along = std::clamp(e.length * i / samples, inset, e.length - inset);
+      const Standing* const beside = holder(before(e, along, kTouching));
+      touching += beside != nullptr;
+      n.neighbour.push_back({along, beside ? height_over(*beside, before(e, along, kTouching)).value_or(-1e9) : -1e9});
+      feel(e, along, n);
     }
     n.party_wall = 2 * touching > samples;
     if (!n.party_wall) n.neighbour.clear();
     out.push_back(std::move(n));
   }
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    for (const double beyond : {0.1, 0.2, 0.3, 0.4}) {
+      if (!out[edges[i].before].party_wall) feel(edges[i], -beyond, out[i]);
+      if (!out[edges[i].after].party_wall) feel(edges[i], edges[i].length + beyond, out[i]);
+    }
   return out;
 }
 
@@ -177,6 +187,7 @@ TEST_P(RoofEdges, AllBodiesAreValid) {
   const char* const folder = std::getenv("ROOF_EDGES_GLB");
   int parts = 0, unread = 0, bodies = 0, invalid = 0, reaching = 0;
   std::map<model::RoofElementKind, int> by_kind;
+  std::map<model::RoofElementKind, int> in_neighbour;
   std::map<std::string, int> by_gable;
   Tally gables, firewalls, parapets, overhangs, caps;
   model::Region picture;
@@ -231,6 +242,17 @@ TEST_P(RoofEdges, AllBodiesAreValid) {
         std::printf("%s (%s): %s\n", s.part->id.c_str(), std::string(model::name(s.part->built_roof)).c_str(),
                     fault.c_str());
       }
+      for (const auto& body : dressed.bodies) {
+        const roof_checks::Measured mine(body.solid);
+        for (const Standing* o : near)
+          if (mine.overlap(roof_checks::Measured(o->part->lod2)) > 1e-3) {
+            ++in_neighbour[body.kind];
+            if (cases)
+              std::printf("%s: %s in %s\n", s.part->id.c_str(), std::string(model::name(body.kind)).c_str(),
+                          o->part->id.c_str());
+            break;
+          }
+      }
       if (folder) {
         if (picture.buildings[0].parts.empty()) origin = s.low;
         const auto add = [&](Solid solid, bool keep, model::Colour colour) {
@@ -276,10 +298,14 @@ TEST_P(RoofEdges, AllBodiesAreValid) {
   }
   for (const auto& [kind, count] : by_kind) std::printf("%s %d; ", std::string(model::name(kind)).c_str(), count);
   for (const auto& [form, count] : by_gable) std::printf("%s %d; ", form.c_str(), count);
+  std::printf("\nin a neighbour by more than 1 dm³:");
+  for (const auto& [kind, count] : in_neighbour) std::printf(" %s %d;", std::string(model::name(kind)).c_str(), count);
   std::printf("\n");
   EXPECT_GE(parts, GetParam().least_parts);
   EXPECT_EQ(invalid, 0);
   EXPECT_EQ(reaching, 0);
+  for (const auto kind : {model::RoofElementKind::eaves, model::RoofElementKind::verge, model::RoofElementKind::hip_cap})
+    EXPECT_EQ(in_neighbour[kind], 0) << model::name(kind);
   EXPECT_LE(all.refused, GetParam().most_refused * all.asked);
   if (folder) {
     const std::string path = std::string(folder) + "/" + fs::path(GetParam().file).stem().stem().string() + ".glb";

@@ -66,9 +66,9 @@ inline DressedRoof dress(const model::Polygon& plan, const roofs::Roof& roof, co
   take(out.firewalls, std::move(walls.elements));
   take(out.parapets, roofs::parapets(plan, roof, edges, bare, taken));
   // A wall on a level roof's border ends in its parapet, all others in eaves or verges.
-  std::vector<bool> level(count, false);
+  std::vector<bool> level(count, true);
   for (const auto& s : roofs::top_segments(plan, roof))
-    if (s.surface >= 0 && roofs::is_level(roof.surfaces[static_cast<std::size_t>(s.surface)])) level[s.edge] = true;
+    if (s.surface < 0 || !roofs::is_level(roof.surfaces[static_cast<std::size_t>(s.surface)])) level[s.edge] = false;
   std::vector<roofs::OverhangRoom> rooms(count);
   for (std::size_t i = 0; i < count; ++i) {
     rooms[i].edge = edges[i];

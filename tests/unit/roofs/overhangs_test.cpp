@@ -89,6 +89,15 @@ TEST(Overhangs, GableHasVergesUpToTheRidge) {
     }
 }
 
+TEST(Overhangs, VergeRunsThroughWhereADeckEndsInAGable) {
+  const Roof roof = roof_on(kRectangle, RoofShape::double_saltbox, 3);
+  const auto built = overhangs(kRectangle, roof, {}, {.verge = 0.25, .most_drop = 1});
+  EXPECT_EQ(fault(generate::envelope(kRectangle, 0, roof, {}), built.elements.bodies), "");
+  EXPECT_EQ(count(built.elements, RoofElementKind::verge), 2);  // slope, deck and slope are one body
+  for (const auto& body : built.elements.bodies)
+    for (const Point3& p : body.solid.vertices) EXPECT_GE(p.x, -0.251);
+}
+
 TEST(Overhangs, EndsAtPartyWalls) {
   const Roof roof = roof_on(kRectangle, RoofShape::gabled, 4);
   std::vector<OverhangRoom> rooms(4);

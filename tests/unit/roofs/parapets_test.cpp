@@ -135,11 +135,12 @@ TEST(Parapets, StandOnTheBordersOfADeckAlone) {
   request.shape = RoofShape::double_saltbox;
   request.measures = {10, 3};
   const Roof roof = build_roof(kRectangle, request)->roof;
-  const auto built = parapets(kRectangle, roof, {}, {}, {});
+  EXPECT_EQ(parapets(kRectangle, roof, {}, {}, {}).asked, 0);  // it ends in gables
+  const auto built = parapets(kRectangle, roof, {}, {}, {}, {.on_gables = true});
   EXPECT_EQ(built.asked, 2);  // where the deck ends at both gables
   EXPECT_EQ(built.bodies.size(), 2u);
   EXPECT_EQ(fault_on(kRectangle, roof, built), "");
-  const auto around = parapets(kRectangle, roof, {}, {}, {}, {.around_decks = true});
+  const auto around = parapets(kRectangle, roof, {}, {}, {}, {.on_gables = true, .around_decks = true});
   EXPECT_EQ(around.bodies.size(), 1u);
   EXPECT_EQ(fault_on(kRectangle, roof, around), "");
 }
