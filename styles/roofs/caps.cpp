@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/grid.h"
 #include "styles/roofs/roof_outline.h"
 
@@ -130,7 +131,7 @@ class Caps {
     const double falls_left = -dot(g, inward), falls_right = dot(h, inward);
     if (falls_left < kFalls || falls_right < kFalls) return std::nullopt;
     const double lengths = std::sqrt((1 + dot(g, g)) * (1 + dot(h, h)));
-    if ((1 + dot(g, h)) / lengths > std::cos(options_.least_bend)) return std::nullopt;
+    if ((1 + dot(g, h)) / lengths > base::cos(options_.least_bend)) return std::nullopt;
     const auto end = [&](Point3 p) -> const OverhangCorner* {
       const auto found = corners_.find(geometry::to_grid(p));
       if (found == corners_.end()) return nullptr;
@@ -193,16 +194,16 @@ class Caps {
     const double half = options_.width / 2;
     const Point2 side = turned ? Point2{along.y, -along.x} : Point2{-along.y, along.x};
     // The surface lies between the line and the next edge.
-    double angle = std::atan2(turned ? -cross(along, next) : cross(along, next), dot(along, next));
+    double angle = base::atan2(turned ? -cross(along, next) : cross(along, next), dot(along, next));
     if (angle < 0) angle += 2 * 3.14159265358979323846;
     if (capped) {
-      const double s = std::sin(angle / 2), c = std::cos(angle / 2);
-      if (s < std::sin(kSharpest / 2)) return std::nullopt;
+      const double s = base::sin(angle / 2), c = base::cos(angle / 2);
+      if (s < base::sin(kSharpest / 2)) return std::nullopt;
       return moved(moved(node, side, half), along, half * c / s);
     }
     if (angle > kBluntest) return moved(node, side, half);
     if (angle < kSharpest) return std::nullopt;
-    return moved(moved(node, side, half), along, half * std::cos(angle) / std::sin(angle));
+    return moved(moved(node, side, half), along, half * base::cos(angle) / base::sin(angle));
   }
 
   void place_feet(Line& line) {
@@ -364,7 +365,7 @@ class Caps {
         // Equal angles of the arc.
         const auto share = [&](int k) {
           return pieces == 1 || k == 0 || k == pieces ? static_cast<double>(k) / pieces
-                                                      : std::sin(k * 3.14159265358979323846 / 2 / pieces);
+                                                      : base::sin(k * 3.14159265358979323846 / 2 / pieces);
         };
         out.push_back({{{corner(true, share(i)), corner(false, share(i)), corner(false, share(i + 1)),
                          corner(true, share(i + 1))}}});
