@@ -1,12 +1,14 @@
 #!/bin/sh
 # One picture per roof shape with all plans of grid.txt side by side, rows of five from the north.
 #   contact_sheet.sh TEST_PROGRAM OUT_FOLDER      for example: contact_sheet.sh build/ci/tests/test_roof_grid /tmp/roofs
+# Of test_roof_edges: eaves, parapets, firewalls, caps on four plans, free-standing and between neighbours, and gables:
+#   FROM=60,60,75 TO=35,8,20 contact_sheet.sh build/ci/tests/test_roof_edges /tmp/roof_edges
 # LOOK is a copy of ../shared/tools/render in which `npm install` has run. SHAPES limits which: SHAPES="gabled onion".
 set -eu
 program=$1 out=$2
 look=${LOOK:?"a copy of shared/tools/render with its node_modules"}
 mkdir -p "$out"
-ROOF_GRID_GLB=$out "$program" --gtest_filter='RoofGridPictures.*' >/dev/null
+ROOF_GRID_GLB=$out ROOF_EDGES_GLB=$out "$program" --gtest_filter='*Pictures.*' >/dev/null
 for glb in "$out"/*.glb; do
   shape=$(basename "$glb" .glb)
   case " ${SHAPES:-$shape} " in *" $shape "*) ;; *) continue ;; esac

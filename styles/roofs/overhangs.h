@@ -1,0 +1,52 @@
+// Eaves and verges: where the roof goes on beyond the wall.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "pipeline/model/polygon.h"
+#include "pipeline/model/roof_line.h"
+#include "styles/roofs/plan_cells.h"
+#include "styles/roofs/roof.h"
+
+namespace blockrand::roofs {
+
+/// Measures of eaves and verges. A constant offset of the wall, never across party walls (seed003-part2 section 8.2).
+struct OverhangOptions {
+  double eaves = 0.40;      ///< m, horizontal. Eaves boards of houses after 1900: 0.3 to 0.6 (styles section 2.6, [K]).
+  double verge = 0.20;      ///< m, horizontal. Slight at the sides (Holtmeier section 5.3); half of the eaves [P].
+  double thickness = 0.18;  ///< m, upright: the height of the fascia board, rafters and tiles above it [P].
+  double most_drop = 0.45;  ///< m. Steep slopes (mansards) go out no farther than they come down by this [P].
+  double least = 0.05;      ///< m. What is shorter than that is none: a row of tiles.
+  double longest_mitre =
+      3;  ///< times the overhang, from the corner: both ends are cut square beyond (corners below 39 degrees).
+};
+
+/// What limits the overhang of a plan edge.
+struct OverhangRoom {
+  model::RoofEdge edge = model::RoofEdge::open;  ///< party walls have none
+  double room = 1e9;  ///< m to what stands before the wall, as far as the overhang may go; 0: none is asked for
+};
+
+/// Where the eaves and verges on both sides of a point of the outline meet in one point: a hip or ridge goes on to
+/// there.
+struct OverhangCorner {
+  model::Point3 inner, outer;   ///< m, of the upper side: on the wall; at the edge of the overhang
+  model::Point2 before, after;  ///< unit vectors along the outer edge, in the ring's direction, before and after it
+  double length_before = 0, length_after = 0;  ///< m, of the outer edges
+};
+
+struct BuiltOverhangs {
+  BuiltElements elements;  ///< kinds eaves and verge; `asked` counts plan edges with room that are no party walls
+  std::vector<OverhangCorner> corners;
+};
+
+/// Continues the roof's surfaces in their planes beyond the walls: eaves where the upper end of a wall is level, verges
+/// where it rises. Eaves and verges end in one another, at the ridge, at corners (mitred, outer and inner), square at
+/// bare edges, and before the line of a party wall. Where two would meet (narrow courts, sharp inner corners) or one
+/// would come into the building, both are halved until they do not, or left out. No body touches another or the
+/// building but along its sides. \param rooms  one per plan edge, ring by ring; empty for all open
+BuiltOverhangs overhangs(const model::Polygon& plan, const Roof& roof, std::span<const OverhangRoom> rooms,
+                         const OverhangOptions& options = {});
+
+}  // namespace blockrand::roofs
