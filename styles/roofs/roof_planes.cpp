@@ -1,0 +1,175 @@
+#include "styles/roofs/roof_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "pipeline/geometry/grid.h"
+
+namespace blockrand::roofs {
+
+using geometry::Grid3;
+using model::Point2;
+using model::Point3;
+
+namespace {
+
+std::pair<Grid3, Grid3> key(const Point3& a, const Point3& b) { return {geometry::to_grid(a), geometry::to_grid(b)}; }
+
+bool level(const Point3& a, const Point3& b) { return std::fabs(a.z - b.z) < kLevelLine; }
+
+}  // namespace
+
+LoopPlane plane_of(std::span<const Point3> loop) {
+  LoopPlane out;
+  if (loop.empty()) return out;
+  const Point3 o = loop[0];
+  Point3 n, sum;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Point3 &p = loop[i], &q = loop[(i + 1) % loop.size()];
+    const Point3 a{p.x - o.x, p.y - o.y, p.z - o.z}, b{q.x - o.x, q.y - o.y, q.z - o.z};
+    n.x += a.y * b.z - a.z * b.y;
+    n.y += a.z * b.x - a.x * b.z;
+    n.z += a.x * b.y - a.y * b.x;
+    sum.x += a.x;
+    sum.y += a.y;
+    sum.z += a.z;
+  }
+  const double size = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z), count = static_cast<double>(loop.size());
+  if (size > 0) out.normal = {n.x / size, n.y / size, n.z / size};
+  out.mean = {o.x + sum.x / count, o.y + sum.y / count, o.z + sum.z / count};
+  return out;
+}
+
+Point2 RoofPlane::in_plane(Point2 p) const {
+  const double x = p.x - origin.x, y = p.y - origin.y;
+  return {x * along_axis.x + y * along_axis.y, (x * up_axis.x + y * up_axis.y) * slope_length};
+}
+
+Point3 RoofPlane::in_space(Point2 p, double above) const {
+  const double run = p.y / slope_length;
+  return {origin.x + p.x * along_axis.x + run * up_axis.x, origin.y + p.x * along_axis.y + run * up_axis.y,
+          origin.z + run * rise + above};
+}
+
+double RoofPlane::height_at(Point2 plan) const { return origin.z + in_plane(plan).y / slope_length * rise; }
+
+geometry::Extent RoofPlane::along_extent() const { return geometry::extent_along(loops[0], {1, 0}); }
+geometry::Extent RoofPlane::up_extent() const { return geometry::extent_along(loops[0], {0, 1}); }
+
+RoofBorders::RoofBorders(const Roof& roof, std::span<const model::RoofEdge> edges)
+    : roof_(&roof), edges_(edges.begin(), edges.end()) {
+  for (std::size_t s = 0; s < roof.surfaces.size(); ++s) {
+    const Roof::Surface& surface = roof.surfaces[s];
+    if (!surface.upright && surface.element == -1 && !surface.loops.empty())
+      overhangs_ = overhangs_ || plane_of(surface.loops[0]).normal.z < 0;
+    for (const auto& loop : surface.loops)
+      for (std::size_t i = 0; i < loop.size(); ++i)
+        sides_.push_back({loop[i], loop[(i + 1) % loop.size()], static_cast<std::int32_t>(s), -1});
+  }
+  for (std::size_t e = 0; e < roof.wall_tops.size(); ++e) {
+    const auto& top = roof.wall_tops[e];
+    for (std::size_t i = 0; i + 1 < top.size(); ++i)
+      sides_.push_back({top[i], top[i + 1], -1, static_cast<std::int32_t>(e)});
+  }
+  std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
+    return std::tuple(key(a.start, a.end), a.surface, a.edge) < std::tuple(key(b.start, b.end), b.surface, b.edge);
+  });
+}
+
+std::optional<RoofPlane> RoofBorders::plane(std::size_t surface) const {
+  if (overhangs_ || surface >= roof_->surfaces.size()) return std::nullopt;
+  const Roof::Surface& of = roof_->surfaces[surface];
+  if (of.upright || of.element != -1 || of.loops.empty() || of.loops[0].size() < 3) return std::nullopt;
+  const LoopPlane flat = plane_of(of.loops[0]);
+  const double across = std::hypot(flat.normal.x, flat.normal.y);
+  if (flat.normal.z <= 0 || across < kLevelRise * flat.normal.z) return std::nullopt;
+  for (const auto& loop : of.loops)
+    for (const Point3& p : loop)
+      if (std::fabs((p.x - flat.mean.x) * flat.normal.x + (p.y - flat.mean.y) * flat.normal.y +
+                    (p.z - flat.mean.z) * flat.normal.z) > kEvenSurface)
+        return std::nullopt;
+
+  RoofPlane out;
+  out.surface = surface;
+  out.up_axis = {-flat.normal.x / across, -flat.normal.y / across};
+  out.along_axis = {out.up_axis.y, -out.up_axis.x};
+  out.rise = across / flat.normal.z;
+  out.slope_length = std::sqrt(1 + out.rise * out.rise);
+  out.origin = flat.mean;
+
+  for (const auto& loop : of.loops)
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      PlaneBorder border;
+      border.start = loop[i];
+      border.end = loop[(i + 1) % loop.size()];
+      if (key(border.start, border.end).first == key(border.start, border.end).second) continue;
+      const auto wanted = key(border.end, border.start);
+      const auto found = std::lower_bound(sides_.begin(), sides_.end(), wanted, [](const Side& side, const auto& k) {
+        return key(side.start, side.end) < k;
+      });
+      if (found != sides_.end() && key(found->start, found->end) == wanted) {
+        border.edge = found->edge;
+        border.neighbour = found->surface;
+      }
+      const bool is_level = level(border.start, border.end);
+      const double way = (border.end.x - border.start.x) * out.along_axis.x +
+                         (border.end.y - border.start.y) * out.along_axis.y;
+      const bool party = border.edge >= 0 && static_cast<std::size_t>(border.edge) < edges_.size() &&
+                         edges_[static_cast<std::size_t>(border.edge)] == model::RoofEdge::party_wall;
+      if (border.neighbour >= 0 && roof_->surfaces[static_cast<std::size_t>(border.neighbour)].element != -1)
+        border.kind = BorderKind::element;
+      else if (border.neighbour < 0)
+        border.kind = party || !is_level ? BorderKind::side : way > 0 ? BorderKind::eaves : BorderKind::top;
+      else
+        border.kind = is_level && way < 0 ? BorderKind::top : BorderKind::fold;
+      out.borders.push_back(border);
+    }
+  // The front edge of a dormer borders on its front wall, which is a surface of its own: an element as the rest of it.
+
+  const PlaneBorder* base = nullptr;
+  double best = 0, lowest = 0;
+  for (const PlaneBorder& border : out.borders) {
+    const double length = std::hypot(border.end.x - border.start.x, border.end.y - border.start.y);
+    if (border.kind == BorderKind::eaves && length > best) {
+      base = &border;
+      best = length;
+    }
+  }
+  if (base) {
+    out.origin = out.in_space(out.in_plane(base->start));
+  } else {
+    double leftmost = 0;
+    for (const Point3& p : of.loops[0]) {
+      lowest = std::min(lowest, out.in_plane(p).y);
+      leftmost = std::min(leftmost, out.in_plane(p).x);
+    }
+    out.origin = out.in_space({leftmost, lowest});
+  }
+  for (const auto& loop : of.loops) {
+    out.loops.emplace_back();
+    for (const Point3& p : loop) out.loops.back().push_back(out.in_plane(p));
+  }
+  return out;
+}
+
+std::optional<RoofPlane> roof_plane(const Roof& roof, std::size_t surface, std::span<const model::RoofEdge> edges) {
+  return RoofBorders(roof, edges).plane(surface);
+}
+
+std::vector<RoofPlane> roof_planes(const Roof& roof, std::span<const model::RoofEdge> edges) {
+  const RoofBorders borders(roof, edges);
+  std::vector<RoofPlane> out;
+  for (std::size_t s = 0; s < roof.surfaces.size(); ++s)
+    if (auto plane = borders.plane(s)) out.push_back(std::move(*plane));
+  return out;
+}
+
+void occupy(RoofPlane& plane, std::span<const Point2> plan_outline, double distance) {
+  OccupiedPlace place;
+  place.distance = distance;
+  for (const Point2 p : plan_outline) place.outline.push_back(plane.in_plane(p));
+  plane.occupied.push_back(std::move(place));
+}
+
+}  // namespace blockrand::roofs

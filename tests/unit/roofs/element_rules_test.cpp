@@ -1,0 +1,93 @@
+// Holtmeier's rules on generated roofs, and every element on every kind of roof.
+#include <gtest/gtest.h>
+
+#include "tests/unit/roofs/furnished_roof.h"
+
+namespace blockrand::roofs {
+namespace {
+
+using model::RoofElementKind;
+using model::RoofShape;
+using namespace roof_checks;
+
+constexpr RoofShape kShapes[] = {RoofShape::gabled,          RoofShape::hipped,     RoofShape::mansard,
+                                 RoofShape::gambrel,         RoofShape::half_hipped, RoofShape::double_saltbox,
+                                 RoofShape::saltbox,         RoofShape::skillion,   RoofShape::side_hipped,
+                                 RoofShape::hipped_and_gabled, RoofShape::pyramidal, RoofShape::gabled_height_moved};
+
+/// A house as they stand in towns: a rectangle, an L or a T, or one of the nasty plans.
+Polygon house(Random& random) {
+  const double length = 8 + 22 * random.unit(), depth = 6 + 9 * random.unit();
+  Polygon plan = polygon({{0, 0}, {length, 0}, {length, depth}, {0, depth}});
+  switch (random.next(5)) {
+    case 0: {
+      const double wing = 5 + 0.3 * (length - 8), out = 4 + 8 * random.unit();
+      plan = polygon({{0, 0}, {length, 0}, {length, depth}, {wing, depth}, {wing, depth + out}, {0, depth + out}});
+      break;
+    }
+    case 1: {
+      const double a = length * 0.35, b = length * 0.7, out = 0.5 + 6 * random.unit();
+      plan = polygon({{0, 0}, {a, 0}, {a, -out}, {b, -out}, {b, 0}, {length, 0}, {length, depth}, {0, depth}});
+      break;
+    }
+    case 2:
+      return random_plan(random);
+    default:
+      break;
+  }
+  const double angle = random.next(3) == 0 ? 90.0 * static_cast<double>(random.next(4)) : 360 * random.unit();
+  return moved(plan, angle, kPlaces[random.next(3)]);
+}
+
+TEST(ElementRules, HoldOnGeneratedRoofs) {
+  constexpr int kRoofs = 1500;
+  Random random(22);
+  std::map<RoofElementKind, int> built;
+  int roofs = 0;
+  for (int i = 0; i < kRoofs; ++i) {
+    const Polygon plan = house(random);
+    RoofRequest request;
+    request.shape = kShapes[random.next(std::size(kShapes))];
+    const double height = random.next(8) == 0 ? 0.5 : 1.5 + 6.5 * random.unit();
+    request.measures = {40, height};
+    Furnishing with;
+    with.dormer = usual_dormer(kDormerKinds[random.next(6)]);
+    if (random.next(2) == 0) with.dormer.width = 0.8 + 2.2 * random.unit();
+    with.cross_gable.kind = kDormerKinds[random.next(5)];
+    with.cross_gable.width = 1.2 + 1.8 * random.unit();
+    with.cross_gable.wall_height = random.next(3) == 0 ? 0 : 1.2 * random.unit();
+    if (with.cross_gable.kind == DormerKind::shed) with.cross_gable.roof_pitch = 10;
+    with.cross_gable.rise = with.cross_gable.width / 5;
+    with.most_dormers = 1 + static_cast<int>(random.next(8));
+    with.cross_gables = random.next(2) == 0;
+    std::optional<BuiltRoof> bare;
+    for (const double coarseness : kCoarseness) {
+      request.coarseness = coarseness;
+      bare = build_roof(plan, request);
+      if (bare && verdict(plan, bare->roof) == "none") break;
+      bare.reset();
+    }
+    if (!bare) continue;
+    ++roofs;
+    const auto edges = random.next(2) == 0 ? gables_as_party_walls(bare->roof) : std::vector<model::RoofEdge>{};
+    const Furnished furnished = furnish(plan, edges, bare->roof, with);
+    const std::string where = "roof " + std::to_string(i) + ", " + std::string(model::name(request.shape));
+    ASSERT_EQ(verdict(plan, furnished.roof), "none") << where;
+    ASSERT_EQ(installations_verdict(furnished.installations), "none") << where;
+    ASSERT_EQ(broken_rules(furnished.roof, furnished.installations), std::vector<std::string>{}) << where;
+    ASSERT_EQ(furnished.faults, std::vector<std::string>{}) << where;
+    ASSERT_NEAR(covered_area(furnished.roof), covered_area(bare->roof), 0.02) << where;
+    for (const auto& [kind, n] : furnished.built) built[kind] += n;
+  }
+  EXPECT_GE(roofs, 1000);
+  // The rules are not kept by building nothing.
+  EXPECT_GT(built[RoofElementKind::dormer], 1500);
+  EXPECT_GT(built[RoofElementKind::cross_gable], 400);
+  EXPECT_GT(built[RoofElementKind::roof_window], 3000);
+  EXPECT_GT(built[RoofElementKind::chimney], 1500);
+  std::printf("%d roofs: %d dormers, %d cross gables, %d roof windows, %d chimneys\n", roofs, built[RoofElementKind::dormer],
+              built[RoofElementKind::cross_gable], built[RoofElementKind::roof_window], built[RoofElementKind::chimney]);
+}
+
+}  // namespace
+}  // namespace blockrand::roofs
