@@ -172,6 +172,9 @@ std::optional<model::RoofInstallation> chimney(const Roof& roof, ChimneyPlace pl
         z = std::min(z, piece.height.at(q));
     return Point3{q.x, q.y, z - p.sunk};
   };
+  double highest = -1e300;
+  for (const Point2 q : ring) highest = std::max(highest, under(q).z + p.sunk);
+  if (top - highest > p.tallest) return std::nullopt;
   const auto upper = [&](Point2 q) { return Point3{q.x, q.y, top}; };
 
   model::Face side = looks.stack, cover = looks.top, below = looks.stack;
@@ -235,22 +238,57 @@ std::vector<ChimneyPlace> ridge_places(const Roof& roof, const ChimneyParameters
   return out;
 }
 
-std::vector<ChimneyPlace> party_wall_places(const model::Polygon& plan, std::span<const model::RoofEdge> edges,
+std::vector<ChimneyPlace> party_wall_places(const model::Polygon& plan, std::span<const model::RoofEdge> edges, const Roof& roof,
                                             const ChimneyParameters& parameters) {
-  std::vector<ChimneyPlace> out;
+  /// A place and how many steps it lies from the highest one of its wall.
+  struct Ranked {
+    int rank;
+    ChimneyPlace place;
+  };
+  std::vector<Ranked> ranked;
   std::size_t edge = 0;
-  const auto walls = [&](const model::Ring& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i, ++edge) {
-      if (edge >= edges.size() || edges[edge] != model::RoofEdge::party_wall) continue;
-      const std::size_t before = out.size();
-      along_line(ring.points[i], ring.points[(i + 1) % ring.size()], parameters, out);
-      const double in = parameters.inset + parameters.width / 2;
-      for (std::size_t k = before; k < out.size(); ++k)
-        out[k].middle = {out[k].middle.x - in * out[k].along.y, out[k].middle.y + in * out[k].along.x};
+  const auto place_on = [&](Point2 a, Point2 b, const std::vector<Point3>& top) {
+    const double length = std::hypot(b.x - a.x, b.y - a.y), margin = parameters.length / 2 + kLeastPart;
+    if (length < 2 * margin) return;
+    const Point2 along{(b.x - a.x) / length, (b.y - a.y) / length};
+    const double in = parameters.inset + parameters.width / 2;
+    const auto way = [&](const Point3& p) { return (p.x - a.x) * along.x + (p.y - a.y) * along.y; };
+    const auto add = [&](int rank, double s) {
+      if (s >= margin && s <= length - margin)
+        ranked.push_back({rank, {{a.x + s * along.x - in * along.y, a.y + s * along.y + in * along.x}, along}});
+    };
+    double high = -1e300, low = 1e300;
+    for (const Point3& p : top) {
+      high = std::max(high, p.z);
+      low = std::min(low, p.z);
     }
+    if (high - low < kLevelLine) {
+      const int n = std::max(1, static_cast<int>(std::lround(length / parameters.step)));
+      for (int i = 0; i < n; ++i) add(0, length * (i + 0.5) / n);
+      return;
+    }
+    // The middle of what is highest: a ridge's point, or a deck.
+    double from = length, to = 0;
+    for (const Point3& p : top)
+      if (p.z > high - kLevelLine) {
+        from = std::min(from, way(p));
+        to = std::max(to, way(p));
+      }
+    const double best = std::clamp((from + to) / 2, margin, length - margin);
+    add(0, best);
+    for (int k = 1; k * parameters.step < length; ++k)
+      for (const int sign : {-1, 1}) add(k, best + sign * k * parameters.step);
+  };
+  const auto walls = [&](const model::Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i, ++edge)
+      if (edge < edges.size() && edge < roof.wall_tops.size() && edges[edge] == model::RoofEdge::party_wall)
+        place_on(ring.points[i], ring.points[(i + 1) % ring.size()], roof.wall_tops[edge]);
   };
   walls(plan.outer);
   for (const model::Ring& hole : plan.holes) walls(hole);
+  std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.rank < b.rank; });
+  std::vector<ChimneyPlace> out;
+  for (const Ranked& r : ranked) out.push_back(r.place);
   return out;
 }
 
@@ -270,7 +308,7 @@ std::vector<ChimneyPlace> flat_places(const Roof& roof, const ChimneyParameters&
 
 namespace {
 
-/// Halfway up the slopes, along their eaves, those that reach highest first: where neither ridge nor wall takes a stack.
+/// High up the slopes, along their eaves, those that reach highest first: where neither ridge nor wall takes a stack.
 std::vector<ChimneyPlace> slope_places(const Roof& roof, const ChimneyParameters& parameters) {
   std::vector<RoofPlane> planes = roof_planes(roof);
   const auto top = [](const RoofPlane& plane) { return plane.in_space({0, plane.up_extent().maximum}).z; };
@@ -278,7 +316,7 @@ std::vector<ChimneyPlace> slope_places(const Roof& roof, const ChimneyParameters
   std::vector<ChimneyPlace> out;
   for (const RoofPlane& plane : planes) {
     const auto along = plane.along_extent(), up = plane.up_extent();
-    for (const double share : {0.75, 0.5, 0.25}) {
+    for (const double share : {0.85, 0.75, 0.6}) {
       const double height = up.minimum + share * (up.maximum - up.minimum);
       along_line(plane.in_space({along.minimum, height}).xy(), plane.in_space({along.maximum, height}).xy(), parameters, out);
     }
@@ -291,7 +329,7 @@ std::vector<ChimneyPlace> slope_places(const Roof& roof, const ChimneyParameters
 std::vector<model::RoofInstallation> chimneys(const model::Polygon& plan, std::span<const model::RoofEdge> edges,
                                               const Roof& roof, double frontage, const ChimneyParameters& parameters,
                                               const ChimneyLooks& looks) {
-  std::vector<ChimneyPlace> wanted = party_wall_places(plan, edges, parameters);
+  std::vector<ChimneyPlace> wanted = party_wall_places(plan, edges, roof, parameters);
   for (const auto& more : {ridge_places(roof, parameters), flat_places(roof, parameters), slope_places(roof, parameters)})
     wanted.insert(wanted.end(), more.begin(), more.end());
   const auto count = static_cast<std::size_t>(chimney_count(frontage, parameters));

@@ -12,6 +12,9 @@ using model::Point3;
 
 namespace {
 
+/// Share of a ridge's way back that its hip may take. On steep slopes the way is short: the hip becomes steeper than the sides.
+constexpr double kMostHip = 0.6;
+
 double tangent(double degrees) { return base::tan(degrees * base::kRadiansPerDegree); }
 
 /// The head from right to left, front ends of the lines that run back.
@@ -87,8 +90,8 @@ std::optional<StandingShape> standing_shape(const StandingMeasures& m, double ri
   };
   if (m.kind == DormerKind::hipped) {
     const double top = wall + half * tangent(m.roof_pitch);
-    const Point3 peak{0, half, top}, ridge = swallowed({0, 0, top});
-    if (ridge.y < peak.y + kLeastPart) return std::nullopt;
+    const Point3 ridge = swallowed({0, 0, top}), peak{0, std::min(half, kMostHip * ridge.y), top};
+    if (peak.y < kLeastPart || ridge.y < peak.y + kLeastPart) return std::nullopt;
     add({out.head.front(), peak, out.head.back()});
     add({out.head.front(), ends.front(), ridge, peak});
     add({out.head.back(), peak, ridge, ends.back()});

@@ -15,7 +15,7 @@ namespace blockrand::roofs {
 /// The six heads. The comment tells what DormerParameters::roof_pitch and rise mean to each.
 enum class DormerKind : std::uint8_t {
   gabled,     ///< ridge level and square to the front; pitch of both planes
-  hipped,     ///< as gabled, with a hip of the same pitch over the front
+  hipped,     ///< as gabled, with a hip over the front: of the same pitch, steeper where the slope leaves less room
   shed,       ///< one plane that falls to the front; its pitch
   flat,       ///< one level plane
   segmental,  ///< an arc `rise` high over the front, its barrel level
@@ -47,7 +47,7 @@ struct StandingShape {
 
 /// \param rise  tangent of the slope's pitch
 /// Empty when the measures make no body: not positive, a roof as steep as the slope, an arc that is more than half a circle,
-/// a hip that runs into the slope, cheeks or a ridge under kLeastPart.
+/// cheeks or a ridge under kLeastPart.
 std::optional<StandingShape> standing_shape(const StandingMeasures& measures, double rise);
 
 /// The shape's outline in the coordinates of a plane, counter-clockwise, about the middle of its front.

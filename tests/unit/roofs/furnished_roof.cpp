@@ -238,7 +238,13 @@ std::vector<std::string> broken_rules(const Roof& roof, const std::vector<RoofIn
         const bool level = std::fabs(side.a.z - side.b.z) < 0.02;
         if (beyond == surface_side.end()) {
           if (!wall_side.contains({side.b, side.a})) complain("an open side of surface " + std::to_string(s));
-          (level ? slopes[s].eaves : slopes[s].sides).push_back(side);
+          // Eaves lie below their slope: water runs over them. The high wall of a lean-to is level, too.
+          const Point3 n = doubled_area(surface.loops[0]);
+          const bool below = n.x * -(side.b.y - side.a.y) + n.y * (side.b.x - side.a.x) < 0;
+          if (!level)
+            slopes[s].sides.push_back(side);
+          else if (below)
+            slopes[s].eaves.push_back(side);
         } else if (const std::int32_t e = roof.surfaces[beyond->second].element; e != -1) {
           Standing& of = standing[static_cast<std::size_t>(e)];
           if (of.slope != SIZE_MAX && of.slope != s) complain(of.name + " lies in two slopes");
