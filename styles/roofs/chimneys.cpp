@@ -74,6 +74,30 @@ Height height_of(const Roof::Surface& surface) {
   return out;
 }
 
+/// Height of the ridge above a surface: the highest point of it and of what goes on rising over its upper border (the upper
+/// slope of a mansard).
+double ridge_above(const Roof& roof, std::size_t surface) {
+  const RoofBorders borders(roof, {});
+  double highest = height_of(roof.surfaces[surface]).highest;
+  for (bool higher = true; higher;) {
+    higher = false;
+    const auto plane = borders.plane(surface);
+    if (!plane) break;
+    for (const PlaneBorder& border : plane->borders) {
+      if (border.kind != BorderKind::top || border.neighbour < 0) continue;
+      const auto above = static_cast<std::size_t>(border.neighbour);
+      if (roof.surfaces[above].upright || roof.surfaces[above].element != -1) continue;
+      const double z = height_of(roof.surfaces[above]).highest;
+      if (z <= highest + kLevelLine) continue;
+      highest = z;
+      surface = above;
+      higher = true;
+      break;
+    }
+  }
+  return highest;
+}
+
 /// A border that crosses a stack: the surface left of it, and where.
 struct Crossing {
   std::size_t surface = 0;
@@ -116,20 +140,18 @@ std::optional<model::RoofInstallation> chimney(const Roof& roof, ChimneyPlace pl
 
   // The pieces of its plan, each over one surface.
   struct Piece {
+    std::size_t surface;
     Height height;
     Outline outline;
   };
   std::vector<Piece> pieces;
   Outline ring = stack;  // with the points where the line between two surfaces leaves it
   if (crossings.empty()) {
-    const Roof::Surface* below = nullptr;
-    for (const Roof::Surface& surface : roof.surfaces)
-      if (!surface.upright && surface.element == -1 && over(surface, place.middle)) {
-        if (below) return std::nullopt;  // one over the other: an onion's bulge
-        below = &surface;
-      }
-    if (!below) return std::nullopt;
-    pieces.push_back({height_of(*below), stack});
+    for (std::size_t s = 0; s < roof.surfaces.size(); ++s)
+      if (const Roof::Surface& surface = roof.surfaces[s];
+          !surface.upright && surface.element == -1 && over(surface, place.middle))
+        pieces.push_back({s, height_of(surface), stack});
+    if (pieces.size() != 1) return std::nullopt;  // none, or one over the other: an onion's bulge
   } else {
     if (crossings.size() != 2 || geometry::to_grid(crossings[0].start) != geometry::to_grid(crossings[1].end) ||
         geometry::to_grid(crossings[0].end) != geometry::to_grid(crossings[1].start))
@@ -141,7 +163,8 @@ std::optional<model::RoofInstallation> chimney(const Roof& roof, ChimneyPlace pl
     const auto inside = within(stack, a, b);
     if (!inside || inside->first <= 0 || inside->second >= 1) return std::nullopt;  // a surface ends below the stack
     ring.clear();
-    pieces = {{height_of(roof.surfaces[crossings[0].surface]), {}}, {height_of(roof.surfaces[crossings[1].surface]), {}}};
+    for (const Crossing& crossing : crossings)
+      pieces.push_back({crossing.surface, height_of(roof.surfaces[crossing.surface]), {}});
     for (std::size_t i = 0; i < 4; ++i) {
       const Point2 q = stack[i], r = stack[(i + 1) % 4];
       const double here = left(q), there = left(r);
@@ -160,7 +183,7 @@ std::optional<model::RoofInstallation> chimney(const Roof& roof, ChimneyPlace pl
   bool level = true;
   for (const Piece& piece : pieces) {
     if (!(piece.height.plane.normal.z > 0.01)) return std::nullopt;
-    top = std::max(top, piece.height.highest);
+    top = std::max(top, ridge_above(roof, piece.surface));
     level = level && piece.height.level;
   }
   top += level ? p.above_flat : p.above_ridge;
@@ -298,10 +321,23 @@ std::vector<ChimneyPlace> flat_places(const Roof& roof, const ChimneyParameters&
     if (surface.upright || surface.element != -1 || surface.loops.empty() || !height_of(surface).level) continue;
     const Outline outline = flat(surface.loops[0]);
     const Point2 axis = geometry::long_axis(outline);
-    const auto along = geometry::extent_along(outline, axis), across = geometry::extent_along(outline, {-axis.y, axis.x});
-    const double middle = (across.minimum + across.maximum) / 2;
-    const auto at = [&](double s) { return Point2{axis.x * s - axis.y * middle, axis.y * s + axis.x * middle}; };
-    along_line(at(along.minimum), at(along.maximum), parameters, out);
+    const auto across = geometry::extent_along(outline, {-axis.y, axis.x});
+    // The middle line and, where wings leave it, lines beside it; of each what lies over the surface.
+    for (const double share : {0.5, 0.25, 0.75, 0.1, 0.9}) {
+      const double middle = across.minimum + share * (across.maximum - across.minimum);
+      const auto at = [&](double s) { return Point2{axis.x * s - axis.y * middle, axis.y * s + axis.x * middle}; };
+      std::vector<double> cuts;
+      for (const auto& loop : surface.loops)
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+          const Point2 a = loop[i].xy(), b = loop[(i + 1) % loop.size()].xy();
+          const double at_a = -axis.y * a.x + axis.x * a.y - middle, at_b = -axis.y * b.x + axis.x * b.y - middle;
+          if ((at_a < 0) == (at_b < 0)) continue;
+          const double way = at_a / (at_a - at_b);
+          cuts.push_back(axis.x * (a.x + way * (b.x - a.x)) + axis.y * (a.y + way * (b.y - a.y)));
+        }
+      std::sort(cuts.begin(), cuts.end());
+      for (std::size_t i = 0; i + 1 < cuts.size(); i += 2) along_line(at(cuts[i]), at(cuts[i + 1]), parameters, out);
+    }
   }
   return out;
 }

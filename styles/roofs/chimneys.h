@@ -14,7 +14,7 @@ namespace blockrand::roofs {
 struct ChimneyParameters {
   double width = 0.58;        ///< m, the shorter side; 0.5 to 0.65
   double length = 1.20;       ///< m, the longer side, along ridge or party wall; 0.8 to 1.6
-  double above_ridge = 0.75;  ///< m from the highest point of the slopes it stands on to its top; 0.5 to 1.0
+  double above_ridge = 0.75;  ///< m from the ridge over the slopes it stands on to its top; 0.5 to 1.0
   double above_flat = 1.00;   ///< m above a flat roof
   double step = 6.0;          ///< m between chimneys on one wall or ridge: "every 5-7 m"
   double frontage = 6.0;      ///< m of frontage for each chimney of a house; at least one
@@ -62,7 +62,8 @@ std::vector<ChimneyPlace> ridge_places(const Roof& roof, const ChimneyParameters
 std::vector<ChimneyPlace> party_wall_places(const model::Polygon& plan, std::span<const model::RoofEdge> edges, const Roof& roof,
                                             const ChimneyParameters& parameters = {});
 
-/// Places on level surfaces, along the middle line of their smallest rectangle: its length / step, rounded, at least one.
+/// Places on level surfaces, along the middle line of their smallest rectangle, then along four lines beside it, on each stretch that
+/// lies over the surface: its length / step, rounded, at least one.
 std::vector<ChimneyPlace> flat_places(const Roof& roof, const ChimneyParameters& parameters = {});
 
 /// The chimneys of a house: chimney_count() of them at the first places that take one; party walls first, then ridges, then flat roofs, then slopes

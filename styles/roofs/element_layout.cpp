@@ -52,7 +52,7 @@ bool inside(const RoofPlane& plane, Point2 p) {
   return in;
 }
 
-/// A point that lies inside of convex outlines, and of the others that stand on slopes: just over the middle of the front.
+/// A point inside of a convex outline.
 Point2 middle_of(std::span<const Point2> outline) { return geometry::centroid(outline); }
 
 /// Where `value`, a convex function, is below `limit`: the stretch between `low` and `high`, both of which it is not. Empty when nowhere.
@@ -131,21 +131,31 @@ std::vector<std::pair<double, double>> free_stretches(const RoofPlane& plane, co
   const auto take = [&](double limit, const auto& value) {
     if (const auto stretch = below(low, high, limit - kFound, value)) taken.push_back(*stretch);
   };
-  const auto at = [&](double x) { return moved(wish.outline, {x, wish.up}); };
+  // What lies near is moved instead of the outline.
+  const auto heights = geometry::extent_along(wish.outline, {0, 1});
+  const auto seen = [&](Point2 p, double x) { return Point2{p.x - x, p.y - wish.up}; };
+  const auto far = [&](double limit, std::span<const Point2> points) {
+    const auto other = geometry::extent_along(points, {0, 1});
+    return other.minimum - wish.up > heights.maximum + limit || other.maximum - wish.up < heights.minimum - limit;
+  };
   for (std::size_t i = 0; i < plane.borders.size(); ++i) {
     if (static_cast<int>(i) == wish.eaves) continue;
-    const Point2 a = plane.in_plane(plane.borders[i].start), b = plane.in_plane(plane.borders[i].end);
-    take(distances.from(plane.borders[i].kind), [&](double x) { return distance(at(x), a, b); });
+    const Point2 ends[] = {plane.in_plane(plane.borders[i].start), plane.in_plane(plane.borders[i].end)};
+    const double limit = distances.from(plane.borders[i].kind);
+    if (far(limit, ends)) continue;
+    take(limit, [&](double x) { return distance(wish.outline, seen(ends[0], x), seen(ends[1], x)); });
   }
-  for (const OccupiedPlace& place : plane.occupied)
-    take(place.distance, [&](double x) { return distance(at(x), place.outline); });
+  for (const OccupiedPlace& place : plane.occupied) {
+    if (far(place.distance, place.outline)) continue;
+    take(place.distance, [&](double x) { return distance(moved(wish.outline, {x, wish.up}), place.outline); });
+  }
 
   std::sort(taken.begin(), taken.end());
   std::vector<std::pair<double, double>> out;
   double from = low;
   const auto add = [&](double to) {
     // Between two taken stretches no border comes near: all of it lies inside or all outside.
-    if (to >= from && inside(plane, middle_of(at((from + to) / 2)))) out.emplace_back(from, to);
+    if (to >= from && inside(plane, middle_of(moved(wish.outline, {(from + to) / 2, wish.up})))) out.emplace_back(from, to);
   };
   for (const auto& [first, last] : taken) {
     add(first);

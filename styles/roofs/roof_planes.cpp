@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "pipeline/geometry/grid.h"
 
@@ -13,8 +12,6 @@ using model::Point2;
 using model::Point3;
 
 namespace {
-
-std::pair<Grid3, Grid3> key(const Point3& a, const Point3& b) { return {geometry::to_grid(a), geometry::to_grid(b)}; }
 
 bool level(const Point3& a, const Point3& b) { return std::fabs(a.z - b.z) < kLevelLine; }
 
@@ -65,16 +62,15 @@ RoofBorders::RoofBorders(const Roof& roof, std::span<const model::RoofEdge> edge
       overhangs_ = overhangs_ || plane_of(surface.loops[0]).normal.z < 0;
     for (const auto& loop : surface.loops)
       for (std::size_t i = 0; i < loop.size(); ++i)
-        sides_.push_back({loop[i], loop[(i + 1) % loop.size()], static_cast<std::int32_t>(s), -1});
+        sides_.push_back({geometry::to_grid(loop[i]), geometry::to_grid(loop[(i + 1) % loop.size()]),
+                          static_cast<std::int32_t>(s), -1});
   }
   for (std::size_t e = 0; e < roof.wall_tops.size(); ++e) {
     const auto& top = roof.wall_tops[e];
     for (std::size_t i = 0; i + 1 < top.size(); ++i)
-      sides_.push_back({top[i], top[i + 1], -1, static_cast<std::int32_t>(e)});
+      sides_.push_back({geometry::to_grid(top[i]), geometry::to_grid(top[i + 1]), -1, static_cast<std::int32_t>(e)});
   }
-  std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
-    return std::tuple(key(a.start, a.end), a.surface, a.edge) < std::tuple(key(b.start, b.end), b.surface, b.edge);
-  });
+  std::sort(sides_.begin(), sides_.end());
 }
 
 std::optional<RoofPlane> RoofBorders::plane(std::size_t surface) const {
@@ -103,12 +99,10 @@ std::optional<RoofPlane> RoofBorders::plane(std::size_t surface) const {
       PlaneBorder border;
       border.start = loop[i];
       border.end = loop[(i + 1) % loop.size()];
-      if (key(border.start, border.end).first == key(border.start, border.end).second) continue;
-      const auto wanted = key(border.end, border.start);
-      const auto found = std::lower_bound(sides_.begin(), sides_.end(), wanted, [](const Side& side, const auto& k) {
-        return key(side.start, side.end) < k;
-      });
-      if (found != sides_.end() && key(found->start, found->end) == wanted) {
+      const Grid3 start = geometry::to_grid(border.start), end = geometry::to_grid(border.end);
+      if (start == end) continue;
+      const auto found = std::lower_bound(sides_.begin(), sides_.end(), Side{end, start, INT32_MIN, INT32_MIN});
+      if (found != sides_.end() && found->start == end && found->end == start) {
         border.edge = found->edge;
         border.neighbour = found->surface;
       }
@@ -125,8 +119,6 @@ std::optional<RoofPlane> RoofBorders::plane(std::size_t surface) const {
         border.kind = is_level && way < 0 ? BorderKind::top : BorderKind::fold;
       out.borders.push_back(border);
     }
-  // The front edge of a dormer borders on its front wall, which is a surface of its own: an element as the rest of it.
-
   const PlaneBorder* base = nullptr;
   double best = 0, lowest = 0;
   for (const PlaneBorder& border : out.borders) {

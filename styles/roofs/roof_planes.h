@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon.h"
 #include "styles/roofs/roof.h"
 
@@ -69,12 +70,13 @@ class RoofBorders {
 
  private:
   struct Side {
-    model::Point3 start, end;
+    geometry::Grid3 start, end;
     std::int32_t surface = -1, edge = -1;
+    friend auto operator<=>(const Side&, const Side&) = default;
   };
   const Roof* roof_;
   std::vector<model::RoofEdge> edges_;
-  std::vector<Side> sides_;  ///< by their points on the grid
+  std::vector<Side> sides_;  ///< sorted
   bool overhangs_ = false;
 };
 
