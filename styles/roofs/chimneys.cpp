@@ -315,28 +315,38 @@ std::vector<ChimneyPlace> party_wall_places(const model::Polygon& plan, std::spa
   return out;
 }
 
+namespace {
+
+/// Places along the stretches of a line that lie over a surface: the line through `through` along `axis`.
+void along_surface(const Roof::Surface& surface, Point2 through, Point2 axis, const ChimneyParameters& parameters,
+                   std::vector<ChimneyPlace>& out) {
+  const auto off = [&](const Point3& p) { return (p.y - through.y) * axis.x - (p.x - through.x) * axis.y; };
+  const auto way = [&](const Point3& p) { return (p.x - through.x) * axis.x + (p.y - through.y) * axis.y; };
+  std::vector<double> cuts;
+  for (const auto& loop : surface.loops)
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Point3 &a = loop[i], &b = loop[(i + 1) % loop.size()];
+      if ((off(a) < 0) == (off(b) < 0)) continue;
+      cuts.push_back(way(a) + off(a) / (off(a) - off(b)) * (way(b) - way(a)));
+    }
+  std::sort(cuts.begin(), cuts.end());
+  const auto at = [&](double s) { return Point2{through.x + s * axis.x, through.y + s * axis.y}; };
+  for (std::size_t i = 0; i + 1 < cuts.size(); i += 2) along_line(at(cuts[i]), at(cuts[i + 1]), parameters, out);
+}
+
+}  // namespace
+
 std::vector<ChimneyPlace> flat_places(const Roof& roof, const ChimneyParameters& parameters) {
   std::vector<ChimneyPlace> out;
   for (const Roof::Surface& surface : roof.surfaces) {
     if (surface.upright || surface.element != -1 || surface.loops.empty() || !height_of(surface).level) continue;
     const Outline outline = flat(surface.loops[0]);
-    const Point2 axis = geometry::long_axis(outline);
-    const auto across = geometry::extent_along(outline, {-axis.y, axis.x});
-    // The middle line and, where wings leave it, lines beside it; of each what lies over the surface.
+    const Point2 axis = geometry::long_axis(outline), square{-axis.y, axis.x}, middle = outline[0];
+    const auto across = geometry::extent_along(outline, square);
+    // The middle line and, where wings leave it, lines beside it.
     for (const double share : {0.5, 0.25, 0.75, 0.1, 0.9}) {
-      const double middle = across.minimum + share * (across.maximum - across.minimum);
-      const auto at = [&](double s) { return Point2{axis.x * s - axis.y * middle, axis.y * s + axis.x * middle}; };
-      std::vector<double> cuts;
-      for (const auto& loop : surface.loops)
-        for (std::size_t i = 0; i < loop.size(); ++i) {
-          const Point2 a = loop[i].xy(), b = loop[(i + 1) % loop.size()].xy();
-          const double at_a = -axis.y * a.x + axis.x * a.y - middle, at_b = -axis.y * b.x + axis.x * b.y - middle;
-          if ((at_a < 0) == (at_b < 0)) continue;
-          const double way = at_a / (at_a - at_b);
-          cuts.push_back(axis.x * (a.x + way * (b.x - a.x)) + axis.y * (a.y + way * (b.y - a.y)));
-        }
-      std::sort(cuts.begin(), cuts.end());
-      for (std::size_t i = 0; i + 1 < cuts.size(); i += 2) along_line(at(cuts[i]), at(cuts[i + 1]), parameters, out);
+      const double off = across.minimum + share * (across.maximum - across.minimum) - (middle.x * square.x + middle.y * square.y);
+      along_surface(surface, {middle.x + off * square.x, middle.y + off * square.y}, axis, parameters, out);
     }
   }
   return out;
@@ -351,10 +361,10 @@ std::vector<ChimneyPlace> slope_places(const Roof& roof, const ChimneyParameters
   std::stable_sort(planes.begin(), planes.end(), [&](const RoofPlane& a, const RoofPlane& b) { return top(a) > top(b); });
   std::vector<ChimneyPlace> out;
   for (const RoofPlane& plane : planes) {
-    const auto along = plane.along_extent(), up = plane.up_extent();
-    for (const double share : {0.85, 0.75, 0.6}) {
+    const auto up = plane.up_extent();
+    for (const double share : {0.85, 0.75, 0.6, 0.4}) {
       const double height = up.minimum + share * (up.maximum - up.minimum);
-      along_line(plane.in_space({along.minimum, height}).xy(), plane.in_space({along.maximum, height}).xy(), parameters, out);
+      along_surface(roof.surfaces[plane.surface], plane.in_space({0, height}).xy(), plane.along_axis, parameters, out);
     }
   }
   return out;

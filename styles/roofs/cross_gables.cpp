@@ -12,9 +12,6 @@ using model::Point3;
 
 namespace {
 
-/// An eaves that runs along its plane but for rounding: its own direction decides how the gable stands.
-constexpr double kAlong = 0.02;  ///< sine of a degree
-
 std::optional<StandingShape> shape_on(const RoofPlane& plane, const CrossGableParameters& p) {
   if (!takes_elements(plane) || p.width > kWidestElement || p.kind == DormerKind::eyebrow) return std::nullopt;
   return standing_shape({p.kind, p.width, p.wall_height, p.rise, p.roof_pitch, p.chords}, plane.rise);
@@ -31,46 +28,26 @@ std::ptrdiff_t place_of(const std::vector<Point3>& points, const Point3& a, cons
 
 }  // namespace
 
-int gable_eaves(const RoofPlane& plane) {
-  int best = -1;
-  double longest = 0;
-  for (std::size_t i = 0; i < plane.borders.size(); ++i) {
-    const PlaneBorder& border = plane.borders[i];
-    if (border.kind != BorderKind::eaves) continue;
-    const double length = std::hypot(border.end.x - border.start.x, border.end.y - border.start.y);
-    const double across = (border.end.x - border.start.x) * plane.up_axis.x + (border.end.y - border.start.y) * plane.up_axis.y;
-    if (length <= longest || std::fabs(across) > kAlong * length) continue;
-    best = static_cast<int>(i);
-    longest = length;
-  }
-  return best;
-}
-
 std::vector<Point2> cross_gable_outline(const RoofPlane& plane, const CrossGableParameters& parameters) {
   const auto shape = shape_on(plane, parameters);
   return shape ? hull(outline_in_plane(*shape, plane)) : std::vector<Point2>{};
 }
 
-bool add_cross_gable(Roof& roof, std::size_t surface, const CrossGableParameters& parameters, double along,
+bool add_cross_gable(Roof& roof, std::size_t surface, const CrossGableParameters& parameters, Point2 place,
                      std::span<const model::RoofEdge> edges, const ElementDistances& distances) {
   const auto plane = roof_plane(roof, surface, edges);
   if (!plane) return false;
   const auto shape = shape_on(*plane, parameters);
-  const int eaves = gable_eaves(*plane);
-  if (!shape || eaves < 0) return false;
-  const PlaneBorder& border = plane->borders[static_cast<std::size_t>(eaves)];
-
-  // The front stands on the eaves itself, wherever rounding has put that.
-  const Point2 from = plane->in_plane(border.start), to = plane->in_plane(border.end);
-  const double share = (along - from.x) / (to.x - from.x), half = parameters.width / 2 / (to.x - from.x);
-  if (share - half <= 0 || share + half >= 1) return false;
-  const double up = from.y + share * (to.y - from.y);
+  if (!shape) return false;
   auto outline = hull(outline_in_plane(*shape, *plane));
-  for (Point2& p : outline) p = {p.x + along, p.y + up};
-  if (!fits(*plane, outline, distances, eaves)) return false;
-  const double length = to.x - from.x;
-  // Its corners keep off the ends of the eaves, also where the wall goes on beyond them in another direction.
-  if ((share - half) * length < kLeastPart || (1 - share - half) * length < kLeastPart) return false;
+  for (Point2& p : outline) p = {p.x + place.x, p.y + place.y};
+  if (!fits(*plane, outline, distances, true)) return false;
+  const auto eaves = std::find_if(plane->borders.begin(), plane->borders.end(), [&](const PlaneBorder& border) {
+    return is_level_eaves(*plane, border, place.y) && plane->in_plane(border.start).x < place.x &&
+           place.x < plane->in_plane(border.end).x;
+  });
+  if (eaves == plane->borders.end()) return false;
+  const PlaneBorder& border = *eaves;
 
   auto& loops = roof.surfaces[surface].loops;
   const auto& wall = roof.wall_tops[static_cast<std::size_t>(border.edge)];
@@ -82,6 +59,8 @@ bool add_cross_gable(Roof& roof, std::size_t surface, const CrossGableParameters
   --loop;
 
   // The eaves' own direction and height carry the front; its roof runs back at right angles to it.
+  const double from = plane->in_plane(border.start).x, length = plane->in_plane(border.end).x - from;
+  const double share = (place.x - from) / length;
   const double run = std::hypot(border.end.x - border.start.x, border.end.y - border.start.y);
   const Point2 right{(border.end.x - border.start.x) / run, (border.end.y - border.start.y) / run};
   const auto built = [&](const Point3& p) {

@@ -15,6 +15,7 @@ namespace {
 constexpr double kFound = 1e-6;
 
 using Outline = std::vector<Point2>;
+using Stretches = std::vector<std::pair<double, double>>;
 
 Outline moved(std::span<const Point2> outline, Point2 by) {
   Outline out(outline.begin(), outline.end());
@@ -105,22 +106,31 @@ bool takes_elements(const RoofPlane& plane) {
          plane.rise <= base::tan((kSteepestSlope + 0.01) * base::kRadiansPerDegree);
 }
 
-bool fits(const RoofPlane& plane, std::span<const Point2> outline, const ElementDistances& distances, int eaves) {
+bool is_level_eaves(const RoofPlane& plane, const PlaneBorder& border, double up) {
+  if (border.kind != BorderKind::eaves) return false;
+  const Point2 a = plane.in_plane(border.start), b = plane.in_plane(border.end);
+  return std::fabs(a.y - up) < kLevelLine && std::fabs(b.y - up) < kLevelLine && b.x > a.x;
+}
+
+bool fits(const RoofPlane& plane, std::span<const Point2> outline, const ElementDistances& distances, bool flush) {
   if (outline.size() < 3 || !inside(plane, middle_of(outline))) return false;
-  for (std::size_t i = 0; i < plane.borders.size(); ++i) {
-    if (static_cast<int>(i) == eaves) continue;
-    const PlaneBorder& border = plane.borders[i];
-    if (distance(outline, plane.in_plane(border.start), plane.in_plane(border.end)) <
-        distances.from(border.kind) - kDistanceSlack)
-      return false;
+  const double up = geometry::extent_along(outline, {0, 1}).minimum;
+  const auto along = geometry::extent_along(outline, {1, 0});
+  bool stands = !flush;
+  for (const PlaneBorder& border : plane.borders) {
+    const Point2 a = plane.in_plane(border.start), b = plane.in_plane(border.end);
+    if (flush && is_level_eaves(plane, border, up)) {
+      stands = stands || (along.minimum >= a.x + kLeastPart && along.maximum <= b.x - kLeastPart);
+      continue;
+    }
+    if (distance(outline, a, b) < distances.from(border.kind) - kDistanceSlack) return false;
   }
-  return std::all_of(plane.occupied.begin(), plane.occupied.end(), [&](const OccupiedPlace& place) {
+  return stands && std::all_of(plane.occupied.begin(), plane.occupied.end(), [&](const OccupiedPlace& place) {
     return distance(outline, place.outline) >= std::max(place.distance, 0.0) - kDistanceSlack;
   });
 }
 
-std::vector<std::pair<double, double>> free_stretches(const RoofPlane& plane, const LayoutWish& wish,
-                                                      const ElementDistances& distances) {
+Stretches free_stretches(const RoofPlane& plane, const LayoutWish& wish, const ElementDistances& distances) {
   const auto own = geometry::extent_along(wish.outline, {1, 0});
   const auto along = plane.along_extent();
   double reach = own.maximum - own.minimum + std::max({distances.eaves, distances.between, distances.side, distances.fold, distances.top});
@@ -138,10 +148,16 @@ std::vector<std::pair<double, double>> free_stretches(const RoofPlane& plane, co
     const auto other = geometry::extent_along(points, {0, 1});
     return other.minimum - wish.up > heights.maximum + limit || other.maximum - wish.up < heights.minimum - limit;
   };
-  for (std::size_t i = 0; i < plane.borders.size(); ++i) {
-    if (static_cast<int>(i) == wish.eaves) continue;
-    const Point2 ends[] = {plane.in_plane(plane.borders[i].start), plane.in_plane(plane.borders[i].end)};
-    const double limit = distances.from(plane.borders[i].kind);
+  Stretches standing;  // of flush fronts
+  for (const PlaneBorder& border : plane.borders) {
+    const Point2 ends[] = {plane.in_plane(border.start), plane.in_plane(border.end)};
+    if (wish.flush && is_level_eaves(plane, border, wish.up)) {
+      standing.emplace_back(ends[0].x + kLeastPart - own.minimum, ends[1].x - kLeastPart - own.maximum);
+      continue;
+    }
+    // Borders along the slope are as uneven as the grid: where that alone decides, it must not.
+    const bool along_slope = border.kind == BorderKind::eaves || border.kind == BorderKind::top;
+    const double limit = distances.from(border.kind) - (along_slope ? kDistanceSlack / 2 : 0);
     if (far(limit, ends)) continue;
     take(limit, [&](double x) { return distance(wish.outline, seen(ends[0], x), seen(ends[1], x)); });
   }
@@ -150,8 +166,19 @@ std::vector<std::pair<double, double>> free_stretches(const RoofPlane& plane, co
     take(place.distance, [&](double x) { return distance(moved(wish.outline, {x, wish.up}), place.outline); });
   }
 
+  if (wish.flush) {
+    // What lies between the eaves is taken.
+    std::sort(standing.begin(), standing.end());
+    double end = low;
+    for (const auto& [first, last] : standing) {
+      if (last < first) continue;
+      if (first > end) taken.emplace_back(end, first);
+      end = std::max(end, last);
+    }
+    taken.emplace_back(end, high);
+  }
   std::sort(taken.begin(), taken.end());
-  std::vector<std::pair<double, double>> out;
+  Stretches out;
   double from = low;
   const auto add = [&](double to) {
     // Between two taken stretches no border comes near: all of it lies inside or all outside.
@@ -161,13 +188,11 @@ std::vector<std::pair<double, double>> free_stretches(const RoofPlane& plane, co
     add(first);
     from = std::max(from, last);
   }
-  add(high);
+  if (from < high) add(high);
   return out;
 }
 
 namespace {
-
-using Stretches = std::vector<std::pair<double, double>>;
 
 /// The free place nearest to `wanted` within [low, high]; empty when there is none.
 std::optional<double> nearest(const Stretches& free, double wanted, double low, double high) {

@@ -21,6 +21,8 @@ inline constexpr double kWidestElement = 3.00;      ///< dormers and cross gable
 inline constexpr double kFoldDistance = kBetweenElements / 2;
 /// From a ridge or break above (own choice): a course of tiles, so that the element's roof dies into its own slope.
 inline constexpr double kTopDistance = 0.30;
+/// What is smaller is no part of a building but a trap for the grid.
+inline constexpr double kLeastPart = 0.10;
 /// Distances that fall short by no more are kept: corners on the 1/1024 m grid move by up to 0.85 mm, those of both.
 inline constexpr double kDistanceSlack = 0.002;
 /// Roofs that take dormers and roof windows: flatter, tiles do not keep the rain out; steeper is a wall (styles.md §2.7 has mansards of up to 80 degrees).
@@ -45,14 +47,18 @@ bool takes_elements(const RoofPlane& plane);
 
 /// True when `outline` (in the plane's coordinates, counter-clockwise) lies in the plane with its distances from all borders,
 /// holes and occupied places.
-/// \param eaves  index into plane.borders of the eaves that a cross gable cuts: no distance is kept from it; -1 for none
-bool fits(const RoofPlane& plane, std::span<const model::Point2> outline, const ElementDistances& distances, int eaves = -1);
+/// \param flush  the outline stands on eaves with its lowest side, which lies within one of them, kLeastPart from its ends: the place of a
+///               cross gable. No distance is kept from eaves level with it.
+bool fits(const RoofPlane& plane, std::span<const model::Point2> outline, const ElementDistances& distances, bool flush = false);
+
+/// True for eaves that run along their plane, up the slope by `up` m: where a front can stand flush.
+bool is_level_eaves(const RoofPlane& plane, const PlaneBorder& border, double up);
 
 /// What is wanted on a slope.
 struct LayoutWish {
   std::vector<model::Point2> outline;  ///< convex, counter-clockwise, in the plane, about the middle of its lower edge: (0, 0)
-  double up = kEavesDistance;          ///< m up the slope to the lower edge; must be 0 with `eaves`
-  int eaves = -1;                      ///< as in fits()
+  double up = kEavesDistance;          ///< m up the slope to the lower edge
+  bool flush = false;                  ///< as in fits(); `up` is that of the eaves, 0 for most
   std::optional<int> count;            ///< how many; none: one for each axis or step, else as many as fit
   std::vector<double> axes;            ///< window axes, places along the plane: elements stand on them only
   double step = 0;                     ///< m between axes where none are given: axes about the slope's middle; 0: none

@@ -119,25 +119,26 @@ std::optional<RoofPlane> RoofBorders::plane(std::size_t surface) const {
         border.kind = is_level && way < 0 ? BorderKind::top : BorderKind::fold;
       out.borders.push_back(border);
     }
-  const PlaneBorder* base = nullptr;
-  double best = 0, lowest = 0;
+  // Level eaves that lie in one line belong together, also where bays and cross gables part them.
+  double left = 1e300, lowest = 1e300, base = 0, widest = 0;
+  for (const Point3& p : of.loops[0]) {
+    left = std::min(left, out.in_plane(p).x);
+    lowest = std::min(lowest, out.in_plane(p).y);
+  }
   for (const PlaneBorder& border : out.borders) {
-    const double length = std::hypot(border.end.x - border.start.x, border.end.y - border.start.y);
-    if (border.kind == BorderKind::eaves && length > best) {
-      base = &border;
-      best = length;
+    if (border.kind != BorderKind::eaves) continue;
+    const double height = out.in_plane(border.start).y;
+    double from = 1e300, to = -1e300;
+    for (const PlaneBorder& other : out.borders) {
+      if (other.kind != BorderKind::eaves || std::fabs(out.in_plane(other.start).y - height) > kLevelLine) continue;
+      from = std::min(from, out.in_plane(other.start).x);
+      to = std::max(to, out.in_plane(other.end).x);
     }
+    if (to - from <= widest + kLevelLine) continue;
+    widest = to - from;
+    base = height;
   }
-  if (base) {
-    out.origin = out.in_space(out.in_plane(base->start));
-  } else {
-    double leftmost = 0;
-    for (const Point3& p : of.loops[0]) {
-      lowest = std::min(lowest, out.in_plane(p).y);
-      leftmost = std::min(leftmost, out.in_plane(p).x);
-    }
-    out.origin = out.in_space({leftmost, lowest});
-  }
+  out.origin = out.in_space({left, widest > 0 ? base : lowest});
   for (const auto& loop : of.loops) {
     out.loops.emplace_back();
     for (const Point3& p : loop) out.loops.back().push_back(out.in_plane(p));

@@ -40,7 +40,9 @@ struct OccupiedPlace {
 /// the plan, so that distances are what a tape on the roof would say.
 struct RoofPlane {
   std::size_t surface = 0;                         ///< index into Roof::surfaces
-  model::Point3 origin;                            ///< where (0, 0) is: at the start of the longest eaves, else of the lowest side
+  /// Where (0, 0) is: x at the outer loop's leftmost point; y at the eaves (those level with each other that span most of the
+  /// slope), else at the lowest point. Elements do not move it.
+  model::Point3 origin;
   model::Point2 along_axis, up_axis;               ///< horizontal unit vectors
   double rise = 0;                                 ///< m upwards for each m on the plan: tangent of the pitch
   double slope_length = 1;                         ///< m in the plane for each m on the plan: sqrt(1 + rise²)

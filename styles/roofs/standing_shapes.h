@@ -8,7 +8,7 @@
 
 #include "pipeline/model/point.h"
 #include "styles/roofs/roof.h"
-#include "styles/roofs/roof_planes.h"
+#include "styles/roofs/element_layout.h"
 
 namespace blockrand::roofs {
 
@@ -56,7 +56,6 @@ std::vector<model::Point2> outline_in_plane(const StandingShape& shape, const Ro
 /// The convex outline around points, counter-clockwise.
 std::vector<model::Point2> hull(std::vector<model::Point2> points);
 
-inline constexpr double kLeastPart = 0.10;   ///< m. What is smaller is no part of a building but a trap for the grid.
 inline constexpr double kLeastFall = 5;      ///< degrees that a slope must be steeper than a roof that runs back into it
 inline constexpr double kSteepestDormerRoof = 75;  ///< degrees, of gabled and hipped heads: steeper ones are spires
 inline constexpr int kMostChords = 64;       ///< finer arcs have faces that the grid folds

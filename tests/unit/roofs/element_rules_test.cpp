@@ -40,7 +40,7 @@ Polygon house(Random& random) {
 }
 
 TEST(ElementRules, HoldOnGeneratedRoofs) {
-  constexpr int kRoofs = 1500;
+  constexpr int kRoofs = 1200;
   Random random(22);
   std::map<RoofElementKind, int> built;
   int roofs = 0;

@@ -39,13 +39,16 @@ Furnished furnish(const model::Polygon& plan, std::span<const model::RoofEdge> e
     if (with.cross_gables) {
       roofs::LayoutWish wish;
       wish.outline = roofs::cross_gable_outline(*plane, with.cross_gable);
-      wish.eaves = roofs::gable_eaves(*plane);
+      wish.flush = true;
       wish.up = 0;
       wish.count = 1;
       int n = 0;
-      if (wish.eaves >= 0)
-        for (const double along : roofs::lay_out(*plane, wish).along)
-          if (roofs::add_cross_gable(out.roof, s, with.cross_gable, along, edges)) ++n;
+      for (const double along : roofs::lay_out(*plane, wish).along) {
+        if (roofs::add_cross_gable(out.roof, s, with.cross_gable, {along, 0}, edges))
+          ++n;
+        else
+          refused("cross gable", s, along);
+      }
       count(RoofElementKind::cross_gable, n);
       plane = roofs::roof_plane(out.roof, s, edges);
       if (!plane) {
