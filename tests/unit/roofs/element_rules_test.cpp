@@ -1,7 +1,8 @@
 // Holtmeier's rules on generated roofs, and every element on every kind of roof.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/roofs/furnished_roof.h"
+#include "tests/unit/roofs/element_houses.h"
 
 namespace blockrand::roofs {
 namespace {
@@ -38,6 +39,50 @@ Polygon house(Random& random) {
   const double angle = random.next(3) == 0 ? 90.0 * static_cast<double>(random.next(4)) : 360 * random.unit();
   return moved(plan, angle, kPlaces[random.next(3)]);
 }
+
+// ---- the tape measure finds what breaks a rule -----------------------------------------------------------------------
+
+DormerParameters flat_dormer(double width = 1.3) {
+  DormerParameters p;
+  p.kind = DormerKind::flat;
+  p.width = width;
+  return p;
+}
+
+/// Complaints about dormers at these places, put there by laxer rules.
+std::vector<std::string> complaints(const Polygon& plan, RoofShape shape, std::initializer_list<Point2> places) {
+  Roof roof = roof_on(plan, shape, 5);
+  for (const Point2 place : places)
+    EXPECT_TRUE(add_dormer(roof, 0, flat_dormer(), place, {}, {.eaves = 0.2, .between = 0.2, .side = 0.2, .fold = 0.1}));
+  EXPECT_EQ(verdict(plan, roof), "none");
+  return broken_rules(roof, {});
+}
+
+TEST(TapeMeasure, FindsWhatBreaksARule) {
+  using testing::ElementsAre;
+  using testing::HasSubstr;
+  const Polygon plan = rectangle(20, 10);
+  EXPECT_THAT(complaints(plan, RoofShape::gabled, {{10, 1}}), ElementsAre());
+  EXPECT_THAT(complaints(plan, RoofShape::gabled, {{10, 0.99}}), ElementsAre(HasSubstr("from the eaves")));
+  EXPECT_THAT(complaints(plan, RoofShape::gabled, {{1.64, 1}}), ElementsAre(HasSubstr("from the outer side")));
+  EXPECT_THAT(complaints(plan, RoofShape::gabled, {{10, 1}, {12.79, 1}}), ElementsAre(HasSubstr("from dormer 1")));
+  EXPECT_THAT(complaints(plan, RoofShape::gabled, {{10, 1}, {12.8, 1}}), ElementsAre());
+  EXPECT_THAT(complaints(plan, RoofShape::hipped, {{3, 1}}), ElementsAre(HasSubstr("from a fold")));
+  // An element turned out of its slope, one in another's place, a chimney in the air.
+  GabledHouse house(1);
+  ASSERT_TRUE(add_dormer(house.roof, house.south(), flat_dormer(), {10, 1}));
+  Roof bent = house.roof;
+  for (Point3& p : bent.surfaces[house.south()].loops[1]) p.z += 0.02;
+  EXPECT_THAT(broken_rules(bent, {}), testing::Not(ElementsAre()));
+  auto stack = chimney(house.roof, {{5, 5}, {1, 0}}).value();
+  EXPECT_THAT(broken_rules(house.roof, {stack}), ElementsAre());
+  for (Point3& p : stack.solid.vertices) p.z += 0.03;
+  EXPECT_THAT(broken_rules(house.roof, {stack}), testing::Contains(HasSubstr("hangs")));
+  for (Point3& p : stack.solid.vertices) p = {p.x + 5, p.y - 3.5, p.z};
+  EXPECT_THAT(broken_rules(house.roof, {stack}), testing::Contains(HasSubstr("stands over dormer")));
+}
+
+// ---- rules ----------------------------------------------------------------------------------------------------------
 
 TEST(ElementRules, HoldOnGeneratedRoofs) {
   constexpr int kRoofs = 1200;
