@@ -56,7 +56,8 @@ bool inside(const RoofPlane& plane, Point2 p) {
 /// A point inside of a convex outline.
 Point2 middle_of(std::span<const Point2> outline) { return geometry::centroid(outline); }
 
-/// Where `value`, a convex function, is below `limit`: the stretch between `low` and `high`, both of which it is not. Empty when nowhere.
+/// Where `value`, a convex function, is below `limit`: the stretch between `low` and `high`, both of which it is not.
+/// Empty when nowhere.
 template <class Function>
 std::optional<std::pair<double, double>> below(double low, double high, double limit, const Function& value) {
   double a = low, b = high;
@@ -126,14 +127,15 @@ bool fits(const RoofPlane& plane, std::span<const Point2> outline, const Element
     if (distance(outline, a, b) < distances.from(border.kind) - kDistanceSlack) return false;
   }
   return stands && std::all_of(plane.occupied.begin(), plane.occupied.end(), [&](const OccupiedPlace& place) {
-    return distance(outline, place.outline) >= std::max(place.distance, 0.0) - kDistanceSlack;
-  });
+           return distance(outline, place.outline) >= std::max(place.distance, 0.0) - kDistanceSlack;
+         });
 }
 
 Stretches free_stretches(const RoofPlane& plane, const LayoutWish& wish, const ElementDistances& distances) {
   const auto own = geometry::extent_along(wish.outline, {1, 0});
   const auto along = plane.along_extent();
-  double reach = own.maximum - own.minimum + std::max({distances.eaves, distances.between, distances.side, distances.fold, distances.top});
+  double reach = own.maximum - own.minimum +
+                 std::max({distances.eaves, distances.between, distances.side, distances.fold, distances.top});
   for (const OccupiedPlace& place : plane.occupied) reach = std::max(reach, own.maximum - own.minimum + place.distance);
   const double low = along.minimum - reach - 1, high = along.maximum + reach + 1;
 
@@ -182,7 +184,8 @@ Stretches free_stretches(const RoofPlane& plane, const LayoutWish& wish, const E
   double from = low;
   const auto add = [&](double to) {
     // Between two taken stretches no border comes near: all of it lies inside or all outside.
-    if (to >= from && inside(plane, middle_of(moved(wish.outline, {(from + to) / 2, wish.up})))) out.emplace_back(from, to);
+    if (to >= from && inside(plane, middle_of(moved(wish.outline, {(from + to) / 2, wish.up}))))
+      out.emplace_back(from, to);
   };
   for (const auto& [first, last] : taken) {
     add(first);
@@ -261,7 +264,8 @@ std::vector<double> on_axes(const RoofPlane& plane, const Stretches& free, doubl
     for (std::size_t start = 0; start < stride; ++start) {
       std::vector<double> chosen;
       for (std::size_t i = start; i < axes.size(); i += stride)
-        if (is_free(axes[i]) && (chosen.empty() || axes[i] >= chosen.back() + spacing - kFound)) chosen.push_back(axes[i]);
+        if (is_free(axes[i]) && (chosen.empty() || axes[i] >= chosen.back() + spacing - kFound))
+          chosen.push_back(axes[i]);
       while (chosen.size() > wanted) {
         // Thinned evenly: those nearest to equal shares of the row stay.
         std::vector<double> kept;

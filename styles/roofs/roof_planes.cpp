@@ -15,6 +15,12 @@ namespace {
 
 bool level(const Point3& a, const Point3& b) { return std::fabs(a.z - b.z) < kLevelLine; }
 
+double highest_of(const Roof::Surface& surface) {
+  double z = -1e300;
+  for (const Point3& p : surface.loops[0]) z = std::max(z, p.z);
+  return z;
+}
+
 }  // namespace
 
 LoopPlane plane_of(std::span<const Point3> loop) {
@@ -107,8 +113,8 @@ std::optional<RoofPlane> RoofBorders::plane(std::size_t surface) const {
         border.neighbour = found->surface;
       }
       const bool is_level = level(border.start, border.end);
-      const double way = (border.end.x - border.start.x) * out.along_axis.x +
-                         (border.end.y - border.start.y) * out.along_axis.y;
+      const double way =
+          (border.end.x - border.start.x) * out.along_axis.x + (border.end.y - border.start.y) * out.along_axis.y;
       const bool party = border.edge >= 0 && static_cast<std::size_t>(border.edge) < edges_.size() &&
                          edges_[static_cast<std::size_t>(border.edge)] == model::RoofEdge::party_wall;
       if (border.neighbour >= 0 && roof_->surfaces[static_cast<std::size_t>(border.neighbour)].element != -1)
@@ -156,6 +162,33 @@ std::vector<RoofPlane> roof_planes(const Roof& roof, std::span<const model::Roof
   for (std::size_t s = 0; s < roof.surfaces.size(); ++s)
     if (auto plane = borders.plane(s)) out.push_back(std::move(*plane));
   return out;
+}
+
+double ridge_above(const Roof& roof, std::size_t surface) {
+  const RoofBorders borders(roof, {});
+  double highest = highest_of(roof.surfaces[surface]);
+  for (bool higher = true; higher;) {
+    higher = false;
+    const auto plane = borders.plane(surface);
+    if (!plane) break;
+    for (const PlaneBorder& border : plane->borders) {
+      if (border.kind != BorderKind::top || border.neighbour < 0) continue;
+      const auto above = static_cast<std::size_t>(border.neighbour);
+      if (roof.surfaces[above].upright || roof.surfaces[above].element != -1) continue;
+      const double z = highest_of(roof.surfaces[above]);
+      if (z <= highest + kLevelLine) continue;
+      highest = z;
+      surface = above;
+      higher = true;
+      break;
+    }
+  }
+  return highest;
+}
+
+bool is_level(const Roof::Surface& surface) {
+  const Point3 n = plane_of(surface.loops[0]).normal;
+  return std::hypot(n.x, n.y) < kLevelRise * n.z;
 }
 
 void occupy(RoofPlane& plane, std::span<const Point2> plan_outline, double distance) {

@@ -1,4 +1,5 @@
-// The slopes of a roof as places where elements can stand: each plane with axes of its own and what its sides border on.
+// The slopes of a roof as places where elements can stand: each plane with axes of its own and what its sides border
+// on.
 #pragma once
 
 #include <cstdint>
@@ -35,20 +36,20 @@ struct OccupiedPlace {
   double distance = 0;                 ///< m that others keep from it
 };
 
-/// A sloping surface with axes of its own. A point of the plane is a model::Point2: x is the way along the eaves, to the
-/// right for who looks up the slope from outside; y is the way up the slope. Both in metres in the plane itself, not on
-/// the plan, so that distances are what a tape on the roof would say.
+/// A sloping surface with axes of its own. A point of the plane is a model::Point2: x is the way along the eaves, to
+/// the right for who looks up the slope from outside; y is the way up the slope. Both in metres in the plane itself,
+/// not on the plan, so that distances are what a tape on the roof would say.
 struct RoofPlane {
-  std::size_t surface = 0;                         ///< index into Roof::surfaces
-  /// Where (0, 0) is: x at the outer loop's leftmost point; y at the eaves (those level with each other that span most of the
-  /// slope), else at the lowest point. Elements do not move it.
+  std::size_t surface = 0;  ///< index into Roof::surfaces
+  /// Where (0, 0) is: x at the outer loop's leftmost point; y at the eaves (those level with each other that span most
+  /// of the slope), else at the lowest point. Elements do not move it.
   model::Point3 origin;
-  model::Point2 along_axis, up_axis;               ///< horizontal unit vectors
-  double rise = 0;                                 ///< m upwards for each m on the plan: tangent of the pitch
-  double slope_length = 1;                         ///< m in the plane for each m on the plan: sqrt(1 + rise²)
-  std::vector<std::vector<model::Point2>> loops;   ///< the surface's loops in the plane's coordinates
-  std::vector<PlaneBorder> borders;                ///< all sides of all loops
-  std::vector<OccupiedPlace> occupied;             ///< what was put on it: occupy()
+  model::Point2 along_axis, up_axis;              ///< horizontal unit vectors
+  double rise = 0;                                ///< m upwards for each m on the plan: tangent of the pitch
+  double slope_length = 1;                        ///< m in the plane for each m on the plan: sqrt(1 + rise²)
+  std::vector<std::vector<model::Point2>> loops;  ///< the surface's loops in the plane's coordinates
+  std::vector<PlaneBorder> borders;               ///< all sides of all loops
+  std::vector<OccupiedPlace> occupied;            ///< what was put on it: occupy()
 
   /// The point of the plane above or below `p`, which need not lie on it.
   model::Point2 in_plane(model::Point2 p) const;
@@ -66,8 +67,8 @@ class RoofBorders {
  public:
   /// \param edges  one per plan edge, or none. Level wall tops at party walls are sides, not eaves.
   RoofBorders(const Roof& roof, std::span<const model::RoofEdge> edges);
-  /// The plane of a surface. Empty for surfaces that are level (under kLevelRise), upright, part of an element, or look down, and
-  /// on roofs that overhang themselves (onions), where what stands on one surface might run into another.
+  /// The plane of a surface. Empty for surfaces that are level (under kLevelRise), upright, part of an element, or look
+  /// down, and on roofs that overhang themselves (onions), where what stands on one surface might run into another.
   std::optional<RoofPlane> plane(std::size_t surface) const;
 
  private:
@@ -88,17 +89,26 @@ std::optional<RoofPlane> roof_plane(const Roof& roof, std::size_t surface, std::
 /// All planes of a roof, by surface.
 std::vector<RoofPlane> roof_planes(const Roof& roof, std::span<const model::RoofEdge> edges = {});
 
+/// Height of the ridge above a surface: the highest point of it and of what goes on rising over its upper border (the
+/// upper slope of a mansard).
+double ridge_above(const Roof& roof, std::size_t surface);
+
+/// True for surfaces flatter than kLevelRise that look up.
+bool is_level(const Roof::Surface& surface);
+
 /// Marks a place of the plan (convex, counter-clockwise) as taken on a plane.
 void occupy(RoofPlane& plane, std::span<const model::Point2> plan_outline, double distance);
 
-/// Newell's normal of a loop, of unit length, and the mean of its corners: the plane that the checker of solids judges by.
+/// Newell's normal of a loop, of unit length, and the mean of its corners: the plane that the checker of solids judges
+/// by.
 struct LoopPlane {
   model::Point3 normal, mean;
 };
 LoopPlane plane_of(std::span<const model::Point3> loop);
 
-inline constexpr double kLevelRise = 0.05;      ///< tangent of 3 degrees: below, a surface is level
-inline constexpr double kLevelLine = 0.02;      ///< m from end to end: rounding and merged nodes leave level lines that uneven
+inline constexpr double kLevelRise = 0.05;  ///< tangent of 3 degrees: below, a surface is level
+inline constexpr double kLevelLine =
+    0.02;  ///< m from end to end: rounding and merged nodes leave level lines that uneven
 /// m. Corners of a surface farther off its plane than this leave too little of the checker's 0.01 m for more corners.
 inline constexpr double kEvenSurface = 0.006;
 

@@ -42,11 +42,13 @@ std::optional<model::RoofInstallation> roof_window(const RoofPlane& plane, const
                                    place.y + p.height - inset);
     for (std::size_t i = 0; i < 4; ++i) {
       const Point3 on = plane.in_space(corners[i]);
-      out[i] = {on.x - plane.up_axis.x * level * height, on.y - plane.up_axis.y * level * height, on.z + upright * height};
+      out[i] = {on.x - plane.up_axis.x * level * height, on.y - plane.up_axis.y * level * height,
+                on.z + upright * height};
     }
     return out;
   };
-  const auto bottom = at(0, 0), face = at(0, p.raised), edge = at(p.frame, p.raised), pane = at(p.frame, p.raised - p.reveal);
+  const auto bottom = at(0, 0), face = at(0, p.raised), edge = at(p.frame, p.raised),
+             pane = at(p.frame, p.raised - p.reveal);
   const auto loop = [](const std::array<Point3, 4>& corners, bool turned) {
     return turned ? std::vector<Point3>{corners[3], corners[2], corners[1], corners[0]}
                   : std::vector<Point3>(corners.begin(), corners.end());

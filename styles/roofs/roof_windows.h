@@ -23,14 +23,15 @@ struct RoofWindowLooks {
   model::Face frame, pane;
 };
 
-/// Its outline about the middle of its lower edge, for lay_out(); empty when the measures make no body: sides under 0.2 m, a
-/// frame that leaves no pane, a pane below the roof.
+/// Its outline about the middle of its lower edge, for lay_out(); empty when the measures make no body: sides under 0.2
+/// m, a frame that leaves no pane, a pane below the roof.
 std::vector<model::Point2> roof_window_outline(const RoofWindowParameters& parameters);
 
-/// A roof window whose underside lies on the plane: 11 faces (underside, four sides, frame, four reveals, pane). Its faces are of kind roof, the
-/// underside closure. occupy() the plane with it before the next.
-/// \param place  middle of the lower edge of the frame
-/// Empty when the plane takes no elements (takes_elements) or it does not fit there with its distances.
+/// A roof window whose underside lies on the plane: 11 faces (underside, four sides, frame, four reveals, pane). Its
+/// faces are of kind roof, the underside closure. occupy() the plane with it before the next.
+/// \param place  middle of
+/// the lower edge of the frame Empty when the plane takes no elements (takes_elements) or it does not fit there with
+/// its distances.
 std::optional<model::RoofInstallation> roof_window(const RoofPlane& plane, const RoofWindowParameters& parameters,
                                                    model::Point2 place, const RoofWindowLooks& looks = {},
                                                    const ElementDistances& distances = {});

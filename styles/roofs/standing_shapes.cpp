@@ -12,7 +12,8 @@ using model::Point3;
 
 namespace {
 
-/// Share of a ridge's way back that its hip may take. On steep slopes the way is short: the hip becomes steeper than the sides.
+/// Share of a ridge's way back that its hip may take. On steep slopes the way is short: the hip becomes steeper than
+/// the sides.
 constexpr double kMostHip = 0.6;
 
 double tangent(double degrees) { return base::tan(degrees * base::kRadiansPerDegree); }
@@ -98,8 +99,7 @@ std::optional<StandingShape> standing_shape(const StandingMeasures& m, double ri
     ends.insert(ends.begin() + 1, ridge);
     out.highest = top;
   } else {
-    for (std::size_t i = 0; i + 1 < out.head.size(); ++i)
-      add({out.head[i], ends[i], ends[i + 1], out.head[i + 1]});
+    for (std::size_t i = 0; i + 1 < out.head.size(); ++i) add({out.head[i], ends[i], ends[i + 1], out.head[i + 1]});
     for (const Point3& p : ends) out.highest = std::max(out.highest, p.z);
   }
   out.outline.push_back(left);

@@ -1,4 +1,5 @@
-// What dormers and cross gables have in common: a front with a head, and a roof that runs back until the slope swallows it.
+// What dormers and cross gables have in common: a front with a head, and a roof that runs back until the slope swallows
+// it.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,8 @@
 #include <vector>
 
 #include "pipeline/model/point.h"
-#include "styles/roofs/roof.h"
 #include "styles/roofs/element_layout.h"
+#include "styles/roofs/roof.h"
 
 namespace blockrand::roofs {
 
@@ -19,7 +20,7 @@ enum class DormerKind : std::uint8_t {
   shed,       ///< one plane that falls to the front; its pitch
   flat,       ///< one level plane
   segmental,  ///< an arc `rise` high over the front, its barrel level
-  eyebrow,    ///< no cheeks: the front swells out of the slope and back, `wall_height` high; pitch of the roof behind it
+  eyebrow,    ///< no cheeks: the front swells out of the slope, `wall_height` high; pitch of the roof behind it
 };
 inline constexpr DormerKind kDormerKinds[] = {DormerKind::gabled, DormerKind::hipped,    DormerKind::shed,
                                               DormerKind::flat,   DormerKind::segmental, DormerKind::eyebrow};
@@ -40,14 +41,15 @@ struct StandingShape {
     bool upright = false;
   };
   std::vector<model::Point3> outline;  ///< on the slope: from the front's left end over the back to its right end
-  std::vector<model::Point3> head;     ///< the front's upper border from right to left; may begin and end in the ends of the outline
-  std::vector<Face> faces;             ///< cheeks and roof; not the front
-  double highest = 0;                  ///< m above the slope below the front's middle
+  /// The front's upper border from right to left; may begin and end in the ends of the outline.
+  std::vector<model::Point3> head;
+  std::vector<Face> faces;  ///< cheeks and roof; not the front
+  double highest = 0;       ///< m above the slope below the front's middle
 };
 
 /// \param rise  tangent of the slope's pitch
-/// Empty when the measures make no body: not positive, a roof as steep as the slope, an arc that is more than half a circle,
-/// cheeks or a ridge under kLeastPart.
+/// Empty when the measures make no body: not positive, a roof as steep as the slope, an arc that is more than half a
+/// circle, cheeks or a ridge under kLeastPart.
 std::optional<StandingShape> standing_shape(const StandingMeasures& measures, double rise);
 
 /// The shape's outline in the coordinates of a plane, counter-clockwise, about the middle of its front.
@@ -56,8 +58,8 @@ std::vector<model::Point2> outline_in_plane(const StandingShape& shape, const Ro
 /// The convex outline around points, counter-clockwise.
 std::vector<model::Point2> hull(std::vector<model::Point2> points);
 
-inline constexpr double kLeastFall = 5;      ///< degrees that a slope must be steeper than a roof that runs back into it
+inline constexpr double kLeastFall = 5;  ///< degrees that a slope must be steeper than a roof that runs back into it
 inline constexpr double kSteepestDormerRoof = 75;  ///< degrees, of gabled and hipped heads: steeper ones are spires
-inline constexpr int kMostChords = 64;       ///< finer arcs have faces that the grid folds
+inline constexpr int kMostChords = 64;             ///< finer arcs have faces that the grid folds
 
 }  // namespace blockrand::roofs

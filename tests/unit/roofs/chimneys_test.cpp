@@ -87,10 +87,10 @@ TEST(Chimney, StandsOnFlatRoofs) {
 
 TEST(Chimney, RefusesWhatItCannotStandOn) {
   GabledHouse house(1);
-  EXPECT_FALSE(chimney(house.roof, {{0.3, 5}, {1, 0}}));   // over the gable
-  EXPECT_FALSE(chimney(house.roof, {{50, 5}, {1, 0}}));    // beside the house
-  EXPECT_FALSE(chimney(house.roof, {{10, 5.28}, {1, 0}})); // the ridge would leave a strip of 1 cm
-  EXPECT_FALSE(chimney(house.roof, {{10, 1}, {1, 0}}));    // 4 m below the ridge: higher than 3 m
+  EXPECT_FALSE(chimney(house.roof, {{0.3, 5}, {1, 0}}));    // over the gable
+  EXPECT_FALSE(chimney(house.roof, {{50, 5}, {1, 0}}));     // beside the house
+  EXPECT_FALSE(chimney(house.roof, {{10, 5.28}, {1, 0}}));  // the ridge would leave a strip of 1 cm
+  EXPECT_FALSE(chimney(house.roof, {{10, 1}, {1, 0}}));     // 4 m below the ridge: higher than 3 m
   ChimneyParameters thin;
   thin.width = 0.1;
   EXPECT_FALSE(chimney(house.roof, {{10, 5}, {1, 0}}, thin));
@@ -168,7 +168,8 @@ TEST(Chimneys, StandInRowsWithinTheirOwnHouse) {
       request.shape = shape;
       request.measures = {kEaves, shape == RoofShape::flat ? 0.0 : 5.0};
       // The ridge runs from party wall to party wall.
-      const Point2 side{plan.outer.points[2].x - plan.outer.points[1].x, plan.outer.points[2].y - plan.outer.points[1].y};
+      const Point2 side{plan.outer.points[2].x - plan.outer.points[1].x,
+                        plan.outer.points[2].y - plan.outer.points[1].y};
       request.down = Point2{side.x / 12, side.y / 12};
       const Roof roof = build_roof(plan, request).value().roof;
       const auto stacks = chimneys(plan, edges, roof, 11);
@@ -187,8 +188,9 @@ TEST(Chimneys, StandInRowsWithinTheirOwnHouse) {
 }
 
 TEST(Chimneys, StandOnEveryKindOfRoof) {
-  for (const RoofShape shape : {RoofShape::gabled, RoofShape::hipped, RoofShape::mansard, RoofShape::gambrel, RoofShape::half_hipped,
-                                RoofShape::double_saltbox, RoofShape::flat, RoofShape::pyramidal, RoofShape::skillion})
+  for (const RoofShape shape :
+       {RoofShape::gabled, RoofShape::hipped, RoofShape::mansard, RoofShape::gambrel, RoofShape::half_hipped,
+        RoofShape::double_saltbox, RoofShape::flat, RoofShape::pyramidal, RoofShape::skillion})
     for (const auto& [name, plan] : plans()) {
       if (name != "rectangle" && name != "L" && name != "U" && name != "courtyard" && name != "trapezoid") continue;
       const Roof roof = roof_on(plan, shape, 3);

@@ -1,12 +1,13 @@
 #!/bin/sh
 # One picture per roof shape with all plans of grid.txt side by side, rows of five from the north.
 #   contact_sheet.sh TEST_PROGRAM OUT_FOLDER      for example: contact_sheet.sh build/ci/tests/test_roof_grid /tmp/roofs
+#   FROM=35,40,125 TO=35,0,50 contact_sheet.sh build/ci/tests/test_roof_elements /tmp/elements    dormers and all that stands on roofs
 # LOOK is a copy of ../shared/tools/render in which `npm install` has run. SHAPES limits which: SHAPES="gabled onion".
 set -eu
 program=$1 out=$2
 look=${LOOK:?"a copy of shared/tools/render with its node_modules"}
 mkdir -p "$out"
-ROOF_GRID_GLB=$out "$program" --gtest_filter='RoofGridPictures.*' >/dev/null
+ROOF_GRID_GLB=$out ROOF_ELEMENTS_GLB=$out "$program" --gtest_filter='Roof*Pictures.*' >/dev/null
 for glb in "$out"/*.glb; do
   shape=$(basename "$glb" .glb)
   case " ${SHAPES:-$shape} " in *" $shape "*) ;; *) continue ;; esac

@@ -100,8 +100,8 @@ TEST(CrossGable, AddsItsVolume) {
 }
 
 TEST(CrossGable, StandsOnEveryKindOfRoofAnywhere) {
-  for (const RoofShape shape : {RoofShape::gabled, RoofShape::hipped, RoofShape::mansard, RoofShape::gambrel, RoofShape::half_hipped,
-                                RoofShape::double_saltbox})
+  for (const RoofShape shape : {RoofShape::gabled, RoofShape::hipped, RoofShape::mansard, RoofShape::gambrel,
+                                RoofShape::half_hipped, RoofShape::double_saltbox})
     for (const auto& [name, plan] : plans()) {
       if (name != "rectangle" && name != "L" && name != "U" && name != "courtyard") continue;
       for (const Polygon& p : turned_about(plan)) {
@@ -150,7 +150,8 @@ TEST(CrossGable, KeepsItsDistances) {
   EXPECT_TRUE(add_cross_gable(house.roof, house.south(), gable(), {9.1, 0}));
   DormerParameters dormer;
   dormer.kind = DormerKind::flat;
-  // The eaves are in three pieces now; a dormer stands up the slope, where the valley leaves more room than at the foot.
+  // The eaves are in three pieces now; a dormer stands up the slope, where the valley leaves more room than at the
+  // foot.
   EXPECT_FALSE(add_dormer(house.roof, house.south(), dormer, {12, 1}));
   EXPECT_TRUE(add_dormer(house.roof, house.south(), dormer, {12.6, 1}));
   EXPECT_FALSE(add_cross_gable(house.roof, house.south(), gable(), {14, 0}));
@@ -176,7 +177,9 @@ TEST(CrossGable, RefusesWhatHasNoEavesOrNoRoom) {
   Roof gambrel = roof_on(plan, RoofShape::gambrel, 6);
   int upper = 0;
   for (const RoofPlane& plane : roof_planes(gambrel)) {
-    if (std::any_of(plane.borders.begin(), plane.borders.end(), [](const auto& b) { return b.kind == BorderKind::eaves; })) continue;
+    if (std::any_of(plane.borders.begin(), plane.borders.end(),
+                    [](const auto& b) { return b.kind == BorderKind::eaves; }))
+      continue;
     ++upper;
     EXPECT_FALSE(add_cross_gable(gambrel, plane.surface, gable(), {10, 0}));
   }

@@ -14,8 +14,8 @@ using model::RoofElementKind;
 using model::RoofShape;
 using namespace roof_checks;
 
-constexpr RoofShape kSlopedShapes[] = {RoofShape::gabled,      RoofShape::hipped,         RoofShape::mansard, RoofShape::gambrel,
-                                       RoofShape::half_hipped, RoofShape::double_saltbox};
+constexpr RoofShape kSlopedShapes[] = {RoofShape::gabled,  RoofShape::hipped,      RoofShape::mansard,
+                                       RoofShape::gambrel, RoofShape::half_hipped, RoofShape::double_saltbox};
 constexpr double kRadians = M_PI / 180;
 
 /// Height of a dormer's front over its middle, as its kind defines it, at the ends of the chords.
@@ -80,7 +80,10 @@ TEST_P(Dormer, IsAsWorkedOutByHand) {
 
     const ElementMeasures m = measures_of(house.roof, 0);
     const bool cheeks = p.kind != DormerKind::eyebrow;
-    const int roofs = p.kind == DormerKind::gabled ? 2 : p.kind == DormerKind::hipped ? 3 : p.kind == DormerKind::segmental || p.kind == DormerKind::eyebrow ? p.chords : 1;
+    const int roofs = p.kind == DormerKind::gabled                                       ? 2
+                      : p.kind == DormerKind::hipped                                     ? 3
+                      : p.kind == DormerKind::segmental || p.kind == DormerKind::eyebrow ? p.chords
+                                                                                         : 1;
     EXPECT_EQ(m.upright, cheeks ? 3 : 1);
     EXPECT_EQ(m.sloped, roofs);
     // The front, and two cheeks that the slope (and a shed's roof) cut.
@@ -94,7 +97,8 @@ TEST_P(Dormer, IsAsWorkedOutByHand) {
       upright += (front[i + 1].x - front[i].x) * (front[i].y + front[i + 1].y) / 2;
       top = std::max({top, front[i].y, front[i + 1].y});
     }
-    const double back = p.kind == DormerKind::shed || p.kind == DormerKind::eyebrow ? std::tan(p.roof_pitch * kRadians) : 0;
+    const double back =
+        p.kind == DormerKind::shed || p.kind == DormerKind::eyebrow ? std::tan(p.roof_pitch * kRadians) : 0;
     if (cheeks) upright += p.wall_height * p.wall_height / (rise - back);
     EXPECT_NEAR(m.upright_area, upright, 0.01) << degrees;
     top += back * top / (rise - back);
@@ -148,7 +152,8 @@ std::string kind_name(const testing::TestParamInfo<DormerKind>& tested) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Dormer, testing::ValuesIn(kDormerKinds), kind_name);
 
-/// A flat dormer on a slope of 45 degrees 1.3 m wide, `wall` high: its roof is `wall` deep, wall * sqrt(2) up the slope.
+/// A flat dormer on a slope of 45 degrees 1.3 m wide, `wall` high: its roof is `wall` deep, wall * sqrt(2) up the
+/// slope.
 DormerParameters flat_dormer(double wall = 1.3) {
   DormerParameters p;
   p.kind = DormerKind::flat;
@@ -163,15 +168,15 @@ TEST(DormerDistances, HoldToTheMillimetre) {
     return add_dormer(house.roof, house.south(), flat_dormer(wall), place);
   };
   EXPECT_TRUE(takes({10, 1}));
-  EXPECT_FALSE(takes({10, 1 - kOver}));           // eaves
-  EXPECT_TRUE(takes({1.65, 1}));                  // verge: 1 + 0.65
+  EXPECT_FALSE(takes({10, 1 - kOver}));  // eaves
+  EXPECT_TRUE(takes({1.65, 1}));         // verge: 1 + 0.65
   EXPECT_FALSE(takes({1.65 - kOver, 1}));
   EXPECT_TRUE(takes({18.35, 1}));
   EXPECT_FALSE(takes({18.35 + kOver, 1}));
   const double slope = 5 * std::sqrt(2.0), deepest = (slope - 1 - kTopDistance) / std::sqrt(2.0);
-  EXPECT_TRUE(takes({10, 1}, deepest));           // ridge
+  EXPECT_TRUE(takes({10, 1}, deepest));  // ridge
   EXPECT_FALSE(takes({10, 1}, deepest + kOver));
-  EXPECT_FALSE(takes({-3, 1}));                   // beside the roof
+  EXPECT_FALSE(takes({-3, 1}));  // beside the roof
   EXPECT_FALSE(takes({10, 30}));
 }
 
@@ -185,7 +190,8 @@ TEST(DormerDistances, BetweenTwoAndOverAHip) {
   EXPECT_TRUE(add_dormer(house.roof, house.south(), flat_dormer(), {7.8, 1}));
   EXPECT_EQ(house.roof.elements.size(), 2u);
   EXPECT_EQ(verdict(house.plan, house.roof), "none");
-  // Other rules than Holtmeier's: Westensee's code wants 1.60 m to the gable and takes 0.60 to the eaves (styles.md S28).
+  // Other rules than Holtmeier's: Westensee's code wants 1.60 m to the gable and takes 0.60 to the eaves (styles.md
+  // S28).
   ElementDistances westensee;
   westensee.side = 1.6;
   westensee.eaves = 0.6;
@@ -197,8 +203,8 @@ TEST(DormerDistances, BetweenTwoAndOverAHip) {
 TEST(DormerDistances, FromPartyWallsOfARow) {
   // Eaves at a party wall (a lean-to against it) are an outer side; a gable is one in any case.
   GabledHouse house(1);
-  const std::vector<model::RoofEdge> edges{model::RoofEdge::street, model::RoofEdge::party_wall, model::RoofEdge::courtyard,
-                                           model::RoofEdge::party_wall};
+  const std::vector<model::RoofEdge> edges{model::RoofEdge::street, model::RoofEdge::party_wall,
+                                           model::RoofEdge::courtyard, model::RoofEdge::party_wall};
   EXPECT_FALSE(add_dormer(house.roof, house.south(), flat_dormer(), {1.6, 1}, edges));
   EXPECT_TRUE(add_dormer(house.roof, house.south(), flat_dormer(), {1.65, 1}, edges));
 }

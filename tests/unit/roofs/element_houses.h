@@ -8,7 +8,9 @@ namespace blockrand::roof_checks {
 inline constexpr double kEaves = 40;  ///< m, of all roofs here; houses stand on z = 30
 
 /// `length` along x, `depth` along y, from (0, 0).
-inline Polygon rectangle(double length, double depth) { return polygon({{0, 0}, {length, 0}, {length, depth}, {0, depth}}); }
+inline Polygon rectangle(double length, double depth) {
+  return polygon({{0, 0}, {length, 0}, {length, depth}, {0, depth}});
+}
 
 inline roofs::Roof roof_on(const Polygon& plan, model::RoofShape shape, double height) {
   roofs::RoofRequest request;

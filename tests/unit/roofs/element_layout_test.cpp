@@ -28,10 +28,10 @@ std::vector<double> rounded(std::vector<double> values) {
 using Places = std::vector<double>;
 
 TEST(MostElements, IsHoltmeiersFormula) {
-  EXPECT_EQ(most_elements(10, 1.3), 3);    // (10 - 2 + 1.5) / 2.8 = 3.39
-  EXPECT_EQ(most_elements(3.3, 1.3), 1);   // exactly one: 1.0 + 1.3 + 1.0
+  EXPECT_EQ(most_elements(10, 1.3), 3);   // (10 - 2 + 1.5) / 2.8 = 3.39
+  EXPECT_EQ(most_elements(3.3, 1.3), 1);  // exactly one: 1.0 + 1.3 + 1.0
   EXPECT_EQ(most_elements(3.29, 1.3), 0);
-  EXPECT_EQ(most_elements(9.5, 3), 2);     // exactly two: 1.0 + 3 + 1.5 + 3 + 1.0
+  EXPECT_EQ(most_elements(9.5, 3), 2);  // exactly two: 1.0 + 3 + 1.5 + 3 + 1.0
   EXPECT_EQ(most_elements(9.49, 3), 1);
   EXPECT_EQ(most_elements(1, 1), 0);
 }
@@ -140,8 +140,8 @@ TEST(Layout, KeepsOffHipsAndNarrowsWithThem) {
       continue;
     }
     ASSERT_EQ(free.size(), 1u);
-    // A hip of a 45 degree roof runs one metre along for each sqrt(2) up the slope: 35.26 degrees from the fall line. The box's upper
-    // corner keeps 0.75 m from it.
+    // A hip of a 45 degree roof runs one metre along for each sqrt(2) up the slope: 35.26 degrees from the fall line.
+    // The box's upper corner keeps 0.75 m from it.
     const double hip = (up + 1) / std::sqrt(2.0), off = 0.75 * std::sqrt(1.5);
     EXPECT_NEAR(free[0].first, hip + off + 0.4, 2e-3);
   }

@@ -91,8 +91,8 @@ BuiltRoof roof_of(RoofShape shape, const Polygon& plan, double height) {
   return build_roof(plan, request).value();
 }
 
-/// With ROOF_ELEMENTS_GLB=<folder>: dormers.glb has a row of houses for each kind of dormer and a column for each shape of roof,
-/// elements.glb all elements together, plans.glb L, U and court plans and a row of houses.
+/// With ROOF_ELEMENTS_GLB=<folder>: dormers.glb has a row of houses for each kind of dormer and a column for each shape
+/// of roof, elements.glb all elements together, plans.glb L, U and court plans and a row of houses.
 TEST(RoofElementPictures, WritesModels) {
   const char* const folder = std::getenv("ROOF_ELEMENTS_GLB");
   if (!folder) GTEST_SKIP() << "ROOF_ELEMENTS_GLB names no folder";

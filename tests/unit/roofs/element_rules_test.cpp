@@ -11,10 +11,12 @@ using model::RoofElementKind;
 using model::RoofShape;
 using namespace roof_checks;
 
-constexpr RoofShape kShapes[] = {RoofShape::gabled,          RoofShape::hipped,     RoofShape::mansard,
-                                 RoofShape::gambrel,         RoofShape::half_hipped, RoofShape::double_saltbox,
-                                 RoofShape::saltbox,         RoofShape::skillion,   RoofShape::side_hipped,
-                                 RoofShape::hipped_and_gabled, RoofShape::pyramidal, RoofShape::gabled_height_moved};
+constexpr RoofShape kShapes[] = {RoofShape::gabled,      RoofShape::hipped,
+                                 RoofShape::mansard,     RoofShape::gambrel,
+                                 RoofShape::half_hipped, RoofShape::double_saltbox,
+                                 RoofShape::saltbox,     RoofShape::skillion,
+                                 RoofShape::side_hipped, RoofShape::hipped_and_gabled,
+                                 RoofShape::pyramidal,   RoofShape::gabled_height_moved};
 
 /// A house as they stand in towns: a rectangle, an L or a T, or one of the nasty plans.
 Polygon house(Random& random) {
@@ -40,7 +42,8 @@ Polygon house(Random& random) {
   return moved(plan, angle, kPlaces[random.next(3)]);
 }
 
-// ---- the tape measure finds what breaks a rule -----------------------------------------------------------------------
+// ---- the tape measure finds what breaks a rule
+// -----------------------------------------------------------------------
 
 DormerParameters flat_dormer(double width = 1.3) {
   DormerParameters p;
@@ -53,7 +56,8 @@ DormerParameters flat_dormer(double width = 1.3) {
 std::vector<std::string> complaints(const Polygon& plan, RoofShape shape, std::initializer_list<Point2> places) {
   Roof roof = roof_on(plan, shape, 5);
   for (const Point2 place : places)
-    EXPECT_TRUE(add_dormer(roof, 0, flat_dormer(), place, {}, {.eaves = 0.2, .between = 0.2, .side = 0.2, .fold = 0.1}));
+    EXPECT_TRUE(
+        add_dormer(roof, 0, flat_dormer(), place, {}, {.eaves = 0.2, .between = 0.2, .side = 0.2, .fold = 0.1}));
   EXPECT_EQ(verdict(plan, roof), "none");
   return broken_rules(roof, {});
 }
@@ -130,8 +134,70 @@ TEST(ElementRules, HoldOnGeneratedRoofs) {
   EXPECT_GT(built[RoofElementKind::cross_gable], 400);
   EXPECT_GT(built[RoofElementKind::roof_window], 3000);
   EXPECT_GT(built[RoofElementKind::chimney], 1500);
-  std::printf("%d roofs: %d dormers, %d cross gables, %d roof windows, %d chimneys\n", roofs, built[RoofElementKind::dormer],
-              built[RoofElementKind::cross_gable], built[RoofElementKind::roof_window], built[RoofElementKind::chimney]);
+  std::printf("%d roofs: %d dormers, %d cross gables, %d roof windows, %d chimneys\n", roofs,
+              built[RoofElementKind::dormer], built[RoofElementKind::cross_gable], built[RoofElementKind::roof_window],
+              built[RoofElementKind::chimney]);
+}
+
+TEST(ElementRules, HoldInRows) {
+  Random random(7);
+  int dormers = 0, cross_gables = 0, windows = 0, stacks = 0;
+  for (int row = 0; row < 40; ++row) {
+    const double angle = 360 * random.unit(), depth = 9 + 4 * random.unit();
+    const Point2 place = kPlaces[random.next(3)];
+    const RoofShape shape =
+        std::vector{RoofShape::gabled, RoofShape::gambrel, RoofShape::double_saltbox}[random.next(3)];
+    double left = 0;
+    for (int house = 0; house < 6; ++house) {
+      // No deeper than wide, so that ridges run from party wall to party wall.
+      const double width = depth + 6 * random.unit();
+      const Polygon plan =
+          moved(polygon({{left, 0}, {left + width, 0}, {left + width, depth}, {left, depth}}), angle, place);
+      left += width;
+      const Roof bare = roof_on(plan, shape, 3 + 3 * random.unit());
+      const std::vector<model::RoofEdge> edges{model::RoofEdge::street, model::RoofEdge::party_wall,
+                                               model::RoofEdge::courtyard, model::RoofEdge::party_wall};
+      Furnishing with;
+      with.dormer = usual_dormer(kDormerKinds[random.next(6)]);
+      with.frontage = width;
+      with.cross_gables = random.next(2) == 0;
+      with.most_dormers = 1 + static_cast<int>(random.next(3));
+      const Furnished furnished = furnish(plan, edges, bare, with);
+      ASSERT_EQ(verdict(plan, furnished.roof), "none") << row;
+      ASSERT_EQ(installations_verdict(furnished.installations), "none") << row;
+      ASSERT_EQ(broken_rules(furnished.roof, furnished.installations), std::vector<std::string>{}) << row;
+      // Off the party walls on the plan: 1 m, chimneys 5 cm.
+      const auto off_party_walls = [&](Point2 p) {
+        double least = 1e9;
+        for (const std::size_t e : {1u, 3u})
+          least =
+              std::min(least, geometry::distance_to_segment(p, plan.outer.points[e], plan.outer.points[(e + 1) % 4]));
+        return least;
+      };
+      for (const auto& surface : furnished.roof.surfaces) {
+        if (surface.element == -1) continue;
+        for (const Point3& p : surface.loops[0]) ASSERT_GE(off_party_walls(p.xy()), 1 - 0.003);
+      }
+      for (const auto& body : furnished.installations)
+        for (const Point3& p : body.solid.vertices) {
+          const bool chimney = body.kind == RoofElementKind::chimney;
+          ASSERT_GE(off_party_walls(p.xy()), (chimney ? 0.05 : 1) - 0.003);
+          ASSERT_TRUE(geometry::contains(plan, p.xy()));
+        }
+      const auto built = [&](RoofElementKind kind) {
+        const auto found = furnished.built.find(kind);
+        return found == furnished.built.end() ? 0 : found->second;
+      };
+      dormers += built(RoofElementKind::dormer);
+      cross_gables += built(RoofElementKind::cross_gable);
+      windows += built(RoofElementKind::roof_window);
+      stacks += built(RoofElementKind::chimney);
+    }
+  }
+  EXPECT_GT(dormers, 500);
+  EXPECT_GT(cross_gables, 150);
+  EXPECT_GT(windows, 500);
+  EXPECT_GE(stacks, 240);
 }
 
 }  // namespace

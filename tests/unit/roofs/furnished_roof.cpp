@@ -21,7 +21,8 @@ std::vector<Point2> plan_of(const model::Solid& solid) {
 
 }  // namespace
 
-Furnished furnish(const model::Polygon& plan, std::span<const model::RoofEdge> edges, const Roof& roof, const Furnishing& with) {
+Furnished furnish(const model::Polygon& plan, std::span<const model::RoofEdge> edges, const Roof& roof,
+                  const Furnishing& with) {
   Furnished out;
   out.roof = roof;
   const std::size_t surfaces = roof.surfaces.size();
@@ -30,7 +31,8 @@ Furnished furnish(const model::Polygon& plan, std::span<const model::RoofEdge> e
     out.slopes[kind] += n > 0;
   };
   const auto refused = [&](const char* what, std::size_t s, double along) {
-    out.faults.push_back(std::string(what) + " refused on surface " + std::to_string(s) + " at " + std::to_string(along));
+    out.faults.push_back(std::string(what) + " refused on surface " + std::to_string(s) + " at " +
+                         std::to_string(along));
   };
   for (std::size_t s = 0; s < surfaces; ++s) {
     auto plane = roofs::roof_plane(out.roof, s, edges);
@@ -145,7 +147,8 @@ double length(const Point3& a) { return std::sqrt(dot(a, a)); }
 /// Between two segments in space (Ericson, Real-Time Collision Detection, §5.1.9).
 double distance(const Segment& s, const Segment& t) {
   const Point3 d1 = minus(s.b, s.a), d2 = minus(t.b, t.a), r = minus(s.a, t.a);
-  const double a = dot(d1, d1), e = dot(d2, d2), f = dot(d2, r), c = dot(d1, r), b = dot(d1, d2), denominator = a * e - b * b;
+  const double a = dot(d1, d1), e = dot(d2, d2), f = dot(d2, r), c = dot(d1, r), b = dot(d1, d2),
+               denominator = a * e - b * b;
   double x = denominator > 1e-12 ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0;
   double y = e > 0 ? (b * x + f) / e : 0;
   if (y < 0) {
@@ -155,7 +158,8 @@ double distance(const Segment& s, const Segment& t) {
     y = 1;
     x = a > 0 ? std::clamp((b - c) / a, 0.0, 1.0) : 0;
   }
-  const Point3 p{s.a.x + x * d1.x, s.a.y + x * d1.y, s.a.z + x * d1.z}, q{t.a.x + y * d2.x, t.a.y + y * d2.y, t.a.z + y * d2.z};
+  const Point3 p{s.a.x + x * d1.x, s.a.y + x * d1.y, s.a.z + x * d1.z},
+      q{t.a.x + y * d2.x, t.a.y + y * d2.y, t.a.z + y * d2.z};
   return length(minus(p, q));
 }
 
@@ -211,7 +215,8 @@ using Directed = std::pair<Point3, Point3>;
 }  // namespace
 
 std::vector<std::string> broken_rules(const Roof& roof, const std::vector<RoofInstallation>& installations) {
-  constexpr double kRounding = 0.003;  // m: both ends of a distance move by up to 0.85 mm, and 2 mm are the code's own slack
+  constexpr double kRounding =
+      0.003;  // m: both ends of a distance move by up to 0.85 mm, and 2 mm are the code's own slack
   std::vector<std::string> out;
   const auto complain = [&](const std::string& text) { out.push_back(text); };
   const auto metres = [](double v) { return std::to_string(v); };
@@ -231,7 +236,8 @@ std::vector<std::string> broken_rules(const Roof& roof, const std::vector<RoofIn
   };
   std::vector<Slope> slopes(roof.surfaces.size());
   for (std::size_t e = 0; e < roof.elements.size(); ++e)
-    standing.push_back({std::string(model::name(roof.elements[e])) + " " + std::to_string(e), roof.elements[e], SIZE_MAX, {}, 0});
+    standing.push_back(
+        {std::string(model::name(roof.elements[e])) + " " + std::to_string(e), roof.elements[e], SIZE_MAX, {}, 0});
   for (std::size_t s = 0; s < roof.surfaces.size(); ++s) {
     const Roof::Surface& surface = roof.surfaces[s];
     if (surface.element != -1 || surface.upright) continue;
@@ -289,9 +295,11 @@ std::vector<std::string> broken_rules(const Roof& roof, const std::vector<RoofIn
         const Roof::Surface& surface = roof.surfaces[s];
         if (surface.upright) continue;
         bool in = geometry::contains(flat(surface.loops[0]), middle);
-        for (std::size_t k = 1; k < surface.loops.size(); ++k) in = in && !geometry::contains(flat(surface.loops[k]), middle);
+        for (std::size_t k = 1; k < surface.loops.size(); ++k)
+          in = in && !geometry::contains(flat(surface.loops[k]), middle);
         if (!in) continue;
-        if (surface.element != -1) complain(name + " stands over " + standing[static_cast<std::size_t>(surface.element)].name);
+        if (surface.element != -1)
+          complain(name + " stands over " + standing[static_cast<std::size_t>(surface.element)].name);
         if (surface.element == -1) slope = s;
       }
       if (slope == SIZE_MAX) {
@@ -301,11 +309,13 @@ std::vector<std::string> broken_rules(const Roof& roof, const std::vector<RoofIn
       const double off = off_plane(roof.surfaces[slope].loops[0], segments(loop));
       if (installation.kind == RoofElementKind::roof_window) {
         standing.push_back({name, installation.kind, slope, segments(loop), length(minus(loop[0], loop[1]))});
-        for (const Segment& s : segments(loop)) standing.back().width = std::min(standing.back().width, length(minus(s.a, s.b)));
+        for (const Segment& s : segments(loop))
+          standing.back().width = std::min(standing.back().width, length(minus(s.a, s.b)));
       } else {
         const Point3 n = doubled_area(roof.surfaces[slope].loops[0]);
         for (const Point3& p : loop)
-          if (dot(n, minus(p, roof.surfaces[slope].loops[0][0])) > 0) complain(name + " hangs " + metres(off) + " over its slope");
+          if (dot(n, minus(p, roof.surfaces[slope].loops[0][0])) > 0)
+            complain(name + " hangs " + metres(off) + " over its slope");
         if (off > 0.03) complain(name + " lies " + metres(off) + " off its slope");
       }
     }

@@ -72,7 +72,8 @@ TEST(RoofPlane, TellsEavesSidesTopsAndFolds) {
   // The high wall of a lean-to is no eaves.
   const Roof skillion = roof_on(plan, RoofShape::skillion, 3);
   ASSERT_EQ(roof_planes(skillion).size(), 1u);
-  EXPECT_EQ(kinds(roof_planes(skillion)[0]), (Kinds{{BorderKind::eaves, 1}, {BorderKind::side, 2}, {BorderKind::top, 1}}));
+  EXPECT_EQ(kinds(roof_planes(skillion)[0]),
+            (Kinds{{BorderKind::eaves, 1}, {BorderKind::side, 2}, {BorderKind::top, 1}}));
 }
 
 TEST(RoofPlane, EavesAtAPartyWallAreASide) {
@@ -92,7 +93,8 @@ TEST(RoofPlane, ValleysAreFoldsAndBaysCutTheEaves) {
   EXPECT_GE(folds, 12);
   const Polygon bay = polygon({{0, 0}, {8, 0}, {8, -1}, {12, -1}, {12, 0}, {20, 0}, {20, 10}, {0, 10}});
   int eaves = 0;
-  for (const RoofPlane& plane : roof_planes(roof_on(bay, RoofShape::hipped, 4))) eaves += kinds(plane)[BorderKind::eaves];
+  for (const RoofPlane& plane : roof_planes(roof_on(bay, RoofShape::hipped, 4)))
+    eaves += kinds(plane)[BorderKind::eaves];
   EXPECT_EQ(eaves, 8);
 }
 

@@ -39,8 +39,8 @@ TEST(RoofWindow, IsAFrameWithAPaneSetIntoIt) {
 }
 
 TEST(RoofWindow, IsValidOnEverySlopeAndPlace) {
-  for (const RoofShape shape : {RoofShape::gabled, RoofShape::hipped, RoofShape::mansard, RoofShape::gambrel, RoofShape::half_hipped,
-                                RoofShape::double_saltbox})
+  for (const RoofShape shape : {RoofShape::gabled, RoofShape::hipped, RoofShape::mansard, RoofShape::gambrel,
+                                RoofShape::half_hipped, RoofShape::double_saltbox})
     for (const Polygon& plan : turned_about(plans().at("L"))) {
       Furnishing with;
       with.cross_gables = with.dormers = with.chimneys = false;
@@ -77,7 +77,7 @@ TEST(RoofWindow, RefusesWhatMakesNoBody) {
   EXPECT_TRUE(takes([](auto& p) { p.width = 1.34; }));
   EXPECT_FALSE(takes([](auto& p) { p.width = 0.1; }));
   EXPECT_FALSE(takes([](auto& p) { p.height = -1; }));
-  EXPECT_FALSE(takes([](auto& p) { p.frame = 0.4; }));   // no pane is left
+  EXPECT_FALSE(takes([](auto& p) { p.frame = 0.4; }));    // no pane is left
   EXPECT_FALSE(takes([](auto& p) { p.reveal = 0.06; }));  // the pane lies in the roof
   EXPECT_FALSE(takes([](auto& p) { p.raised = 0; }));
   EXPECT_FALSE(roof_window(GabledHouse(0.1).plane(), {}, {10, 1}));
