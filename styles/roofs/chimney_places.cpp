@@ -5,7 +5,7 @@
 #include "pipeline/geometry/polygon.h"
 #include "styles/roofs/chimneys.h"
 #include "styles/roofs/element_layout.h"
-#include "styles/roofs/roof_planes.h"
+#include "styles/roofs/roof_slopes.h"
 
 namespace blockrand::roofs {
 
@@ -28,7 +28,7 @@ void along_line(Point2 from, Point2 to, const ChimneyParameters& p, std::vector<
 
 /// Fall of a surface towards its left side of a directed line; positive where it falls.
 double fall_left(const Roof::Surface& surface, Point2 along) {
-  const Point3 n = plane_of(surface.loops[0]).normal;
+  const Point3 n = corner_plane(surface.loops[0]).normal;
   return n.z > 0 ? (n.x * -along.y + n.y * along.x) / n.z : 0;
 }
 
@@ -36,8 +36,8 @@ double fall_left(const Roof::Surface& surface, Point2 along) {
 
 std::vector<ChimneyPlace> ridge_places(const Roof& roof, const ChimneyParameters& parameters) {
   std::vector<ChimneyPlace> out;
-  for (const RoofPlane& plane : roof_planes(roof))
-    for (const PlaneBorder& border : plane.borders) {
+  for (const RoofSlope& plane : roof_slopes(roof))
+    for (const SlopeBorder& border : plane.borders) {
       if (border.kind != BorderKind::top || border.neighbour < static_cast<std::int32_t>(plane.surface)) continue;
       const Roof::Surface& other = roof.surfaces[static_cast<std::size_t>(border.neighbour)];
       const double length = std::hypot(border.end.x - border.start.x, border.end.y - border.start.y);
@@ -126,7 +126,7 @@ void along_surface(const Roof::Surface& surface, Point2 through, Point2 axis, co
 std::vector<ChimneyPlace> flat_places(const Roof& roof, const ChimneyParameters& parameters) {
   std::vector<ChimneyPlace> out;
   for (const Roof::Surface& surface : roof.surfaces) {
-    if (surface.upright || surface.element != -1 || surface.loops.empty() || !is_level(surface)) continue;
+    if (surface.upright || surface.element != -1 || surface.loops.empty() || !lies_level(surface)) continue;
     std::vector<Point2> outline;
     for (const Point3& p : surface.loops[0]) outline.push_back(p.xy());
     const Point2 axis = geometry::long_axis(outline), square{-axis.y, axis.x}, middle = outline[0];
@@ -145,12 +145,12 @@ namespace {
 
 /// High up the slopes, along their eaves, those that reach highest first: where neither ridge nor wall takes a stack.
 std::vector<ChimneyPlace> slope_places(const Roof& roof, const ChimneyParameters& parameters) {
-  std::vector<RoofPlane> planes = roof_planes(roof);
-  const auto top = [](const RoofPlane& plane) { return plane.in_space({0, plane.up_extent().maximum}).z; };
+  std::vector<RoofSlope> planes = roof_slopes(roof);
+  const auto top = [](const RoofSlope& plane) { return plane.in_space({0, plane.up_extent().maximum}).z; };
   std::stable_sort(planes.begin(), planes.end(),
-                   [&](const RoofPlane& a, const RoofPlane& b) { return top(a) > top(b); });
+                   [&](const RoofSlope& a, const RoofSlope& b) { return top(a) > top(b); });
   std::vector<ChimneyPlace> out;
-  for (const RoofPlane& plane : planes) {
+  for (const RoofSlope& plane : planes) {
     // On the lower slope of a mansard a stack would stand high in the air.
     if (ridge_above(roof, plane.surface) > top(plane) + kLevelLine) continue;
     const auto up = plane.up_extent();

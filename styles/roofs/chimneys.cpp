@@ -7,7 +7,7 @@
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/solid_builder.h"
 #include "styles/roofs/element_layout.h"
-#include "styles/roofs/roof_planes.h"
+#include "styles/roofs/roof_slopes.h"
 
 namespace blockrand::roofs {
 
@@ -57,14 +57,14 @@ Outline grown(ChimneyPlace place, const ChimneyParameters& parameters, double by
 
 /// A surface as height over the plan.
 struct Height {
-  LoopPlane plane;
+  CornerPlane plane;
   double at(Point2 p) const {
     const Point3 &n = plane.normal, &m = plane.mean;
     return m.z - (n.x * (p.x - m.x) + n.y * (p.y - m.y)) / n.z;
   }
 };
 
-Height height_of(const Roof::Surface& surface) { return {plane_of(surface.loops[0])}; }
+Height height_of(const Roof::Surface& surface) { return {corner_plane(surface.loops[0])}; }
 
 /// A border that crosses a stack: the surface left of it, and where.
 struct Crossing {
@@ -153,7 +153,7 @@ std::optional<model::RoofInstallation> chimney(const Roof& roof, ChimneyPlace pl
   for (const Piece& piece : pieces) {
     if (!(piece.height.plane.normal.z > 0.01)) return std::nullopt;
     top = std::max(top, ridge_above(roof, piece.surface));
-    level = level && is_level(roof.surfaces[piece.surface]);
+    level = level && lies_level(roof.surfaces[piece.surface]);
   }
   top += level ? p.above_flat : p.above_ridge;
   // The height of the underside: of the lower piece where both planes end, so that it hangs over neither.

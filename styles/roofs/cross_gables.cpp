@@ -12,7 +12,7 @@ using model::Point3;
 
 namespace {
 
-std::optional<StandingShape> shape_on(const RoofPlane& plane, const CrossGableParameters& p) {
+std::optional<StandingShape> shape_on(const RoofSlope& plane, const CrossGableParameters& p) {
   if (!takes_elements(plane) || p.width > kWidestElement || p.kind == DormerKind::eyebrow) return std::nullopt;
   return standing_shape({p.kind, p.width, p.wall_height, p.rise, p.roof_pitch, p.chords}, plane.rise);
 }
@@ -28,26 +28,26 @@ std::ptrdiff_t place_of(const std::vector<Point3>& points, const Point3& a, cons
 
 }  // namespace
 
-std::vector<Point2> cross_gable_outline(const RoofPlane& plane, const CrossGableParameters& parameters) {
+std::vector<Point2> cross_gable_outline(const RoofSlope& plane, const CrossGableParameters& parameters) {
   const auto shape = shape_on(plane, parameters);
   return shape ? hull(outline_in_plane(*shape, plane)) : std::vector<Point2>{};
 }
 
 bool add_cross_gable(Roof& roof, std::size_t surface, const CrossGableParameters& parameters, Point2 place,
                      std::span<const model::RoofEdge> edges, const ElementDistances& distances) {
-  const auto plane = roof_plane(roof, surface, edges);
+  const auto plane = roof_slope(roof, surface, edges);
   if (!plane) return false;
   const auto shape = shape_on(*plane, parameters);
   if (!shape) return false;
   auto outline = hull(outline_in_plane(*shape, *plane));
   for (Point2& p : outline) p = {p.x + place.x, p.y + place.y};
   if (!fits(*plane, outline, distances, true)) return false;
-  const auto eaves = std::find_if(plane->borders.begin(), plane->borders.end(), [&](const PlaneBorder& border) {
+  const auto eaves = std::find_if(plane->borders.begin(), plane->borders.end(), [&](const SlopeBorder& border) {
     return is_level_eaves(*plane, border, place.y) && plane->in_plane(border.start).x < place.x &&
            place.x < plane->in_plane(border.end).x;
   });
   if (eaves == plane->borders.end()) return false;
-  const PlaneBorder& border = *eaves;
+  const SlopeBorder& border = *eaves;
 
   auto& loops = roof.surfaces[surface].loops;
   const auto& wall = roof.wall_tops[static_cast<std::size_t>(border.edge)];

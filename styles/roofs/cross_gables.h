@@ -24,12 +24,12 @@ struct CrossGableParameters {
 
 /// Its outline on a plane, about the middle of its front at the eaves, for lay_out() with `flush` and `up` 0; empty
 /// when it makes no body on this plane, or breaks a rule on widths or pitches.
-std::vector<model::Point2> cross_gable_outline(const RoofPlane& plane, const CrossGableParameters& parameters);
+std::vector<model::Point2> cross_gable_outline(const RoofSlope& plane, const CrossGableParameters& parameters);
 
 /// Builds a cross gable into a surface and the wall below it, in one operation: the wall top goes up the gable and down
 /// again, the slope is cut back along the valleys, cheeks and roof stand between; all of one new entry of roof.elements
 /// (the front stays part of the plan edge's wall). The roof stays one closed surface.
-/// \param place  middle of the front, in the coordinates of roof_plane(); y tells which eaves, 0 for most
+/// \param place  middle of the front, in the coordinates of roof_slope(); y tells which eaves, 0 for most
 /// \return false, and the roof as it was, when no eaves run there (a party wall's are none) or this one does not fit
 /// there
 bool add_cross_gable(Roof& roof, std::size_t surface, const CrossGableParameters& parameters, model::Point2 place,

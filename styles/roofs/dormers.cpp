@@ -9,7 +9,7 @@ using model::Point3;
 
 namespace {
 
-std::optional<StandingShape> shape_on(const RoofPlane& plane, const DormerParameters& p) {
+std::optional<StandingShape> shape_on(const RoofSlope& plane, const DormerParameters& p) {
   if (!takes_elements(plane) || p.width > kWidestElement || p.wall_height < kLeastPart) return std::nullopt;
   return standing_shape({p.kind, p.width, p.wall_height, p.rise, p.roof_pitch, p.chords}, plane.rise);
 }
@@ -28,7 +28,7 @@ DormerParameters usual_dormer(DormerKind kind) {
   return out;
 }
 
-std::vector<Point2> dormer_outline(const RoofPlane& plane, const DormerParameters& parameters) {
+std::vector<Point2> dormer_outline(const RoofSlope& plane, const DormerParameters& parameters) {
   const auto shape = shape_on(plane, parameters);
   if (!shape) return {};
   return hull(outline_in_plane(*shape, plane));
@@ -36,7 +36,7 @@ std::vector<Point2> dormer_outline(const RoofPlane& plane, const DormerParameter
 
 bool add_dormer(Roof& roof, std::size_t surface, const DormerParameters& parameters, Point2 place,
                 std::span<const model::RoofEdge> edges, const ElementDistances& distances) {
-  const auto plane = roof_plane(roof, surface, edges);
+  const auto plane = roof_slope(roof, surface, edges);
   if (!plane) return false;
   const auto shape = shape_on(*plane, parameters);
   if (!shape) return false;

@@ -34,12 +34,12 @@ DormerParameters usual_dormer(DormerKind kind);
 
 /// Its convex outline on a plane, about the middle of its lower edge, for lay_out(); empty when it makes no body on
 /// this plane, or breaks a rule on widths (kWidestElement) or pitches (kFlattestSlope, kSteepestSlope).
-std::vector<model::Point2> dormer_outline(const RoofPlane& plane, const DormerParameters& parameters);
+std::vector<model::Point2> dormer_outline(const RoofSlope& plane, const DormerParameters& parameters);
 
 /// Builds a dormer into a surface of a roof: a hole in the surface, cheeks, roof and front over it, all of one new
 /// entry of roof.elements. The roof stays one closed surface; wall tops do not change.
 /// \param surface  index into roof.surfaces
-/// \param place    middle of the front's lower edge, in the coordinates of roof_plane()
+/// \param place    middle of the front's lower edge, in the coordinates of roof_slope()
 /// \param edges    the plan's edges, as in RoofRequest; may be empty
 /// \return false, and the roof as it was, when the surface takes no dormers or this one does not fit there with its
 /// distances

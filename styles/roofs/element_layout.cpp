@@ -47,7 +47,7 @@ double distance(std::span<const Point2> a, std::span<const Point2> b) {
   return least;
 }
 
-bool inside(const RoofPlane& plane, Point2 p) {
+bool inside(const RoofSlope& plane, Point2 p) {
   bool in = geometry::contains(plane.loops[0], p);
   for (std::size_t i = 1; i < plane.loops.size(); ++i) in = in && !geometry::contains(plane.loops[i], p);
   return in;
@@ -102,23 +102,23 @@ int most_elements(double length, double width, const ElementDistances& distances
   return std::max(0, static_cast<int>(std::floor(room / (width + distances.between) + kFound)));
 }
 
-bool takes_elements(const RoofPlane& plane) {
+bool takes_elements(const RoofSlope& plane) {
   return plane.rise >= base::tan((kFlattestSlope - 0.01) * base::kRadiansPerDegree) &&
          plane.rise <= base::tan((kSteepestSlope + 0.01) * base::kRadiansPerDegree);
 }
 
-bool is_level_eaves(const RoofPlane& plane, const PlaneBorder& border, double up) {
+bool is_level_eaves(const RoofSlope& plane, const SlopeBorder& border, double up) {
   if (border.kind != BorderKind::eaves) return false;
   const Point2 a = plane.in_plane(border.start), b = plane.in_plane(border.end);
   return std::fabs(a.y - up) < kLevelLine && std::fabs(b.y - up) < kLevelLine && b.x > a.x;
 }
 
-bool fits(const RoofPlane& plane, std::span<const Point2> outline, const ElementDistances& distances, bool flush) {
+bool fits(const RoofSlope& plane, std::span<const Point2> outline, const ElementDistances& distances, bool flush) {
   if (outline.size() < 3 || !inside(plane, middle_of(outline))) return false;
   const double up = geometry::extent_along(outline, {0, 1}).minimum;
   const auto along = geometry::extent_along(outline, {1, 0});
   bool stands = !flush;
-  for (const PlaneBorder& border : plane.borders) {
+  for (const SlopeBorder& border : plane.borders) {
     const Point2 a = plane.in_plane(border.start), b = plane.in_plane(border.end);
     if (flush && is_level_eaves(plane, border, up)) {
       stands = stands || (along.minimum >= a.x + kLeastPart && along.maximum <= b.x - kLeastPart);
@@ -131,7 +131,7 @@ bool fits(const RoofPlane& plane, std::span<const Point2> outline, const Element
          });
 }
 
-Stretches free_stretches(const RoofPlane& plane, const LayoutWish& wish, const ElementDistances& distances) {
+Stretches free_stretches(const RoofSlope& plane, const LayoutWish& wish, const ElementDistances& distances) {
   const auto own = geometry::extent_along(wish.outline, {1, 0});
   const auto along = plane.along_extent();
   double reach = own.maximum - own.minimum +
@@ -151,7 +151,7 @@ Stretches free_stretches(const RoofPlane& plane, const LayoutWish& wish, const E
     return other.minimum - wish.up > heights.maximum + limit || other.maximum - wish.up < heights.minimum - limit;
   };
   Stretches standing;  // of flush fronts
-  for (const PlaneBorder& border : plane.borders) {
+  for (const SlopeBorder& border : plane.borders) {
     const Point2 ends[] = {plane.in_plane(border.start), plane.in_plane(border.end)};
     if (wish.flush && is_level_eaves(plane, border, wish.up)) {
       standing.emplace_back(ends[0].x + kLeastPart - own.minimum, ends[1].x - kLeastPart - own.maximum);
@@ -230,7 +230,7 @@ Stretches mirrored(const Stretches& free) {
 /// m. More than any slope is long; beyond it, layouts of "as many as fit" stop.
 constexpr std::size_t kMostPlaces = 10000;
 
-std::vector<double> in_fields(const RoofPlane& plane, const Stretches& free, double spacing, std::size_t wanted) {
+std::vector<double> in_fields(const RoofSlope& plane, const Stretches& free, double spacing, std::size_t wanted) {
   const std::vector<double> earliest = packed(free, spacing, wanted);
   const std::size_t n = earliest.size();
   if (n == 0) return {};
@@ -252,7 +252,7 @@ std::vector<double> in_fields(const RoofPlane& plane, const Stretches& free, dou
   return out;
 }
 
-std::vector<double> on_axes(const RoofPlane& plane, const Stretches& free, double spacing, std::vector<double> axes,
+std::vector<double> on_axes(const RoofSlope& plane, const Stretches& free, double spacing, std::vector<double> axes,
                             std::size_t wanted) {
   std::sort(axes.begin(), axes.end());
   const auto is_free = [&](double x) { return nearest(free, x, x - kFound, x + kFound).has_value(); };
@@ -285,7 +285,7 @@ std::vector<double> on_axes(const RoofPlane& plane, const Stretches& free, doubl
 
 }  // namespace
 
-Layout lay_out(const RoofPlane& plane, const LayoutWish& wish, const ElementDistances& distances) {
+Layout lay_out(const RoofSlope& plane, const LayoutWish& wish, const ElementDistances& distances) {
   Layout out;
   if (wish.outline.size() < 3) return out;
   const auto own = geometry::extent_along(wish.outline, {1, 0});

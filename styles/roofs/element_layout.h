@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "styles/roofs/roof_planes.h"
+#include "styles/roofs/roof_slopes.h"
 
 namespace blockrand::roofs {
 
@@ -45,17 +45,17 @@ struct ElementDistances {
 int most_elements(double length, double width, const ElementDistances& distances = {});
 
 /// True when the plane's pitch lies within kFlattestSlope to kSteepestSlope.
-bool takes_elements(const RoofPlane& plane);
+bool takes_elements(const RoofSlope& plane);
 
 /// True when `outline` (in the plane's coordinates, counter-clockwise) lies in the plane with its distances from all
 /// borders, holes and occupied places.
 /// \param flush  the outline stands on eaves with its lowest side, which lies within one of them, kLeastPart from its
 ///               ends: the place of a cross gable. No distance is kept from eaves level with it.
-bool fits(const RoofPlane& plane, std::span<const model::Point2> outline, const ElementDistances& distances,
+bool fits(const RoofSlope& plane, std::span<const model::Point2> outline, const ElementDistances& distances,
           bool flush = false);
 
 /// True for eaves that run along their plane, up the slope by `up` m: where a front can stand flush.
-bool is_level_eaves(const RoofPlane& plane, const PlaneBorder& border, double up);
+bool is_level_eaves(const RoofSlope& plane, const SlopeBorder& border, double up);
 
 /// What is wanted on a slope.
 struct LayoutWish {
@@ -76,10 +76,10 @@ struct Layout {
 /// Puts as many of the wanted elements on a slope as fit, evenly: with axes on every first, second ... one (where the
 /// count falls short, on what leaves the most), else in equal fields, moved only where a border asks for it. Depends on
 /// nothing else.
-Layout lay_out(const RoofPlane& plane, const LayoutWish& wish, const ElementDistances& distances = {});
+Layout lay_out(const RoofSlope& plane, const LayoutWish& wish, const ElementDistances& distances = {});
 
 /// Stretches along a slope where the middle of one element may stand, rising; a stretch may be a point.
-std::vector<std::pair<double, double>> free_stretches(const RoofPlane& plane, const LayoutWish& wish,
+std::vector<std::pair<double, double>> free_stretches(const RoofSlope& plane, const LayoutWish& wish,
                                                       const ElementDistances& distances = {});
 
 }  // namespace blockrand::roofs

@@ -28,7 +28,7 @@ std::vector<Point2> roof_window_outline(const RoofWindowParameters& p) {
   return rectangle(-p.width / 2, 0, p.width / 2, p.height);
 }
 
-std::optional<model::RoofInstallation> roof_window(const RoofPlane& plane, const RoofWindowParameters& p, Point2 place,
+std::optional<model::RoofInstallation> roof_window(const RoofSlope& plane, const RoofWindowParameters& p, Point2 place,
                                                    const RoofWindowLooks& looks, const ElementDistances& distances) {
   auto outline = roof_window_outline(p);
   for (Point2& q : outline) q = {q.x + place.x, q.y + place.y};

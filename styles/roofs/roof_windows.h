@@ -32,7 +32,7 @@ std::vector<model::Point2> roof_window_outline(const RoofWindowParameters& param
 /// \param place  middle of
 /// the lower edge of the frame Empty when the plane takes no elements (takes_elements) or it does not fit there with
 /// its distances.
-std::optional<model::RoofInstallation> roof_window(const RoofPlane& plane, const RoofWindowParameters& parameters,
+std::optional<model::RoofInstallation> roof_window(const RoofSlope& plane, const RoofWindowParameters& parameters,
                                                    model::Point2 place, const RoofWindowLooks& looks = {},
                                                    const ElementDistances& distances = {});
 

@@ -109,7 +109,7 @@ std::optional<StandingShape> standing_shape(const StandingMeasures& m, double ri
   return out;
 }
 
-std::vector<Point2> outline_in_plane(const StandingShape& shape, const RoofPlane& plane) {
+std::vector<Point2> outline_in_plane(const StandingShape& shape, const RoofSlope& plane) {
   std::vector<Point2> out;
   for (auto p = shape.outline.rbegin(); p != shape.outline.rend(); ++p)
     out.push_back({p->x, p->y * plane.slope_length});

@@ -53,7 +53,7 @@ struct StandingShape {
 std::optional<StandingShape> standing_shape(const StandingMeasures& measures, double rise);
 
 /// The shape's outline in the coordinates of a plane, counter-clockwise, about the middle of its front.
-std::vector<model::Point2> outline_in_plane(const StandingShape& shape, const RoofPlane& plane);
+std::vector<model::Point2> outline_in_plane(const StandingShape& shape, const RoofSlope& plane);
 
 /// The convex outline around points, counter-clockwise.
 std::vector<model::Point2> hull(std::vector<model::Point2> points);

@@ -147,14 +147,19 @@ TEST_P(TownRoofElements, AreValidOnEveryRoof) {
   EXPECT_GT(all.roofs_with_chimney, all.roofs / 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Towns, TownRoofElements,
-                         testing::Values("husum_altstadt.osm.pbf", "berlin-luisenstadt-2021.osm"),
-                         [](const auto& tested) {
-                           std::string name = tested.param;
-                           for (char& c : name)
-                             if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-                           return name;
-                         });
+std::string town_name(const testing::TestParamInfo<const char*>& tested) {
+  std::string name = tested.param;
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Small, TownRoofElements,
+                         testing::Values("husum_altstadt.osm.pbf", "berlin-luisenstadt-2021.osm"), town_name);
+INSTANTIATE_TEST_SUITE_P(Large, TownRoofElements,
+                         testing::Values("lauf-2020-clipped.osm.pbf", "dortmund-innenstadt.osm.gz",
+                                         "berlin-mitte-2014.osm.pbf", "liechtenstein-2022-12.osm.pbf"),
+                         town_name);
 
 }  // namespace
 }  // namespace blockrand::region::test

@@ -110,7 +110,7 @@ TEST(Chimney, EndsAboveTheRidgeOfAMansard) {
   const Polygon plan = rectangle(20, 10);
   const Roof roof = roof_on(plan, RoofShape::mansard, 4);
   int in_lower = 0;
-  for (const RoofPlane& plane : roof_planes(roof)) {
+  for (const RoofSlope& plane : roof_slopes(roof)) {
     const Point3 p = plane.in_space({(plane.along_extent().minimum + plane.along_extent().maximum) / 2,
                                      plane.up_extent().maximum - 0.8 * plane.slope_length / plane.rise});
     const auto stack = chimney(roof, {p.xy(), plane.along_axis});

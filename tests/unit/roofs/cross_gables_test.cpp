@@ -109,7 +109,7 @@ TEST(CrossGable, StandsOnEveryKindOfRoofAnywhere) {
         std::size_t built = 0;
         const std::size_t surfaces = roof.surfaces.size();
         for (std::size_t s = 0; s < surfaces; ++s) {
-          const auto plane = roof_plane(roof, s);
+          const auto plane = roof_slope(roof, s);
           if (!plane) continue;
           LayoutWish wish;
           wish.outline = cross_gable_outline(*plane, gable());
@@ -176,7 +176,7 @@ TEST(CrossGable, RefusesWhatHasNoEavesOrNoRoom) {
   // The upper slope of a gambrel has no eaves.
   Roof gambrel = roof_on(plan, RoofShape::gambrel, 6);
   int upper = 0;
-  for (const RoofPlane& plane : roof_planes(gambrel)) {
+  for (const RoofSlope& plane : roof_slopes(gambrel)) {
     if (std::any_of(plane.borders.begin(), plane.borders.end(),
                     [](const auto& b) { return b.kind == BorderKind::eaves; }))
       continue;

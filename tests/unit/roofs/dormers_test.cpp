@@ -256,8 +256,8 @@ TEST(DormerGeometry, IsTheSameOnEveryPlaceOfTheGrid) {
       p.width = std::min(p.width, 2.3);
       for (std::size_t s = 0; s < 2; ++s) {
         LayoutWish wish;
-        wish.outline = dormer_outline(roof_plane(roof, s).value(), p);
-        for (const double along : lay_out(roof_plane(roof, s).value(), wish).along)
+        wish.outline = dormer_outline(roof_slope(roof, s).value(), p);
+        for (const double along : lay_out(roof_slope(roof, s).value(), wish).along)
           EXPECT_TRUE(add_dormer(roof, s, p, {along, wish.up}));
       }
       const std::size_t count = kind == DormerKind::eyebrow ? 10 : 12;  // (20 - 2 + 1.5) / (2.3 + 1.5) = 5.13

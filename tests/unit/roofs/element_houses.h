@@ -29,7 +29,7 @@ struct GabledHouse {
       if (roof.surfaces[s].edge == 0) return s;
     return SIZE_MAX;
   }
-  roofs::RoofPlane plane() const { return roofs::roof_plane(roof, south()).value(); }
+  roofs::RoofSlope plane() const { return roofs::roof_slope(roof, south()).value(); }
   Polygon plan;
   roofs::Roof roof;
 };

@@ -42,7 +42,7 @@ TEST(Layout, TakesAsManyAsTheFormulaOnRectangles) {
     const double width = model::snap(0.6 + 2.4 * random.unit()), length = model::snap(2 + 30 * random.unit());
     const GabledHouse house(1, length);
     if (house.south() == SIZE_MAX) continue;
-    const RoofPlane plane = house.plane();
+    const RoofSlope plane = house.plane();
     // On short houses the ridge runs the other way.
     const auto along = plane.along_extent();
     if (std::fabs(along.maximum - along.minimum - length) > 0.01 || plane.loops[0].size() != 4) continue;
@@ -114,7 +114,7 @@ TEST(Layout, StandsEveryStepAboutTheMiddle) {
 
 TEST(Layout, GoesRoundWhatStandsThere) {
   GabledHouse house(1);
-  RoofPlane plane = house.plane();
+  RoofSlope plane = house.plane();
   plane.occupied.push_back({{{9, 1}, {11, 1}, {11, 3}, {9, 3}}, 1.5});
   const Layout layout = lay_out(plane, wish_of(1.3));
   // 9 m less 1 and 1.5 to each side: (9 - 2.5 + 1.5) / 2.8 = 2.86.
@@ -130,7 +130,7 @@ TEST(Layout, GoesRoundWhatStandsThere) {
 TEST(Layout, KeepsOffHipsAndNarrowsWithThem) {
   const Polygon plan = rectangle(20, 10);
   const Roof hipped = roof_on(plan, RoofShape::hipped, 5);
-  const auto plane = roof_plane(hipped, 0).value();
+  const auto plane = roof_slope(hipped, 0).value();
   for (const double up : {1.0, 3.0, 5.0}) {
     LayoutWish wish = wish_of(0.8);
     wish.up = up;

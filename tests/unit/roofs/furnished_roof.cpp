@@ -35,7 +35,7 @@ Furnished furnish(const model::Polygon& plan, std::span<const model::RoofEdge> e
                          std::to_string(along));
   };
   for (std::size_t s = 0; s < surfaces; ++s) {
-    auto plane = roofs::roof_plane(out.roof, s, edges);
+    auto plane = roofs::roof_slope(out.roof, s, edges);
     if (!plane || !roofs::takes_elements(*plane)) continue;
     ++out.slopes_asked;
     if (with.cross_gables) {
@@ -52,7 +52,7 @@ Furnished furnish(const model::Polygon& plan, std::span<const model::RoofEdge> e
           refused("cross gable", s, along);
       }
       count(RoofElementKind::cross_gable, n);
-      plane = roofs::roof_plane(out.roof, s, edges);
+      plane = roofs::roof_slope(out.roof, s, edges);
       if (!plane) {
         out.faults.push_back("no plane is left of surface " + std::to_string(s));
         continue;
@@ -79,7 +79,7 @@ Furnished furnish(const model::Polygon& plan, std::span<const model::RoofEdge> e
     }
   }
   for (std::size_t s = 0; s < surfaces && with.roof_windows; ++s) {
-    auto plane = roofs::roof_plane(out.roof, s, edges);
+    auto plane = roofs::roof_slope(out.roof, s, edges);
     if (!plane || !roofs::takes_elements(*plane)) continue;
     for (const RoofInstallation& stack : out.installations)
       if (stack.kind == RoofElementKind::chimney) roofs::occupy(*plane, plan_of(stack.solid), 0.3);

@@ -25,7 +25,7 @@ TEST(RoofWindow, IsAFrameWithAPaneSetIntoIt) {
     EXPECT_NEAR(volume_of(window->solid), 0.78 * 1.18 * 0.06 - 0.62 * 1.02 * 0.02, 0.0015) << degrees;
     EXPECT_EQ(broken_rules(house.roof, {*window}), std::vector<std::string>{});
     // Its underside lies on the slope, its lower edge 1 m from the eaves.
-    const RoofPlane plane = house.plane();
+    const RoofSlope plane = house.plane();
     const auto& under = window->solid.faces.front();
     ASSERT_EQ(under.kind, model::SurfaceKind::closure);
     double lowest = 1e9;
@@ -53,7 +53,7 @@ TEST(RoofWindow, IsValidOnEverySlopeAndPlace) {
 
 TEST(RoofWindow, KeepsItsDistances) {
   const GabledHouse house(1);
-  RoofPlane plane = house.plane();
+  RoofSlope plane = house.plane();
   EXPECT_TRUE(roof_window(plane, {}, {1.39, 1}));
   EXPECT_FALSE(roof_window(plane, {}, {1.385, 1}));
   EXPECT_FALSE(roof_window(plane, {}, {10, 0.995}));

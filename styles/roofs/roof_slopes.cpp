@@ -1,4 +1,4 @@
-#include "styles/roofs/roof_planes.h"
+#include "styles/roofs/roof_slopes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,8 @@ double highest_of(const Roof::Surface& surface) {
 
 }  // namespace
 
-LoopPlane plane_of(std::span<const Point3> loop) {
-  LoopPlane out;
+CornerPlane corner_plane(std::span<const Point3> loop) {
+  CornerPlane out;
   if (loop.empty()) return out;
   const Point3 o = loop[0];
   Point3 n, sum;
@@ -44,28 +44,28 @@ LoopPlane plane_of(std::span<const Point3> loop) {
   return out;
 }
 
-Point2 RoofPlane::in_plane(Point2 p) const {
+Point2 RoofSlope::in_plane(Point2 p) const {
   const double x = p.x - origin.x, y = p.y - origin.y;
   return {x * along_axis.x + y * along_axis.y, (x * up_axis.x + y * up_axis.y) * slope_length};
 }
 
-Point3 RoofPlane::in_space(Point2 p, double above) const {
+Point3 RoofSlope::in_space(Point2 p, double above) const {
   const double run = p.y / slope_length;
   return {origin.x + p.x * along_axis.x + run * up_axis.x, origin.y + p.x * along_axis.y + run * up_axis.y,
           origin.z + run * rise + above};
 }
 
-double RoofPlane::height_at(Point2 plan) const { return origin.z + in_plane(plan).y / slope_length * rise; }
+double RoofSlope::height_at(Point2 plan) const { return origin.z + in_plane(plan).y / slope_length * rise; }
 
-geometry::Extent RoofPlane::along_extent() const { return geometry::extent_along(loops[0], {1, 0}); }
-geometry::Extent RoofPlane::up_extent() const { return geometry::extent_along(loops[0], {0, 1}); }
+geometry::Extent RoofSlope::along_extent() const { return geometry::extent_along(loops[0], {1, 0}); }
+geometry::Extent RoofSlope::up_extent() const { return geometry::extent_along(loops[0], {0, 1}); }
 
 RoofBorders::RoofBorders(const Roof& roof, std::span<const model::RoofEdge> edges)
     : roof_(&roof), edges_(edges.begin(), edges.end()) {
   for (std::size_t s = 0; s < roof.surfaces.size(); ++s) {
     const Roof::Surface& surface = roof.surfaces[s];
     if (!surface.upright && surface.element == -1 && !surface.loops.empty())
-      overhangs_ = overhangs_ || plane_of(surface.loops[0]).normal.z < 0;
+      overhangs_ = overhangs_ || corner_plane(surface.loops[0]).normal.z < 0;
     for (const auto& loop : surface.loops)
       for (std::size_t i = 0; i < loop.size(); ++i)
         sides_.push_back({geometry::to_grid(loop[i]), geometry::to_grid(loop[(i + 1) % loop.size()]),
@@ -79,11 +79,11 @@ RoofBorders::RoofBorders(const Roof& roof, std::span<const model::RoofEdge> edge
   std::sort(sides_.begin(), sides_.end());
 }
 
-std::optional<RoofPlane> RoofBorders::plane(std::size_t surface) const {
+std::optional<RoofSlope> RoofBorders::slope(std::size_t surface) const {
   if (overhangs_ || surface >= roof_->surfaces.size()) return std::nullopt;
   const Roof::Surface& of = roof_->surfaces[surface];
   if (of.upright || of.element != -1 || of.loops.empty() || of.loops[0].size() < 3) return std::nullopt;
-  const LoopPlane flat = plane_of(of.loops[0]);
+  const CornerPlane flat = corner_plane(of.loops[0]);
   const double across = std::hypot(flat.normal.x, flat.normal.y);
   if (flat.normal.z <= 0 || across < kLevelRise * flat.normal.z) return std::nullopt;
   for (const auto& loop : of.loops)
@@ -92,7 +92,7 @@ std::optional<RoofPlane> RoofBorders::plane(std::size_t surface) const {
                     (p.z - flat.mean.z) * flat.normal.z) > kEvenSurface)
         return std::nullopt;
 
-  RoofPlane out;
+  RoofSlope out;
   out.surface = surface;
   out.up_axis = {-flat.normal.x / across, -flat.normal.y / across};
   out.along_axis = {out.up_axis.y, -out.up_axis.x};
@@ -102,7 +102,7 @@ std::optional<RoofPlane> RoofBorders::plane(std::size_t surface) const {
 
   for (const auto& loop : of.loops)
     for (std::size_t i = 0; i < loop.size(); ++i) {
-      PlaneBorder border;
+      SlopeBorder border;
       border.start = loop[i];
       border.end = loop[(i + 1) % loop.size()];
       const Grid3 start = geometry::to_grid(border.start), end = geometry::to_grid(border.end);
@@ -131,11 +131,11 @@ std::optional<RoofPlane> RoofBorders::plane(std::size_t surface) const {
     left = std::min(left, out.in_plane(p).x);
     lowest = std::min(lowest, out.in_plane(p).y);
   }
-  for (const PlaneBorder& border : out.borders) {
+  for (const SlopeBorder& border : out.borders) {
     if (border.kind != BorderKind::eaves) continue;
     const double height = out.in_plane(border.start).y;
     double from = 1e300, to = -1e300;
-    for (const PlaneBorder& other : out.borders) {
+    for (const SlopeBorder& other : out.borders) {
       if (other.kind != BorderKind::eaves || std::fabs(out.in_plane(other.start).y - height) > kLevelLine) continue;
       from = std::min(from, out.in_plane(other.start).x);
       to = std::max(to, out.in_plane(other.end).x);
@@ -152,15 +152,15 @@ std::optional<RoofPlane> RoofBorders::plane(std::size_t surface) const {
   return out;
 }
 
-std::optional<RoofPlane> roof_plane(const Roof& roof, std::size_t surface, std::span<const model::RoofEdge> edges) {
-  return RoofBorders(roof, edges).plane(surface);
+std::optional<RoofSlope> roof_slope(const Roof& roof, std::size_t surface, std::span<const model::RoofEdge> edges) {
+  return RoofBorders(roof, edges).slope(surface);
 }
 
-std::vector<RoofPlane> roof_planes(const Roof& roof, std::span<const model::RoofEdge> edges) {
+std::vector<RoofSlope> roof_slopes(const Roof& roof, std::span<const model::RoofEdge> edges) {
   const RoofBorders borders(roof, edges);
-  std::vector<RoofPlane> out;
+  std::vector<RoofSlope> out;
   for (std::size_t s = 0; s < roof.surfaces.size(); ++s)
-    if (auto plane = borders.plane(s)) out.push_back(std::move(*plane));
+    if (auto plane = borders.slope(s)) out.push_back(std::move(*plane));
   return out;
 }
 
@@ -169,9 +169,9 @@ double ridge_above(const Roof& roof, std::size_t surface) {
   double highest = highest_of(roof.surfaces[surface]);
   for (bool higher = true; higher;) {
     higher = false;
-    const auto plane = borders.plane(surface);
+    const auto plane = borders.slope(surface);
     if (!plane) break;
-    for (const PlaneBorder& border : plane->borders) {
+    for (const SlopeBorder& border : plane->borders) {
       if (border.kind != BorderKind::top || border.neighbour < 0) continue;
       const auto above = static_cast<std::size_t>(border.neighbour);
       if (roof.surfaces[above].upright || roof.surfaces[above].element != -1) continue;
@@ -186,12 +186,12 @@ double ridge_above(const Roof& roof, std::size_t surface) {
   return highest;
 }
 
-bool is_level(const Roof::Surface& surface) {
-  const Point3 n = plane_of(surface.loops[0]).normal;
+bool lies_level(const Roof::Surface& surface) {
+  const Point3 n = corner_plane(surface.loops[0]).normal;
   return std::hypot(n.x, n.y) < kLevelRise * n.z;
 }
 
-void occupy(RoofPlane& plane, std::span<const Point2> plan_outline, double distance) {
+void occupy(RoofSlope& plane, std::span<const Point2> plan_outline, double distance) {
   OccupiedPlace place;
   place.distance = distance;
   for (const Point2 p : plan_outline) place.outline.push_back(plane.in_plane(p));

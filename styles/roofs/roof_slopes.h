@@ -23,7 +23,7 @@ enum class BorderKind : std::uint8_t {
 };
 
 /// A side of a plane, in the direction of its loop: the plane lies left of it.
-struct PlaneBorder {
+struct SlopeBorder {
   BorderKind kind = BorderKind::fold;
   model::Point3 start, end;     ///< as in the roof
   std::int32_t edge = -1;       ///< the plan edge whose wall ends here; -1 within the roof
@@ -39,7 +39,7 @@ struct OccupiedPlace {
 /// A sloping surface with axes of its own. A point of the plane is a model::Point2: x is the way along the eaves, to
 /// the right for who looks up the slope from outside; y is the way up the slope. Both in metres in the plane itself,
 /// not on the plan, so that distances are what a tape on the roof would say.
-struct RoofPlane {
+struct RoofSlope {
   std::size_t surface = 0;  ///< index into Roof::surfaces
   /// Where (0, 0) is: x at the outer loop's leftmost point; y at the eaves (those level with each other that span most
   /// of the slope), else at the lowest point. Elements do not move it.
@@ -48,7 +48,7 @@ struct RoofPlane {
   double rise = 0;                                ///< m upwards for each m on the plan: tangent of the pitch
   double slope_length = 1;                        ///< m in the plane for each m on the plan: sqrt(1 + rise²)
   std::vector<std::vector<model::Point2>> loops;  ///< the surface's loops in the plane's coordinates
-  std::vector<PlaneBorder> borders;               ///< all sides of all loops
+  std::vector<SlopeBorder> borders;               ///< all sides of all loops
   std::vector<OccupiedPlace> occupied;            ///< what was put on it: occupy()
 
   /// The point of the plane above or below `p`, which need not lie on it.
@@ -69,7 +69,7 @@ class RoofBorders {
   RoofBorders(const Roof& roof, std::span<const model::RoofEdge> edges);
   /// The plane of a surface. Empty for surfaces that are level (under kLevelRise), upright, part of an element, or look
   /// down, and on roofs that overhang themselves (onions), where what stands on one surface might run into another.
-  std::optional<RoofPlane> plane(std::size_t surface) const;
+  std::optional<RoofSlope> slope(std::size_t surface) const;
 
  private:
   struct Side {
@@ -83,28 +83,28 @@ class RoofBorders {
   bool overhangs_ = false;
 };
 
-/// As RoofBorders::plane, for one surface.
-std::optional<RoofPlane> roof_plane(const Roof& roof, std::size_t surface, std::span<const model::RoofEdge> edges = {});
+/// As RoofBorders::slope, for one surface.
+std::optional<RoofSlope> roof_slope(const Roof& roof, std::size_t surface, std::span<const model::RoofEdge> edges = {});
 
 /// All planes of a roof, by surface.
-std::vector<RoofPlane> roof_planes(const Roof& roof, std::span<const model::RoofEdge> edges = {});
+std::vector<RoofSlope> roof_slopes(const Roof& roof, std::span<const model::RoofEdge> edges = {});
 
 /// Height of the ridge above a surface: the highest point of it and of what goes on rising over its upper border (the
 /// upper slope of a mansard).
 double ridge_above(const Roof& roof, std::size_t surface);
 
 /// True for surfaces flatter than kLevelRise that look up.
-bool is_level(const Roof::Surface& surface);
+bool lies_level(const Roof::Surface& surface);
 
 /// Marks a place of the plan (convex, counter-clockwise) as taken on a plane.
-void occupy(RoofPlane& plane, std::span<const model::Point2> plan_outline, double distance);
+void occupy(RoofSlope& plane, std::span<const model::Point2> plan_outline, double distance);
 
 /// Newell's normal of a loop, of unit length, and the mean of its corners: the plane that the checker of solids judges
 /// by.
-struct LoopPlane {
+struct CornerPlane {
   model::Point3 normal, mean;
 };
-LoopPlane plane_of(std::span<const model::Point3> loop);
+CornerPlane corner_plane(std::span<const model::Point3> loop);
 
 inline constexpr double kLevelRise = 0.05;  ///< tangent of 3 degrees: below, a surface is level
 inline constexpr double kLevelLine =
