@@ -56,27 +56,29 @@ bool inside(const RoofSlope& plane, Point2 p) {
 /// A point inside of a convex outline.
 Point2 middle_of(std::span<const Point2> outline) { return geometry::centroid(outline); }
 
-/// Where `value`, a convex function, is below `limit`: the stretch between `low` and `high`, both of which it is not.
-/// Empty when nowhere.
+/// Where `value` is below `limit`: the stretch between `low` and `high`, both of which it is not. Empty when nowhere.
+/// \param value  convex, and changes by no more than its argument: a distance from something convex that is moved
 template <class Function>
 std::optional<std::pair<double, double>> below(double low, double high, double limit, const Function& value) {
-  double a = low, b = high;
-  for (int i = 0; i < 100 && b - a > kFound / 4; ++i) {
+  double a = low, b = high, in = (a + b) / 2;
+  while (value(in) >= limit) {
+    if (b - a < kFound / 4) return std::nullopt;
     const double m1 = a + (b - a) / 3, m2 = b - (b - a) / 3, v1 = value(m1), v2 = value(m2);
+    if (std::min(v1, v2) - (b - a) >= limit) return std::nullopt;
     // On a level stretch all values are the least one, and any of them will do.
     if (v1 <= v2) b = m2;
     if (v2 <= v1) a = m1;
+    in = v1 <= v2 ? m1 : m2;
   }
-  const double least = (a + b) / 2;
-  if (value(least) >= limit) return std::nullopt;
-  const auto cross = [&](double out, double in) {
-    for (int i = 0; i < 60 && std::fabs(in - out) > kFound / 16; ++i) {
-      const double m = (out + in) / 2;
-      (value(m) < limit ? in : out) = m;
+  const auto cross = [&](double out) {
+    for (double inner = in; std::fabs(inner - out) > kFound / 16;) {
+      const double m = (out + inner) / 2;
+      if (m == out || m == inner) break;
+      (value(m) < limit ? inner : out) = m;
     }
     return out;
   };
-  return std::pair(cross(low, least), cross(high, least));
+  return std::pair(cross(low), cross(high));
 }
 
 }  // namespace
@@ -133,18 +135,20 @@ bool fits(const RoofSlope& plane, std::span<const Point2> outline, const Element
 
 Stretches free_stretches(const RoofSlope& plane, const LayoutWish& wish, const ElementDistances& distances) {
   const auto own = geometry::extent_along(wish.outline, {1, 0});
-  const auto along = plane.along_extent();
-  double reach = own.maximum - own.minimum +
-                 std::max({distances.eaves, distances.between, distances.side, distances.fold, distances.top});
-  for (const OccupiedPlace& place : plane.occupied) reach = std::max(reach, own.maximum - own.minimum + place.distance);
-  const double low = along.minimum - reach - 1, high = along.maximum + reach + 1;
+  const auto heights = geometry::extent_along(wish.outline, {0, 1});
+  const auto along = plane.along_extent(), up = plane.up_extent();
+  if (own.maximum - own.minimum > along.maximum - along.minimum || heights.maximum + wish.up > up.maximum) return {};
+  const double low = along.minimum - own.maximum - 1, high = along.maximum - own.minimum + 1;
 
-  std::vector<std::pair<double, double>> taken;
-  const auto take = [&](double limit, const auto& value) {
-    if (const auto stretch = below(low, high, limit - kFound, value)) taken.push_back(*stretch);
+  Stretches taken;
+  const auto take = [&](double limit, std::span<const Point2> points, const auto& value) {
+    const auto near = geometry::extent_along(points, {1, 0});
+    const double reach = limit + kLeastPart;
+    if (const auto stretch =
+            below(near.minimum - own.maximum - reach, near.maximum - own.minimum + reach, limit - kFound, value))
+      taken.push_back(*stretch);
   };
   // What lies near is moved instead of the outline.
-  const auto heights = geometry::extent_along(wish.outline, {0, 1});
   const auto seen = [&](Point2 p, double x) { return Point2{p.x - x, p.y - wish.up}; };
   const auto far = [&](double limit, std::span<const Point2> points) {
     const auto other = geometry::extent_along(points, {0, 1});
@@ -161,11 +165,13 @@ Stretches free_stretches(const RoofSlope& plane, const LayoutWish& wish, const E
     const bool along_slope = border.kind == BorderKind::eaves || border.kind == BorderKind::top;
     const double limit = distances.from(border.kind) - (along_slope ? kDistanceSlack / 2 : 0);
     if (far(limit, ends)) continue;
-    take(limit, [&](double x) { return distance(wish.outline, seen(ends[0], x), seen(ends[1], x)); });
+    take(limit, ends, [&](double x) { return distance(wish.outline, seen(ends[0], x), seen(ends[1], x)); });
   }
   for (const OccupiedPlace& place : plane.occupied) {
     if (far(place.distance, place.outline)) continue;
-    take(place.distance, [&](double x) { return distance(moved(wish.outline, {x, wish.up}), place.outline); });
+    take(place.distance, place.outline, [&](double x) {
+      return distance(moved(wish.outline, {x, wish.up}), place.outline);
+    });
   }
 
   if (wish.flush) {

@@ -34,8 +34,10 @@ Furnished furnish(const model::Polygon& plan, std::span<const model::RoofEdge> e
     out.faults.push_back(std::string(what) + " refused on surface " + std::to_string(s) + " at " +
                          std::to_string(along));
   };
+  const roofs::RoofBorders bare(roof, edges);
   for (std::size_t s = 0; s < surfaces; ++s) {
-    auto plane = roofs::roof_slope(out.roof, s, edges);
+    // What was built into other surfaces changes nothing here but indices of neighbours beyond them.
+    auto plane = bare.slope(s);
     if (!plane || !roofs::takes_elements(*plane)) continue;
     ++out.slopes_asked;
     if (with.cross_gables) {
@@ -52,7 +54,7 @@ Furnished furnish(const model::Polygon& plan, std::span<const model::RoofEdge> e
           refused("cross gable", s, along);
       }
       count(RoofElementKind::cross_gable, n);
-      plane = roofs::roof_slope(out.roof, s, edges);
+      if (n > 0) plane = roofs::roof_slope(out.roof, s, edges);
       if (!plane) {
         out.faults.push_back("no plane is left of surface " + std::to_string(s));
         continue;
@@ -78,8 +80,9 @@ Furnished furnish(const model::Polygon& plan, std::span<const model::RoofEdge> e
       ++out.built[RoofElementKind::chimney];
     }
   }
+  const roofs::RoofBorders borders(out.roof, edges);
   for (std::size_t s = 0; s < surfaces && with.roof_windows; ++s) {
-    auto plane = roofs::roof_slope(out.roof, s, edges);
+    auto plane = borders.slope(s);
     if (!plane || !roofs::takes_elements(*plane)) continue;
     for (const RoofInstallation& stack : out.installations)
       if (stack.kind == RoofElementKind::chimney) roofs::occupy(*plane, plan_of(stack.solid), 0.3);
