@@ -26,7 +26,7 @@ constexpr double kLeastOpen = 0.1;                  ///< of the outline: less op
 constexpr double kCoveredEnd = 0.3;                 ///< of the plan's width: less party wall leaves an end free
 constexpr double kNeighbour = 0.3;                  ///< of a side: less is a corner or a shed, no neighbour
 constexpr double kMostOfSide = 0.5;                 ///< of the one long side that must be covered where the other is free
-constexpr double kOblong = 1.4;                     ///< length by width: longer wings lean on a wall at their long side
+constexpr double kOblong = 2.0;                     ///< length by width: longer wings lean on a wall at their long side
 
 double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 Point2 negated(Point2 a) { return {-a.x, -a.y}; }

@@ -115,6 +115,40 @@ TEST(WeightedSkeleton, EdgesOnOneLineTakeTheGentlerSlope) {
   EXPECT_NEAR(s->height(), 3.5, 1e-9);
 }
 
+TEST(WeightedSkeleton, EavesWithoutLengthFillACorner) {
+  // Upright walls in the north and west, slopes from the south and east, and from the corner between the former: the roof
+  // of an L whose inner corner has been filled.
+  for (const bool is_turned : {false, true}) {
+    const Polygon square = polygon({{0, 0}, {12, 0}, {12, 12}, {0, 12}});
+    const Polygon plan = is_turned ? turned(square) : square;
+    std::vector<EdgeProfile> profiles = equal(plan);
+    profiles[2].slope = profiles[3].slope = kUpright;
+    const std::vector<CornerEaves> corner{{3, {}}};
+    const auto s = weighted_skeleton(plan, profiles, {}, corner);
+    ASSERT_TRUE(s) << name(s.error());
+    EXPECT_NEAR(s->height(), 6, is_turned ? 0.002 : 1e-9);
+    EXPECT_NEAR(area_seen_from_above(*s), area(plan), 1e-6);
+    EXPECT_EQ(std::count_if(s->faces.begin(), s->faces.end(),
+                            [](const auto& f) { return f.edge == WeightedSkeletonFace::kCorner; }),
+              2);
+    EXPECT_EQ(std::count_if(s->faces.begin(), s->faces.end(), [](const auto& f) { return !f.upright; }), 4);
+    // With a change of pitch the corner's slopes change as well.
+    for (EdgeProfile& p : profiles)
+      if (p.slope != kUpright) p = {2, {{3, 0.5}}};
+    const auto broken = weighted_skeleton(plan, profiles, {}, std::vector<CornerEaves>{{3, {2, {{3, 0.5}}}}});
+    ASSERT_TRUE(broken) << name(broken.error());
+    EXPECT_NEAR(broken->height(), 3 + 4.5 * 0.5, is_turned ? 0.002 : 1e-9);
+    EXPECT_NEAR(area_seen_from_above(*broken), area(plan), 1e-6);
+    // Only between two upright edges, in a convex corner.
+    EXPECT_EQ(weighted_skeleton(plan, profiles, {}, std::vector<CornerEaves>{{0, {}}}).error(), SkeletonFailure::bad_slope);
+    EXPECT_EQ(weighted_skeleton(plan, profiles, {}, std::vector<CornerEaves>{{9, {}}}).error(), SkeletonFailure::bad_slope);
+  }
+  const Polygon ell = polygon({{0, 0}, {20, 0}, {20, 20}, {10, 20}, {10, 10}, {0, 10}});
+  std::vector<EdgeProfile> profiles = equal(ell);
+  profiles[3].slope = profiles[4].slope = kUpright;
+  EXPECT_EQ(weighted_skeleton(ell, profiles, {}, std::vector<CornerEaves>{{4, {}}}).error(), SkeletonFailure::bad_slope);
+}
+
 TEST(WeightedSkeleton, SaysWhyItGivesUp) {
   const Polygon plan = polygon({{0, 0}, {10, 0}, {10, 6}, {0, 6}});
   EXPECT_EQ(weighted_skeleton(plan, equal(plan, kUpright)).error(), SkeletonFailure::unbounded);

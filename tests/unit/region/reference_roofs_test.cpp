@@ -12,7 +12,6 @@
 #include <functional>
 #include <map>
 
-#include "pipeline/generate/ridge_direction.h"
 #include "pipeline/geometry/polygon.h"
 #include "styles/roofs/roof.h"
 #include "tests/unit/region/built_town.h"
@@ -496,26 +495,29 @@ std::string owner_of(const std::string& part) {
 }
 
 /// The walls of a surveyed part at which another building stands, found by points 0.2 m outside every half metre.
-std::vector<generate::WallStretch> party_walls(const SurveyedRoof& roof, const std::vector<SurveyedRoof>& all) {
+std::vector<model::RoofEdge> roof_edges(const SurveyedRoof& roof, const std::vector<SurveyedRoof>& all) {
   std::vector<const SurveyedRoof*> near;
   for (const SurveyedRoof& other : all)
     if (other.box.near(roof.box, 0.2) && owner_of(other.id) != owner_of(roof.id)) near.push_back(&other);
-  std::vector<generate::WallStretch> out;
+  std::vector<model::RoofEdge> out;
   const model::Ring& ring = roof.plan[0].outer;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
     const double l = std::hypot(b.x - a.x, b.y - a.y);
     const int steps = std::max(1, static_cast<int>(l / 0.5));
     const auto at = [&](double t) { return Point2{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)}; };
+    int against = 0;
     for (int k = 0; k < steps; ++k) {
       const Point2 m = at((k + 0.5) / steps), beside{m.x + 0.2 * (b.y - a.y) / l, m.y - 0.2 * (b.x - a.x) / l};
       const bool covered = std::any_of(near.begin(), near.end(), [&](const SurveyedRoof* other) {
         return std::any_of(other->plan.begin(), other->plan.end(),
                            [&](const Polygon& p) { return geometry::contains(p, beside); });
       });
-      if (covered) out.push_back({at(static_cast<double>(k) / steps), at((k + 1.0) / steps)});
+      against += covered;
     }
+    out.push_back(2 * against >= steps ? model::RoofEdge::party_wall : model::RoofEdge::open);
   }
+  for (const model::Ring& hole : roof.plan[0].holes) out.resize(out.size() + hole.size(), model::RoofEdge::open);
   return out;
 }
 
@@ -525,8 +527,6 @@ TEST(ReferenceRoofs, OfTheHagueAreTheSurveysSurfaces) {
   const fs::path file = kData / "reference/cityjson/DenHaag_01.json";
   if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
   const auto surveyed = read_cityjson_roofs(file);
-  const double widest =
-      generate::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs").use("house").pitched_width;
   std::map<bool, std::vector<RoofCase>> all;  // with the rule for ridges, without
   for (const SurveyedRoof& survey : surveyed) {
     const auto shape = shape_of_code(survey.roof_type);
@@ -535,7 +535,8 @@ TEST(ReferenceRoofs, OfTheHagueAreTheSurveysSurfaces) {
     for (const bool ruled : {false, true}) {
       roofs::RoofRequest asked;
       asked.shape = *shape;
-      asked.across = ruled && generate::ridge_runs_across(survey.plan[0], party_walls(survey, surveyed), widest);
+      asked.shape_is_mapped = true;
+      if (ruled) asked.edges = roof_edges(survey, surveyed);
       RoofCase c = make_case(survey.plan, survey, *heights, asked);
       if (c.as_asked) all[ruled].push_back(std::move(c));
     }
