@@ -309,6 +309,13 @@ void add_build(Table& t) {
           .section = S,
           .help = "ground heights: any raster that GDAL reads"},
          FIELD(build.terrain));
+  t.text({.name = "terrain-height-reference",
+          .key = "terrain_height_reference",
+          .argument = "REFERENCE",
+          .section = S,
+          .help = "what the raster's heights are above, where it does not say so itself: sea-level (taken for EGM96), "
+                  "ellipsoid, or a vertical coordinate system such as EPSG:7837"},
+         FIELD(build.terrain_height_reference));
   t.number({.name = "ground-height",
             .key = "ground_height",
             .argument = "METRES",
