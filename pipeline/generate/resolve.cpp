@@ -264,9 +264,13 @@ struct Resolver {
 
   bool is_canopy() const { return text(own.use) == "roof"; }
 
+  /// Whether the building's ground floor would lie more than a storey above all ground under this body.
+  bool leaves_common_floor() const { return floor && *floor - rise > preset.storey_height; }
+
   /// Where the ground floor should lie, m above the lowest ground: at the entrance, and at most a storey below the
   /// highest ground. A canopy has no storey to lie in: the ground goes on under it.
   double wished_plinth() const {
+    if (leaves_common_floor()) return rise;
     if (floor) return *floor;
     if (is_canopy()) return rise;
     return std::max({ground.entrance, rise - preset.storey_height, 0.0});
@@ -277,6 +281,7 @@ struct Resolver {
     if (why.empty() && terrain) {
       why = ground.entrance_reason;
       if (height > ground.entrance) why = "so that the ground floor does not lie below the terrain";
+      if (leaves_common_floor()) why = fmt::format("highest ground under this part; the building's ground floor lies {:.1f} m higher", *floor - rise);
       if (floor && height == *floor && part) why = "the building's ground floor; " + why;
     }
     if (!terrain) why = "no terrain";

@@ -44,7 +44,7 @@ std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, dou
 /// Heights hang together: height = plinth + storeys x storey height + roof height. The plinth is what lies between the
 /// lowest ground and the ground floor's level, which is the ground at the entrance, but at most one storey below the
 /// highest ground under the building, so that no storey's ceiling lies below the terrain; all bodies of a building have
-/// the same. A tagged height is measured from the lowest ground: the plinth gives way until storeys have kLowestStorey,
+/// the same, but for parts that it would lift by more than a storey above the highest ground under them. A tagged height is measured from the lowest ground: the plinth gives way until storeys have kLowestStorey,
 /// though not so far that the ground floor drowns; then storeys that nobody counted become fewer, and counted ones lower.
 /// Where not even that leaves a storey above the terrain, the height is taken from the ground floor instead and reported
 /// (VALUES_CONFLICT). Bodies with an underside of their own keep their tagged heights whatever the terrain. The roof's is that of roof:height, else

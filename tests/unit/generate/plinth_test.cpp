@@ -215,6 +215,17 @@ TEST(Plinth, ALowPartDownhillLeavesTheCommonFloor) {
   EXPECT_NEAR(s.of(1).plinth_height.value, 3 - kLowestStorey, 1e-9);
 }
 
+TEST(Plinth, APartFarBelowTheCommonFloorHasItsOwn) {
+  Slope s(20, 20);
+  s.ground.part_rise = {20, 18, 4};
+  for (const double from : {0.0, 4.0, 8.0}) s.add_part(from, from + 4).storeys = 3;
+  s.resolve();
+  EXPECT_EQ(s.of(0).plinth_height.value, 20);
+  EXPECT_EQ(s.of(1).plinth_height.value, 20) << "within a storey";
+  EXPECT_EQ(s.of(2).plinth_height.value, 4) << "the highest ground under it";
+  EXPECT_DOUBLE_EQ(s.of(2).height.value, 4 + 3 * s.of(2).storey_height.value);
+}
+
 /// Nothing drowns, whatever is tagged.
 TEST(Plinth, KeepsGroundFloorsAboveTheTerrain) {
   for (const double rise : {0.3, 1.0, 2.5, 4.0, 9.0, 30.0})
