@@ -29,7 +29,7 @@ settings::CommandText build_text() {
           .examples = {{"blockrand build leipzig.osm.pbf -o out/leipzig", "everything, in all formats, with roofs (LoD 2)"},
                        {"blockrand build berlin.osm.pbf -o out/mitte --bbox 13.37,52.51,13.41,52.53 --formats gltf",
                         "one quarter of a city, 3D Tiles only"},
-                       {"blockrand build town.osm -o out/town --terrain dem.tif --terrain-height-reference EPSG:7837 --force",
+                       {"blockrand build town.osm -o out --terrain dem.tif --terrain-height-reference EPSG:7837 --force",
                         "on real ground, whose heights the raster does not explain, in place of an earlier build"},
                        {"blockrand build --config town.toml --lod 1",
                         "options from a file; blocks instead of roofs"}},

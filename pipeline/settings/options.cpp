@@ -322,7 +322,7 @@ void add_build(Table& t) {
             .section = S,
             .minimum = -500,
             .maximum = 9000,
-            .help = "height above sea level of the ground where there is no terrain, in m"},
+            .help = "height of the ground where there is no terrain, in m: above sea level, or beside --terrain in the raster's heights"},
            FIELD(build.ground_height));
   t.flag({.name = "evidence",
           .key = "evidence",

@@ -8,7 +8,7 @@ import random
 import shutil
 import unittest
 
-from blockrand_run import SAMPLE, BuildTest, Setup, blockrand, call, extract, main, read_json
+from blockrand_run import SAMPLE, BuildTest, Setup, blockrand, call, extract, files_of, main, read_json, sha256
 from geodesy import Proj, utm
 from model_files import GML_ID, NAMES, Glb, attributes, citygml_trees, tile_contents
 from osm_files import Node, Way, write_xml
@@ -186,6 +186,18 @@ class Slopes(OnTerrain):
         figures = self.stands_well(out, hill, error, wanted=60)
         self.assertGreater(figures['plinths'], 40)
         self.sound(out)
+        # A tile alone asks the same terrain and gives the same bytes; so do other numbers of threads.
+        terrain = ('--terrain', path, '--terrain-height-reference', 'sea-level')
+        name = sorted(files_of(os.path.join(out, 'citygml')), key=lambda n: os.path.getsize(os.path.join(out, 'citygml', n)))[-1]
+        tile = name.split('.')[0].replace('_', '/')
+        alone = self.build(SAMPLE, 'alone', '--tile', tile, '--pinned', os.path.join(out, 'build.json'), *terrain)
+        for part in (f'citygml/{name}', f'tiles/{tile}.glb'):
+            self.assertEqual(sha256(os.path.join(out, part)), sha256(os.path.join(alone, part)), part)
+        self.same_files(out, self.build(SAMPLE, 'one', '--jobs', 1, *terrain))
+        target = self.path('other')
+        run = blockrand('build', SAMPLE, '-o', target, '--tile', tile, '--pinned', os.path.join(out, 'build.json'),
+                        '--terrain', path, '--terrain-height-reference', 'ellipsoid')
+        self.refused(run, 1, 'terrain_height_reference', target=target)
 
     def test_monaco(self):
         source = extract('monaco-2021.osm.pbf')
