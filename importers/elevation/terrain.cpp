@@ -64,8 +64,8 @@ struct Pixel {
 /// Lowest down to the grid, highest up to it. What is a step but for the last bits of a sum is that step.
 std::optional<GroundRange> rounded(const Extremes& extremes) {
   if (!extremes.known()) return std::nullopt;
-  constexpr double kSteps = 1024;   // to the metre
-  constexpr double kSlack = 1e-4;   // steps
+  constexpr double kSteps = 1024;  // to the metre
+  constexpr double kSlack = 1e-4;  // steps
   return GroundRange{std::floor(extremes.lowest * kSteps + kSlack) / kSteps,
                      std::ceil(extremes.highest * kSteps - kSlack) / kSteps};
 }
@@ -206,7 +206,8 @@ std::vector<Pixel> Terrain::Impl::pixels_of(std::span<const georef::LonLat> plac
   return pixels;
 }
 
-/// The ground along a straight line, cell by cell. Beyond the outermost centres their value goes on to the raster's edge.
+/// The ground along a straight line, cell by cell. Beyond the outermost centres their value goes on to the raster's
+/// edge.
 template <typename Reader>
 void Terrain::Impl::walk(Reader& read, Pixel a, Pixel b, Extremes& extremes) const {
   if (!a.finite() || !b.finite()) return;
@@ -230,10 +231,12 @@ void Terrain::Impl::walk(Reader& read, Pixel a, Pixel b, Extremes& extremes) con
   for (std::size_t i = 1; i < cuts.size(); ++i) {
     if (cuts[i] == cuts[i - 1]) continue;
     const Pixel middle = at(0.5 * (cuts[i - 1] + cuts[i]));
-    if (middle.column < -0.5 || middle.row < -0.5 || middle.column > last_column + 0.5 || middle.row > last_row + 0.5) continue;
+    if (middle.column < -0.5 || middle.row < -0.5 || middle.column > last_column + 0.5 || middle.row > last_row + 0.5)
+      continue;
     const double column = std::floor(middle.column), row = std::floor(middle.row);
     const auto value = [&](double c, double r) {
-      return read(static_cast<long long>(std::clamp(c, 0.0, last_column)), static_cast<long long>(std::clamp(r, 0.0, last_row)));
+      return read(static_cast<long long>(std::clamp(c, 0.0, last_column)),
+                  static_cast<long long>(std::clamp(r, 0.0, last_row)));
     };
     const Cell cell{value(column, row), value(column + 1, row), value(column, row + 1), value(column + 1, row + 1)};
     const auto inside = [&](Pixel p) {
@@ -373,7 +376,8 @@ Terrain::Terrain(const std::string& path, std::optional<double> metres_per_unit)
   if (has != 0) d.nodata = nodata;
 
   const std::string unit = GDALGetRasterUnitType(impl.band);
-  const auto metres = unit.empty() ? std::optional(metres_per_unit.value_or(vertical.metres_per_unit)) : metres_of(unit);
+  const auto metres =
+      unit.empty() ? std::optional(metres_per_unit.value_or(vertical.metres_per_unit)) : metres_of(unit);
   if (!metres) {
     refuse("counts heights in \"" + unit + "\", which is no unit of length known here",
            "Set it with gdal_edit.py -units metre when the values are metres");

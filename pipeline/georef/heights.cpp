@@ -61,7 +61,9 @@ struct Geoid::Impl {
 
 Geoid::Geoid(const std::string& vertical_crs) : impl_(std::make_shared<Impl>()) {
   PJ_CONTEXT* c = impl_->context.get();
-  const auto raised = [&](const std::string& code) { return best_operation(c, "EPSG:4979", "EPSG:4326+" + number_of(code)); };
+  const auto raised = [&](const std::string& code) {
+    return best_operation(c, "EPSG:4979", "EPSG:4326+" + number_of(code));
+  };
   const VerticalCrs about = vertical_crs.empty() ? VerticalCrs{} : vertical_crs_of(vertical_crs);
   if (!about.authority_code.empty()) impl_->from_ellipsoid = raised(about.authority_code);
   if (impl_->from_ellipsoid.pj) {
@@ -76,9 +78,11 @@ Geoid::Geoid(const std::string& vertical_crs) : impl_(std::make_shared<Impl>()) 
   impl_->words += " in place of " + (about.name.empty() ? "a height system that PROJ does not know" : about.name);
   // Shifts are asked for in metres: those between height systems in other units are left out.
   if (!about.authority_code.empty() && about.metres_per_unit == 1)
-    impl_->levels = best_operation(c, "EPSG:4258+" + number_of(about.authority_code), "EPSG:4258+" + number_of(kEuropeanLevels));
-  impl_->words += impl_->levels.pj ? ", after PROJ's shift to EVRF2000 (to about half a metre)"
-                                   : ", for which PROJ has no grid (zero levels differ by a metre or two, some by far more)";
+    impl_->levels =
+        best_operation(c, "EPSG:4258+" + number_of(about.authority_code), "EPSG:4258+" + number_of(kEuropeanLevels));
+  impl_->words += impl_->levels.pj
+                      ? ", after PROJ's shift to EVRF2000 (to about half a metre)"
+                      : ", for which PROJ has no grid (zero levels differ by a metre or two, some by far more)";
 }
 
 bool Geoid::available() const { return impl_->from_ellipsoid.pj != nullptr; }

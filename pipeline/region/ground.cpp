@@ -120,7 +120,8 @@ generate::BuildingGround Ground::under(const model::Building& building) const {
   out.rise = all->highest - all->lowest;
   for (const std::optional<GroundRange>& part : parts)
     out.part_rise.push_back(part ? std::clamp(part->highest - all->lowest, 0.0, out.rise) : out.rise);
-  Entrance door = entrance(building, *terrain_, projection_).value_or(Entrance{all->highest, "highest ground under the outline"});
+  Entrance door =
+      entrance(building, *terrain_, projection_).value_or(Entrance{all->highest, "highest ground under the outline"});
   out.entrance = std::clamp(door.height - all->lowest, 0.0, out.rise);
   out.entrance_reason = std::move(door.why);
   return out;

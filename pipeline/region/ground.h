@@ -14,13 +14,14 @@ namespace blockrand::region {
 class Ground {
  public:
   /// \param terrain  null for none  \param height  m, where there is no terrain; nothing: 0
-  Ground(const importers::elevation::Terrain* terrain, std::optional<double> height, const georef::Projection& projection)
+  Ground(const importers::elevation::Terrain* terrain, std::optional<double> height,
+         const georef::Projection& projection)
       : terrain_(terrain), height_(height), projection_(projection) {}
 
-  /// Needs outline, plans of the parts and situation. The lowest ground is that under the outline and under the plans of
-  /// all parts that stand on the ground, which may stick out of it (PARTS_OUTSIDE). The entrance is the highest mapped
-  /// one on the main fronts; else the highest ground along them; without fronts along the outline. Depends on the
-  /// building and the terrain alone.
+  /// Needs outline, plans of the parts and situation. The lowest ground is that under the outline and under the plans
+  /// of all parts that stand on the ground, which may stick out of it (PARTS_OUTSIDE). The entrance is the highest
+  /// mapped one on the main fronts; else the highest ground along them; without fronts along the outline. Depends on
+  /// the building and the terrain alone.
   generate::BuildingGround under(const model::Building& building) const;
 
  private:

@@ -38,10 +38,14 @@ bool contradict(const AskedReference& said, const AskedReference& asked) {
 
 std::string in_words(const AskedReference& reference) {
   switch (reference.kind) {
-    case Kind::unsaid: return "nothing";
-    case Kind::sea_level: return "sea level";
-    case Kind::ellipsoid: return "the ellipsoid";
-    case Kind::vertical_crs: break;
+    case Kind::unsaid:
+      return "nothing";
+    case Kind::sea_level:
+      return "sea level";
+    case Kind::ellipsoid:
+      return "the ellipsoid";
+    case Kind::vertical_crs:
+      break;
   }
   return reference.vertical_code.empty() ? reference.vertical_name
                                          : fmt::format("{} ({})", reference.vertical_name, reference.vertical_code);
@@ -76,7 +80,8 @@ AskedReference read_height_reference(const std::string& text) {
   return asked;
 }
 
-HeightReference choose_height_reference(const TerrainDescription* terrain, const AskedReference& asked, bool has_ground_height) {
+HeightReference choose_height_reference(const TerrainDescription* terrain, const AskedReference& asked,
+                                        bool has_ground_height) {
   HeightReference out;
   if (terrain == nullptr && asked.kind != Kind::unsaid)
     throw base::UsageError(std::string(kOption) + " says what the heights of --terrain are above: it needs --terrain");
@@ -90,11 +95,12 @@ HeightReference choose_height_reference(const TerrainDescription* terrain, const
     const AskedReference said = said_by(*terrain);
     reference = asked.kind == Kind::unsaid ? said : asked;
     if (reference.kind == Kind::unsaid)
-      throw base::UsageError(fmt::format("{}: the raster does not say what its heights are above. Add {} with {}", terrain->path,
-                                         kOption, kChoices));
+      throw base::UsageError(fmt::format("{}: the raster does not say what its heights are above. Add {} with {}",
+                                         terrain->path, kOption, kChoices));
     if (contradict(said, asked))
-      out.warnings.push_back(fmt::format("{}: its heights are above {} by its own words; taken for heights above {} as {} says",
-                                         terrain->path, in_words(said), in_words(asked), kOption));
+      out.warnings.push_back(
+          fmt::format("{}: its heights are above {} by its own words; taken for heights above {} as {} says",
+                      terrain->path, in_words(said), in_words(asked), kOption));
   }
   switch (reference.kind) {
     case Kind::unsaid:
@@ -121,7 +127,8 @@ HeightReference choose_height_reference(const TerrainDescription* terrain, const
   const georef::Geoid geoid(out.raised_from);
   if (!geoid.available()) {
     out.in_tiles = out.words + ", taken for ellipsoidal";
-    out.warnings.push_back("heights above sea level are taken for ellipsoidal ones in 3D Tiles: " + georef::Geoid::remedy());
+    out.warnings.push_back("heights above sea level are taken for ellipsoidal ones in 3D Tiles: " +
+                           georef::Geoid::remedy());
     return out;
   }
   out.raised_by = geoid;

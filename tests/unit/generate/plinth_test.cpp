@@ -12,11 +12,11 @@
 namespace blockrand::generate {
 namespace {
 
-using ::testing::HasSubstr;
 using model::Attributes;
 using model::MappedAttributes;
 using model::RoofShape;
 using model::Source;
+using ::testing::HasSubstr;
 
 const std::string kConfigs = std::string(BLOCKRAND_SOURCE_DIR) + "/configs";
 

@@ -41,7 +41,8 @@ TEST(HeightReference, ReadsWhatTheUserSays) {
   EXPECT_EQ(crs.vertical_name, "DHHN2016 height");
   EXPECT_EQ(crs.metres_per_unit, 1.0);
   EXPECT_NEAR(*read_height_reference("EPSG:6360").metres_per_unit, 1200.0 / 3937, 1e-9);  // NAVD88 in feet
-  for (const char* wrong : {"EPSG:25833", "EPSG:5555", "EPSG:", "EPSG:7837x", "7837", "tide", "EPSG:5715"})  // the last: depths
+  for (const char* wrong :
+       {"EPSG:25833", "EPSG:5555", "EPSG:", "EPSG:7837x", "7837", "tide", "EPSG:5715"})  // the last: depths
     EXPECT_THROW(read_height_reference(wrong), base::UsageError) << wrong;
 }
 
@@ -55,7 +56,8 @@ TEST(HeightReference, IsAskedForWhereTheRasterIsSilent) {
 }
 
 TEST(HeightReference, ClaimsACodeOnlyWhereItHoldsForMetres) {
-  const TerrainDescription metres = raster("DHHN2016 height", "EPSG:7837"), feet = raster("NAVD88 height (ftUS)", "EPSG:6360");
+  const TerrainDescription metres = raster("DHHN2016 height", "EPSG:7837"),
+                           feet = raster("NAVD88 height (ftUS)", "EPSG:6360");
   EXPECT_EQ(choose_height_reference(&metres, {}, false).vertical_crs, "EPSG:7837");
   EXPECT_EQ(choose_height_reference(&feet, {}, false).vertical_crs, "");
   const TerrainDescription silent = raster();
@@ -70,7 +72,8 @@ TEST(HeightReference, WarnsWhereRasterAndUserDisagree) {
   EXPECT_EQ(agreed.vertical_crs, "EPSG:5773");
   const HeightReference other = choose_height_reference(&egm, read_height_reference("ellipsoid"), false);
   ASSERT_THAT(other.warnings, SizeIs(1));
-  EXPECT_THAT(other.warnings[0], HasSubstr("EGM96 height (EPSG:5773) by its own words; taken for heights above the ellipsoid"));
+  EXPECT_THAT(other.warnings[0],
+              HasSubstr("EGM96 height (EPSG:5773) by its own words; taken for heights above the ellipsoid"));
   EXPECT_FALSE(other.raised_by);
   EXPECT_THAT(choose_height_reference(&egm, read_height_reference("sea-level"), false).warnings, IsEmpty());
   TerrainDescription above = raster();

@@ -123,7 +123,7 @@ TEST_F(TerrainTest, FindsTheLowestPixelInsideARing) {
   EXPECT_EQ(lowest(terrain, box(13.060, 52.558, 13.065, 52.561)), 100.0);
   // The pit lies in the notch of a U: not under it.
   const Line u{{13.045, 52.555}, {13.056, 52.555}, {13.056, 52.565}, {13.053, 52.565},
-                                {13.053, 52.557}, {13.048, 52.557}, {13.048, 52.565}, {13.045, 52.565}};
+               {13.053, 52.557}, {13.048, 52.557}, {13.048, 52.565}, {13.045, 52.565}};
   EXPECT_EQ(lowest(terrain, u), 100.0);
 }
 
@@ -379,13 +379,16 @@ TEST_F(TerrainTest, HoldsUnderHousesInVienna) {
   std::array<double, 6> origin{};
   ASSERT_EQ(GDALGetGeoTransform(dataset, origin.data()), CE_None);
   std::vector<double> z(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  ASSERT_EQ(GDALRasterIO(GDALGetRasterBand(dataset, 1), GF_Read, 0, 0, columns, rows, z.data(), columns, rows, GDT_Float64, 0, 0), CE_None);
+  ASSERT_EQ(GDALRasterIO(GDALGetRasterBand(dataset, 1), GF_Read, 0, 0, columns, rows, z.data(), columns, rows,
+                         GDT_Float64, 0, 0),
+            CE_None);
   GDALClose(dataset);
   const auto ground = [&](double x, double y) {
     const double c = (x - origin[0]) / origin[1] - 0.5, r = (y - origin[3]) / origin[5] - 0.5;
     const auto i = static_cast<std::size_t>(c), j = static_cast<std::size_t>(r), n = static_cast<std::size_t>(columns);
     const double u = c - static_cast<double>(i), v = r - static_cast<double>(j);
-    return (z[j * n + i] * (1 - u) + z[j * n + i + 1] * u) * (1 - v) + (z[(j + 1) * n + i] * (1 - u) + z[(j + 1) * n + i + 1] * u) * v;
+    return (z[j * n + i] * (1 - u) + z[j * n + i + 1] * u) * (1 - v) +
+           (z[(j + 1) * n + i] * (1 - u) + z[(j + 1) * n + i + 1] * u) * v;
   };
   const Terrain terrain(path);
   const georef::Transform to_raster("EPSG:4326", "EPSG:31256", georef::GeoBox{16.30, 48.18, 16.32, 48.19});
@@ -395,7 +398,8 @@ TEST_F(TerrainTest, HoldsUnderHousesInVienna) {
   };
   double worst = 0;
   for (int house = 0; house < 400; ++house) {
-    const double x = origin[0] + between(30, columns - 30), y = origin[3] - between(30, rows - 30), turn = between(0, 3.2);
+    const double x = origin[0] + between(30, columns - 30), y = origin[3] - between(30, rows - 30),
+                 turn = between(0, 3.2);
     const double w = between(4, 15), d = between(4, 12), cosine = std::cos(turn), sine = std::sin(turn);
     const auto place = [&](double along, double across) {
       return model::Point2{x + cosine * along - sine * across, y + sine * along + cosine * across};
