@@ -16,6 +16,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "importers/elevation/bilinear.h"
 #include "pipeline/base/error.h"
 #include "pipeline/georef/transform.h"
 
@@ -54,12 +55,22 @@ class Quiet {
   }
 };
 
-/// Position in the raster: column and row, pixel centres at .5.
+/// Position in the raster: column and row, pixel centres at whole numbers.
 struct Pixel {
   double column = 0, row = 0;
+  bool finite() const { return std::isfinite(column) && std::isfinite(row); }
 };
 
-std::optional<double> metres_per_unit(std::string unit) {
+/// Lowest down to the grid, highest up to it. What is a step but for the last bits of a sum is that step.
+std::optional<GroundRange> rounded(const Extremes& extremes) {
+  if (!extremes.known()) return std::nullopt;
+  constexpr double kSteps = 1024;  // to the metre
+  constexpr double kSlack = 1e-4;  // steps
+  return GroundRange{std::floor(extremes.lowest * kSteps + kSlack) / kSteps,
+                     std::ceil(extremes.highest * kSteps - kSlack) / kSteps};
+}
+
+std::optional<double> metres_of(std::string unit) {
   std::transform(unit.begin(), unit.end(), unit.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   if (unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" || unit == "meters") return 1.0;
@@ -97,7 +108,12 @@ struct Terrain::Impl {
 
   std::shared_ptr<const Block> read(long long block_column, long long block_row);
   std::shared_ptr<const Block> block_at(long long block_column, long long block_row);
-  Pixel pixel_of(model::Location location) const;
+  Pixel pixel_of(georef::LonLat place) const;
+  std::vector<Pixel> pixels_of(std::span<const georef::LonLat> places) const;
+  template <typename Reader>
+  void walk(Reader& read, Pixel a, Pixel b, Extremes& extremes) const;
+  template <typename Reader>
+  void scan(Reader& read, std::span<const std::vector<Pixel>> rings, Extremes& extremes) const;
 };
 
 namespace {
@@ -174,16 +190,98 @@ std::shared_ptr<const Block> Terrain::Impl::block_at(long long block_column, lon
   return block;
 }
 
-Pixel Terrain::Impl::pixel_of(model::Location location) const {
-  model::Point2 p = transform->forward({location.lon_degrees(), location.lat_degrees()});
+Pixel Terrain::Impl::pixel_of(georef::LonLat place) const {
+  model::Point2 p = transform->forward({place.lon, place.lat});
   if (geographic && p.x < middle - 180) p.x += 360;
   if (geographic && p.x > middle + 180) p.x -= 360;
   const auto rounded = [](double value) { return std::nearbyint(value * kPixelSteps) / kPixelSteps; };
-  return {rounded(to_pixel[0] + to_pixel[1] * p.x + to_pixel[2] * p.y),
-          rounded(to_pixel[3] + to_pixel[4] * p.x + to_pixel[5] * p.y)};
+  return {rounded(to_pixel[0] + to_pixel[1] * p.x + to_pixel[2] * p.y - 0.5),
+          rounded(to_pixel[3] + to_pixel[4] * p.x + to_pixel[5] * p.y - 0.5)};
 }
 
-Terrain::Terrain(const std::string& path) : impl_(std::make_unique<Impl>()) {
+std::vector<Pixel> Terrain::Impl::pixels_of(std::span<const georef::LonLat> places) const {
+  std::vector<Pixel> pixels;
+  pixels.reserve(places.size());
+  for (const georef::LonLat& place : places) pixels.push_back(pixel_of(place));
+  return pixels;
+}
+
+/// The ground along a straight line, cell by cell. Beyond the outermost centres their value goes on to the raster's
+/// edge.
+template <typename Reader>
+void Terrain::Impl::walk(Reader& read, Pixel a, Pixel b, Extremes& extremes) const {
+  if (!a.finite() || !b.finite()) return;
+  const double last_column = static_cast<double>(columns) - 1, last_row = static_cast<double>(rows) - 1;
+  std::vector<double> cuts{0, 1};
+  // Where the line leaves a cell or the raster.
+  const auto cut_at = [&cuts](double from, double to, double last) {
+    if (from == to) return;
+    const double low = std::min(from, to), high = std::max(from, to);
+    const auto cut = [&](double place) {
+      if (place > low && place < high) cuts.push_back(std::clamp((place - from) / (to - from), 0.0, 1.0));
+    };
+    cut(-0.5);
+    for (double k = std::max(0.0, std::floor(low)); k <= std::min(last, high); k += 1) cut(k);
+    cut(last + 0.5);
+  };
+  cut_at(a.column, b.column, last_column);
+  cut_at(a.row, b.row, last_row);
+  std::sort(cuts.begin(), cuts.end());
+  const auto at = [&](double t) { return Pixel{a.column + t * (b.column - a.column), a.row + t * (b.row - a.row)}; };
+  for (std::size_t i = 1; i < cuts.size(); ++i) {
+    if (cuts[i] == cuts[i - 1]) continue;
+    const Pixel middle = at(0.5 * (cuts[i - 1] + cuts[i]));
+    if (middle.column < -0.5 || middle.row < -0.5 || middle.column > last_column + 0.5 || middle.row > last_row + 0.5)
+      continue;
+    const double column = std::floor(middle.column), row = std::floor(middle.row);
+    const auto value = [&](double c, double r) {
+      return read(static_cast<long long>(std::clamp(c, 0.0, last_column)),
+                  static_cast<long long>(std::clamp(r, 0.0, last_row)));
+    };
+    const Cell cell{value(column, row), value(column + 1, row), value(column, row + 1), value(column + 1, row + 1)};
+    const auto inside = [&](Pixel p) {
+      return CellPoint{std::clamp(p.column - column, 0.0, 1.0), std::clamp(p.row - row, 0.0, 1.0)};
+    };
+    widen(extremes, cell, inside(at(cuts[i - 1])), inside(at(cuts[i])));
+  }
+}
+
+/// The pixel centres inside: row by row, between the places where the rings cross it.
+template <typename Reader>
+void Terrain::Impl::scan(Reader& read, std::span<const std::vector<Pixel>> rings, Extremes& extremes) const {
+  const double last_column = static_cast<double>(columns) - 1;
+  double top = static_cast<double>(rows), bottom = -1;
+  for (const std::vector<Pixel>& ring : rings) {
+    if (ring.size() < 3) return;
+    for (const Pixel& p : ring) {
+      if (!p.finite()) return;
+      top = std::min(top, p.row), bottom = std::max(bottom, p.row);
+    }
+  }
+  const auto first = static_cast<long long>(std::max(0.0, std::ceil(top)));
+  const auto last = static_cast<long long>(std::min(static_cast<double>(rows) - 1, std::floor(bottom)));
+  std::vector<double> crossings;
+  for (long long row = first; row <= last; ++row) {
+    const auto y = static_cast<double>(row);
+    crossings.clear();
+    for (const std::vector<Pixel>& ring : rings) {
+      for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+        const Pixel& a = ring[i];
+        const Pixel& b = ring[j];
+        if ((a.row > y) == (b.row > y)) continue;
+        crossings.push_back(a.column + (y - a.row) / (b.row - a.row) * (b.column - a.column));
+      }
+    }
+    std::sort(crossings.begin(), crossings.end());
+    for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) {
+      const auto from = static_cast<long long>(std::clamp(std::ceil(crossings[k]), 0.0, last_column + 1));
+      const auto to = static_cast<long long>(std::clamp(std::floor(crossings[k + 1]), -1.0, last_column));
+      for (long long column = from; column <= to; ++column) extremes.add(read(column, row));
+    }
+  }
+}
+
+Terrain::Terrain(const std::string& path, std::optional<double> metres_per_unit) : impl_(std::make_unique<Impl>()) {
   Impl& impl = *impl_;
   impl.description.path = path;
   const auto refuse = [&path](const std::string& what, const std::string& remedy) {
@@ -267,6 +365,7 @@ Terrain::Terrain(const std::string& path) : impl_(std::make_unique<Impl>()) {
   TerrainDescription& d = impl.description;
   d.crs_name = name.name, d.crs_code = name.authority_code;
   d.vertical_name = vertical.name, d.vertical_code = vertical.authority_code;
+  d.ellipsoidal = vertical.ellipsoidal;
   d.operation = impl.transform->operation();
   d.accuracy_m = impl.transform->accuracy_m();
   d.pixel_width = std::sqrt(from_pixel[1] * from_pixel[1] + from_pixel[4] * from_pixel[4]);
@@ -277,7 +376,8 @@ Terrain::Terrain(const std::string& path) : impl_(std::make_unique<Impl>()) {
   if (has != 0) d.nodata = nodata;
 
   const std::string unit = GDALGetRasterUnitType(impl.band);
-  const auto metres = unit.empty() ? std::optional(vertical.metres_per_unit) : metres_per_unit(unit);
+  const auto metres =
+      unit.empty() ? std::optional(metres_per_unit.value_or(vertical.metres_per_unit)) : metres_of(unit);
   if (!metres) {
     refuse("counts heights in \"" + unit + "\", which is no unit of length known here",
            "Set it with gdal_edit.py -units metre when the values are metres");
@@ -292,68 +392,28 @@ Terrain& Terrain::operator=(Terrain&&) noexcept = default;
 
 const TerrainDescription& Terrain::describe() const { return impl_->description; }
 
-std::optional<double> Terrain::minimum_under(std::span<const model::Location> ring) const {
+std::optional<GroundRange> Terrain::range_along(std::span<const georef::LonLat> line) const {
   Impl& impl = *impl_;
-  const auto columns = static_cast<double>(impl.columns), rows = static_cast<double>(impl.rows);
   PixelReader read(impl);
-  double minimum = std::numeric_limits<double>::infinity();
+  Extremes extremes;
+  const std::vector<Pixel> pixels = impl.pixels_of(line);
+  if (pixels.size() == 1) impl.walk(read, pixels[0], pixels[0], extremes);
+  for (std::size_t i = 1; i < pixels.size(); ++i) impl.walk(read, pixels[i - 1], pixels[i], extremes);
+  return rounded(extremes);
+}
 
-  std::vector<Pixel> pixels;
-  pixels.reserve(ring.size());
-  for (const model::Location& location : ring) pixels.push_back(impl.pixel_of(location));
-  bool defined = true;
-  double top = rows, bottom = 0;
-  for (const Pixel& p : pixels) {
-    if (!std::isfinite(p.column) || !std::isfinite(p.row)) {
-      defined = false;
-      continue;
-    }
-    top = std::min(top, p.row), bottom = std::max(bottom, p.row);
-    if (p.column < 0 || p.row < 0 || p.column > columns || p.row > rows) continue;
-    // Bilinear between pixel centres; beyond the outermost centres their value goes on.
-    const double c = std::clamp(p.column - 0.5, 0.0, columns - 1), r = std::clamp(p.row - 0.5, 0.0, rows - 1);
-    const auto column = static_cast<long long>(c), row = static_cast<long long>(r);
-    const double u = c - static_cast<double>(column), v = r - static_cast<double>(row);
-    double sum = 0, weights = 0;
-    for (const int j : {0, 1}) {
-      for (const int i : {0, 1}) {
-        const double weight = (i == 0 ? 1 - u : u) * (j == 0 ? 1 - v : v);
-        if (weight == 0) continue;  // also keeps the right and lower neighbour inside of the raster
-        const double value = read(column + i, row + j);
-        if (std::isnan(value)) continue;
-        sum += weight * value, weights += weight;
-      }
-    }
-    if (weights > 0) minimum = std::min(minimum, sum / weights);
+std::optional<GroundRange> Terrain::range_under(std::span<const std::vector<georef::LonLat>> rings) const {
+  Impl& impl = *impl_;
+  PixelReader read(impl);
+  Extremes extremes;
+  std::vector<std::vector<Pixel>> pixels;
+  for (const std::vector<georef::LonLat>& ring : rings) {
+    pixels.push_back(impl.pixels_of(ring));
+    const std::vector<Pixel>& p = pixels.back();
+    for (std::size_t i = 0, j = p.size() - 1; i < p.size(); j = i++) impl.walk(read, p[j], p[i], extremes);
   }
-
-  // Pixel centres inside: row by row, where the ring crosses the row's middle.
-  if (defined && pixels.size() >= 3) {
-    const auto first = static_cast<long long>(std::max(0.0, std::ceil(top - 0.5)));
-    const auto last = static_cast<long long>(std::min(rows - 1, std::floor(bottom - 0.5)));
-    std::vector<double> crossings;
-    for (long long row = first; row <= last; ++row) {
-      const double y = static_cast<double>(row) + 0.5;
-      crossings.clear();
-      for (std::size_t i = 0, j = pixels.size() - 1; i < pixels.size(); j = i++) {
-        const Pixel& a = pixels[i];
-        const Pixel& b = pixels[j];
-        if ((a.row > y) == (b.row > y)) continue;
-        crossings.push_back(a.column + (y - a.row) / (b.row - a.row) * (b.column - a.column));
-      }
-      std::sort(crossings.begin(), crossings.end());
-      for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) {
-        const auto from = static_cast<long long>(std::clamp(std::ceil(crossings[k] - 0.5), 0.0, columns));
-        const auto to = static_cast<long long>(std::clamp(std::floor(crossings[k + 1] - 0.5), -1.0, columns - 1));
-        for (long long column = from; column <= to; ++column) {
-          const double value = read(column, row);
-          if (value < minimum) minimum = value;  // false for NaN
-        }
-      }
-    }
-  }
-  if (!std::isfinite(minimum)) return std::nullopt;
-  return model::snap(minimum);
+  impl.scan(read, pixels, extremes);
+  return rounded(extremes);
 }
 
 }  // namespace blockrand::importers::elevation

@@ -5,9 +5,9 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "pipeline/georef/lon_lat.h"
-#include "pipeline/model/point.h"
 
 namespace blockrand::importers::elevation {
 
@@ -16,11 +16,17 @@ struct TerrainDescription {
   std::string path;
   std::string crs_name, crs_code;            ///< horizontal; code "EPSG:31256" or empty
   std::string vertical_name, vertical_code;  ///< empty when the raster names no height system
+  bool ellipsoidal = false;                  ///< its CRS has three dimensions: heights above the ellipsoid
   std::string operation;                     ///< PROJ's operation from WGS 84
   double accuracy_m = -1;                    ///< of that operation; -1 unknown
   double pixel_width = 0, pixel_height = 0;  ///< in units of the CRS (metres or degrees), always positive
   long long columns = 0, rows = 0;
   std::optional<double> nodata;
+};
+
+/// m in the raster's height system; the lowest rounded down to 1/1024 m, the highest up.
+struct GroundRange {
+  double lowest = 0, highest = 0;
 };
 
 /// A terrain raster (its first band), opened for reading.
@@ -30,21 +36,27 @@ struct TerrainDescription {
 /// Nodata, masked and NaN pixels count as missing; the band's scale, offset and unit are applied.
 class Terrain {
  public:
+  /// \param metres_per_unit  of the values where the band names no unit; else that of the raster's vertical CRS, or 1
   /// \throws base::InputError  with remedy: no such file, a directory, no raster, no band, no georeference, no CRS, a
-  /// CRS
-  ///                           that PROJ cannot reach from WGS 84, a unit that is no length
-  explicit Terrain(const std::string& path);
+  ///                           CRS that PROJ cannot reach from WGS 84, a unit that is no length
+  explicit Terrain(const std::string& path, std::optional<double> metres_per_unit = {});
   ~Terrain();
   Terrain(Terrain&&) noexcept;
   Terrain& operator=(Terrain&&) noexcept;
 
-  /// Lowest ground under a ring, metres in the raster's height system, rounded to 1/1024 m.
+  /// Ground under a polygon: its rings, outer and holes in any order (even-odd: courtyards do not count), each without
+  /// its first point again at the end.
   ///
-  /// The minimum over the pixels whose centre lies in the ring (even-odd) and the bilinear values at its vertices; of a
-  /// single location: its bilinear value. Bilinear means between the four nearest pixel centres that have a value, and
-  /// towards the raster's edge the nearest ones. Nothing when the ring has no pixel and no vertex on ground that is
-  /// known (the caller reports TERRAIN_MISSING). \throws base::InputError when the file can no longer be read
-  std::optional<double> minimum_under(std::span<const model::Location> ring) const;
+  /// Exact for the surface that is bilinear between the four nearest pixel centres that have a value and goes on flat
+  /// from the outermost centres to the raster's edge: such a surface has no extremes inside of a cell, so that those of
+  /// the pixel centres inside and those along the rings (widen) are all. Rings are straight between their points in the
+  /// raster's coordinates; positions are rounded to 1/65536 of a pixel. What lies on no known ground is left out.
+  /// \returns  nothing where all of it does (the caller reports TERRAIN_MISSING)
+  /// \throws base::InputError  when the file can no longer be read
+  std::optional<GroundRange> range_under(std::span<const std::vector<georef::LonLat>> rings) const;
+
+  /// Ground along a line, or at a single point; otherwise as range_under.
+  std::optional<GroundRange> range_along(std::span<const georef::LonLat> line) const;
 
   const TerrainDescription& describe() const;
 

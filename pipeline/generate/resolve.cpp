@@ -36,6 +36,8 @@ constexpr float kGeometryConfidence = 0.4f;
 /// Ridges run from party wall to party wall in 315 of 334 cases in The Hague; other towns are less uniform.
 constexpr float kPartyWallConfidence = 0.8f;
 constexpr float kPresetConfidence = 0.3f;
+/// Where a house is entered is read from its front; steps up to a raised ground floor are not known.
+constexpr float kPlinthConfidence = 0.6f;
 constexpr float kDefaultConfidence = 0.1f;
 
 /// degrees. Wings of half depth lean on the neighbour's wall at 5 to 20 (styles.md 2.7).
@@ -48,6 +50,8 @@ double tangent(double degrees) { return base::tan(degrees * base::kRadiansPerDeg
 /// with six 14 (tests/bench/RESULTS.md, "Roofs against references").
 constexpr float kMostStoreysUnderRafters = 6;
 
+/// m. Storeys that tagged height and terrain would squeeze below this say that the height is measured from elsewhere.
+constexpr double kSquashedStorey = 1.5;
 
 /// Pitch of roofs that no tag measures, degrees; of mansard and gambrel that of the lower slope. The sources stand in
 /// references/styles.md, section 2.7.
@@ -102,6 +106,10 @@ struct Resolver {
   std::uint8_t group;
   const std::vector<model::Polygon>& plans;
   model::OsmId id;
+  const BuildingGround& ground;
+  double rise = 0;                      ///< m: highest ground under this body above the building's lowest
+  std::optional<double> floor = {};     ///< m above the lowest ground: level of the building's ground floor, once known
+  std::vector<TagConflict> against_terrain = {};  ///< what tags and terrain do not agree about
   double usual_pitch_asked = 0;         ///< degrees, of usual_height()
 
   template <class T>
@@ -257,8 +265,9 @@ struct Resolver {
   }
 
   /// The roof's height against the building's: a measured roof is limited by what is there, a pitch by the storeys as
-  /// well; storeys in the roof and usual pitches give way to what height and storeys leave by up to a third.
-  void fit_roof_height(Attributes& a, bool storeys_known) {
+  /// well; storeys in the roof and usual pitches give way to what plinth, height and storeys leave by up to a third.
+  /// \param covered  m: ground that no eaves may lie below
+  void fit_roof_height(Attributes& a, bool storeys_known, double plinth, double covered) {
     const double wanted = a.roof_height.value;
     const double whole = std::max(a.height.value - own.min_height.value_or(0), 0.0);
     double roof = wanted;
@@ -267,14 +276,20 @@ struct Resolver {
       if (wanted <= whole + kNoRoofHeight) return;  // the part may be all roof; walls take their minimum when it is built
       roof = whole;
       why = "what the height leaves";
-    } else if (useful_roof_angle(own, a.roof_shape.value)) {
-      roof = std::min(wanted, roof_limit(own, a.height.value));
     } else {
-      roof = std::min(wanted, 0.6 * whole);
-      if (storeys_known && a.storeys.value > 0) {
-        const double left = a.height.value - a.storeys.value * preset.storey_height;
-        roof = std::clamp(left, wanted * 2 / 3, wanted * 4 / 3);
-        roof = std::min(roof, std::max(a.height.value - a.storeys.value * kLowestStorey, 0.1 * whole));
+      if (useful_roof_angle(own, a.roof_shape.value)) {
+        roof = std::min(wanted, roof_limit(own, a.height.value));
+      } else {
+        roof = std::min(wanted, 0.6 * whole);
+        if (storeys_known && a.storeys.value > 0) {
+          const double left = a.height.value - plinth - a.storeys.value * preset.storey_height;
+          roof = std::clamp(left, wanted * 2 / 3, wanted * 4 / 3);
+          roof = std::min(roof, std::max(a.height.value - plinth - a.storeys.value * kLowestStorey, 0.1 * whole));
+        }
+      }
+      if (covered > 0) {
+        const double upper = storeys_known ? std::max(a.storeys.value - 1, 0.0) * kLowestStorey : 0;
+        roof = std::min(roof, std::max(a.height.value - covered - upper, 0.1 * whole));
       }
     }
     if (roof == wanted) return;
@@ -283,7 +298,109 @@ struct Resolver {
                                    region.evidence[a.roof_height.evidence].text}});
   }
 
-  /// Storeys, heights and roof, which hang together.
+  bool is_canopy() const { return text(own.use) == "roof"; }
+
+  /// Whether the building's ground floor would lie more than a storey above all ground under this body.
+  bool leaves_common_floor() const { return floor && *floor - rise > preset.storey_height; }
+
+  /// Where the ground floor should lie, m above the lowest ground: at the entrance, and at most a storey below the
+  /// highest ground. A canopy has no storey to lie in: the ground goes on under it.
+  double wished_plinth() const {
+    if (leaves_common_floor()) return rise;
+    if (floor) return *floor;
+    if (is_canopy()) return rise;
+    return std::max({ground.entrance, rise - preset.storey_height, 0.0});
+  }
+
+  void set_plinth(Attributes& a, double height, std::string why = {}) {
+    const bool terrain = ground.lowest.source == Source::terrain;
+    if (why.empty() && terrain) {
+      why = ground.entrance_reason;
+      if (height > ground.entrance) why = "so that the ground floor does not lie below the terrain";
+      if (leaves_common_floor()) why = fmt::format("highest ground under this part; the building's ground floor lies {:.1f} m higher", *floor - rise);
+      if (floor && height == *floor && part) why = "the building's ground floor; " + why;
+    }
+    if (!terrain) why = "no terrain";
+    a.plinth_height = make<double>(height, terrain ? Source::terrain : Source::default_,
+                                   terrain ? kPlinthConfidence : kDefaultConfidence, std::move(why));
+  }
+
+  /// What remains of a body under its roof. One that is all roof has its storeys in there.
+  static double inhabited(double height, double roof) {
+    const double walls = std::max(height - roof, 0.0);
+    return walls < kLowestStorey ? height : walls;
+  }
+
+  /// Whether a tagged height, measured from the lowest ground, leaves storeys above the highest.
+  /// \param counted  storeys; 0: nobody counted them
+  bool leaves_storeys(double height, double roof, double counted) const {
+    const double walls = inhabited(height, roof);
+    if (counted <= 1) return walls >= rise;
+    const double each = (walls - rise) / (counted - 1);  // where the ground floor's ceiling is at the highest ground
+    return each >= std::min(kSquashedStorey, 0.5 * walls / counted);
+  }
+
+  /// The plinth below `walls` m of storeys whose tagged height is measured from the lowest ground.
+  double fitted_plinth(double walls, double counted) const {
+    const double wished = wished_plinth();
+    if (rise <= 0 || !stands_on_ground(own)) return wished;
+    double plinth = std::min(wished, std::max(walls - std::max(counted, 1.0) * kLowestStorey, 0.0));
+    // Undrowned: plinth + (walls - plinth) / counted >= rise.
+    if (counted > 1) plinth = std::max(plinth, (counted * rise - walls) / (counted - 1));
+    return plinth;
+  }
+
+  /// Storeys, roof and plinth under a tagged height. \param in_terrain  whether the height is measured from the lowest
+  /// ground; else from the ground floor
+  void divide_height(Attributes& a, bool storeys_known, bool in_terrain) {
+    const double counted = storeys_known ? a.storeys.value : 0;
+    if (a.roof_shape.value != RoofShape::flat) {
+      const double least = std::max(counted, 1.0) * kLowestStorey;
+      const double beside = in_terrain ? std::clamp(a.height.value - a.roof_height.value * 2 / 3 - least, 0.0, wished_plinth()) : 0;
+      fit_roof_height(a, storeys_known, beside, in_terrain && stands_on_ground(own) ? rise : 0);
+    }
+    const double above = std::max(a.height.value - a.roof_height.value, 0.0);
+    const double plinth = in_terrain ? fitted_plinth(inhabited(a.height.value, a.roof_height.value), counted) : 0;
+    const double walls = std::max(above - plinth, 0.0);
+    if (counted > 0) {
+      a.storey_height = first<double>({{walls / a.storeys.value, Source::implied, kImpliedConfidence, "height over storeys"},
+                                       {preset.storey_height, preset_source(), preset_confidence(), preset_name()}});
+    } else {
+      double whole = std::max(1.0, std::floor(walls / preset.storey_height + 0.5));
+      while (whole > 1 && in_terrain && stands_on_ground(own) && plinth + walls / whole < rise) --whole;
+      a.storeys = make<double>(whole, Source::implied, 0.6, fmt::format("{:.1f} m of wall at {:.1f} m a storey", walls, preset.storey_height),
+                               {{a.storeys.source, a.storeys.confidence, text_of(a.storeys.value),
+                                 region.evidence[a.storeys.evidence].text}});
+      a.storey_height = first<double>({{walls / whole, Source::implied, 0.6, "height over storeys"},
+                                       {preset.storey_height, preset_source(), preset_confidence(), preset_name()}});
+    }
+    if (!in_terrain) return;
+    const double wished = wished_plinth();
+    set_plinth(a, plinth,
+               plinth < wished ? fmt::format("{:.1f} m wished, less so that storeys fit below the tagged height", wished) : "");
+  }
+
+  /// A tagged height against the terrain.
+  void tagged_height(Attributes& a, bool storeys_known) {
+    const auto measured = useful_roof_height(own, a.roof_shape.value);
+    const double least_roof = a.roof_shape.value == RoofShape::flat ? 0 : measured ? *measured : 0.1 * a.height.value;
+    if (rise <= 0 || !stands_on_ground(own) || leaves_storeys(a.height.value, least_roof, storeys_known ? a.storeys.value : 0)) {
+      divide_height(a, storeys_known, true);
+      return;
+    }
+    const Sourced<double> tagged = a.height;
+    divide_height(a, storeys_known, false);
+    const double plinth = std::max(wished_plinth(), rise - a.storey_height.value);
+    set_plinth(a, plinth);
+    std::string why = fmt::format("{:g} m as tagged, from the ground floor: the terrain rises by {:.1f} m under it", tagged.value, rise);
+    a.height = make<double>(tagged.value + plinth, Source::implied, kImpliedConfidence, std::move(why),
+                            {{tagged.source, tagged.confidence, text_of(tagged.value), region.evidence[tagged.evidence].text}});
+    against_terrain.push_back({model::IssueCode::values_conflict,
+                               fmt::format("height={:g} leaves no storey above terrain that rises by {:.1f} m: measured from the ground floor",
+                                           tagged.value, rise)});
+  }
+
+  /// Storeys, heights, plinth and roof, which hang together.
   void heights(Attributes& a) {
     a.roof_shape = roof_shape();
     a.roof_orientation = roof_orientation(a.roof_shape.value);
@@ -294,39 +411,29 @@ struct Resolver {
     a.roof_height = roof_height(a.roof_shape.value, a.roof_orientation.value, std::min(preset.storey_height, 3.0));
     const MappedAttributes* height_from = own.height ? &own : outline && !has_own_height() && outline->height ? outline : nullptr;
     if (height_from) {
-      const Choice<double> from_storeys{a.storeys.value * a.storey_height.value + a.roof_height.value, a.storeys.source,
-                                        a.storeys.confidence,
-                                        fmt::format("{:g} storeys of {:.1f} m and a roof of {:.1f} m", a.storeys.value,
-                                                    a.storey_height.value, a.roof_height.value)};
+      const Choice<double> from_storeys{wished_plinth() + a.storeys.value * a.storey_height.value + a.roof_height.value,
+                                        a.storeys.source, a.storeys.confidence,
+                                        height_in_words(wished_plinth(), a)};
       a.height = height_from == &own
                      ? first<double>({{*own.height, Source::tag, kTagConfidence, "tagged"}, from_storeys})
                      : first<double>({{*outline->height, Source::implied, kOutlineConfidence, "the outline's height"}, from_storeys});
-      const bool storeys_known = a.storeys.source == Source::tag || a.storeys.source == Source::implied;
-      if (a.roof_shape.value != RoofShape::flat) fit_roof_height(a, storeys_known);
-      const double walls = std::max(a.height.value - a.roof_height.value, 0.0);
-      if (storeys_known && a.storeys.value > 0) {
-        a.storey_height = first<double>({{walls / a.storeys.value, Source::implied, kImpliedConfidence, "height over storeys"},
-                                         {preset.storey_height, preset_source(), preset_confidence(), preset_name()}});
-      } else {
-        const double count = std::max(1.0, std::floor(walls / preset.storey_height + 0.5));
-        a.storeys = make<double>(count, Source::implied, 0.6, fmt::format("{:.1f} m of wall at {:.1f} m a storey", walls, preset.storey_height),
-                                 {{a.storeys.source, a.storeys.confidence, text_of(a.storeys.value),
-                                   region.evidence[a.storeys.evidence].text}});
-        a.storey_height = first<double>({{walls / count, Source::implied, 0.6, "height over storeys"},
-                                         {preset.storey_height, preset_source(), preset_confidence(), preset_name()}});
-      }
+      tagged_height(a, a.storeys.source == Source::tag || a.storeys.source == Source::implied);
     } else {
+      const double plinth = wished_plinth() + a.storey_height.value < rise && stands_on_ground(own) && !is_canopy()
+                                ? rise - a.storey_height.value
+                                : wished_plinth();
+      set_plinth(a, plinth);
       double walls = a.storeys.value * a.storey_height.value;
       // On a flat roof the tagged roof storeys stand as a set-back upper floor; until set-backs are built they add to
       // the walls, so that the height is right.
       if (a.roof_shape.value == RoofShape::flat) walls += a.roof_storeys.value * a.storey_height.value;
       if (walls <= 0 && a.roof_height.value <= 0) walls = a.storey_height.value;
+      walls += plinth;
       const bool from_tags = a.storeys.source == Source::tag;
-      std::string why = fmt::format("{:g} storeys of {:.1f} m and a roof of {:.1f} m", a.storeys.value, a.storey_height.value,
-                                    a.roof_height.value);
+      std::string why = height_in_words(plinth, a);
       // Assumed storeys stand above the tagged underside, at least one of them; of a canopy, its slab.
-      const double under = own.min_height.value_or(own.min_storey.value_or(0) * a.storey_height.value);
-      const double least = text(own.use) == "roof" ? options.canopy_thickness : a.storey_height.value;
+      const double under = own.min_height.value_or(own.min_storey.value_or(0) > 0 ? plinth + *own.min_storey * a.storey_height.value : 0);
+      const double least = is_canopy() ? options.canopy_thickness : a.storey_height.value;
       if (!own.storeys && under > 0 && walls < under + least) {
         walls = under + least;
         why = fmt::format("{:.1f} m above an underside at {:.1f} m, and a roof of {:.1f} m", least, under, a.roof_height.value);
@@ -338,11 +445,17 @@ struct Resolver {
     if (own.min_height) {
       a.min_height = make<double>(*own.min_height, Source::tag, kTagConfidence, "tagged");
     } else if (own.min_storey && *own.min_storey > 0) {
-      a.min_height = make<double>(*own.min_storey * a.storey_height.value, Source::implied, kImpliedConfidence,
+      a.min_height = make<double>(a.plinth_height.value + *own.min_storey * a.storey_height.value, Source::implied, kImpliedConfidence,
                                   fmt::format("{:g} storeys skipped", *own.min_storey));
     } else {
       a.min_height = make<double>(0, Source::default_, 0.9, "stands on the ground");
     }
+  }
+
+  std::string height_in_words(double plinth, const Attributes& a) const {
+    const std::string below = plinth > 0 ? fmt::format("a plinth of {:.1f} m, ", plinth) : std::string();
+    return below + fmt::format("{:g} storeys of {:.1f} m and a roof of {:.1f} m", a.storeys.value, a.storey_height.value,
+                               a.roof_height.value);
   }
 
   template <class Pick>
@@ -385,11 +498,11 @@ struct Resolver {
                            "roof_colour", [&] { return !flat && a.roof_material.source != Source::tag && a.roof_material.source != Source::implied; });
   }
 
-  Attributes resolve(Sourced<double> ground) {
+  Attributes resolve(Sourced<double> lowest) {
     Attributes a;
     a.use = own.use != 0 ? make(std::string(text(own.use)), Source::tag, kTagConfidence, "tagged")
                          : make(std::string("yes"), Source::default_, kDefaultConfidence, "not tagged");
-    a.ground_height = ground;
+    a.ground_height = lowest;
     heights(a);
     if (own.roof_direction) a.roof_direction = make<double>(*own.roof_direction, Source::tag, kTagConfidence, "tagged");
     looks(a);
@@ -415,6 +528,10 @@ double area_of(const std::vector<model::Polygon>& plans) {
 
 double attic_height(double storey_height) { return std::clamp(storey_height, 2.2, 2.8); }
 
+bool stands_on_ground(const MappedAttributes& tags) {
+  return tags.min_height.value_or(0) <= 0 && tags.min_storey.value_or(0) <= 0;
+}
+
 std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, double area) {
   return area < defaults.small_area && use == "yes" ? defaults.small.group : defaults.use(use).group;
 }
@@ -423,8 +540,9 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
   const auto use_text = [&](const MappedAttributes& mapped) { return region.extract->strings.view(mapped.use); };
   for (Building& building : region.buildings) {
     prepare_roof_plans(building, options.collinear_tolerance);
-    Sourced<double> ground = in.ground_height(building);
-    ground.evidence = region.evidence.add({ground_reason(ground.source), {}});
+    const BuildingGround ground = in.ground(building);
+    Sourced<double> lowest = ground.lowest;
+    lowest.evidence = region.evidence.add({ground_reason(lowest.source), {}});
     const std::string_view use = use_text(building.mapped);
     const double area = area_of(building.outline);
     // An outline of a few square metres that says nothing but `yes` is no house.
@@ -433,7 +551,19 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
     const std::uint8_t group = neighbour_group(in.defaults, use, area);
 
     std::vector<model::ReportRow> conflicts;
+    const auto tell = [&conflicts](model::OsmId id, std::vector<TagConflict> told) {
+      for (TagConflict& c : told) {
+        model::ReportRow row{id, c.code, std::move(c.text)};
+        // Pieces of one outline have the same tags.
+        if (std::find(conflicts.begin(), conflicts.end(), row) == conflicts.end()) conflicts.push_back(std::move(row));
+      }
+    };
+    Resolver whole{region, in, options, building, nullptr, building.mapped, nullptr, preset, group, building.outline, building.osm,
+                   ground, ground.rise};
+    building.attributes = whole.resolve(lowest);
+    const bool one_body = building.parts.size() == 1 && !building.has_mapped_parts;
     for (BuildingPart& part : building.parts) {
+      const auto index = static_cast<std::size_t>(&part - building.parts.data());
       const bool own_tags = building.has_mapped_parts && !part.rest;
       const std::string_view part_use = use_text(part.mapped);
       // building:part=yes says nothing; a use of its own does.
@@ -441,21 +571,18 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
       const std::vector<model::Polygon> plan{part.roof_plan};
       Resolver r{region, in, options, building, &part, part.mapped,
                  own_tags && building.osm != part.osm ? &building.mapped : nullptr, own_use ? in.defaults.use(part_use) : preset,
-                 group, plan, building.osm};
-      part.attributes = r.resolve(ground);
+                 group, plan, building.osm, ground, index < ground.part_rise.size() ? ground.part_rise[index] : ground.rise,
+                 one_body ? std::nullopt : std::optional(building.attributes.plinth_height.value)};
+      part.attributes = r.resolve(lowest);
       const Source measured = part.attributes.roof_height.source;
       if (measured == Source::preset || measured == Source::default_) part.usual_pitch = r.usual_pitch_asked;
-      for (TagConflict& c : tag_conflicts(part.mapped, {part.attributes.roof_shape.value, part.roof_plan, r.preset.storey_height, !part.roof_lines.empty(), part.roof_edges})) {
-        model::ReportRow row{part.osm, c.code, std::move(c.text)};
-        // Pieces of one outline have the same tags.
-        if (std::find(conflicts.begin(), conflicts.end(), row) == conflicts.end()) conflicts.push_back(std::move(row));
-      }
+      tell(part.osm, tag_conflicts(part.mapped, {part.attributes.roof_shape.value, part.roof_plan, r.preset.storey_height,
+                                                 !part.roof_lines.empty(), part.roof_edges}));
+      tell(part.osm, std::move(r.against_terrain));
       part.canopy = part_use == "roof" || (own_tags && part_use == "yes" && use == "roof");
     }
     region.report.append({std::move(conflicts)});
-    Resolver whole{region, in, options, building, nullptr, building.mapped, nullptr, preset, group, building.outline, building.osm};
-    building.attributes = whole.resolve(ground);
-    if (building.parts.size() == 1 && !building.has_mapped_parts) {
+    if (one_body) {
       building.attributes = building.parts[0].attributes;
     } else if (building.has_mapped_parts && !building.parts.empty() && !building.mapped.height) {
       double top = 0;

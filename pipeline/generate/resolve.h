@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/generate/defaults.h"
@@ -12,13 +14,24 @@
 
 namespace blockrand::generate {
 
+/// The ground under one building. Heights in metres; those of the terrain are 0 or more, above `lowest`.
+struct BuildingGround {
+  model::Sourced<double> lowest;  ///< above the build's height reference: the base of all its bodies
+  double rise = 0;                ///< the highest ground under the building
+  double entrance = 0;            ///< ground where the building is entered, at most `rise`
+  std::string entrance_reason;    ///< what that is, for the evidence
+  std::vector<double> part_rise;  ///< as `rise`, under each of Building::parts; empty: as `rise`
+};
+
+/// Whether a body with these tags begins at the ground: no min_height, no skipped storeys.
+bool stands_on_ground(const model::MappedAttributes& tags);
+
 /// What resolve_attributes reads besides the region.
 struct ResolveInputs {
   const Defaults& defaults;
   const context::TaggedNeighbours& neighbours;
   std::uint64_t seed = 1;
-  /// Ground under a building: height above the build's reference, with its source.
-  std::function<model::Sourced<double>(const model::Building&)> ground_height;
+  std::function<BuildingGround(const model::Building&)> ground;
 };
 
 /// m. Of the storey behind a mansard's steep slopes, where floors are `storey_height` apart: attics are lower (styles.md 2.7:
@@ -32,7 +45,13 @@ std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, dou
 /// follows from another tag; the outline's tag (for parts); the median or majority of at least `neighbour_minimum`
 /// tagged neighbours; the defaults of the building's use; the defaults of all. Conventions: `MappedAttributes`.
 ///
-/// Heights hang together: height = storeys x storey height + roof height. The roof's is that of roof:height, else
+/// Heights hang together: height = plinth + storeys x storey height + roof height. The plinth is what lies between the
+/// lowest ground and the ground floor's level, which is the ground at the entrance, but at most one storey below the
+/// highest ground under the building, so that no storey's ceiling lies below the terrain; all bodies of a building have
+/// the same, but for parts that it would lift by more than a storey above the highest ground under them. A tagged height is measured from the lowest ground: the plinth gives way until storeys have kLowestStorey,
+/// though not so far that the ground floor drowns; then storeys that nobody counted become fewer, and counted ones lower.
+/// Where not even that leaves a storey above the terrain, the height is taken from the ground floor instead and reported
+/// (VALUES_CONFLICT). Bodies with an underside of their own keep their tagged heights whatever the terrain. The roof's is that of roof:height, else
 /// roof:angle, else roof:levels, else a usual pitch; the last two give way by up to a third to what tagged height and
 /// storeys leave; where only `height` is tagged, storeys follow. Tags that contradict each other are reported
 /// (docs/roofs.md, "Tags").

@@ -268,17 +268,25 @@ std::optional<double> Transform::own_scale(LonLat p) const {
 VerticalCrs vertical_crs_of(const std::string& definition) {
   const Context context = detail::make_context();
   VerticalCrs result;
-  const Pj crs(proj_create(context.get(), definition.c_str()));
-  if (!crs || proj_get_type(crs.get()) != PJ_TYPE_COMPOUND_CRS) return result;
-  const Pj vertical(proj_crs_get_sub_crs(context.get(), crs.get(), 1));
-  if (!vertical) return result;
-  result.name = detail::text(proj_get_name(vertical.get()));
-  result.authority_code = code_of(vertical.get());
-  const Pj axes(proj_crs_get_coordinate_system(context.get(), vertical.get()));
-  if (axes) {
-    proj_cs_get_axis_info(context.get(), axes.get(), 0, nullptr, nullptr, nullptr, &result.metres_per_unit, nullptr,
-                          nullptr, nullptr);
+  Pj crs(proj_create(context.get(), definition.c_str()));
+  if (!crs) return result;
+  const auto axis = [&](const PJ* of, int index, const char** direction, double* unit) {
+    const Pj axes(proj_crs_get_coordinate_system(context.get(), of));
+    return axes && proj_cs_get_axis_count(context.get(), axes.get()) > index &&
+           proj_cs_get_axis_info(context.get(), axes.get(), index, nullptr, nullptr, direction, unit, nullptr, nullptr,
+                                 nullptr) != 0;
+  };
+  const PJ_TYPE type = proj_get_type(crs.get());
+  if (type == PJ_TYPE_GEOGRAPHIC_3D_CRS || type == PJ_TYPE_PROJECTED_CRS) {
+    result.ellipsoidal = axis(crs.get(), 2, nullptr, &result.metres_per_unit);
+    return result;
   }
+  if (type == PJ_TYPE_COMPOUND_CRS) crs = Pj(proj_crs_get_sub_crs(context.get(), crs.get(), 1));
+  if (!crs || proj_get_type(crs.get()) != PJ_TYPE_VERTICAL_CRS) return result;
+  result.name = detail::text(proj_get_name(crs.get()));
+  result.authority_code = code_of(crs.get());
+  const char* direction = nullptr;
+  if (axis(crs.get(), 0, &direction, &result.metres_per_unit)) result.downwards = detail::text(direction) == "down";
   return result;
 }
 

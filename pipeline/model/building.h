@@ -22,14 +22,15 @@ struct Attributes {
   Sourced<std::string> use;            ///< building class: the value of building=*, refined where it said only `yes`
   Sourced<double> storeys;             ///< full storeys above ground, ground floor included, roof storeys not
   Sourced<double> storey_height;
-  Sourced<double> height;              ///< ground to the top of the roof
+  Sourced<double> height;              ///< lowest ground to the top of the roof
   Sourced<double> min_height;          ///< ground to the underside; 0 for nearly all
   Sourced<double> roof_storeys;
   Sourced<double> roof_height;         ///< eaves to the top of the roof
   Sourced<RoofShape> roof_shape;       ///< what was asked for; BuildingPart::built_roof says what stands
   Sourced<RoofOrientation> roof_orientation;
   std::optional<Sourced<double>> roof_direction;  ///< clockwise from north, down the slope
-  Sourced<double> ground_height;       ///< base above the build's height reference
+  Sourced<double> ground_height;       ///< base above the build's height reference: the lowest ground under the building
+  Sourced<double> plinth_height;       ///< from there up to the level of the ground floor
   Sourced<Colour> wall_colour, roof_colour;
   Sourced<std::string> wall_material, roof_material;  ///< names of material classes
 };
@@ -64,6 +65,7 @@ void for_each_attribute(A& a, Visit&& visit, Absent&& absent) {
   else
     absent("roof_direction", "degree");
   visit("ground_height", "m", a.ground_height);
+  visit("plinth_height", "m", a.plinth_height);
   visit("wall_colour", "", a.wall_colour);
   visit("roof_colour", "", a.roof_colour);
   visit("wall_material", "", a.wall_material);

@@ -27,7 +27,6 @@
 #include "pipeline/generate/defaults.h"
 #include "pipeline/generate/resolve.h"
 #include "pipeline/geometry/polygon.h"
-#include "pipeline/georef/heights.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/georef/round_trip.h"
 #include "pipeline/georef/tiles.h"
@@ -35,6 +34,8 @@
 #include "pipeline/region/context_extract.h"
 #include "pipeline/region/context_layers.h"
 #include "pipeline/region/documents.h"
+#include "pipeline/region/ground.h"
+#include "pipeline/region/height_reference.h"
 #include "pipeline/region/load.h"
 #include "pipeline/region/outcome.h"
 #include "pipeline/region/pictures.h"
@@ -188,7 +189,10 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   base::StagedFolder folder(options.output, options.force);
   const generate::Defaults defaults = generate::read_defaults(options.configs);
   std::optional<importers::elevation::Terrain> terrain;
-  if (!options.terrain.empty()) terrain.emplace(options.terrain);
+  const AskedReference asked = read_height_reference(options.terrain_height_reference);
+  if (!options.terrain.empty()) terrain.emplace(options.terrain, asked.metres_per_unit);
+  if (terrain) record.terrain = terrain->describe();
+  record.heights = choose_height_reference(terrain ? &terrain->describe() : nullptr, asked, options.ground_height.has_value());
   const std::optional<TileChoice> tile = choose_tile(options);
 
   progress.begin("read");
@@ -229,19 +233,10 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
                                        "Choose another --crs, or leave it out",
                                        record.crs.authority_code, record.round_trip.projection_m, record.round_trip.undefined,
                                        record.round_trip.points));
-  const georef::Geoid geoid;
-  const bool has_heights = terrain || options.ground_height;
-  if (terrain)
-    record.height_reference = "heights of the terrain raster";
-  else if (options.ground_height)
-    record.height_reference = "heights above sea level, one ground height for all";
-  else
-    record.height_reference = "heights above local ground";
-  if (terrain) record.vertical_crs = terrain->describe().vertical_code;
-  if (area && !has_heights)
+  if (area && !terrain && !options.ground_height)
     progress.warn("no --terrain and no --ground-height: the model lies at ellipsoid height 0");
-  if (area && has_heights && !geoid.available())
-    progress.warn("heights above sea level are taken for ellipsoidal ones in 3D Tiles: " + georef::Geoid::remedy());
+  if (area)
+    for (const std::string& warning : record.heights.warnings) progress.warn(warning);
 
   const int workers = base::worker_count(options.jobs);
   model::Report region_report;
@@ -268,7 +263,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
 
   summary.store_bytes = current_rss_bytes();
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2;
-  const OutputContext output{options, projection, geoid, has_heights, record, defaults};
+  const OutputContext output{options, projection, record, defaults};
 
   std::optional<export_::GeoPackageWriter> geopackage;
   if (options.geopackage) geopackage.emplace(folder.staging_path() + "/buildings.gpkg", geopackage_options(output));
@@ -302,20 +297,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   Region whole;  // for --single-glb
   std::uint64_t done = 0;
 
-  const auto ground_height = [&](const model::Building& building) -> model::Sourced<double> {
-    if (terrain) {
-      std::optional<double> lowest;
-      const MappedBuilding& mapped = extract.buildings[building.mapped_index];
-      for (const auto& ring : extract.rings_of(mapped.rings)) {
-        if (ring.inner) continue;
-        const auto z = terrain->minimum_under(extract.vertices_of(ring));
-        if (z && (!lowest || *z < *lowest)) lowest = z;
-      }
-      if (lowest) return {model::snap(*lowest), model::Source::terrain, 0.9f, 0};
-    }
-    if (options.ground_height) return {model::snap(*options.ground_height), model::Source::override_, 0.5f, 0};
-    return {0, model::Source::default_, 0.1f, 0};
-  };
+  const Ground ground(terrain ? &*terrain : nullptr, options.ground_height, projection);
+  const auto ground_under = [&](const model::Building& building) { return ground.under(building); };
 
   const auto fate_of = [&](const Outcome& o) {
     // Where members of a relation are missing, that is why nothing is enclosed.
@@ -345,7 +328,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   std::atomic<std::int64_t> context_time = 0;
   const TileInputs inputs{extract,      shards,         projection, defaults,      kept,
                           repaired,     context,        surroundings, roof_lines,  numbers, neighbours,
-                          options.repair, options.generate, options.seed, options.lod, terrain.has_value(), ground_height,
+                          options.repair, options.generate, options.seed, options.lod, terrain.has_value(), ground_under,
                           context_time};
   const auto work = [&](std::size_t i) {
     TileResult result;

@@ -40,6 +40,7 @@ struct BuildOptions {
   int jobs = 0;                               ///< worker threads; 0: one per core
   std::uint64_t seed = 1;                     ///< of all random choices
   std::string terrain;                        ///< raster with ground heights, or empty
+  std::string terrain_height_reference;       ///< "EPSG:7837", "sea-level", "ellipsoid"; empty: what the raster says
   std::optional<double> ground_height;        ///< m above sea level for every base where there is no terrain
   repair::RepairOptions repair;
   generate::GenerateOptions generate;

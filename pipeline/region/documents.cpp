@@ -35,6 +35,7 @@ nlohmann::ordered_json configuration(const BuildOptions& options) {
   if (!options.tile.empty()) c["tile"] = options.tile;
   c["bbox"] = options.bbox ? Json(*options.bbox) : Json(nullptr);
   c["terrain"] = options.terrain;
+  c["terrain_height_reference"] = options.terrain_height_reference;
   c["ground_height"] = options.ground_height ? Json(*options.ground_height) : Json(nullptr);
   const auto& p = options.repair;
   c["repair"] = {{"duplicate_distance", p.duplicate_distance}, {"spike_width", p.spike_width},
@@ -74,8 +75,25 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
               // Rounded up to 10 nm: the last bits of an error say nothing.
               {"round_trip_error_m", std::ceil(r.round_trip.projection_m * 1e8) / 1e8},
               {"frame_round_trip_error_m", std::ceil(r.round_trip.frame_m * 1e8) / 1e8},
-              {"height_reference", r.height_reference},
-              {"vertical_crs", r.vertical_crs}};
+              {"height_reference", r.heights.words},
+              {"vertical_crs", r.heights.vertical_crs},
+              {"height_reference_of_tiles", r.heights.in_tiles}};
+  // How heights reach the ellipsoid in 3D Tiles; null: as they are.
+  const HeightReference& h = r.heights;
+  j["crs"]["to_ellipsoid"] = nullptr;
+  if (h.raised_by)
+    j["crs"]["to_ellipsoid"] = {{"by", h.raised_by->words()},
+                                {"from", h.raised_from},
+                                {"accuracy_m", h.raised_by->accuracy_m() < 0 ? Json(nullptr) : Json(h.raised_by->accuracy_m())}};
+  if (r.terrain) {
+    const importers::elevation::TerrainDescription& t = *r.terrain;
+    j["terrain"] = {{"crs", t.crs_code.empty() ? t.crs_name : t.crs_code},
+                    {"vertical_crs", t.vertical_code.empty() ? t.vertical_name : t.vertical_code},
+                    {"operation", t.operation},
+                    {"accuracy_m", t.accuracy_m < 0 ? Json(nullptr) : Json(t.accuracy_m)},
+                    {"pixel", {t.pixel_width, t.pixel_height}},
+                    {"size", {t.columns, t.rows}}};
+  }
   // What a build of one tile alone takes from here (--pinned).
   j["region"] = {{"box", {r.facts.box.west, r.facts.box.south, r.facts.box.east, r.facts.box.north}},
                  {"centre", {r.facts.centre.lon, r.facts.centre.lat}},

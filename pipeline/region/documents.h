@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "pipeline/georef/round_trip.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/region/build.h"
+#include "pipeline/region/height_reference.h"
 #include "pipeline/region/region_facts.h"
 #include "pipeline/region/repair_extract.h"
 #include "pipeline/region/statistics.h"
@@ -34,8 +36,8 @@ struct BuildRecord {
   georef::Crs crs;
   bool portable = true;
   georef::RoundTrip round_trip;
-  std::string height_reference;
-  std::string vertical_crs;  ///< empty: none claimed
+  HeightReference heights;
+  std::optional<importers::elevation::TerrainDescription> terrain;
   RegionFacts facts;
   RepairTotals repair;
   BuildSummary summary;

@@ -19,7 +19,7 @@ double finite(const nlohmann::json& value) {
 
 /// The first option that shapes a building and differs; empty for none.
 std::string first_difference(const nlohmann::json& theirs, const nlohmann::json& ours) {
-  for (const char* name : {"lod", "seed", "ground_height"})
+  for (const char* name : {"lod", "seed", "ground_height", "terrain_height_reference"})
     if (theirs.at(name) != ours.at(name)) return name;
   for (const char* section : {"repair", "generate"})
     for (const auto& [name, value] : ours.at(section).items())

@@ -44,8 +44,8 @@ export_::ReportFacts report_facts(const BuildOptions& options, const BuildRecord
   f.crs_code = record.crs.authority_code;
   f.crs_name = record.crs.name;
   f.crs_accuracy = record.crs.accuracy_m;
-  f.height_reference = record.height_reference;
-  f.vertical_crs = record.vertical_crs;
+  f.height_reference = record.heights.words;
+  f.vertical_crs = record.heights.vertical_crs;
   f.lod = options.lod;
   f.centre_longitude = centre.lon;
   f.centre_latitude = centre.lat;

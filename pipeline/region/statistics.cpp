@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "pipeline/geometry/check_solid.h"
@@ -39,6 +40,7 @@ TileStatistics count_statistics(const model::Region& region) {
   for (const model::Building& building : region.buildings) {
     const auto& a = building.attributes;
     const double wall_height = std::max(0.0, a.height.value - a.roof_height.value - a.min_height.value);
+    const double base = a.ground_height.value;
     if (!building.parts.empty()) ++s.positions[static_cast<std::size_t>(building.situation.position)];
     for (const model::FacadeEdge& e : building.edges) {
       ++s.edges[static_cast<std::size_t>(e.kind)];
@@ -48,7 +50,7 @@ TileStatistics count_statistics(const model::Region& region) {
       const model::Point2 a = ring.points[e.edge], b = ring.points[(e.edge + 1) % ring.size()];
       const double whole = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
       if (e.kind == model::EdgeKind::party_wall && e.start <= kWholeEdge && e.end >= whole - kWholeEdge)
-        out.party_sides.push_back({wall_key(a, b), whole, wall_height});
+        out.party_sides.push_back({wall_key(a, b), whole, base, base + wall_height});
       else
         s.outer_wall_area += e.length() * wall_height;
     }
@@ -97,19 +99,21 @@ void add(Statistics& sum, const Statistics& s) {
 
 void settle_party_walls(std::vector<PartySide> sides, Statistics& sum) {
   std::sort(sides.begin(), sides.end(), [](const PartySide& a, const PartySide& b) {
-    return a.wall != b.wall ? a.wall < b.wall : a.height < b.height;
+    return a.wall != b.wall ? a.wall < b.wall : std::tie(a.top, a.base) < std::tie(b.top, b.base);
   });
   for (std::size_t i = 0; i < sides.size();) {
     std::size_t j = i;
     while (j < sides.size() && sides[j].wall == sides[i].wall) ++j;
     if (j - i < 2) {
       // The neighbour was not built: the wall stands free.
-      sum.outer_wall_area += sides[i].length * sides[i].height;
+      sum.outer_wall_area += sides[i].length * (sides[i].top - sides[i].base);
     } else {
-      const double covered = sides[j - 2].height;  // the second highest meets the highest
+      const PartySide& lower = sides[j - 2];  // the second highest meets the highest
+      const PartySide& upper = sides[j - 1];
+      const double covered = std::max(0.0, lower.top - std::max(lower.base, upper.base));
       sum.party_wall_area += sides[i].length * covered;
       sum.party_wall_length += sides[i].length;
-      sum.outer_wall_area += sides[i].length * (sides[j - 1].height - covered);
+      sum.outer_wall_area += sides[i].length * (upper.top - upper.base + lower.top - lower.base - 2 * covered);
       ++sum.party_walls;
     }
     i = j;

@@ -34,7 +34,8 @@ struct Statistics {
 /// One building's side of a shared wall.
 struct PartySide {
   std::uint64_t wall = 0;  ///< of both ends: the same for both sides, others' differ but for one in 10^8 cities
-  double length = 0, height = 0;
+  double length = 0;          ///< m
+  double base = 0, top = 0;   ///< m above the height reference
 };
 
 /// A tile's share. Party walls are settled when both sides are known.
@@ -49,7 +50,8 @@ TileStatistics count_statistics(const model::Region& region);
 /// Adds a tile's sums to those of the build; in tile order, since sums of floats depend on theirs.
 void add(Statistics& sum, const Statistics& tile);
 
-/// Pairs up the sides of shared walls: the lower one is covered whole, the higher one shows what rises above it.
+/// Pairs up the sides of shared walls: each shows what the other does not cover, above and, on a
+/// slope, below.
 void settle_party_walls(std::vector<PartySide> sides, Statistics& sum);
 
 }  // namespace blockrand::region

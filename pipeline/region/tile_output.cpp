@@ -35,12 +35,12 @@ struct GeoidPlane {
 
 GeoidPlane geoid_plane(const OutputContext& context, georef::LonLat centre) {
   GeoidPlane plane;
-  if (!context.heights_above_sea || !context.geoid.available()) return plane;
+  if (!context.record.heights.raised_by) return plane;
   const model::Point2 o = context.projection.forward(centre.lon, centre.lat);
   constexpr double kStep = 1000;  // m
   const auto undulation = [&](double x, double y) {
     const georef::LonLat p = context.projection.inverse({x, y});
-    return context.geoid.undulation(p.lon, p.lat).value_or(0);
+    return context.record.heights.raised_by->undulation(p.lon, p.lat).value_or(0);
   };
   plane.x0 = o.x;
   plane.y0 = o.y;
@@ -54,11 +54,7 @@ export_::GlbOptions glb_options(const OutputContext& context, const georef::EnuF
   export_::GlbOptions o;
   o.lod = context.options.lod;
   o.crs = context.record.crs.authority_code;
-  o.height_reference = context.heights_above_sea && context.geoid.available()
-                           ? context.record.height_reference + ", raised to the ellipsoid by EGM96"
-                           : context.record.height_reference + ", ground at ellipsoid height 0";
-  if (context.heights_above_sea && !context.geoid.available())
-    o.height_reference = context.record.height_reference + ", taken for ellipsoidal";
+  o.height_reference = context.record.heights.in_tiles;
   o.generator = generator();
   o.attribution = kAttribution;
   o.evidence = context.options.evidence;
@@ -118,11 +114,11 @@ export_::CityGmlOptions citygml_options(const model::Region& region, const Outpu
   o.lod = context.options.lod;
   const std::string& code = context.record.crs.authority_code;
   const std::string number = code.substr(code.find(':') + 1);
-  o.srs_name = context.record.vertical_crs.empty()
+  o.srs_name = context.record.heights.vertical_crs.empty()
                    ? "urn:ogc:def:crs:EPSG::" + number
                    : "urn:ogc:def:crs,crs:EPSG::" + number + ",crs:EPSG::" +
-                         context.record.vertical_crs.substr(context.record.vertical_crs.find(':') + 1);
-  o.height_reference = context.record.height_reference;
+                         context.record.heights.vertical_crs.substr(context.record.heights.vertical_crs.find(':') + 1);
+  o.height_reference = context.record.heights.words;
   o.attribution = kAttribution;
   o.name = model_name(region.tile);
   o.evidence = context.options.evidence;
@@ -152,8 +148,8 @@ export_::CityJsonOptions cityjson_options(const OutputContext& context, std::str
   export_::CityJsonOptions o;
   o.lod = context.options.lod;
   o.crs_code = context.record.crs.authority_code;
-  o.vertical_crs = context.record.vertical_crs;
-  o.height_reference = context.record.height_reference;
+  o.vertical_crs = context.record.heights.vertical_crs;
+  o.height_reference = context.record.heights.words;
   o.attribution = kAttribution;
   o.name = std::move(name);
   o.generator = generator();
@@ -163,7 +159,7 @@ export_::CityJsonOptions cityjson_options(const OutputContext& context, std::str
 }
 
 export_::GeoPackageOptions geopackage_options(const OutputContext& context) {
-  return {context.record.crs.authority_code, context.record.data_time, context.record.height_reference, kAttribution};
+  return {context.record.crs.authority_code, context.record.data_time, context.record.heights.words, kAttribution};
 }
 
 export_::GeoPackageTile geopackage_tile(model::TileId id, const TileOutput& output, const OutputContext& context) {
@@ -231,7 +227,7 @@ double write_whole(const model::Region& whole, std::span<const export_::TileEntr
   if (context.options.gltf) {
     export_::TilesetOptions options;
     options.crs = context.record.crs.authority_code;
-    options.height_reference = context.record.height_reference;
+    options.height_reference = context.record.heights.words;
     options.generator = generator();
     options.attribution = kAttribution;
     files.push_back(folder.write("tileset.json", export_::write_tileset(tiles, options)));
@@ -245,7 +241,8 @@ double write_whole(const model::Region& whole, std::span<const export_::TileEntr
     o.frame.to_enu = [&](std::span<const Point3> in, std::span<Point3> out) {
       for (std::size_t i = 0; i < in.size(); ++i) {
         const georef::LonLat g = context.projection.inverse(in[i].xy());
-        const double n = context.heights_above_sea ? context.geoid.undulation(g.lon, g.lat).value_or(0) : 0;
+        const auto& geoid = context.record.heights.raised_by;
+        const double n = geoid ? geoid->undulation(g.lon, g.lat).value_or(0) : 0;
         out[i] = frame.to_local(g.lon, g.lat, in[i].z + n);
       }
     };

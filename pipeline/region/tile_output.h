@@ -11,7 +11,6 @@
 #include "pipeline/export/geopackage/geopackage_writer.h"
 #include "pipeline/export/tileset/tileset.h"
 #include "pipeline/generate/defaults.h"
-#include "pipeline/georef/heights.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/region.h"
 #include "pipeline/region/build.h"
@@ -23,8 +22,6 @@ namespace blockrand::region {
 struct OutputContext {
   const BuildOptions& options;
   const georef::Projection& projection;
-  const georef::Geoid& geoid;
-  bool heights_above_sea;        ///< z values are heights above sea level; 3D Tiles want ellipsoidal ones
   const BuildRecord& record;
   const generate::Defaults& defaults;
 };

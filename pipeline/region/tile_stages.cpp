@@ -60,13 +60,19 @@ Region prepare(const Shard& shard, std::span<const std::uint32_t> numbers, const
 }
 
 void resolve(Region& region, const TileInputs& in) {
-  generate::resolve_attributes(region, {in.defaults, in.neighbours, in.seed, in.ground_height}, in.generate);
+  generate::resolve_attributes(region, {in.defaults, in.neighbours, in.seed, in.ground}, in.generate);
 }
 
-/// m above the ground to which a building's outer walls reach.
+/// m above the height reference up to which a building's outer walls reach.
 double wall_top(const Building& building) {
   const model::Attributes& a = building.attributes;
-  return std::max(0.0, a.height.value - a.roof_height.value);
+  return a.ground_height.value + std::max(0.0, a.height.value - a.roof_height.value);
+}
+
+/// m: how much of a common wall two buildings cover for each other. On a slope neither begins where the other does.
+double common_height(const Building& a, const Building& b) {
+  const double base = std::max(a.attributes.ground_height.value, b.attributes.ground_height.value);
+  return std::max(0.0, std::min(wall_top(a), wall_top(b)) - base);
 }
 
 /// Fills in what neighbours cover of party walls. Neighbours in other tiles are resolved again, from the same data.
@@ -104,7 +110,7 @@ void cover_party_walls(Region& region, const TileInputs& in) {
       const Building* other = find(region, edge.neighbour);
       if (other == nullptr) other = find(halo, edge.neighbour);
       if (other != nullptr)
-        edge.covered_height = static_cast<float>(std::min(wall_top(building), wall_top(*other)));
+        edge.covered_height = static_cast<float>(common_height(building, *other));
     }
 }
 

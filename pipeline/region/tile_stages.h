@@ -10,6 +10,7 @@
 #include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/generate/defaults.h"
 #include "pipeline/generate/options.h"
+#include "pipeline/generate/resolve.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/region.h"
 #include "pipeline/region/context_extract.h"
@@ -51,8 +52,8 @@ struct TileInputs {
   std::uint64_t seed = 1;
   int lod = 2;
   bool has_terrain = false;
-  /// Ground under a building above the build's height reference.
-  std::function<model::Sourced<double>(const model::Building&)> ground_height;
+  /// Ground under a building, above the build's height reference.
+  std::function<generate::BuildingGround(const model::Building&)> ground;
   /// Nanoseconds, summed over all threads, that tiles spend on parts and facade edges: the rest of repair and context.
   std::atomic<std::int64_t>& context_time;
 };

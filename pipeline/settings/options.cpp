@@ -309,13 +309,20 @@ void add_build(Table& t) {
           .section = S,
           .help = "ground heights: any raster that GDAL reads"},
          FIELD(build.terrain));
+  t.text({.name = "terrain-height-reference",
+          .key = "terrain_height_reference",
+          .argument = "REFERENCE",
+          .section = S,
+          .help = "what the raster's heights are above, where it does not say so itself: sea-level (taken for EGM96), "
+                  "ellipsoid, or a vertical coordinate system such as EPSG:7837"},
+         FIELD(build.terrain_height_reference));
   t.number({.name = "ground-height",
             .key = "ground_height",
             .argument = "METRES",
             .section = S,
             .minimum = -500,
             .maximum = 9000,
-            .help = "height above sea level of the ground where there is no terrain, in m"},
+            .help = "height of the ground where there is no terrain, in m: above sea level, or beside --terrain in the raster's heights"},
            FIELD(build.ground_height));
   t.flag({.name = "evidence",
           .key = "evidence",

@@ -83,6 +83,7 @@ class Reader {
     r_.pipeline = text(member(crs, "pipeline"));
     r_.vertical_crs = text(member(crs, "vertical_crs"));
     r_.height_reference = text(member(crs, "height_reference"));
+    r_.raised_from = text(member(member(crs, "to_ellipsoid"), "from"));
     r_.accuracy = number(member(crs, "accuracy_m")).value_or(0);
     if (!r_.crs.starts_with("EPSG:")) wrong("crs.code", "is no EPSG code");
     if (r_.pipeline.empty()) wrong("crs.pipeline", "missing");

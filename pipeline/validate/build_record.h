@@ -25,6 +25,7 @@ struct BuildRecord {
   std::set<std::string> formats;  ///< "gltf", "citygml" …
   bool gzip = false, single_glb = false, single_cityjson = false, report = false, explain = false;
   std::string crs, pipeline, vertical_crs, height_reference;
+  std::string raised_from;  ///< vertical CRS from which heights were raised to the ellipsoid in 3D Tiles; empty: none, or unknown
   double accuracy = 0;  ///< m, as PROJ states it for the operation
   std::string extract_path, extract_sha256;
   std::map<std::string, BuildFile> files;

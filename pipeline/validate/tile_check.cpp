@@ -322,16 +322,16 @@ class Checker {
 
   void compare_with_mesh(const Side& reference) {
     if (!context_.witness) return;
-    const bool above_sea = glb_->georeference.height_reference.find("EGM96") != std::string::npos;
+    const bool raised = glb_->georeference.height_reference.find("raised to the ellipsoid") != std::string::npos;
     context_.witness->with([&](georef::Witness& witness) {
       const ToLocal to_local = [&](std::span<const Point3> in, std::span<Point3> out) {
         for (std::size_t i = 0; i < in.size(); ++i) {
           const georef::LonLat at = witness.inverse(in[i].xy());
-          const double undulation = above_sea ? context_.geoid.undulation(at.lon, at.lat).value_or(0) : 0;
+          const double undulation = raised ? context_.geoid.undulation(at.lon, at.lat).value_or(0) : 0;
           out[i] = apply_inverse(transform_, witness.to_ecef({at.lon, at.lat, in[i].z + undulation}));
         }
       };
-      const double tolerance = kMeshTolerance + glb_->position_step * 0.87 + (above_sea ? kGeoidTolerance : 0);
+      const double tolerance = kMeshTolerance + glb_->position_step * 0.87 + (raised ? kGeoidTolerance : 0);
       compare_meshes(reference, *glb_, files_.path[kGltf], to_local, tolerance, out_.findings);
     });
   }

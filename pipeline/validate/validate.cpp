@@ -104,6 +104,7 @@ class Run {
       unreadable_ = true;
     }
     record_ = std::move(*record);
+    geoid_ = georef::Geoid(record_.raised_from);
     if (!unreadable_) check_file_list(o_.folder, record_, log());
     checked("build.json", "fields, sums, configuration against files", 1, "file");
     if (!o_.schemas.empty()) schema_ = std::make_unique<CityGmlSchema>(o_.schemas);

@@ -19,7 +19,7 @@ LAYERS = {'buildings': 'Multi Polygon', 'parts': 'Polygon', 'facade_edges': 'Lin
           'courtyards': 'Polygon', 'cells': 'Polygon', 'reported': 'Point', 'tiles': 'Polygon'}
 EDGE_KINDS = {'unknown', 'street', 'courtyard', 'side', 'party_wall', 'passage'}
 ATTRIBUTES = ('use', 'storeys', 'storey_height', 'height', 'min_height', 'roof_storeys', 'roof_height', 'roof_shape',
-              'roof_orientation', 'roof_direction', 'ground_height', 'wall_colour', 'roof_colour', 'wall_material',
+              'roof_orientation', 'roof_direction', 'ground_height', 'plinth_height', 'wall_colour', 'roof_colour', 'wall_material',
               'roof_material')
 SOURCES = {'override', 'tag', 'implied', 'part', 'imagery', 'terrain', 'geometry', 'neighbours', 'block', 'cell',
            'district', 'region', 'preset', 'default'}

@@ -117,7 +117,7 @@ class Options(BuildTest):
         raster = self.place('slope.asc', '\n'.join(rows) + '\n')
         self.place('slope.prj', 'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],'
                                 'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]')
-        out = self.build(SAMPLE, 'terrain', '--terrain', raster)
+        out = self.build(SAMPLE, 'terrain', '--terrain', raster, '--terrain-height-reference', 'sea-level')
         self.valid(out)
         bases = {i: min(p[2] for p in points(b)) for i, b in buildings(out).items()}
         self.assertGreater(max(bases.values()) - min(bases.values()), 20, 'buildings follow the slope')

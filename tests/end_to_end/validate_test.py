@@ -804,7 +804,7 @@ class Sound(Validated):
         terrain = self.place('slope.asc', header + '\n'.join(rows) + '\n')
         self.place('slope.prj', 'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],'
                                 'UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4326"]]')
-        out = self.build(SAMPLE, 'terrain', '--terrain', terrain)
+        out = self.build(SAMPLE, 'terrain', '--terrain', terrain, '--terrain-height-reference', 'sea-level')
         self.assertIn('terrain', read_json(out, 'build.json')['statistics']['sources']['ground_height'])
         self.sound(out)
 

@@ -11,18 +11,19 @@ namespace {
 
 /// What an attribute means, for people who open the table without our documentation.
 std::string_view meaning(std::string_view attribute) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kMeanings{{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kMeanings{{
       {"use", "What the building is used for: the value of building=*, refined where it said only yes"},
       {"storeys", "Full storeys above ground, ground floor included, roof storeys not"},
       {"storey_height", "Height of a storey"},
-      {"height", "From the ground to the top of the roof"},
+      {"height", "From the lowest ground to the top of the roof"},
       {"min_height", "From the ground to the underside; 0 where the building stands on the ground"},
       {"roof_storeys", "Storeys inside the roof"},
       {"roof_height", "From the eaves to the top of the roof"},
       {"roof_shape", "Roof that was asked for; built_roof says what stands"},
       {"roof_orientation", "Whether the ridge runs along or across the longer side"},
       {"roof_direction", "Where the roof slopes down to, clockwise from north"},
-      {"ground_height", "Ground above the height reference of the build"},
+      {"ground_height", "Lowest ground under the building, above the height reference of the build"},
+      {"plinth_height", "From the lowest ground up to the level of the ground floor"},
       {"wall_colour", "Colour of the walls in sRGB"},
       {"roof_colour", "Colour of the roof in sRGB"},
       {"wall_material", "Material class of the walls"},

@@ -154,7 +154,7 @@ TEST_F(GeoPackage, EachAttributeHasValueSourceAndConfidence) {
   };
   model::for_each_attribute(
       all, [&](const char* x, auto, const auto&) { three(x); }, [&](const char* x, auto) { three(x); });
-  EXPECT_EQ(attributes, 15);
+  EXPECT_EQ(attributes, 16);
   EXPECT_THAT(query(path,
                     "SELECT storeys, storeys_source, storeys_confidence, roof_shape, wall_colour, typeof(storeys),"
                     "roof_direction, roof_direction_source FROM parts WHERE id = 'w12'"),

@@ -172,6 +172,7 @@ model::BuildingPart& SampleRegion::add_part(model::Building& building, const std
   a.roof_shape = {model::RoofShape::gabled, model::Source::tag, 1.0f, 0};
   a.roof_orientation = {model::RoofOrientation::along, model::Source::default_, 0.5f, 0};
   a.ground_height = {34.25, model::Source::terrain, 0.8f, 0};
+  a.plinth_height = {0.75, model::Source::terrain, 0.6f, 0};
   a.wall_colour = {{222, 205, 170}, model::Source::preset, 0.2f, 0};
   a.roof_colour = {{160, 60, 40}, model::Source::tag, 1.0f, 0};
   a.wall_material = {"plaster", model::Source::default_, 0.1f, 0};

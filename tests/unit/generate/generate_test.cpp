@@ -56,7 +56,7 @@ class Town {
     for (const Material& m : defaults.materials) region.materials.push_back(m.looks);
     repair::test::repair_alone(region);
     const context::TaggedNeighbours index(neighbours, 100);
-    resolve_attributes(region, {defaults, index, seed, [](const model::Building&) { return model::Sourced<double>{34, Source::override_, 1, 0}; }}, {});
+    resolve_attributes(region, {defaults, index, seed, [this](const model::Building&) { return ground; }}, {});
     build_masses(region, defaults, {}, lod);
   }
   const model::BuildingPart& part(std::size_t building = 0, std::size_t part = 0) const { return region.buildings.at(building).parts.at(part); }
@@ -69,6 +69,7 @@ class Town {
   model::Region region;
   std::vector<context::TaggedBuilding> neighbours;
   std::uint64_t seed = 1;
+  BuildingGround ground{.lowest = {34, Source::override_, 1, 0}, .entrance_reason = {}, .part_rise = {}};
 };
 
 const std::vector<Point2> kHouse{{0, 0}, {12, 0}, {12, 9}, {0, 9}};

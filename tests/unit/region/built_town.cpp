@@ -95,7 +95,7 @@ model::Region BuiltTown::tile(std::size_t shard, int lod) const {
                           .repair = s.repair,
                           .generate = usual_generation(),
                           .lod = lod,
-                          .ground_height = [](const model::Building&) { return model::Sourced<double>{}; },
+                          .ground = [](const model::Building&) { return generate::BuildingGround{}; },
                           .context_time = time});
 }
 

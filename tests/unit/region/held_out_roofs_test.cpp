@@ -164,7 +164,7 @@ HeldOut hold_out(const fs::path& file) {
       if (fold_of(b.id) == fold) b.roof_shape.reset();
     neighbours.emplace_back(std::move(visible), usual_generation().neighbour_reach);
   }
-  const auto ground = [](const Building&) { return model::Sourced<double>{}; };
+  const auto ground = [](const Building&) { return generate::BuildingGround{}; };
   for (std::size_t shard = 0; shard < town.shards().size(); ++shard) {
     const model::Region region = town.tile(shard, 0);
     for (const Hidden what : {Hidden::shape, Hidden::form, Hidden::direction})
