@@ -12,6 +12,7 @@
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "styles/roofs/eaves_lines.h"
 #include "styles/roofs/roof.h"
 
 namespace blockrand::generate {
@@ -167,10 +168,14 @@ class MassBuilder {
   /// One shape on one plan; tidied more coarsely where its solid fails the check.
   bool build_roof(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks, roofs::RoofRequest request) {
     request.measures = {levels.eaves, levels.top - levels.eaves};
-    // Where the roof of whole facades does not come out valid, every bay gets slopes of its own.
-    for (const bool along : {true, false})
-      if (request.along_eaves_lines = along; build_tidied(part, plan, levels, looks, request)) return true;
-    return false;
+    request.along_eaves_lines = true;
+    if (build_tidied(part, plan, levels, looks, request)) return true;
+    if (!roofs::eaves_plan(plan, request.edges)) return false;
+    // Where the roof of whole facades does not fit, or does not come out valid, every bay gets slopes of its own.
+    request.along_eaves_lines = false;
+    if (!build_tidied(part, plan, levels, looks, request)) return false;
+    note(part, IssueCode::roof_with_bays);
+    return true;
   }
   bool build_tidied(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks, roofs::RoofRequest request) {
     for (const double coarseness : roofs::kCoarseness) {

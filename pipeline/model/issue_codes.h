@@ -73,6 +73,7 @@ enum class IssueClass : std::uint8_t {
   X(antimeridian, "ANTIMERIDIAN", notice, "The outline crosses longitude 180 degrees.")                              \
   X(reach_cut, "REACH_CUT", notice, "A row of buildings longer than 1 km was cut at the grid.")                      \
   X(terrain_missing, "TERRAIN_MISSING", notice, "The terrain has no value here; the ground height was used.")        \
+  X(roof_with_bays, "ROOF_WITH_BAYS", notice, "A roof along whole facades does not fit the plan; every bay has its own slopes.") \
   X(text_cleaned, "TEXT_CLEANED", notice, "Characters that no XML file may hold were replaced in a tag.")
 
 enum class IssueCode : std::uint8_t {

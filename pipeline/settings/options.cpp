@@ -574,6 +574,8 @@ void add_generate(Table& t) {
             FIELD(build.generate.neighbour_minimum));
   metres("generate-min-wall-height", "min_wall_height", 0.05, 10,
          "a roof never comes nearer to the building's underside, in m", FIELD(build.generate.min_wall_height));
+  metres("generate-max-usual-roof-height", "max_usual_roof_height", 1, 50, "roofs that no tag measures are no higher, in m",
+         FIELD(build.generate.max_usual_roof_height));
   metres("generate-min-roof-height", "min_roof_height", 0.01, 10, "a lower pitched roof is a flat one, in m",
          FIELD(build.generate.min_roof_height));
   t.number({.name = "generate-max-roof-pitch",

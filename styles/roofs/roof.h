@@ -48,7 +48,8 @@ struct RoofRequest {
   double coarseness = 1;              ///< geometry::roof_surfaces(); for a second try
   /// One per plan edge, ring by ring; empty: all open. Party walls turn ridges and make lean-to roofs (roof_sides.h).
   std::vector<model::RoofEdge> edges;
-  bool along_eaves_lines = false;  ///< bays and recesses of facades get no slopes of their own (eaves_lines.h)
+  /// Bays and recesses of facades get no slopes of their own (eaves_lines.h). No roof where that does not fit the plan.
+  bool along_eaves_lines = false;
   bool shape_is_mapped = false;  ///< tagged: the roof keeps the slopes and gables of its shape whatever the row is like
   bool axis_is_mapped = false;   ///< `down` and `across` are: ridges run that way, eaves along party walls or not
 };

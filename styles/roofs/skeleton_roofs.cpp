@@ -314,12 +314,11 @@ std::optional<BuiltRoof> skeleton_roof(const Polygon& plan, const RoofRequest& r
     if (const auto eaves = eaves_plan(plan, request.edges)) {
       const RoofRequest whole = on_facades(request, *eaves);
       auto built = Builder(eaves->plan, whole).build();
-      if (built && built->note != IssueCode::skeleton_fallback) {
-        if (auto roof = onto_plan(built->roof, *eaves, plan)) {
-          built->roof = std::move(*roof);
-          return built;
-        }
-      }
+      if (!built || built->note == IssueCode::skeleton_fallback) return std::nullopt;
+      auto roof = onto_plan(built->roof, *eaves, plan);
+      if (!roof) return std::nullopt;
+      built->roof = std::move(*roof);
+      return built;
     }
   }
   return Builder(plan, request).build();
