@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pipeline/generate/envelope.h"
 #include "pipeline/generate/resolve.h"
@@ -13,6 +14,7 @@
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "styles/roofs/eaves_lines.h"
+#include "styles/roofs/skeleton_roofs.h"
 #include "styles/roofs/roof.h"
 
 namespace blockrand::generate {
@@ -73,7 +75,7 @@ class MassBuilder {
   MassBuilder(Region& region, const Defaults& defaults, const GenerateOptions& options)
       : region_(region), defaults_(defaults), options_(options) {}
 
-  void build(const model::Building& building, BuildingPart& part, int lod) {
+  void build(model::Building& building, BuildingPart& part, int lod) {
     if (part.plan.outer.size() < 3) return;
     building_ = &building;
     part.lod = 0;
@@ -170,18 +172,41 @@ class MassBuilder {
     request.measures = {levels.eaves, levels.top - levels.eaves};
     request.along_eaves_lines = true;
     if (build_tidied(part, plan, levels, looks, request)) return true;
-    if (!roofs::eaves_plan(plan, request.edges)) return false;
+    if (!roofs::rises_from_edges(request.shape) || !roofs::eaves_plan(plan, request.edges)) return false;
     // Where the roof of whole facades does not fit, or does not come out valid, every bay gets slopes of its own.
+    const double along = roofs::main_slope(plan, request, true).run;
     request.along_eaves_lines = false;
+    if (part.usual_pitch > 0 && along > 0) keep_pitch(part, request, roofs::main_slope(plan, request, true).run / along);
     if (!build_tidied(part, plan, levels, looks, request)) return false;
     note(part, IssueCode::roof_with_bays);
     return true;
+  }
+  /// A roof that no tag measures keeps its pitch over another run: neighbours count on it.
+  void keep_pitch(BuildingPart& part, roofs::RoofRequest& request, double ratio) {
+    const double change = model::snap(request.measures.height * ratio) - request.measures.height;
+    request.measures.height += change;
+    for (model::Attributes* a : {&part.attributes, building_->parts.size() == 1 ? &building_->attributes : nullptr}) {
+      if (!a) continue;
+      a->roof_height.value += change;
+      a->height.value += change;
+    }
+  }
+  static double lowest_eaves(const roofs::Roof& roof) {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const auto& top : roof.wall_tops)
+      for (const Point3 p : top) lowest = std::min(lowest, p.z);
+    return lowest;
+  }
+  /// m. Roofs that come down over bays keep this distance from the underside, unless the eaves have less.
+  double least_wall(const BuildingPart& part, const Levels& levels) const {
+    return std::min(part.canopy ? 0.0 : options_.min_wall_height, levels.eaves - levels.bottom) - 0.001;
   }
   bool build_tidied(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks, roofs::RoofRequest request) {
     for (const double coarseness : roofs::kCoarseness) {
       request.coarseness = coarseness;
       const auto built = roofs::build_roof(plan, request);
-      if (!built || !accept(part, plan, levels, looks, built->roof, built->shape)) continue;
+      if (!built || lowest_eaves(built->roof) < levels.bottom + least_wall(part, levels)) continue;
+      if (!accept(part, plan, levels, looks, built->roof, built->shape)) continue;
       if (built->note != IssueCode::none) note(part, built->note, built->detail);
       return true;
     }
@@ -238,7 +263,7 @@ class MassBuilder {
   Region& region_;
   const Defaults& defaults_;
   const GenerateOptions& options_;
-  const model::Building* building_ = nullptr;
+  model::Building* building_ = nullptr;
 };
 
 }  // namespace

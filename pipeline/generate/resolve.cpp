@@ -560,8 +560,8 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
     };
     Resolver whole{region, in, options, building, nullptr, building.mapped, nullptr, preset, group, building.outline, building.osm,
                    ground, ground.rise};
-    building.attributes = whole.resolve(lowest);
     const bool one_body = building.parts.size() == 1 && !building.has_mapped_parts;
+    if (!one_body) building.attributes = whole.resolve(lowest);
     for (BuildingPart& part : building.parts) {
       const auto index = static_cast<std::size_t>(&part - building.parts.data());
       const bool own_tags = building.has_mapped_parts && !part.rest;

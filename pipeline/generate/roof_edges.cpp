@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
@@ -17,7 +18,9 @@ using model::RoofEdge;
 
 namespace {
 
-constexpr double kPartyShare = 0.5;  ///< of an edge: neighbours that stand at less of it stand beside it
+constexpr double kPartyShare = 0.5;   ///< of an edge: neighbours that stand at less of it stand beside it
+constexpr double kRearShare = 0.75;   ///< the same of edges that look away from the street (roofs::party_share_of)
+constexpr double kLooksAway = -0.68199836006249850;  ///< cosine of 133 degrees
 
 RoofEdge kind_of(const model::FacadeEdge& e) {
   switch (e.kind) {
@@ -61,6 +64,7 @@ std::vector<RoofEdge> edges_on(const OutlineStretches& stretches, const Polygon&
 
 OutlineStretches::OutlineStretches(const model::Building& building) {
   stretches_.reserve(building.edges.size());
+  std::tuple<long long, Point2> longest;
   for (const model::FacadeEdge& e : building.edges) {
     if (e.polygon >= building.outline.size()) continue;
     const Polygon& outline = building.outline[e.polygon];
@@ -72,6 +76,12 @@ OutlineStretches::OutlineStretches(const model::Building& building) {
     if (length <= 0) continue;
     const auto at = [&](double s) { return Point2{p.x + (q.x - p.x) * s / length, p.y + (q.y - p.y) * s / length}; };
     stretches_.push_back({at(e.start), at(e.end), kind_of(e)});
+    // The longest front; of equal ones the one with the least corner.
+    const Stretch& last = stretches_.back();
+    const std::tuple key(std::llround((e.end - e.start) * 100), Point2{-last.a.x, -last.a.y});
+    if (last.kind != RoofEdge::street || (street_ && key <= longest)) continue;
+    longest = key;
+    street_ = Point2{(q.y - p.y) / length, -(q.x - p.x) / length};
   }
 }
 
@@ -86,7 +96,8 @@ RoofEdge OutlineStretches::kind(Point2 p, Point2 q) const {
     length[static_cast<std::size_t>(s.kind)] += common_length(s.a, s.b, p, q);
   }
   const double whole = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
-  if (length[static_cast<std::size_t>(RoofEdge::party_wall)] >= kPartyShare * whole) return RoofEdge::party_wall;
+  const double share = street_ && (q.y - p.y) * street_->x - (q.x - p.x) * street_->y < kLooksAway * whole ? kRearShare : kPartyShare;
+  if (length[static_cast<std::size_t>(RoofEdge::party_wall)] >= share * whole) return RoofEdge::party_wall;
   std::size_t most = 0;
   for (const RoofEdge k : {RoofEdge::street, RoofEdge::courtyard})
     if (length[static_cast<std::size_t>(k)] > length[most]) most = static_cast<std::size_t>(k);

@@ -10,7 +10,8 @@
 namespace blockrand::generate {
 
 /// What each edge of a plan is to the roof above it, ring by ring, from the stretches of the building's outline that lie on
-/// it: a party wall where at least half of it has a neighbour that is no outbuilding, else what most of it faces. Empty when
+/// it: a party wall where at least half of it (three quarters where it looks away from the street) has a neighbour that is no
+/// outbuilding, else what most of it faces. Empty when
 /// the building's edges have no labels; open where no stretch lies (walls between two parts of a building).
 std::vector<model::RoofEdge> roof_edges(const model::Building& building, const model::Polygon& plan);
 
@@ -28,6 +29,7 @@ class OutlineStretches {
     model::RoofEdge kind = model::RoofEdge::open;
   };
   std::vector<Stretch> stretches_;
+  std::optional<model::Point2> street_;  ///< which way the longest street front looks
 };
 
 /// Fills roof_plan and roof_edges of all parts. \param tolerance  m, GenerateOptions::collinear_tolerance

@@ -27,11 +27,10 @@ constexpr double kOverEdge = 0.5;         ///< cosine of 60 degrees: water that 
 constexpr double kLevel = 0.1;            ///< rise over run: eaves are level, to what a bay's plane leaves of that
 constexpr double kMost = 0.5;             ///< of a front
 constexpr double kRearShare = 0.75;       ///< of a facade that looks away from the street: wings stand against its eaves
-constexpr double kLooksAway = -0.70710678118654752;
+constexpr double kLooksAway = -0.68199836006249850;  ///< cosine of 133 degrees
 constexpr double kSameFacade = 0.97814760073380569;  ///< cosine of 12 degrees
 constexpr double kFacadeDepth = 2.5;      ///< m, of what belongs to one facade
 constexpr double kEavesZone = 1.5;        ///< m above the lowest wall top: a level wall top higher up is no eaves
-constexpr double kHouseDepth = 20;        ///< m. Farther from the front stand wings, whose ends may be gables.
 constexpr double kLeastPartyEaves = 1.0;  ///< m. Shorter ones are corners
 constexpr double kReturn = 2.5;           ///< m. Shorter party walls are returns of a fire wall: the roof runs on over them.
 constexpr double kLeastFront = 3.0;       ///< m of front on each street of a corner house
@@ -219,12 +218,6 @@ bool falls_both_ways(model::RoofShape shape) {
   }
 }
 
-/// m behind the line of a front.
-double depth_of(const Wall& front, const Wall& wall) {
-  const Point2 out = front.outwards();
-  return -dot({(wall.from.x + wall.to.x) / 2 - front.from.x, (wall.from.y + wall.to.y) / 2 - front.from.y}, out);
-}
-
 double height_at(const SlopeEnd& end, double along) {
   for (std::uint32_t i = 1; i < end.count; ++i) {
     const auto& a = end.profile[i - 1];
@@ -238,7 +231,7 @@ double height_at(const SlopeEnd& end, double along) {
 std::optional<double> distance_between(const SlopeEnd& a, const SlopeEnd& b) {
   if (std::fabs(a.z - b.z) > kSameHeight || dot(a.wall, b.wall) < kSameDirection || dot(a.eaves, b.eaves) > -kSameDirection)
     return std::nullopt;
-  const bool asked_alike = a.usual > 0 && a.usual == b.usual && std::fabs(a.pitch - b.pitch) < 0.05 * a.pitch;
+  const bool asked_alike = a.usual > 0 && a.usual == b.usual && std::fabs(a.pitch - b.pitch) < 0.05 * std::max(a.pitch, b.pitch);
   if (!asked_alike && std::fabs(a.pitch - b.pitch) > kSamePitch) return std::nullopt;
   // As far as both slopes are the ones that rise from the eaves.
   const double reach = std::min(a.profile[1][0], b.profile[1][0]);
@@ -279,21 +272,23 @@ RoofscapeCount count_roofscape(const model::Region& region) {
       // Fronts by the street they look at: the longest, what looks its way, and what looks elsewhere.
       const Wall* front = main_front(walls);
       if (!front) continue;
-      Lengths main, other, rear;
+      Lengths main, other, yard;
+      bool has_rear = false;
       for (const Wall& w : walls) {
         const double looks = dot(w.outwards(), front->outwards());
         if (w.kind == RoofEdge::street)
           (looks >= kOtherStreet ? main : other).add(w);
-        else if (w.kind != RoofEdge::party_wall && looks < kRear && depth_of(*front, w) <= kHouseDepth)
-          rear.add(w);
+        else if (w.kind != RoofEdge::party_wall)
+          yard.add(w);
+        has_rear = has_rear || (w.kind != RoofEdge::party_wall && w.kind != RoofEdge::street && looks < kRear && w.length >= kLeastFront);
       }
       if (!falls_both_ways(part.attributes.roof_shape.value)) continue;
       if (building.situation.position == model::BuildingPosition::mid_row) {
         ++s.mid_row;
         s.eaves_to_street += main.mostly_eaves();
-        if (rear.wall >= kLeastFront) {
+        if (has_rear) {
           ++s.with_rear;
-          s.eaves_to_rear += rear.mostly_eaves();
+          s.eaves_to_rear += yard.mostly_eaves();
         }
       } else if (building.situation.position == model::BuildingPosition::corner_house && other.wall >= kLeastFront) {
         ++s.corner_houses;
@@ -311,15 +306,19 @@ void settle_slope_ends(std::vector<SlopeEnd>& ends, Roofscape& sums) {
   for (std::size_t i = 0; i < ends.size();) {
     std::size_t k = i + 1;
     while (k < ends.size() && ends[k].x == ends[i].x && ends[k].y == ends[i].y) ++k;
-    if (k - i == 1) left.push_back(ends[i]);
+    std::vector<char> met(k - i, 0);
     for (std::size_t a = i; a < k; ++a)
-      for (std::size_t b = a + 1; b < k; ++b)
-        if (const auto distance = distance_between(ends[a], ends[b])) {
-          ++sums.meetings;
-          if (*distance <= kApart) continue;
-          ++sums.apart;
-          sums.widest = std::max(sums.widest, *distance);
-        }
+      for (std::size_t b = a + 1; b < k; ++b) {
+        const auto distance = distance_between(ends[a], ends[b]);
+        if (!distance) continue;
+        met[a - i] = met[b - i] = 1;
+        ++sums.meetings;
+        if (*distance <= kApart) continue;
+        ++sums.apart;
+        sums.widest = std::max(sums.widest, *distance);
+      }
+    for (std::size_t a = i; a < k; ++a)
+      if (!met[a - i]) left.push_back(ends[a]);
     i = k;
   }
   ends = std::move(left);

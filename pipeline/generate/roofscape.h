@@ -16,10 +16,12 @@ struct Roofscape {
   std::uint64_t mid_row = 0;          ///< between two neighbours, with a front on a street
   std::uint64_t eaves_to_street = 0;  ///< of them: water runs to the street from at least half of the front
   std::uint64_t with_rear = 0;        ///< of them: with a free wall opposite to the front
-  std::uint64_t eaves_to_rear = 0;    ///< ... and water runs there from at least half of it
+  std::uint64_t eaves_to_rear = 0;    ///< ... and water runs to the yard from at least half of the free walls there, wings' too
   std::uint64_t corner_houses = 0;    ///< on two streets, with a neighbour
   std::uint64_t turned = 0;           ///< of them: eaves to both streets
-  std::uint64_t party_eaves = 0;      ///< houses from whose roofs water runs into a neighbour's wall
+  /// Houses from whose eaves water runs into a neighbour's wall: eaves of more than 1 m, at most 1.5 m above the lowest, on a
+  /// party wall longer than 2.5 m in a facade that is one (half of it, three quarters of a rear one).
+  std::uint64_t party_eaves = 0;
   std::uint64_t party_eaves_mapped = 0;  ///< of them: roof:shape, roof:direction or roof:orientation want it so
   double party_eaves_length = 0;      ///< m
   std::uint64_t meetings = 0;         ///< slopes of two neighbours that are one plane by eaves, pitch and direction

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "pipeline/geometry/planar_faces.h"
 #include "pipeline/geometry/polygon.h"
@@ -22,10 +23,14 @@ using model::RoofEdge;
 namespace {
 
 constexpr double kSameWay = 0.97814760073380569;  ///< cosine of 12 degrees: edges of one facade
+/// m. What an edge of a facade may come off the line from one end to the other: eaves stay level. A front that bends is two.
+constexpr double kDrift = 0.25;
 constexpr double kTurns = 0.34202014332566871;    ///< sine of 20 degrees: lines that meet in a corner
 constexpr double kLongestGap = 12;                ///< m along the outline between two edges of one facade: a wide bay
 constexpr double kSameCorner = 0.10;              ///< m. Lines that meet so near a corner of the plan meet in it
 constexpr double kChip = 0.6;                     ///< m. A shorter piece of wall makes no facade
+/// m below the eaves to which a roof may come down over a bay: half a storey, so that the bay keeps its windows.
+constexpr double kDeepestDrop = 1.4;
 constexpr double kMostChange = 0.2;               ///< of the plan's area
 
 double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
@@ -44,7 +49,11 @@ class RingFacades {
   bool find() {
     std::vector<std::size_t> order(count_);
     for (std::size_t i = 0; i < count_; ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return edge(a).length > edge(b).length; });
+    // By length, then by place: neither rounding nor the start of the ring decides.
+    const auto key = [&](std::size_t e) {
+      return std::tuple(-std::llround(edge(e).length * 100), std::min(edge(e).from, edge(e).to));
+    };
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
     bool any = false;
     for (const std::size_t e : order) {
       if (lead_[e] != count_) continue;
@@ -68,6 +77,7 @@ class RingFacades {
   struct Corner {
     Point2 at;
     std::size_t lead;  ///< of the facade that starts here, as an edge of the ring; count for a step of its own
+    std::size_t before = 0, after = 0;  ///< facades on both sides of it
   };
   /// The corners between facades, in order.
   std::vector<Corner> corners() const {
@@ -82,18 +92,18 @@ class RingFacades {
         const double t = cross(minus(b.from, a.from), b.along()) / sine;
         const Point2 meet{a.from.x + t * a.along().x, a.from.y + t * a.along().y};
         if (distance(meet, here) <= kSameCorner) {
-          out.push_back({here, after});
+          out.push_back({here, after, before, after});
           continue;
         }
         if (distance(meet, here) <= 2 * depth_) {
-          out.push_back({meet, after});
+          out.push_back({meet, after, before, after});
           continue;
         }
       }
       // A step between two lines: each keeps its own.
       const Point2 from = foot(a, here), to = foot(b, here);
-      out.push_back({from, distance(from, to) > kSameCorner ? count_ : after});
-      if (distance(from, to) > kSameCorner) out.push_back({to, after});
+      out.push_back({from, distance(from, to) > kSameCorner ? count_ : after, before, after});
+      if (distance(from, to) > kSameCorner) out.push_back({to, after, before, after});
     }
     return out;
   }
@@ -123,7 +133,8 @@ class RingFacades {
         // It must lead on, not back past what the facade has.
         const Point2 end = step == 1 ? edge(e).to : edge(e).from, has = step == 1 ? edge(last).to : edge(last).from;
         const double on = dot(minus(end, has), line.along()) * (step == 1 ? 1 : -1);
-        if (way >= kSameWay && on > 0) {
+        const double drift = std::fabs(cross(line.along(), minus(edge(e).to, edge(e).from)));
+        if (way >= kSameWay && drift <= kDrift && on > 0) {
           for (std::size_t f = (last + step) % count_;; f = (f + step) % count_) {
             lead_[f] = lead;
             if (f == e) break;
@@ -252,6 +263,10 @@ class Bringer {
         if (!add(hole)) return std::nullopt;
       out.surfaces.push_back(std::move(surface));
     }
+    double eaves = heights_.empty() ? 0 : heights_.begin()->second;
+    for (const auto& [from, to, surface] : border_) eaves = std::min(eaves, planes_[surface].z(from));
+    for (const auto& [at, z] : heights_)
+      if (z < eaves - kDeepestDrop) return std::nullopt;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       std::vector<Point2>& points = on_wall[e];
       const auto along = [&](Point2 p) { return dot(minus(p, edges_[e].from), edges_[e].along()); };
@@ -316,14 +331,15 @@ class Bringer {
       const double length = distance(from, to);
       if (length <= 0) continue;
       const Point2 u{(to.x - from.x) / length, (to.y - from.y) / length};
-      const auto is_end = [&](Point2 p) {
-        return std::any_of(ends_.begin(), ends_.end(), [&](const End& e) { return e.at == p; });
+      // A crease that comes alone to the border runs on through the wall, wherever that stands: its own end, a grid step
+      // beside the wall, would be a second corner there. Corners of the plan, and common ends, stay.
+      const auto runs_on = [&](Point2 p) {
+        return std::count_if(ends_.begin(), ends_.end(), [&](const End& e) { return e.at == p; }) == 1 &&
+               std::none_of(edges_.begin(), edges_.end(), [&](const PlanEdge& e) { return e.from == p; });
       };
       geometry::DividingLine line{id++, {}, {}};
-      if (is_end(from)) line.points.push_back(model::snap(Point2{from.x - kBeyond * u.x, from.y - kBeyond * u.y}));
-      line.points.push_back(from);
-      line.points.push_back(to);
-      if (is_end(to)) line.points.push_back(model::snap(Point2{to.x + kBeyond * u.x, to.y + kBeyond * u.y}));
+      line.points.push_back(runs_on(from) ? model::snap(Point2{from.x - kBeyond * u.x, from.y - kBeyond * u.y}) : from);
+      line.points.push_back(runs_on(to) ? model::snap(Point2{to.x + kBeyond * u.x, to.y + kBeyond * u.y}) : to);
       out.push_back(std::move(line));
     }
     return out;
@@ -400,8 +416,13 @@ std::optional<EavesPlan> eaves_plan(const Polygon& plan, const std::vector<RoofE
       any = true;
       for (const auto& corner : facades.corners()) {
         to.points.push_back(model::snap(corner.at));
-        if (known)
-          out.edges.push_back(corner.lead == n ? RoofEdge::open : kind_of(all, edges, begin, facades, n, corner.lead));
+        if (!known) continue;
+        const auto kind = [&](std::size_t lead) { return kind_of(all, edges, begin, facades, n, lead); };
+        // A step between two party walls is one.
+        if (corner.lead == n)
+          out.edges.push_back(kind(corner.before) == kind(corner.after) ? kind(corner.before) : RoofEdge::open);
+        else
+          out.edges.push_back(kind(corner.lead));
       }
       to.nodes.assign(to.points.size(), 0);
     } else {

@@ -5,6 +5,7 @@
 #include "pipeline/geometry/polygon.h"
 #include "styles/roofs/roof.h"
 #include "styles/roofs/shape_tables.h"
+#include "styles/roofs/eaves_lines.h"
 #include "styles/roofs/roof_sides.h"
 #include "styles/roofs/skeleton_roofs.h"
 
@@ -49,7 +50,8 @@ double way_down(const Polygon& plan, const RoofRequest& request) {
 bool needs_skeleton(const Polygon& plan, const RoofRequest& request) {
   if (!rises_from_edges(request.shape)) return false;
   const bool in_row = std::find(request.edges.begin(), request.edges.end(), model::RoofEdge::party_wall) != request.edges.end();
-  return in_row || request.along_eaves_lines || request.shape == RoofShape::berlin || !is_one_wing(plan);
+  return in_row || request.shape == RoofShape::berlin || !is_one_wing(plan) ||
+         (request.along_eaves_lines && eaves_plan(plan, request.edges));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon.h"
@@ -19,14 +20,19 @@ namespace {
 constexpr double kStraight = 0.93969262078590838;   ///< cosine of 20 degrees: walls that bend less are one wall
 constexpr double kOwnShare = 0.5, kRearShare = 0.75;  ///< of such a wall: what makes it a party wall
 constexpr double kShortReturn = 2.0;                ///< m. Between party walls: steps of a fire wall, light shafts
-constexpr double kLooksAlong = 0.70710678118654752; ///< cosine of 45 degrees
+constexpr double kLooksAlong = 0.68199836006249850; ///< cosine of 47 degrees: walls at 45 are common, and decide nothing
+constexpr double kOneWall = 0.76604444311897804;    ///< cosine of 40 degrees: a wall ends where a curve has turned by more
 constexpr double kTurns = 0.86602540378443865;      ///< cosine of 30 degrees: streets that differ by more meet at a corner
 constexpr double kLeastFront = 3.0;                 ///< m. A shorter stretch on another street makes no corner house
 constexpr double kLeastOpen = 0.1;                  ///< of the outline: less open wall is a light shaft, no side for eaves
+constexpr double kLeastBehind = 0.25;               ///< of an edge: eaves behind less of it are those of a light shaft
 constexpr double kCoveredEnd = 0.3;                 ///< of the plan's width: less party wall leaves an end free
 constexpr double kNeighbour = 0.3;                  ///< of a side: less is a corner or a shed, no neighbour
 constexpr double kMostOfSide = 0.5;                 ///< of the one long side that must be covered where the other is free
 constexpr double kOblong = 2.0;                     ///< length by width: longer wings lean on a wall at their long side
+
+/// Lengths are compared so that their last digits do not count.
+std::int64_t centimetres(double metres) { return std::llround(metres * 100); }
 
 double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 Point2 negated(Point2 a) { return {-a.x, -a.y}; }
@@ -56,7 +62,7 @@ class Finder {
     lay(wants_gables, out);
     if (request_.shape_is_mapped && (out.leans || !out.has(RoofSide::eaves))) {
       // Two slopes are mapped: one of them ends at a neighbour's wall.
-      keep_party_walls_along(ridge_axis(plan_, request_));
+      keep_party_walls_along(is_one_wing(plan_) ? ridge() : ridge_axis(plan_, request_));
       lay(wants_gables, out);
     }
     return out;
@@ -85,7 +91,9 @@ class Finder {
     if (first == n) first = 0;
     for (std::size_t done = 0; done < n;) {
       std::size_t count = 1;
-      while (done + count < n && !bends((first + done + count - 1) % n)) ++count;
+      while (done + count < n && !bends((first + done + count - 1) % n) &&
+             dot(edges_[begin + (first + done) % n].along(), edges_[begin + (first + done + count) % n].along()) >= kOneWall)
+        ++count;
       visit((first + done) % n, count);
       done += count;
     }
@@ -149,18 +157,19 @@ class Finder {
       for (std::size_t e = 0; e < edges_.size(); ++e)
         if (kind(e) == RoofEdge::street && !party_[e]) visit(e);
     };
-    double longest = 0;
+    // The longest front, whose pieces count together; ties go to the longest piece, then to the least corner: rounding and
+    // the start of a ring decide nothing.
+    std::tuple<std::int64_t, std::int64_t, Point2> best;
     fronts([&](std::size_t e) {
-      // Pieces of one front count together.
       double length = 0;
       fronts([&](std::size_t f) {
         if (dot(edges_[e].along(), edges_[f].along()) >= kStraight) length += edges_[f].length;
       });
-      constexpr double kLonger = 0.01;  // m: rounding decides nothing
-      if (length > longest + kLonger || (length > longest - kLonger && edges_[e].length > edges_[*out.main].length + kLonger)) {
-        longest = length;
-        out.main = e;
-      }
+      const Point2 least = std::min(edges_[e].from, edges_[e].to);
+      const std::tuple key(centimetres(length), centimetres(edges_[e].length), Point2{-least.x, -least.y});
+      if (out.main && key <= best) return;
+      best = key;
+      out.main = e;
     });
     if (!out.main) return out;
     double other = 0;
@@ -266,10 +275,11 @@ class Finder {
     return found;
   }
 
-  /// Do eaves look the other way behind some of this edge, before the party wall?
-  bool has_eaves_behind(std::size_t e, const RoofSides& out) const {
+  /// m of an edge behind which eaves look the other way.
+  double eaves_behind(std::size_t e, const RoofSides& out) const {
     const PlanEdge& from = edges_[e];
     const Point2 along = from.along(), in = negated(from.outwards());
+    double length = 0;
     for (std::size_t f = 0; f < edges_.size(); ++f) {
       if (f == e || out.sides[f] == RoofSide::party || out.sides[f] == RoofSide::gable) continue;
       const PlanEdge& other = edges_[f];
@@ -278,25 +288,40 @@ class Finder {
                                                        dot({p.x - from.from.x, p.y - from.from.y}, in)}; };
       const Point2 a = place(other.from), b = place(other.to);
       constexpr double kBehind = 0.05;  // m
-      if (std::min(a.x, b.x) < from.length - kBehind && std::max(a.x, b.x) > kBehind && std::max(a.y, b.y) > kBehind)
-        return true;
+      const double overlap = std::min(std::max(a.x, b.x), from.length) - std::max(std::min(a.x, b.x), 0.0);
+      if (overlap > kBehind && std::max(a.y, b.y) > kBehind) length += overlap;
     }
-    return false;
+    return length;
+  }
+
+  /// The hip over the end of a wing: eaves on both its sides look away from each other, and it is no longer than a wing's
+  /// end is.
+  bool is_hip(std::size_t e, const RoofSides& out) const {
+    std::size_t begin = 0, n = plan_.outer.size();
+    for (std::size_t r = 0; r + 1 < rings_.size(); ++r)
+      if (e >= rings_[r] && e < rings_[r + 1]) begin = rings_[r], n = rings_[r + 1] - begin;
+    const std::size_t before = begin + (e - begin + n - 1) % n, after = begin + (e - begin + 1) % n;
+    if (out.sides[before] != RoofSide::eaves || out.sides[after] != RoofSide::eaves) return false;
+    if (dot(edges_[before].outwards(), edges_[after].outwards()) > -kLooksAlong) return false;
+    constexpr double kHipLength = 1.5;  // of its neighbours'
+    return edges_[e].length <= kHipLength * std::min(edges_[before].length, edges_[after].length);
   }
 
   void find_lean_sides(RoofSides& out) const {
+    const Streets s = streets();
+    // A corner house's yard may be small; elsewhere a light shaft makes no second slope.
+    const double least_behind = s.corner ? 0 : kLeastBehind;
     std::vector<char> lean(edges_.size(), 0);
     for (std::size_t e = 0; e < edges_.size(); ++e) {
-      if (out.sides[e] != RoofSide::eaves) continue;
+      if (out.sides[e] != RoofSide::eaves || is_hip(e, out)) continue;
       int party = 0;
       for (const double share : {0.25, 0.5, 0.75}) {
         const auto met = opposite(e, share);
         party += met && out.sides[*met] == RoofSide::party &&
                  dot(edges_[*met].outwards(), edges_[e].outwards()) < -kLooksAlong;
       }
-      lean[e] = party >= 2 && !has_eaves_behind(e, out);
+      lean[e] = party >= 2 && eaves_behind(e, out) <= least_behind * edges_[e].length;
     }
-    const Streets s = streets();
     if (s.corner && fronts_lean(lean, out)) {
       out.corner = yard_corner(out);
       if (out.corner) return;  // the fronts face the yard's eaves now
@@ -312,11 +337,16 @@ class Finder {
     out.leans = all && out.has(RoofSide::lean);
   }
 
+  /// Do the slopes of (nearly) all fronts rise to party walls?
   bool fronts_lean(const std::vector<char>& lean, const RoofSides& out) const {
-    for (std::size_t e = 0; e < edges_.size(); ++e)
-      if (kind(e) == RoofEdge::street && out.sides[e] == RoofSide::eaves && edges_[e].length >= kLeastFront && !lean[e])
-        return false;
-    return true;
+    double all = 0, leaning = 0;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (kind(e) != RoofEdge::street || out.sides[e] != RoofSide::eaves) continue;
+      all += edges_[e].length;
+      if (lean[e]) leaning += edges_[e].length;
+    }
+    constexpr double kNearlyAll = 0.75;
+    return all > 0 && leaning >= kNearlyAll * all;
   }
 
   /// The corner between two party walls of the outer ring that lies farthest from the street fronts.
@@ -362,10 +392,14 @@ std::vector<std::uint32_t> RoofSides::which(RoofSide side) const {
 bool RoofSides::has(RoofSide side) const { return std::find(sides.begin(), sides.end(), side) != sides.end(); }
 
 std::optional<Point2> street_outlook(const std::vector<PlanEdge>& edges, const std::vector<RoofEdge>& kinds) {
-  std::optional<std::size_t> longest;
   if (kinds.size() != edges.size()) return std::nullopt;
+  std::optional<std::size_t> longest;
+  const auto key = [&](std::size_t e) {
+    const Point2 least = std::min(edges[e].from, edges[e].to);
+    return std::tuple(centimetres(edges[e].length), Point2{-least.x, -least.y});
+  };
   for (std::size_t e = 0; e < edges.size(); ++e)
-    if (kinds[e] == RoofEdge::street && (!longest || edges[e].length > edges[*longest].length)) longest = e;
+    if (kinds[e] == RoofEdge::street && (!longest || key(e) > key(*longest))) longest = e;
   return longest ? std::optional(edges[*longest].outwards()) : std::nullopt;
 }
 

@@ -37,8 +37,8 @@ struct RoofSides {
 /// * The ridge of a plan of one wing runs along its street; at a street corner, and without a street, from the party
 ///   walls as ridge_between() says. An end without a neighbour is a gable, but never one that faces a street: there the
 ///   roof turns (a mapped shape keeps its gable). Other plans have gables at the ends of their wings that face no street.
-/// * Eaves from which the way in ends at a party wall, with no eaves before it that look the other way, are the foot of a
-///   lean-to. Where that is so of all fronts of a house on two streets, it is a corner house without a yard of its own.
+/// * Eaves from which the way in ends at a party wall, with hardly any eaves behind them that look the other way, are the foot
+///   of a lean-to; hips over the ends of wings are not. Where that is so of all fronts of a house on two streets, it is a corner house without a yard of its own.
 /// * A mapped shape with a ridge keeps it: where all eaves would be the foot of a lean-to, party walls that do not look
 ///   along the plan's axis stay eaves.
 RoofSides roof_sides(const model::Polygon& plan, const RoofRequest& request, bool wants_gables);

@@ -62,6 +62,9 @@ Point2 default_slope(const Polygon& plan, const std::vector<model::RoofEdge>& ed
   };
   const auto street = known ? street_outlook(all, edges) : std::nullopt;
   const bool in_row = known && std::find(edges.begin(), edges.end(), model::RoofEdge::party_wall) != edges.end();
+  double longest = 0;
+  for (std::size_t e = 0; e < n; ++e) longest = std::max(longest, all[e].length);
+  const double least = std::min(2.0, 0.3 * longest);  // m. Chips of walls and sides of bays have no say.
   Point2 down{0, -1};
   double best = -1;
   int best_rank = -1;
@@ -70,7 +73,7 @@ Point2 default_slope(const Polygon& plan, const std::vector<model::RoofEdge>& ed
     const bool leans = !party && opposite(e) > all[e].length / 2;
     const double away = street ? -(all[e].outwards().x * street->x + all[e].outwards().y * street->y) : 0;
     constexpr double kAway = 0.7;  // cosine of about 45 degrees
-    const int rank = party                                                   ? 0
+    const int rank = party || all[e].length < least                          ? 0
                      : in_row && away > kAway                                ? 4
                      : leans && !is(e, model::RoofEdge::street)              ? 3
                      : in_row && is(e, model::RoofEdge::street)              ? 2

@@ -45,6 +45,14 @@ TEST(RoofEdges, AreWhatMostOfTheirStretchesAre) {
   EXPECT_TRUE(roof_edges(model::Building{}, kHouse).empty());
 }
 
+TEST(RoofEdges, RearsTakeMoreOfANeighbour) {
+  // A wing stands against 55 % of the rear: eaves run on above it; against 80 %, the wall is its own.
+  for (const double covered : {3.3, 4.8}) {
+    const auto b = building({{0, EdgeKind::street, 0, 6, false}, {2, EdgeKind::party_wall, 0, covered, false}, {2, EdgeKind::courtyard, covered, 6, false}});
+    EXPECT_EQ(roof_edges(b, kHouse)[2], covered < 4 ? RoofEdge::courtyard : RoofEdge::party_wall);
+  }
+}
+
 TEST(RoofEdges, OutbuildingsAreNoNeighbours) {
   const auto b = building({{0, EdgeKind::street, 0, 6, false}, {1, EdgeKind::party_wall, 0, 10, true}});
   EXPECT_EQ(roof_edges(b, kHouse)[1], RoofEdge::open);

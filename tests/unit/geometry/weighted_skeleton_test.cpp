@@ -120,7 +120,7 @@ TEST(WeightedSkeleton, EavesWithoutLengthFillACorner) {
   // of an L whose inner corner has been filled.
   for (const bool is_turned : {false, true}) {
     const Polygon square = polygon({{0, 0}, {12, 0}, {12, 12}, {0, 12}});
-    const Polygon plan = is_turned ? turned(square) : square;
+    const Polygon plan = is_turned ? testing_shapes::turned(square) : square;
     std::vector<EdgeProfile> profiles = equal(plan);
     profiles[2].slope = profiles[3].slope = kUpright;
     const std::vector<CornerEaves> corner{{3, {}}};

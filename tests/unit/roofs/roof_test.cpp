@@ -9,6 +9,7 @@
 
 #include "pipeline/geometry/needles.h"
 #include "styles/roofs/skeleton_roofs.h"
+#include "styles/roofs/wing_ends.h"
 #include "tests/unit/geometry/random_plans.h"
 #include "tests/unit/roofs/roof_checks.h"
 
