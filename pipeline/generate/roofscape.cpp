@@ -288,7 +288,7 @@ RoofscapeCount count_roofscape(const model::Region& region) {
         s.eaves_to_street += main.mostly_eaves();
         if (has_rear) {
           ++s.with_rear;
-          s.eaves_to_rear += yard.mostly_eaves();
+          s.eaves_to_rear += yard.eaves >= kMost * std::min(yard.wall, main.wall);
         }
       } else if (building.situation.position == model::BuildingPosition::corner_house && other.wall >= kLeastFront) {
         ++s.corner_houses;

@@ -16,7 +16,7 @@ struct Roofscape {
   std::uint64_t mid_row = 0;          ///< between two neighbours, with a front on a street
   std::uint64_t eaves_to_street = 0;  ///< of them: water runs to the street from at least half of the front
   std::uint64_t with_rear = 0;        ///< of them: with a free wall opposite to the front
-  std::uint64_t eaves_to_rear = 0;    ///< ... and water runs to the yard from at least half of the free walls there, wings' too
+  std::uint64_t eaves_to_rear = 0;    ///< ... and water runs to the yard from half of the free walls there, or half a front's length
   std::uint64_t corner_houses = 0;    ///< on two streets, with a neighbour
   std::uint64_t turned = 0;           ///< of them: eaves to both streets
   /// Houses from whose eaves water runs into a neighbour's wall: eaves of more than 1 m, at most 1.5 m above the lowest, on a

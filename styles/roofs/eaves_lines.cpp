@@ -42,7 +42,7 @@ double distance(Point2 a, Point2 b) { return std::sqrt(dot(minus(a, b), minus(a,
 
 class RingFacades {
  public:
-  RingFacades(const std::vector<PlanEdge>& edges, std::size_t begin, std::size_t count, double depth)
+  RingFacades(const std::vector<PlanSide>& edges, std::size_t begin, std::size_t count, double depth)
       : edges_(edges), begin_(begin), count_(count), depth_(depth), lead_(count, count) {}
 
   /// False when no facade has several edges.
@@ -85,7 +85,7 @@ class RingFacades {
     for (std::size_t i = 0; i < count_; ++i) {
       const std::size_t before = lead_[(i + count_ - 1) % count_], after = lead_[i];
       if (before == after) continue;
-      const PlanEdge &a = edge(before), &b = edge(after);
+      const PlanSide &a = edge(before), &b = edge(after);
       const Point2 here = edge(i).from;
       const double sine = cross(a.along(), b.along());
       if (std::fabs(sine) >= kTurns) {
@@ -111,17 +111,17 @@ class RingFacades {
   std::size_t lead(std::size_t i) const { return lead_[i]; }
 
  private:
-  const PlanEdge& edge(std::size_t i) const { return edges_[begin_ + i]; }
-  static Point2 foot(const PlanEdge& line, Point2 p) {
+  const PlanSide& edge(std::size_t i) const { return edges_[begin_ + i]; }
+  static Point2 foot(const PlanSide& line, Point2 p) {
     const Point2 u = line.along();
     const double t = dot(minus(p, line.from), u);
     return {line.from.x + t * u.x, line.from.y + t * u.y};
   }
-  bool near(const PlanEdge& line, Point2 p) const { return std::fabs(cross(line.along(), minus(p, line.from))) <= depth_; }
+  bool near(const PlanSide& line, Point2 p) const { return std::fabs(cross(line.along(), minus(p, line.from))) <= depth_; }
 
   /// Takes edges into the facade of `lead`, one way round the ring (step 1 or count - 1).
   bool grow(std::size_t lead, std::size_t step) {
-    const PlanEdge line = edge(lead);
+    const PlanSide line = edge(lead);
     bool any = false;
     std::size_t last = lead;
     for (;;) {
@@ -150,14 +150,14 @@ class RingFacades {
     }
   }
 
-  const std::vector<PlanEdge>& edges_;
+  const std::vector<PlanSide>& edges_;
   std::size_t begin_, count_;
   double depth_;
   std::vector<std::size_t> lead_;  ///< of each edge: the longest one of its facade; count while it has none
 };
 
 /// What a facade is: a party wall when enough of it is (party_share_of()), else what most of it is.
-RoofEdge kind_of(const std::vector<PlanEdge>& edges, const std::vector<RoofEdge>& kinds, std::size_t begin,
+RoofEdge kind_of(const std::vector<PlanSide>& edges, const std::vector<RoofEdge>& kinds, std::size_t begin,
                  const RingFacades& facades, std::size_t count, std::size_t lead) {
   std::array<double, 4> length{};
   double all = 0;
@@ -214,7 +214,7 @@ bool contains(const Roof::Surface& surface, Point2 p) {
 class Bringer {
  public:
   Bringer(const Roof& roof, const Polygon& eaves, const Polygon& plan)
-      : roof_(roof), eaves_edges_(plan_edges(eaves)), plan_(plan), edges_(plan_edges(plan)) {}
+      : roof_(roof), eaves_edges_(plan_sides(eaves)), plan_(plan), edges_(plan_sides(plan)) {}
 
   std::optional<Roof> run() {
     for (const Roof::Surface& s : roof_.surfaces) {
@@ -335,7 +335,7 @@ class Bringer {
       // beside the wall, would be a second corner there. Corners of the plan, and common ends, stay.
       const auto runs_on = [&](Point2 p) {
         return std::count_if(ends_.begin(), ends_.end(), [&](const End& e) { return e.at == p; }) == 1 &&
-               std::none_of(edges_.begin(), edges_.end(), [&](const PlanEdge& e) { return e.from == p; });
+               std::none_of(edges_.begin(), edges_.end(), [&](const PlanSide& e) { return e.from == p; });
       };
       geometry::DividingLine line{id++, {}, {}};
       line.points.push_back(runs_on(from) ? model::snap(Point2{from.x - kBeyond * u.x, from.y - kBeyond * u.y}) : from);
@@ -349,7 +349,7 @@ class Bringer {
   bool on_eaves(const Border& b) const {
     constexpr double kOnEdge = 0.01;  // m
     const Point2 middle{(b.from.x + b.to.x) / 2, (b.from.y + b.to.y) / 2};
-    return std::any_of(eaves_edges_.begin(), eaves_edges_.end(), [&](const PlanEdge& e) {
+    return std::any_of(eaves_edges_.begin(), eaves_edges_.end(), [&](const PlanSide& e) {
       return geometry::distance_to_segment(middle, e.from, e.to) <= kOnEdge;
     });
   }
@@ -390,9 +390,9 @@ class Bringer {
   }
 
   const Roof& roof_;
-  std::vector<PlanEdge> eaves_edges_;
+  std::vector<PlanSide> eaves_edges_;
   const Polygon& plan_;
-  std::vector<PlanEdge> edges_;
+  std::vector<PlanSide> edges_;
   std::vector<Plane> planes_;
   std::vector<Crease> creases_;
   std::vector<End> ends_;
@@ -403,7 +403,7 @@ class Bringer {
 }  // namespace
 
 std::optional<EavesPlan> eaves_plan(const Polygon& plan, const std::vector<RoofEdge>& edges) {
-  const std::vector<PlanEdge> all = plan_edges(plan);
+  const std::vector<PlanSide> all = plan_sides(plan);
   const double depth = std::min(kDeepestBay, kBayShare * geometry::equivalent_width(plan));
   const bool known = edges.size() == all.size();
   EavesPlan out;

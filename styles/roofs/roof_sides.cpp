@@ -47,7 +47,7 @@ std::vector<std::size_t> ring_starts(const Polygon& plan) {
 class Finder {
  public:
   Finder(const Polygon& plan, const RoofRequest& request)
-      : plan_(plan), request_(request), edges_(plan_edges(plan)), rings_(ring_starts(plan)) {}
+      : plan_(plan), request_(request), edges_(plan_sides(plan)), rings_(ring_starts(plan)) {}
 
   RoofSides sides(bool wants_gables) {
     RoofSides out;
@@ -255,14 +255,14 @@ class Finder {
 
   /// The first edge that a way into the plan meets.
   std::optional<std::size_t> opposite(std::size_t e, double share) const {
-    const PlanEdge& from = edges_[e];
+    const PlanSide& from = edges_[e];
     const Point2 in = negated(from.outwards());
     const Point2 p{from.from.x + share * (from.to.x - from.from.x), from.from.y + share * (from.to.y - from.from.y)};
     std::optional<std::size_t> found;
     double nearest = 0;
     for (std::size_t f = 0; f < edges_.size(); ++f) {
       if (f == e) continue;
-      const PlanEdge& other = edges_[f];
+      const PlanSide& other = edges_[f];
       const Point2 a{other.from.x - p.x, other.from.y - p.y}, b{other.to.x - p.x, other.to.y - p.y};
       const double ca = in.x * a.y - in.y * a.x, cb = in.x * b.y - in.y * b.x;
       if ((ca > 0) == (cb > 0)) continue;
@@ -277,12 +277,12 @@ class Finder {
 
   /// m of an edge behind which eaves look the other way.
   double eaves_behind(std::size_t e, const RoofSides& out) const {
-    const PlanEdge& from = edges_[e];
+    const PlanSide& from = edges_[e];
     const Point2 along = from.along(), in = negated(from.outwards());
     double length = 0;
     for (std::size_t f = 0; f < edges_.size(); ++f) {
       if (f == e || out.sides[f] == RoofSide::party || out.sides[f] == RoofSide::gable) continue;
-      const PlanEdge& other = edges_[f];
+      const PlanSide& other = edges_[f];
       if (dot(other.outwards(), in) < kLooksAlong) continue;
       const auto place = [&](Point2 p) { return Point2{dot({p.x - from.from.x, p.y - from.from.y}, along),
                                                        dot({p.x - from.from.x, p.y - from.from.y}, in)}; };
@@ -355,7 +355,7 @@ class Finder {
     double most = 0;
     const std::size_t n = plan_.outer.size();
     for (std::size_t i = 0; i < n; ++i) {
-      const PlanEdge &before = edges_[(i + n - 1) % n], &after = edges_[i];
+      const PlanSide &before = edges_[(i + n - 1) % n], &after = edges_[i];
       if (out.sides[(i + n - 1) % n] != RoofSide::party || out.sides[i] != RoofSide::party) continue;
       const Point2 u = before.along(), v = after.along();
       if (u.x * v.y - u.y * v.x < kLooksAlong) continue;  // convex, from 45 to 135 degrees
@@ -375,7 +375,7 @@ class Finder {
 
   const Polygon& plan_;
   const RoofRequest& request_;
-  std::vector<PlanEdge> edges_;
+  std::vector<PlanSide> edges_;
   std::vector<std::size_t> rings_;
   std::vector<char> party_;
 };
@@ -391,7 +391,7 @@ std::vector<std::uint32_t> RoofSides::which(RoofSide side) const {
 
 bool RoofSides::has(RoofSide side) const { return std::find(sides.begin(), sides.end(), side) != sides.end(); }
 
-std::optional<Point2> street_outlook(const std::vector<PlanEdge>& edges, const std::vector<RoofEdge>& kinds) {
+std::optional<Point2> street_outlook(const std::vector<PlanSide>& edges, const std::vector<RoofEdge>& kinds) {
   if (kinds.size() != edges.size()) return std::nullopt;
   std::optional<std::size_t> longest;
   const auto key = [&](std::size_t e) {
@@ -403,11 +403,11 @@ std::optional<Point2> street_outlook(const std::vector<PlanEdge>& edges, const s
   return longest ? std::optional(edges[*longest].outwards()) : std::nullopt;
 }
 
-double party_share_of(const PlanEdge& facade, std::optional<Point2> street) {
+double party_share_of(const PlanSide& facade, std::optional<Point2> street) {
   return street && dot(facade.outwards(), *street) < -kLooksAlong ? kRearShare : kOwnShare;
 }
 
-std::optional<Point2> ridge_between(const Polygon& plan, const std::vector<PlanEdge>& edges, const std::vector<char>& party) {
+std::optional<Point2> ridge_between(const Polygon& plan, const std::vector<PlanSide>& edges, const std::vector<char>& party) {
   const Point2 axis = geometry::long_axis(plan.outer.points), side{-axis.y, axis.x};
   const auto extent = [&](Point2 direction) {
     const auto e = geometry::extent_along(plan.outer.points, direction);
@@ -446,7 +446,7 @@ std::optional<Point2> row_axis(const Polygon& plan, const RoofRequest& request) 
 }
 
 bool is_enclosed(const Polygon& plan, const std::vector<RoofEdge>& edges) {
-  const std::vector<PlanEdge> all = plan_edges(plan);
+  const std::vector<PlanSide> all = plan_sides(plan);
   if (edges.size() != all.size()) return false;
   double open = 0, whole = 0;
   for (std::size_t e = 0; e < all.size(); ++e) {

@@ -44,17 +44,17 @@ struct RoofSides {
 RoofSides roof_sides(const model::Polygon& plan, const RoofRequest& request, bool wants_gables);
 
 /// Which way the longest street front looks; none without one.
-std::optional<model::Point2> street_outlook(const std::vector<PlanEdge>& edges, const std::vector<model::RoofEdge>& kinds);
+std::optional<model::Point2> street_outlook(const std::vector<PlanSide>& edges, const std::vector<model::RoofEdge>& kinds);
 
 /// The share of a facade that makes it a party wall: half; three quarters where it looks away from the street, since wings
 /// and rear buildings that are mapped for themselves stand against the rear eaves of their front house.
-double party_share_of(const PlanEdge& facade, std::optional<model::Point2> street);
+double party_share_of(const PlanSide& facade, std::optional<model::Point2> street);
 
 /// Unit vector along which the ridge of a plan of one wing runs between its party walls where no street tells: across the
 /// longer side when neighbours stand at both long sides (at 0.3 of each), or at more than half of one of a plan no longer
 /// than 2 widths, and at none of its short sides; else along it. Of 252 gabled roofs of The Hague between two such
 /// neighbours 251 run so (tests/bench/RESULTS.md, "Roofs against references"). None without party walls.
-std::optional<model::Point2> ridge_between(const model::Polygon& plan, const std::vector<PlanEdge>& edges,
+std::optional<model::Point2> ridge_between(const model::Polygon& plan, const std::vector<PlanSide>& edges,
                                            const std::vector<char>& party);
 
 /// True where neighbours stand at all sides of a plan: no eaves can be had, water runs off inside.

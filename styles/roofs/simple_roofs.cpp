@@ -45,7 +45,7 @@ Point2 compass_vector(double degrees) {
 }
 
 Point2 default_slope(const Polygon& plan, const std::vector<model::RoofEdge>& edges) {
-  const std::vector<PlanEdge> all = plan_edges(plan);
+  const std::vector<PlanSide> all = plan_sides(plan);
   const std::size_t n = plan.outer.size();
   const bool known = edges.size() == all.size();
   const auto is = [&](std::size_t e, model::RoofEdge kind) { return known && edges[e] == kind; };

@@ -238,7 +238,7 @@ class Builder {
 
   /// The end that looks down most where a direction is tagged, the longest otherwise.
   std::optional<std::uint32_t> single_end(const std::vector<std::uint32_t>& ends) const {
-    const std::vector<PlanEdge> edges = plan_edges(plan_);
+    const std::vector<PlanSide> edges = plan_sides(plan_);
     std::optional<std::uint32_t> best;
     double most = 0;
     for (const std::uint32_t e : ends) {

@@ -42,7 +42,7 @@ bool end_corner(Point2 a, Point2 b, Point2 c) {
 }
 
 /// Keeps of candidates that share a corner the shorter one.
-std::vector<std::uint32_t> without_neighbours(const std::vector<PlanEdge>& edges, std::vector<std::uint32_t> candidates) {
+std::vector<std::uint32_t> without_neighbours(const std::vector<PlanSide>& edges, std::vector<std::uint32_t> candidates) {
   std::stable_sort(candidates.begin(), candidates.end(), [&](std::uint32_t a, std::uint32_t b) {
     return edges[a].length != edges[b].length ? edges[a].length < edges[b].length : a < b;
   });
@@ -60,7 +60,7 @@ std::vector<std::uint32_t> without_neighbours(const std::vector<PlanEdge>& edges
   /// Does a ridge go on from the top of a hip's triangle, about square to its edge? A piece of a long wall between two
   /// steps has a triangle, too, but the ridge passes it.
 bool ridge_leaves(const std::vector<geometry::RoofSurfaces::Surface>& surfaces, const std::vector<Point3>& triangle,
-                           const PlanEdge& edge) {
+                           const PlanSide& edge) {
     Point3 top = triangle[0];
     for (const Point3 p : triangle)
       if (p.z > top.z) top = p;
@@ -95,7 +95,7 @@ double compactness(const Polygon& plan) {
 }
 
 /// The two ends of a plan that is one wing: the walls that look along its axis and against it.
-std::vector<std::uint32_t> axis_ends(const Polygon& plan, const std::vector<PlanEdge>& edges, Point2 axis) {
+std::vector<std::uint32_t> axis_ends(const Polygon& plan, const std::vector<PlanSide>& edges, Point2 axis) {
   std::vector<std::uint32_t> found;
   for (const double way : {1.0, -1.0})
     for (const std::uint32_t e : ends_towards(plan, edges, {way * axis.x, way * axis.y})) found.push_back(e);
@@ -107,12 +107,12 @@ std::vector<std::uint32_t> axis_ends(const Polygon& plan, const std::vector<Plan
 
 }  // namespace
 
-std::vector<PlanEdge> plan_edges(const Polygon& plan) {
-  std::vector<PlanEdge> out;
+std::vector<PlanSide> plan_sides(const Polygon& plan) {
+  std::vector<PlanSide> out;
   const auto add = [&](const model::Ring& ring) {
     const std::size_t n = ring.size();
     for (std::size_t i = 0; i < n; ++i) {
-      PlanEdge e{ring.points[i], ring.points[(i + 1) % n], ring.points[(i + n - 1) % n], ring.points[(i + 2) % n], 0};
+      PlanSide e{ring.points[i], ring.points[(i + 1) % n], ring.points[(i + n - 1) % n], ring.points[(i + 2) % n], 0};
       const double dx = e.to.x - e.from.x, dy = e.to.y - e.from.y;
       e.length = std::sqrt(dx * dx + dy * dy);
       out.push_back(e);
@@ -134,7 +134,7 @@ Point2 ridge_axis(const Polygon& plan, const RoofRequest& request) {
   return axis;
 }
 
-std::vector<std::uint32_t> ends_towards(const Polygon& plan, const std::vector<PlanEdge>& edges, Point2 towards) {
+std::vector<std::uint32_t> ends_towards(const Polygon& plan, const std::vector<PlanSide>& edges, Point2 towards) {
   const auto count = static_cast<std::uint32_t>(plan.outer.size());
   const geometry::Extent extent = geometry::extent_along(plan.outer.points, towards);
   const double zone = extent.maximum - kEndZone * (extent.maximum - extent.minimum);
@@ -142,7 +142,7 @@ std::vector<std::uint32_t> ends_towards(const Polygon& plan, const std::vector<P
   double most = -2;
   std::vector<char> looks_along(count, 0);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const PlanEdge& e = edges[i];
+    const PlanSide& e = edges[i];
     const Point2 out = e.outwards();
     const double looks = out.x * towards.x + out.y * towards.y;
     const double place = ((e.from.x + e.to.x) * towards.x + (e.from.y + e.to.y) * towards.y) / 2;
@@ -162,7 +162,7 @@ std::vector<std::uint32_t> ends_towards(const Polygon& plan, const std::vector<P
 }
 
 std::vector<std::uint32_t> wing_ends(const Polygon& plan, const RoofRequest& request) {
-  const std::vector<PlanEdge> edges = plan_edges(plan);
+  const std::vector<PlanSide> edges = plan_sides(plan);
   const double compact = compactness(plan);
   if (compact >= kCompact) return axis_ends(plan, edges, ridge_axis(plan, request));
   const auto hips = geometry::weighted_skeleton(plan, std::vector<geometry::EdgeProfile>(edges.size()));
@@ -171,7 +171,7 @@ std::vector<std::uint32_t> wing_ends(const Polygon& plan, const RoofRequest& req
   std::vector<std::uint32_t> found;
   for (const auto& s : surfaces) {
     if (s.loops[0].size() != 3) continue;
-    const PlanEdge& e = edges[s.edge];
+    const PlanSide& e = edges[s.edge];
     if (e.length <= kWidestEnd && end_corner(e.before, e.from, e.to) && end_corner(e.from, e.to, e.after) &&
         ridge_leaves(surfaces, s.loops[0], e))
       found.push_back(s.edge);

@@ -9,7 +9,7 @@
 namespace blockrand::roofs {
 
 /// A side of a plan with the corners before and after it.
-struct PlanEdge {
+struct PlanSide {
   model::Point2 from, to, before, after;
   double length = 0;  ///< m
   model::Point2 along() const { return {(to.x - from.x) / length, (to.y - from.y) / length}; }
@@ -17,7 +17,7 @@ struct PlanEdge {
 };
 
 /// All edges, ring by ring, outer ring first.
-std::vector<PlanEdge> plan_edges(const model::Polygon& plan);
+std::vector<PlanSide> plan_sides(const model::Polygon& plan);
 
 /// True for plans that fill enough of their convex hull to be one wing: the axis tells where its ridge runs.
 bool is_one_wing(const model::Polygon& plan);
@@ -28,7 +28,7 @@ model::Point2 ridge_axis(const model::Polygon& plan, const RoofRequest& request)
 
 /// The end of a plan that is one wing in the direction `towards` (a unit vector): the edge of the outer ring that looks
 /// most that way, and the others in the last quarter of the plan that do.
-std::vector<std::uint32_t> ends_towards(const model::Polygon& plan, const std::vector<PlanEdge>& edges,
+std::vector<std::uint32_t> ends_towards(const model::Polygon& plan, const std::vector<PlanSide>& edges,
                                         model::Point2 towards);
 
 /// Edges that are the ends of wings (docs/roofs.md), in rising order; edges are numbered ring by ring. Of a plan that
