@@ -78,6 +78,7 @@ class MassBuilder {
   void build(model::Building& building, BuildingPart& part, int lod) {
     if (part.plan.outer.size() < 3) return;
     building_ = &building;
+    if (part.roof_plan.outer.size() < 3) prepare_roof_plans(building, options_.collinear_tolerance);
     part.lod = 0;
     const EnvelopeLooks looks = looks_of(part);
     const Levels levels = levels_of(part);

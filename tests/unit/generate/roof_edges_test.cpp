@@ -102,9 +102,9 @@ TEST(Roofscape, SlopesMeetWhenTheyAreOnePlane) {
   const SlopeEnd left = end_at(7, 12, {0, 1}, {-1, 0}, 0.8, 38);
   EXPECT_EQ(met(left, end_at(7, 12, {0, 1}, {1, 0}, 0.8, 38)), Result(1, 0, 0));
   EXPECT_EQ(met(left, end_at(7, 12, {0, 1}, {1, 0}, 0.79, 38)), Result(1, 1, 0)) << "asked alike, built 6 cm apart";
-  EXPECT_EQ(met(left, end_at(7, 12, {0, 1}, {1, 0}, 0.6, 0)), Result(0, 0, 0)) << "another pitch, as mapped";
-  EXPECT_EQ(met(left, end_at(7, 12.5, {0, 1}, {1, 0}, 0.8, 38)), Result(0, 0, 0)) << "other eaves";
-  EXPECT_EQ(met(left, end_at(7, 12, {0, 1}, {0.8, 0.6}, 0.8, 38)), Result(0, 0, 0)) << "the row bends";
+  EXPECT_EQ(met(left, end_at(7, 12, {0, 1}, {1, 0}, 0.6, 0)), Result(0, 0, 2)) << "another pitch, as mapped";
+  EXPECT_EQ(met(left, end_at(7, 12.5, {0, 1}, {1, 0}, 0.8, 38)), Result(0, 0, 2)) << "other eaves";
+  EXPECT_EQ(met(left, end_at(7, 12, {0, 1}, {0.8, 0.6}, 0.8, 38)), Result(0, 0, 2)) << "the row bends";
   EXPECT_EQ(met(left, end_at(8, 12, {0, 1}, {1, 0}, 0.8, 38)), Result(0, 0, 2)) << "another corner: both wait";
 }
 

@@ -233,6 +233,7 @@ Measured measure(const BuildingPart& part, const Polygon& plan, RoofShape asked,
     if (!check.valid()) fault(check.text());
   }
   for (const IssueCode code : part.fallbacks) {
+    if (code == IssueCode::roof_with_bays) continue;  // a shape with upright pieces has slopes for the step
     if (code == IssueCode::roof_shape_adapted && !out.counts.adapted)
       out.counts.adapted = true;
     else
@@ -269,9 +270,10 @@ Measured measure(const BuildingPart& part, const Polygon& plan, RoofShape asked,
   std::size_t edges = plan.outer.size();
   for (const model::Ring& hole : plan.holes) edges += hole.size();
   std::ostringstream wrong;
+  constexpr double kRunsOn = 0.15;  // m
   if (std::fabs(highest - kTop) > 0.002)
     wrong << "top " << highest;
-  else if (lowest < eaves - 0.002)
+  else if (lowest < eaves - kRunsOn)  // over the step of 0.05 m
     wrong << "roof down to " << lowest;
   else if (std::fabs(covered - area) > 0.001 * area)
     wrong << "covers " << covered << " of " << area;
