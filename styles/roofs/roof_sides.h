@@ -39,6 +39,7 @@ struct RoofSides {
 ///   roof turns (a mapped shape keeps its gable). Other plans have gables at the ends of their wings that face no street.
 /// * Eaves from which the way in ends at a party wall, with hardly any eaves behind them that look the other way, are the foot
 ///   of a lean-to; hips over the ends of wings are not. Where that is so of all fronts of a house on two streets, it is a corner house without a yard of its own.
+/// * Mapped hips stay hips.
 /// * A mapped shape with a ridge keeps it: where all eaves would be the foot of a lean-to, party walls that do not look
 ///   along the plan's axis stay eaves.
 RoofSides roof_sides(const model::Polygon& plan, const RoofRequest& request, bool wants_gables);
