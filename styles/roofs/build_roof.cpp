@@ -40,7 +40,7 @@ Point2 way_up(const Polygon& plan, const RoofRequest& request) {
   }
   const Point2 axis = geometry::long_axis(plan.outer.points);
   const Point2 up = request.across ? axis : Point2{-axis.y, axis.x};
-  // Low where the longest edge looks, so that turning a plan turns its roof; where that edge lies along the way, where
+  // Low where the longest edge looks (in rows: as default_slope() says), so that turning a plan turns its roof; where it lies along the way, where
   // its following corner lies.
   const Point2 down = default_slope(plan, request.edges);
   double against = up.x * down.x + up.y * down.y;

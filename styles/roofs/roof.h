@@ -50,7 +50,7 @@ struct RoofRequest {
   std::vector<model::RoofEdge> edges;
   /// Bays and recesses of facades get no slopes of their own (eaves_lines.h). No roof where that does not fit the plan.
   bool along_eaves_lines = false;
-  bool shape_is_mapped = false;  ///< tagged: the roof keeps the slopes and gables of its shape whatever the row is like
+  bool shape_is_mapped = false;  ///< tagged: hips, two slopes and gables at street corners stay, whatever the row is like
   bool axis_is_mapped = false;   ///< `down` and `across` are: ridges run that way, eaves along party walls or not
 };
 
