@@ -18,17 +18,21 @@ using model::RoofEdge;
 
 namespace {
 
-constexpr double kPartyShare = 0.5;   ///< of an edge: neighbours that stand at less of it stand beside it
-constexpr double kRearShare = 0.75;   ///< the same of edges that look away from the street (roofs::party_share_of)
+constexpr double kPartyShare = 0.5;  ///< of an edge: neighbours that stand at less of it stand beside it
+constexpr double kRearShare = 0.75;  ///< the same of edges that look away from the street (roofs::party_share_of)
 constexpr double kLooksAway = -0.68199836006249850;  ///< cosine of 133 degrees
 
 RoofEdge kind_of(const model::FacadeEdge& e) {
   switch (e.kind) {
     case EdgeKind::street:
-    case EdgeKind::passage: return RoofEdge::street;  // gateways open from streets, mostly
-    case EdgeKind::courtyard: return RoofEdge::courtyard;
-    case EdgeKind::party_wall: return e.outbuilding ? RoofEdge::open : RoofEdge::party_wall;
-    default: return RoofEdge::open;
+    case EdgeKind::passage:
+      return RoofEdge::street;  // gateways open from streets, mostly
+    case EdgeKind::courtyard:
+      return RoofEdge::courtyard;
+    case EdgeKind::party_wall:
+      return e.outbuilding ? RoofEdge::open : RoofEdge::party_wall;
+    default:
+      return RoofEdge::open;
   }
 }
 
@@ -96,7 +100,8 @@ RoofEdge OutlineStretches::kind(Point2 p, Point2 q) const {
     length[static_cast<std::size_t>(s.kind)] += common_length(s.a, s.b, p, q);
   }
   const double whole = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
-  const double share = street_ && (q.y - p.y) * street_->x - (q.x - p.x) * street_->y < kLooksAway * whole ? kRearShare : kPartyShare;
+  const double share =
+      street_ && (q.y - p.y) * street_->x - (q.x - p.x) * street_->y < kLooksAway * whole ? kRearShare : kPartyShare;
   if (length[static_cast<std::size_t>(RoofEdge::party_wall)] >= share * whole) return RoofEdge::party_wall;
   std::size_t most = 0;
   for (const RoofEdge k : {RoofEdge::street, RoofEdge::courtyard})

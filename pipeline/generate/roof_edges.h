@@ -9,10 +9,10 @@
 
 namespace blockrand::generate {
 
-/// What each edge of a plan is to the roof above it, ring by ring, from the stretches of the building's outline that lie on
-/// it: a party wall where at least half of it (three quarters where it looks away from the street) has a neighbour that is no
-/// outbuilding, else what most of it faces. Empty when
-/// the building's edges have no labels; open where no stretch lies (walls between two parts of a building).
+/// What each edge of a plan is to the roof above it, ring by ring, from the stretches of the building's outline that
+/// lie on it: a party wall where at least half of it (three quarters where it looks away from the street) has a
+/// neighbour that is no outbuilding, else what most of it faces. Empty when the building's edges have no labels; open
+/// where no stretch lies (walls between two parts of a building).
 std::vector<model::RoofEdge> roof_edges(const model::Building& building, const model::Polygon& plan);
 
 /// The labelled stretches of a building's outline, for asking about single walls.

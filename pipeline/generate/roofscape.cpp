@@ -22,25 +22,25 @@ using model::RoofEdge;
 using model::Solid;
 using model::SurfaceKind;
 
-constexpr double kLeastFall = 0.03;       ///< rise over run: flatter faces drain nowhere in particular
-constexpr double kOverEdge = 0.5;         ///< cosine of 60 degrees: water that runs more along an edge than over it
-constexpr double kLevel = 0.1;            ///< rise over run: eaves are level, to what a bay's plane leaves of that
-constexpr double kMost = 0.5;             ///< of a front
-constexpr double kRearShare = 0.75;       ///< of a facade that looks away from the street: wings stand against its eaves
+constexpr double kLeastFall = 0.03;  ///< rise over run: flatter faces drain nowhere in particular
+constexpr double kOverEdge = 0.5;    ///< cosine of 60 degrees: water that runs more along an edge than over it
+constexpr double kLevel = 0.1;       ///< rise over run: eaves are level, to what a bay's plane leaves of that
+constexpr double kMost = 0.5;        ///< of a front
+constexpr double kRearShare = 0.75;  ///< of a facade that looks away from the street: wings stand against its eaves
 constexpr double kLooksAway = -0.68199836006249850;  ///< cosine of 133 degrees
 constexpr double kSameFacade = 0.97814760073380569;  ///< cosine of 12 degrees
-constexpr double kFacadeDepth = 2.5;      ///< m, of what belongs to one facade
+constexpr double kFacadeDepth = 2.5;                 ///< m, of what belongs to one facade
 constexpr double kEavesZone = 1.5;        ///< m above the lowest wall top: a level wall top higher up is no eaves
 constexpr double kLeastPartyEaves = 1.0;  ///< m. Shorter ones are corners
-constexpr double kReturn = 2.5;           ///< m. Shorter party walls are returns of a fire wall: the roof runs on over them.
-constexpr double kLeastFront = 3.0;       ///< m of front on each street of a corner house
+constexpr double kReturn = 2.5;      ///< m. Shorter party walls are returns of a fire wall: the roof runs on over them.
+constexpr double kLeastFront = 3.0;  ///< m of front on each street of a corner house
 constexpr double kOtherStreet = 0.86602540378443865;  ///< cosine of 30 degrees
-constexpr double kRear = -0.5;            ///< cosine against the front of what looks to the rear
+constexpr double kRear = -0.5;                        ///< cosine against the front of what looks to the rear
 
 // Which slopes should meet.
-constexpr double kSameHeight = 0.02;    ///< m
+constexpr double kSameHeight = 0.02;        ///< m
 constexpr double kSameDirection = 0.99985;  ///< cosine of 1 degree
-constexpr double kSamePitch = 0.001;    ///< rise over run: 1 cm over 10 m
+constexpr double kSamePitch = 0.001;        ///< rise over run: 1 cm over 10 m
 
 double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 Point2 unit(Point2 a) {
@@ -50,8 +50,8 @@ Point2 unit(Point2 a) {
 
 /// A wall of the solid with what the roof does above it.
 struct Wall {
-  Point2 from, to;            ///< along the plan's ring
-  std::vector<Point3> top;    ///< from `from` to `to`
+  Point2 from, to;          ///< along the plan's ring
+  std::vector<Point3> top;  ///< from `from` to `to`
   RoofEdge kind = RoofEdge::open;
   double length = 0, eaves = 0;  ///< m; of which water runs over it
   Point2 outwards() const { return unit({to.y - from.y, from.x - to.x}); }
@@ -148,12 +148,14 @@ const Wall* main_front(const std::vector<Wall>& walls) {
   return front;
 }
 
-/// Is most of the facade that a party wall belongs to one? Where a neighbour touches a corner of a free facade, the eaves
-/// run on past it.
+/// Is most of the facade that a party wall belongs to one? Where a neighbour touches a corner of a free facade, the
+/// eaves run on past it.
 bool neighbours_facade(const std::vector<Wall>& walls, const Wall& wall) {
   double own = 0, all = 0;
   const Point2 out = wall.outwards();
-  const auto near = [&](Point2 p) { return std::fabs(dot({p.x - wall.from.x, p.y - wall.from.y}, out)) <= kFacadeDepth; };
+  const auto near = [&](Point2 p) {
+    return std::fabs(dot({p.x - wall.from.x, p.y - wall.from.y}, out)) <= kFacadeDepth;
+  };
   for (const Wall& w : walls) {
     if (dot(w.outwards(), out) < kSameFacade || !near(w.from) || !near(w.to)) continue;
     all += w.length;
@@ -172,7 +174,8 @@ void find_ends(const std::vector<Wall>& walls, const BuildingPart& part, std::ve
       const auto beside = std::find_if(walls.begin(), walls.end(), [&](const Wall& o) {
         return &o != &w && (at_end ? o.from == corner : o.to == corner);
       });
-      if (beside == walls.end() || beside->kind == RoofEdge::party_wall || beside->eaves < kMost * beside->length) continue;
+      if (beside == walls.end() || beside->kind == RoofEdge::party_wall || beside->eaves < kMost * beside->length)
+        continue;
       SlopeEnd end;
       end.x = geometry::to_grid(corner.x);
       end.y = geometry::to_grid(corner.y);
@@ -229,9 +232,11 @@ double height_at(const SlopeEnd& end, double along) {
 
 /// Should two slopes be one plane, and how far apart are they above the wall? m
 std::optional<double> distance_between(const SlopeEnd& a, const SlopeEnd& b) {
-  if (std::fabs(a.z - b.z) > kSameHeight || dot(a.wall, b.wall) < kSameDirection || dot(a.eaves, b.eaves) > -kSameDirection)
+  if (std::fabs(a.z - b.z) > kSameHeight || dot(a.wall, b.wall) < kSameDirection ||
+      dot(a.eaves, b.eaves) > -kSameDirection)
     return std::nullopt;
-  const bool asked_alike = a.usual > 0 && a.usual == b.usual && std::fabs(a.pitch - b.pitch) < 0.05 * std::max(a.pitch, b.pitch);
+  const bool asked_alike =
+      a.usual > 0 && a.usual == b.usual && std::fabs(a.pitch - b.pitch) < 0.05 * std::max(a.pitch, b.pitch);
   if (!asked_alike && std::fabs(a.pitch - b.pitch) > kSamePitch) return std::nullopt;
   // As far as both slopes are the ones that rise from the eaves.
   const double reach = std::min(a.profile[1][0], b.profile[1][0]);
@@ -252,14 +257,17 @@ RoofscapeCount count_roofscape(const model::Region& region) {
   for (const model::Building& building : region.buildings) {
     if (!building.owned || building.has_mapped_parts) continue;
     for (const BuildingPart& part : building.parts) {
-      const bool in_row = std::find(part.roof_edges.begin(), part.roof_edges.end(), RoofEdge::party_wall) != part.roof_edges.end();
+      const bool in_row =
+          std::find(part.roof_edges.begin(), part.roof_edges.end(), RoofEdge::party_wall) != part.roof_edges.end();
       if (!in_row || part.lod < 2 || part.built_roof == model::RoofShape::flat) continue;
       const House house(building, part);
       const std::vector<Wall>& walls = house.walls();
 
       double party = 0;
       for (const Wall& w : walls)
-        if (w.kind == RoofEdge::party_wall && w.eaves > kLeastPartyEaves && w.length > kReturn && neighbours_facade(walls, w)) party += w.eaves;
+        if (w.kind == RoofEdge::party_wall && w.eaves > kLeastPartyEaves && w.length > kReturn &&
+            neighbours_facade(walls, w))
+          party += w.eaves;
       if (party > kLeastPartyEaves) {
         ++s.party_eaves;
         const model::Attributes& a = part.attributes;
@@ -280,7 +288,8 @@ RoofscapeCount count_roofscape(const model::Region& region) {
           (looks >= kOtherStreet ? main : other).add(w);
         else if (w.kind != RoofEdge::party_wall)
           yard.add(w);
-        has_rear = has_rear || (w.kind != RoofEdge::party_wall && w.kind != RoofEdge::street && looks < kRear && w.length >= kLeastFront);
+        has_rear = has_rear || (w.kind != RoofEdge::party_wall && w.kind != RoofEdge::street && looks < kRear &&
+                                w.length >= kLeastFront);
       }
       if (!falls_both_ways(part.attributes.roof_shape.value)) continue;
       if (building.situation.position == model::BuildingPosition::mid_row) {
@@ -301,7 +310,8 @@ RoofscapeCount count_roofscape(const model::Region& region) {
 }
 
 void settle_slope_ends(std::vector<SlopeEnd>& ends, Roofscape& sums) {
-  std::stable_sort(ends.begin(), ends.end(), [](const SlopeEnd& a, const SlopeEnd& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const SlopeEnd& a, const SlopeEnd& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   std::vector<SlopeEnd> left;
   for (std::size_t i = 0; i < ends.size();) {
     std::size_t k = i + 1;

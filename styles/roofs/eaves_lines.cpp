@@ -23,15 +23,16 @@ using model::RoofEdge;
 namespace {
 
 constexpr double kSameWay = 0.97814760073380569;  ///< cosine of 12 degrees: edges of one facade
-/// m. What an edge of a facade may come off the line from one end to the other: eaves stay level. A front that bends is two.
+/// m. What an edge of a facade may come off the line from one end to the other: eaves stay level. A front that bends is
+/// two.
 constexpr double kDrift = 0.25;
-constexpr double kTurns = 0.34202014332566871;    ///< sine of 20 degrees: lines that meet in a corner
-constexpr double kLongestGap = 12;                ///< m along the outline between two edges of one facade: a wide bay
-constexpr double kSameCorner = 0.10;              ///< m. Lines that meet so near a corner of the plan meet in it
-constexpr double kChip = 0.6;                     ///< m. A shorter piece of wall makes no facade
+constexpr double kTurns = 0.34202014332566871;  ///< sine of 20 degrees: lines that meet in a corner
+constexpr double kLongestGap = 12;              ///< m along the outline between two edges of one facade: a wide bay
+constexpr double kSameCorner = 0.10;            ///< m. Lines that meet so near a corner of the plan meet in it
+constexpr double kChip = 0.6;                   ///< m. A shorter piece of wall makes no facade
 /// m below the eaves to which a roof may come down over a bay: half a storey, so that the bay keeps its windows.
 constexpr double kDeepestDrop = 1.4;
-constexpr double kMostChange = 0.2;               ///< of the plan's area
+constexpr double kMostChange = 0.2;  ///< of the plan's area
 
 double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
@@ -65,7 +66,8 @@ class RingFacades {
     for (std::size_t e = 0; e < count_; ++e) {
       if (lead_[e] != e || edge(e).length > kChip) continue;
       const std::size_t before = lead_[(e + count_ - 1) % count_], after = lead_[(e + 1) % count_];
-      if (before == e || after == e || before == after || edge(before).length <= kChip || edge(after).length <= kChip) continue;
+      if (before == e || after == e || before == after || edge(before).length <= kChip || edge(after).length <= kChip)
+        continue;
       const double on = dot(edge(before).along(), edge(e).along()), ahead = dot(edge(after).along(), edge(e).along());
       if (std::fabs(cross(edge(before).along(), edge(after).along())) < kTurns) continue;  // a step
       lead_[e] = on >= ahead ? before : after;
@@ -117,7 +119,9 @@ class RingFacades {
     const double t = dot(minus(p, line.from), u);
     return {line.from.x + t * u.x, line.from.y + t * u.y};
   }
-  bool near(const PlanSide& line, Point2 p) const { return std::fabs(cross(line.along(), minus(p, line.from))) <= depth_; }
+  bool near(const PlanSide& line, Point2 p) const {
+    return std::fabs(cross(line.along(), minus(p, line.from))) <= depth_;
+  }
 
   /// Takes edges into the facade of `lead`, one way round the ring (step 1 or count - 1).
   bool grow(std::size_t lead, std::size_t step) {
@@ -168,7 +172,8 @@ RoofEdge kind_of(const std::vector<PlanSide>& edges, const std::vector<RoofEdge>
     all += edges[begin + i].length;
   }
   constexpr auto kParty = static_cast<std::size_t>(RoofEdge::party_wall);
-  if (length[kParty] >= party_share_of(edges[begin + lead], street_outlook(edges, kinds)) * all) return RoofEdge::party_wall;
+  if (length[kParty] >= party_share_of(edges[begin + lead], street_outlook(edges, kinds)) * all)
+    return RoofEdge::party_wall;
   length[kParty] = 0;
   return static_cast<RoofEdge>(std::max_element(length.begin(), length.end()) - length.begin());
 }
@@ -270,7 +275,8 @@ class Bringer {
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       std::vector<Point2>& points = on_wall[e];
       const auto along = [&](Point2 p) { return dot(minus(p, edges_[e].from), edges_[e].along()); };
-      std::sort(points.begin(), points.end(), [&](Point2 a, Point2 b) { return along(a) != along(b) ? along(a) > along(b) : a < b; });
+      std::sort(points.begin(), points.end(),
+                [&](Point2 a, Point2 b) { return along(a) != along(b) ? along(a) > along(b) : a < b; });
       points.erase(std::unique(points.begin(), points.end()), points.end());
       if (points.size() < 2 || points.front() != edges_[e].to || points.back() != edges_[e].from) return std::nullopt;
       out.wall_tops.emplace_back();
@@ -331,8 +337,8 @@ class Bringer {
       const double length = distance(from, to);
       if (length <= 0) continue;
       const Point2 u{(to.x - from.x) / length, (to.y - from.y) / length};
-      // A crease that comes alone to the border runs on through the wall, wherever that stands: its own end, a grid step
-      // beside the wall, would be a second corner there. Corners of the plan, and common ends, stay.
+      // A crease that comes alone to the border runs on through the wall, wherever that stands: its own end, a grid
+      // step beside the wall, would be a second corner there. Corners of the plan, and common ends, stay.
       const auto runs_on = [&](Point2 p) {
         return std::count_if(ends_.begin(), ends_.end(), [&](const End& e) { return e.at == p; }) == 1 &&
                std::none_of(edges_.begin(), edges_.end(), [&](const PlanSide& e) { return e.from == p; });
@@ -439,7 +445,8 @@ std::optional<EavesPlan> eaves_plan(const Polygon& plan, const std::vector<RoofE
     if (!add(hole, out.plan.holes.emplace_back())) return std::nullopt;
   if (!any || !geometry::strictly_simple(out.plan)) return std::nullopt;
   const double before = geometry::area(plan), after = geometry::area(out.plan);
-  if (after <= 0 || std::fabs(after - before) > kMostChange * before || geometry::signed_area(out.plan.outer.points) <= 0)
+  if (after <= 0 || std::fabs(after - before) > kMostChange * before ||
+      geometry::signed_area(out.plan.outer.points) <= 0)
     return std::nullopt;
   return out;
 }

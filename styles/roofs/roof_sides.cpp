@@ -17,19 +17,21 @@ using model::RoofEdge;
 
 namespace {
 
-constexpr double kStraight = 0.93969262078590838;   ///< cosine of 20 degrees: walls that bend less are one wall
+constexpr double kStraight = 0.93969262078590838;     ///< cosine of 20 degrees: walls that bend less are one wall
 constexpr double kOwnShare = 0.5, kRearShare = 0.75;  ///< of such a wall: what makes it a party wall
-constexpr double kShortReturn = 2.0;                ///< m. Between party walls: steps of a fire wall, light shafts
-constexpr double kLooksAlong = 0.68199836006249850; ///< cosine of 47 degrees: walls at 45 are common, and decide nothing
-constexpr double kOneWall = 0.76604444311897804;    ///< cosine of 40 degrees: a wall ends where a curve has turned by more
-constexpr double kTurns = 0.86602540378443865;      ///< cosine of 30 degrees: streets that differ by more meet at a corner
-constexpr double kLeastFront = 3.0;                 ///< m. A shorter stretch on another street makes no corner house
-constexpr double kLeastOpen = 0.1;                  ///< of the outline: less open wall is a light shaft, no side for eaves
-constexpr double kLeastBehind = 0.25;               ///< of an edge: eaves behind less of it are those of a light shaft
-constexpr double kCoveredEnd = 0.3;                 ///< of the plan's width: less party wall leaves an end free
-constexpr double kNeighbour = 0.3;                  ///< of a side: less is a corner or a shed, no neighbour
-constexpr double kMostOfSide = 0.5;                 ///< of the one long side that must be covered where the other is free
-constexpr double kOblong = 2.0;                     ///< length by width: longer wings lean on a wall at their long side
+constexpr double kShortReturn = 2.0;                  ///< m. Between party walls: steps of a fire wall, light shafts
+constexpr double kLooksAlong =
+    0.68199836006249850;  ///< cosine of 47 degrees: walls at 45 are common, and decide nothing
+constexpr double kOneWall =
+    0.76604444311897804;                        ///< cosine of 40 degrees: a wall ends where a curve has turned by more
+constexpr double kTurns = 0.86602540378443865;  ///< cosine of 30 degrees: streets that differ by more meet at a corner
+constexpr double kLeastFront = 3.0;             ///< m. A shorter stretch on another street makes no corner house
+constexpr double kLeastOpen = 0.1;              ///< of the outline: less open wall is a light shaft, no side for eaves
+constexpr double kLeastBehind = 0.25;           ///< of an edge: eaves behind less of it are those of a light shaft
+constexpr double kCoveredEnd = 0.3;             ///< of the plan's width: less party wall leaves an end free
+constexpr double kNeighbour = 0.3;              ///< of a side: less is a corner or a shed, no neighbour
+constexpr double kMostOfSide = 0.5;             ///< of the one long side that must be covered where the other is free
+constexpr double kOblong = 2.0;                 ///< length by width: longer wings lean on a wall at their long side
 
 /// Lengths are compared so that their last digits do not count.
 std::int64_t centimetres(double metres) { return std::llround(metres * 100); }
@@ -52,7 +54,8 @@ class Finder {
   RoofSides sides(bool wants_gables) {
     RoofSides out;
     out.sides.assign(edges_.size(), RoofSide::eaves);
-    // A mapper who writes `hipped` has seen hips: of The Hague's, 99 % of the slopes are there, those over party walls too.
+    // A mapper who writes `hipped` has seen hips: of The Hague's, 99 % of the slopes are there, those over party walls
+    // too.
     const bool hips_are_mapped = request_.shape_is_mapped && request_.shape == model::RoofShape::hipped;
     if (request_.edges.size() == edges_.size() && !hips_are_mapped) find_party_walls();
     if (!any_party()) {
@@ -94,7 +97,8 @@ class Finder {
     for (std::size_t done = 0; done < n;) {
       std::size_t count = 1;
       while (done + count < n && !bends((first + done + count - 1) % n) &&
-             dot(edges_[begin + (first + done) % n].along(), edges_[begin + (first + done + count) % n].along()) >= kOneWall)
+             dot(edges_[begin + (first + done) % n].along(), edges_[begin + (first + done + count) % n].along()) >=
+                 kOneWall)
         ++count;
       visit((first + done) % n, count);
       done += count;
@@ -159,8 +163,8 @@ class Finder {
       for (std::size_t e = 0; e < edges_.size(); ++e)
         if (kind(e) == RoofEdge::street && !party_[e]) visit(e);
     };
-    // The longest front, whose pieces count together; ties go to the longest piece, then to the least corner: rounding and
-    // the start of a ring decide nothing.
+    // The longest front, whose pieces count together; ties go to the longest piece, then to the least corner: rounding
+    // and the start of a ring decide nothing.
     std::tuple<std::int64_t, std::int64_t, Point2> best;
     fronts([&](std::size_t e) {
       double length = 0;
@@ -286,8 +290,10 @@ class Finder {
       if (f == e || out.sides[f] == RoofSide::party || out.sides[f] == RoofSide::gable) continue;
       const PlanSide& other = edges_[f];
       if (dot(other.outwards(), in) < kLooksAlong) continue;
-      const auto place = [&](Point2 p) { return Point2{dot({p.x - from.from.x, p.y - from.from.y}, along),
-                                                       dot({p.x - from.from.x, p.y - from.from.y}, in)}; };
+      const auto place = [&](Point2 p) {
+        return Point2{dot({p.x - from.from.x, p.y - from.from.y}, along),
+                      dot({p.x - from.from.x, p.y - from.from.y}, in)};
+      };
       const Point2 a = place(other.from), b = place(other.to);
       constexpr double kBehind = 0.05;  // m
       const double overlap = std::min(std::max(a.x, b.x), from.length) - std::max(std::min(a.x, b.x), 0.0);
@@ -296,8 +302,8 @@ class Finder {
     return length;
   }
 
-  /// The hip over the end of a wing: eaves on both its sides look away from each other, and it is no longer than a wing's
-  /// end is.
+  /// The hip over the end of a wing: eaves on both its sides look away from each other, and it is no longer than a
+  /// wing's end is.
   bool is_hip(std::size_t e, const RoofSides& out) const {
     std::size_t begin = 0, n = plan_.outer.size();
     for (std::size_t r = 0; r + 1 < rings_.size(); ++r)
@@ -409,7 +415,8 @@ double party_share_of(const PlanSide& facade, std::optional<Point2> street) {
   return street && dot(facade.outwards(), *street) < -kLooksAlong ? kRearShare : kOwnShare;
 }
 
-std::optional<Point2> ridge_between(const Polygon& plan, const std::vector<PlanSide>& edges, const std::vector<char>& party) {
+std::optional<Point2> ridge_between(const Polygon& plan, const std::vector<PlanSide>& edges,
+                                    const std::vector<char>& party) {
   const Point2 axis = geometry::long_axis(plan.outer.points), side{-axis.y, axis.x};
   const auto extent = [&](Point2 direction) {
     const auto e = geometry::extent_along(plan.outer.points, direction);

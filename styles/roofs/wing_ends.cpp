@@ -17,19 +17,19 @@ using model::Polygon;
 namespace {
 
 // Which edges are the ends of wings.
-constexpr double kWidestEnd = 30;          ///< m. A wider end is no gable of a wing but the side of a hall.
+constexpr double kWidestEnd = 30;                      ///< m. A wider end is no gable of a wing but the side of a hall.
 constexpr double kLeastCosine = -0.70710678118654752;  ///< corners of an end from 45 to 135 degrees
 constexpr double kMostCosine = 0.70710678118654752;
-constexpr double kCompact = 0.88;          ///< of the hull's area: a plan with recesses and bends, but one wing (an L has 0.8)
-constexpr double kAlmostCompact = 0.7;     ///< ... and one in which no end of a wing was found
-constexpr double kAlongAxis = 0.94;        ///< cosine of 20 degrees: pieces of a bent end wall
-constexpr double kEndZone = 0.25;          ///< of the plan's length: an end wall with a recess
-constexpr double kSquareEnough = 0.8660254037844386;   ///< cosine of the 30 degrees by which a ridge may leave its end obliquely
+constexpr double kCompact = 0.88;  ///< of the hull's area: a plan with recesses and bends, but one wing (an L has 0.8)
+constexpr double kAlmostCompact = 0.7;  ///< ... and one in which no end of a wing was found
+constexpr double kAlongAxis = 0.94;     ///< cosine of 20 degrees: pieces of a bent end wall
+constexpr double kEndZone = 0.25;       ///< of the plan's length: an end wall with a recess
+constexpr double kSquareEnough =
+    0.8660254037844386;  ///< cosine of the 30 degrees by which a ridge may leave its end obliquely
 
 int turn(Point2 a, Point2 b, Point2 c) {
   return geometry::orientation(geometry::to_grid(a), geometry::to_grid(b), geometry::to_grid(c));
 }
-
 
 /// Cosine of the angle at b.
 double cosine(Point2 a, Point2 b, Point2 c) {
@@ -42,7 +42,8 @@ bool end_corner(Point2 a, Point2 b, Point2 c) {
 }
 
 /// Keeps of candidates that share a corner the shorter one.
-std::vector<std::uint32_t> without_neighbours(const std::vector<PlanSide>& edges, std::vector<std::uint32_t> candidates) {
+std::vector<std::uint32_t> without_neighbours(const std::vector<PlanSide>& edges,
+                                              std::vector<std::uint32_t> candidates) {
   std::stable_sort(candidates.begin(), candidates.end(), [&](std::uint32_t a, std::uint32_t b) {
     return edges[a].length != edges[b].length ? edges[a].length < edges[b].length : a < b;
   });
@@ -57,24 +58,24 @@ std::vector<std::uint32_t> without_neighbours(const std::vector<PlanSide>& edges
   return kept;
 }
 
-  /// Does a ridge go on from the top of a hip's triangle, about square to its edge? A piece of a long wall between two
-  /// steps has a triangle, too, but the ridge passes it.
+/// Does a ridge go on from the top of a hip's triangle, about square to its edge? A piece of a long wall between two
+/// steps has a triangle, too, but the ridge passes it.
 bool ridge_leaves(const std::vector<geometry::RoofSurfaces::Surface>& surfaces, const std::vector<Point3>& triangle,
-                           const PlanSide& edge) {
-    Point3 top = triangle[0];
-    for (const Point3 p : triangle)
-      if (p.z > top.z) top = p;
-    const Point2 out = edge.outwards();
-    for (const auto& s : surfaces)
-      for (const auto& loop : s.loops)
-        for (std::size_t i = 0; i < loop.size(); ++i) {
-          const Point3 a = loop[i], b = loop[(i + 1) % loop.size()];
-          if (a != top || b.z <= 0) continue;
-          const double dx = b.x - a.x, dy = b.y - a.y, length = std::sqrt(dx * dx + dy * dy);
-          if (-(dx * out.x + dy * out.y) >= kSquareEnough * length) return true;
-        }
-    return false;
-  }
+                  const PlanSide& edge) {
+  Point3 top = triangle[0];
+  for (const Point3 p : triangle)
+    if (p.z > top.z) top = p;
+  const Point2 out = edge.outwards();
+  for (const auto& s : surfaces)
+    for (const auto& loop : s.loops)
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Point3 a = loop[i], b = loop[(i + 1) % loop.size()];
+        if (a != top || b.z <= 0) continue;
+        const double dx = b.x - a.x, dy = b.y - a.y, length = std::sqrt(dx * dx + dy * dy);
+        if (-(dx * out.x + dy * out.y) >= kSquareEnough * length) return true;
+      }
+  return false;
+}
 
 /// The plan's area by that of its convex hull; 0 with holes.
 double compactness(const Polygon& plan) {

@@ -48,7 +48,9 @@ TEST(RoofEdges, AreWhatMostOfTheirStretchesAre) {
 TEST(RoofEdges, RearsTakeMoreOfANeighbour) {
   // A wing stands against 55 % of the rear: eaves run on above it; against 80 %, the wall is its own.
   for (const double covered : {3.3, 4.8}) {
-    const auto b = building({{0, EdgeKind::street, 0, 6, false}, {2, EdgeKind::party_wall, 0, covered, false}, {2, EdgeKind::courtyard, covered, 6, false}});
+    const auto b = building({{0, EdgeKind::street, 0, 6, false},
+                             {2, EdgeKind::party_wall, 0, covered, false},
+                             {2, EdgeKind::courtyard, covered, 6, false}});
     EXPECT_EQ(roof_edges(b, kHouse)[2], covered < 4 ? RoofEdge::courtyard : RoofEdge::party_wall);
   }
 }
@@ -59,10 +61,13 @@ TEST(RoofEdges, OutbuildingsAreNoNeighbours) {
 }
 
 TEST(RoofEdges, OfAPartAreThoseOfTheOutlineItStandsAt) {
-  const auto b = building({{0, EdgeKind::street, 0, 6, false}, {1, EdgeKind::party_wall, 0, 10, false}, {3, EdgeKind::party_wall, 0, 10, false}});
+  const auto b = building({{0, EdgeKind::street, 0, 6, false},
+                           {1, EdgeKind::party_wall, 0, 10, false},
+                           {3, EdgeKind::party_wall, 0, 10, false}});
   // The western half, 4 cm off: repair moves parts and outline together, but not to the millimetre.
   const model::Polygon half{ring({{0.04, 0}, {3, 0}, {3, 10}, {0.04, 10}}), {}};
-  EXPECT_EQ(roof_edges(b, half), (std::vector<RoofEdge>{RoofEdge::street, RoofEdge::open, RoofEdge::open, RoofEdge::party_wall}));
+  EXPECT_EQ(roof_edges(b, half),
+            (std::vector<RoofEdge>{RoofEdge::street, RoofEdge::open, RoofEdge::open, RoofEdge::party_wall}));
   // Inside, no stretch lies on it.
   const model::Polygon inside{ring({{2, 2}, {4, 2}, {4, 8}, {2, 8}}), {}};
   EXPECT_EQ(roof_edges(b, inside), std::vector<RoofEdge>(4, RoofEdge::open));

@@ -1,5 +1,5 @@
-// Houses in rows and blocks: what party walls, streets and yards make of a roof. Plans are laid out by hand, south is the
-// street unless said otherwise; heights are worked out from the distance to the eaves.
+// Houses in rows and blocks: what party walls, streets and yards make of a roof. Plans are laid out by hand, south is
+// the street unless said otherwise; heights are worked out from the distance to the eaves.
 #include <gtest/gtest.h>
 
 #include "styles/roofs/eaves_lines.h"
@@ -67,7 +67,8 @@ TEST(MidRowHouse, RidgeRunsFromPartyWallToPartyWall) {
   // Deeper than wide: without neighbours the ridge would run the other way.
   const Polygon plan = rectangle(8, 12);
   for (const bool mapped : {false, true})
-    for (const RoofShape shape : {RoofShape::gabled, RoofShape::hipped, RoofShape::half_hipped, RoofShape::side_hipped}) {
+    for (const RoofShape shape :
+         {RoofShape::gabled, RoofShape::hipped, RoofShape::half_hipped, RoofShape::side_hipped}) {
       if (mapped && shape == RoofShape::hipped) continue;
       RoofRequest r = in_row(shape, 6, {kStreet, kParty, kYard, kParty});
       r.shape_is_mapped = mapped;
@@ -173,7 +174,8 @@ TEST(CornerHouse, TurnsTheRidgeThoughItsPlanIsFull) {
     // As over an L whose inner corner is the yard's: hips where slopes to the streets meet, a valley to the corner.
     for (double x = 0.7; x < 12; x += 1.3)
       for (double y = 0.4; y < 12; y += 1.1)
-        EXPECT_NEAR(height_at(built->roof, {x, y + 5}), std::min({y, 12 - x, std::max(x, 12 - y)}), 0.003) << x << ' ' << y;
+        EXPECT_NEAR(height_at(built->roof, {x, y + 5}), std::min({y, 12 - x, std::max(x, 12 - y)}), 0.003)
+            << x << ' ' << y;
   }
 }
 
@@ -306,7 +308,8 @@ TEST(Enclosed, OnlyWhereNoSideIsFree) {
 
 /// A house in a row, 14 by 12, with a stair tower of 1.2 by 3 m at its rear and a recess 1 m deep in its front.
 Polygon with_bay() {
-  return polygon({{0, 0}, {5, 0}, {5, 1}, {8, 1}, {8, 0}, {14, 0}, {14, 12}, {9, 12}, {9, 13.2}, {6, 13.2}, {6, 12}, {0, 12}});
+  return polygon(
+      {{0, 0}, {5, 0}, {5, 1}, {8, 1}, {8, 0}, {14, 0}, {14, 12}, {9, 12}, {9, 13.2}, {6, 13.2}, {6, 12}, {0, 12}});
 }
 std::vector<RoofEdge> bay_edges() {
   return {kStreet, kStreet, kStreet, kStreet, kStreet, kParty, kYard, kYard, kYard, kYard, kYard, kParty};
@@ -344,8 +347,12 @@ TEST(EavesLines, TheRoofRunsOnOverRecessesAndDownOverBays) {
 TEST(EavesLines, AFrontThatBendsIsTwo) {
   // Two walls of 8 m that bend by 10 degrees: the far end would lie 1.4 m off the line of the first.
   const double c = std::cos(10 * M_PI / 180), s = std::sin(10 * M_PI / 180);
-  const Polygon plan = polygon({{0, 0}, {8, 0}, model::snap(Point2{8 + 8 * c, 8 * s}), model::snap(Point2{8 + 8 * c - 12 * s, 8 * s + 12 * c}),
-                                {6.95, 12}, {0, 12}});
+  const Polygon plan = polygon({{0, 0},
+                                {8, 0},
+                                model::snap(Point2{8 + 8 * c, 8 * s}),
+                                model::snap(Point2{8 + 8 * c - 12 * s, 8 * s + 12 * c}),
+                                {6.95, 12},
+                                {0, 12}});
   EXPECT_FALSE(eaves_plan(plan, {}));
 }
 
@@ -362,7 +369,8 @@ TEST(EavesLines, DoNotDependOnWhereTheRingStarts) {
   ASSERT_TRUE(first);
   for (std::size_t k = 1; k < plan.outer.size(); ++k) {
     Polygon other = plan;
-    std::rotate(other.outer.points.begin(), other.outer.points.begin() + static_cast<std::ptrdiff_t>(k), other.outer.points.end());
+    std::rotate(other.outer.points.begin(), other.outer.points.begin() + static_cast<std::ptrdiff_t>(k),
+                other.outer.points.end());
     const auto again = eaves_plan(other, {});
     ASSERT_TRUE(again);
     EXPECT_EQ(std::set<Point2>(again->plan.outer.points.begin(), again->plan.outer.points.end()),
@@ -380,7 +388,8 @@ TEST(EavesLines, HousesWithAnyBaysGetValidRoofs) {
     const auto facade = [&](Point2 from, Point2 to, RoofEdge kind, bool bays) {
       const double dx = to.x - from.x, dy = to.y - from.y, length = std::sqrt(dx * dx + dy * dy);
       const auto at = [&](double s, double out) {
-        return model::snap(Point2{from.x + dx * s / length + dy * out / length, from.y + dy * s / length - dx * out / length});
+        return model::snap(
+            Point2{from.x + dx * s / length + dy * out / length, from.y + dy * s / length - dx * out / length});
       };
       points.push_back(model::snap(from));
       edges.push_back(kind);
@@ -401,7 +410,8 @@ TEST(EavesLines, HousesWithAnyBaysGetValidRoofs) {
     const Polygon plan = moved(polygon(points), 360 * random.unit(), {391000, 5819000});
     if (!geometry::strictly_simple(plan)) continue;
     ++houses;
-    for (const RoofShape shape : {RoofShape::gabled, RoofShape::hipped, RoofShape::gambrel, RoofShape::double_saltbox}) {
+    for (const RoofShape shape :
+         {RoofShape::gabled, RoofShape::hipped, RoofShape::gambrel, RoofShape::double_saltbox}) {
       RoofRequest r = in_row(shape, 5, edges);
       r.along_eaves_lines = true;
       const auto built = build_roof(plan, r);
@@ -430,8 +440,8 @@ TEST(RowRoofs, AreValidOnRandomPlansWithRandomNeighbours) {
     for (const auto& hole : plan.holes) n += hole.size();
     std::vector<RoofEdge> edges(n);
     for (RoofEdge& e : edges) e = static_cast<RoofEdge>(random.next(4));
-    const RoofShape shapes[] = {RoofShape::gabled, RoofShape::hipped, RoofShape::mansard, RoofShape::double_saltbox,
-                                RoofShape::berlin, RoofShape::half_hipped};
+    const RoofShape shapes[] = {RoofShape::gabled,         RoofShape::hipped, RoofShape::mansard,
+                                RoofShape::double_saltbox, RoofShape::berlin, RoofShape::half_hipped};
     RoofRequest r = in_row(shapes[k % 6], 3, edges);
     r.along_eaves_lines = k % 2 == 0;
     const auto roof = build_roof(plan, r);
