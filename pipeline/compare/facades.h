@@ -1,0 +1,99 @@
+// Facades: the wall planes of buildings with their openings in rows and columns, and which of two models' belong together.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipeline/compare/city.h"
+#include "pipeline/compare/measures.h"
+
+namespace blockrand::compare {
+
+struct FacadeOptions {
+  double max_tilt = 0.26;         ///< rad (15 degrees). Walls lean less; more is a roof.
+  double plane_angle = 0.09;      ///< rad (5 degrees). Walls within it are one facade, where they lie in one plane.
+  double plane_distance = 0.6;    ///< m. Pilasters, plinths, reveals and shallow bays stay with their facade.
+  double min_width = 2.0;         ///< m. Narrower walls are jogs and reveals, no facades.
+  double min_height = 2.0;        ///< m. Lower walls are parapets, plinths and the sides of dormers.
+  double pair_angle = 0.35;       ///< rad (20 degrees). Facades of two models that belong together differ by less,
+  double pair_distance = 3.0;     ///< m … lie so near to each other (across),
+  double pair_overlap = 0.5;      ///< … and have this share of the narrower one's width in common.
+  double match_iou = 0.5;         ///< of bounding rectangles in the facade's plane: an opening is found from here on
+  double row_gap = 0.5;           ///< share of an opening's height: centres nearer than that are one row (likewise columns)
+  double blank_width = 4.0;       ///< m. Narrower facades may have no window by design.
+};
+
+/// An opening in its facade's plane: the rectangle around it.
+struct FacadeOpening {
+  double left = 0, right = 0;  ///< m along the facade, from its left end as seen from outside
+  double bottom = 0, top = 0;  ///< m above the building's own ground
+  double area = 0;             ///< m² of the opening itself in the facade's plane
+  bool door = false;
+  int row = -1, column = -1;   ///< counted from below and from the left
+};
+
+struct Facade {
+  std::size_t building = 0;          ///< index into its City's buildings: the one with most of its area
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> faces;  ///< (building, index into its faces), sorted
+  Point2 left, right;                ///< plan, relative to City::origin; left and right as seen from outside
+  double bottom = 0, top = 0;        ///< m above the building's own ground
+  double area = 0;                   ///< m² of its walls and openings in the facade's plane, each place once
+  double covered = 0;                ///< m² of `area` that faces with LeftOut::covered make
+  std::vector<Rings3> outline;       ///< of its walls in the facade's plane: x along the facade from `left`, y above the
+                                     ///< own ground, z 0; for drawings, may overlap
+  std::vector<FacadeOpening> openings;
+  int storeys = 0;                   ///< rows of openings
+  int axes = 0;                      ///< columns of openings
+  std::optional<double> storey_pitch, axis_pitch;  ///< m: median distance of neighbouring rows, columns; from two on
+  bool blank = false;                ///< no openings, at least blank_width wide and not covered, though the building has
+                                     ///< openings elsewhere
+  double width() const;
+};
+
+/// The facades of buildings that are compared as one (a block against several houses), largest first. Walls of faces
+/// with another class than wall do not count, nor do closures. Openings without a facade near them (in roofs) are not in
+/// any; `loose` counts them.
+std::vector<Facade> facades_of(const City& city, std::span<const std::uint32_t> buildings,
+                               const FacadeOptions& options = {}, std::size_t* loose = nullptr);
+
+/// Marks the faces of blank facades LeftOut::blank, in every building that stands alone in `groups` or with others: the
+/// groups are the reference's sides of the matches. Faces that are left out for another reason keep it.
+/// \return how many facades are blank
+std::size_t mark_blank(City& reference, std::span<const std::vector<std::uint32_t>> groups,
+                       const FacadeOptions& options = {});
+
+/// Facades of both models that stand for each other, one to one; best overlap first.
+struct FacadePair {
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::size_t model = kNone, reference = kNone;  ///< indices into the lists of facades; kNone: has no partner
+  /// Openings that match at match_iou, one to one: (index into the model's openings, into the reference's). Compared in
+  /// the reference facade's plane, the model's openings projected onto it; heights above each building's own ground.
+  std::vector<std::pair<std::size_t, std::size_t>> matches;
+};
+std::vector<FacadePair> pair_facades(std::span<const Facade> model, std::span<const Facade> reference,
+                                     const FacadeOptions& options = {});
+
+/// Everything about the facades of one match.
+struct FacadeComparison {
+  std::vector<Facade> model, reference;
+  std::vector<FacadePair> pairs;  ///< the reference's largest facade first, then facades without a partner
+};
+/// Requires marks of what is left out (Face::left_out).
+FacadeComparison compare_facades(const City& model, std::span<const std::uint32_t> model_buildings, const City& reference,
+                                 std::span<const std::uint32_t> reference_buildings, const FacadeOptions& options = {});
+
+/// Sets the measures of Scope::facades: storeys_error (rows of openings, of the facade with the most; where a side has no
+/// openings its stated storeys; no value without both), axes_error, openings_ratio, window_to_wall_error,
+/// opening_precision, opening_recall, storey_pitch_error, axis_pitch_error. `counted` leaves out the reference's facades
+/// that are blank or covered, and the model's facades that are paired with those or have no partner but are covered.
+/// No value where the reference has no openings at all (but storeys). A model without openings against a reference with
+/// some has recall 0, ratio 0 and no precision.
+void measure_facades(const FacadeComparison& facades, const City& model, std::span<const std::uint32_t> model_buildings,
+                     const City& reference, std::span<const std::uint32_t> reference_buildings, MeasureValues& values);
+
+}  // namespace blockrand::compare
