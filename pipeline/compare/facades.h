@@ -28,15 +28,19 @@ struct FacadeOptions {
   double blank_width = 4.0;       ///< m. Narrower facades may have no window by design.
 };
 
-/// An opening in its facade's plane: the rectangle around it.
+/// An opening in its facade's plane: the rectangle around it, of those of its polygons that look (within 60 degrees) along
+/// the facade's normal or against it: panes and frames, not the sides of reveals.
 struct FacadeOpening {
   double left = 0, right = 0;  ///< m along the facade, from its left end as seen from outside
   double bottom = 0, top = 0;  ///< m above the building's own ground
   double area = 0;             ///< m² of the opening itself in the facade's plane
   bool door = false;
-  int row = -1, column = -1;   ///< counted from below and from the left
+  int row = -1, column = -1;   ///< counted from below and from the left; row -1: in no storey (transom, half-landing …)
+  std::uint32_t building = 0, opening = 0;  ///< index into the City's buildings, and into Building::openings
 };
 
+/// Walls in (nearly) one plane, and their openings. How they are gathered is said at wall_groups (facade_planes.h), how
+/// rows, columns and storeys are found at find_rows_and_columns (opening_grid.h).
 struct Facade {
   std::size_t building = 0;          ///< index into its City's buildings: the one with most of its area
   std::vector<std::pair<std::uint32_t, std::uint32_t>> faces;  ///< (building, index into its faces), sorted
@@ -46,23 +50,42 @@ struct Facade {
   double covered = 0;                ///< m² of `area` that faces with LeftOut::covered make
   std::vector<Rings3> outline;       ///< of its walls in the facade's plane: x along the facade from `left`, y above the
                                      ///< own ground, z 0; for drawings, may overlap
-  std::vector<FacadeOpening> openings;
-  int storeys = 0;                   ///< rows of openings
+  std::vector<FacadeOpening> openings;  ///< from left to right, then from below
+  int storeys = 0;                   ///< rows of openings that are storeys
   int axes = 0;                      ///< columns of openings
   std::optional<double> storey_pitch, axis_pitch;  ///< m: median distance of neighbouring rows, columns; from two on
   bool blank = false;                ///< no openings, at least blank_width wide and not covered, though the building has
                                      ///< openings elsewhere
-  double width() const;
+  double width() const;              ///< m
+  /// More than half of it stands against a neighbour.
+  bool is_covered() const { return covered > 0.5 * area; }
+  /// Takes no part in `counted`, where it is the reference's: blank, or covered and without openings. (What has openings
+  /// above a low neighbour was modelled and counts.)
+  bool left_out() const { return blank || (is_covered() && openings.empty()); }
 };
 
 /// The facades of buildings that are compared as one (a block against several houses), largest first. Walls of faces
-/// with another class than wall do not count, nor do closures. Openings without a facade near them (in roofs) are not in
-/// any; `loose` counts them.
+/// with another class than wall do not count, nor do closures.
+///
+/// An opening belongs to the facade whose plane is nearest to the middle of its polygons, among those that it is parallel
+/// to (pair_angle), at most 0.6 m behind the rearmost place where the facade's walls may be, at most 1.5 m before its
+/// plane (bays too narrow to be facades), and whose extent its middle lies in (0.3 m margin). All polygons of an opening
+/// (frame, panes, reveals) are one opening. Openings whose rectangles have an IoU above 0.9 are one (a leaf drawn as a
+/// window in its window); the larger stays, as a door if one is. Openings without a facade near them (in roofs and
+/// dormers, on curved walls in narrow pieces, in niches, or without an area) are in none; `loose` counts them.
+///
+/// Neither the order of buildings, faces and openings nor the way in which walls are cut into polygons matters.
+/// Cost: O(pieces x planes) for walls, for openings O(openings x facades) plus a sweep over each one's polygons.
 std::vector<Facade> facades_of(const City& city, std::span<const std::uint32_t> buildings,
                                const FacadeOptions& options = {}, std::size_t* loose = nullptr);
 
-/// Marks the faces of blank facades LeftOut::blank, in every building that stands alone in `groups` or with others: the
-/// groups are the reference's sides of the matches. Faces that are left out for another reason keep it.
+/// Marks the faces of blank facades LeftOut::blank: the groups are the reference's sides of the matches. Faces that are
+/// left out for another reason keep it.
+///
+/// A facade is blank when it has no opening, is at least blank_width wide and no more than half covered, while another
+/// facade of the same group has openings. So courtyard sides that a survey from the street did not see are left out, and
+/// likewise fire walls that really have no window where no neighbour of the same model covers them: from geometry alone
+/// the two cannot be told apart.
 /// \return how many facades are blank
 std::size_t mark_blank(City& reference, std::span<const std::vector<std::uint32_t>> groups,
                        const FacadeOptions& options = {});
