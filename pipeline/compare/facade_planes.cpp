@@ -8,13 +8,14 @@
 #include <tuple>
 
 #include "pipeline/base/portable_math.h"
+#include "pipeline/compare/vector.h"
 #include "pipeline/geometry/polygon.h"
 
 namespace blockrand::compare {
 namespace {
 
-constexpr double kOnePlane = 0.02;  // m. Surveyors' points of one wall scatter by millimetres.
-constexpr double kLeastArea = 1e-6;  // m². A square millimetre has no direction.
+constexpr double kOnePlane = 0.02;                     // m. Surveyors' points of one wall scatter by millimetres.
+constexpr double kLeastArea = 1e-6;                    // m². A square millimetre has no direction.
 constexpr std::array<double, 2> kProbes = {0.3, 1.0};  // m beside a wall, where its inside is looked for
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -40,24 +41,9 @@ void each_point(const Rings3& rings, Visit visit) {
 
 bool finite(const Rings3& rings) {
   bool all = true;
-  each_point(rings, [&](const Point3& p) { all = all && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); });
+  each_point(rings,
+             [&](const Point3& p) { all = all && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); });
   return all;
-}
-
-Point3 operator-(const Point3& a, const Point3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Point3 cross(const Point3& a, const Point3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-/// Twice the area as a vector.
-Point3 area_vector(const std::vector<Point3>& ring, const Point3& base) {
-  Point3 sum;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Point3 c = cross(ring[i] - base, ring[i + 1 == ring.size() ? 0 : i + 1] - base);
-    sum = {sum.x + c.x, sum.y + c.y, sum.z + c.z};
-  }
-  return sum;
 }
 
 bool inside(const Building& building, Point2 p) {
@@ -96,8 +82,8 @@ void add_walls(const City& city, std::uint32_t index, double max_lean, std::vect
     const Flat flat = flat_of(face.rings);
     if (flat.area < kLeastArea || std::fabs(flat.normal.z) > max_lean) continue;
     const double level = std::sqrt(flat.normal.x * flat.normal.x + flat.normal.y * flat.normal.y);
-    WallPiece piece{index, static_cast<std::uint32_t>(f), {flat.normal.x / level, flat.normal.y / level}, flat.area,
-                    flat.centre};
+    WallPiece piece{
+        index, static_cast<std::uint32_t>(f), {flat.normal.x / level, flat.normal.y / level}, flat.area, flat.centre};
     const int turn = side(building, face.rings, piece.normal, piece.centre);
     (turn < 0 ? inside_out : as_drawn) += turn == 0 ? 0 : piece.area;
     if (turn < 0) piece.normal = {-piece.normal.x, -piece.normal.y};
@@ -142,7 +128,8 @@ class Gatherer {
       if (taken[seed]) continue;
       WallGroup group = gather_around(seed, taken);
       const double height = group.top - group.bottom, width = group.right - group.left;
-      if (width >= options_.min_width - 1e-9 && height >= options_.min_height - 1e-9) groups.push_back(std::move(group));
+      if (width >= options_.min_width - 1e-9 && height >= options_.min_height - 1e-9)
+        groups.push_back(std::move(group));
     }
     return groups;
   }
@@ -293,19 +280,19 @@ Flat flat_of(const Rings3& rings) {
   Flat flat;
   if (rings.empty() || rings.front().size() < 3 || !finite(rings)) return flat;
   const Point3 base = rings.front().front();
-  const Point3 outer = area_vector(rings.front(), base);
-  const double outer_length = std::sqrt(dot(outer, outer));
+  const Point3 outer = area_vector(rings.front());
+  const double outer_length = length(outer);
   if (!(outer_length > 2 * kLeastArea)) return flat;
   flat.normal = {outer.x / outer_length, outer.y / outer_length, outer.z / outer_length};
   Point3 moment;
   for (std::size_t r = 0; r < rings.size(); ++r) {
     const auto& ring = rings[r];
     // Holes take off, whichever way they run.
-    const double ring_area = dot(flat.normal, area_vector(ring, base));
+    const double ring_area = dot(flat.normal, area_vector(ring));
     const double sign = (r == 0) == (ring_area >= 0) ? 1.0 : -1.0;
     flat.area += sign * 0.5 * ring_area;
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Point3 a = ring[i] - base, b = ring[i + 1 == ring.size() ? 0 : i + 1] - base;
+      const Point3 a = minus(ring[i], base), b = minus(ring[i + 1 == ring.size() ? 0 : i + 1], base);
       const double weight = sign * 0.5 * dot(flat.normal, cross(a, b)) / 3;
       moment = {moment.x + weight * (a.x + b.x), moment.y + weight * (a.y + b.y), moment.z + weight * (a.z + b.z)};
     }

@@ -33,21 +33,21 @@ struct WallPiece {
 
 /// Walls that make one facade.
 struct WallGroup {
-  Point2 normal;                    ///< of its largest wall, outwards, unit
-  double offset = 0;                ///< normal * p for the points of that wall
-  double left = 0, right = 0;       ///< extent along (-normal.y, normal.x): from left to right as seen from outside
-  double bottom = 0, top = 0;       ///< z
-  std::vector<WallPiece> pieces;    ///< sorted by building and face
+  Point2 normal;                  ///< of its largest wall, outwards, unit
+  double offset = 0;              ///< normal * p for the points of that wall
+  double left = 0, right = 0;     ///< extent along (-normal.y, normal.x): from left to right as seen from outside
+  double bottom = 0, top = 0;     ///< z
+  std::vector<WallPiece> pieces;  ///< sorted by building and face
   Point2 along() const { return {-normal.y, normal.x}; }
 };
 
 /// Gathers the walls of `buildings` by plane.
 ///
-/// Outside is the side on which the building's footprint is not, 0.3 m (or, where that does not tell, 1 m) from the wall;
-/// where neither tells, the ring's order does, turned round in buildings whose other walls turn out to be drawn inside
-/// out. Walls in one plane (20 mm) are cut where nothing of them lies for more than kFacadeGap; then the largest such
-/// stretch gathers all others within plane_angle and plane_distance of it that lie no farther than that gap from what it
-/// has gathered, then the largest of the rest, and so on. Groups that are narrower than min_width or lower than
+/// Outside is the side on which the building's footprint is not, 0.3 m (or, where that does not tell, 1 m) from the
+/// wall; where neither tells, the ring's order does, turned round in buildings whose other walls turn out to be drawn
+/// inside out. Walls in one plane (20 mm) are cut where nothing of them lies for more than kFacadeGap; then the largest
+/// such stretch gathers all others within plane_angle and plane_distance of it that lie no farther than that gap from
+/// what it has gathered, then the largest of the rest, and so on. Groups that are narrower than min_width or lower than
 /// min_height are dropped. In no particular order, but always the same.
 std::vector<WallGroup> wall_groups(const City& city, std::span<const std::uint32_t> buildings,
                                    const FacadeOptions& options);

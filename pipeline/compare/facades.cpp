@@ -14,10 +14,10 @@
 namespace blockrand::compare {
 namespace {
 
-constexpr double kReveal = 0.6;   // m behind the walls: deep reveals and doors in niches
-constexpr double kBay = 1.5;      // m before the plane: bays that are too narrow for a facade of their own
-constexpr double kMargin = 0.3;   // m beyond the facade's extent: frames before its edge
-constexpr double kFacing = 0.5;   // cosine: polygons of an opening that are steeper to the facade are sides of reveals
+constexpr double kReveal = 0.6;  // m behind the walls: deep reveals and doors in niches
+constexpr double kBay = 1.5;     // m before the plane: bays that are too narrow for a facade of their own
+constexpr double kMargin = 0.3;  // m beyond the facade's extent: frames before its edge
+constexpr double kFacing = 0.5;  // cosine: polygons of an opening that are steeper to the facade are sides of reveals
 constexpr double kSameOpening = 0.9;  // IoU
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -33,7 +33,8 @@ struct LooseOpening {
 
 /// What of an opening a facade sees.
 struct View {
-  double left = kInfinite, right = -kInfinite, bottom = kInfinite, top = -kInfinite, across = 0;  // along, z, from plane
+  double left = kInfinite, right = -kInfinite, bottom = kInfinite, top = -kInfinite,
+         across = 0;  // along, z, from plane
   std::vector<FlatPolygon> polygons;
 };
 

@@ -42,7 +42,9 @@ double common(double low_a, double high_a, double low_b, double high_b) {
 std::vector<Lane> lanes_of(const std::vector<Extent>& extents, std::vector<std::size_t> which, double gap) {
   std::vector<Lane> lanes;
   std::sort(which.begin(), which.end(), [&](std::size_t a, std::size_t b) {
-    const auto key = [&](std::size_t i) { return std::tuple(rounded(extents[i].centre()), rounded(extents[i].length()), i); };
+    const auto key = [&](std::size_t i) {
+      return std::tuple(rounded(extents[i].centre()), rounded(extents[i].length()), i);
+    };
     return key(a) < key(b);
   });
   const auto joins = [&](const Extent& a, const Extent& b) {
@@ -177,7 +179,9 @@ void find_columns(Facade& facade, double gap) {
   for (const FacadeOpening& o : openings) widths.push_back({o.left, o.right, 1});
   std::vector<Lane> columns = lanes_of(widths, all, gap);
   std::sort(columns.begin(), columns.end(), [](const Lane& a, const Lane& b) {
-    const auto key = [](const Lane& l) { return std::tuple(-rounded(l.weight), rounded(l.length()), rounded(l.centre)); };
+    const auto key = [](const Lane& l) {
+      return std::tuple(-rounded(l.weight), rounded(l.length()), rounded(l.centre));
+    };
     return key(a) < key(b);
   });
   std::vector<Lane> axes, others;

@@ -8,8 +8,8 @@
 
 namespace blockrand::compare {
 
-/// Rings of one polygon in a plane, of any orientation: what an odd number of them encloses is inside. The last point is
-/// not repeated.
+/// Rings of one polygon in a plane, of any orientation: what an odd number of them encloses is inside. The last point
+/// is not repeated.
 using FlatPolygon = std::vector<std::vector<model::Point2>>;
 
 /// A rectangle along the axes.
@@ -25,9 +25,9 @@ Box box_of(const FlatPolygon& polygon);
 /// Area of the union, each place counted once, in double precision and without a grid: geometry::unite rounds to
 /// 1/1024 m, so that a wall in 500 triangles would have another area than the same wall in one piece.
 ///
-/// Slabs between neighbouring x of corners and crossings, in which the covered length is linear in x, so that the middle
-/// of a slab gives its area exactly. Crossings at angles that move less than 1e-10 m within a slab are passed over.
-/// Cost O(slabs x edges in a slab x log), plus crossings.
+/// Slabs between neighbouring x of corners and crossings, in which the covered length is linear in x, so that the
+/// middle of a slab gives its area exactly. Crossings at angles that move less than 1e-10 m within a slab are passed
+/// over. Cost O(slabs x edges in a slab x log), plus crossings.
 double union_area(std::span<const FlatPolygon> polygons);
 
 /// The same of what lies within `window`.
