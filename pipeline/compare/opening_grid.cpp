@@ -177,7 +177,7 @@ std::vector<int> telling_rows(const Facade& facade) {
   for (const FacadeOpening& o : facade.openings)
     if (o.row >= 0) ++openings_in[static_cast<std::size_t>(o.row)];
   std::size_t first = openings_in.size() > 1 ? 1 : 0;
-  if (openings_in.size() == 2 && 2 * openings_in[1] < openings_in[0]) first = 0;
+  if (openings_in.size() == 2 && 2 * openings_in[1] <= openings_in[0]) first = 0;
   std::vector<std::size_t> descending(openings_in.begin() + static_cast<std::ptrdiff_t>(first), openings_in.end());
   std::sort(descending.rbegin(), descending.rend());
   if (descending.empty()) return {};
