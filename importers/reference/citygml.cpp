@@ -2,51 +2,21 @@
 
 #include <libxml/SAX2.h>
 #include <libxml/parser.h>
-#include <zlib.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "importers/reference/citygml_parser.h"
+#include "importers/reference/file_bytes.h"
+#include "importers/reference/height_words.h"
 #include "importers/reference/reference_crs.h"
 #include "pipeline/base/error.h"
 
 namespace blockrand::importers::reference {
 namespace {
-
-/// Bytes of a plain or gzipped file; zlib tells them apart.
-class Bytes {
- public:
-  explicit Bytes(const std::string& path) : file_(gzopen(path.c_str(), "rb")) {
-    constexpr unsigned kBuffer = 1U << 18;
-    if (file_ != nullptr) gzbuffer(file_, kBuffer);
-  }
-  ~Bytes() {
-    if (file_ != nullptr) gzclose(file_);
-  }
-  Bytes(const Bytes&) = delete;
-  Bytes& operator=(const Bytes&) = delete;
-
-  bool open() const { return file_ != nullptr; }
-  bool damaged() const { return damaged_; }
-
-  /// The next bytes; 0 at the end. A damaged archive ends where it is damaged, so that what came before is read.
-  int read(char* buffer, int length) {
-    const int got = gzread(file_, buffer, static_cast<unsigned>(length));
-    int error = Z_OK;
-    gzerror(file_, &error);
-    if (got < 0 || error == Z_BUF_ERROR || error == Z_DATA_ERROR) damaged_ = true;
-    return std::max(0, got);
-  }
-
- private:
-  gzFile file_;
-  bool damaged_ = false;
-};
 
 /// What the events of a document go to, with what libxml2 complained about.
 struct Document {
@@ -96,17 +66,9 @@ struct Document {
   throw base::InputError(path, line > 0 ? "line " + std::to_string(line) : "", what, remedy);
 }
 
-void check_path(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  if (!fs::exists(path, error)) refuse(path, 0, "there is no such file", "");
-  if (fs::is_directory(path, error)) refuse(path, 0, "is a directory", "Name the CityGML files in it");
-  if (fs::file_size(path, error) == 0 && !error) refuse(path, 0, "is empty", "");
-}
-
 /// Sends all bytes through libxml2 to the document. Nothing is fetched and no entity expanded; an illegal byte or a
 /// stray end tag is not the end.
-void run(Bytes& bytes, Document& document, const std::string& path) {
+void run(ByteReader& bytes, Document& document, const std::string& path) {
   constexpr int kFlags = XML_PARSE_NONET | XML_PARSE_HUGE | XML_PARSE_RECOVER;
   constexpr int kChunk = 1 << 16;
   xmlSAXHandler handler{};
@@ -122,7 +84,8 @@ void run(Bytes& bytes, Document& document, const std::string& path) {
   handler.processingInstruction = nullptr;
   handler.serror = Document::complaint;
   std::vector<char> buffer(kChunk);
-  int size = bytes.read(buffer.data(), kChunk);
+  const auto next = [&] { return static_cast<int>(bytes.read(buffer.data(), kChunk)); };
+  int size = next();
   // The first bytes decide about the encoding; handlers of the library itself want the context as their user data.
   const int head = std::min(size, 4);
   const std::unique_ptr<xmlParserCtxt, void (*)(xmlParserCtxtPtr)> context(
@@ -135,7 +98,7 @@ void run(Bytes& bytes, Document& document, const std::string& path) {
   xmlCtxtUseOptions(context.get(), kFlags);
   context->_private = &document;
   if (size > head) xmlParseChunk(context.get(), buffer.data() + head, size - head, 0);
-  while (!document.parser.facts().has_doctype && (size = bytes.read(buffer.data(), kChunk)) > 0)
+  while (!document.parser.facts().has_doctype && (size = next()) > 0)
     xmlParseChunk(context.get(), buffer.data(), size, 0);
   xmlParseChunk(context.get(), buffer.data(), 0, 1);
 }
@@ -186,12 +149,12 @@ void swap_axes(ReferenceModel& model) {
 }  // namespace
 
 ReferenceModel read_citygml(const std::string& path, const ReadOptions& options) {
-  check_path(path);
+  check_readable(path);
   xmlInitParser();
-  Bytes bytes(path);
-  if (!bytes.open()) refuse(path, 0, "cannot be opened", "");
+  ByteReader bytes(path);
   ReferenceModel model;
   model.path = path;
+  model.bytes = size_on_disk(path);
   NoteLog notes;
   CityGmlParser parser(model, notes);
   Document document{parser, notes, false, 0, ""};
@@ -219,6 +182,8 @@ ReferenceModel read_citygml(const std::string& path, const ReadOptions& options)
     for (const model::Point3& p : polygon.outer) box.add(p);
   if (!model.buildings.empty() || !facts.srs_names.empty() || !options.reference_crs.empty())
     model.crs = decide_crs(path, facts.srs_names, options, notes);
+  decide_heights(model.crs, height_words_in(facts.description));
+  model.format = "CityGML " + model.version;
   compare_with_envelope(model, facts, notes);
   if (!model.polygons.empty()) {
     decide_axis_order(model.crs, box.lowest.xy(), box.highest.xy(), options, notes);

@@ -1,22 +1,12 @@
 // Reads CityGML 0.4, 1.0 and 2.0 leniently: surveyed and hand-built models as they are, not as the schema wants them.
 #pragma once
 
-#include <optional>
 #include <string>
 
+#include "importers/reference/read_options.h"
 #include "importers/reference/reference_model.h"
-#include "pipeline/georef/lon_lat.h"
 
 namespace blockrand::importers::reference {
-
-struct ReadOptions {
-  /// The file's CRS for files that state none or an unknown one ("EPSG:25833"); wins over what the file states.
-  std::string reference_crs;
-  /// Where the model is expected, degrees: decides about the axis order where both orders lie in the CRS's area of use.
-  std::optional<georef::GeoBox> near;
-  /// Overrides what is found out about the axis order.
-  AxisOrder axis_order = AxisOrder::automatic;
-};
 
 /// Reads `.gml`, `.xml` and either with `.gz` (told by content), streaming: memory is the model, not the document.
 ///

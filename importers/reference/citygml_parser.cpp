@@ -105,8 +105,8 @@ void CityGmlParser::element(const XmlElement& element) {
   if (stack_.empty() && facts_.root.empty()) facts_.root = e.name;
   if (skip_depth_ == 0) e.role = start(e);
   text_.clear();
-  collects_ =
-      e.role == Role::coordinates || e.role == Role::attribute_value || e.role == Role::value || e.role == Role::corner;
+  collects_ = e.role == Role::coordinates || e.role == Role::attribute_value || e.role == Role::value ||
+              e.role == Role::corner || e.role == Role::description;
   stack_.push_back(std::move(e));
 }
 
@@ -226,6 +226,9 @@ void CityGmlParser::end(const Element& e) {
       break;
     case Role::corner:
       end_corner();
+      break;
+    case Role::description:
+      facts_.description = trimmed(text_);
       break;
     case Role::envelope:
     case Role::attribute_set:

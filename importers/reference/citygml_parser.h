@@ -22,6 +22,7 @@ struct DocumentFacts {
   std::string root;                    ///< local name of the outermost element
   std::string foreign_version;         ///< "3.0" where the elements are of a version that is not read
   std::vector<std::string> srs_names;  ///< different ones in order of appearance, a few at most
+  std::string description;             ///< of the city model
   bool has_doctype = false;
   std::vector<double> lower, upper;  ///< corners of the model's envelope as written; empty without one
 };
@@ -75,6 +76,7 @@ class CityGmlParser {
     value,
     envelope,
     corner,
+    description,
   };
   struct Attributes {
     std::string id, href, srs_name, name, uom, decimal, within, between;

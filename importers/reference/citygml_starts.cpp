@@ -31,6 +31,7 @@ CityGmlParser::Role CityGmlParser::start(const Element& e) {
 CityGmlParser::Role CityGmlParser::start_outside(const Element& e) {
   if (e.name == "appearanceMember" || e.name == "Appearance") return skip();
   if (e.name == "Envelope" && stack_.size() <= 2) return Role::envelope;
+  if (e.name == "description" && stack_.size() == 1) return Role::description;
   if (parent_role() == Role::envelope && any_of(e.name, {"lowerCorner", "upperCorner", "pos"})) return Role::corner;
   // One end tag missing shifts all that follow: a member may stand in a member.
   const auto is_member = [](std::string_view name) {

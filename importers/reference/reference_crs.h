@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "importers/reference/citygml.h"
 #include "importers/reference/note_log.h"
+#include "importers/reference/read_options.h"
 #include "importers/reference/reference_model.h"
 
 namespace blockrand::importers::reference {

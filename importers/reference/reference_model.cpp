@@ -42,6 +42,22 @@ std::string_view name_of(SurfaceClass surface_class) {
   return "";
 }
 
+std::string_view name_of(HeightReference reference) {
+  switch (reference) {
+    case HeightReference::unknown:
+      return "unknown";
+    case HeightReference::vertical_crs:
+      return "vertical_crs";
+    case HeightReference::sea_level:
+      return "sea_level";
+    case HeightReference::ellipsoidal:
+      return "ellipsoidal";
+    case HeightReference::above_local_ground:
+      return "above_local_ground";
+  }
+  return "";
+}
+
 std::string_view name_of(NoteKind kind) {
   switch (kind) {
     case NoteKind::not_read:
@@ -50,6 +66,8 @@ std::string_view name_of(NoteKind kind) {
       return "crs";
     case NoteKind::malformed_xml:
       return "malformed_xml";
+    case NoteKind::malformed_json:
+      return "malformed_json";
     case NoteKind::incomplete_building:
       return "incomplete_building";
     case NoteKind::bad_id:
@@ -76,6 +94,10 @@ std::string_view name_of(NoteKind kind) {
       return "outside_envelope";
     case NoteKind::two_dimensional:
       return "two_dimensional";
+    case NoteKind::bad_index:
+      return "bad_index";
+    case NoteKind::bad_hierarchy:
+      return "bad_hierarchy";
   }
   return "";
 }

@@ -1,4 +1,5 @@
-// Hand-built and surveyed models as plain data: what a comparison needs of them, whatever format they came in.
+// Hand-built, surveyed and generated models as plain data: what a comparison needs of them, whatever format they came
+// in.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@ namespace blockrand::importers::reference {
 /// A flat face with its boundary rings; the last point is not repeated. Coordinates as the file has them, in the
 /// model's CRS, x east (or longitude), y north (or latitude), z up. Rings are neither checked nor repaired.
 struct Polygon3 {
-  std::string id;  ///< gml:id, may be empty
+  std::string id;  ///< gml:id; may be empty, and is where the format has none
   std::vector<model::Point3> outer;
   std::vector<std::vector<model::Point3>> holes;
 };
@@ -79,7 +80,7 @@ struct Surface {
 struct Building {
   std::string id;   ///< gml:id as it stands, may be empty or no valid XML name
   int parent = -1;  ///< index of the building (or part) that this is a part of; -1 for a Building
-  int line = 0;     ///< where it starts in the file
+  int line = 0;     ///< where it starts in the file; 0: the format has no lines
   std::vector<std::string> names;
   std::vector<std::pair<std::string, std::string>> attributes;  ///< generic ones, in order; of a set: "set/name"
   std::optional<double> measured_height;                        ///< m
@@ -90,7 +91,7 @@ struct Building {
   std::vector<std::string> functions, usages;
   std::vector<Geometry> geometries;  ///< the building's own: solids, multi-surfaces, footprints
   std::vector<Surface> surfaces;
-  std::size_t implicit_geometries = 0;  ///< not read
+  std::size_t implicit_geometries = 0;  ///< uses of a template that were not read: from another file, or broken
 
   /// Highest level of detail with a face; -1 without geometry.
   int lod() const;
@@ -98,9 +99,21 @@ struct Building {
 
 enum class AxisOrder : std::uint8_t { automatic, east_first, north_first };
 
+/// What is known about the heights. Absolute ones of two models can be compared only where both have a ground that is
+/// real terrain, and one height system leads to the other.
+enum class HeightReference : std::uint8_t {
+  unknown,             ///< the file says nothing
+  vertical_crs,        ///< ReferenceCrs::vertical
+  sea_level,           ///< above some sea level that no code names
+  ellipsoidal,         ///< above the ellipsoid
+  above_local_ground,  ///< no terrain: all buildings stand at one height, 0 or another
+};
+/// "unknown", "vertical_crs", … as the enumerators.
+std::string_view name_of(HeightReference reference);
+
 /// Where a file says it lies, and how its coordinates were understood.
 struct ReferenceCrs {
-  std::string stated;      ///< srsName as it stands in the file; empty without one
+  std::string stated;      ///< srsName, referenceSystem … as it stands in the file; empty without one
   std::string horizontal;  ///< for PROJ: "EPSG:25833"
   std::string name;        ///< "ETRS89 / UTM zone 33N"
   std::string vertical;    ///< "EPSG:5783"; empty when none is stated or it has no code
@@ -108,13 +121,16 @@ struct ReferenceCrs {
   double metres_per_unit = 1;
   AxisOrder axis_order = AxisOrder::east_first;  ///< of the file; the model's is always east first
   bool from_options = false;                     ///< given by the caller
+  HeightReference height_reference = HeightReference::unknown;
+  std::string height_words;  ///< what the file says of its heights in words; may be empty
 };
 
 /// What was found while reading, counted by kind. All but the first two are breaches of the standard or damage.
 enum class NoteKind : std::uint8_t {
-  not_read,  ///< geometry of a kind that is not read: implicit geometry, curves
+  not_read,  ///< geometry of a kind that is not read: curves, points, templates in other files
   crs,       ///< how the CRS or axis order was decided where the file leaves it open
   malformed_xml,
+  malformed_json,       ///< a line that is no JSON, or a member that is not what the format wants
   incomplete_building,  ///< cut off by the end of the readable text; left out
   bad_id,               ///< gml:id is no XML name
   duplicate_id,
@@ -128,6 +144,8 @@ enum class NoteKind : std::uint8_t {
   mixed_crs,         ///< geometry states another CRS than the first one; read as if in the first
   outside_envelope,  ///< polygons with a point outside of the model's envelope
   two_dimensional,   ///< rings without heights; z is 0
+  bad_index,         ///< a number that points to no vertex, template, accessor …; what needs it is left out
+  bad_hierarchy,     ///< parents that do not exist or stand in a circle; the object counts as if it had none
 };
 std::string_view name_of(NoteKind kind);
 /// Whether the kind speaks against the file (true for all but not_read and crs).
@@ -141,7 +159,9 @@ struct Note {
 
 struct ReferenceModel {
   std::string path;
-  std::string version;  ///< "0.4", "1.0", "2.0" by the namespaces
+  std::string format;       ///< "CityGML 2.0", "CityJSON 1.1", "CityJSON sequence 2.0", "glTF 2.0", "3D Tiles 1.1"
+  std::string version;      ///< of the format: "0.4", "1.0", "2.0"
+  std::uint64_t bytes = 0;  ///< on disk, gzipped if so; with all files that belong to it
   ReferenceCrs crs;
   std::vector<Polygon3> polygons;
   std::vector<Building> buildings;                                 ///< in the file's order, a part after its building

@@ -72,7 +72,7 @@ constexpr double kLevelSpread = 0.75;
 bool opposite(double a, double b) { return std::fabs(std::fabs(std::remainder(a - b, 360.0)) - 180) <= 20; }
 
 /// What a mapper who sees the roof from above would tag.
-RoofShape seen_shape(const RoofForm& form) {
+RoofShape seen_shape(const RoofPlanes& form) {
   const auto& d = form.directions;
   if (form.sloped < kFlatShare || d.empty()) return RoofShape::flat;
   if (d.size() == 1) return RoofShape::skillion;
@@ -87,7 +87,7 @@ RoofShape seen_shape(const RoofForm& form) {
   return RoofShape::other;
 }
 
-std::string seen_name(const RoofForm& form) {
+std::string seen_name(const RoofPlanes& form) {
   const RoofShape shape = seen_shape(form);
   if (shape == RoofShape::flat) return form.spread > kLevelSpread ? "flat, stepped" : "flat";
   return std::string(model::name(shape));
@@ -131,7 +131,7 @@ struct Attempt {
   RoofShape shape = RoofShape::flat;  ///< as built
   bool across = false;
   SurfaceError error;
-  RoofForm form;
+  RoofPlanes form;
 };
 
 std::optional<Attempt> attempt(const std::vector<Polygon>& plan, const roofs::RoofRequest& request,
@@ -140,7 +140,7 @@ std::optional<Attempt> attempt(const std::vector<Polygon>& plan, const roofs::Ro
   const auto roof = build_on(plan, request, &out.shape);
   if (!roof) return std::nullopt;
   out.across = request.across;
-  out.error = compare(*roof, survey, points);
+  out.error = vertical_error(*roof, survey, points);
   if (out.error.points == 0) return std::nullopt;
   out.form = form_of(*roof, points);
   return out;
@@ -194,7 +194,7 @@ std::optional<Attempt> best_attempt(const std::vector<Polygon>& plan, const Roof
 /// A surveyed roof against ours in several guises.
 struct RoofCase {
   std::string id, seen, code;
-  RoofForm form;
+  RoofPlanes form;
   RoofShape asked = RoofShape::flat;
   std::optional<Attempt> as_asked;   ///< the shape that is asked for, with the default direction
   std::optional<Attempt> other_way;  ///< the same across, or the lean-to's best direction

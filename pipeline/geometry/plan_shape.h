@@ -1,0 +1,37 @@
+// Areas in plan for measuring: common area, overlap, distance of outlines. Raw GEOS on the coordinates as they are: a
+// judge that shares nothing with repair.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "pipeline/model/polygon.h"
+
+namespace blockrand::geometry {
+
+/// An area in plan, held by GEOS. Square metres, metres.
+class PlanShape {
+ public:
+  PlanShape() = default;
+  /// The union of the polygons.
+  explicit PlanShape(const std::vector<model::Polygon>& polygons);
+  bool empty() const { return area_ <= 0; }
+  double area() const { return area_; }
+  model::Point2 centroid() const;
+  double common_area(const PlanShape& other) const;
+  /// Area in common over area together; 0 where one is empty.
+  double intersection_over_union(const PlanShape& other) const;
+  /// The largest distance of a vertex of one outline from the other outline, both ways; 0 where one is empty.
+  double outline_distance(const PlanShape& other) const;
+  PlanShape moved(model::Point2 by) const;
+  /// intersection_over_union at the best place that this shape can be moved to (to 1 cm, found by descent from where it
+  /// is): how well the forms agree, wherever they lie.
+  double best_intersection_over_union(const PlanShape& other) const;
+  PlanShape united(const PlanShape& other) const;
+
+ private:
+  std::shared_ptr<void> shape_;
+  double area_ = 0;
+};
+
+}  // namespace blockrand::geometry
