@@ -104,6 +104,7 @@ struct City {
   std::vector<Building> buildings;
   std::size_t without_geometry = 0;  ///< buildings of the files that have no polygon with an area
   std::size_t out_of_reach = 0;      ///< buildings that were read and lie farther than the margin from the other city
+  std::size_t repetitions = 0;       ///< buildings that stand where one of an earlier file stands; left out
 };
 
 }  // namespace blockrand::compare

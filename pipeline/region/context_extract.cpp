@@ -9,7 +9,7 @@
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/geometry/polygon.h"
-#include "pipeline/region/box_index.h"
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/region/rows.h"
 
 namespace blockrand::region {

@@ -5,23 +5,15 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/model/building.h"
 #include "pipeline/repair/row.h"
 
 namespace blockrand::region {
 
-/// Axis-parallel box in metres, build CRS; empty while minimum is above maximum.
-struct PlanBox {
-  model::Point2 minimum{1, 1}, maximum{0, 0};
-  bool empty() const { return minimum.x > maximum.x; }
-  void include(model::Point2 p);
-  void include(const PlanBox& other);
-  model::Point2 centre() const { return {(minimum.x + maximum.x) / 2, (minimum.y + maximum.y) / 2}; }
-  /// True when the boxes are at most `distance` apart along both axes; false for empty ones.
-  bool near(const PlanBox& other, double distance) const;
-};
-
-PlanBox box_of(std::span<const model::Point2> points);
+using geometry::box_of;
+using geometry::BoxIndex;
+using geometry::PlanBox;
 
 /// One building's outline in the store.
 struct StoredFootprint {

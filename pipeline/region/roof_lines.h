@@ -6,7 +6,8 @@
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/region.h"
 #include "pipeline/model/roof_line.h"
-#include "pipeline/region/box_index.h"
+#include "pipeline/geometry/box_index.h"
+#include "pipeline/region/footprints.h"
 
 namespace blockrand::region {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pipeline/model/region.h"
-#include "pipeline/region/box_index.h"
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/region/context_extract.h"
 #include "pipeline/region/footprints.h"
 

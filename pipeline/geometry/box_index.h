@@ -1,15 +1,29 @@
-// Which boxes come near a place.
+// Boxes in plan, and which of them come near a place.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
-#include "pipeline/region/footprints.h"
+#include "pipeline/model/point.h"
 
-namespace blockrand::region {
+namespace blockrand::geometry {
+
+/// Axis-parallel box in metres; empty while minimum is above maximum.
+struct PlanBox {
+  model::Point2 minimum{1, 1}, maximum{0, 0};
+  bool empty() const { return minimum.x > maximum.x; }
+  void include(model::Point2 p);
+  void include(const PlanBox& other);
+  model::Point2 centre() const { return {(minimum.x + maximum.x) / 2, (minimum.y + maximum.y) / 2}; }
+  /// True when the boxes are at most `distance` apart along both axes; false for empty ones.
+  bool near(const PlanBox& other, double distance) const;
+};
+
+PlanBox box_of(std::span<const model::Point2> points);
 
 /// Boxes by the cells of a fixed grid; read-only after construction. Made for streets and blocks: boxes of some 100 m.
 class BoxIndex {
@@ -49,4 +63,4 @@ class BoxIndex {
   std::vector<std::pair<Cell, std::uint32_t>> entries_;
 };
 
-}  // namespace blockrand::region
+}  // namespace blockrand::geometry
