@@ -53,6 +53,7 @@ Json city_json(const City& city) {
           {"buildings", city.buildings.size()},
           {"without_geometry", city.without_geometry},
           {"out_of_reach", city.out_of_reach},
+          {"repetitions", city.repetitions},
           {"files", std::move(files)}};
 }
 
@@ -256,6 +257,7 @@ std::string comparison_json(const Comparison& c, const OptionList& options) {
   for (const auto& [key, value] : options) asked[key] = value;
   out["options"] = std::move(asked);
   out["crs"] = c.reference.crs.empty() ? c.model.crs : c.reference.crs;
+  out["heights"] = c.absolute_heights ? "absolute" : "above own ground";
   out["model"] = city_json(c.model);
   out["reference"] = city_json(c.reference);
   out["registration"] = registration_json(c.registration);

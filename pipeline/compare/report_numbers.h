@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/compare/measures.h"
+#include "pipeline/compare/comparison.h"
 
 namespace blockrand::compare {
 
@@ -33,6 +33,11 @@ bool is_share(const MeasureInfo& measure);
 /// Of a value with a sign the mean size of the errors (MAE), else what all matches have together; nothing without
 /// values.
 std::optional<double> headline(const MeasureInfo& measure, const Summary& summary);
+
+/// Which heights are compared, for people.
+inline std::string_view heights_text(const Comparison& comparison) {
+  return comparison.absolute_heights ? "as they stand in the files" : "above each building's own ground";
+}
 
 inline const MeasureValue& value_of(const MeasureValues& values, Measure measure) {
   return values[static_cast<std::size_t>(measure)];

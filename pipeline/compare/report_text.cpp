@@ -54,6 +54,7 @@ void append_city(std::string& out, std::string_view side, const City& city) {
                        plural(with_breaches, "file"));
   if (city.without_geometry > 0) out += fmt::format("; {} without geometry", plural(city.without_geometry, "building"));
   if (city.out_of_reach > 0) out += fmt::format("; {} out of reach", plural(city.out_of_reach, "building"));
+  if (city.repetitions > 0) out += fmt::format("; {} in two files", plural(city.repetitions, "building"));
   out += '\n';
 }
 
@@ -75,6 +76,7 @@ std::string comparison_text(const Comparison& c) {
     out += fmt::format("          horizontal: {}, vertical: {}. {}\n", r.horizontal_removed ? "removed" : "not removed",
                        r.vertical_removed ? "removed" : "not removed", printable(r.rule));
   }
+  out += fmt::format("heights   compared {}\n", heights_text(c));
   out += fmt::format("matched   {}; missing from the model: {}; only in the model: {}; blank facades left out: {}\n\n",
                      base::with_thousands(c.matches.size()), base::with_thousands(c.missing.size()),
                      base::with_thousands(c.extra.size()), base::with_thousands(c.blank_facades));
