@@ -69,8 +69,9 @@ struct DistanceDistribution {
 
 struct Comparison {
   City model, reference;
+  bool absolute_heights = false;                       ///< measured as they stand; else above each building's own ground
   Registration registration;
-  std::vector<MatchResult> matches;                    ///< by id
+  std::vector<MatchResult> matches;                    ///< in the order of the reference's buildings
   std::vector<std::uint32_t> missing;                  ///< the reference's buildings that have no match
   std::vector<std::uint32_t> extra;                    ///< the model's buildings that have no match
   MeasureSummaries summaries;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,17 +14,23 @@
 namespace blockrand::compare {
 
 struct ReportOptions {
-  int pictures = 200;          ///< matches with drawings and pictures in the page, those with the largest distance first
-  int picture_width = 360;     ///< pixels
-  double heat_range = 2.0;     ///< m: the distance that has the last colour of the heat map
+  int pictures = 200;       ///< matches with elevations and pictures in the page, those with the largest distance (RMS)
+                            ///< first; the others have a plan and numbers
+  int picture_width = 360;  ///< pixels
+  double heat_range = 2.0;  ///< m: the distance that has the last colour of the heat map
 };
 
 /// "key", "value" as they were asked for, in order: into compare.json and the foot of the page.
 using OptionList = std::vector<std::pair<std::string, std::string>>;
 
-/// Distances in m from points (relative to City::origin, the model's own z) of one side of a match to the nearest surface
-/// of the other side, as they were measured: for heat maps.
-using DistanceQuery = std::function<std::vector<float>(const MatchResult& match, bool from_model, std::span<const Point3> points)>;
+/// Distances in m from points (relative to City::origin, the model's own z) of one side of a match to the nearest
+/// surface of the other side, as they were measured: for heat maps. Called from several threads at once.
+using DistanceQuery =
+    std::function<std::vector<float>(const MatchResult& match, bool from_model, std::span<const Point3> points)>;
+
+/// What compare.json says of itself. The version changes when a reader of the old one would misread the new one.
+inline constexpr std::string_view kJsonFormat = "blockrand-compare";
+inline constexpr int kJsonFormatVersion = 1;
 
 /// Everything as JSON (two spaces, keys in a fixed order, a format version): files, registration, summaries, confusion,
 /// distribution, totals, unmatched, and every match with every measure. The input of --baseline.
@@ -48,13 +55,15 @@ struct BaselineVerdict {
     double worse_by = 0;  ///< share of the way: 0.02 is 2 % worse; negative is better
     bool fails = false;
   };
-  std::vector<Line> lines;  ///< of every judged measure (Better other than none) with a value in both
+  std::vector<Line> lines;        ///< of every judged measure (Better other than none) with a value in both
   std::vector<std::string> lost;  ///< measures or matches that the baseline has and this comparison has not
-  bool worse() const;
+  bool worse() const;  ///< a line fails, or something is lost: leaving buildings out must not pass as progress
 };
-/// Compares pooled values. Worse is farther from the ideal: higher (1), lower (0), zero (0, of mean_abs), one (1, of |log|
-/// of the ratio). `allowed`: share (0.02); measures in metres, degrees and counts are worse when they grow by more than that share
-/// and by more than rounding (1 mm, 0.01 degrees, 1e-6); shares when they fall by more than `allowed` of the baseline's value.
+/// Compares what is `counted`, pooled. Worse is farther from the ideal, and fails where by more than `allowed` (0.02):
+/// higher: the value falls by more than that share of the baseline's; one: the ratio goes away from 1 by more than that
+/// factor (|log after| - |log before|, so that 1.30 to 1.33 counts like 1.00 to 1.02); lower, and zero by its mean size
+/// (MAE): the value grows by more than that share and by more than rounding (1 mm, 0.01 degrees, 1e-6 of shares and
+/// counts).
 /// \throws base::InputError  when the text is no compare.json of a known format version
 BaselineVerdict compare_with_baseline(const Comparison& comparison, const std::string& baseline_json,
                                       const std::string& baseline_path, double allowed);

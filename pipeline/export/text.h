@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "pipeline/base/markup.h"
 #include "pipeline/model/extract.h"
 
 namespace blockrand::export_ {
@@ -21,17 +22,9 @@ void append_number(std::string& out, std::int64_t value);
 /// \param metres  a multiple of 1/1024 m, below 2^40 in magnitude
 void append_grid(std::string& out, double metres);
 
-/// Appends `text` with every byte sequence replaced by U+FFFD that is not valid UTF-8 or that XML 1.0 forbids
-/// (control characters but tab, newline and carriage return; surrogates; U+FFFE, U+FFFF). Importers clean texts
-/// already; this is the last line of defence, since one such byte would make a whole file unreadable.
-void append_clean(std::string& out, std::string_view text);
-
-/// Appends cleaned text as XML character data; also fit for attribute values in double quotes: & < > " are escaped,
-/// and tab, newline and carriage return are written as character references, which survive attribute normalisation.
-void append_xml(std::string& out, std::string_view text);
-
-/// Appends cleaned text as a JSON string with its quotes. Non-ASCII characters stay UTF-8.
-void append_json(std::string& out, std::string_view text);
+using base::append_clean;
+using base::append_json;
+using base::append_xml;
 
 /// Appends the tags as a JSON object of strings, in the order of the extract.
 void append_tags_json(std::string& out, const model::Extract& extract, model::Range tags);

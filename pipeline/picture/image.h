@@ -21,4 +21,9 @@ struct Image {
 /// \throws std::runtime_error  the image has no pixels, or its buffer does not fit its size
 std::string png(const Image& image);
 
+/// The picture with at most `colours` colours (2 to 256) as a PNG file with a palette: a quarter of the bytes where the
+/// picture is made of areas. Deterministic as png().
+/// \throws std::runtime_error  as png()
+std::string palette_png(const Image& image, int colours = 64);
+
 }  // namespace blockrand::picture

@@ -1,8 +1,10 @@
 #include <png.h>
 
+#include <array>
 #include <stdexcept>
 
 #include "pipeline/picture/image.h"
+#include "pipeline/picture/palette.h"
 
 namespace blockrand::picture {
 namespace {
@@ -18,29 +20,67 @@ void append(png_structp png, png_bytep data, png_size_t size) {
 struct Writer {
   png_structp png = nullptr;
   png_infop info = nullptr;
+
+  Writer(std::string& bytes, int compression) {
+    png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, fail, nullptr);
+    if (png) info = png_create_info_struct(png);
+    if (!info) {
+      png_destroy_write_struct(&png, &info);
+      throw std::runtime_error("PNG: no memory");
+    }
+    png_set_write_fn(png, &bytes, append, nullptr);
+    png_set_compression_level(png, compression);
+  }
   ~Writer() { png_destroy_write_struct(&png, &info); }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  void header(const Image& image, int bits, int colour_type) const {
+    png_set_IHDR(png, info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), bits,
+                 colour_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
+    png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  }
 };
+
+/// Bytes of a row.
+std::size_t checked_row(const Image& image) {
+  const auto row = static_cast<std::size_t>(image.width) * 3;
+  if (image.width <= 0 || image.height <= 0 || image.rgb.size() != row * static_cast<std::size_t>(image.height))
+    throw std::runtime_error("PNG: the image has no pixels, or not as many as its size says");
+  return row;
+}
 
 }  // namespace
 
 std::string png(const Image& image) {
-  const auto row = static_cast<std::size_t>(image.width) * 3;
-  if (image.width <= 0 || image.height <= 0 || image.rgb.size() != row * static_cast<std::size_t>(image.height))
-    throw std::runtime_error("PNG: the image has no pixels, or not as many as its size says");
+  const std::size_t row = checked_row(image);
   std::string bytes;
-  Writer w;
-  w.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, fail, nullptr);
-  if (w.png) w.info = png_create_info_struct(w.png);
-  if (!w.info) throw std::runtime_error("PNG: no memory");
-  png_set_write_fn(w.png, &bytes, append, nullptr);
-  png_set_compression_level(w.png, 6);
+  Writer w(bytes, 6);
   // Chosen row by row: rendered surfaces are smooth, lines and background are not.
   png_set_filter(w.png, PNG_FILTER_TYPE_BASE, PNG_ALL_FILTERS);
-  png_set_IHDR(w.png, w.info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8,
-               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
-  png_set_sRGB(w.png, w.info, PNG_sRGB_INTENT_PERCEPTUAL);
+  w.header(image, 8, PNG_COLOR_TYPE_RGB);
   png_write_info(w.png, w.info);
   for (int y = 0; y < image.height; ++y) png_write_row(w.png, image.rgb.data() + static_cast<std::size_t>(y) * row);
+  png_write_end(w.png, nullptr);
+  return bytes;
+}
+
+std::string palette_png(const Image& image, int colours) {
+  checked_row(image);
+  const PaletteImage reduced = reduce_colours(image, colours);
+  std::array<png_color, 256> palette{};
+  for (std::size_t i = 0; i < reduced.palette.size(); ++i)
+    palette[i] = {reduced.palette[i].r, reduced.palette[i].g, reduced.palette[i].b};
+  std::string bytes;
+  Writer w(bytes, 9);
+  // Neighbours in a palette are no neighbours in colour: differences say nothing.
+  png_set_filter(w.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
+  w.header(image, reduced.palette.size() <= 16 ? 4 : 8, PNG_COLOR_TYPE_PALETTE);
+  png_set_PLTE(w.png, w.info, palette.data(), static_cast<int>(reduced.palette.size()));
+  png_write_info(w.png, w.info);
+  png_set_packing(w.png);
+  const auto row = static_cast<std::size_t>(image.width);
+  for (int y = 0; y < image.height; ++y) png_write_row(w.png, reduced.pixels.data() + static_cast<std::size_t>(y) * row);
   png_write_end(w.png, nullptr);
   return bytes;
 }

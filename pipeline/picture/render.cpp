@@ -178,7 +178,7 @@ class Edges {
 class Shader {
  public:
   Shader(const Scene& scene, const View& view, const Samples& samples, const RenderOptions& options)
-      : scene_(scene), view_(view), samples_(samples), options_(options), light_(light_of(scene, view, samples, options)),
+      : scene_(scene), view_(view), samples_(samples), options_(options), light_(options.lit ? light_of(scene, view, samples, options) : Light{}),
         lines_(draw_lines(scene, view, samples, options.supersampling)), edges_(scene, view, samples, options),
         background_(tones_.linear(options.background)) {
     const Point3 sun = to_sun(options);
@@ -196,7 +196,10 @@ class Shader {
     const std::uint32_t what = samples_.what[i];
     if (!lines_.empty() && lines_[i] > 0) return tones_.linear(scene_.lines()[lines_[i] - 1].colour);
     Rgb colour = background_;
-    if (what != kNothing) {
+    if (what != kNothing && !options_.lit) {
+      colour = albedo(what, i, x, y);
+      if (what == kGroundPlane) colour = mix(colour, background_, faded(i, x, y));
+    } else if (what != kNothing) {
       const Scene::Vector n = normal_towards(scene_, what, view_, x, y);
       // Warm sun, cool sky, and a little light from the ground for what faces down.
       const float facing = std::max(0.0f, n.x * sun_.x + n.y * sun_.y + n.z * sun_.z) * static_cast<float>(light_.sun[i]) / 255.0f;

@@ -15,6 +15,7 @@ struct RenderOptions {
   double sun_elevation = 42;       ///< degrees above the horizon
   double sun_strength = 2.3;       ///< white that faces the sun gets this much light, 1 being white in the picture
   double sky_strength = 0.9;       ///< likewise of white that sees the whole sky
+  bool lit = true;                 ///< false: colours as they are, so that a legend holds; lines alone show the form
   bool shadows = true;
   bool sky_occlusion = true;       ///< courtyards and streets are darker than roofs; false: every place sees its half-space
   int sky_directions = 32;         ///< from which the sky is looked for; rounded up to a multiple of supersampling²

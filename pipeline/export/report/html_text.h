@@ -5,18 +5,15 @@
 #include <string>
 #include <string_view>
 
+#include "pipeline/base/markup.h"
 #include "pipeline/base/text.h"
 #include "pipeline/export/text.h"
 #include "pipeline/model/osm_id.h"
 
 namespace blockrand::export_ {
 
-/// Text escaped for XML and HTML alike.
-inline std::string escaped(std::string_view text) {
-  std::string out;
-  append_xml(out, text);
-  return out;
-}
+using base::append_base64;
+using base::escaped;
 
 inline std::string_view osm_type(model::OsmId id) {
   return id.type == model::OsmType::node ? "node" : id.type == model::OsmType::way ? "way" : "relation";
@@ -55,20 +52,6 @@ inline std::string percent(std::uint64_t part, std::uint64_t whole) {
   if (p == 0 && part > 0) return "&lt;\u00a01\u00a0%";
   if (p == 100 && part < whole) return "&gt;\u00a099\u00a0%";
   return std::to_string(p) + "\u00a0%";
-}
-
-/// For pictures that stand in the page itself (RFC 4648, section 4).
-inline void append_base64(std::string& out, std::string_view bytes) {
-  static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  out.reserve(out.size() + (bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto at = [&](std::size_t k) { return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0u; };
-    const unsigned group = at(i) << 16 | at(i + 1) << 8 | at(i + 2);
-    out += letters[group >> 18];
-    out += letters[group >> 12 & 63];
-    out += i + 1 < bytes.size() ? letters[group >> 6 & 63] : '=';
-    out += i + 2 < bytes.size() ? letters[group & 63] : '=';
-  }
 }
 
 }  // namespace blockrand::export_

@@ -1,0 +1,71 @@
+#include "pipeline/compare/heat_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "pipeline/compare/vector.h"
+
+namespace blockrand::compare {
+namespace {
+
+class Cutter {
+ public:
+  explicit Cutter(double max_edge) : max_squared_(max_edge * max_edge) {}
+
+  void add(const Triangle3& triangle) {
+    std::vector<Triangle3> open{triangle};
+    while (!open.empty()) {
+      const Triangle3 t = open.back();
+      open.pop_back();
+      std::size_t longest = 0;
+      double size = -1;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Point3 edge = minus(t[(i + 1) % 3], t[i]);
+        if (dot(edge, edge) > size) {
+          size = dot(edge, edge);
+          longest = i;
+        }
+      }
+      const Point3 a = t[longest], b = t[(longest + 1) % 3], c = t[(longest + 2) % 3];
+      if (!(size > max_squared_)) {
+        mesh.triangles.push_back({index(a), index(b), index(c)});
+        continue;
+      }
+      // The same from both ends, so that neighbours meet.
+      const Point3 middle{(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2};
+      open.push_back({middle, b, c});
+      open.push_back({a, middle, c});
+    }
+  }
+
+  HeatMesh mesh;
+
+ private:
+  std::uint32_t index(Point3 p) {
+    const auto [at, added] = index_of_.try_emplace(p, static_cast<std::uint32_t>(mesh.points.size()));
+    if (added) mesh.points.push_back(p);
+    return at->second;
+  }
+
+  double max_squared_;
+  std::map<Point3, std::uint32_t> index_of_;
+};
+
+}  // namespace
+
+HeatMesh cut_small(const std::vector<Triangle3>& triangles, double max_edge, std::size_t max_triangles) {
+  double area = 0;
+  for (const Triangle3& t : triangles) area += length(cross(minus(t[1], t[0]), minus(t[2], t[0]))) / 2;
+  // A cut triangle has about 0.2 of the square of the edge that it may have as area.
+  const double room = static_cast<double>(std::max<std::size_t>(max_triangles, 1));
+  Cutter cutter(std::max(max_edge, std::sqrt(area / room / 0.2)));
+  for (const Triangle3& t : triangles)
+    if (std::all_of(t.begin(), t.end(),
+                    [](Point3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }))
+      cutter.add(t);
+  return std::move(cutter.mesh);
+}
+
+}  // namespace blockrand::compare

@@ -1,0 +1,69 @@
+// compare.html, put together.
+#include <algorithm>
+#include <numeric>
+
+#include "pipeline/base/markup.h"
+#include "pipeline/base/parallel.h"
+#include "pipeline/base/version.h"
+#include "pipeline/compare/report.h"
+#include "pipeline/compare/report_numbers.h"
+#include "pipeline/compare/report_sections.h"
+
+namespace blockrand::compare {
+namespace {
+
+/// Indices of the matches, largest distance first; those without one last.
+std::vector<std::size_t> by_distance(const Comparison& comparison) {
+  std::vector<std::size_t> order(comparison.matches.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto distance = [&](std::size_t i) {
+    return finite(value_of(comparison.matches[i].values, Measure::distance_rms).counted).value_or(-1);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return distance(a) > distance(b); });
+  return order;
+}
+
+}  // namespace
+
+std::string comparison_html(const Comparison& comparison, const OptionList& options, const DistanceQuery& distances,
+                            const ReportOptions& report, int jobs) {
+  const std::vector<std::size_t> order = by_distance(comparison);
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<meta name=\"generator\" "
+      "content=\"Blockrand " +
+      base::escaped(base::kVersion) + "\"/>\n<link rel=\"icon\" href=\"data:,\"/>\n<title>" +
+      base::escaped(comparison.model.name) + " against " + base::escaped(comparison.reference.name) +
+      "</title>\n<style>";
+  out += base::kPageStyle;
+  out += kCompareStyle;
+  out += "</style>\n</head>\n<body>\n";
+  out += head_section(comparison);
+  out += "<main>\n";
+  out += measure_section(comparison);
+  out += distribution_section(comparison);
+  out += roof_section(comparison);
+  out += surface_section(comparison);
+  out += input_section(comparison);
+  out += unmatched_section(comparison);
+  out += match_tables(comparison, order);
+  if (!order.empty()) {
+    out += picture_legend(report);
+    const auto drawn = static_cast<std::size_t>(std::max(0, report.pictures));
+    std::vector<std::string> sections(order.size());
+    const int workers = base::worker_count(jobs);
+    base::ordered_parallel(
+        order.size(), workers, static_cast<std::size_t>(workers) * 4,
+        [&](std::size_t i) { sections[i] = match_section(comparison, order[i], i < drawn, distances, report); },
+        [&](std::size_t i) {
+          out += sections[i];
+          sections[i] = {};
+        });
+  }
+  out += "</main>\n" + foot_section(options) + "<script>";
+  out += kCompareScript;
+  out += "</script>\n</body>\n</html>\n";
+  return out;
+}
+
+}  // namespace blockrand::compare
