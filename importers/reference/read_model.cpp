@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "importers/reference/citygml.h"
+#include "importers/reference/cityjson.h"
 #include "importers/reference/coordinate_text.h"
 #include "importers/reference/file_bytes.h"
 #include "pipeline/base/error.h"
@@ -178,6 +179,7 @@ ReferenceModel read_model(const std::string& path, const ReadOptions& options) {
     case Format::citygml:
       return read_citygml(path, options);
     case Format::cityjson:
+      return read_cityjson(path, options);
     case Format::gltf:
     case Format::tileset:
     case Format::old_tile:
