@@ -338,12 +338,9 @@ std::vector<Geometry>& CityJsonObjects::geometries_of(const Target& target) {
 
 /// "lod" of a geometry or of its template, "2.2" as 2.2; nothing where it is none.
 std::optional<double> CityJsonObjects::level_of(const Json& geometry) {
-  const Json* stated = &geometry;
-  if (text(member(geometry, "type")) == "GeometryInstance") {
-    const auto i = index(member(geometry, "template"));
-    stated = i ? &element(member(templates_, "templates"), *i) : nullptr;
-  }
-  const auto level = stated != nullptr ? loose_number(member(*stated, "lod")) : std::nullopt;
+  const bool placed = text(member(geometry, "type")) == "GeometryInstance";
+  const Json& stated = placed ? element_of(member(templates_, "templates"), member(geometry, "template")) : geometry;
+  const auto level = loose_number(member(stated, "lod"));
   return level && *level >= 0 && *level < 5 ? level : std::nullopt;
 }
 
@@ -378,8 +375,7 @@ void CityJsonObjects::read_geometries(const Json& object, const Target& target) 
 void CityJsonObjects::read_instance(const Json& geometry, const Target& target) {
   constexpr std::size_t kMostFaces = 20'000'000;  // templates multiply; a mistake or an attack beyond
   Building& b = model_.buildings[target.building];
-  const auto number_of_template = index(member(geometry, "template"));
-  const Json& drawn = number_of_template ? element(member(templates_, "templates"), *number_of_template) : Json();
+  const Json& drawn = element_of(member(templates_, "templates"), member(geometry, "template"));
   const auto corner = index(element(member(geometry, "boundaries"), 0));
   Points points;
   points.list = &template_points_;

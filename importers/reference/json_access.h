@@ -44,6 +44,12 @@ inline std::optional<std::size_t> index(const Json& value) {
   return static_cast<std::size_t>(*v);
 }
 
+/// The element that another member names by its number; null where it names none.
+inline const Json& element_of(const Json& array, const Json& number) {
+  const auto i = index(number);
+  return element(array, i ? *i : length(array));
+}
+
 /// The text; empty where it is none.
 inline std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : std::string(); }
 
