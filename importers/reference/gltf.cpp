@@ -9,6 +9,7 @@
 #include "importers/reference/gltf_file.h"
 #include "importers/reference/gltf_scene.h"
 #include "importers/reference/height_words.h"
+#include "importers/reference/polygons.h"
 #include "importers/reference/tileset.h"
 #include "pipeline/base/error.h"
 #include "pipeline/georef/crs.h"
@@ -46,27 +47,6 @@ Georeference georeference_of(const Json& json, NoteLog& notes) {
 std::optional<georef::CrsFacts> metric_crs(const std::string& definition) {
   const auto facts = definition.empty() ? std::nullopt : georef::crs_facts(definition);
   return facts && facts->projected && facts->metres_per_unit == 1.0 ? facts : std::nullopt;
-}
-
-/// Takes out the polygons that are marked, with every use of them.
-void drop_polygons(ReferenceModel& model, const std::vector<bool>& marked) {
-  std::vector<std::uint32_t> number(marked.size(), 0);
-  std::uint32_t kept = 0;
-  for (std::size_t i = 0; i < marked.size(); ++i) {
-    number[i] = kept;
-    if (marked[i]) continue;
-    if (kept != i) model.polygons[kept] = std::move(model.polygons[i]);
-    ++kept;
-  }
-  model.polygons.resize(kept);
-  for (Building& b : model.buildings) {
-    for (Geometry& g : b.geometries) {
-      std::erase_if(g.faces, [&](const Face& f) { return marked[f.polygon]; });
-      for (Face& f : g.faces) f.polygon = number[f.polygon];
-      g.outer_faces = g.faces.size();
-    }
-    std::erase_if(b.geometries, [](const Geometry& g) { return g.faces.empty(); });
-  }
 }
 
 /// Turns earth-centred points to degrees and metres above the ellipsoid, and drops polygons that are nowhere near it.
