@@ -20,6 +20,8 @@ class Walker {
   /// Whether some content was of a format of 3D Tiles 1.0.
   const std::string& old_format() const { return old_format_; }
   bool implicit() const { return implicit_; }
+  /// How many contents tiles name, whether they can be read or not.
+  std::size_t named() const { return named_; }
 
   void walk(const std::string& path, const Json& json, const Matrix4& parent) {
     constexpr std::size_t kDeepest = 32;
@@ -67,6 +69,7 @@ class Walker {
   void add_content(const Json& content, const std::string& folder, const Matrix4& place, const Matrix4& up,
                    std::size_t deepest) {
     if (!content.is_object()) return;
+    ++named_;
     std::string uri = text(member(content, "uri"));
     if (uri.empty()) uri = text(member(content, "url"));  // as 0.0 had it
     const std::string file = file_of_uri(folder, uri);
@@ -109,6 +112,7 @@ class Walker {
   std::vector<std::string> open_files_;
   std::string old_format_;
   bool implicit_ = false;
+  std::size_t named_ = 0;
 };
 
 }  // namespace
@@ -129,6 +133,9 @@ Tileset read_tileset(const std::string& path, const Json& json, NoteLog& notes) 
   if (out.contents.empty() && walker.implicit())
     throw base::InputError(path, "", "its tiles are implicit, which is not read",
                            "Name the GLB files, or a tileset that lists its tiles");
+  if (out.contents.empty() && walker.named() > 0)
+    throw base::InputError(path, "", "none of its contents can be read",
+                           "They are missing, on the network or broken: put them where the tileset names them");
   return out;
 }
 

@@ -510,6 +510,8 @@ TEST_F(Tiles, WhatIsNotReadIsNotedOrRefused) {
   EXPECT_EQ(m.count(NoteKind::malformed_json), 1u);
   EXPECT_THAT(refusal_of(write("b.json", {{"refine", "ADD"}, {"children", {tile("old.b3dm")}}})),
               AllOf(HasSubstr("b.json"), HasSubstr("b3dm"), HasSubstr("upgrade")));
+  EXPECT_THAT(refusal_of(write("m.json", {{"refine", "ADD"}, {"children", {tile("missing.glb")}}})),
+              AllOf(HasSubstr("m.json"), HasSubstr("none of its contents")));
   Json implicit = tile("{level}/{x}/{y}.glb");
   implicit["implicitTiling"] = {{"subdivisionScheme", "QUADTREE"}};
   EXPECT_THAT(refusal_of(write("i.json", implicit)), HasSubstr("implicit"));
