@@ -71,9 +71,9 @@ std::optional<georef::GeoBox> to_degrees(ReferenceModel& model, NoteLog& notes) 
     }
   }
   if (!box)
-    throw base::InputError(model.path, "",
-                           "nothing says where on the Earth it lies: its transforms lead nowhere near the ground",
-                           "Give the longitude, latitude and ellipsoidal height of a glTF file's origin (gltf_origin)");
+    throw base::InputError(
+        model.path, "", "nothing says where on the Earth it lies: its transforms lead nowhere near the ground",
+        "--gltf-origin LON,LAT,HEIGHT says where a glTF file's origin is (degrees, m above the ellipsoid)");
   if (const auto count = std::count(lost.begin(), lost.end(), true); count > 0) {
     notes.add(NoteKind::bad_coordinates, 0, std::to_string(count) + " triangles are nowhere near the ground");
     drop_polygons(model, lost);
@@ -162,8 +162,8 @@ void read_single(const std::string& path, const ReadOptions& options, ReferenceM
   if (options.gltf_origin) place = matrix_at(*options.gltf_origin);
   if (!place)
     throw base::InputError(path, "", "nothing says where on the Earth it lies: it has no asset.extras.georeference",
-                           "Give the longitude, latitude and ellipsoidal height of its origin (gltf_origin), or the "
-                           "tileset.json that places it");
+                           "--gltf-origin LON,LAT,HEIGHT says where its origin is (degrees, m above the ellipsoid); or "
+                           "name the tileset.json that places it");
   GltfScene scene(model, notes);
   scene.add(file, path, *place * kYUpToZUp);
   project(model, georeference.crs, options, notes);
