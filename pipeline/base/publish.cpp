@@ -168,7 +168,7 @@ std::string resolve_target(const std::string& given) {
   return path.string();
 }
 
-void check_target(const std::string& target, bool force) {
+void check_target(const std::string& target, bool force, const FolderKind& kind) {
   struct stat info {};
   if (::lstat(target.c_str(), &info) != 0) {
     if (errno == ENOENT) return;
@@ -187,11 +187,10 @@ void check_target(const std::string& target, bool force) {
   if (::stat(fs::path(target).parent_path().c_str(), &parent) == 0 && parent.st_dev != info.st_dev)
     throw UsageError(target + " is a mount point, which cannot be replaced in one step. Choose a folder in it.");
   if (is_empty_folder(target)) return;
-  const bool is_build = fs::exists(fs::path(target) / "build.json", error);
-  if (!is_build)
-    throw UsageError(target + " is not empty and is no earlier build (it has no build.json)" +
+  if (!fs::exists(fs::path(target) / kind.marker, error))
+    throw UsageError(target + " is not empty and is no earlier " + kind.name + " (it has no " + kind.marker + ")" +
                      (force ? "; --force does not replace such a folder" : "") + ". Choose another output folder.");
-  if (!force) throw UsageError(target + " holds a build already. Add --force to replace it, or choose another folder.");
+  if (!force) throw UsageError(target + " holds a " + kind.name + " already. Add --force to replace it, or choose another folder.");
 }
 
 }  // namespace
@@ -238,11 +237,12 @@ PublishedFile StagedFile::close() {
 
 // ---- StagedFolder
 
-StagedFolder::StagedFolder(std::string target, bool force) : target_(resolve_target(target)), force_(force) {
+StagedFolder::StagedFolder(std::string target, bool force, FolderKind kind)
+    : target_(resolve_target(target)), force_(force), kind_(std::move(kind)) {
   if (abandon().ended) wait_for_the_end();
   const std::unique_lock gate(abandon().gate);
   remove_stale();
-  check_target(target_, force);
+  check_target(target_, force, kind_);
   const auto undo = [this] {
     for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) ::rmdir(parent->c_str());
   };
@@ -364,7 +364,7 @@ std::string StagedFolder::publish() {
     if (exists) {
       // Somebody else may have used the place in the meantime.
       try {
-        check_target(target_, force_);
+        check_target(target_, force_, kind_);
       } catch (const UsageError& error) {
         throw OutputError(error.what());
       }

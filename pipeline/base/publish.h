@@ -34,6 +34,11 @@ class StagedFile {
   std::unique_ptr<State> state_;
 };
 
+/// What an output folder holds, for messages, and the file in it by which an earlier one is known.
+struct FolderKind {
+  std::string name = "build", marker = "build.json";
+};
+
 /// A folder in the making. Files go to a staging folder `.<name>.part-<pid>` beside the target; publish() swaps it in.
 /// The destructor of an unpublished one removes the staging folder and the parents that were made for it. Stale staging
 /// folders of dead processes are removed when a new one for the same target is made; an old build that a process set
@@ -42,10 +47,11 @@ class StagedFolder {
  public:
   /// \param target  the folder to be; its parent must exist or be creatable. A link to a folder stands for the folder.
   /// \param force   replace an existing, non-empty folder. Without it such a target is a UsageError. Even with `force`
-  ///                a folder that is neither empty nor an earlier build (no build.json in it) is refused.
+  ///                a folder that is neither empty nor an earlier one of its kind is refused.
   /// \throws UsageError when the target's place cannot be used (parent is a file, target is a file, no permission)
   /// \throws OutputError when the disk is full
-  StagedFolder(std::string target, bool force);
+  /// \param kind    what such folders hold, and the file that tells an earlier one
+  StagedFolder(std::string target, bool force, FolderKind kind = {});
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
@@ -80,6 +86,7 @@ class StagedFolder {
   std::string target_, staging_;
   std::vector<std::string> made_parents_;  ///< outermost first
   bool force_ = false, published_ = false;
+  FolderKind kind_;
   int lock_ = -1;  ///< descriptor of the locked staging folder: others see that its process lives
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/cli/build.h"
+#include "pipeline/cli/compare.h"
 #include "pipeline/cli/explain.h"
 #include "pipeline/cli/help.h"
 #include "pipeline/cli/info.h"
@@ -14,6 +15,7 @@ const std::vector<Command>& commands() {
   static const std::vector<Command> all = {
       {build_text(), run_build},
       {explain_text(), run_explain},
+      {compare_text(), run_compare},
       {validate_text(), run_validate},
       {info_text(), run_info},
       {help_text(), run_help},

@@ -56,6 +56,7 @@ CommandLine read_command_line(Commands command, const std::vector<std::string>& 
     CLI::Option* option = nullptr;
     if (o.positional()) {
       option = app.add_option(std::string(o.name));
+      if (o.several) option->expected(1, CLI::detail::expected_max_vector_size);
     } else {
       std::string names = o.letter.empty() ? "" : "-" + std::string(o.letter) + ",";
       names += "--" + std::string(o.name);
@@ -65,7 +66,7 @@ CommandLine read_command_line(Commands command, const std::vector<std::string>& 
       option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
     }
     // Else "[a,b]" would be split, in file names too.
-    option->allow_extra_args(false);
+    option->allow_extra_args(o.several);
     parsed.emplace_back(&o, option);
   }
   try {
@@ -93,9 +94,13 @@ CommandLine read_command_line(Commands command, const std::vector<std::string>& 
     read_config(line.settings.config, line.settings);
   }
   for (const auto& [o, option] : parsed)
-    if (option->count() > 0) set(*o, line.settings, option->results().back());
+    if (o->several) {
+      for (const std::string& value : option->results()) set(*o, line.settings, value);
+    } else if (option->count() > 0) {
+      set(*o, line.settings, option->results().back());
+    }
   for (const auto& [o, option] : parsed)
-    if (!o->if_missing.empty() && o->show(line.settings).empty()) wrong_usage(std::string(o->if_missing), command);
+    if (!o->if_missing.empty() && !(o->optional_for & command) && o->show(line.settings).empty()) wrong_usage(std::string(o->if_missing), command);
   return line;
 }
 

@@ -47,7 +47,7 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
 
 std::string option_help(unsigned command) {
   std::string text;
-  for (const Section section : {Section::build, Section::messages}) {
+  for (const Section section : {Section::compare, Section::build, Section::messages}) {
     std::string rows;
     for (const Option& o : options()) {
       if (o.section != section || !(o.commands & command)) continue;
@@ -60,7 +60,7 @@ std::string option_help(unsigned command) {
       if (!fallback.empty()) help += " [" + fallback + "]";
       rows += row(names, help);
     }
-    const std::string_view heading = section == Section::build && command != kBuild ? "Arguments" : title(section);
+    const std::string_view heading = section == Section::build && command != kBuild ? (command == kCompare ? "Output" : "Arguments") : title(section);
     if (!rows.empty()) text += fmt::format("\n{}:\n{}", heading, rows);
   }
   return text;

@@ -123,7 +123,7 @@ std::string manual(const ManualText& text, std::span<const CommandText> commands
                 "by that name. The last of a repeated option counts. Long options also take their value after =.");
   roff += hanging(bold("-h") + ", " + bold("--help"), prose("print the help of the command."));
   roff += hanging(bold("-V") + ", " + bold("--version"), prose("print version and licence. Without a command only."));
-  for (const Section part : {Section::build, Section::repair, Section::generate, Section::messages}) {
+  for (const Section part : {Section::build, Section::repair, Section::generate, Section::compare, Section::messages}) {
     std::string entries;
     for (const Option& o : options())
       if (o.section == part && (o.commands & known)) entries += option_entry(o, known);

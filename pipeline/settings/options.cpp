@@ -1,6 +1,7 @@
 #include "pipeline/settings/options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <charconv>
@@ -253,8 +254,10 @@ void add_build(Table& t) {
           .argument = "FOLDER",
           .type = OptionType::folder,
           .section = S,
-          .help = "folder that the build becomes; it appears when everything in it is complete",
-          .if_missing = "no output folder is given: name one with --output FOLDER."},
+          .commands = kBuild | kCompare,
+          .help = "folder that is written; it appears when everything in it is complete",
+          .if_missing = "no output folder is given: name one with --output FOLDER.",
+          .optional_for = kCompare},
          FIELD(build.output));
   t.other(
       {.name = "formats",
@@ -299,8 +302,9 @@ void add_build(Table& t) {
            .key = "crs",
            .argument = "EPSG:CODE",
            .section = S,
-           .commands = both,
-           .help = "projected coordinate system in metres; else ETRS89/UTM in Europe and WGS 84/UTM elsewhere"},
+           .commands = both | kCompare,
+           .help = "projected coordinate system in metres; else ETRS89/UTM in Europe and WGS 84/UTM elsewhere; compare: else "
+                   "that of the reference"},
           set_crs, [](const Settings& s) { return s.build.crs; });
   t.text({.name = "terrain",
           .key = "terrain",
@@ -357,6 +361,7 @@ void add_build(Table& t) {
              .key = "seed",
              .argument = "N",
              .section = S,
+             .commands = kBuild | kCompare,
              .minimum = 0,
              .maximum = kMaxSeed,
              .help = "of all random choices; the same seed gives the same bytes"},
@@ -366,7 +371,7 @@ void add_build(Table& t) {
              .key = "jobs",
              .argument = "N",
              .section = S,
-             .commands = both | kValidate,
+             .commands = both | kValidate | kCompare,
              .minimum = 0,
              .maximum = 1024,
              .help = "worker threads; 0 is one per core"},
@@ -383,7 +388,8 @@ void add_build(Table& t) {
           .section = S,
           .help = "folder with defaults/ and materials/; else the configs/ that came with the program"},
          FIELD(build.configs));
-  t.flag({.name = "force", .section = S, .help = "replace an existing build"}, FIELD(build.force));
+  t.flag({.name = "force", .section = S, .commands = kBuild | kCompare, .help = "replace an existing build or comparison"},
+         FIELD(build.force));
   t.text({.name = "config",
           .argument = "FILE.toml",
           .type = OptionType::path,
@@ -417,7 +423,7 @@ void add_build(Table& t) {
           .commands = kExplain,
           .help = "list the walls as well: what each faces, how long it is, where it looks"},
          FIELD(edges));
-  t.flag({.name = "json", .section = S, .commands = kInfo | kExplain | kValidate, .help = "print JSON"}, FIELD(json));
+  t.flag({.name = "json", .section = S, .commands = kInfo | kExplain | kValidate | kCompare, .help = "print JSON"}, FIELD(json));
 }
 
 void add_repair(Table& t) {
@@ -595,9 +601,169 @@ void add_generate(Table& t) {
          "second try for a plan whose solid fails its check, in m", FIELD(build.generate.simplify_tolerance));
 }
 
+const std::vector<std::pair<std::string, importers::reference::AxisOrder>> kAxisOrders = {
+    {"auto", importers::reference::AxisOrder::automatic},
+    {"east-first", importers::reference::AxisOrder::east_first},
+    {"north-first", importers::reference::AxisOrder::north_first}};
+const std::vector<std::pair<std::string, compare::Align>> kAligns = {{"none", compare::Align::none},
+                                                                     {"horizontal", compare::Align::horizontal},
+                                                                     {"vertical", compare::Align::vertical},
+                                                                     {"both", compare::Align::both}};
+const std::vector<std::pair<std::string, compare::Heights>> kHeights = {{"auto", compare::Heights::automatic},
+                                                                        {"own-ground", compare::Heights::own_ground},
+                                                                        {"absolute", compare::Heights::absolute}};
+
+georef::Geodetic parse_origin(const std::string& text) {
+  const std::string remedy = "Write longitude,latitude in degrees and height in m above the ellipsoid: 13.404,52.536,80.";
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != 3) throw ValueError(quoted(text) + " does not have three numbers", remedy);
+  const georef::Geodetic origin{parse_number(parts[0], remedy), parse_number(parts[1], remedy),
+                                parse_number(parts[2], remedy)};
+  if (std::abs(origin.lon) > 180 || std::abs(origin.lat) > 90) throw ValueError(quoted(text) + " is no place", remedy);
+  return origin;
+}
+
+std::string show_origin(const std::optional<georef::Geodetic>& o) {
+  return o ? fmt::format("{},{},{}", shortest(o->lon), shortest(o->lat), shortest(o->height)) : "";
+}
+
+/// "2%", "2 %" or "2" → 0.02.
+double parse_percent(const std::string& text) {
+  const std::string remedy = "Write for example 2%.";
+  std::string_view number = text;
+  if (number.ends_with('%')) number.remove_suffix(1);
+  while (number.ends_with(' ')) number.remove_suffix(1);
+  const double percent = parse_number(number, remedy);
+  if (percent < 0 || percent > 1000) throw ValueError(quoted(text) + " is out of range", remedy);
+  return percent / 100;
+}
+
+/// What a user may know about either model beyond what its files say.
+template <class Field>
+void add_reading(Table& t, std::string_view crs, std::string_view axes, std::string_view origin,
+                 std::string_view crs_help, std::string_view axes_help, std::string_view origin_help, Field field) {
+  constexpr auto S = Section::compare;
+  t.text({.name = crs, .argument = "EPSG:CODE", .section = S, .commands = kCompare, .help = crs_help},
+         [field](auto& s) -> auto& { return field(s).reference_crs; });
+  t.other({.name = axes,
+           .argument = "ORDER",
+           .section = S,
+           .commands = kCompare,
+           .help = axes_help,
+           .choices = names_of(kAxisOrders)},
+          [field](Settings& s, const std::string& text) { field(s).axis_order = choose(text, kAxisOrders); },
+          [field](const Settings& s) { return name_of(kAxisOrders, field(s).axis_order); });
+  t.other({.name = origin,
+           .argument = "LON,LAT,H",
+           .type = OptionType::list,
+           .section = S,
+           .commands = kCompare,
+           .help = origin_help},
+          [field](Settings& s, const std::string& text) { field(s).gltf_origin = parse_origin(text); },
+          [field](const Settings& s) { return show_origin(field(s).gltf_origin); });
+}
+
+void add_compare(Table& t) {
+  constexpr auto S = Section::compare;
+  t.text({.name = "MODEL",
+          .argument = "PATH",
+          .type = OptionType::path,
+          .section = S,
+          .commands = kCompare,
+          .help = "what is judged: a build's folder, or any file or folder as REFERENCE",
+          .if_missing = "no MODEL is given: name a build or model files."},
+         FIELD(comparison.model));
+  t.other({.name = "REFERENCE",
+           .argument = "PATH",
+           .type = OptionType::path,
+           .section = S,
+           .commands = kCompare,
+           .help = "what it is judged by, one or more: CityGML, CityJSON, glTF, a tileset, or a folder with any of them",
+           .several = true,
+           .if_missing = "no REFERENCE is given: name at least one file or folder to compare with."},
+          [](Settings& s, const std::string& text) { s.comparison.reference.push_back(text); },
+          [](const Settings& s) {
+            return s.comparison.reference.empty() ? "" : fmt::format("{}", fmt::join(s.comparison.reference, " "));
+          });
+  t.other({.name = "align",
+           .argument = "WHAT",
+           .section = S,
+           .commands = kCompare,
+           .help = "which offset between the models is taken off before measuring: none (it is reported only), horizontal, "
+                   "vertical or both",
+           .choices = names_of(kAligns)},
+          [](Settings& s, const std::string& text) { s.comparison.align = choose(text, kAligns); },
+          [](const Settings& s) { return name_of(kAligns, s.comparison.align); });
+  t.other({.name = "heights",
+           .argument = "WHICH",
+           .section = S,
+           .commands = kCompare,
+           .help = "own-ground: above each building's own ground; absolute: as they stand in the files; auto: absolute where "
+                   "both models state what their heights are above",
+           .choices = names_of(kHeights)},
+          [](Settings& s, const std::string& text) { s.comparison.heights = choose(text, kHeights); },
+          [](const Settings& s) { return name_of(kHeights, s.comparison.heights); });
+  t.integer({.name = "max-lod",
+             .argument = "N",
+             .section = S,
+             .commands = kCompare,
+             .minimum = 0,
+             .maximum = 4,
+             .help = "of each building the highest level of detail up to this one is compared"},
+            FIELD(comparison.max_lod));
+  t.number({.name = "reach",
+            .argument = "METRES",
+            .section = S,
+            .commands = kCompare,
+            .minimum = 0,
+            .maximum = 100000,
+            .help = "buildings farther than this from all of the other model's are no part of the comparison, in m"},
+           FIELD(comparison.reach));
+  t.integer({.name = "samples",
+             .argument = "N",
+             .section = S,
+             .commands = kCompare,
+             .minimum = 100,
+             .maximum = 10000000,
+             .help = "places on the surface of each side of a match from which distances are measured, about"},
+            FIELD(comparison.surface.samples));
+  add_reading(t, "model-crs", "model-axis-order", "model-origin",
+              "the model's coordinate system, where its files state none or a wrong one",
+              "which coordinate comes first in the model's files: auto, east-first or north-first",
+              "where a model as glTF has its origin, if the file does not say: degrees, m above the ellipsoid",
+              [](auto& s) -> auto& { return s.comparison.model_read; });
+  add_reading(t, "reference-crs", "reference-axis-order", "reference-origin",
+              "the reference's coordinate system, where its files state none or a wrong one",
+              "which coordinate comes first in the reference's files: auto, east-first or north-first",
+              "where a reference as glTF has its origin, if the file does not say: degrees, m above the ellipsoid",
+              [](auto& s) -> auto& { return s.comparison.reference_read; });
+  t.integer({.name = "pictures",
+             .argument = "N",
+             .section = S,
+             .commands = kCompare,
+             .minimum = 0,
+             .maximum = 100000,
+             .help = "so many matches get pictures in compare.html, those that differ most first"},
+            FIELD(comparison_report.pictures));
+  t.text({.name = "baseline",
+          .argument = "COMPARE.JSON",
+          .type = OptionType::path,
+          .section = S,
+          .commands = kCompare,
+          .help = "an earlier comparison's compare.json: every measure is set against it"},
+         FIELD(baseline));
+  t.other({.name = "fail-if-worse",
+           .argument = "PERCENT",
+           .section = S,
+           .commands = kCompare,
+           .help = "exit with code 3 when a measure is worse than in --baseline by more than this: 2%"},
+          [](Settings& s, const std::string& text) { s.fail_if_worse = parse_percent(text); },
+          [](const Settings& s) { return s.fail_if_worse ? shortest(*s.fail_if_worse * 100) + "%" : ""; });
+}
+
 void add_messages(Table& t) {
   constexpr auto S = Section::messages;
-  constexpr unsigned all = kBuild | kInfo | kValidate;
+  constexpr unsigned all = kBuild | kInfo | kValidate | kCompare;
   t.other(
       {.name = "progress",
        .argument = "STYLE",
@@ -625,13 +791,13 @@ void add_messages(Table& t) {
 }  // namespace
 
 std::string_view name(Section section) {
-  constexpr std::string_view names[] = {"build", "repair", "generate", "messages"};
+  constexpr std::string_view names[] = {"build", "repair", "generate", "compare", "messages"};
   return names[static_cast<int>(section)];
 }
 
 std::string_view title(Section section) {
   constexpr std::string_view titles[] = {"What is built", "How far repair may go", "What generation assumes",
-                                         "Messages"};
+                                         "How models are compared", "Messages"};
   return titles[static_cast<int>(section)];
 }
 
@@ -641,6 +807,7 @@ const std::vector<Option>& options() {
     add_build(table);
     add_repair(table);
     add_generate(table);
+    add_compare(table);
     add_messages(table);
     return table.take();
   }();
@@ -653,6 +820,7 @@ std::string_view name(Commands command) {
     case kInfo: return "info";
     case kExplain: return "explain";
     case kValidate: return "validate";
+    case kCompare: return "compare";
   }
   return "";
 }

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "pipeline/base/progress.h"
+#include "pipeline/compare/compare.h"
 #include "pipeline/region/build.h"
 #include "pipeline/validate/options.h"
 
@@ -19,6 +21,10 @@ struct Settings {
   std::string config;  ///< the config file, for the record; its values are in the other fields
   std::string folder;  ///< a finished build, for the commands that read one
   blockrand::validate::ValidateOptions validation;  ///< but for its folder and jobs, which other commands have too
+  blockrand::compare::CompareOptions comparison;  ///< but for its jobs, seed and CRS, which other commands have too
+  blockrand::compare::ReportOptions comparison_report;
+  std::string baseline;                 ///< compare.json of an earlier comparison
+  std::optional<double> fail_if_worse;  ///< share: 0.02 is 2 %
   std::string id;      ///< of the building that `explain` is asked about
   bool json = false;   ///< print JSON
   bool edges = false;  ///< `explain` lists the stretches of the outline
@@ -28,12 +34,12 @@ struct Settings {
 };
 
 /// Which commands know an option; bits.
-enum Commands : unsigned { kBuild = 1, kInfo = 2, kExplain = 4, kValidate = 8 };
-inline constexpr Commands kAllCommands[] = {kBuild, kInfo, kExplain, kValidate};
+enum Commands : unsigned { kBuild = 1, kInfo = 2, kExplain = 4, kValidate = 8, kCompare = 16 };
+inline constexpr Commands kAllCommands[] = {kBuild, kInfo, kExplain, kValidate, kCompare};
 std::string_view name(Commands command);  ///< "build"
 
 /// Where an option stands in the help and the reference; the first three are the sections of the config file.
-enum class Section { build, repair, generate, messages };
+enum class Section { build, repair, generate, compare, messages };
 std::string_view name(Section section);   ///< "build"
 std::string_view title(Section section);  ///< "What is built"
 
@@ -56,7 +62,9 @@ struct Option {
   double minimum = 0, maximum = 0;  ///< of integers and numbers
   std::string_view help{};          ///< one line, with the unit, without the default
   std::string_view without{};       ///< of a flag that is on by default: what --no-… leaves out; one line
+  bool several = false;             ///< of a positional argument: each one that is given is set in turn
   std::string_view if_missing{};    ///< what to say when it has no value; empty: it need not have one
+  unsigned optional_for = 0;        ///< commands that do without it all the same
   std::vector<std::string> choices{};  ///< words that are a value (of a list: an item), for completion
   /// Sets the value from text; of flags "true" or "false". \throws ValueError
   std::function<void(Settings&, const std::string&)> set{};
