@@ -36,7 +36,8 @@ struct FacadeOpening {
   double bottom = 0, top = 0;  ///< m above the building's own ground
   double area = 0;             ///< m² of the opening itself in the facade's plane
   bool door = false;
-  int row = -1, column = -1;  ///< counted from below and from the left; row -1: in no storey (transom, half-landing …)
+  int row = -1,
+      column = -1;  ///< counted from below and from the left; -1: in none (transom, half-landing; between axes)
   std::uint32_t building = 0, opening = 0;  ///< index into the City's buildings, and into Building::openings
 };
 
@@ -53,7 +54,7 @@ struct Facade {
                                 ///< own ground, z 0; for drawings, may overlap
   std::vector<FacadeOpening> openings;             ///< from left to right, then from below
   int storeys = 0;                                 ///< rows of openings that are storeys
-  int axes = 0;                                    ///< columns of openings
+  int axes = 0;                                    ///< columns of openings that are axes
   std::optional<double> storey_pitch, axis_pitch;  ///< m: median distance of neighbouring rows, columns; from two on
   bool blank = false;    ///< no openings, at least blank_width wide and not covered, though the building has
                          ///< openings elsewhere

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 namespace blockrand::compare {
@@ -130,7 +129,8 @@ void find_rows(Facade& facade, double gap) {
   std::vector<Extent> heights;
   std::vector<std::size_t> windows, doors;
   for (std::size_t i = 0; i < openings.size(); ++i) {
-    heights.push_back({openings[i].bottom, openings[i].top, openings[i].right - openings[i].left});
+    const double area = (openings[i].right - openings[i].left) * (openings[i].top - openings[i].bottom);
+    heights.push_back({openings[i].bottom, openings[i].top, area});
     (openings[i].door ? doors : windows).push_back(i);
   }
   std::vector<Lane> rows = lanes_of(heights, windows, gap), cellars;
@@ -171,34 +171,54 @@ void find_rows(Facade& facade, double gap) {
   facade.storey_pitch = pitch(storeys);
 }
 
+/// The rows that show how many axes the facade has.
+std::vector<int> telling_rows(const Facade& facade) {
+  std::vector<std::size_t> openings_in(static_cast<std::size_t>(facade.storeys), 0);
+  for (const FacadeOpening& o : facade.openings)
+    if (o.row >= 0) ++openings_in[static_cast<std::size_t>(o.row)];
+  std::size_t first = openings_in.size() > 1 ? 1 : 0;
+  if (openings_in.size() == 2 && 2 * openings_in[1] <= openings_in[0]) first = 0;
+  std::vector<std::size_t> descending(openings_in.begin() + static_cast<std::ptrdiff_t>(first), openings_in.end());
+  std::sort(descending.rbegin(), descending.rend());
+  if (descending.empty()) return {};
+  const std::size_t usual = descending[(descending.size() - 1) / 2];
+  std::vector<int> rows;
+  for (std::size_t r = first; r < openings_in.size(); ++r)
+    if (openings_in[r] == usual) rows.push_back(static_cast<int>(r));
+  return rows;
+}
+
 void find_columns(Facade& facade, double gap) {
   std::vector<FacadeOpening>& openings = facade.openings;
+  const std::vector<int> rows = telling_rows(facade);
   std::vector<Extent> widths;
-  std::vector<std::size_t> all(openings.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  for (const FacadeOpening& o : openings) widths.push_back({o.left, o.right, 1});
-  std::vector<Lane> columns = lanes_of(widths, all, gap);
+  std::vector<std::size_t> telling;
+  for (std::size_t i = 0; i < openings.size(); ++i) {
+    widths.push_back({openings[i].left, openings[i].right, 1});
+    openings[i].column = -1;
+    if (std::find(rows.begin(), rows.end(), openings[i].row) != rows.end()) telling.push_back(i);
+  }
+  std::vector<Lane> columns = lanes_of(widths, telling, gap), axes;
   std::sort(columns.begin(), columns.end(), [](const Lane& a, const Lane& b) {
     const auto key = [](const Lane& l) {
       return std::tuple(-rounded(l.weight), rounded(l.length()), rounded(l.centre));
     };
     return key(a) < key(b);
   });
-  std::vector<Lane> axes, others;
   for (Lane& column : columns) {
     const bool apart = std::none_of(axes.begin(), axes.end(), [&](const Lane& axis) {
       return common(axis.low, axis.high, column.low, column.high) >
              0.5 * std::min(axis.length(), column.length()) + kMargin;
     });
-    (apart ? axes : others).push_back(std::move(column));
+    if (apart && 2 * column.weight >= static_cast<double>(rows.size()) - kMargin) axes.push_back(std::move(column));
   }
   sort_by_place(axes);
+  for (std::size_t i = 0; i < openings.size(); ++i) {
+    const std::size_t axis = most_common(axes, widths[i], 0);
+    if (axis < axes.size()) openings[i].column = static_cast<int>(axis);
+  }
   for (std::size_t a = 0; a < axes.size(); ++a)
     for (const std::size_t i : axes[a].members) openings[i].column = static_cast<int>(a);
-  for (const Lane& other : others) {
-    const std::size_t axis = most_common(axes, {other.low, other.high, 0}, 0);
-    for (const std::size_t i : other.members) openings[i].column = static_cast<int>(axis);
-  }
   facade.axes = static_cast<int>(axes.size());
   facade.axis_pitch = pitch(axes);
 }
