@@ -251,7 +251,7 @@ std::string surface_section(const Comparison& c) {
   std::string out = "<section id=\"surfaces\"><h2>Surfaces</h2>\n<h3>Classes</h3>\n";
   const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 0; };
   out +=
-      "<table class=\"classes\"><thead><tr><th>class</th><th class=\"n\">reference, m²</th><th "
+      "<div class=\"wide\"><table class=\"classes\"><thead><tr><th>class</th><th class=\"n\">reference, m²</th><th "
       "class=\"n\">share</th><th></th>"
       "<th class=\"n\">model, m²</th><th class=\"n\">share</th><th></th></tr></thead><tbody>\n";
   const auto row = [&](std::string_view name, double r, double m) {
@@ -272,7 +272,7 @@ std::string surface_section(const Comparison& c) {
   }
   row("<i>class not stated, told from the slope</i>", reference.unclassified_area, model.unclassified_area);
   out +=
-      "</tbody></table>\n<h3>What is left out of the reference, and why</h3>\n<table><thead><tr><th>part</th><th "
+      "</tbody></table></div>\n<h3>What is left out of the reference, and why</h3>\n<table><thead><tr><th>part</th><th "
       "class=\"n\">m²</th>"
       "<th class=\"n\">share</th></tr></thead><tbody>\n";
   static constexpr std::array<std::string_view, kLeftOutCount> kReasons{
