@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMostFacades = 4;
 constexpr double kWorthDrawing = 0.12;                // share of the largest facade's area
-constexpr double kLargestScale = 14, kTallest = 190;  // pixels per metre; pixels
+constexpr double kLargestScale = 20, kTallest = 240;  // pixels per metre; pixels
 
 /// From a facade's own coordinates to those of the plane that is drawn.
 struct Along {

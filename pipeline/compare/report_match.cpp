@@ -22,7 +22,7 @@ using base::with_thousands;
 constexpr std::array<std::pair<Measure, std::string_view>, 10> kColumns{{
     {Measure::distance_rms, "RMS, m"},
     {Measure::distance_p95, "95\u00a0%, m"},
-    {Measure::completeness_050, "complete 0.5\u00a0m, %"},
+    {Measure::completeness_050, "≤ 0.5\u00a0m, %"},
     {Measure::footprint_iou, "IoU, %"},
     {Measure::eaves_error, "eaves, m"},
     {Measure::ridge_error, "ridge, m"},
@@ -57,8 +57,8 @@ std::string table_row(const Comparison& c, std::size_t index) {
   std::string out = fmt::format("<tr><td><a href=\"#{}\">{}</a></td><td class=\"ids\">{}</td>", anchor_of(index),
                                 name_of_match(match), ids(c.model, match.model.buildings, 3));
   const RoofForm reference = match.reference.roof_form, model = match.model.roof_form;
-  out += reference == model ? fmt::format("<td>{}</td>", name_of(reference))
-                            : fmt::format("<td>{} → {}</td>", name_of(reference), name_of(model));
+  out += reference == model ? fmt::format("<td class=\"form\">{}</td>", name_of(reference))
+                            : fmt::format("<td class=\"form\">{} → {}</td>", name_of(reference), name_of(model));
   for (const auto& [measure, label] : kColumns)
     out += "<td class=\"n\">" + value_text(info(measure), value_of(match.values, measure).counted) + "</td>";
   return out + "<td class=\"n\">" + fixed(value_of(match.values, Measure::distance_rms).left_out * 100, 0) +
@@ -171,18 +171,18 @@ std::string match_section(const Comparison& c, std::size_t index, bool pictures,
   const std::string plan = plan_drawing(c, match, kPlanWidth, kPlanHeight);
   if (!plan.empty())
     out += "<figure>" + plan + "<figcaption>Plan: the outlines one over the other</figcaption></figure>";
-  out += "<table class=\"values small\"><tbody>";
+  out += "<div class=\"beside\"><table class=\"values small\"><tbody>";
   for (std::size_t m = 0; m < kMeasureCount; ++m) {
     const MeasureInfo& measure = kMeasures[m];
     const MeasureValue& value = match.values[m];
     if (measure.better == Better::none || (!finite(value.counted) && !finite(value.all))) continue;
-    const std::string counted = value_text(measure, value.counted), all = value_text(measure, value.all);
-    const std::string_view unit = unit_of(measure);
-    out += fmt::format("<tr><td>{}</td><td class=\"n\">{}{}{}</td><td class=\"n soft\">{}</td></tr>",
-                       escaped(measure.title), counted, unit.empty() ? "" : "\u00a0", unit,
-                       all == counted ? "" : "with all " + all);
+    const std::string counted = value_with_unit(measure, value.counted), all = value_with_unit(measure, value.all);
+    out += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n soft\">{}</td></tr>",
+                       escaped(measure.title), counted, all == counted ? "" : all);
   }
-  out += "</tbody></table></div>\n";
+  out +=
+      "</tbody></table><p class=\"soft small\">Grey: with what is left out, where that makes a "
+      "difference.</p></div></div>\n";
   if (pictures) {
     const MatchPictures drawn = draw_pictures(c, match, distances, options);
     out += "<div class=\"pictures\">" + picture(drawn.reference, drawn, "Reference") +

@@ -47,7 +47,8 @@ bool is_share(const MeasureInfo& measure) {
 std::string_view unit_of(const MeasureInfo& measure) {
   if (measure.unit == "deg") return "°";
   if (measure.unit != "1") return measure.unit;
-  return is_share(measure) ? "%" : "";
+  if (!is_share(measure)) return "";
+  return measure.better == Better::zero ? "pp" : "%";
 }
 
 std::string value_text(const MeasureInfo& measure, const std::optional<double>& value, bool sign) {
@@ -64,6 +65,14 @@ std::string value_text(const MeasureInfo& measure, const std::optional<double>& 
     decimals = 0;
   }
   return sign && measure.better == Better::zero ? with_sign(shown, decimals) : fixed(shown, decimals);
+}
+
+std::string value_with_unit(const MeasureInfo& measure, const std::optional<double>& value, bool sign) {
+  const std::string_view unit = unit_of(measure);
+  std::string out = value_text(measure, value, sign);
+  if (!finite(value) || unit.empty()) return out;
+  if (unit != "°") out += "\u00a0";
+  return out += unit;
 }
 
 std::optional<double> headline(const MeasureInfo& measure, const Summary& summary) {

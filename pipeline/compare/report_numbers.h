@@ -21,7 +21,8 @@ std::string with_sign(const std::optional<double>& value, int decimals);
 /// "87.3 %" of 0.873.
 std::string percent(const std::optional<double>& share, int decimals = 1);
 
-/// What a value of the measure is counted in, for people: "m", "°", "%" (shares) or "" (ratios, counts).
+/// What a value of the measure is counted in, for people: "m", "°", "%" (shares), "pp" (percentage points) or ""
+/// (ratios, counts).
 std::string_view unit_of(const MeasureInfo& measure);
 /// A value of the measure as people read it, without its unit: shares in percent, lengths in m with two decimals,
 /// values with a sign with it where `sign`.
@@ -29,6 +30,9 @@ std::string value_text(const MeasureInfo& measure, const std::optional<double>& 
 
 /// Whether the measure is a share in [0, 1] or a difference of two.
 bool is_share(const MeasureInfo& measure);
+
+/// The value with its unit, "0.42 m"; a dash without a value.
+std::string value_with_unit(const MeasureInfo& measure, const std::optional<double>& value, bool sign = true);
 
 /// Of a value with a sign the mean size of the errors (MAE), else what all matches have together; nothing without
 /// values.

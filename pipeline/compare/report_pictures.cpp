@@ -67,6 +67,11 @@ class Side {
             scene.add_triangle(drawn(t), kHeatLeftOut, i);
         }
     }
+    // Openings are measured like walls.
+    for (const std::uint32_t b : facts_.buildings)
+      for (const Opening& opening : city_.buildings[b].openings)
+        for (const Rings3& polygon : opening.polygons)
+          for (const Triangle3& t : triangles_of(polygon)) counted.push_back(t);
     const HeatMesh mesh = cut_small(counted, kMaxEdge, kMaxTriangles);
     const std::vector<float> at = distances ? distances(match, from_model, mesh.points) : std::vector<float>();
     std::vector<picture::Colour> colours(mesh.points.size(), kHeatLeftOut);

@@ -35,4 +35,10 @@ std::string ids_of(const City& city, const std::vector<std::uint32_t>& buildings
   return out;
 }
 
+std::string short_name(const City& city, std::size_t most) {
+  if (city.name.size() <= most) return city.name;
+  const std::size_t end = city.name.rfind(", ", most);
+  return city.name.substr(0, end == std::string::npos ? most : end) + " …";
+}
+
 }  // namespace blockrand::compare

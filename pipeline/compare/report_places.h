@@ -1,6 +1,7 @@
 // Where buildings stand and what they are called. Internal to this folder.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -14,5 +15,9 @@ Point2 place_of(const City& city, const Building& building);
 
 /// Ids with "; " between them, as the files have them: not escaped.
 std::string ids_of(const City& city, const std::vector<std::uint32_t>& buildings);
+
+/// The city's name, which may be a long list of paths, in at most about `most` bytes, cut between two paths where it
+/// can be. Not escaped.
+std::string short_name(const City& city, std::size_t most);
 
 }  // namespace blockrand::compare

@@ -30,6 +30,12 @@ std::string last_part(std::string_view path) {
   return std::string(slash == std::string_view::npos ? path : path.substr(slash + 1));
 }
 
+/// A model by the last part of its path; several paths stand one after the other in its name.
+std::string title_of(const City& city) {
+  if (city.files.size() < 2 || city.name.find(", ") == std::string::npos) return last_part(city.name);
+  return last_part(city.files.front().path) + " and " + std::to_string(city.files.size() - 1) + " more";
+}
+
 std::string cell(std::string_view text, std::string_view style = "n") {
   return fmt::format("<td class=\"{}\">{}</td>", style, text);
 }
@@ -47,7 +53,7 @@ void append_files(std::string& out, const City& city, std::string_view side) {
   out += fmt::format(
       "<h3>{}</h3>\n<dl class=\"facts\"><dt>Path</dt><dd>{}</dd><dt>Heights</dt><dd>{}{}</dd>"
       "<dt>Buildings</dt><dd>{} compared",
-      side, escaped(city.name), city.height_reference.empty() ? "unknown" : escaped(city.height_reference),
+      side, escaped(short_name(city, 200)), city.height_reference.empty() ? "unknown" : escaped(city.height_reference),
       city.absolute_heights ? " (absolute)" : "", with_thousands(city.buildings.size()));
   if (city.out_of_reach > 0)
     out += fmt::format(", {} out of reach of the other model", with_thousands(city.out_of_reach));
@@ -58,12 +64,14 @@ void append_files(std::string& out, const City& city, std::string_view side) {
   constexpr std::size_t kListed = 40;
   out +=
       "<div class=\"wide\"><table><thead><tr><th>file</th><th>format</th><th>CRS</th><th class=\"n\">size</th>"
-      "<th class=\"n\">buildings</th><th class=\"n\">breaches</th></tr></thead><tbody>\n";
+      "<th class=\"n\">buildings</th><th class=\"n\">breaches</th><th></th></tr></thead><tbody>\n";
   for (std::size_t i = 0; i < std::min(kListed, city.files.size()); ++i) {
     const CityFile& f = city.files[i];
-    out += "<tr><td>" + escaped(last_part(f.path));
+    out += "<tr>" + cell(escaped(last_part(f.path)), "") + cell(escaped(f.format), "") + cell(escaped(f.crs), "") +
+           cell(base::with_byte_unit(f.bytes)) + cell(with_thousands(f.buildings)) +
+           cell(f.breaches > 0 ? with_thousands(f.breaches) : "none") + "<td class=\"about\">";
     if (!f.notes.empty()) {
-      out += "<details><summary>notes</summary><ul class=\"small\">";
+      out += "<details><summary>what was found</summary><ul class=\"small\">";
       for (const importers::reference::Note& note : f.notes) {
         out +=
             fmt::format("<li>{}{}: {}", escaped(importers::reference::name_of(note.kind)),
@@ -74,11 +82,10 @@ void append_files(std::string& out, const City& city, std::string_view side) {
       }
       out += "</ul></details>";
     }
-    out += "</td>" + cell(escaped(f.format), "") + cell(escaped(f.crs), "") + cell(base::with_byte_unit(f.bytes)) +
-           cell(with_thousands(f.buildings)) + cell(f.breaches > 0 ? with_thousands(f.breaches) : "none") + "</tr>\n";
+    out += "</td></tr>\n";
   }
   if (city.files.size() > kListed)
-    out += fmt::format("<tr><td colspan=\"6\" class=\"soft\">and {} more; all are in compare.json</td></tr>\n",
+    out += fmt::format("<tr><td colspan=\"7\" class=\"soft\">and {} more; all are in compare.json</td></tr>\n",
                        with_thousands(city.files.size() - kListed));
   out += "</tbody></table></div>\n";
 }
@@ -146,7 +153,7 @@ std::string head_section(const Comparison& c) {
   std::string out = fmt::format(
       "<header>\n<p class=\"kicker\">Blockrand comparison</p>\n<h1><span class=\"side m\">{}</span> against "
       "<span class=\"side r\">{}</span></h1>\n",
-      escaped(last_part(c.model.name)), escaped(last_part(c.reference.name)));
+      escaped(title_of(c.model)), escaped(title_of(c.reference)));
   out += fmt::format("<p class=\"soft\">Measured in {}, heights {}; the model against the reference.</p>\n",
                      escaped(c.reference.crs.empty() ? c.model.crs : c.reference.crs), heights_text(c));
   out += "<p class=\"lead\">" + words.matching + "</p>\n";
@@ -244,7 +251,7 @@ std::string surface_section(const Comparison& c) {
   std::string out = "<section id=\"surfaces\"><h2>Surfaces</h2>\n<h3>Classes</h3>\n";
   const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 0; };
   out +=
-      "<table class=\"classes\"><thead><tr><th>class</th><th class=\"n\">reference, m²</th><th "
+      "<div class=\"wide\"><table class=\"classes\"><thead><tr><th>class</th><th class=\"n\">reference, m²</th><th "
       "class=\"n\">share</th><th></th>"
       "<th class=\"n\">model, m²</th><th class=\"n\">share</th><th></th></tr></thead><tbody>\n";
   const auto row = [&](std::string_view name, double r, double m) {
@@ -265,7 +272,7 @@ std::string surface_section(const Comparison& c) {
   }
   row("<i>class not stated, told from the slope</i>", reference.unclassified_area, model.unclassified_area);
   out +=
-      "</tbody></table>\n<h3>What is left out of the reference, and why</h3>\n<table><thead><tr><th>part</th><th "
+      "</tbody></table></div>\n<h3>What is left out of the reference, and why</h3>\n<table><thead><tr><th>part</th><th "
       "class=\"n\">m²</th>"
       "<th class=\"n\">share</th></tr></thead><tbody>\n";
   static constexpr std::array<std::string_view, kLeftOutCount> kReasons{

@@ -7,6 +7,7 @@
 #include "pipeline/base/text.h"
 #include "pipeline/compare/report.h"
 #include "pipeline/compare/report_numbers.h"
+#include "pipeline/compare/report_places.h"
 
 namespace blockrand::compare {
 namespace {
@@ -38,7 +39,7 @@ std::string plural(std::size_t count, std::string_view what) {
 }
 
 void append_city(std::string& out, std::string_view side, const City& city) {
-  out += fmt::format("{} {}: {}; heights: {}\n", left(side, 9), printable(city.name),
+  out += fmt::format("{} {}: {}; heights: {}\n", left(side, 9), printable(short_name(city, 60)),
                      plural(city.buildings.size(), "building"), printable(city.height_reference));
   std::size_t breaches = 0, with_breaches = 0;
   for (const CityFile& file : city.files) {

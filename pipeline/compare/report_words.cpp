@@ -34,9 +34,7 @@ constexpr std::array<Limit, 11> kLimits{{
 }};
 
 std::string with_unit(const MeasureInfo& measure, double value) {
-  if (measure.better == Better::one) return percent(value, 0);
-  const std::string_view unit = unit_of(measure);
-  return value_text(measure, value, false) + (unit.empty() ? "" : "\u00a0" + std::string(unit));
+  return measure.better == Better::one ? percent(value, 0) : value_with_unit(measure, value, false);
 }
 
 /// 1: agrees, 0: between, -1: differs.

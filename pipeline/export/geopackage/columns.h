@@ -1,20 +1,14 @@
 // The columns of the GeoPackage's layers: one list for the tables, their descriptions and the rows.
 #pragma once
 
-#include <cstdint>
-#include <string>
 #include <vector>
+
+#include "pipeline/geopackage/table.h"
 
 namespace blockrand::export_ {
 
-enum class ColumnKind : std::uint8_t { integer, real, text };
-
-struct Column {
-  std::string name;
-  ColumnKind kind = ColumnKind::text;
-  std::string unit;         ///< "m", "m²", "degree"; empty for counts and texts
-  std::string description;  ///< one sentence, without the unit
-};
+using geopackage::Column;
+using geopackage::ColumnKind;
 
 /// Columns in the order of the table, without `fid` and `geom`. Those of buildings and parts hold, for each attribute x
 /// of model::for_each_attribute and in its order, `x`, `x_source`, `x_confidence`.

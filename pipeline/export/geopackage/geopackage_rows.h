@@ -1,42 +1,13 @@
 // What the GeoPackage says of a tile's buildings, prepared away from the file.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
-
+#include "pipeline/geopackage/table.h"
 #include "pipeline/model/region.h"
 
 namespace blockrand::export_ {
 
-/// One value of a row.
-struct Cell {
-  enum class Kind : std::uint8_t { null, integer, real, text };
-  Kind kind = Kind::null;
-  union {
-    std::int64_t integer = 0;
-    double real;
-    std::size_t text;  ///< where the text starts in CellTable::texts
-  };
-};
-
-/// Rows of one layer, flat: `width` cells each. Texts are clean UTF-8 and end with a zero byte; geometries are
-/// well-known binary, little-endian.
-struct CellTable {
-  std::size_t width = 0;
-  std::vector<Cell> cells;
-  std::string texts;
-  std::string geometries;
-  std::vector<std::size_t> geometry_ends;  ///< per row: where its geometry ends in `geometries`
-
-  std::size_t rows() const { return geometry_ends.size(); }
-  std::string_view geometry(std::size_t row) const {
-    const std::size_t first = row == 0 ? 0 : geometry_ends[row - 1];
-    return std::string_view(geometries).substr(first, geometry_ends[row] - first);
-  }
-};
+using geopackage::Cell;
+using geopackage::CellTable;
 
 /// The rows of a tile.
 struct GeoPackageRows {

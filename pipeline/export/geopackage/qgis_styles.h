@@ -1,19 +1,13 @@
 // How the GeoPackage's layers look in QGIS.
 #pragma once
 
-#include <string>
 #include <vector>
+
+#include "pipeline/geopackage/layer_file.h"
 
 namespace blockrand::export_ {
 
-/// A row of the table layer_styles.
-struct QgisStyle {
-  std::string layer;  ///< table it belongs to
-  std::string name;
-  std::string description;
-  std::string qml;          ///< QGIS layer style of QGIS 3.22, read by every later version
-  bool is_default = false;  ///< one per layer
-};
+using geopackage::QgisStyle;
 
 /// buildings: by storeys (default), by built roof, by the source of the storeys, by position; parts: by built roof (default), by
 /// level of detail; reported: by code (default); tiles: outlines (default); facade_edges: by kind

@@ -7,6 +7,7 @@
 
 #include "pipeline/base/random.h"
 #include "pipeline/base/sha256.h"
+#include "pipeline/picture/palette.h"
 #include "tests/unit/export/sample_region.h"
 #include "tests/unit/picture/scenes.h"
 
@@ -309,6 +310,48 @@ TEST(Render, TheSameBytesEachTimeAndOnEveryMachine) {
             "5822c61349bf52a5a7d828eae435713631bf5f8dd9d877533c701fb6f0437c11")
       << "The renderer draws something else than before. Where that was meant, look at a picture, then update the hash; "
          "where it was not, something in it depends on the machine.";
+}
+
+TEST(Render, WithoutLightColoursAreAsGiven) {
+  Scene scene;
+  scene.add_triangle({{{-50, 5, -50}, {50, 5, -50}, {0, 5, 80}}}, {10, 120, 230}, 0);
+  RenderOptions o = plain(20, 20);
+  o.lines = false;
+  o.lit = false;
+  o.sun_elevation = -10;
+  const Image image = render(scene, look_at({0, 0, 0}, {0, 10, 0}), o);
+  const std::uint8_t* p = image.pixel(10, 10);
+  EXPECT_EQ(p[0], 10);
+  EXPECT_EQ(p[1], 120);
+  EXPECT_EQ(p[2], 230);
+}
+
+TEST(PalettePng, KeepsFewColoursExactly) {
+  Image image{4, 1, {1, 2, 3, 200, 100, 50, 1, 2, 3, 9, 9, 9}};
+  const PaletteImage reduced = reduce_colours(image, 8);
+  ASSERT_EQ(reduced.palette.size(), 3u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Colour c = reduced.palette[reduced.pixels[i]];
+    EXPECT_EQ(c, (Colour{image.rgb[i * 3], image.rgb[i * 3 + 1], image.rgb[i * 3 + 2]}));
+  }
+}
+
+TEST(PalettePng, ReducesManyColoursToNearOnes) {
+  Image image{256, 64, {}};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 256; ++x)
+      for (const int v : {x, y * 4, 128}) image.rgb.push_back(static_cast<std::uint8_t>(v));
+  const PaletteImage reduced = reduce_colours(image, 64);
+  EXPECT_EQ(reduced.palette.size(), 64u);
+  int worst = 0;
+  for (std::size_t i = 0; i < reduced.pixels.size(); ++i) {
+    const Colour c = reduced.palette[reduced.pixels[i]];
+    worst = std::max({worst, std::abs(c.r - image.rgb[i * 3]), std::abs(c.g - image.rgb[i * 3 + 1])});
+  }
+  EXPECT_LE(worst, 24) << "eight by eight colours are 32 wide";
+  EXPECT_EQ(palette_png(image), palette_png(image));
+  EXPECT_EQ(palette_png(image).substr(1, 3), "PNG");
+  EXPECT_THROW(palette_png(Image{}), std::runtime_error);
 }
 
 }  // namespace

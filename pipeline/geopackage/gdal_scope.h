@@ -1,4 +1,4 @@
-// GDAL's messages and settings, kept to one thread and one scope.
+// GDAL's messages and settings, kept to one thread and one scope. Internal to this folder.
 #pragma once
 
 #include <cpl_conv.h>
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace blockrand::export_ {
+namespace blockrand::geopackage {
 
 /// While it lives, GDAL on this thread prints nothing and sees the given configuration options; other threads and later
 /// calls are untouched. The first failure stays readable: what follows it is usually its consequence.
@@ -48,4 +48,4 @@ class GdalScope {
   std::string failure_;
 };
 
-}  // namespace blockrand::export_
+}  // namespace blockrand::geopackage
