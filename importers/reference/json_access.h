@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "importers/reference/coordinate_text.h"
+
 namespace blockrand::importers::reference {
 
 using Json = nlohmann::json;
@@ -52,5 +54,18 @@ inline const Json& element_of(const Json& array, const Json& number) {
 
 /// The text; empty where it is none.
 inline std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : std::string(); }
+
+/// A number, also one that is written as a text.
+inline std::optional<double> loose_number(const Json& value) {
+  if (value.is_string()) return number_of(value.get_ref<const std::string&>());
+  return number(value);
+}
+
+/// A scalar as a text; nothing for objects, arrays and null.
+inline std::optional<std::string> scalar_text(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean() || value.is_number()) return value.dump();
+  return std::nullopt;
+}
 
 }  // namespace blockrand::importers::reference
