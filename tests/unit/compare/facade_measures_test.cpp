@@ -177,6 +177,21 @@ TEST(FacadeMeasures, LeaveOutWhatIsBlank) {
   for (const Measure m : kFacadeMeasures) EXPECT_NEAR(value(values, m).left_out, 35.0 / 48, kExact) << info(m).id;
 }
 
+TEST(FacadeMeasures, LeaveOutWingsInAYardThatTheReferenceDoesNotShow) {
+  // The reference is a plain block with a blank back; the model has a wing behind it, with windows to the back.
+  const City reference = street_house(grid(5, 4), 12.5);
+  const std::vector<Point2> plan{{0, 0}, {13, 0}, {13, 16}, {5, 16}, {5, 11}, {0, 11}};
+  const City model = city_of({house(plan, 12.5, {grid(5, 4), {}, grid(3, 4), grid(1, 4), grid(1, 4)})});
+  const MeasureValues values = measured(model, reference);
+  // The wing's flank looks to the west beside the reference's west side, not behind it: it counts.
+  EXPECT_THAT(value(values, Measure::opening_precision).counted, is(20.0 / 24));
+  EXPECT_THAT(value(values, Measure::opening_precision).all, is(20.0 / 40));
+  EXPECT_EQ(value(values, Measure::opening_precision).weight, 24);
+  // Before a back with windows the wing's windows are wrong ones.
+  const City open = city_of({house(rectangle(0, 0, 13, 11), 12.5, {grid(5, 4), {}, grid(1, 1)})});
+  EXPECT_EQ(value(measured(model, open), Measure::opening_precision).weight, 40);
+}
+
 TEST(FacadeMeasures, LeaveOutWhatNeighboursCover) {
   City reference = city_of({house(rectangle(0, 0, 3.5, 11), 12.5, {{{1, 2.2, 1, 2.5}, {1, 2.2, 4, 5.5}}})});
   City model = city_of({house(rectangle(0, 0, 3.5, 11), 12.5, {{{1, 2.2, 1, 2.5}, {1, 2.2, 4, 5.5}}, grid(4, 4)})});
