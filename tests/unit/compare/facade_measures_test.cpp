@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "tests/unit/compare/facade_scene.h"
@@ -293,6 +294,31 @@ TEST(FacadePairs, TakeTheNearerOfTwoAndEachOnce) {
     EXPECT_TRUE(std::any_of(back.begin(), back.end(), [&](const FacadePair& other) {
       return other.model == pair.reference && other.reference == pair.model;
     }));
+}
+
+TEST(FacadePairs, SeeBothFacadesFromHalfWayBetweenThem) {
+  // Two walls from one corner, 12 degrees apart; of the second only the stretch from 10 m on was drawn. Both have a
+  // slit 11 m from the corner.
+  const auto wall = [](double angle, double from) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    Facade f;
+    f.left = {from * c, from * s};
+    f.right = {14 * c, 14 * s};
+    f.top = 10;
+    f.area = 10 * (14 - from);
+    FacadeOpening slit;
+    slit.left = 11 - from;
+    slit.right = 11.12 - from;
+    slit.bottom = 1;
+    slit.top = 2;
+    f.openings.push_back(slit);
+    return std::vector<Facade>{f};
+  };
+  const double half = 6 * 3.14159265358979323846 / 180;
+  const auto a = wall(-half, 0), b = wall(half, 10);
+  ASSERT_EQ(pair_facades(a, b).size(), 1U);
+  EXPECT_EQ(pair_facades(a, b)[0].matches.size(), 1U);
+  EXPECT_EQ(pair_facades(b, a)[0].matches.size(), 1U);
 }
 
 TEST(FacadePairs, DoNotJoinWhatLiesFarApartOrLooksElsewhere) {
