@@ -25,10 +25,13 @@ geometry::PlanBox box_of(const City& city, double margin) {
   return box;
 }
 
-/// Buildings that lie outside of the other model are no part of the comparison, and no miss either.
-void drop_out_of_reach(City& city, const geometry::PlanBox& reach) {
+/// Buildings far from all of the other model are no part of the comparison, and no miss either.
+void drop_out_of_reach(City& city, const City& other, double reach) {
+  std::vector<geometry::PlanBox> boxes;
+  for (const Building& b : other.buildings) boxes.push_back(plan_box(b));
+  const geometry::BoxIndex index(std::move(boxes));
   city.out_of_reach +=
-      std::erase_if(city.buildings, [&](const Building& b) { return !plan_box(b).near(reach, 0); });
+      std::erase_if(city.buildings, [&](const Building& b) { return index.near(plan_box(b), reach).empty(); });
 }
 
 /// Whether heights over sea level or the ellipsoid are compared.
@@ -80,8 +83,8 @@ Comparison compare_cities(City model, City reference, const CompareOptions& opti
   c.model = std::move(model);
   c.reference = std::move(reference);
   progress.begin("matching");
-  drop_out_of_reach(c.model, box_of(c.reference, options.reach));
-  drop_out_of_reach(c.reference, box_of(c.model, options.reach));
+  drop_out_of_reach(c.model, c.reference, options.reach);
+  drop_out_of_reach(c.reference, c.model, options.reach);
   c.absolute_heights = absolute_heights(c.model, c.reference, options.heights);
   if (options.heights == Heights::absolute) c.model.absolute_heights = c.reference.absolute_heights = true;
   settle_registration(c.model, c.reference, options, c.registration);
@@ -101,9 +104,12 @@ Comparison compare_cities(City model, City reference, const CompareOptions& opti
   for (std::uint32_t i = 0; i < reference_taken.size(); ++i)
     if (!reference_taken[i]) c.missing.push_back(i);
 
+  c.missing_covered = covered_shares(c.reference, c.missing, c.model, shift);
+  c.extra_covered = covered_shares(c.model, c.extra, c.reference, {-shift.x, -shift.y});
+
   const Cover model_cover(c.model), reference_cover(c.reference);
-  mark_left_out(c.model, model_cover);
-  mark_left_out(c.reference, reference_cover);
+  mark_left_out(c.model, model_cover, options.jobs);
+  mark_left_out(c.reference, reference_cover, options.jobs);
   c.blank_facades = mark_blank(c.reference, groups, options.facade);
 
   progress.begin("measuring", matches.size(), "matches");

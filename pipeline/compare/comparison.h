@@ -74,6 +74,7 @@ struct Comparison {
   std::vector<MatchResult> matches;                    ///< in the order of the reference's buildings
   std::vector<std::uint32_t> missing;                  ///< the reference's buildings that have no match
   std::vector<std::uint32_t> extra;                    ///< the model's buildings that have no match
+  std::vector<double> missing_covered, extra_covered;  ///< as those: share of their footprint that the other model covers
   MeasureSummaries summaries;
   DistanceDistribution distances;
   /// [reference's form][model's form] → matches

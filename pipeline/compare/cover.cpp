@@ -1,10 +1,11 @@
 #include "pipeline/compare/cover.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "pipeline/base/parallel.h"
 #include "pipeline/compare/read_city.h"
 #include "pipeline/compare/surface_samples.h"
-#include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/polygon.h"
 
 namespace blockrand::compare {
@@ -14,7 +15,8 @@ namespace {
 constexpr double kUpright = 0.26;  // sine of 15 degrees: faces that lean more are no walls
 constexpr double kAbove = 0.1;     // m. The top edge of a common wall counts as below the neighbour's roof.
 constexpr double kBelow = 0.5;     // m. Grounds of neighbours on a slope differ.
-constexpr double kSpacing = 0.5;   // m between the places of a face that are asked
+constexpr double kSpacing = 0.5;   // m between the places of a face that are asked, at least;
+constexpr double kPlaces = 64;     // more on large faces: half of a face is told from so many
 
 }  // namespace
 
@@ -26,15 +28,14 @@ RoofSurfaces roof_of(const Building& building) {
 }
 
 Cover::Cover(const City& city) : city_(city) {
-  std::vector<geometry::PlanBox> boxes;
   for (const Building& b : city.buildings) {
-    boxes.push_back(b.footprint.empty() ? geometry::PlanBox{} : plan_box(b));
+    boxes_.push_back(b.footprint.empty() ? geometry::PlanBox{} : plan_box(b));
     roofs_.push_back(roof_of(b));
   }
-  const geometry::BoxIndex index(boxes);
-  neighbours_.resize(boxes.size());
-  for (std::uint32_t i = 0; i < boxes.size(); ++i)
-    for (const std::uint32_t k : index.near(boxes[i], kAgainst))
+  const geometry::BoxIndex index(boxes_);
+  neighbours_.resize(boxes_.size());
+  for (std::uint32_t i = 0; i < boxes_.size(); ++i)
+    for (const std::uint32_t k : index.near(boxes_[i], kAgainst))
       if (k != i) neighbours_[i].push_back(k);
 }
 
@@ -45,7 +46,10 @@ bool Cover::covered(std::uint32_t building, Point3 at, Point3 normal) const {
     const Point2 p{at.x + side * normal.x, at.y + side * normal.y};
     for (const std::uint32_t k : neighbours_[building]) {
       const Building& other = city_.buildings[k];
-      if (at.z < other.ground - kBelow) continue;
+      const geometry::PlanBox& box = boxes_[k];
+      if (at.z < other.ground - kBelow || p.x < box.minimum.x || p.y < box.minimum.y || p.x > box.maximum.x ||
+          p.y > box.maximum.y)
+        continue;
       bool within = false;
       for (const model::Polygon& polygon : other.footprint) within = within || geometry::contains(polygon, p);
       if (!within) continue;
@@ -55,19 +59,24 @@ bool Cover::covered(std::uint32_t building, Point3 at, Point3 normal) const {
   return false;
 }
 
-void mark_left_out(City& city, const Cover& cover) {
-  for (std::uint32_t b = 0; b < city.buildings.size(); ++b)
+void mark_left_out(City& city, const Cover& cover, int jobs) {
+  const auto mark = [&](std::uint32_t b) {
     for (Face& f : city.buildings[b].faces) {
       if (f.hull == Hull::ground) f.left_out = LeftOut::ground;
-      if (f.hull != Hull::wall) continue;
+      if (f.hull != Hull::wall || !cover.has_neighbours(b)) continue;
       double covered = 0, all = 0;
-      for_each_sample(triangles_of(f.rings), f.normal, f.rings[0][0], kSpacing, 0,
-                      [&](Point3 at, double weight) {
-                        all += weight;
-                        if (cover.covered(b, at, f.normal)) covered += weight;
-                      });
+      const double spacing = std::max(kSpacing, std::sqrt(f.area / kPlaces));
+      for_each_sample(triangles_of(f.rings), f.normal, f.rings[0][0], spacing, 0, [&](Point3 at, double weight) {
+        all += weight;
+        if (cover.covered(b, at, f.normal)) covered += weight;
+      });
       if (covered > all / 2) f.left_out = LeftOut::covered;
     }
+  };
+  const int workers = base::worker_count(jobs);
+  base::ordered_parallel(
+      city.buildings.size(), workers, static_cast<std::size_t>(workers) * 8,
+      [&](std::size_t b) { mark(static_cast<std::uint32_t>(b)); }, [](std::size_t) {});
 }
 
 }  // namespace blockrand::compare

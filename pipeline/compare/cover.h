@@ -6,6 +6,7 @@
 
 #include "pipeline/compare/city.h"
 #include "pipeline/compare/roof_surfaces.h"
+#include "pipeline/geometry/box_index.h"
 
 namespace blockrand::compare {
 
@@ -20,6 +21,8 @@ RoofSurfaces roof_of(const Building& building);
 class Cover {
  public:
   explicit Cover(const City& city);
+  /// False where nothing stands near enough to cover anything.
+  bool has_neighbours(std::uint32_t building) const { return !neighbours_[building].empty(); }
   /// Whether another building covers a place on an upright face: the place lies within that building's footprint when
   /// moved by kAgainst along the normal to either side (files turn faces as they please), below its roof.
   /// \param normal  unit vector
@@ -27,12 +30,14 @@ class Cover {
 
  private:
   const City& city_;
+  std::vector<geometry::PlanBox> boxes_;  ///< of footprints; empty without one
   std::vector<RoofSurfaces> roofs_;
   std::vector<std::vector<std::uint32_t>> neighbours_;
 };
 
 /// Sets Face::left_out: `ground` for the class ground, `covered` for walls of which more than half is covered. Measures of
 /// the surface decide by place (Cover), not by face; facades and pictures by face.
-void mark_left_out(City& city, const Cover& cover);
+/// \param jobs  worker threads; 0: one per core
+void mark_left_out(City& city, const Cover& cover, int jobs = 1);
 
 }  // namespace blockrand::compare

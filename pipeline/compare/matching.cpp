@@ -229,6 +229,22 @@ Registration register_models(const City& model, const City& reference, const Mat
   return out;
 }
 
+std::vector<double> covered_shares(const City& city, const std::vector<std::uint32_t>& buildings, const City& other,
+                                   Point2 shift) {
+  const BoxIndex index(boxes_of(other));
+  std::vector<double> out;
+  for (const std::uint32_t i : buildings) {
+    const Building& b = city.buildings[i];
+    std::vector<model::Polygon> around;
+    if (!b.footprint.empty())
+      for (const std::uint32_t k : index.near(moved(plan_box(b), shift), 0))
+        around.insert(around.end(), other.buildings[k].footprint.begin(), other.buildings[k].footprint.end());
+    const PlanShape shape(b.footprint);
+    out.push_back(around.empty() ? 0 : shape.moved(shift).common_area(PlanShape(around)) / shape.area());
+  }
+  return out;
+}
+
 void move(City& city, Point3 by) {
   const auto rings = [&](Rings3& r) {
     for (auto& ring : r)

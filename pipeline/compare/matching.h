@@ -36,6 +36,10 @@ std::vector<Match> match_buildings(const City& model, const City& reference, Poi
 /// each, with half of their area in common; over all matches where there are none of these. Nothing is moved.
 Registration register_models(const City& model, const City& reference, const MatchOptions& options = {});
 
+/// Share of each building's footprint that footprints of the other city cover. \param shift  added to the buildings' places
+std::vector<double> covered_shares(const City& city, const std::vector<std::uint32_t>& buildings, const City& other,
+                                   Point2 shift);
+
 /// Moves a city: footprints, faces, openings, shells, grounds.
 void move(City& city, Point3 by);
 
