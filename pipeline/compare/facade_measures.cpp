@@ -27,8 +27,7 @@ Totals totals(const FacadeComparison& c, bool with_left_out) {
   for (const FacadePair& pair : c.pairs) {
     const Facade* model = pair.model == FacadePair::kNone ? nullptr : &c.model[pair.model];
     const Facade* reference = pair.reference == FacadePair::kNone ? nullptr : &c.reference[pair.reference];
-    const bool left_out = reference != nullptr ? reference->left_out() : model->is_covered();
-    if (left_out && !with_left_out) continue;
+    if (pair.left_out && !with_left_out) continue;
     if (model != nullptr) {
       t.model_storeys = std::max(t.model_storeys, model->storeys);
       t.model_openings += model->openings.size();

@@ -1,6 +1,8 @@
 // Which facades of two models stand for each other, and which of their openings.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <tuple>
 
 #include "pipeline/base/portable_math.h"
@@ -37,30 +39,51 @@ struct Candidate {
   double score = 0;
 };
 
-/// How much of both facades is one, in [0, 1]: overlap over union of their rectangles, less for those that lie apart.
-/// Nothing for facades that cannot stand for each other.
-double score_of(const Facade& a, const Facade& b, const FacadeOptions& options) {
-  if (!(a.width() > 0) || !(b.width() > 0)) return 0;
-  if (dot(along(a), along(b)) < base::cos(options.pair_angle)) return 0;
+/// How two facades lie that look the same way.
+struct Lie {
+  double both = 0, width_a = 0, width_b = 0;  // m along: in common, and of each
+  double distance = 0;                        // m across, in the middle of what they have in common
+};
+std::optional<Lie> lie_of(const Facade& a, const Facade& b, const FacadeOptions& options) {
+  if (!(a.width() > 0) || !(b.width() > 0)) return std::nullopt;
+  if (dot(along(a), along(b)) < base::cos(options.pair_angle)) return std::nullopt;
   const View view(a, b);
   const double left_a = view.place(a, 0), right_a = view.place(a, a.width());
   const double left_b = view.place(b, 0), right_b = view.place(b, b.width());
   const double left = std::max(left_a, left_b), right = std::min(right_a, right_b);
-  const double low = std::max(a.bottom, b.bottom), high = std::min(a.top, b.top);
-  if (right - left < options.pair_overlap * std::min(right_a - left_a, right_b - left_b) - 1e-9) return 0;
-  if (high - low < options.pair_overlap * std::min(a.top - a.bottom, b.top - b.bottom) - 1e-9) return 0;
-  // How far apart they lie across, in the middle of what they have in common.
   const Point2 outwards{view.along.y, -view.along.x};
   const auto depth = [&](const Facade& f) {
     const double at = (0.5 * (left + right) - view.place(f, 0)) / view.cosine;
     const Point2 u = along(f);
     return dot(outwards, {f.left.x + at * u.x, f.left.y + at * u.y});
   };
-  const double distance = std::fabs(depth(a) - depth(b));
-  if (distance > options.pair_distance + 1e-9) return 0;
-  const double both = (right - left) * (high - low);
-  const double together = (right_a - left_a) * (a.top - a.bottom) + (right_b - left_b) * (b.top - b.bottom) - both;
-  return both / together * (1 - 0.5 * distance / options.pair_distance);
+  return Lie{right - left, right_a - left_a, right_b - left_b, std::fabs(depth(a) - depth(b))};
+}
+
+/// How much of both facades is one, in [0, 1]: overlap over union of their rectangles, less for those that lie apart.
+/// Nothing for facades that cannot stand for each other.
+double score_of(const Facade& a, const Facade& b, const FacadeOptions& options) {
+  const auto lie = lie_of(a, b, options);
+  if (!lie || lie->distance > options.pair_distance + 1e-9) return 0;
+  const double height = std::min(a.top, b.top) - std::max(a.bottom, b.bottom);
+  if (lie->both < options.pair_overlap * std::min(lie->width_a, lie->width_b) - 1e-9) return 0;
+  if (height < options.pair_overlap * std::min(a.top - a.bottom, b.top - b.bottom) - 1e-9) return 0;
+  const double both = lie->both * height;
+  const double together = lie->width_a * (a.top - a.bottom) + lie->width_b * (b.top - b.bottom) - both;
+  return both / together * (1 - 0.5 * lie->distance / options.pair_distance);
+}
+
+/// Whether the nearest of the facades before or behind `facade` is blank.
+bool behind_a_blank_one(const Facade& facade, std::span<const Facade> others, const FacadeOptions& options) {
+  long long nearest = std::numeric_limits<long long>::max();
+  bool blank = false;
+  for (const Facade& other : others) {
+    const auto lie = lie_of(facade, other, options);
+    if (!lie || lie->both < options.pair_overlap * lie->width_a - 1e-9 || rounded(lie->distance) > nearest) continue;
+    blank = other.blank && (blank || rounded(lie->distance) < nearest);
+    nearest = rounded(lie->distance);
+  }
+  return blank;
 }
 
 /// A key that is the same when the two facades are exchanged.
@@ -152,9 +175,13 @@ std::vector<FacadePair> pair_facades(std::span<const Facade> model, std::span<co
   };
   std::vector<FacadePair> pairs;
   for (const std::size_t r : by_area(reference, of_reference, true))
-    pairs.push_back({of_reference[r], r, match_openings(model[of_reference[r]], reference[r], options)});
-  for (const std::size_t r : by_area(reference, of_reference, false)) pairs.push_back({FacadePair::kNone, r, {}});
-  for (const std::size_t m : by_area(model, of_model, false)) pairs.push_back({m, FacadePair::kNone, {}});
+    pairs.push_back(
+        {of_reference[r], r, match_openings(model[of_reference[r]], reference[r], options), reference[r].left_out()});
+  for (const std::size_t r : by_area(reference, of_reference, false))
+    pairs.push_back({FacadePair::kNone, r, {}, reference[r].left_out()});
+  for (const std::size_t m : by_area(model, of_model, false))
+    pairs.push_back(
+        {m, FacadePair::kNone, {}, model[m].is_covered() || behind_a_blank_one(model[m], reference, options)});
   return pairs;
 }
 

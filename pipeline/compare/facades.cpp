@@ -238,7 +238,10 @@ Facade finish(const Draft& draft, const City& city, const FacadeOptions& options
 
 }  // namespace
 
-double Facade::width() const { return std::hypot(right.x - left.x, right.y - left.y); }
+double Facade::width() const {
+  const Point2 d{right.x - left.x, right.y - left.y};
+  return std::sqrt(dot(d, d));
+}
 
 std::vector<Facade> facades_of(const City& city, std::span<const std::uint32_t> buildings, const FacadeOptions& options,
                                std::size_t* loose) {

@@ -100,6 +100,10 @@ struct FacadePair {
   /// Both are seen in the direction half way between both facades (which are one plane's in most pairs), so that the
   /// model and the reference can be exchanged; heights above each building's own ground.
   std::vector<std::pair<std::size_t, std::size_t>> matches;
+  /// Takes no part in `counted`: the reference's facade is left_out(); or there is none and the model's is covered, or
+  /// the nearest facade of the reference that looks the same way and stands before or behind it (half of its width in
+  /// common) is blank: a wing in a yard that the survey did not see.
+  bool left_out = false;
 };
 /// Pairs facades within pair_angle and pair_distance (across, in the middle of what they have in common) that have
 /// pair_overlap of the narrower one's width and of the lower one's height in common. Best first: overlap over union of
@@ -132,11 +136,10 @@ FacadeComparison compare_facades(const City& model, std::span<const std::uint32_
 /// - opening_precision, opening_recall: shares of all openings in facades. Weight: those.
 /// - storey_pitch_error, axis_pitch_error: mean over pairs of facades that both have a pitch. Weight: their number.
 ///
-/// `counted` leaves out the reference's facades that are left_out() and the model's that are paired with those or have
-/// no partner and are covered. `all` takes all. `left_out` is the share of the area of the reference's facades that is
-/// left out. No value where the reference's facades that take part have no openings at all (but storeys). A model
-/// without openings against a reference with some has recall 0, ratio 0 and no precision. Openings in no facade take no
-/// part.
+/// `counted` leaves out pairs that are FacadePair::left_out. `all` takes all. `left_out` is the share of the area of
+/// the reference's facades that is left out. No value where the reference's facades that take part have no openings at
+/// all (but storeys). A model without openings against a reference with some has recall 0, ratio 0 and no precision.
+/// Openings in no facade take no part.
 void measure_facades(const FacadeComparison& facades, const City& model, std::span<const std::uint32_t> model_buildings,
                      const City& reference, std::span<const std::uint32_t> reference_buildings, MeasureValues& values);
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "tests/unit/compare/facade_scene.h"
@@ -177,6 +178,21 @@ TEST(FacadeMeasures, LeaveOutWhatIsBlank) {
   for (const Measure m : kFacadeMeasures) EXPECT_NEAR(value(values, m).left_out, 35.0 / 48, kExact) << info(m).id;
 }
 
+TEST(FacadeMeasures, LeaveOutWingsInAYardThatTheReferenceDoesNotShow) {
+  // The reference is a plain block with a blank back; the model has a wing behind it, with windows to the back.
+  const City reference = street_house(grid(5, 4), 12.5);
+  const std::vector<Point2> plan{{0, 0}, {13, 0}, {13, 16}, {5, 16}, {5, 11}, {0, 11}};
+  const City model = city_of({house(plan, 12.5, {grid(5, 4), {}, grid(3, 4), grid(1, 4), grid(1, 4)})});
+  const MeasureValues values = measured(model, reference);
+  // The wing's flank looks to the west beside the reference's west side, not behind it: it counts.
+  EXPECT_THAT(value(values, Measure::opening_precision).counted, is(20.0 / 24));
+  EXPECT_THAT(value(values, Measure::opening_precision).all, is(20.0 / 40));
+  EXPECT_EQ(value(values, Measure::opening_precision).weight, 24);
+  // Before a back with windows the wing's windows are wrong ones.
+  const City open = city_of({house(rectangle(0, 0, 13, 11), 12.5, {grid(5, 4), {}, grid(1, 1)})});
+  EXPECT_EQ(value(measured(model, open), Measure::opening_precision).weight, 40);
+}
+
 TEST(FacadeMeasures, LeaveOutWhatNeighboursCover) {
   City reference = city_of({house(rectangle(0, 0, 3.5, 11), 12.5, {{{1, 2.2, 1, 2.5}, {1, 2.2, 4, 5.5}}})});
   City model = city_of({house(rectangle(0, 0, 3.5, 11), 12.5, {{{1, 2.2, 1, 2.5}, {1, 2.2, 4, 5.5}}, grid(4, 4)})});
@@ -278,6 +294,31 @@ TEST(FacadePairs, TakeTheNearerOfTwoAndEachOnce) {
     EXPECT_TRUE(std::any_of(back.begin(), back.end(), [&](const FacadePair& other) {
       return other.model == pair.reference && other.reference == pair.model;
     }));
+}
+
+TEST(FacadePairs, SeeBothFacadesFromHalfWayBetweenThem) {
+  // Two walls from one corner, 12 degrees apart; of the second only the stretch from 10 m on was drawn. Both have a
+  // slit 11 m from the corner.
+  const auto wall = [](double angle, double from) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    Facade f;
+    f.left = {from * c, from * s};
+    f.right = {14 * c, 14 * s};
+    f.top = 10;
+    f.area = 10 * (14 - from);
+    FacadeOpening slit;
+    slit.left = 11 - from;
+    slit.right = 11.12 - from;
+    slit.bottom = 1;
+    slit.top = 2;
+    f.openings.push_back(slit);
+    return std::vector<Facade>{f};
+  };
+  const double half = 6 * 3.14159265358979323846 / 180;
+  const auto a = wall(-half, 0), b = wall(half, 10);
+  ASSERT_EQ(pair_facades(a, b).size(), 1U);
+  EXPECT_EQ(pair_facades(a, b)[0].matches.size(), 1U);
+  EXPECT_EQ(pair_facades(b, a)[0].matches.size(), 1U);
 }
 
 TEST(FacadePairs, DoNotJoinWhatLiesFarApartOrLooksElsewhere) {
