@@ -4,11 +4,10 @@
 #include <libxml/parser.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
-#include <utility>
 #include <vector>
 
+#include "importers/reference/axes.h"
 #include "importers/reference/citygml_parser.h"
 #include "importers/reference/file_bytes.h"
 #include "importers/reference/height_words.h"
@@ -103,16 +102,6 @@ void run(ByteReader& bytes, Document& document, const std::string& path) {
   xmlParseChunk(context.get(), buffer.data(), 0, 1);
 }
 
-struct Box {
-  model::Point3 lowest{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-                       std::numeric_limits<double>::infinity()};
-  model::Point3 highest{-lowest.x, -lowest.y, -lowest.z};
-  void add(const model::Point3& p) {
-    lowest = {std::min(lowest.x, p.x), std::min(lowest.y, p.y), std::min(lowest.z, p.z)};
-    highest = {std::max(highest.x, p.x), std::max(highest.y, p.y), std::max(highest.z, p.z)};
-  }
-};
-
 /// Notes polygons that reach out of the envelope; both in the file's axis order.
 void compare_with_envelope(const ReferenceModel& model, const DocumentFacts& facts, NoteLog& notes) {
   if (facts.lower.size() < 2 || facts.upper.size() < 2) return;
@@ -127,23 +116,11 @@ void compare_with_envelope(const ReferenceModel& model, const DocumentFacts& fac
     ++outside;
     notes.add(NoteKind::outside_envelope, 0, "polygon \"" + polygon.id + "\"");
   }
-  Box all;
-  for (const Polygon3& polygon : model.polygons)
-    for (const model::Point3& p : polygon.outer) all.add(p);
+  const Box all = box_of(model);
   const bool swapped = !model.polygons.empty() && outside == model.polygons.size() &&
                        all.lowest.y >= facts.lower[0] - tolerance && all.highest.y <= facts.upper[0] + tolerance &&
                        all.lowest.x >= facts.lower[1] - tolerance && all.highest.x <= facts.upper[1] + tolerance;
   if (swapped) notes.add(NoteKind::crs, 0, "the envelope has its axes the other way round than the geometry");
-}
-
-void swap_axes(ReferenceModel& model) {
-  const auto swap = [](std::vector<model::Point3>& ring) {
-    for (model::Point3& p : ring) std::swap(p.x, p.y);
-  };
-  for (Polygon3& polygon : model.polygons) {
-    swap(polygon.outer);
-    for (auto& hole : polygon.holes) swap(hole);
-  }
 }
 
 }  // namespace
@@ -177,18 +154,12 @@ ReferenceModel read_citygml(const std::string& path, const ReadOptions& options)
       refuse(path, document.first_line, "no building can be read: " + document.first, "The file is damaged");
   }
   parser.finish();
-  Box box;
-  for (const Polygon3& polygon : model.polygons)
-    for (const model::Point3& p : polygon.outer) box.add(p);
   if (!model.buildings.empty() || !facts.srs_names.empty() || !options.reference_crs.empty())
     model.crs = decide_crs(path, facts.srs_names, options, notes);
   decide_heights(model.crs, height_words_in(facts.description));
   model.format = "CityGML " + model.version;
   compare_with_envelope(model, facts, notes);
-  if (!model.polygons.empty()) {
-    decide_axis_order(model.crs, box.lowest.xy(), box.highest.xy(), options, notes);
-    if (model.crs.axis_order == AxisOrder::north_first) swap_axes(model);
-  }
+  settle_axes(model, options, notes);
   model.notes = notes.take();
   return model;
 }

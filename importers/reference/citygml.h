@@ -15,6 +15,9 @@ namespace blockrand::importers::reference {
 /// city objects are counted only. What breaks the rules is read as far as it makes sense and noted; after damage to the
 /// XML itself reading goes on where libxml2 can, and a building without an end is left out.
 ///
+/// Implicit geometry (a template with a matrix and a reference point) is placed, also where the template stands
+/// elsewhere in the file; that of furniture is left out, that of other files (libraryObject) noted.
+///
 /// CRS: the first srsName. Understood are "EPSG:25833", OGC urns and addresses, compound ones ("urn:ogc:def:crs,crs:
 /// EPSG::25832,crs:EPSG::5783"), AdV's urns ("urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH") and names that PROJ knows.
 /// Axis order: a geographic CRS named by urn or address is latitude first, "EPSG:4326" longitude first, a projected

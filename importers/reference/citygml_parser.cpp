@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "importers/reference/coordinate_text.h"
+#include "importers/reference/polygons.h"
 
 namespace blockrand::importers::reference {
 namespace {
@@ -103,10 +104,26 @@ void CityGmlParser::element(const XmlElement& element) {
   e.dimension = e.attributes.dimension != 0 ? e.attributes.dimension : stack_.empty() ? 0 : stack_.back().dimension;
   e.first_item = links_.size();
   if (stack_.empty() && facts_.root.empty()) facts_.root = e.name;
-  if (skip_depth_ == 0) e.role = start(e);
+  if (skip_depth_ == 0) {
+    e.role = start(e);
+  } else if (e.name == "relativeGMLGeometry" && !in_template_) {
+    e.role = start_template(e);
+  }
   text_.clear();
-  collects_ = e.role == Role::coordinates || e.role == Role::attribute_value || e.role == Role::value ||
-              e.role == Role::corner || e.role == Role::description;
+  switch (e.role) {
+    case Role::coordinates:
+    case Role::attribute_value:
+    case Role::value:
+    case Role::corner:
+    case Role::description:
+    case Role::matrix:
+    case Role::library:
+    case Role::reference_point:
+      collects_ = true;
+      break;
+    default:
+      collects_ = false;
+  }
   stack_.push_back(std::move(e));
 }
 
@@ -153,7 +170,59 @@ void CityGmlParser::finish() {
     const std::vector<Face> inner = links_.resolve(voids, p.end, notes_);
     g.faces.insert(g.faces.end(), inner.begin(), inner.end());
   }
+  for (const Implicit& use : implicit_) place(use);
+  if (std::find(is_template_.begin(), is_template_.end(), true) != is_template_.end()) {
+    is_template_.resize(model_.polygons.size(), false);
+    drop_polygons(model_, is_template_);
+  }
   drop_empty_geometries();
+}
+
+void CityGmlParser::end_template() {
+  if (resume_skip_ == 0) implicit_.back().end = links_.size();
+  is_template_.resize(model_.polygons.size(), true);
+  skip_depth_ = resume_skip_;
+  in_template_ = in_property_ = reversed_ = false;
+}
+
+/// The template's faces where the use has them: its matrix, then its reference point.
+void CityGmlParser::place(const Implicit& use) {
+  constexpr std::size_t kMostFaces = 20'000'000;  // templates multiply; a mistake or an attack beyond
+  Building& b = model_.buildings[use.building];
+  const auto refuse = [&](NoteKind kind, const std::string& what) {
+    notes_.add(kind, use.line, what);
+    ++b.implicit_geometries;
+  };
+  if (use.begin == use.end)
+    return refuse(NoteKind::not_read, use.library.empty() ? "an implicit geometry without a template"
+                                                          : "implicit geometry from another file: " + use.library);
+  if (use.bad_numbers || use.reference_point.size() < 2)
+    return refuse(NoteKind::bad_value, use.bad_numbers ? "an implicit geometry whose matrix or point is none"
+                                                       : "an implicit geometry without a reference point");
+  const std::vector<Face> faces = links_.resolve(use.begin, use.end, notes_);
+  if (faces.empty()) return refuse(NoteKind::not_read, "an implicit geometry without faces");
+  if ((placed_faces_ += faces.size()) > kMostFaces) return refuse(NoteKind::not_read, "templates multiply without end");
+  const auto& m = use.matrix;
+  const auto& at = use.reference_point;
+  const auto placed = [&](const model::Point3& p) {
+    const auto row = [&](std::size_t r) {
+      return m[4 * r] * p.x + m[4 * r + 1] * p.y + m[4 * r + 2] * p.z + m[4 * r + 3];
+    };
+    const model::Point3 turned = m.empty() ? p : model::Point3{row(0), row(1), row(2)};
+    return model::Point3{turned.x + at[0], turned.y + at[1], turned.z + (at.size() > 2 ? at[2] : 0)};
+  };
+  Geometry g;
+  g.lod = use.lod;
+  for (const Face& face : faces) {
+    Polygon3 polygon = model_.polygons[face.polygon];
+    for (model::Point3& p : polygon.outer) p = placed(p);
+    for (auto& hole : polygon.holes)
+      for (model::Point3& p : hole) p = placed(p);
+    g.faces.push_back({static_cast<std::uint32_t>(model_.polygons.size()), face.reversed});
+    model_.polygons.push_back(std::move(polygon));
+  }
+  g.outer_faces = g.faces.size();
+  geometries_of(use.building, use.surface, use.opening).push_back(std::move(g));
 }
 
 void CityGmlParser::drop_empty_geometries() {
@@ -170,18 +239,20 @@ void CityGmlParser::drop_empty_geometries() {
 }
 
 void CityGmlParser::cut_off() {
+  if (in_template_) is_template_.resize(model_.polygons.size(), true);
   if (!open_.empty()) {
     const std::size_t first = open_.front().building;
     const Building& b = model_.buildings[first];
     notes_.add(NoteKind::incomplete_building, b.line, "building \"" + b.id + "\" has no end");
     std::erase_if(pending_, [&](const Pending& p) { return p.building >= first; });
+    std::erase_if(implicit_, [&](const Implicit& use) { return use.building >= first; });
     model_.buildings.resize(first);
   }
   open_.clear();
   stack_.clear();
   skip_depth_ = 0;
   polygon_.reset();
-  in_property_ = in_ring_ = reversed_ = false;
+  in_property_ = in_ring_ = reversed_ = in_implicit_ = in_template_ = false;
 }
 
 // ---- ends ---------------------------------------------------------------------------------------------------------
@@ -230,6 +301,25 @@ void CityGmlParser::end(const Element& e) {
     case Role::description:
       facts_.description = trimmed(text_);
       break;
+    case Role::implicit_property:
+      in_implicit_ = false;
+      break;
+    case Role::relative_geometry:
+      end_template();
+      break;
+    case Role::library:
+      implicit_.back().library = trimmed(text_);
+      break;
+    case Role::matrix:
+    case Role::reference_point: {
+      const Attributes& a = e.attributes;
+      const auto numbers =
+          numbers_of(e.name == "coordinates" ? as_number_list(text_, a.decimal, a.within, a.between) : text_);
+      Implicit& use = implicit_.back();
+      if (numbers) (e.role == Role::matrix ? use.matrix : use.reference_point) = *numbers;
+      use.bad_numbers = use.bad_numbers || !numbers || (e.role == Role::matrix && numbers->size() != 16);
+      break;
+    }
     case Role::envelope:
     case Role::attribute_set:
     case Role::attribute:

@@ -77,6 +77,11 @@ class CityGmlParser {
     envelope,
     corner,
     description,
+    implicit_property,
+    relative_geometry,
+    matrix,
+    library,
+    reference_point,
   };
   struct Attributes {
     std::string id, href, srs_name, name, uom, decimal, within, between;
@@ -100,6 +105,18 @@ class CityGmlParser {
     std::size_t begin, voids, end;  ///< items; the shells of voids start at `voids`
   };
 
+  /// A use of a template, whose faces are not resolved yet.
+  struct Implicit {
+    std::size_t building;
+    int surface, opening;  ///< -1: none
+    int lod, line;
+    std::size_t begin, end;               ///< items: the template itself, or a link to it
+    std::vector<double> matrix;           ///< row by row; empty: none is stated
+    std::vector<double> reference_point;  ///< empty: none is stated
+    std::string library;                  ///< file that holds the template
+    bool bad_numbers = false;
+  };
+
   Attributes read_attributes(const XmlElement& element);
   Space space_of(std::string_view uri);
   Role start(const Element& e);
@@ -107,6 +124,8 @@ class CityGmlParser {
   Role start_in_building(const Element& e);
   Role start_property(const Element& e);
   Role start_thing(const Element& e);
+  Role start_implicit(const Element& e);
+  Role start_template(const Element& e);
   Role start_geometry(const Element& e);
   Role start_in_polygon(const Element& e);
   Role start_building(const Element& e);
@@ -116,6 +135,8 @@ class CityGmlParser {
   void end_ring(const Element& e);
   void end_polygon(const Element& e);
   void end_corner();
+  void end_template();
+  void place(const Implicit& use);
   void drop_empty_geometries();
   Role skip() {
     skip_depth_ = stack_.size() + 1;
@@ -150,6 +171,12 @@ class CityGmlParser {
   std::vector<OpenThing> open_;  ///< innermost last: buildings, their surfaces, their openings
 
   std::vector<Pending> pending_;
+  std::vector<Implicit> implicit_;
+  bool in_implicit_ = false;     ///< within the last of them
+  bool in_template_ = false;     ///< within its relativeGMLGeometry, or one of an object that is not looked at
+  std::size_t resume_skip_ = 0;  ///< skip_depth_ behind that template
+  std::size_t placed_faces_ = 0;
+  std::vector<bool> is_template_;  ///< as ReferenceModel::polygons, to the last one of a template
   bool in_property_ = false;
   int property_lod_ = 0;
   bool reversed_ = false;

@@ -23,6 +23,10 @@ CityGmlParser::Role CityGmlParser::start(const Element& e) {
   if (!srs.empty() && facts_.srs_names.size() < kMostSrsNames &&
       std::find(facts_.srs_names.begin(), facts_.srs_names.end(), srs) == facts_.srs_names.end())
     facts_.srs_names.push_back(srs);
+  if (in_template_) {
+    if (e.space == Space::foreign) return skip();
+    return polygon_ ? start_in_polygon(e) : start_geometry(e);
+  }
   const bool own = e.space == Space::citygml || e.space == Space::none;
   if (own && !in_property_ && any_of(e.name, {"Building", "BuildingPart"})) return start_building(e);
   return open_.empty() ? start_outside(e) : start_in_building(e);
@@ -69,6 +73,7 @@ CityGmlParser::Role CityGmlParser::start_in_building(const Element& e) {
     notes_.add(NoteKind::unknown_element, e.line, e.name);
     return skip();
   }
+  if (in_implicit_) return start_implicit(e);
   if (in_property_) return polygon_ ? start_in_polygon(e) : start_geometry(e);
   if (any_of(e.name, {"address", "externalReference", "appearance", "generalizesTo"})) return skip();
   if (e.name.size() > 4 && e.name.starts_with("lod") && e.name[3] >= '0' && e.name[3] <= '4') return start_property(e);
@@ -88,9 +93,21 @@ CityGmlParser::Role CityGmlParser::start_in_building(const Element& e) {
 CityGmlParser::Role CityGmlParser::start_property(const Element& e) {
   const std::string_view what = std::string_view(e.name).substr(4);
   if (what.find("Implicit") != std::string_view::npos) {
-    ++building().implicit_geometries;
-    notes_.add(NoteKind::not_read, e.line, "implicit geometry");
-    return skip();
+    const OpenThing& thing = open_.back();
+    const bool furniture =
+        thing.surface >= 0 &&
+        building().surfaces[static_cast<std::size_t>(thing.surface)].surface_class == SurfaceClass::furniture;
+    if (furniture) return skip();
+    Implicit use{};
+    use.building = thing.building;
+    use.surface = thing.surface;
+    use.opening = thing.opening;
+    use.lod = e.name[3] - '0';
+    use.line = e.line;
+    use.begin = use.end = links_.size();
+    implicit_.push_back(std::move(use));
+    in_implicit_ = true;
+    return Role::implicit_property;
   }
   if (what.find("Curve") != std::string_view::npos || what.find("Intersection") != std::string_view::npos) {
     notes_.add(NoteKind::not_read, e.line, "curves of " + e.name);
@@ -104,6 +121,24 @@ CityGmlParser::Role CityGmlParser::start_property(const Element& e) {
                  "");
   if (!e.attributes.href.empty()) links_.add_link(e.attributes.href, false, e.line);
   return Role::property;
+}
+
+/// The template of a use, or of an object that is not looked at: other uses may link to it.
+CityGmlParser::Role CityGmlParser::start_template(const Element& e) {
+  in_template_ = in_property_ = true;
+  resume_skip_ = skip_depth_;
+  skip_depth_ = 0;
+  if (!e.attributes.href.empty()) links_.add_link(e.attributes.href, false, e.line);
+  is_template_.resize(model_.polygons.size(), false);
+  return Role::relative_geometry;
+}
+
+CityGmlParser::Role CityGmlParser::start_implicit(const Element& e) {
+  if (e.name == "relativeGMLGeometry") return start_template(e);
+  if (e.name == "transformationMatrix") return Role::matrix;
+  if (e.name == "libraryObject") return Role::library;
+  const bool in_point = parent_name() == "Point" || parent_name() == "referencePoint";
+  return in_point && any_of(e.name, {"pos", "coordinates"}) ? Role::reference_point : Role::other;
 }
 
 CityGmlParser::Role CityGmlParser::start_thing(const Element& e) {
@@ -161,6 +196,7 @@ CityGmlParser::Role CityGmlParser::start_geometry(const Element& e) {
     polygon_->id = e.attributes.id;
     return Role::polygon;
   }
+  if (e.name == "Solid" && in_template_) return Role::solid;
   if (e.name == "Solid") {
     Pending& pending = pending_.back();
     if (pending.begin == links_.size()) {
@@ -173,9 +209,9 @@ CityGmlParser::Role CityGmlParser::start_geometry(const Element& e) {
     }
     return Role::solid;
   }
-  if (e.name == "ImplicitGeometry") {
-    ++building().implicit_geometries;
-    notes_.add(NoteKind::not_read, e.line, "implicit geometry");
+  if (e.name == "ImplicitGeometry") {  // in a property for geometry of its own, where none belongs
+    if (!in_template_) ++building().implicit_geometries;
+    notes_.add(NoteKind::not_read, e.line, "an ImplicitGeometry as a geometry");
     return skip();
   }
   if (any_of(e.name, {"LineString", "Curve", "MultiCurve", "CompositeCurve", "Point", "MultiPoint"})) {
@@ -188,7 +224,7 @@ CityGmlParser::Role CityGmlParser::start_geometry(const Element& e) {
     if (e.attributes.negative) reversed_ = !reversed_;
     return Role::orientable;
   }
-  if (e.name == "interior" && parent_role() == Role::solid) {
+  if (e.name == "interior" && parent_role() == Role::solid && !in_template_) {
     Pending& pending = pending_.back();
     pending.voids = std::min(pending.voids, links_.size());
   }

@@ -1,6 +1,7 @@
 #include "importers/reference/height_words.h"
 
 #include "importers/reference/coordinate_text.h"
+#include "importers/reference/reference_crs.h"
 #include "pipeline/georef/transform.h"
 
 namespace blockrand::importers::reference {
@@ -41,7 +42,8 @@ void decide_heights(ReferenceCrs& crs, std::string_view words) {
     crs.height_reference = HeightReference::vertical_crs;
   } else if (has(words, "sea level")) {
     crs.height_reference = HeightReference::sea_level;
-  } else if (!crs.horizontal.empty() && georef::vertical_crs_of(crs.horizontal).ellipsoidal) {
+  } else if (!crs.stated.empty() && !crs.from_options &&
+             georef::vertical_crs_of(parse_srs_name(crs.stated).horizontal).ellipsoidal) {
     crs.height_reference = HeightReference::ellipsoidal;
   }
 }

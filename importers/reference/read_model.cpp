@@ -6,8 +6,10 @@
 #include <string_view>
 
 #include "importers/reference/citygml.h"
+#include "importers/reference/cityjson.h"
 #include "importers/reference/coordinate_text.h"
 #include "importers/reference/file_bytes.h"
+#include "importers/reference/gltf.h"
 #include "pipeline/base/error.h"
 
 namespace blockrand::importers::reference {
@@ -178,9 +180,11 @@ ReferenceModel read_model(const std::string& path, const ReadOptions& options) {
     case Format::citygml:
       return read_citygml(path, options);
     case Format::cityjson:
+      return read_cityjson(path, options);
     case Format::gltf:
     case Format::tileset:
-    case Format::old_tile:
+    case Format::old_tile:  // refused with what to do
+      return read_gltf(path, options);
     case Format::unknown:
       break;
   }

@@ -139,8 +139,9 @@ ReferenceCrs decide_crs(const std::string& path, const std::vector<std::string>&
     if (crs.from_options)
       throw base::UsageError("--reference-crs " + text + " is no coordinate reference system that PROJ knows");
     throw base::InputError(path, "",
-                           crs.stated.empty() ? "no srsName says in which coordinate reference system it is"
-                                              : "unknown coordinate reference system \"" + text + "\"",
+                           crs.stated.empty()
+                               ? "no srsName or referenceSystem says in which coordinate reference system it is"
+                               : "unknown coordinate reference system \"" + text + "\"",
                            "--reference-crs EPSG:... names it");
   }
   crs.horizontal = facts->authority_code.empty() ? parsed.horizontal : facts->authority_code;

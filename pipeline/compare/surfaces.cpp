@@ -13,6 +13,7 @@ namespace blockrand::compare {
 namespace {
 
 constexpr std::array<double, 3> kBounds{0.25, 0.5, 1.0};  // m, of completeness and correctness
+constexpr double kRounding = 1e-6;  // m. What lies at a bound but for rounding lies within it.
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 struct Place {
@@ -40,11 +41,11 @@ OneWay walk(const MatchSurface& from, const Cover& from_cover, const MatchSurfac
   };
   const auto look = [&](const MatchSurface::Patch& patch, Point3 at, double weight) {
     Place place;
-    const auto nearest = to.nearest(at);
+    const auto nearest = to.nearest_patch(at, patch.normal);
     place.distance = nearest.distance;
     place.weight = weight;
-    const MatchSurface::Patch& other = to.patch_of(nearest.triangle);
-    place.angle = std::acos(std::min(1.0, std::fabs(dot(patch.normal, other.normal)))) * kDegrees;
+    const MatchSurface::Patch& other = *nearest.patch;
+    place.angle = std::acos(std::min(1.0, nearest.cosine)) * kDegrees;
     place.why = reason(patch, from_cover, at, up_from);
     if (place.why == LeftOut::no && is_upright(patch) && is_upright(other)) {
       const LeftOut there = reason(other, to_cover, at, up_to);
@@ -79,7 +80,7 @@ struct Sums {
     distance += p.weight * p.distance;
     squares += p.weight * p.distance * p.distance;
     angle += p.weight * p.angle;
-    for (std::size_t i = 0; i < kBounds.size(); ++i) within[i] += p.distance <= kBounds[i] ? p.weight : 0;
+    for (std::size_t i = 0; i < kBounds.size(); ++i) within[i] += p.distance <= kBounds[i] + kRounding ? p.weight : 0;
   }
 };
 
@@ -146,6 +147,20 @@ MatchSurface::MatchSurface(const City& city, std::span<const std::uint32_t> buil
       }
   }
   nearest_ = geometry::NearestSurface(triangles_);
+}
+
+MatchSurface::NearestPatch MatchSurface::nearest_patch(Point3 p, Point3 normal) const {
+  const auto nearest = nearest_.nearest(p);
+  NearestPatch out{nearest.distance, &patch_of(nearest.triangle), 0};
+  out.cosine = std::fabs(dot(normal, out.patch->normal));
+  constexpr double kAlike = 1 - 1e-9;  // no other one can look more alike
+  if (out.cosine >= kAlike) return out;
+  for (const std::uint32_t t : nearest_.triangles_at(nearest.place)) {
+    const Patch& patch = patch_of(t);
+    const double cosine = std::fabs(dot(normal, patch.normal));
+    if (cosine > out.cosine + 1e-9) out = {nearest.distance, &patch, cosine};
+  }
+  return out;
 }
 
 DistanceHistogram::DistanceHistogram() : weights_(4000 + 720 + 1, 0) {}

@@ -45,6 +45,13 @@ class MatchSurface {
   }
   const Patch& patch_of(std::uint32_t triangle) const { return patches_[patch_of_[triangle]]; }
   geometry::NearestSurface::Nearest nearest(Point3 p) const { return nearest_.nearest(p); }
+  /// The nearest patch to a place; of those that meet in an edge there, the one that looks most as `normal` does.
+  struct NearestPatch {
+    double distance = 0;  ///< m
+    const Patch* patch = nullptr;
+    double cosine = 0;    ///< of the angle between both normals, without their signs
+  };
+  NearestPatch nearest_patch(Point3 p, Point3 normal) const;
 
  private:
   std::vector<Triangle3> triangles_;

@@ -4,7 +4,9 @@
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Simple_cartesian.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 namespace blockrand::geometry {
@@ -38,6 +40,7 @@ struct Primitive {
   Id entry_ = nullptr;
 };
 
+constexpr double kTouching = 1e-6;    // m. Closest points are exact to some 1e-9 m at a kilometre.
 constexpr double kLeastArea = 1e-12;  // m². CGAL asks for triangles that have a plane.
 
 double area(const std::array<Point3, 3>& t) {
@@ -78,7 +81,18 @@ bool NearestSurface::empty() const { return tree_->entries.empty(); }
 NearestSurface::Nearest NearestSurface::nearest(Point3 p) const {
   const Kernel::Point_3 q(p.x, p.y, p.z);
   const auto [point, id] = tree_->tree.closest_point_and_primitive(q);
-  return {std::sqrt(CGAL::squared_distance(q, point)), id->index};
+  return {std::sqrt(CGAL::squared_distance(q, point)), id->index, {point.x(), point.y(), point.z()}};
+}
+
+std::vector<std::uint32_t> NearestSurface::triangles_at(Point3 p) const {
+  const CGAL::Bbox_3 box(p.x - kTouching, p.y - kTouching, p.z - kTouching, p.x + kTouching, p.y + kTouching,
+                         p.z + kTouching);
+  std::vector<const Entry*> found;
+  tree_->tree.all_intersected_primitives(box, std::back_inserter(found));
+  std::vector<std::uint32_t> out;
+  for (const Entry* entry : found) out.push_back(entry->index);
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 }  // namespace blockrand::geometry

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "pipeline/model/point.h"
 
@@ -25,9 +26,12 @@ class NearestSurface {
   struct Nearest {
     double distance = 0;         ///< m
     std::uint32_t triangle = 0;  ///< of several that are equally near any one
+    model::Point3 place;         ///< on the surface
   };
   /// Requires a surface that is not empty.
   Nearest nearest(model::Point3 p) const;
+  /// All triangles that have a place of the surface (to about a micrometre): several where it lies on an edge. Ascending.
+  std::vector<std::uint32_t> triangles_at(model::Point3 place) const;
 
  private:
   struct Tree;

@@ -224,17 +224,14 @@ TEST(CityGml, TurnedTwiceIsNotTurned) {
               ElementsAre(Face{0, true}, Face{0, true}, Face{0, false}, Face{0, false}));
 }
 
-TEST(CityGml, ImplicitGeometryAndCurvesAreReportedAsNotRead) {
+TEST(CityGml, TemplatesInOtherFilesAndCurvesAreReportedAsNotRead) {
   const auto m = read(document(building(
       "b",
       "<bldg:lod2MultiCurve><gml:MultiCurve><gml:curveMember><gml:LineString><gml:posList>0 0 0 1 1 1</gml:posList>"
       "</gml:LineString></gml:curveMember></gml:MultiCurve></bldg:lod2MultiCurve>"
       "<bldg:outerBuildingInstallation><bldg:BuildingInstallation><bldg:lod3ImplicitRepresentation><ImplicitGeometry>"
-      "<relativeGMLGeometry><gml:MultiSurface><gml:surfaceMember>" +
-          polygon("0 0 0 1 0 0 1 1 0") +
-          "</gml:surfaceMember></gml:MultiSurface></relativeGMLGeometry></ImplicitGeometry></"
-          "bldg:lod3ImplicitRepresentation>"
-          "</bldg:BuildingInstallation></bldg:outerBuildingInstallation>" +
+      "<libraryObject>chimney.wrl</libraryObject></ImplicitGeometry></bldg:lod3ImplicitRepresentation>"
+      "</bldg:BuildingInstallation></bldg:outerBuildingInstallation>" +
           surface("GroundSurface", polygon(kGround)))));
   EXPECT_EQ(m.buildings[0].implicit_geometries, 1u);
   EXPECT_EQ(m.count(NoteKind::not_read), 2u);

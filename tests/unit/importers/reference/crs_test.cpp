@@ -191,5 +191,21 @@ TEST(Transform, RefusesWhatIsNoPlaneInMetres) {
     EXPECT_THROW(transform_to(m, target), base::UsageError) << target;
 }
 
+TEST(Heights, AreWhatTheFileSaysTheyAre) {
+  const auto heights = [](const std::string& srs, const std::string& description = "") {
+    std::string ground = "390000 5820000 30 390000 5820008 30 390010 5820008 30 390010 5820000 30";
+    if (srs.ends_with("4979")) ground = "52.5 13.4 30 52.6 13.4 30 52.6 13.5 30";
+    std::string xml = document(building("b", surface("GroundSurface", polygon(ground))), srs);
+    xml.insert(xml.find("<gml:boundedBy>"), "<gml:description>" + description + "</gml:description>");
+    return read(xml).crs.height_reference;
+  };
+  EXPECT_EQ(heights("EPSG:25833"), HeightReference::unknown);
+  EXPECT_EQ(heights("urn:ogc:def:crs,crs:EPSG::25833,crs:EPSG::5783"), HeightReference::vertical_crs);
+  EXPECT_EQ(heights("urn:ogc:def:crs:EPSG::4979"), HeightReference::ellipsoidal);
+  EXPECT_EQ(heights("EPSG:25833", "CRS: x; heights: heights above local ground; data: y"),
+            HeightReference::above_local_ground);
+  EXPECT_EQ(heights("EPSG:25833", "heights: heights of the terrain raster, above sea level"), HeightReference::sea_level);
+}
+
 }  // namespace
 }  // namespace blockrand::importers::reference::test

@@ -11,10 +11,12 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "importers/osm/read_extract.h"
 #include "importers/reference/footprints.h"
+#include "importers/reference/read_model.h"
 #include "importers/reference/transform.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/georef/projection.h"
@@ -294,6 +296,71 @@ TEST(RealModels, TheTextbookHouseInEveryLevel) {
       EXPECT_EQ(m.buildings[0].lod(), name[level + 3] - '0');
     }
   }
+}
+
+TEST(RealModels, LevelFourHasItsRoomsInside) {
+  const fs::path path = kData / "reference/fzk-haus/Building_LOD4-EPSG25832.gml";
+  if (!fs::exists(path)) GTEST_SKIP() << "no " << path;
+  const ReferenceModel m = read_model(path.string());
+  std::map<std::string, std::size_t> inside, outside;
+  for (const Surface& s : m.buildings[0].surfaces)
+    ++(s.interior ? inside : outside)[std::string(name_of(s.surface_class))];
+  EXPECT_EQ(outside, (std::map<std::string, std::size_t>{{"ground", 1}, {"roof", 2}, {"wall", 4}}));
+  EXPECT_EQ(inside, (std::map<std::string, std::size_t>{
+                        {"ceiling", 2}, {"floor", 1}, {"furniture", 1}, {"interior_wall", 4}, {"room", 1}}));
+}
+
+TEST(RealModels, DenHaag) {
+  const fs::path path = kData / "reference/cityjson/DenHaag_01.json";
+  if (!fs::exists(path)) GTEST_SKIP() << "no " << path;
+  const ReferenceModel m = read_model(path.string());
+  EXPECT_EQ(m.format, "CityJSON 1.0");
+  EXPECT_EQ(m.bytes, fs::file_size(path));
+  EXPECT_EQ(m.crs.horizontal, "EPSG:28992");
+  EXPECT_EQ(m.crs.vertical, "EPSG:5709");
+  EXPECT_EQ(m.crs.height_reference, HeightReference::vertical_crs);
+  EXPECT_EQ(m.breaches(), 0u);
+  // Counted once more, straight from the text.
+  const auto json = nlohmann::json::parse(text_of(path));
+  std::size_t buildings = 0, parts = 0, solids = 0, polygons = 0;
+  std::map<std::string, std::size_t> classes;
+  for (const auto& object : json["CityObjects"]) {
+    if (object["type"] != "Building" && object["type"] != "BuildingPart") continue;
+    ++(object["type"] == "Building" ? buildings : parts);
+    for (const auto& geometry : object["geometry"]) {
+      ++solids;
+      for (const auto& shell : geometry["boundaries"]) polygons += shell.size();
+      for (const auto& s : geometry["semantics"]["surfaces"]) ++classes[s["type"]];
+    }
+  }
+  const auto found = counts(m);
+  EXPECT_EQ(found.at("Building"), buildings);
+  EXPECT_EQ(found.at("BuildingPart"), parts);
+  EXPECT_EQ(found.at("Solid"), solids);
+  EXPECT_EQ(found.at("Polygon"), polygons);
+  for (const auto& [name, count] : classes) EXPECT_EQ(found.at(name), count) << name;
+  EXPECT_THAT(m.other_objects, testing::ElementsAre(testing::Pair("TINRelief", 1u)));
+  const auto extent = extent_of(m);
+  ASSERT_TRUE(extent);
+  EXPECT_TRUE(extent->west > 4.2 && extent->east < 4.3 && extent->south > 52.09 && extent->north < 52.12);
+}
+
+TEST(RealModels, EveryBuildingHasGeometryAndAFootprint) {
+  if (!fs::exists(kData / "reference")) GTEST_SKIP() << "no reference";
+  std::map<std::string, std::size_t> buildings;
+  for (const std::string& path : model_files((kData / "reference").string())) {
+    SCOPED_TRACE(path);
+    const ReferenceModel m = read_model(path);
+    EXPECT_FALSE(m.crs.horizontal.empty());
+    EXPECT_EQ(m.bytes, fs::file_size(path));
+    for (const Building& b : m.buildings) EXPECT_EQ(b.implicit_geometries, 0u) << b.id;
+    for (const Footprint2D& f : ground_footprints(m)) {
+      EXPECT_GT(f.area, 0) << m.buildings[f.building].id;
+      ++buildings[m.format];
+    }
+  }
+  EXPECT_EQ(buildings, (std::map<std::string, std::size_t>{
+                           {"CityGML 0.4", 18}, {"CityGML 1.0", 45}, {"CityGML 2.0", 148}, {"CityJSON 1.0", 844}}));
 }
 
 /// The document with the first two of every three coordinates swapped.

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 namespace blockrand::importers::reference::test {
@@ -43,6 +44,11 @@ std::string TempFolder::write_gzipped(std::string_view name, const std::string& 
   gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
   gzclose(file);
   return path;
+}
+
+std::string all_text(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::string document(std::string_view members, std::string_view srs) {

@@ -25,6 +25,9 @@ class TempFolder {
   std::string folder_;
 };
 
+/// The bytes of a file.
+std::string all_text(const std::string& path);
+
 /// A CityGML 2.0 document with the usual prefixes (bldg, gml, gen, xlink; CityGML's own without one) around members.
 /// \param srs  srsName of the envelope; empty: no envelope
 std::string document(std::string_view members, std::string_view srs = "EPSG:25833");
