@@ -45,7 +45,7 @@ table.matches th.sorts { cursor: pointer; user-select: none; } th[aria-sort=asce
 .elevation.out .r { fill: var(--soft); stroke: var(--soft); } .elevation.out svg { background: var(--card); } .dot { fill: none; stroke: var(--ink); stroke-width: 4; stroke-linecap: round; } .earth { stroke: var(--ink); fill: none; }
 .scale-bar { display: flex; flex-wrap: wrap; align-items: center; gap: .7rem; font-size: .9rem; color: var(--soft); } .scale-bar text { font-size: 11px; fill: var(--soft); }
 @media (max-width: 40rem) { .values { columns: 1; } }
-@media print { body { max-width: none; padding: 0; font-size: 9pt; } nav, .search { display: none; } h2, h3 { break-after: avoid; } figure, .row, .pictures, .sum { break-inside: avoid; } .match { content-visibility: visible; }
+@media print { html { font-size: 10.5px; } body { max-width: none; padding: 0; } table.matches td, table.matches th { padding-right: .4rem; } td.ids, table.matches td:first-child { min-width: 5rem; } nav, .search { display: none; } h2, h3 { break-after: avoid; } figure, .row, .pictures, .sum { break-inside: avoid; } .match { content-visibility: visible; }
   .wide { overflow: visible; } .wide table { min-width: 0; } a { color: inherit; text-decoration: none; } * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
 )css";
 

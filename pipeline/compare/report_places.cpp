@@ -37,8 +37,9 @@ std::string ids_of(const City& city, const std::vector<std::uint32_t>& buildings
 
 std::string short_name(const City& city, std::size_t most) {
   if (city.name.size() <= most) return city.name;
-  const std::size_t end = city.name.rfind(", ", most);
-  return city.name.substr(0, end == std::string::npos ? most : end) + " …";
+  std::size_t end = city.name.rfind(", ", most);
+  if (end == std::string::npos) end = city.name.find(", ");
+  return end == std::string::npos ? city.name : city.name.substr(0, end) + " …";
 }
 
 }  // namespace blockrand::compare

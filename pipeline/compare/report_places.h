@@ -16,8 +16,8 @@ Point2 place_of(const City& city, const Building& building);
 /// Ids with "; " between them, as the files have them: not escaped.
 std::string ids_of(const City& city, const std::vector<std::uint32_t>& buildings);
 
-/// The city's name, which may be a long list of paths, in at most about `most` bytes, cut between two paths where it
-/// can be. Not escaped.
+/// The city's name, which may be a long list of paths, cut between two paths after at most `most` bytes or the first
+/// path. Not escaped.
 std::string short_name(const City& city, std::size_t most);
 
 }  // namespace blockrand::compare
