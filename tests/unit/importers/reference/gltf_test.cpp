@@ -107,7 +107,7 @@ TEST(Gltf, PlacedByTheCallerOrNotAtAll) {
   GltfMaker maker;
   maker.node({{"mesh", maker.cube(10)}});
   EXPECT_THAT(refused(maker.glb()),
-              AllOf(HasSubstr("m.glb"), HasSubstr("where on the Earth"), HasSubstr("--gltf-origin")));
+              AllOf(HasSubstr("m.glb"), HasSubstr("where on the Earth"), HasSubstr("--reference-origin")));
   ReadOptions options;
   options.gltf_origin = georef::Geodetic{kLon, kLat, 40};
   const auto m = read_bytes(maker.glb(), options);
