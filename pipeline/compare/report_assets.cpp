@@ -40,7 +40,7 @@ table.matches th.sorts { cursor: pointer; user-select: none; } th[aria-sort=asce
 .plan, .elevation svg { background: var(--field); border: 1px solid var(--line); border-radius: .4rem; display: block; max-width: 100%; height: auto; }
 .plan path.r, .plan path.m { fill-rule: evenodd; stroke-width: 1.4; fill-opacity: .22; } .plan .r, .elevation .r { fill: var(--r); stroke: var(--r); } .plan .m, .elevation .m { fill: var(--m); stroke: var(--m); } .plan path.m { stroke-dasharray: 5 2; }
 .bar { fill: none; stroke: var(--ink); } .north { fill: var(--ink); }
-.elevations { display: flex; flex-wrap: wrap; gap: .9rem 1.2rem; align-items: flex-end; } .elevation { margin: 0; width: min-content; min-width: 15rem; max-width: 100%; } .elevation figcaption { font-size: .82rem; }
+.elevations { display: flex; flex-wrap: wrap; gap: .9rem 1.2rem; align-items: flex-end; } .elevation { margin: 0; min-width: 15rem; max-width: 100%; } .elevation figcaption { font-size: .82rem; }
 .elevation .w { fill-opacity: .1; stroke-width: 1; } .elevation .m.w { fill-opacity: .07; stroke-dasharray: 5 2; } .elevation .o { fill-opacity: .38; stroke-width: .8; } .elevation .m.o { fill-opacity: .2; stroke-width: 1.2; }
 .elevation.out .r { fill: var(--soft); stroke: var(--soft); } .elevation.out svg { background: var(--card); } .dot { fill: none; stroke: var(--ink); stroke-width: 4; stroke-linecap: round; } .earth { stroke: var(--ink); fill: none; }
 .scale-bar { display: flex; flex-wrap: wrap; align-items: center; gap: .7rem; font-size: .9rem; color: var(--soft); } .scale-bar text { font-size: 11px; fill: var(--soft); }

@@ -120,9 +120,10 @@ std::string drawing(const MatchResult& match, const FacadePair& pair, int width)
   const std::string_view left_out = reference ? left_out_because(*reference) : std::string_view();
 
   std::string out = fmt::format(
-      "<figure class=\"elevation{}\"><svg viewBox=\"0 0 {} {}\" width=\"{}\" height=\"{}\" role=\"img\" "
+      "<figure class=\"elevation{}\" style=\"width: {}px\"><svg viewBox=\"0 0 {} {}\" width=\"{}\" height=\"{}\" "
+      "role=\"img\" "
       "aria-label=\"Facade to the {}\">",
-      left_out.empty() ? "" : " out", w, h, w, h, compass(plane));
+      left_out.empty() ? "" : " out", w + 2, w, h, w, h, compass(plane));
   if (reference) append_walls(out, *reference, {}, sheet, "r w");
   if (model) append_walls(out, *model, model_place, sheet, "m w");
   if (reference) append_openings(out, *reference, {}, sheet, "r o");
