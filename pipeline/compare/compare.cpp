@@ -37,7 +37,8 @@ void drop_out_of_reach(City& city, const City& other, double reach) {
 /// Whether heights over sea level or the ellipsoid are compared.
 bool absolute_heights(const City& model, const City& reference, Heights heights) {
   if (heights != Heights::automatic) return heights == Heights::absolute;
-  return model.absolute_heights && reference.absolute_heights;
+  // Sea level and ellipsoid are some 40 m apart, and two sea levels some decimetres.
+  return model.absolute_heights && reference.absolute_heights && model.height_reference == reference.height_reference;
 }
 
 /// m that the model's side of a match is raised by, so that heights can be compared.
@@ -46,8 +47,9 @@ double model_up(const MatchResult& match, bool absolute) {
   return *match.reference.ground - *match.model.ground;
 }
 
-void settle_registration(City& model, const City& reference, const CompareOptions& options, Registration& r) {
-  r = register_models(model, reference, options.match);
+void settle_registration(City& model, const City& reference, bool absolute, const CompareOptions& options,
+                         Registration& r) {
+  r = register_models(model, reference, absolute, options.match);
   if (r.matches == 0) {
     r.rule = "no buildings match: no offset was estimated";
     return;
@@ -86,8 +88,7 @@ Comparison compare_cities(City model, City reference, const CompareOptions& opti
   drop_out_of_reach(c.model, c.reference, options.reach);
   drop_out_of_reach(c.reference, c.model, options.reach);
   c.absolute_heights = absolute_heights(c.model, c.reference, options.heights);
-  if (options.heights == Heights::absolute) c.model.absolute_heights = c.reference.absolute_heights = true;
-  settle_registration(c.model, c.reference, options, c.registration);
+  settle_registration(c.model, c.reference, c.absolute_heights, options, c.registration);
 
   const Registration& r = c.registration;
   const Point2 shift = r.horizontal_removed ? Point2{} : Point2{r.east, r.north};

@@ -20,7 +20,7 @@ enum class Align : std::uint8_t { none, horizontal, vertical, both };
 
 /// Which heights are compared.
 enum class Heights : std::uint8_t {
-  automatic,   ///< absolute where both models state them, else above each building's own ground
+  automatic,   ///< absolute where both models say that theirs are over the same surface, else above each building's own ground
   own_ground,  ///< above each building's own ground
   absolute,    ///< as they stand in the files: the user knows that they are of one system
 };

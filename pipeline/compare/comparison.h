@@ -22,7 +22,7 @@ struct Registration {
   std::size_t matches = 0;           ///< that the estimate rests on; none: no estimate
   double east = 0, north = 0;        ///< m, model minus reference: median over the matches
   double east_spread = 0, north_spread = 0;  ///< m: median absolute deviation from it
-  std::optional<double> up;          ///< m, of the buildings' grounds; only where both models have absolute heights
+  std::optional<double> up;          ///< m, of the buildings' grounds; only where absolute heights are compared
   double up_spread = 0;
   bool horizontal_removed = false, vertical_removed = false;  ///< the model was moved by minus that before measuring
   std::string rule;                  ///< why it was or was not removed, for people

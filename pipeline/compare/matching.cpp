@@ -177,7 +177,7 @@ std::vector<Match> match_buildings(const City& model, const City& reference, Poi
   return matches_at(Plans(model, reference), shift, options);
 }
 
-Registration register_models(const City& model, const City& reference, const MatchOptions& options) {
+Registration register_models(const City& model, const City& reference, bool absolute, const MatchOptions& options) {
   constexpr double kClearlyMore = 1.2;  // times the overlap: a vote over few buildings is chance
   constexpr int kRounds = 10;
   constexpr double kSettled = 0.001;  // m
@@ -200,7 +200,7 @@ Registration register_models(const City& model, const City& reference, const Mat
         const Point2 a = centroid_of(model, m.model), b = centroid_of(reference, m.reference);
         east.push_back(a.x - b.x);
         north.push_back(a.y - b.y);
-        if (model.absolute_heights && reference.absolute_heights) {
+        if (absolute) {
           const auto lowest = [](const City& city, const std::vector<std::uint32_t>& buildings) {
             double z = 1e300;
             for (const std::uint32_t i : buildings) z = std::min(z, city.buildings[i].ground);

@@ -34,7 +34,8 @@ std::vector<Match> match_buildings(const City& model, const City& reference, Poi
 /// agree on (a vote in cells of 1 m), where it makes the footprints overlap more than no shift does; then matches and
 /// the median shift of their centroids are found in turn until the shift stays. Medians over matches of one building
 /// each, with half of their area in common; over all matches where there are none of these. Nothing is moved.
-Registration register_models(const City& model, const City& reference, const MatchOptions& options = {});
+/// \param absolute  heights of both are over the same surface: the vertical offset is estimated too
+Registration register_models(const City& model, const City& reference, bool absolute, const MatchOptions& options = {});
 
 /// Share of each building's footprint that footprints of the other city cover. \param shift  added to the buildings' places
 std::vector<double> covered_shares(const City& city, const std::vector<std::uint32_t>& buildings, const City& other,

@@ -699,7 +699,7 @@ void add_compare(Table& t) {
            .section = S,
            .commands = kCompare,
            .help = "own-ground: above each building's own ground; absolute: as they stand in the files; auto: absolute where "
-                   "both models state what their heights are above",
+                   "both models say that theirs are above the same sea level or ellipsoid",
            .choices = names_of(kHeights)},
           [](Settings& s, const std::string& text) { s.comparison.heights = choose(text, kHeights); },
           [](const Settings& s) { return name_of(kHeights, s.comparison.heights); });

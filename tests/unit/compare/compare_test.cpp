@@ -264,6 +264,12 @@ TEST(Compare, HeightsAreAboveOnesOwnGround) {
   const Comparison mixed = compared(city_of_blocks({building_of(model)}, false), city_of_blocks({building_of(reference)}, true));
   EXPECT_FALSE(value(mixed, Measure::base_error).counted);
   EXPECT_FALSE(mixed.registration.up);
+  City ellipsoidal = city_of_blocks({building_of(model)}, true);
+  ellipsoidal.height_reference = "ellipsoidal";
+  EXPECT_FALSE(compared(ellipsoidal, city_of_blocks({building_of(reference)}, true)).absolute_heights);
+  options = {};
+  options.heights = Heights::absolute;
+  EXPECT_TRUE(compared(ellipsoidal, city_of_blocks({building_of(reference)}, true), options).absolute_heights);
 }
 
 // ---- what must not matter

@@ -80,14 +80,16 @@ TEST(Options, EveryOneSetsAFieldOfItsOwn) {
       value = "1,2,3,4";
     else if (o.name == "crs")
       value = "EPSG:25833";
-    else if (o.name == "progress")
-      value = "none";
-    else if (o.name == "log-format")
-      value = "json";
+    else if (o.name == "model-origin" || o.name == "reference-origin")
+      value = "1,2,3";
+    else if (o.name == "fail-if-worse")
+      value = "5%";
+    else if (o.choices.size() > 1)
+      value = o.choices.back() == o.show(s) ? o.choices.front() : o.choices.back();
     else if (o.type == OptionType::flag)
       value = o.show(s) == "true" ? "false" : "true";
     else if (o.type == OptionType::integer)
-      value = o.show(s) == "1" ? "2" : "1";
+      value = o.minimum > 2 ? std::to_string(static_cast<int>(o.minimum)) : o.show(s) == "1" ? "2" : "1";
     else if (o.type == OptionType::number)
       value = o.show(s) == "0.5" ? "0.25" : o.maximum > 6 ? "6" : "0.5";
     o.set(s, value);
