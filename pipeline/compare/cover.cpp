@@ -41,7 +41,7 @@ Cover::Cover(const City& city) : city_(city) {
 
 bool Cover::covered(std::uint32_t building, Point3 at, Point3 normal) const {
   if (std::fabs(normal.z) > kUpright || neighbours_[building].empty()) return false;
-  const double flat = std::hypot(normal.x, normal.y);
+  const double flat = std::sqrt(normal.x * normal.x + normal.y * normal.y);
   for (const double side : {kAgainst / flat, -kAgainst / flat}) {
     const Point2 p{at.x + side * normal.x, at.y + side * normal.y};
     for (const std::uint32_t k : neighbours_[building]) {

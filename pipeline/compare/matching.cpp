@@ -72,7 +72,7 @@ class Plans {
         if (ratio > kSameSize || ratio * kSameSize < 1) continue;
         const Point2 d = model_[m].centroid();
         const Point2 by{d.x - c.x, d.y - c.y};
-        if (std::hypot(by.x, by.y) > reach) continue;
+        if (by.x * by.x + by.y * by.y > reach * reach) continue;
         votes[{static_cast<int>(std::lround(by.x)), static_cast<int>(std::lround(by.y))}].push_back(by);
       }
     }
@@ -222,7 +222,7 @@ Registration register_models(const City& model, const City& reference, bool abso
       out.up = median_of(up);
       out.up_spread = spread_of(up, *out.up);
     }
-    const bool settled = std::hypot(out.east - shift.x, out.north - shift.y) < kSettled;
+    const bool settled = std::fabs(out.east - shift.x) < kSettled && std::fabs(out.north - shift.y) < kSettled;
     shift = {out.east, out.north};
     if (settled) break;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/polygon.h"
 
 namespace blockrand::compare {
@@ -67,7 +68,7 @@ std::vector<Point2> grid(const std::vector<Polygon>& a, const std::vector<Polygo
   return out;
 }
 
-double length(Point2 v) { return std::hypot(v.x, v.y); }
+double length(Point2 v) { return std::sqrt(v.x * v.x + v.y * v.y); }
 
 double between(double a, double b) {
   const double d = std::fabs(std::remainder(a - b, 360.0));
@@ -94,7 +95,7 @@ void RoofSurfaces::add(const std::vector<std::vector<Point3>>& rings) {
     n.y += (p.z - c.z) * (q.x - c.x) - (p.x - c.x) * (q.z - c.z);
     n.z += (p.x - c.x) * (q.y - c.y) - (p.y - c.y) * (q.x - c.x);
   }
-  const double flat = std::hypot(n.x, n.y);
+  const double flat = std::sqrt(n.x * n.x + n.y * n.y);
   if (std::fabs(n.z) < 1e-6 || flat > kSteepest * std::fabs(n.z)) return;
   Face face;
   face.centre = c;
@@ -180,9 +181,9 @@ RoofPlanes form_of(const RoofSurfaces& roof, std::span<const Point2> points) {
     const double slope = length(hit->uphill);
     if (slope < kFlatSlope) continue;
     ++sloped;
-    double azimuth = std::atan2(-hit->uphill.x, -hit->uphill.y) * kDegrees;
+    double azimuth = base::atan2(-hit->uphill.x, -hit->uphill.y) * kDegrees;
     if (azimuth < 0) azimuth += 360;
-    const double pitch = std::atan(slope) * kDegrees;
+    const double pitch = base::atan(slope) * kDegrees;
     out.pitch += pitch;
     bins[static_cast<std::size_t>(azimuth / 10) % 36].emplace_back(azimuth, pitch);
   }
@@ -202,13 +203,13 @@ RoofPlanes form_of(const RoofSurfaces& roof, std::span<const Point2> points) {
     std::vector<double> pitches;
     for (const std::size_t i : {best, (best + 1) % 36, (best + 35) % 36}) {
       for (const auto& [azimuth, pitch] : bins[i]) {
-        x += std::sin(azimuth / kDegrees);
-        y += std::cos(azimuth / kDegrees);
+        x += base::sin(azimuth / kDegrees);
+        y += base::cos(azimuth / kDegrees);
         pitches.push_back(pitch);
       }
       bins[i].clear();
     }
-    const double azimuth = std::atan2(x, y) * kDegrees;
+    const double azimuth = base::atan2(x, y) * kDegrees;
     out.directions.push_back(azimuth < 0 ? azimuth + 360 : azimuth);
     std::sort(pitches.begin(), pitches.end());
     const std::size_t k = pitches.size();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/base/portable_math.h"
 #include "pipeline/compare/surface_samples.h"
 #include "pipeline/compare/vector.h"
 
@@ -45,7 +46,7 @@ OneWay walk(const MatchSurface& from, const Cover& from_cover, const MatchSurfac
     place.distance = nearest.distance;
     place.weight = weight;
     const MatchSurface::Patch& other = *nearest.patch;
-    place.angle = std::acos(std::min(1.0, nearest.cosine)) * kDegrees;
+    place.angle = base::acos(std::min(1.0, nearest.cosine)) * kDegrees;
     place.why = reason(patch, from_cover, at, up_from);
     if (place.why == LeftOut::no && is_upright(patch) && is_upright(other)) {
       const LeftOut there = reason(other, to_cover, at, up_to);
@@ -108,10 +109,13 @@ std::optional<double> p95_of(const OneWay& a, const OneWay& b, bool counted_only
   return all.back().first;
 }
 
-/// Fine steps of quarter octaves, so that the lattice does not follow the last digit of an area.
+/// Steps of quarter octaves, so that the lattice does not follow the last digit of an area.
 double spacing_of(double area, const SurfaceOptions& options) {
-  const double wanted = std::max(options.least_spacing, std::sqrt(area / std::max(1, options.samples)));
-  return std::exp2(std::floor(std::log2(wanted) * 4) / 4);
+  constexpr double kStep = 1.189207115002721;  // fourth root of 2
+  const double wanted = std::sqrt(area / std::max(1, options.samples));
+  double spacing = options.least_spacing;
+  while (spacing * kStep <= wanted) spacing *= kStep;
+  return spacing;
 }
 
 }  // namespace
