@@ -40,6 +40,8 @@ struct Enclosed {
   bool closed() const { return area > 0 && length(vector) / 2 <= 1e-3 * area; }
 };
 
+Point3 base_of(const Rings3& rings) { return rings.empty() || rings[0].empty() ? Point3{} : rings[0][0]; }
+
 std::vector<Polygon> footprints_of(const City& city, std::span<const std::uint32_t> buildings) {
   std::vector<Polygon> all;
   for (const std::uint32_t b : buildings)
@@ -88,18 +90,17 @@ geometry::PlanShape plan_of(const City& city, std::span<const std::uint32_t> bui
 }
 
 std::optional<double> volume_of(const Building& b) {
-  Point3 base;
-  if (!b.faces.empty()) base = b.faces[0].rings[0][0];
-  if (!b.shells.empty()) {
-    double volume = 0;
-    for (const Shell& shell : b.shells) {
-      Enclosed sum;
-      for (const Rings3& rings : shell.polygons) sum.add(rings, shell.polygons[0][0][0]);
-      if (!sum.closed()) return std::nullopt;
-      volume += shell.outer ? std::fabs(sum.volume) : -std::fabs(sum.volume);
-    }
-    return volume > 0 ? std::optional(volume) : std::nullopt;
+  double volume = 0;
+  bool closed = !b.shells.empty();
+  for (const Shell& shell : b.shells) {
+    Enclosed sum;
+    for (const Rings3& rings : shell.polygons) sum.add(rings, base_of(shell.polygons[0]));
+    closed = closed && sum.closed();
+    volume += shell.outer ? std::fabs(sum.volume) : -std::fabs(sum.volume);
   }
+  if (closed) return volume > 0 ? std::optional(volume) : std::nullopt;
+  if (b.faces.empty()) return std::nullopt;
+  const Point3 base = base_of(b.faces[0].rings);
   Enclosed sum;
   for (const Face& f : b.faces) sum.add(f.rings, base);
   if (!sum.closed())
@@ -181,6 +182,7 @@ SideFacts side_facts(const City& city, std::span<const std::uint32_t> buildings)
     if (const auto heights = heights_of(roofs_of(city, buildings), outline_of(city, buildings), *out.ground)) {
       out.eaves = heights->eaves;
       out.ridge = heights->ridge;
+      out.roof_volume = heights->mean * out.footprint_area;
     }
   return out;
 }
@@ -219,6 +221,8 @@ void measure_bodies(const City& model, const SideFacts& a, const City& reference
   if (a.eaves && b.eaves) set(Measure::eaves_error, *a.eaves - *b.eaves);
   if (a.ridge && b.ridge) set(Measure::ridge_error, *a.ridge - *b.ridge);
   if (a.volume && b.volume) set(Measure::volume_ratio, *a.volume / *b.volume, *b.volume);
+  if (a.roof_volume && b.roof_volume && *b.roof_volume > 0)
+    set(Measure::roof_volume_ratio, *a.roof_volume / *b.roof_volume, *b.roof_volume);
   if (a.roof_form != RoofForm::none && b.roof_form != RoofForm::none)
     set(Measure::roof_type_agrees, a.roof_form == b.roof_form ? 1 : 0);
   if (a.pitch && b.pitch) set(Measure::roof_pitch_error, *a.pitch - *b.pitch);

@@ -18,7 +18,8 @@ SideFacts side_facts(const City& city, std::span<const std::uint32_t> buildings)
 /// Footprints together, as measured by GEOS.
 geometry::PlanShape plan_of(const City& city, std::span<const std::uint32_t> buildings);
 
-/// Volume in m³ that a building's outer shells enclose, voids taken off. Without shells: that its faces enclose, where
+/// Volume in m³ that a building's outer shells enclose, voids taken off. Where there are none, or one is open (walls with
+/// holes for windows that are no part of the solid): that its faces enclose, where
 /// their area vectors cancel as those of a closed surface do (to 0.1 % of the area), with the openings or without. Nothing
 /// where neither holds.
 std::optional<double> volume_of(const Building& building);

@@ -44,6 +44,7 @@ struct SideFacts {
   std::optional<double> ground;          ///< z, m
   std::optional<double> eaves, ridge;    ///< m above own ground
   std::optional<double> volume;          ///< m³; without closed shells none
+  std::optional<double> roof_volume;     ///< m³ between the roof and the own ground, over the footprint
   std::optional<double> pitch;           ///< degrees, mean of the sloped part of the roof
   RoofForm roof_form = RoofForm::none;
   std::size_t solids = 0, valid_solids = 0;

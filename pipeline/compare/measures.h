@@ -43,7 +43,8 @@ enum class Scope : std::uint8_t {
   X(base_error, "m", zero, mean, body, "base height error", "absolute height of the ground; only where both have terrain") \
   X(eaves_error, "m", zero, mean, body, "eaves height error", "each above its own ground")                              \
   X(ridge_error, "m", zero, mean, body, "ridge height error", "highest point of the roof, each above its own ground")   \
-  X(volume_ratio, "1", one, mean, body, "volume ratio", "model's over reference's; weight: reference's volume")         \
+  X(volume_ratio, "1", one, mean, body, "volume ratio", "of what closed surfaces enclose, model's over reference's; weight: reference's volume")         \
+  X(roof_volume_ratio, "1", one, mean, body, "volume under the roof, ratio", "of the room between roof and own ground, which needs no closed solid; weight: reference's") \
   X(distance_mean, "m", lower, mean, surface, "surface distance, mean", "both ways, weighted by area")                  \
   X(distance_rms, "m", lower, rms, surface, "surface distance, RMS", "both ways, weighted by area")                     \
   X(distance_p95, "m", lower, mean, surface, "surface distance, 95 %", "both ways, weighted by area; pooled: mean of buildings, see distribution") \

@@ -26,7 +26,7 @@ constexpr std::array<std::pair<Measure, std::string_view>, 10> kColumns{{
     {Measure::footprint_iou, "IoU, %"},
     {Measure::eaves_error, "eaves, m"},
     {Measure::ridge_error, "ridge, m"},
-    {Measure::volume_ratio, "volume"},
+    {Measure::roof_volume_ratio, "volume"},
     {Measure::storeys_error, "storeys"},
     {Measure::openings_ratio, "openings"},
     {Measure::opening_recall, "found, %"},

@@ -163,7 +163,7 @@ std::string head_section(const Comparison& c) {
   if (!c.matches.empty()) {
     std::string tiles =
         tile(c, Measure::footprint_iou, "footprint IoU") + tile(c, Measure::eaves_error, "eaves, mean error") +
-        tile(c, Measure::ridge_error, "ridge, mean error") + tile(c, Measure::volume_ratio, "volume ratio") +
+        tile(c, Measure::ridge_error, "ridge, mean error") + tile(c, Measure::roof_volume_ratio, "volume under roofs") +
         tile(c, Measure::distance_rms, "surface distance, RMS") +
         tile(c, Measure::completeness_050, "complete within 0.5\u00a0m") +
         tile(c, Measure::opening_recall, "openings found");
@@ -222,7 +222,7 @@ std::string distribution_section(const Comparison& c) {
   const std::string curves = distance_curves(c.distances);
   std::string bars =
       histogram(c, Measure::footprint_iou, {0, 1, 20, 1}) + histogram(c, Measure::eaves_error, {-5, 5, 20, 0}) +
-      histogram(c, Measure::ridge_error, {-5, 5, 20, 0}) + histogram(c, Measure::volume_ratio, {0, 2, 20, 1}) +
+      histogram(c, Measure::ridge_error, {-5, 5, 20, 0}) + histogram(c, Measure::roof_volume_ratio, {0, 2, 20, 1}) +
       histogram(c, Measure::distance_rms, {0, 4, 20, 0}) + histogram(c, Measure::opening_recall, {0, 1, 20, 1});
   if (curves.empty() && bars.empty()) return out + "<p>No values.</p></section>\n";
   if (!curves.empty())

@@ -23,7 +23,7 @@ constexpr std::array<Limit, 11> kLimits{{
     {Measure::footprint_iou, 0.9, 0.7, "footprints (IoU {})"},
     {Measure::eaves_error, 0.5, 1.5, "eaves ({} off on average)"},
     {Measure::ridge_error, 0.5, 1.5, "ridges ({} off on average)"},
-    {Measure::volume_ratio, 1.05, 1.2, "volume ({} of the reference’s)"},
+    {Measure::roof_volume_ratio, 1.05, 1.2, "volume under roofs ({} of the reference’s)"},
     {Measure::distance_rms, 0.5, 1.5, "surfaces ({} apart, RMS)"},
     {Measure::roof_type_agrees, 0.9, 0.6, "roof forms (the same in {})"},
     {Measure::storeys_error, 0.25, 1, "storeys ({} off on average)"},

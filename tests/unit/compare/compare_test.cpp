@@ -236,6 +236,7 @@ TEST(Compare, ABoxOneStoreyHigher) {
   EXPECT_NEAR(counted(c, Measure::eaves_error), 3, 1e-9);
   EXPECT_NEAR(counted(c, Measure::ridge_error), 3, 1e-9);
   EXPECT_NEAR(counted(c, Measure::volume_ratio), 1.5, 1e-6);
+  EXPECT_NEAR(counted(c, Measure::roof_volume_ratio), 1.5, 1e-9);
   expect_distances(model, reference);
 }
 
@@ -462,6 +463,8 @@ TEST(Compare, VolumesOfShellsVoidsAndFaces) {
   hollow.outer = false;
   b.shells.push_back(hollow);
   EXPECT_NEAR(*volume_of(b) / 456, 1, 1e-12);
+  b.shells[0].polygons.pop_back();
+  EXPECT_NEAR(*volume_of(b) / 480, 1, 1e-12) << "an open shell does not count";
   b.shells.clear();
   EXPECT_NEAR(*volume_of(b) / 480, 1, 1e-12) << "of closed faces";
   b.faces.pop_back();
@@ -501,6 +504,7 @@ TEST(Compare, RoofFormsAreToldFromPlanes) {
   EXPECT_NEAR(*c.matches[0].reference.ridge, 9, 1e-9);
   EXPECT_NEAR(*c.matches[0].reference.eaves, 6, 1e-9);
   EXPECT_NEAR(counted(c, Measure::ridge_error), -3, 1e-9);
+  EXPECT_NEAR(counted(c, Measure::roof_volume_ratio), 6 / 7.5, 0.005);
   EXPECT_EQ(c.roof_confusion[static_cast<std::size_t>(RoofForm::gabled)][static_cast<std::size_t>(RoofForm::flat)], 1u);
 }
 
