@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "pipeline/compare/vector.h"
 
@@ -56,15 +57,25 @@ class Cutter {
 }  // namespace
 
 HeatMesh cut_small(const std::vector<Triangle3>& triangles, double max_edge, std::size_t max_triangles) {
-  double area = 0;
-  for (const Triangle3& t : triangles) area += length(cross(minus(t[1], t[0]), minus(t[2], t[0]))) / 2;
-  // A cut triangle has about 0.2 of the square of the edge that it may have as area.
-  const double room = static_cast<double>(std::max<std::size_t>(max_triangles, 1));
-  Cutter cutter(std::max(max_edge, std::sqrt(area / room / 0.2)));
-  for (const Triangle3& t : triangles)
-    if (std::all_of(t.begin(), t.end(),
-                    [](Point3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }))
-      cutter.add(t);
+  double area = 0, edges = 0;
+  std::vector<const Triangle3*> sound;
+  for (const Triangle3& t : triangles) {
+    if (!std::all_of(t.begin(), t.end(),
+                     [](Point3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }))
+      continue;
+    sound.push_back(&t);
+    area += length(cross(minus(t[1], t[0]), minus(t[2], t[0]))) / 2;
+    edges += std::max({length(minus(t[1], t[0])), length(minus(t[2], t[1])), length(minus(t[0], t[2]))});
+  }
+  // A cut triangle has about 0.2 of the square of the edge that it may have as area; a needle is cut along its length.
+  const auto pieces = [&](double edge) {
+    return static_cast<double>(sound.size()) + area / (0.2 * edge * edge) + 2 * edges / edge;
+  };
+  const double room = static_cast<double>(std::max(max_triangles, 2 * sound.size()));
+  double edge = max_edge;
+  while (pieces(edge) > room) edge *= 1.25;
+  Cutter cutter(edge);
+  for (const Triangle3* t : sound) cutter.add(*t);
   return std::move(cutter.mesh);
 }
 

@@ -167,6 +167,8 @@ TEST(HeatMesh, CutsToTheEdgeAndKeepsTheArea) {
   EXPECT_LE(longest, 0.7);
   EXPECT_LT(mesh.points.size(), mesh.triangles.size()) << "corners are shared";
   EXPECT_LT(cut_small(square, 0.01, 1000).triangles.size(), 4000u) << "bounded";
+  const std::vector<Triangle3> needle{{Point3{0, 0, 0}, Point3{0.002, 0, 0}, Point3{0, 0, 9e5}}};
+  EXPECT_LT(cut_small(needle, 0.7, 1000).triangles.size(), 4000u) << "bounded by length, not by area alone";
 }
 
 }  // namespace
