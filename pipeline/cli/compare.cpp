@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <optional>
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/progress.h"
@@ -40,8 +41,7 @@ compare::OptionList options_of(const settings::Settings& s) {
 }
 
 void write_report(const compare::Comparison& comparison, const settings::Settings& s,
-                  const compare::OptionList& options, base::Progress& progress) {
-  base::StagedFolder folder(s.build.output, s.build.force, {"comparison", "compare.json"});
+                  const compare::OptionList& options, base::StagedFolder& folder, base::Progress& progress) {
   progress.begin("writing the report");
   folder.write("compare.json", compare::comparison_json(comparison, options));
   folder.write("compare.csv", compare::comparison_csv(comparison));
@@ -92,16 +92,23 @@ int run_compare(const std::vector<std::string>& arguments) {
   settings::Settings& s = line.settings;
   if (s.fail_if_worse && s.baseline.empty())
     throw base::UsageError("--fail-if-worse needs --baseline: name the compare.json of an earlier comparison.");
-  // Before the work of minutes.
-  const std::string baseline = s.baseline.empty() ? "" : read_file(s.baseline);
   clean_up_on_signals(s.log_format);
+  // What can be wrong with outputs and baseline is told before the work of minutes.
+  std::string baseline;
+  if (!s.baseline.empty()) {
+    baseline = read_file(s.baseline);
+    compare::compare_with_baseline({}, baseline, s.baseline, 0);
+  }
+  std::optional<base::StagedFolder> folder;
+  if (!s.build.output.empty())
+    folder.emplace(s.build.output, s.build.force, base::FolderKind{"comparison", "compare.json"});
   base::Progress progress(s.progress, s.log_format, s.quiet);
   s.comparison.crs = s.build.crs;
   s.comparison.jobs = s.build.jobs;
   s.comparison.surface.seed = s.build.seed;
   const compare::Comparison comparison = compare::compare_models(s.comparison, progress);
   const compare::OptionList options = options_of(s);
-  if (!s.build.output.empty()) write_report(comparison, s, options, progress);
+  if (folder) write_report(comparison, s, options, *folder, progress);
   const bool json = s.json || s.log_format == base::LogFormat::json;
   if (json) std::fputs(compare::comparison_json(comparison, options).c_str(), stdout);
   else if (!s.quiet) std::fputs(compare::comparison_text(comparison).c_str(), stdout);

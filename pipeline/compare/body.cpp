@@ -20,10 +20,13 @@ namespace {
 
 using model::Polygon;
 
-/// Sums that tell whether faces close, and what they enclose.
+/// Sums that tell whether faces close, and what they enclose. Over a closed surface the integral of the normal is 0, and
+/// that of place × normal (a matrix) is the volume times the unit matrix (divergence theorem). Walls that are missing
+/// in pairs leave the first at 0, not the second.
 struct Enclosed {
   Point3 vector;  ///< twice the sum of area vectors
   double area = 0, volume = 0;
+  double moments[3][3] = {};
   void add(const Rings3& rings, Point3 base) {
     for (const auto& ring : rings) {
       if (ring.size() < 3) continue;
@@ -33,11 +36,22 @@ struct Enclosed {
         const Point3 n = cross(minus(b, a), minus(c, a));
         vector = {vector.x + n.x, vector.y + n.y, vector.z + n.z};
         volume += dot(a, cross(b, c)) / 6;
+        const double place[] = {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3};
+        const double normal[] = {n.x / 2, n.y / 2, n.z / 2};
+        for (int i = 0; i < 3; ++i)
+          for (int k = 0; k < 3; ++k) moments[i][k] += place[i] * normal[k];
       }
       area += length(area_vector(ring)) / 2;
     }
   }
-  bool closed() const { return area > 0 && length(vector) / 2 <= 1e-3 * area; }
+  bool closed() const {
+    constexpr double kShare = 0.001;
+    if (area <= 0 || length(vector) / 2 > kShare * area) return false;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k)
+        if (std::fabs(moments[i][k] - (i == k ? volume : 0)) > 10 * kShare * std::fabs(volume)) return false;
+    return true;
+  }
 };
 
 Point3 base_of(const Rings3& rings) { return rings.empty() || rings[0].empty() ? Point3{} : rings[0][0]; }
@@ -91,7 +105,7 @@ geometry::PlanShape plan_of(const City& city, std::span<const std::uint32_t> bui
 
 std::optional<double> volume_of(const Building& b) {
   double volume = 0;
-  bool closed = !b.shells.empty();
+  bool closed = !b.shells.empty() && b.all_in_shells;
   for (const Shell& shell : b.shells) {
     Enclosed sum;
     for (const Rings3& rings : shell.polygons) sum.add(rings, base_of(shell.polygons[0]));
@@ -182,7 +196,7 @@ SideFacts side_facts(const City& city, std::span<const std::uint32_t> buildings)
     if (const auto heights = heights_of(roofs_of(city, buildings), outline_of(city, buildings), *out.ground)) {
       out.eaves = heights->eaves;
       out.ridge = heights->ridge;
-      out.roof_volume = heights->mean * out.footprint_area;
+      out.roof_volume = heights->mean * out.footprint_area * heights->cover;
     }
   return out;
 }
@@ -195,6 +209,7 @@ void tell_roofs(const City& model, SideFacts& model_side, const City& reference,
     const RoofSurfaces roof = roofs_of(*city, side->buildings);
     if (roof.empty()) continue;
     const RoofPlanes planes = form_of(roof, points);
+    if (planes.seen < 0.5) continue;  // half a roof has no form
     side->roof_form = form_of_planes(planes);
     if (planes.sloped > 0 && side->roof_form != RoofForm::flat) side->pitch = planes.pitch;
   }

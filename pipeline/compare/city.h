@@ -80,6 +80,8 @@ struct Building {
   std::vector<Face> faces;                ///< of the building and its parts, interiors left out
   std::vector<Opening> openings;
   std::vector<Shell> shells;              ///< of its solids, in the file's order
+  bool all_in_shells = true;              ///< every part that has a body has a solid
+  int bodies = 0;                         ///< the building and parts of it that have faces of their own
   std::optional<int> storeys;             ///< above ground, as stated (the most of building and parts)
   std::string roof_type;                  ///< code or text as stated; empty without one
   std::size_t triangles = 0;              ///< that its polygons (openings included) make

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <set>
 #include <utility>
 
 #include "pipeline/base/parallel.h"
@@ -27,6 +27,7 @@ geometry::PlanBox box_of(const City& city, double margin) {
 
 /// Buildings far from all of the other model are no part of the comparison, and no miss either.
 void drop_out_of_reach(City& city, const City& other, double reach) {
+  if (other.buildings.empty()) return;
   std::vector<geometry::PlanBox> boxes;
   for (const Building& b : other.buildings) boxes.push_back(plan_box(b));
   const geometry::BoxIndex index(std::move(boxes));
@@ -65,16 +66,19 @@ void settle_registration(City& model, const City& reference, bool absolute, cons
     r.vertical_removed = true;
   }
   if (r.horizontal_removed || r.vertical_removed) move(model, by);
-  r.rule = options.align == Align::none ? "reported only: removed where --align asks for it" : "removed as --align asks";
+  if (options.align == Align::none) r.rule = "reported only: removed where --align asks for it";
+  else if (options.align != Align::horizontal && !r.vertical_removed)
+    r.rule = "no vertical offset is known: heights are compared above each building's own ground";
+  else r.rule = "removed as --align asks";
 }
 
 /// Ids of matches, unique: that of the reference's first building.
 void name_matches(Comparison& c) {
-  std::map<std::string, int> taken;
+  std::set<std::string> taken;
   for (MatchResult& m : c.matches) {
     const std::string& id = c.reference.buildings[m.reference.buildings[0]].id;
-    const int n = ++taken[id];
-    m.id = n == 1 ? id : id + "#" + std::to_string(n);
+    m.id = id;
+    for (int n = 2; !taken.insert(m.id).second; ++n) m.id = id + "#" + std::to_string(n);
   }
 }
 

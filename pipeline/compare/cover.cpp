@@ -6,6 +6,7 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/compare/read_city.h"
 #include "pipeline/compare/surface_samples.h"
+#include "pipeline/geometry/plan_shape.h"
 #include "pipeline/geometry/polygon.h"
 
 namespace blockrand::compare {
@@ -17,6 +18,17 @@ constexpr double kAbove = 0.1;     // m. The top edge of a common wall counts as
 constexpr double kBelow = 0.5;     // m. Grounds of neighbours on a slope differ.
 constexpr double kSpacing = 0.5;   // m between the places of a face that are asked, at least;
 constexpr double kPlaces = 64;     // more on large faces: half of a face is told from so many
+
+/// Whether two buildings stand on the same ground, as repetitions and what stands over a garage do: they hide nothing of
+/// each other that could be seen if they did not.
+bool share_their_ground(const Building& a, const geometry::PlanBox& box_a, const Building& b,
+                        const geometry::PlanBox& box_b) {
+  const double smaller = std::min(a.footprint_area, b.footprint_area);
+  const double width = std::min(box_a.maximum.x, box_b.maximum.x) - std::max(box_a.minimum.x, box_b.minimum.x);
+  const double depth = std::min(box_a.maximum.y, box_b.maximum.y) - std::max(box_a.minimum.y, box_b.minimum.y);
+  if (width <= 0 || depth <= 0 || width * depth < smaller / 2) return false;
+  return geometry::PlanShape(a.footprint).common_area(geometry::PlanShape(b.footprint)) > smaller / 2;
+}
 
 }  // namespace
 
@@ -36,27 +48,32 @@ Cover::Cover(const City& city) : city_(city) {
   neighbours_.resize(boxes_.size());
   for (std::uint32_t i = 0; i < boxes_.size(); ++i)
     for (const std::uint32_t k : index.near(boxes_[i], kAgainst))
-      if (k != i) neighbours_[i].push_back(k);
+      if (k != i && !share_their_ground(city.buildings[i], boxes_[i], city.buildings[k], boxes_[k]))
+        neighbours_[i].push_back(k);
+}
+
+bool Cover::within(std::uint32_t building, Point3 p) const {
+  const geometry::PlanBox& box = boxes_[building];
+  const Building& b = city_.buildings[building];
+  if (p.z < b.ground - kBelow || p.x < box.minimum.x || p.y < box.minimum.y || p.x > box.maximum.x ||
+      p.y > box.maximum.y)
+    return false;
+  if (std::none_of(b.footprint.begin(), b.footprint.end(),
+                   [&](const model::Polygon& polygon) { return geometry::contains(polygon, p.xy()); }))
+    return false;
+  const auto roof = roofs_[building].at(p.xy());
+  return roof && p.z <= roof->z + kAbove;
 }
 
 bool Cover::covered(std::uint32_t building, Point3 at, Point3 normal) const {
-  if (std::fabs(normal.z) > kUpright || neighbours_[building].empty()) return false;
+  if (std::fabs(normal.z) > kUpright || !has_neighbours(building)) return false;
   const double flat = std::sqrt(normal.x * normal.x + normal.y * normal.y);
-  for (const double side : {kAgainst / flat, -kAgainst / flat}) {
-    const Point2 p{at.x + side * normal.x, at.y + side * normal.y};
-    for (const std::uint32_t k : neighbours_[building]) {
-      const Building& other = city_.buildings[k];
-      const geometry::PlanBox& box = boxes_[k];
-      if (at.z < other.ground - kBelow || p.x < box.minimum.x || p.y < box.minimum.y || p.x > box.maximum.x ||
-          p.y > box.maximum.y)
-        continue;
-      bool within = false;
-      for (const model::Polygon& polygon : other.footprint) within = within || geometry::contains(polygon, p);
-      if (!within) continue;
-      if (const auto roof = roofs_[k].at(p); roof && at.z <= roof->z + kAbove) return true;
-    }
-  }
-  return false;
+  const double dx = kAgainst / flat * normal.x, dy = kAgainst / flat * normal.y;
+  const Point3 sides[] = {{at.x + dx, at.y + dy, at.z}, {at.x - dx, at.y - dy, at.z}};
+  for (const Point3& p : sides)
+    for (const std::uint32_t k : neighbours_[building])
+      if (within(k, p)) return true;
+  return city_.buildings[building].bodies > 1 && within(building, sides[0]) && within(building, sides[1]);
 }
 
 void mark_left_out(City& city, const Cover& cover, int jobs) {

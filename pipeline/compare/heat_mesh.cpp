@@ -13,9 +13,10 @@ namespace {
 
 class Cutter {
  public:
-  explicit Cutter(double max_edge) : max_squared_(max_edge * max_edge) {}
+  Cutter(double max_edge, std::size_t room) : max_squared_(max_edge * max_edge), room_(room) {}
 
-  void add(const Triangle3& triangle) {
+  /// \returns false where that makes more than `room` triangles in all
+  bool add(const Triangle3& triangle) {
     std::vector<Triangle3> open{triangle};
     while (!open.empty()) {
       const Triangle3 t = open.back();
@@ -31,6 +32,7 @@ class Cutter {
       }
       const Point3 a = t[longest], b = t[(longest + 1) % 3], c = t[(longest + 2) % 3];
       if (!(size > max_squared_)) {
+        if (mesh.triangles.size() + open.size() >= room_) return false;
         mesh.triangles.push_back({index(a), index(b), index(c)});
         continue;
       }
@@ -39,6 +41,7 @@ class Cutter {
       open.push_back({middle, b, c});
       open.push_back({a, middle, c});
     }
+    return true;
   }
 
   HeatMesh mesh;
@@ -51,32 +54,24 @@ class Cutter {
   }
 
   double max_squared_;
+  std::size_t room_;
   std::map<Point3, std::uint32_t> index_of_;
 };
 
 }  // namespace
 
 HeatMesh cut_small(const std::vector<Triangle3>& triangles, double max_edge, std::size_t max_triangles) {
-  double area = 0, edges = 0;
   std::vector<const Triangle3*> sound;
-  for (const Triangle3& t : triangles) {
-    if (!std::all_of(t.begin(), t.end(),
-                     [](Point3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }))
-      continue;
-    sound.push_back(&t);
-    area += length(cross(minus(t[1], t[0]), minus(t[2], t[0]))) / 2;
-    edges += std::max({length(minus(t[1], t[0])), length(minus(t[2], t[1])), length(minus(t[0], t[2]))});
+  for (const Triangle3& t : triangles)
+    if (std::all_of(t.begin(), t.end(),
+                    [](Point3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }))
+      sound.push_back(&t);
+  const std::size_t room = std::max(max_triangles, 2 * sound.size());
+  for (double edge = max_edge;; edge *= 1.5) {
+    Cutter cutter(edge, room);
+    if (std::all_of(sound.begin(), sound.end(), [&](const Triangle3* t) { return cutter.add(*t); }))
+      return std::move(cutter.mesh);
   }
-  // A cut triangle has about 0.2 of the square of the edge that it may have as area; a needle is cut along its length.
-  const auto pieces = [&](double edge) {
-    return static_cast<double>(sound.size()) + area / (0.2 * edge * edge) + 2 * edges / edge;
-  };
-  const double room = static_cast<double>(std::max(max_triangles, 2 * sound.size()));
-  double edge = max_edge;
-  while (pieces(edge) > room) edge *= 1.25;
-  Cutter cutter(edge);
-  for (const Triangle3* t : sound) cutter.add(*t);
-  return std::move(cutter.mesh);
 }
 
 }  // namespace blockrand::compare

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "pipeline/compare/read_city.h"
@@ -55,13 +56,32 @@ class Plans {
     }
     return out;
   }
+  /// Intersection over union.
+  double overlap_of(const Pair& p) const {
+    return p.common / (model_[p.model].area() + reference_[p.reference].area() - p.common);
+  }
+  /// Mean over the reference's buildings of the best overlap with one of the model's: how well the models fit.
+  double fit(Point2 shift) const {
+    std::vector<double> best(reference_.size(), 0);
+    for (const Pair& p : overlaps(shift)) best[p.reference] = std::max(best[p.reference], overlap_of(p));
+    double sum = 0;
+    for (const double b : best) sum += b;
+    return best.empty() ? 0 : sum / static_cast<double>(best.size());
+  }
   double model_area(std::uint32_t i) const { return model_[i].area(); }
   double reference_area(std::uint32_t i) const { return reference_[i].area(); }
+  /// Whether a match of one building each is certain.
+  bool alike(const Match& m, Point2 shift, const MatchOptions& options) const {
+    const double common =
+        model_[m.model[0]].moved({-shift.x, -shift.y}).common_area(reference_[m.reference[0]]);
+    return overlap_of({m.model[0], m.reference[0], common}) > options.certain_overlap;
+  }
   std::size_t models() const { return model_.size(); }
   std::size_t references() const { return reference_.size(); }
 
-  /// The shift from reference to model that most pairs of about the same size agree on.
-  Point2 vote(double reach) const {
+  /// The shift from reference to model that most pairs of about the same size agree on, the shorter of two; nothing where
+  /// fewer than `least` do.
+  std::optional<Point2> vote(double reach, std::size_t least) const {
     constexpr double kSameSize = 1.15;
     std::map<std::pair<int, int>, std::vector<Point2>> votes;
     for (std::uint32_t r = 0; r < reference_.size(); ++r) {
@@ -89,10 +109,13 @@ class Plans {
           n += near->second.size();
           for (const Point2 p : near->second) sum = {sum.x + p.x, sum.y + p.y};
         }
-      if (n <= most) continue;
+      const Point2 mean{sum.x / static_cast<double>(n), sum.y / static_cast<double>(n)};
+      const auto far = [](Point2 p) { return p.x * p.x + p.y * p.y; };
+      if (n < most || (n == most && far(mean) >= far(best))) continue;
       most = n;
-      best = {sum.x / static_cast<double>(n), sum.y / static_cast<double>(n)};
+      best = mean;
     }
+    if (most < least) return std::nullopt;
     return best;
   }
 
@@ -128,8 +151,20 @@ std::vector<Match> matches_at(const Plans& plans, Point2 shift, const MatchOptio
     groups.join(p.reference, n + p.model);
     linked[p.reference] = linked[n + p.model] = true;
   };
+  // The same house in both models is certain. What else has much in common with one of a certain pair joins it where it is
+  // the smaller (an annex drawn apart), and not where it is the larger: a garage under six houses makes no block of them.
+  std::vector<bool> certain(n + plans.models(), false);
   for (const Plans::Pair& p : pairs)
-    if (share(p) > options.link_share) link(p);
+    if (plans.overlap_of(p) > options.certain_overlap) {
+      link(p);
+      certain[p.reference] = certain[n + p.model] = true;
+    }
+  for (const Plans::Pair& p : pairs) {
+    if (share(p) <= options.link_share) continue;
+    const bool model_is_larger = plans.model_area(p.model) > plans.reference_area(p.reference);
+    if (model_is_larger ? certain[p.reference] : certain[n + p.model]) continue;
+    link(p);
+  }
   // Each of the rest, and its best partner.
   std::map<std::size_t, const Plans::Pair*> best;
   for (const Plans::Pair& p : pairs)
@@ -178,25 +213,23 @@ std::vector<Match> match_buildings(const City& model, const City& reference, Poi
 }
 
 Registration register_models(const City& model, const City& reference, bool absolute, const MatchOptions& options) {
-  constexpr double kClearlyMore = 1.2;  // times the overlap: a vote over few buildings is chance
+  // A vote counts where the models hardly fit as they lie: rows of equal houses agree on the next house as well as on
+  // their own, and two houses agree on anything.
+  constexpr double kClearlyBetter = 2;
+  constexpr std::size_t kLeastVotes = 5;
   constexpr int kRounds = 10;
   constexpr double kSettled = 0.001;  // m
   const Plans plans(model, reference);
-  const auto overlap = [&](Point2 shift) {
-    double sum = 0;
-    for (const Plans::Pair& p : plans.overlaps(shift)) sum += p.common;
-    return sum;
-  };
   Registration out;
   Point2 shift;
-  if (const Point2 guess = plans.vote(options.largest_offset); overlap(guess) > kClearlyMore * overlap({}))
-    shift = guess;
+  const auto guess = plans.vote(options.largest_offset, kLeastVotes);
+  if (guess && plans.fit(*guess) > kClearlyBetter * plans.fit({})) shift = *guess;
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<Match> matches = matches_at(plans, shift, options);
     std::vector<double> east, north, up;
     for (const bool single : {true, false}) {
       for (const Match& m : matches) {
-        if (single && (m.model.size() != 1 || m.reference.size() != 1)) continue;
+        if (single && (m.model.size() != 1 || m.reference.size() != 1 || !plans.alike(m, shift, options))) continue;
         const Point2 a = centroid_of(model, m.model), b = centroid_of(reference, m.reference);
         east.push_back(a.x - b.x);
         north.push_back(a.y - b.y);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
+#include <set>
 #include <unordered_set>
 #include <utility>
 
@@ -11,7 +11,9 @@
 #include "importers/reference/transform.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/parallel.h"
+#include "pipeline/compare/face_triangles.h"
 #include "pipeline/compare/vector.h"
+#include "pipeline/geometry/nearest_surface.h"
 #include "pipeline/geometry/plan_shape.h"
 #include "pipeline/georef/crs.h"
 
@@ -68,47 +70,55 @@ class Gatherer {
   Gatherer(const ReferenceModel& model, Point2 origin, int max_lod)
       : model_(model), origin_(origin), max_lod_(max_lod) {}
 
-  void add(const reference::Building& part, Building& out) const {
+  /// What a building takes from polygons that several of its parts use.
+  struct Used {
+    std::unordered_set<std::uint32_t> faces, shells;  // looked up only
+  };
+
+  /// \param finest  the highest level of detail of the building and its parts: a building's own body of a lower level
+  ///               says in general what its parts say in particular, and is left out
+  void add(const reference::Building& part, int finest, Used& all_used, Building& out) const {
     const int lod = lod_of(part);
     if (part.storeys_above_ground) out.storeys = std::max(out.storeys.value_or(0), *part.storeys_above_ground);
     if (out.roof_type.empty()) out.roof_type = part.roof_type;
-    if (lod < 0) return;
+    if (lod < 0 || (part.parent < 0 && lod < finest)) return;
     out.lod = std::max(out.lod, lod);
-    std::unordered_set<std::uint32_t> used;
-    double thematic = 0;
+    std::unordered_set<std::uint32_t>& used = all_used.faces;
+    const std::size_t first_face = out.faces.size(), first_shell = out.shells.size();
+    std::vector<Triangle3> thematic;
     for (const reference::Surface& s : part.surfaces) {
       if (!is_outside(s)) continue;
       Hull hull = *hull_of(s.surface_class);
-      if (s.of_installation) hull = Hull::installation;
+      int level = lod;
+      if (is_installation(s)) {
+        hull = Hull::installation;
+        level = best_of(s.geometries, lod);
+      }
       Point3 towards;  // sum of the surface's normals, by area: what its openings are seen along
       for (const reference::Geometry& g : s.geometries)
-        if (g.lod == lod && is_body(g))
+        if (g.lod == level && is_body(g))
           for (const reference::Face& f : g.faces) {
-            if (!used.insert(f.polygon).second) continue;
+            if (!is_polygon(f) || !used.insert(f.polygon).second) continue;
             const Face& face = add_face(f, hull, true, out);
-            thematic += face.area;
+            for (const Triangle3& t : triangles_of(face.rings)) thematic.push_back(t);
             towards = {towards.x + face.normal.x * face.area, towards.y + face.normal.y * face.area,
                        towards.z + face.normal.z * face.area};
           }
-      for (const reference::Opening& o : s.openings) add_opening(o, lod, towards, used, out);
+      for (const reference::Opening& o : s.openings) add_opening(o, level, towards, used, out);
     }
-    std::vector<reference::Face> rest;
-    double rest_area = 0;
+    const geometry::NearestSurface said(thematic);
     for (const reference::Geometry& g : part.geometries) {
       if (g.lod != lod || !is_body(g)) continue;
-      if (g.kind == GeometryKind::solid) add_shells(g, out);
+      if (g.kind == GeometryKind::solid) add_shells(g, all_used.shells, out);
       for (const reference::Face& f : g.faces)
-        if (!used.contains(f.polygon)) {
-          used.insert(f.polygon);
-          rest.push_back(f);
-          rest_area += length(area_vector(model_.polygons[f.polygon].outer)) / 2;
-        }
+        if (is_polygon(f) && used.insert(f.polygon).second && !lies_on(said, rings_of(f)))
+          add_face(f, Hull::wall, false, out);
     }
-    if (thematic > 0.5 * rest_area) return;
-    for (const reference::Face& f : rest) add_face(f, Hull::wall, false, out);
+    if (out.faces.size() == first_face) return;
+    ++out.bodies;
+    if (out.shells.size() == first_shell) out.all_in_shells = false;
   }
 
- private:
   int lod_of(const reference::Building& part) const {
     int best = -1, lowest_above = 99;
     const auto look = [&](const std::vector<reference::Geometry>& geometries) {
@@ -120,8 +130,32 @@ class Gatherer {
     };
     look(part.geometries);
     for (const reference::Surface& s : part.surfaces)
-      if (is_outside(s)) look(s.geometries);
+      if (is_outside(s) && !is_installation(s)) look(s.geometries);
     return best >= 0 ? best : lowest_above < 99 ? lowest_above : -1;
+  }
+
+ private:
+  static bool is_installation(const reference::Surface& s) {
+    return s.of_installation || s.surface_class == SurfaceClass::installation;
+  }
+  bool is_polygon(const reference::Face& f) const { return model_.polygons[f.polygon].outer.size() >= 3; }
+  /// The highest level up to `most`; `most` where there is none.
+  static int best_of(const std::vector<reference::Geometry>& geometries, int most) {
+    int best = -1;
+    for (const reference::Geometry& g : geometries)
+      if (is_body(g) && g.lod <= most) best = std::max(best, g.lod);
+    return best < 0 ? most : best;
+  }
+  /// Whether a polygon repeats what thematic surfaces say: all of its middle lies on them.
+  static bool lies_on(const geometry::NearestSurface& said, const Rings3& rings) {
+    constexpr double kSame = 0.01;  // m. Files that say everything twice round both alike.
+    if (said.empty()) return false;
+    const std::vector<Triangle3> triangles = triangles_of(rings);
+    return !triangles.empty() && std::all_of(triangles.begin(), triangles.end(), [&](const Triangle3& t) {
+      const Point3 middle{(t[0].x + t[1].x + t[2].x) / 3, (t[0].y + t[1].y + t[2].y) / 3,
+                          (t[0].z + t[1].z + t[2].z) / 3};
+      return said.nearest(middle).distance <= kSame;
+    });
   }
 
   Rings3 rings_of(const reference::Face& f) const {
@@ -168,6 +202,7 @@ class Gatherer {
     for (const reference::Geometry& g : o.geometries) {
       if (g.lod != lod) continue;
       for (const reference::Face& f : g.faces) {
+        if (!is_polygon(f)) continue;
         used.insert(f.polygon);
         Rings3 rings = rings_of(f);
         const Point3 n = area_vector(rings[0]);
@@ -188,12 +223,17 @@ class Gatherer {
     out.openings.push_back(std::move(opening));
   }
 
-  void add_shells(const reference::Geometry& g, Building& out) const {
+  /// A solid that other parts' solids make up (a building's composite of its parts') counts once.
+  void add_shells(const reference::Geometry& g, std::unordered_set<std::uint32_t>& used, Building& out) const {
+    bool fresh = false;
+    for (const reference::Face& f : g.faces) fresh = used.insert(f.polygon).second || fresh;
+    if (!fresh) return;
     const auto shell = [&](std::size_t begin, std::size_t end, bool outer) {
       if (begin == end) return;
       Shell& s = out.shells.emplace_back();
       s.outer = outer;
-      for (std::size_t i = begin; i < end; ++i) s.polygons.push_back(rings_of(g.faces[i]));
+      for (std::size_t i = begin; i < end; ++i)
+        if (is_polygon(g.faces[i])) s.polygons.push_back(rings_of(g.faces[i]));
     };
     shell(0, g.outer_faces, true);
     shell(g.outer_faces, g.faces.size(), false);
@@ -206,6 +246,17 @@ class Gatherer {
 
 /// Classes of faces whose file states none.
 void classify(Building& b) {
+  // A closed body of faces without classes that looks inwards is turned: else its roof would look down.
+  double volume = 0;
+  bool none_stated = true;
+  for (const Face& f : b.faces) {
+    none_stated = none_stated && !f.stated;
+    const Point3 base = b.faces[0].rings[0][0];
+    for (const auto& ring : f.rings)
+      for (std::size_t i = 1; i + 1 < ring.size(); ++i)
+        volume += dot(minus(ring[0], base), cross(minus(ring[i], base), minus(ring[i + 1], base))) / 6;
+  }
+  const bool inwards = none_stated && volume < 0;
   double lowest = 1e300;
   for (const Face& f : b.faces)
     for (const Point3& p : f.rings[0]) lowest = std::min(lowest, p.z);
@@ -219,15 +270,16 @@ void classify(Building& b) {
     for (const Point3& p : f.rings[0]) highest = std::max(highest, p.z);
     // What lies flat at the very bottom is ground whichever side its ring looks to.
     const bool bottom = highest < lowest + kGroundBand;
-    f.hull = bottom ? Hull::ground : f.normal.z > 0 ? Hull::roof : Hull::outer_ceiling;
+    f.hull = bottom ? Hull::ground : (f.normal.z > 0) != inwards ? Hull::roof : Hull::outer_ceiling;
   }
 }
 
 geometry::PlanShape shape_of(const Building& b) { return geometry::PlanShape(b.footprint); }
 
-/// Leaves out what stands where a building of an earlier file stands. Requires buildings in the order of files.
+/// Leaves out what stands where a building of an earlier file stands, or twice in one file. Requires buildings in the
+/// order of files.
 void drop_repetitions(City& city) {
-  if (city.files.size() < 2) return;
+  constexpr double kSame = 0.99, kSameGround = 0.1;  // share, m
   std::vector<PlanBox> boxes;
   for (const Building& b : city.buildings) boxes.push_back(plan_box(b));
   const geometry::BoxIndex index(boxes);
@@ -237,9 +289,15 @@ void drop_repetitions(City& city) {
     if (b.footprint.empty()) continue;
     for (const std::uint32_t k : index.near(boxes[i], 0)) {
       const Building& first = city.buildings[k];
-      if (k >= i || gone[k] || first.file == b.file || first.footprint.empty()) continue;
-      const double common = shape_of(b).common_area(shape_of(first));
-      if (common <= kRepetition * std::max(b.footprint_area, first.footprint_area)) continue;
+      if (k >= i || gone[k] || first.footprint.empty()) continue;
+      const double share =
+          shape_of(b).common_area(shape_of(first)) / std::max(b.footprint_area, first.footprint_area);
+      // Within a file what stands over another (a hall over its garage) is another building, unless nothing differs.
+      const bool same = first.file != b.file
+                            ? share > kRepetition
+                            : share > kSame && b.faces.size() == first.faces.size() &&
+                                  std::fabs(b.ground - first.ground) < kSameGround;
+      if (!same) continue;
       gone[i] = true;
       break;
     }
@@ -264,7 +322,8 @@ std::string heights_in_words(const reference::ReferenceCrs& crs) {
 
 bool is_absolute(const reference::ReferenceCrs& crs) {
   return crs.height_reference == reference::HeightReference::vertical_crs ||
-         crs.height_reference == reference::HeightReference::sea_level ||
+         // Some sea level that words name is the same where the words are.
+         (crs.height_reference == reference::HeightReference::sea_level && !crs.height_words.empty()) ||
          crs.height_reference == reference::HeightReference::ellipsoidal;
 }
 
@@ -297,14 +356,14 @@ Point2 full_kilometre(const ReferenceModel& model) {
   return {std::round(box.centre().x / 1000) * 1000, std::round(box.centre().y / 1000) * 1000};
 }
 
-void append(City& city, City&& more, const std::optional<PlanBox>& reach) {
+/// Adds a file's city. \param heights  what the files with buildings say of their heights, so far
+void append(City& city, City&& more, const std::optional<PlanBox>& reach, std::set<std::string>& heights) {
   const auto file = static_cast<std::uint32_t>(city.files.size());
-  if (city.files.empty()) {
-    city.height_reference = more.height_reference;
-    city.absolute_heights = more.absolute_heights;
-  } else if (city.height_reference != more.height_reference) {
-    city.height_reference += ", " + more.height_reference;
-    city.absolute_heights = false;  // files that disagree
+  if (!more.buildings.empty()) {
+    heights.insert(more.height_reference);
+    city.height_reference.clear();
+    for (const std::string& h : heights) city.height_reference += (city.height_reference.empty() ? "" : ", ") + h;
+    city.absolute_heights = more.absolute_heights && heights.size() == 1;
   }
   city.files.push_back(std::move(more.files[0]));
   city.without_geometry += more.without_geometry;
@@ -339,16 +398,26 @@ City city_of(const ReferenceModel& model, Point2 origin, int max_lod) {
   city.files.push_back(facts_of(model, model.crs.stated));
   const Gatherer gatherer(model, origin, max_lod);
   std::vector<std::size_t> owner(model.buildings.size());
+  std::vector<int> finest;
+  std::vector<Gatherer::Used> used;
   for (std::size_t i = 0; i < model.buildings.size(); ++i) {
     const reference::Building& b = model.buildings[i];
     if (b.parent < 0) {
       owner[i] = city.buildings.size();
       city.buildings.emplace_back().id = b.id;
+      finest.push_back(-1);
+      used.emplace_back();
     } else {
       owner[i] = owner[static_cast<std::size_t>(b.parent)];
     }
-    gatherer.add(b, city.buildings[owner[i]]);
+    finest[owner[i]] = std::max(finest[owner[i]], gatherer.lod_of(b));
   }
+  // Parts first: what a building says in general repeats them.
+  for (const bool parts : {true, false})
+    for (std::size_t i = 0; i < model.buildings.size(); ++i) {
+      const reference::Building& b = model.buildings[i];
+      if ((b.parent >= 0) == parts) gatherer.add(b, finest[owner[i]], used[owner[i]], city.buildings[owner[i]]);
+    }
   const auto footprints = reference::ground_footprints(model);
   for (std::size_t i = 0; i < footprints.size(); ++i) {
     Building& b = city.buildings[i];
@@ -386,12 +455,21 @@ City read_city(const std::vector<std::string>& paths, const ReadCityOptions& opt
     city.name += (city.name.empty() ? "" : ", ") + path;
     for (std::string& file : reference::model_files(path)) files.push_back(std::move(file));
   }
-  // Both are settled by the first file, before any other is read.
+  // In the order of their names, each once: neither how a shell lists files nor repeated ones matter.
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  std::set<std::string> heights;
+  // Both are settled by the first file with buildings, before any after it is read.
   city.crs = options.crs;
   if (options.origin) city.origin = *options.origin;
   const auto load = [&](const std::string& file, bool first) {
     ReferenceModel model = reference::read_model(file, options.read);
     const std::string stated = model.crs.stated.empty() ? model.crs.horizontal : model.crs.stated;
+    if (model.buildings.empty()) {
+      City none;
+      none.files.push_back(facts_of(model, stated));
+      return none;
+    }
     if (first && city.crs.empty()) city.crs = wanted_crs(model);
     transform_to(model, city.crs);
     if (first && !options.origin) city.origin = full_kilometre(model);
@@ -399,13 +477,18 @@ City read_city(const std::vector<std::string>& paths, const ReadCityOptions& opt
     one.files[0].crs = stated;
     return one;
   };
-  if (!files.empty()) append(city, load(files[0], true), options.reach);
+  std::size_t next = 0;
+  for (bool empty = true; empty && next < files.size(); ++next) {
+    City one = load(files[next], true);
+    empty = one.buildings.empty();
+    append(city, std::move(one), options.reach, heights);
+  }
   const int workers = base::worker_count(options.jobs);
-  std::vector<City> loaded(files.size());
+  std::vector<City> loaded(files.size() - next);
   base::ordered_parallel(
-      files.size() > 1 ? files.size() - 1 : 0, workers, static_cast<std::size_t>(workers) + 1,
-      [&](std::size_t i) { loaded[i + 1] = load(files[i + 1], false); },
-      [&](std::size_t i) { append(city, std::exchange(loaded[i + 1], {}), options.reach); });
+      loaded.size(), workers, static_cast<std::size_t>(workers) + 1,
+      [&](std::size_t i) { loaded[i] = load(files[next + i], false); },
+      [&](std::size_t i) { append(city, std::exchange(loaded[i], {}), options.reach, heights); });
   drop_repetitions(city);
   sort_buildings(city);
   return city;

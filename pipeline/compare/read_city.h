@@ -23,12 +23,13 @@ struct ReadCityOptions {
 
 /// Reads files, or all model files of folders and builds (importers::reference::model_files).
 ///
-/// Of every building: thematic surfaces of the outside; polygons of its solids and multi-surfaces that no thematic
-/// surface uses get their class from their normal (no polygons of theirs count where thematic surfaces of the same level
-/// already make half their area: the file says everything twice). Interiors never count. A building that stands where one
-/// of an earlier file does (more than half of both footprints in common) is a repetition, as where tiles of different
-/// years overlap: it is counted and left out.
-/// Buildings are sorted by id, then by place: files and their order do not matter (but for repetitions).
+/// Of every building and part: thematic surfaces of the outside; polygons of its solids and multi-surfaces that no
+/// thematic surface uses or lies on get their class from their normal. Installations count at the level they have, but
+/// do not choose it. A building's own body of a lower level than its parts' is left out. Interiors never count. A building
+/// that stands where one of an earlier file does (more than half of both footprints in common), or that is in one file
+/// twice, is a repetition, as where tiles of different years overlap: it is counted and left out.
+/// Files are taken in the order of their names and buildings sorted by id, then by place: the order of `paths` does not
+/// matter.
 /// \throws base::InputError  as read_model
 /// \throws base::UsageError  when a file's CRS does not lead to the wanted one
 City read_city(const std::vector<std::string>& paths, const ReadCityOptions& options);

@@ -47,19 +47,24 @@ bool within(const std::vector<Polygon>& plan, Point2 p) {
 }
 
 std::vector<Point2> grid(const std::vector<Polygon>& a, const std::vector<Polygon>& b, double margin) {
+  // From both plans alike, and from their own corner: neither which is which nor where the origin lies matters.
   Point2 low{1e12, 1e12}, high{-1e12, -1e12};
-  double area = 0;
-  for (const Polygon& polygon : a) {
-    area += geometry::area(polygon);
-    for (const Point2 p : polygon.outer.points) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  double largest = 0;
+  for (const std::vector<Polygon>* plan : {&a, &b}) {
+    double area = 0;
+    for (const Polygon& polygon : *plan) {
+      area += geometry::area(polygon);
+      for (const Point2 p : polygon.outer.points) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+      }
     }
+    largest = std::max(largest, area);
   }
-  const double step = std::max(0.5, std::sqrt(area / 4000));
+  const double step = std::max(0.5, std::sqrt(largest / 4000));
   std::vector<Point2> out;
-  for (double y = std::ceil(low.y / step) * step; y <= high.y; y += step)
-    for (double x = std::ceil(low.x / step) * step; x <= high.x; x += step) {
+  for (double y = low.y + step / 2; y <= high.y; y += step)
+    for (double x = low.x + step / 2; x <= high.x; x += step) {
       const Point2 p{x, y};
       if (!within(a, p) || !within(b, p)) continue;
       if (margin > 0 && (outline_distance(a, p) < margin || outline_distance(b, p) < margin)) continue;
@@ -76,8 +81,9 @@ double between(double a, double b) {
 }
 
 double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n % 2 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
 }
 
 }  // namespace
@@ -160,6 +166,7 @@ std::optional<RoofHeights> heights_of(const RoofSurfaces& roof, const std::vecto
     if (const auto hit = roof.at(p)) out.mean += hit->z - ground, ++n;
   if (n * 2 < points.size() || n == 0) return std::nullopt;
   out.mean /= static_cast<double>(n);
+  out.cover = static_cast<double>(n) / static_cast<double>(points.size());
   return out;
 }
 
@@ -188,6 +195,7 @@ RoofPlanes form_of(const RoofSurfaces& roof, std::span<const Point2> points) {
     bins[static_cast<std::size_t>(azimuth / 10) % 36].emplace_back(azimuth, pitch);
   }
   if (n == 0) return out;
+  out.seen = n / static_cast<double>(points.size());
   out.sloped = sloped / n;
   out.spread = std::sqrt(std::max(0.0, squares / n - sum / n * (sum / n)));
   if (sloped > 0) out.pitch /= sloped;

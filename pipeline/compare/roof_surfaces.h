@@ -44,7 +44,8 @@ class RoofSurfaces {
 struct RoofHeights {
   double ridge = 0;  ///< highest point
   double eaves = 0;
-  double mean = 0;  ///< over the plan: volume over area
+  double mean = 0;  ///< over the part of the plan that the roof covers: volume over area
+  double cover = 0; ///< that part, share of the plan
 };
 
 /// Ridge: the highest corner of a roof face. Eaves: the outline is walked in steps of 0.5 m; a step counts where the
@@ -61,6 +62,7 @@ std::vector<model::Point2> common_grid(const std::vector<model::Polygon>& a, con
 
 /// Roof form as the planes show it, whatever it is called.
 struct RoofPlanes {
+  double seen = 0;                 ///< share of the points with a roof above them
   double sloped = 0;               ///< share of the points with a slope of 5 degrees and more
   double spread = 0;               ///< m, standard deviation of the height: error of the best horizontal roof
   std::vector<double> directions;  ///< degrees clockwise from north, down the slope: into which 8 % of the points slope

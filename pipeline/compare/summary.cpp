@@ -71,7 +71,11 @@ Summary summary_of(const std::vector<Weighted>& values, Pool pool) {
 
 /// What a match's left-out share is a share of.
 double scope_area(const MatchResult& match, Scope scope) {
-  if (scope == Scope::surface) return match.reference.surface_area;
+  if (scope == Scope::surface) {
+    double area = 0;  // as the places say from which the share comes, openings included
+    for (const double a : match.reference.left_out) area += a;
+    return area;
+  }
   if (scope == Scope::facades) {
     double area = 0;
     for (const Facade& f : match.facades.reference) area += f.area;

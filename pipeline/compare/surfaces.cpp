@@ -14,6 +14,7 @@ namespace blockrand::compare {
 namespace {
 
 constexpr std::array<double, 3> kBounds{0.25, 0.5, 1.0};  // m, of completeness and correctness
+constexpr double kSameWall = 1.0;    // m. A wall farther from a left-out one is another wall, and wrong.
 constexpr double kRounding = 1e-6;  // m. What lies at a bound but for rounding lies within it.
 constexpr double kDegrees = 180 / std::numbers::pi;
 
@@ -49,7 +50,7 @@ OneWay walk(const MatchSurface& from, const Cover& from_cover, const MatchSurfac
     place.angle = base::acos(std::min(1.0, nearest.cosine)) * kDegrees;
     place.why = reason(patch, from_cover, at, up_from);
     if (place.why == LeftOut::no && is_upright(patch) && is_upright(other)) {
-      const LeftOut there = reason(other, to_cover, at, up_to);
+      const LeftOut there = place.distance <= kSameWall ? reason(other, to_cover, nearest.place, up_to) : LeftOut::no;
       if (there != LeftOut::ground) place.why = there;
     }
     return place;
@@ -155,14 +156,14 @@ MatchSurface::MatchSurface(const City& city, std::span<const std::uint32_t> buil
 
 MatchSurface::NearestPatch MatchSurface::nearest_patch(Point3 p, Point3 normal) const {
   const auto nearest = nearest_.nearest(p);
-  NearestPatch out{nearest.distance, &patch_of(nearest.triangle), 0};
+  NearestPatch out{nearest.distance, &patch_of(nearest.triangle), 0, nearest.place};
   out.cosine = std::fabs(dot(normal, out.patch->normal));
   constexpr double kAlike = 1 - 1e-9;  // no other one can look more alike
   if (out.cosine >= kAlike) return out;
   for (const std::uint32_t t : nearest_.triangles_at(nearest.place)) {
     const Patch& patch = patch_of(t);
     const double cosine = std::fabs(dot(normal, patch.normal));
-    if (cosine > out.cosine + 1e-9) out = {nearest.distance, &patch, cosine};
+    if (cosine > out.cosine + 1e-9) out = {nearest.distance, &patch, cosine, nearest.place};
   }
   return out;
 }
@@ -170,8 +171,10 @@ MatchSurface::NearestPatch MatchSurface::nearest_patch(Point3 p, Point3 normal) 
 DistanceHistogram::DistanceHistogram() : weights_(4000 + 720 + 1, 0) {}
 
 std::size_t DistanceHistogram::bin(double d) {
-  if (d < 4) return static_cast<std::size_t>(d * 1000);
-  if (d < 40) return 4000 + std::min<std::size_t>(719, static_cast<std::size_t>((d - 4) * 20));
+  // A distance on a bound lies below it, rounding included.
+  const auto below = [](double steps) { return static_cast<std::size_t>(std::max(0.0, std::ceil(steps - 1e-3) - 1)); };
+  if (d <= 4) return below(d * 1000);
+  if (d <= 40) return 4000 + std::min<std::size_t>(719, below((d - 4) * 20));
   return 4720;
 }
 

@@ -50,6 +50,7 @@ class MatchSurface {
     double distance = 0;  ///< m
     const Patch* patch = nullptr;
     double cosine = 0;    ///< of the angle between both normals, without their signs
+    Point3 place{};       ///< on it
   };
   NearestPatch nearest_patch(Point3 p, Point3 normal) const;
 
@@ -85,7 +86,7 @@ struct SurfaceTally {
 
 /// Sets the measures of Scope::surface but the semantic ones. What is left out: a place on ground, one on a wall that a
 /// neighbour covers, one on a blank facade; and a place on a wall whose nearest place on the other side is covered or
-/// blank, since there is nothing to be compared with.
+/// blank and less than a metre away, since there is nothing to be compared with.
 /// \param model_up, reference_up  m, as the surfaces were raised
 void measure_surfaces(const MatchSurface& model, const Cover& model_cover, const MatchSurface& reference,
                       const Cover& reference_cover, double model_up, double reference_up,

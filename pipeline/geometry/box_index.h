@@ -32,6 +32,11 @@ class BoxIndex {
   explicit BoxIndex(std::vector<PlanBox> boxes) : boxes_(std::move(boxes)) {
     for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
       if (boxes_[i].empty()) continue;
+      extent_.include(boxes_[i]);
+      if (cells_of(boxes_[i]) > kManyCells) {
+        large_.push_back(i);
+        continue;
+      }
       for_each_cell(boxes_[i], 0, [&](Cell c) { entries_.emplace_back(c, i); });
     }
     std::sort(entries_.begin(), entries_.end());
@@ -39,6 +44,15 @@ class BoxIndex {
   /// Ascending.
   std::vector<std::uint32_t> near(const PlanBox& box, double distance) const {
     std::vector<std::uint32_t> out;
+    if (!box.near(extent_, distance)) return out;
+    for (const std::uint32_t i : large_)
+      if (boxes_[i].near(box, distance)) out.push_back(i);
+    if (cells_of(box, distance) > kManyCells) {  // as cheap to ask every box
+      out.clear();
+      for (std::uint32_t i = 0; i < boxes_.size(); ++i)
+        if (boxes_[i].near(box, distance)) out.push_back(i);
+      return out;
+    }
     for_each_cell(box, distance, [&](Cell c) {
       for (auto e = std::lower_bound(entries_.begin(), entries_.end(), std::pair(c, 0u));
            e != entries_.end() && e->first == c; ++e)
@@ -52,7 +66,12 @@ class BoxIndex {
 
  private:
   using Cell = std::pair<std::int32_t, std::int32_t>;
-  static constexpr double kSize = 250;  // m
+  static constexpr double kSize = 250;         // m
+  static constexpr double kManyCells = 10000;  // a box over more stands in a list of its own
+  static double cells_of(const PlanBox& box, double distance = 0) {
+    return ((box.maximum.x - box.minimum.x + 2 * distance) / kSize + 1) *
+           ((box.maximum.y - box.minimum.y + 2 * distance) / kSize + 1);
+  }
   template <class Visit>
   static void for_each_cell(const PlanBox& box, double distance, Visit&& visit) {
     const auto cell = [](double v) { return static_cast<std::int32_t>(std::floor(v / kSize)); };
@@ -60,6 +79,8 @@ class BoxIndex {
       for (std::int32_t y = cell(box.minimum.y - distance); y <= cell(box.maximum.y + distance); ++y) visit(Cell{x, y});
   }
   std::vector<PlanBox> boxes_;
+  PlanBox extent_;
+  std::vector<std::uint32_t> large_;
   std::vector<std::pair<Cell, std::uint32_t>> entries_;
 };
 

@@ -95,7 +95,13 @@ double PlanShape::best_intersection_over_union(const PlanShape& other) const {
 
 double PlanShape::outline_distance(const PlanShape& other) const {
   if (empty() || other.empty()) return 0;
-  const Shape a = held(GEOSBoundary_r(context(), raw(shape_))), b = held(GEOSBoundary_r(context(), raw(other.shape_)));
+  // GEOS measures from points of the lines; between corners they are walked in steps.
+  constexpr double kStep = 0.5;  // m
+  const auto walked = [](const Shape& shape) {
+    const Shape outline = held(GEOSBoundary_r(context(), raw(shape)));
+    return held(GEOSDensify_r(context(), raw(outline), kStep));
+  };
+  const Shape a = walked(shape_), b = walked(other.shape_);
   double distance = 0;
   if (!GEOSHausdorffDistance_r(context(), raw(a), raw(b), &distance)) throw std::runtime_error("GEOS: no distance");
   return distance;

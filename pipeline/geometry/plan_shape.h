@@ -21,7 +21,8 @@ class PlanShape {
   double common_area(const PlanShape& other) const;
   /// Area in common over area together; 0 where one is empty.
   double intersection_over_union(const PlanShape& other) const;
-  /// The largest distance of a vertex of one outline from the other outline, both ways; 0 where one is empty.
+  /// The largest distance of one outline from the other, both ways (Hausdorff; outlines are walked in steps of at most
+  /// 0.5 m); 0 where one is empty.
   double outline_distance(const PlanShape& other) const;
   PlanShape moved(model::Point2 by) const;
   /// intersection_over_union at the best place that this shape can be moved to (to 1 cm, found by descent from where it

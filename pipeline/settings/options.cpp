@@ -707,7 +707,7 @@ void add_compare(Table& t) {
              .argument = "N",
              .section = S,
              .commands = kCompare,
-             .minimum = 0,
+             .minimum = 1,
              .maximum = 4,
              .help = "of each building the highest level of detail up to this one is compared"},
             FIELD(comparison.max_lod));
