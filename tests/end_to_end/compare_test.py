@@ -19,14 +19,17 @@ from interruption_test import small_disk, staging_of
 from reference_osm import descendants
 
 
-def box(id, x, y, width, depth, height, srs='EPSG:25832'):
-    """A building of CityGML 2.0 as LoD1 solid with its south-west corner at x, y."""
+def box(id, x, y, width, depth, height, srs='EPSG:25832', cut=False):
+    """A building of CityGML 2.0 as LoD1 solid with its south-west corner at x, y. `cut`: of triangles, which begin at
+    the third corner, instead of rectangles."""
     corners = [(x, y), (x + width, y), (x + width, y + depth), (x, y + depth)]
     rings = [[(*p, 0) for p in corners[::-1]], [(*p, height) for p in corners]]
     for a, b in zip(corners, corners[1:] + corners[:1]):
         rings.append([(*a, 0), (*b, 0), (*b, height), (*a, height)])
+    if cut:
+        rings = [t for a, b, c, d in rings for t in ((c, d, a), (c, a, b))]
     polygons = ''.join('<gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>'
-                       + ' '.join(f'{c:.3f}' for p in r + r[:1] for c in p)
+                       + ' '.join(f'{c:.3f}' for p in [*r, r[0]] for c in p)
                        + '</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>' for r in rings)
     return (f'<core:cityObjectMember><bldg:Building gml:id="{id}"><bldg:lod1Solid><gml:Solid srsName="{srs}" '
             f'srsDimension="3"><gml:exterior><gml:CompositeSurface>{polygons}</gml:CompositeSurface></gml:exterior>'
@@ -41,9 +44,10 @@ def city(*members, srs='EPSG:25832'):
             + '\n'.join(members) + '</core:CityModel>\n')
 
 
-def street(count, change=0.0):
+def street(count, change=0.0, cut=False):
     """Boxes in a row; `change`: how much higher and longer than the reference's."""
-    return [box(f'B{i:03}', 690000 + 15 * i, 5730000, 10 + change, 8 + i % 3, 6 + i % 4 + change) for i in range(count)]
+    return [box(f'B{i:03}', 690000 + 15 * i, 5730000, 10 + change, 8 + i % 3, 6 + i % 4 + change, cut=cut)
+            for i in range(count)]
 
 
 def measured(comparison):
@@ -410,6 +414,41 @@ class Sameness(CompareTest):
         a, b = (self.compare(f'seed{s}', low, self.fzk, '--seed', s) for s in (1, 2))
         self.same(a, b, 'distance_mean', 0.01)
         self.same(a, b, 'footprint_iou', 0)
+
+    def test_triangles_or_rectangles(self):
+        """How surfaces are cut into polygons changes nothing but the numbers of triangles' polygons; places of samples
+        may differ, distances by a few millimetres."""
+        other = self.place('street.gml', city(*street(6)))
+        a, b = (self.compare(f'cut{cut}', self.place(f'cut{cut}.gml', city(*street(6, 0.5, cut))), other)
+                for cut in (False, True))
+        for measure, summary in a['summary'].items():
+            with self.subTest(measure):
+                tolerance = {'m': 0.01, 'deg': 0.5, '1': 0.01}[summary['unit']] if summary['scope'] == 'surface' else 1e-6
+                self.same(a, b, measure, tolerance)
+
+    def test_symmetry(self):
+        """Model and reference exchanged: distances (with all surfaces) the same, errors with the other sign."""
+        low = reference('fzk-haus', 'FZK-House-LoD2-KIT-IAI-KHH-V2.gml')
+        block = self.place('block.gml', city(*street(6, 0.5)))
+        other = self.place('other.gml', city(*street(6)))
+        for name, a, b in (('boxes', block, other), ('kit', low, self.fzk)):
+            forth, back = self.compare(name + '_forth', a, b), self.compare(name + '_back', b, a)
+            pairs = {m: m for m, s in forth['summary'].items()
+                     if s['better'] in ('higher', 'lower') and s['scope'] in ('plan', 'body', 'surface')}
+            pairs.update({'to_reference_mean': 'to_model_mean', 'to_model_mean': 'to_reference_mean'})
+            pairs.update({f'completeness_{d}': f'correctness_{d}' for d in ('025', '050', '100')})
+            pairs.update({f'correctness_{d}': f'completeness_{d}' for d in ('025', '050', '100')})
+            pairs.update({'valid_model': 'valid_reference', 'semantic_model': 'semantic_reference'})
+            for measure, opposite in pairs.items():
+                with self.subTest(f'{name}: {measure}'):
+                    first, second = headline(forth, measure, 'all'), headline(back, opposite, 'all')
+                    self.assertAlmostEqual(first, second, delta=1e-3)
+            for measure in ('eaves_error', 'ridge_error', 'offset_east', 'offset_north'):
+                first, second = (r['summary'][measure]['all']['mean'] for r in (forth, back))
+                self.assertAlmostEqual(first, -second, delta=1e-6)
+            for measure in ('area_ratio', 'volume_ratio'):
+                for first, second in zip(forth['matches'], back['matches']):
+                    self.assertAlmostEqual(first['measures'][measure]['all'] * second['measures'][measure]['all'], 1, delta=1e-6)
 
     def split(self, path, pieces):
         """The buildings of a CityGML file dealt out to several."""
