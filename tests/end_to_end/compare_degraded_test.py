@@ -37,7 +37,7 @@ class Degraded(CompareTest):
         except OSError as error:
             raise unittest.SkipTest(str(error))
         self = cls()
-        itself = self.compare('itself', cls.reference, cls.reference)
+        itself = cls.itself = self.compare('itself', cls.reference, cls.reference)
         files = [os.path.join(cls.reference, f) for f in files_of(cls.reference)] or [cls.reference]
         cls.houses, left = reference_osm.houses_of(files, itself)
         print(f'{cls.source[-1]}: {len(cls.houses)} houses; left out: {left}')
@@ -78,6 +78,10 @@ class Degraded(CompareTest):
 
     def matched(self, name):
         self.assertEqual(self.results[name]['counts'], self.results['original']['counts'])
+
+    def test_reference_against_itself(self):
+        self.assertEqual((self.itself['counts']['missing'], self.itself['counts']['extra']), (0, 0))
+        self.ideal(self.itself, 1e-4, but=('valid_model', 'semantic_model'))  # facts of the file
 
     def test_original_is_faithful(self):
         """What the ranking rests on: every house is matched, and nearly all of it is like the reference."""

@@ -185,10 +185,13 @@ class Command(CompareTest):
     def test_models_that_do_not_meet(self):
         """Nothing to compare is no success in silence: it is warned of."""
         far = self.place('far.gml', city(box('far', 695000, 5730000, 10, 8, 6)))
-        result = self.compare('far', self.model, far)
-        self.assertEqual(result['counts']['matches'], 0)
-        self.assertIn('0', str(result['counts']['matches']))
-        self.assertIn('warning', self.last.err, self.last)
+        empty = self.place('none.gml', city())
+        for name, model, other in (('far', self.model, far), ('empty-model', empty, self.reference),
+                                   ('empty-reference', self.model, empty)):
+            with self.subTest(name):
+                result = self.compare(name, model, other)
+                self.assertEqual(result['counts']['matches'], 0)
+                self.assertIn('warning', self.last.err, self.last)
 
     def test_without_output(self):
         """Tables on the terminal alone; --json prints what compare.json would hold; -q nothing."""
