@@ -27,6 +27,13 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
+/// Buildings of a model's files, those out of reach included.
+std::size_t read_in(const compare::City& city) {
+  std::size_t n = 0;
+  for (const compare::CityFile& file : city.files) n += file.buildings;
+  return n;
+}
+
 /// The options that a result depends on, as the user would write them.
 compare::OptionList options_of(const settings::Settings& s) {
   compare::OptionList list;
@@ -107,6 +114,11 @@ int run_compare(const std::vector<std::string>& arguments) {
   s.comparison.jobs = s.build.jobs;
   s.comparison.surface.seed = s.build.seed;
   const compare::Comparison comparison = compare::compare_models(s.comparison, progress);
+  if (comparison.matches.empty())
+    progress.warn(fmt::format("no building of {} stands where one of {} does: {} and {} buildings were read. Do both say the "
+                              "right coordinate system? --model-crs and --reference-crs name others",
+                              s.comparison.model, fmt::join(s.comparison.reference, ", "), read_in(comparison.model),
+                              read_in(comparison.reference)));
   const compare::OptionList options = options_of(s);
   if (folder) write_report(comparison, s, options, *folder, progress);
   const bool json = s.json || s.log_format == base::LogFormat::json;

@@ -169,7 +169,8 @@ std::vector<Match> matches_at(const Plans& plans, Point2 shift, const MatchOptio
   std::map<std::size_t, const Plans::Pair*> best;
   for (const Plans::Pair& p : pairs)
     for (const std::size_t i : {static_cast<std::size_t>(p.reference), n + p.model}) {
-      if (linked[i] || share(p) < options.rest_share) continue;
+      const double own = i < n ? plans.reference_area(p.reference) : plans.model_area(p.model);
+      if (linked[i] || p.common < options.rest_share * own) continue;
       const Plans::Pair*& b = best[i];
       if (!b || p.common > b->common) b = &p;
     }

@@ -14,7 +14,7 @@ struct MatchOptions {
   double certain_overlap = 0.5;
   /// Share of the smaller footprint that two buildings have in common from which on they stand for each other.
   double link_share = 0.5;
-  /// What is left unmatched is linked to its best partner from this share on: the same house, drawn badly or built on.
+  /// What is left unmatched is linked to its best partner from this share of its own footprint on: the same house, drawn badly or built on.
   double rest_share = 0.25;
   /// m. How far apart the same building may lie in two models for the first guess of an offset.
   double largest_offset = 30;

@@ -429,6 +429,103 @@ TEST(Compare, MissingAndExtraBuildingsAreTold) {
   EXPECT_EQ(c.missing_covered[0], 0);
 }
 
+TEST(Compare, RowsOfEqualHousesDoNotJumpToTheNextHouse) {
+  // Each model has ten houses of a row, eight of them the same: a shift by two houses fits all ten.
+  std::vector<Building> model, reference;
+  for (int row = 0; row < 5; ++row)
+    for (int i = 0; i < 12; ++i) {
+      const Building b = building_of(
+          {.id = "r" + std::to_string(row) + "_" + std::to_string(i), .centre = {i * 6.0, row * 40.0}, .width = 6});
+      if (i < 10) model.push_back(b);
+      if (i >= 2) reference.push_back(b);
+    }
+  const Comparison c = compared(city_of_blocks(model), city_of_blocks(reference));
+  EXPECT_NEAR(c.registration.east, 0, 1e-6);
+  EXPECT_EQ(c.matches.size(), 40u);
+  EXPECT_EQ(c.missing.size(), 10u);
+}
+
+TEST(Compare, TwoDifferentHousesAreNotTheSameAtAnyDistance) {
+  const Comparison c = compared(building_of({.centre = {22, 5}}), building_of({}));
+  EXPECT_TRUE(c.matches.empty());
+  EXPECT_EQ(c.missing.size(), 1u);
+  EXPECT_EQ(c.extra.size(), 1u);
+}
+
+TEST(Compare, AGarageUnderSixHousesMakesNoBlockOfThem) {
+  std::vector<Building> houses;
+  for (int i = 0; i < 6; ++i) houses.push_back(building_of({.id = "h" + std::to_string(i), .centre = {i * 14.0, 0}}));
+  std::vector<Building> model = houses;
+  model.push_back(building_of({.id = "garage", .centre = {35, 0}, .width = 90, .depth = 30, .height = 3, .ground = -3}));
+  const Comparison c = compared(city_of_blocks(model), city_of_blocks(houses));
+  EXPECT_EQ(c.matches.size(), 6u);
+  ASSERT_EQ(c.extra.size(), 1u);
+  EXPECT_EQ(c.model.buildings[c.extra[0]].id, "garage");
+  EXPECT_NEAR(c.summaries[static_cast<std::size_t>(Measure::eaves_error)].counted.max, 0, 1e-9);
+  EXPECT_NEAR(c.summaries[static_cast<std::size_t>(Measure::distance_mean)].left_out, 80 / 376.0, 0.02) << "grounds only";
+}
+
+TEST(Compare, AnAnnexDrawnApartJoinsItsHouse) {
+  const Building house = building_of({.id = "house", .centre = {0, 0}, .width = 14});
+  const Building main = building_of({.id = "main", .centre = {-2, 0}, .width = 10}),
+                 annex = building_of({.id = "annex", .centre = {5, 0}, .width = 4});
+  const Comparison c = compared(city_of_blocks({main, annex}), city_of_blocks({house}));
+  ASSERT_EQ(c.matches.size(), 1u);
+  EXPECT_EQ(c.matches[0].model.buildings.size(), 2u);
+}
+
+TEST(Compare, OutlinesAreMeasuredBetweenTheirCornersToo) {
+  // The middle of a long block is missing: its corners lie on the reference's outline.
+  const Building block = building_of({.id = "block", .width = 30, .depth = 10});
+  const Building left = building_of({.id = "left", .centre = {-10, 0}, .width = 10, .depth = 10}),
+                 right = building_of({.id = "right", .centre = {10, 0}, .width = 10, .depth = 10});
+  const Comparison c = compared(city_of_blocks({left, right}), city_of_blocks({block}));
+  EXPECT_NEAR(counted(c, Measure::outline_distance), 5, 0.3);
+}
+
+TEST(Compare, WallsBetweenBodiesOfABuildingAreLeftOut) {
+  const Building whole = building_of({.id = "a", .width = 20});
+  Building parts = building_of({.id = "a", .centre = {-5, 0}});
+  const Building other = building_of({.centre = {5, 0}});
+  parts.faces.insert(parts.faces.end(), other.faces.begin(), other.faces.end());
+  parts.shells.push_back(other.shells[0]);
+  parts.footprint = whole.footprint;
+  parts.footprint_area = whole.footprint_area;
+  parts.bodies = 2;
+  const Comparison c = compared(parts, whole);
+  EXPECT_NEAR(counted(c, Measure::distance_max), 0, 1e-6);
+  EXPECT_NEAR(counted(c, Measure::volume_ratio), 1, 1e-9);
+  EXPECT_NEAR(c.matches[0].model.left_out[static_cast<std::size_t>(LeftOut::covered)], 2 * 8 * 6, 2);
+}
+
+TEST(Compare, WallsMissingInPairsLeaveNoVolume) {
+  Building terrace = building_of({.turned = 0.785398});
+  terrace.shells[0].polygons.erase(terrace.shells[0].polygons.begin() + 3);
+  terrace.shells[0].polygons.erase(terrace.shells[0].polygons.begin() + 4);
+  terrace.faces.erase(terrace.faces.begin() + 3);
+  terrace.faces.erase(terrace.faces.begin() + 4);
+  EXPECT_FALSE(volume_of(terrace));
+}
+
+TEST(Compare, HalfARoofIsHalfTheRoomUnderIt) {
+  Building half = building_of({.id = "b"});
+  half.faces[1].rings = {{{-5, -4, 6}, {1, -4, 6}, {1, 4, 6}, {-5, 4, 6}}};
+  EXPECT_NEAR(counted(compared(half, building_of({.id = "b"})), Measure::roof_volume_ratio), 0.6, 0.02);
+}
+
+TEST(Compare, TheOriginDoesNotMatter) {
+  Block a{.width = 11, .height = 7, .turned = 0.3}, b{.turned = 0.25};
+  const Comparison here = compared(building_of(a), building_of(b));
+  a.centre = b.centre = {1234.5, -987.25};
+  const Comparison there = compared(building_of(a), building_of(b));
+  for (std::size_t i = 0; i < kMeasureCount; ++i) {
+    const auto m = static_cast<Measure>(i);
+    ASSERT_EQ(value(here, m).counted.has_value(), value(there, m).counted.has_value()) << info(m).id;
+    if (!value(here, m).counted) continue;
+    EXPECT_NEAR(counted(here, m), counted(there, m), 2e-4) << info(m).id;
+  }
+}
+
 TEST(Compare, FarBuildingsAreNoPartOfIt) {
   std::vector<Building> model = village(2);
   model.push_back(building_of({.id = "far", .centre = {2000, 0}}));
