@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <span>
 #include <utility>
 
 #include "importers/reference/coordinate_text.h"
+#include "importers/reference/matrix4.h"
 #include "importers/reference/polygons.h"
 
 namespace blockrand::importers::reference {
@@ -211,6 +213,7 @@ void CityGmlParser::place(const Implicit& use) {
     const model::Point3 turned = m.empty() ? p : model::Point3{row(0), row(1), row(2)};
     return model::Point3{turned.x + at[0], turned.y + at[1], turned.z + (at.size() > 2 ? at[2] : 0)};
   };
+  const bool mirrored = !m.empty() && mirrors(std::span<const double, 16>(m));  // end() saw to its 16 numbers
   Geometry g;
   g.lod = use.lod;
   for (const Face& face : faces) {
@@ -218,7 +221,7 @@ void CityGmlParser::place(const Implicit& use) {
     for (model::Point3& p : polygon.outer) p = placed(p);
     for (auto& hole : polygon.holes)
       for (model::Point3& p : hole) p = placed(p);
-    g.faces.push_back({static_cast<std::uint32_t>(model_.polygons.size()), face.reversed});
+    g.faces.push_back({static_cast<std::uint32_t>(model_.polygons.size()), face.reversed != mirrored});
     model_.polygons.push_back(std::move(polygon));
   }
   g.outer_faces = g.faces.size();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "importers/reference/json_access.h"
 #include "pipeline/model/point.h"
@@ -33,8 +34,8 @@ inline model::Point3 apply(const Matrix4& m, const model::Point3& p) {
   return {row(0), row(1), row(2)};
 }
 
-/// Whether it turns left into right.
-inline bool mirrors(const Matrix4& m) {
+/// Whether it turns left into right. \param m  column by column or row by row
+inline bool mirrors(std::span<const double, 16> m) {
   return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[4] * (m[1] * m[10] - m[2] * m[9]) +
              m[8] * (m[1] * m[6] - m[2] * m[5]) <
          0;
