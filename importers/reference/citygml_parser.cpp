@@ -28,6 +28,18 @@ bool any_of(std::string_view name, std::initializer_list<std::string_view> names
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// An attribute's value as it is meant. Where entities are not expanded, libxml2's SAX2 leaves each ampersand of a
+/// value as "&#38;", for a later pass that DOM trees have; nothing else is left so.
+std::string unescaped(std::string_view value) {
+  constexpr std::string_view kAmpersand = "&#38;";
+  std::string out;
+  for (std::size_t at = value.find(kAmpersand); at != std::string_view::npos; at = value.find(kAmpersand)) {
+    out.append(value.substr(0, at)) += '&';
+    value.remove_prefix(at + kAmpersand.size());
+  }
+  return out.append(value);
+}
+
 /// Metres of a unit as "m", "#m", "urn:ogc:def:uom:UCUM::m" name it; without one metres are meant. 0: unknown.
 double metres_of_unit(std::string_view uom) {
   const std::size_t last = uom.find_last_of(":#/");
@@ -47,7 +59,7 @@ CityGmlParser::Attributes CityGmlParser::read_attributes(const XmlElement& eleme
   for (int i = 0; i < element.attribute_count; ++i) {
     const xmlChar** a = element.attributes + 5 * i;
     const std::string_view full = view(a[0]), name = without_prefix(full), prefix = view(a[1]), uri = view(a[2]);
-    const std::string_view value(reinterpret_cast<const char*>(a[3]), static_cast<std::size_t>(a[4] - a[3]));
+    const std::string value = unescaped({reinterpret_cast<const char*>(a[3]), static_cast<std::size_t>(a[4] - a[3])});
     if (name == "id" && (is_gml(uri) || prefix == "gml" || full == "gml:id")) {
       out.id = value;
     } else if (name == "href") {
