@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -45,7 +46,11 @@ inline bool mirrors(std::span<const double, 16> m) {
 Matrix4 from_parts(const std::array<double, 3>& translation, const std::array<double, 4>& rotation,
                    const std::array<double, 3>& scale);
 
-/// 16 numbers whose last row is 0 0 0 1; nothing where they are not.
+/// How far the last row may be from 0 0 0 1: matrices that are multiplied in single precision, or written with few
+/// digits. Beyond, it is no rounding.
+inline constexpr double kMatrixRounding = 1e-5;
+
+/// 16 numbers whose last row is 0 0 0 1 but for rounding, which is taken out; nothing where they are not.
 inline std::optional<Matrix4> matrix_of(const Json& value) {
   Matrix4 out{};
   if (length(value) != out.size()) return std::nullopt;
@@ -54,7 +59,12 @@ inline std::optional<Matrix4> matrix_of(const Json& value) {
     if (!v) return std::nullopt;
     out[i] = *v;
   }
-  if (out[3] != 0 || out[7] != 0 || out[11] != 0 || out[15] != 1) return std::nullopt;
+  for (const std::size_t i : {3, 7, 11})
+    if (std::fabs(out[i]) > kMatrixRounding) return std::nullopt;
+  const double weight = out[15];
+  if (std::fabs(weight - 1) > kMatrixRounding) return std::nullopt;
+  for (double& v : out) v /= weight;
+  out[3] = out[7] = out[11] = 0;
   return out;
 }
 

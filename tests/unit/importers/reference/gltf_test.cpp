@@ -174,6 +174,24 @@ TEST(Gltf, NodesTurnScaleMirrorAndHoldEachOther) {
   EXPECT_TRUE(near(corners(m, m.buildings[1]).first, at(98, -2, 0)));
 }
 
+TEST(Gltf, ANodesMatrixMayBeRoundedButMustBeOne) {
+  GltfMaker maker;
+  const int cube = maker.cube(1);
+  maker.json["scenes"][0]["nodes"] = {0, 1, 3};
+  maker.node({{"mesh", cube}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 1e-7, 0, 0, 1, 0, 50, 0, 0, 0.99999994}}});
+  maker.node({{"mesh", cube},
+              {"name", "projected"},
+              {"children", {2}},
+              {"matrix", {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}});
+  maker.node({{"mesh", cube}, {"name", "hangs on it"}});
+  maker.node({{"mesh", cube}, {"name", "flat"}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0}}});
+  maker.place(kLon, kLat);
+  const auto m = read_bytes(maker.glb());
+  ASSERT_THAT(m.buildings, SizeIs(1));
+  EXPECT_TRUE(near(corners(m, m.buildings[0]).first, at(50, 0, 0)));
+  EXPECT_EQ(m.count(NoteKind::bad_value), 2u);
+}
+
 TEST(Gltf, OneNodeIsOneBuilding) {
   GltfMaker maker;
   const int cube = maker.cube(1);
