@@ -538,6 +538,20 @@ TEST_F(Tiles, WhatIsNotReadIsNotedOrRefused) {
   EXPECT_THAT(refusal_of(folder_.write("r.json", R"({"asset":{"version":"1.1"},"root":3})")), HasSubstr("no root"));
 }
 
+TEST_F(Tiles, ThatNameTheNextTwiceAreRefused) {
+  constexpr int kLevels = 30;  // 2^30 walks if all were made
+  for (int i = 0; i < kLevels; ++i) {
+    const Json next = tile(i + 1 < kLevels ? "t" + std::to_string(i + 1) + ".json" : "house.glb");
+    write("t" + std::to_string(i) + ".json", {{"refine", "ADD"}, {"children", {next, next}}}, i == 0);
+  }
+  EXPECT_THAT(refusal_of(folder_.path() + "/t0.json"),
+              AllOf(HasSubstr("t0.json"), HasSubstr("more than 10000 tilesets"), HasSubstr("again and again")));
+  Json many = tile("house.glb");
+  many["contents"] = Json(std::vector<Json>(100'001, Json{{"uri", "missing.glb"}}));
+  EXPECT_THAT(refusal_of(write("many.json", many)),
+              AllOf(HasSubstr("many.json"), HasSubstr("more than 100000 contents")));
+}
+
 TEST_F(Tiles, AFeatureThatIsCutByTilesIsOneBuilding) {
   GltfMaker maker = two_cubes();
   set_table(maker, {{"id", {{"type", "STRING"}}}}, {{"id", maker.texts({"A", "B"})}}, 2);
