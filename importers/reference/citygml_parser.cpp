@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <span>
 #include <utility>
 
 #include "importers/reference/coordinate_text.h"
+#include "importers/reference/matrix4.h"
 #include "importers/reference/polygons.h"
 
 namespace blockrand::importers::reference {
@@ -24,6 +26,18 @@ bool is_gml(std::string_view uri) { return uri.starts_with("http://www.opengis.n
 
 bool any_of(std::string_view name, std::initializer_list<std::string_view> names) {
   return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// An attribute's value as it is meant. Where entities are not expanded, libxml2's SAX2 leaves each ampersand of a
+/// value as "&#38;", for a later pass that DOM trees have; nothing else is left so.
+std::string unescaped(std::string_view value) {
+  constexpr std::string_view kAmpersand = "&#38;";
+  std::string out;
+  for (std::size_t at = value.find(kAmpersand); at != std::string_view::npos; at = value.find(kAmpersand)) {
+    out.append(value.substr(0, at)) += '&';
+    value.remove_prefix(at + kAmpersand.size());
+  }
+  return out.append(value);
 }
 
 /// Metres of a unit as "m", "#m", "urn:ogc:def:uom:UCUM::m" name it; without one metres are meant. 0: unknown.
@@ -45,7 +59,7 @@ CityGmlParser::Attributes CityGmlParser::read_attributes(const XmlElement& eleme
   for (int i = 0; i < element.attribute_count; ++i) {
     const xmlChar** a = element.attributes + 5 * i;
     const std::string_view full = view(a[0]), name = without_prefix(full), prefix = view(a[1]), uri = view(a[2]);
-    const std::string_view value(reinterpret_cast<const char*>(a[3]), static_cast<std::size_t>(a[4] - a[3]));
+    const std::string value = unescaped({reinterpret_cast<const char*>(a[3]), static_cast<std::size_t>(a[4] - a[3])});
     if (name == "id" && (is_gml(uri) || prefix == "gml" || full == "gml:id")) {
       out.id = value;
     } else if (name == "href") {
@@ -211,6 +225,7 @@ void CityGmlParser::place(const Implicit& use) {
     const model::Point3 turned = m.empty() ? p : model::Point3{row(0), row(1), row(2)};
     return model::Point3{turned.x + at[0], turned.y + at[1], turned.z + (at.size() > 2 ? at[2] : 0)};
   };
+  const bool mirrored = !m.empty() && mirrors(std::span<const double, 16>(m));  // end() saw to its 16 numbers
   Geometry g;
   g.lod = use.lod;
   for (const Face& face : faces) {
@@ -218,7 +233,7 @@ void CityGmlParser::place(const Implicit& use) {
     for (model::Point3& p : polygon.outer) p = placed(p);
     for (auto& hole : polygon.holes)
       for (model::Point3& p : hole) p = placed(p);
-    g.faces.push_back({static_cast<std::uint32_t>(model_.polygons.size()), face.reversed});
+    g.faces.push_back({static_cast<std::uint32_t>(model_.polygons.size()), face.reversed != mirrored});
     model_.polygons.push_back(std::move(polygon));
   }
   g.outer_faces = g.faces.size();

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "importers/reference/cityjson_objects.h"
+#include "importers/reference/matrix4.h"
 
 namespace blockrand::importers::reference {
 namespace {
@@ -108,6 +109,7 @@ void CityJsonObjects::read_instance(const Json& geometry, const Target& target) 
     return;
   }
   points.matrix = matrix;
+  points.mirrored = mirrors(matrix);
   points.origin = vertices_[*corner];
   const std::size_t before = model_.polygons.size();
   const auto level = level_of(geometry);
@@ -198,7 +200,7 @@ void CityJsonObjects::read_shell(const Json& shell, const Json& values, const Po
     polygon.outer = std::move(*outer);
     for (std::size_t r = 1; r < surface.size(); ++r)
       if (auto hole = read_ring(surface[r], points)) polygon.holes.push_back(std::move(*hole));
-    const Face face{static_cast<std::uint32_t>(model_.polygons.size()), false};
+    const Face face{static_cast<std::uint32_t>(model_.polygons.size()), points.mirrored};
     model_.polygons.push_back(std::move(polygon));
     out.faces.push_back(face);
     const Json& value = element(values, i);

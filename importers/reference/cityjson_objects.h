@@ -53,6 +53,7 @@ class CityJsonObjects {
     const std::vector<model::Point3>* list = nullptr;
     std::optional<std::array<double, 16>> matrix;  ///< row by row
     model::Point3 origin;
+    bool mirrored = false;  ///< by the matrix: outside would become inside
   };
   struct Faces {
     std::vector<Face> faces;

@@ -87,7 +87,8 @@ void project(ReferenceModel& model, const std::string& stated_crs, const ReadOpt
   std::string definition = options.reference_crs;
   auto facts = metric_crs(definition);
   if (!facts && !definition.empty())
-    throw base::UsageError("--reference-crs " + definition + " is no projected coordinate reference system in metres");
+    throw base::UsageError("--reference-crs (of the judged model: --model-crs) " + definition +
+                           " is no projected coordinate reference system in metres");
   model.crs.stated = stated_crs;
   model.crs.from_options = !definition.empty();
   if (!facts && (facts = metric_crs(stated_crs))) definition = stated_crs;
@@ -112,7 +113,7 @@ void project(ReferenceModel& model, const std::string& stated_crs, const ReadOpt
   if (count == 0) return;
   if (count == std::ssize(lost))
     throw base::InputError(model.path, "", "lies where " + model.crs.name + " is not defined",
-                           "--reference-crs names another");
+                           "--reference-crs (of the judged model: --model-crs) names another");
   notes.add(NoteKind::bad_coordinates, 0, std::to_string(count) + " triangles lie where the CRS is not defined");
   drop_polygons(model, lost);
 }

@@ -136,13 +136,9 @@ GltfScene::Owner GltfScene::owner_of(const Feature& feature, std::size_t node) {
   return out;
 }
 
-Matrix4 GltfScene::transform_of(const Json& node) {
+std::optional<Matrix4> GltfScene::transform_of(const Json& node) {
   const Json& stated = member(node, "matrix");
-  if (!stated.is_null()) {
-    if (const auto matrix = matrix_of(stated)) return *matrix;
-    notes_.add(NoteKind::bad_value, 0, "a node's matrix is none");
-    return kIdentity;
-  }
+  if (!stated.is_null()) return matrix_of(stated);
   return from_parts(numbers_or<3>(member(node, "translation"), {0, 0, 0}),
                     numbers_or<4>(member(node, "rotation"), {0, 0, 0, 1}),
                     numbers_or<3>(member(node, "scale"), {1, 1, 1}));
@@ -179,7 +175,13 @@ void GltfScene::walk(const Matrix4& place) {
       continue;
     }
     met[i] = true;
-    const Matrix4 world = parent * transform_of(nodes[i]);
+    const auto own = transform_of(nodes[i]);
+    if (!own) {
+      notes_.add(NoteKind::bad_value, 0,
+                 "the matrix of node " + std::to_string(i) + " is none; it and what hangs on it is left out");
+      continue;
+    }
+    const Matrix4 world = parent * *own;
     add_node(i, world);
     const Json& children = member(nodes[i], "children");
     for (std::size_t c = length(children); c-- > 0;)

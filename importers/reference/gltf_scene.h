@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -51,7 +52,8 @@ class GltfScene {
   /// The feature of each vertex; empty where the file says none.
   std::vector<Feature> features_of(const Json& primitive, std::size_t vertices);
   std::vector<std::size_t> triangles_of(const Json& primitive, std::size_t vertices);
-  Matrix4 transform_of(const Json& node);
+  /// Nothing where its matrix is none.
+  static std::optional<Matrix4> transform_of(const Json& node);
 
   ReferenceModel& model_;
   NoteLog& notes_;

@@ -1,8 +1,5 @@
 #include "importers/reference/links.h"
 
-#include <algorithm>
-#include <utility>
-
 namespace blockrand::importers::reference {
 namespace {
 
@@ -18,37 +15,41 @@ void Links::add_link(const std::string& target, bool reversed, int line) {
 }
 
 std::vector<Face> Links::resolve(std::size_t begin, std::size_t end, NoteLog& notes) {
-  Walk walk{{}, {}, notes};
-  append(begin, end, false, walk);
-  return std::move(walk.faces);
-}
-
-void Links::append(std::size_t begin, std::size_t end, bool turn, Walk& walk) {
-  for (std::size_t i = begin; i < end; ++i) {
-    if (++visits_ > kFreeVisits + kVisitsPerItem * items_.size()) {
-      if (!exhausted_) walk.notes.add(NoteKind::unresolved_link, items_[i].line, "links multiply without end");
-      exhausted_ = true;
-      return;
+  std::vector<Face> faces;
+  const std::size_t none = items_.size();
+  std::vector<Step> way{{begin, end, false, none}};  // no calls: chains of links may be as long as the file
+  while (!way.empty()) {
+    Step& step = way.back();
+    if (step.next >= step.end || exhausted_) {
+      if (step.link != none) items_[step.link].open = false;
+      way.pop_back();
+      continue;
     }
-    const Item& item = items_[i];
-    const bool reversed = item.reversed != turn;
+    Item& item = items_[step.next++];
+    if (++visits_ > kFreeVisits + kVisitsPerItem * items_.size()) {
+      notes.add(NoteKind::unresolved_link, item.line, "links multiply without end");
+      exhausted_ = true;
+      continue;
+    }
+    const bool reversed = item.reversed != step.turn;
     if (item.polygon != kNone) {
-      walk.faces.push_back({item.polygon, reversed});
+      faces.push_back({item.polygon, reversed});
       continue;
     }
     const std::string& target = targets_[item.link];
     const auto found = target.size() > 1 && target[0] == '#' ? names_.find(target.substr(1)) : names_.end();
     if (found == names_.end()) {
-      walk.notes.add(NoteKind::unresolved_link, item.line,
-                     "no geometry of this file has the id that " + target + " points to");
-    } else if (std::find(walk.open.begin(), walk.open.end(), i) != walk.open.end()) {
-      walk.notes.add(NoteKind::unresolved_link, item.line, "a circle of links: " + target);
+      notes.add(NoteKind::unresolved_link, item.line,
+                "no geometry of this file has the id that " + target + " points to");
+    } else if (item.open) {
+      notes.add(NoteKind::unresolved_link, item.line, "a circle of links: " + target);
     } else {
-      walk.open.push_back(i);
-      append(found->second.begin, found->second.end, reversed != found->second.reversed, walk);
-      walk.open.pop_back();
+      item.open = true;
+      const Range& range = found->second;
+      way.push_back({range.begin, range.end, reversed != range.reversed, step.next - 1});
     }
   }
+  return faces;
 }
 
 }  // namespace blockrand::importers::reference

@@ -37,18 +37,18 @@ class Links {
     std::uint32_t polygon, link;
     int line;
     bool reversed;
+    bool open = false;  ///< a link that is being followed
   };
   struct Range {
     std::size_t begin, end;
     bool reversed;
   };
-  struct Walk {
-    std::vector<Face> faces;
-    std::vector<std::size_t> open;  ///< links on the way here
-    NoteLog& notes;
+  /// A range that is being read.
+  struct Step {
+    std::size_t next, end;
+    bool turn;
+    std::size_t link;  ///< item that led here; items_.size(): none
   };
-  void append(std::size_t begin, std::size_t end, bool turn, Walk& walk);
-
   std::size_t visits_ = 0;
   bool exhausted_ = false;
   std::vector<Item> items_;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "importers/reference/json_access.h"
 #include "pipeline/model/point.h"
@@ -33,8 +35,8 @@ inline model::Point3 apply(const Matrix4& m, const model::Point3& p) {
   return {row(0), row(1), row(2)};
 }
 
-/// Whether it turns left into right.
-inline bool mirrors(const Matrix4& m) {
+/// Whether it turns left into right. \param m  column by column or row by row
+inline bool mirrors(std::span<const double, 16> m) {
   return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[4] * (m[1] * m[10] - m[2] * m[9]) +
              m[8] * (m[1] * m[6] - m[2] * m[5]) <
          0;
@@ -44,7 +46,11 @@ inline bool mirrors(const Matrix4& m) {
 Matrix4 from_parts(const std::array<double, 3>& translation, const std::array<double, 4>& rotation,
                    const std::array<double, 3>& scale);
 
-/// 16 numbers whose last row is 0 0 0 1; nothing where they are not.
+/// How far the last row may be from 0 0 0 1: matrices that are multiplied in single precision, or written with few
+/// digits. Beyond, it is no rounding.
+inline constexpr double kMatrixRounding = 1e-5;
+
+/// 16 numbers whose last row is 0 0 0 1 but for rounding, which is taken out; nothing where they are not.
 inline std::optional<Matrix4> matrix_of(const Json& value) {
   Matrix4 out{};
   if (length(value) != out.size()) return std::nullopt;
@@ -53,7 +59,12 @@ inline std::optional<Matrix4> matrix_of(const Json& value) {
     if (!v) return std::nullopt;
     out[i] = *v;
   }
-  if (out[3] != 0 || out[7] != 0 || out[11] != 0 || out[15] != 1) return std::nullopt;
+  for (const std::size_t i : {3, 7, 11})
+    if (std::fabs(out[i]) > kMatrixRounding) return std::nullopt;
+  const double weight = out[15];
+  if (std::fabs(weight - 1) > kMatrixRounding) return std::nullopt;
+  for (double& v : out) v /= weight;
+  out[3] = out[7] = out[11] = 0;
   return out;
 }
 

@@ -137,12 +137,13 @@ ReferenceCrs decide_crs(const std::string& path, const std::vector<std::string>&
   const auto facts = parsed.horizontal.empty() ? std::nullopt : georef::crs_facts(parsed.horizontal);
   if (!facts) {
     if (crs.from_options)
-      throw base::UsageError("--reference-crs " + text + " is no coordinate reference system that PROJ knows");
+      throw base::UsageError("--reference-crs (of the judged model: --model-crs) " + text +
+                             " is no coordinate reference system that PROJ knows");
     throw base::InputError(path, "",
                            crs.stated.empty()
                                ? "no srsName or referenceSystem says in which coordinate reference system it is"
                                : "unknown coordinate reference system \"" + text + "\"",
-                           "--reference-crs EPSG:... names it");
+                           "--reference-crs (of the judged model: --model-crs) EPSG:... names it");
   }
   crs.horizontal = facts->authority_code.empty() ? parsed.horizontal : facts->authority_code;
   crs.name = facts->name;

@@ -13,6 +13,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Contents that tiles name, and tilesets that are read, each time that they are met: two that are named twice at every
+/// level double with each. The tilesets of whole states have less in one.
+constexpr std::size_t kMostContents = 100'000, kMostTilesets = 10'000;
+
 class Walker {
  public:
   Walker(Tileset& tileset, NoteLog& notes) : tileset_(tileset), notes_(notes) {}
@@ -26,6 +30,7 @@ class Walker {
   void walk(const std::string& path, const Json& json, const Matrix4& parent) {
     constexpr std::size_t kDeepest = 32;
     open_files_.push_back(path);
+    if (++walked_ > kMostTilesets) refuse_number(kMostTilesets, "tilesets");
     tileset_.bytes += size_on_disk(path);
     const std::string folder = fs::path(path).parent_path().string();
     const std::string axis = text(member(member(json, "asset"), "gltfUpAxis"));
@@ -66,10 +71,17 @@ class Walker {
   }
 
  private:
+  [[noreturn]] void refuse_number(std::size_t most, const std::string& what) const {
+    throw base::InputError(
+        open_files_.front(), "",
+        "has more than " + std::to_string(most) + " " + what + ", each counted as often as it is met",
+        "Tilesets that name others again and again multiply; or name a part of it");
+  }
+
   void add_content(const Json& content, const std::string& folder, const Matrix4& place, const Matrix4& up,
                    std::size_t deepest) {
     if (!content.is_object()) return;
-    ++named_;
+    if (++named_ > kMostContents) refuse_number(kMostContents, "contents");
     std::string uri = text(member(content, "uri"));
     if (uri.empty()) uri = text(member(content, "url"));  // as 0.0 had it
     const std::string file = file_of_uri(folder, uri);
@@ -112,7 +124,7 @@ class Walker {
   std::vector<std::string> open_files_;
   std::string old_format_;
   bool implicit_ = false;
-  std::size_t named_ = 0;
+  std::size_t named_ = 0, walked_ = 0;
 };
 
 }  // namespace

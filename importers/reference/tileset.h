@@ -25,7 +25,8 @@ struct Tileset {
 
 /// Follows a tileset and those in it. What a tile replaces by its children (REPLACE) does not count; implicit tiling,
 /// formats other than glTF, and what is missing is noted.
-/// \throws base::InputError  when the outermost one is damaged or no tileset, or nothing that can be read is in it
+/// \throws base::InputError  when the outermost one is damaged or no tileset, nothing that can be read is in it, or it
+///                            multiplies without end
 Tileset read_tileset(const std::string& path, const Json& json, NoteLog& notes);
 
 }  // namespace blockrand::importers::reference

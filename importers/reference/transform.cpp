@@ -45,6 +45,12 @@ std::optional<georef::GeoBox> extent_of(const ReferenceModel& model) {
 }
 
 TransformFacts transform_to(ReferenceModel& model, const std::string& target) {
+  if (model.polygons.empty()) {  // may lie nowhere: PROJ would refuse its CRS, and nobody would know of which file
+    model.crs.horizontal = model.crs.name = target;
+    model.crs.geographic = false;
+    model.crs.metres_per_unit = 1;
+    return {};
+  }
   const auto facts = georef::crs_facts(target);
   if (!facts || !facts->projected || facts->metres_per_unit != 1.0)
     throw base::UsageError(target + " is no projected coordinate reference system in metres");
@@ -54,7 +60,8 @@ TransformFacts transform_to(ReferenceModel& model, const std::string& target) {
     if (!std::isfinite(q.x) || !std::isfinite(q.y))
       throw base::InputError(
           model.path, polygon.id, "lies where " + transform.operation() + " is not defined",
-          "Is " + model.crs.name + " its coordinate reference system? --reference-crs names another");
+          "Is " + model.crs.name +
+              " its coordinate reference system? --reference-crs (of the judged model: --model-crs) names another");
     p.x = q.x;
     p.y = q.y;
   });

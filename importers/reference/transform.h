@@ -19,7 +19,8 @@ struct TransformFacts {
 std::optional<georef::GeoBox> extent_of(const ReferenceModel& model);
 
 /// Turns x and y of all polygons into another projected CRS in metres, by the best operation that PROJ has where the
-/// model lies. Heights stay as they are, and so does `crs.vertical`.
+/// model lies. Heights stay as they are, and so does `crs.vertical`. A model without polygons only gets the target's
+/// name, unchecked.
 /// \param target  "EPSG:25833"
 /// \throws base::UsageError  when the target is no projected CRS in metres or only a "ballpark" operation leads to it
 /// \throws base::InputError  when a coordinate lies where the operation is not defined

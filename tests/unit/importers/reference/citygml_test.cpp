@@ -212,6 +212,20 @@ TEST(CityGml, LinksAreFollowedForwardsAndBackwards) {
   EXPECT_EQ(m.breaches(), 0u);
 }
 
+TEST(CityGml, AmpersandsInAttributesAreThemselves) {
+  const auto m = read(
+      document(building("a&amp;b &lt;&#38;&amp;#38;",
+                        R"(<gen:stringAttribute name="this &amp; that"><gen:value>x</gen:value></gen:stringAttribute>
+        <bldg:lod1MultiSurface><gml:MultiSurface><gml:surfaceMember xlink:href="#p&amp;q"/></gml:MultiSurface></bldg:lod1MultiSurface>)" +
+                            surface("GroundSurface", polygon(kGround, "p&amp;q")))));
+  ASSERT_THAT(m.buildings, SizeIs(1));
+  EXPECT_EQ(m.buildings[0].id, "a&b <&&#38;");
+  EXPECT_THAT(m.buildings[0].attributes, ElementsAre(Pair("this & that", "x")));
+  EXPECT_EQ(m.count(NoteKind::unresolved_link), 0u);
+  ASSERT_THAT(m.polygons, SizeIs(1));
+  EXPECT_EQ(m.polygons[0].id, "p&q");
+}
+
 TEST(CityGml, TurnedTwiceIsNotTurned) {
   const auto m = read(document(building(
       "b",

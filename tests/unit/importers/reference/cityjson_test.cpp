@@ -217,6 +217,24 @@ TEST(CityJson, TemplatesArePlaced) {
   EXPECT_EQ(m.count(NoteKind::bad_index), 2u);
 }
 
+TEST(CityJson, MirroredTemplatesAreNotInsideOut) {
+  const std::string templates =
+      R"(,"geometry-templates":{"templates":[{"type":"Solid","lod":"2","boundaries":[)" + kShell +
+      R"(]}],"vertices-templates":[[0,0,0],[10,0,0],[10,8,0],[0,8,0],[0,0,3],[10,0,3],[10,8,3],[0,8,3]]})";
+  const std::string at =
+      R"({"type":"GeometryInstance","template":0,"boundaries":[0],"lod":"2","transformationMatrix":)";
+  const auto m =
+      read_json(cityjson(object("mirrored", "Building", at + "[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}") + "," +
+                             object("turned", "Building", at + "[-1,0,0,0, 0,-1,0,0, 0,0,1,0, 0,0,0,1]}"),
+                         templates));
+  ASSERT_THAT(m.buildings, SizeIs(2));
+  for (std::size_t b = 0; b < 2; ++b) {
+    ASSERT_THAT(m.buildings[b].geometries, SizeIs(1));
+    ASSERT_THAT(m.buildings[b].geometries[0].faces, SizeIs(6));
+    for (const Face& face : m.buildings[b].geometries[0].faces) EXPECT_EQ(face.reversed, b == 0);
+  }
+}
+
 TEST(CityJson, EveryFormOfCrsAndWhatTheHeightsAre) {
   const auto with = [](const std::string& metadata, const ReadOptions& options = {}) {
     return read_json(R"({"type":"CityJSON","version":"1.1",)" + kTransform + metadata + R"(,"CityObjects":{)" +

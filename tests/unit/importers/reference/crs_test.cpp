@@ -191,6 +191,35 @@ TEST(Transform, RefusesWhatIsNoPlaneInMetres) {
     EXPECT_THROW(transform_to(m, target), base::UsageError) << target;
 }
 
+TEST(Transform, OfNothingNeedsNoSystem) {
+  ReferenceModel empty;
+  empty.path = "empty.gltf";
+  EXPECT_EQ(transform_to(empty, "EPSG:25833").operation, "");
+  EXPECT_EQ(empty.crs.horizontal, "EPSG:25833");
+  EXPECT_FALSE(empty.crs.geographic);
+  EXPECT_EQ(empty.crs.metres_per_unit, 1);
+}
+
+TEST(Transform, FaultsNameTheOptionsOfBothModels) {
+  const std::string both = "--reference-crs (of the judged model: --model-crs)";
+  const auto message = [](const auto& run) -> std::string {
+    try {
+      run();
+      return "none";
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  };
+  NoteLog notes;
+  EXPECT_THAT(message([&] { decide_crs("a.gml", {}, {}, notes); }), HasSubstr(both));
+  ReadOptions options;
+  options.reference_crs = "EPSG:999999";
+  EXPECT_THAT(message([&] { decide_crs("a.gml", {}, options, notes); }), HasSubstr(both + " EPSG:999999"));
+  auto m = triangle("EPSG:25832", 678145, 5403919);
+  m.polygons[0].outer[1].x = INFINITY;
+  EXPECT_THAT(message([&] { transform_to(m, "EPSG:25833"); }), HasSubstr(both));
+}
+
 TEST(Heights, AreWhatTheFileSaysTheyAre) {
   const auto heights = [](const std::string& srs, const std::string& description = "") {
     std::string ground = "390000 5820000 30 390000 5820008 30 390010 5820008 30 390010 5820000 30";

@@ -174,6 +174,24 @@ TEST(Gltf, NodesTurnScaleMirrorAndHoldEachOther) {
   EXPECT_TRUE(near(corners(m, m.buildings[1]).first, at(98, -2, 0)));
 }
 
+TEST(Gltf, ANodesMatrixMayBeRoundedButMustBeOne) {
+  GltfMaker maker;
+  const int cube = maker.cube(1);
+  maker.json["scenes"][0]["nodes"] = {0, 1, 3};
+  maker.node({{"mesh", cube}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 1e-7, 0, 0, 1, 0, 50, 0, 0, 0.99999994}}});
+  maker.node({{"mesh", cube},
+              {"name", "projected"},
+              {"children", {2}},
+              {"matrix", {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}});
+  maker.node({{"mesh", cube}, {"name", "hangs on it"}});
+  maker.node({{"mesh", cube}, {"name", "flat"}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0}}});
+  maker.place(kLon, kLat);
+  const auto m = read_bytes(maker.glb());
+  ASSERT_THAT(m.buildings, SizeIs(1));
+  EXPECT_TRUE(near(corners(m, m.buildings[0]).first, at(50, 0, 0)));
+  EXPECT_EQ(m.count(NoteKind::bad_value), 2u);
+}
+
 TEST(Gltf, OneNodeIsOneBuilding) {
   GltfMaker maker;
   const int cube = maker.cube(1);
@@ -518,6 +536,20 @@ TEST_F(Tiles, WhatIsNotReadIsNotedOrRefused) {
   EXPECT_THAT(refusal_of(write("n.json", {{"refine", "ADD"}, {"children", {tile("house.glb")}}}, false)),
               HasSubstr("where on the Earth"));
   EXPECT_THAT(refusal_of(folder_.write("r.json", R"({"asset":{"version":"1.1"},"root":3})")), HasSubstr("no root"));
+}
+
+TEST_F(Tiles, ThatNameTheNextTwiceAreRefused) {
+  constexpr int kLevels = 30;  // 2^30 walks if all were made
+  for (int i = 0; i < kLevels; ++i) {
+    const Json next = tile(i + 1 < kLevels ? "t" + std::to_string(i + 1) + ".json" : "house.glb");
+    write("t" + std::to_string(i) + ".json", {{"refine", "ADD"}, {"children", {next, next}}}, i == 0);
+  }
+  EXPECT_THAT(refusal_of(folder_.path() + "/t0.json"),
+              AllOf(HasSubstr("t0.json"), HasSubstr("more than 10000 tilesets"), HasSubstr("again and again")));
+  Json many = tile("house.glb");
+  many["contents"] = Json(std::vector<Json>(100'001, Json{{"uri", "missing.glb"}}));
+  EXPECT_THAT(refusal_of(write("many.json", many)),
+              AllOf(HasSubstr("many.json"), HasSubstr("more than 100000 contents")));
 }
 
 TEST_F(Tiles, AFeatureThatIsCutByTilesIsOneBuilding) {

@@ -60,6 +60,17 @@ TEST(ImplicitGeometry, IsTurnedThenPlaced) {
   EXPECT_THAT(m.polygons, SizeIs(2)) << "the template itself lies nowhere";
 }
 
+TEST(ImplicitGeometry, MirroredIsNotInsideOut) {
+  const std::string mirror = "-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", half_turn = "-1 0 0 0 0 -1 0 0 0 0 1 0 0 0 0 1";
+  const auto reversed = [](const std::string& matrix) {
+    const auto m = read(document(building("b", chimney(use(drawn("t"), "390000 5820000 30", matrix)) + kSurface)));
+    return m.buildings.at(0).surfaces.at(0).geometries.at(0).faces.at(0).reversed;
+  };
+  EXPECT_TRUE(reversed(mirror));
+  EXPECT_FALSE(reversed(half_turn));
+  EXPECT_FALSE(reversed(""));
+}
+
 TEST(ImplicitGeometry, WithoutMatrixIsOnlyMoved) {
   const auto m = read(document(building("b", chimney(use(drawn("t"), "390000 5820000 30", "")) + kSurface)));
   EXPECT_THAT(points(m, m.buildings[0].surfaces[0].geometries),
