@@ -186,11 +186,12 @@ std::vector<FacadePair> pair_facades(std::span<const Facade> model, std::span<co
 }
 
 FacadeComparison compare_facades(const City& model, std::span<const std::uint32_t> model_buildings,
-                                 const City& reference, std::span<const std::uint32_t> reference_buildings,
+                                 double model_zero, const City& reference,
+                                 std::span<const std::uint32_t> reference_buildings, double reference_zero,
                                  const FacadeOptions& options) {
   FacadeComparison out;
-  out.model = facades_of(model, model_buildings, options, &out.model_loose);
-  out.reference = facades_of(reference, reference_buildings, options, &out.reference_loose);
+  out.model = facades_of(model, model_buildings, model_zero, options, &out.model_loose);
+  out.reference = facades_of(reference, reference_buildings, reference_zero, options, &out.reference_loose);
   out.pairs = pair_facades(out.model, out.reference, options);
   return out;
 }

@@ -271,6 +271,32 @@ TEST(FacadeMeasures, OfABlockAgainstItsHouses) {
   }
 }
 
+TEST(FacadeMeasures, OfABlockAgainstItsHousesOnASlope) {
+  // The same walls: the upper house, with the larger part of the front, begins 3 m higher; so do its windows.
+  const double step = 3;
+  HouseStyle upper;
+  upper.ground += step;
+  auto left = grid(5, 4), right = grid(6, 3), whole = left;
+  for (Hole h : right) {
+    h.left += 13;
+    h.right += 13;
+    h.bottom += step;
+    h.top += step;
+    whole.push_back(h);
+  }
+  City block = city_of({house(rectangle(0, 0, 29, 11), 12.5, {whole})});
+  City houses = city_of({house(rectangle(0, 0, 13, 11), 12.5, {left}),
+                         house(rectangle(13, 0, 29, 11), 12.5 - step, {right}, upper)});
+  houses.buildings[0].faces[3].left_out = LeftOut::covered;  // east
+  houses.buildings[1].faces[5].left_out = LeftOut::covered;  // west
+  for (const auto& [a, b] : {std::pair(&block, &houses), std::pair(&houses, &block)}) {
+    const MeasureValues values = measured(*a, *b);
+    EXPECT_THAT(value(values, Measure::opening_recall).counted, is(1));
+    EXPECT_THAT(value(values, Measure::opening_precision).counted, is(1));
+    EXPECT_THAT(value(values, Measure::storeys_error).counted, is(0));
+  }
+}
+
 TEST(FacadePairs, TakeTheNearerOfTwoAndEachOnce) {
   // Two fronts to the south, one behind the other, against the nearer one alone, 0.5 m off.
   const City two = city_of({house({{0, 0}, {6, 0}, {6, 2.4}, {12, 2.4}, {12, 10}, {0, 10}}, 9, {})});
