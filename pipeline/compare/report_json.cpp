@@ -70,10 +70,10 @@ Json registration_json(const Registration& r) {
           {"rule", r.rule}};
 }
 
-Json summary_json(const Summary& s) {
+Json summary_json(const Summary& s, Better better) {
   const bool any = s.count > 0;
   const auto value = [&](double v) { return any ? number(v) : Json(); };
-  return {{"count", s.count},
+  Json out = {{"count", s.count},
           {"pooled", value(s.pooled)},
           {"mean", value(s.mean)},
           {"mean_abs", value(s.mean_abs)},
@@ -82,6 +82,8 @@ Json summary_json(const Summary& s) {
           {"p95_abs", value(s.p95_abs)},
           {"min", value(s.min)},
           {"max", value(s.max)}};
+  if (better == Better::one) out["mean_factor"] = value(s.mean_factor);
+  return out;
 }
 
 Json summaries_json(const MeasureSummaries& summaries) {
@@ -95,8 +97,8 @@ Json summaries_json(const MeasureSummaries& summaries) {
                                     {"pool", name_of(measure.pool)},
                                     {"scope", name_of(measure.scope)},
                                     {"left_out", number(summaries[m].left_out)},
-                                    {"counted", summary_json(summaries[m].counted)},
-                                    {"all", summary_json(summaries[m].all)}};
+                                    {"counted", summary_json(summaries[m].counted, measure.better)},
+                                    {"all", summary_json(summaries[m].all, measure.better)}};
   }
   return out;
 }
@@ -257,7 +259,7 @@ std::string comparison_json(const Comparison& c, const OptionList& options) {
   for (const auto& [key, value] : options) asked[key] = value;
   out["options"] = std::move(asked);
   out["crs"] = c.reference.crs.empty() ? c.model.crs : c.reference.crs;
-  out["heights"] = c.absolute_heights ? "absolute" : "above own ground";
+  out["heights"] = heights_key(c);
   out["model"] = city_json(c.model);
   out["reference"] = city_json(c.reference);
   out["registration"] = registration_json(c.registration);
@@ -271,6 +273,8 @@ std::string comparison_json(const Comparison& c, const OptionList& options) {
                    {"matched_reference_buildings", reference_buildings},
                    {"missing", c.missing.size()},
                    {"extra", c.extra.size()},
+                   {"missing_area", number(footprint_area(c.reference, c.missing))},
+                   {"extra_area", number(footprint_area(c.model, c.extra))},
                    {"blank_facades", c.blank_facades}};
   out["summary"] = summaries_json(c.summaries);
   out["distances"] = distances_json(c.distances);
