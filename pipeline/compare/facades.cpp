@@ -230,6 +230,9 @@ Facade finish(const Draft& draft, const City& city, double zero, const FacadeOpt
   std::vector<std::vector<FlatPolygon>> openings;
   add_openings(draft, city, zero, facade, openings);
   facade.area = area_of(walls, openings);
+  std::vector<FlatPolygon> all_openings;
+  for (const auto& polygons : openings) all_openings.insert(all_openings.end(), polygons.begin(), polygons.end());
+  facade.opening_area = std::min(facade.area, union_area(all_openings));
   facade.covered = covered.empty() ? 0 : std::min(facade.area, union_area(covered));
   find_rows_and_columns(facade, options);
   return facade;

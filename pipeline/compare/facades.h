@@ -49,6 +49,7 @@ struct Facade {
   Point2 left, right;           ///< plan, relative to City::origin; left and right as seen from outside
   double bottom = 0, top = 0;   ///< m above the match's zero (facades_of)
   double area = 0;              ///< m² of its walls and openings in the facade's plane, each place once
+  double opening_area = 0;      ///< m² of its openings in the facade's plane, each place once
   double covered = 0;           ///< m² of `area` that faces with LeftOut::covered make
   std::vector<Rings3> outline;  ///< of its walls in the facade's plane: x along the facade from `left`, y above the
                                 ///< zero, z 0; for drawings, may overlap
@@ -103,9 +104,8 @@ struct FacadePair {
   /// Both are seen in the direction half way between both facades (which are one plane's in most pairs), so that the
   /// model and the reference can be exchanged; heights above each side's zero.
   std::vector<std::pair<std::size_t, std::size_t>> matches;
-  /// Takes no part in `counted`: the reference's facade is left_out(); or there is none and the model's is covered, or
-  /// the nearest facade of the reference that looks the same way and stands before or behind it (half of its width in
-  /// common) is blank: a wing in a yard that the survey did not see.
+  /// Takes no part in `counted`: the reference's facade is left_out(); or there is none and the model's is covered and
+  /// without openings. (What stands where the reference has nothing is wrong, also in a yard.)
   bool left_out = false;
 };
 /// Pairs facades within pair_angle and pair_distance (across, in the middle of what they have in common) that have
