@@ -35,7 +35,8 @@ inline constexpr int kJsonFormatVersion = 1;
 /// Everything as JSON (two spaces, keys in a fixed order, a format version): files, registration, summaries, confusion,
 /// distribution, totals, unmatched, and every match with every measure. The input of --baseline.
 std::string comparison_json(const Comparison& comparison, const OptionList& options);
-/// One row per match, one column per measure (`counted`), each with `_all`; RFC 4180, '.' as decimal point.
+/// One row per match, one column per measure (`counted`), each with `_all`; RFC 4180, '.' as decimal point. Ids
+/// that begin like a formula have an apostrophe before them.
 std::string comparison_csv(const Comparison& comparison);
 /// Writes a GeoPackage with the layers `matches` (the reference's footprints, every measure), `model`, `reference`
 /// (footprints with id and what became of them: matched, missing, extra).

@@ -161,8 +161,10 @@ Json facades_json(const FacadeComparison& facades, const Comparison& c) {
   for (const Facade& f : facades.reference) reference.push_back(facade_json(f, c.reference));
   const auto index = [](std::size_t i) { return i == FacadePair::kNone ? Json() : Json(i); };
   for (const FacadePair& p : facades.pairs)
-    pairs.push_back(
-        {{"model", index(p.model)}, {"reference", index(p.reference)}, {"matched_openings", p.matches.size()}});
+    pairs.push_back({{"model", index(p.model)},
+                     {"reference", index(p.reference)},
+                     {"matched_openings", p.matches.size()},
+                     {"left_out", p.left_out}});
   return {{"model", std::move(model)}, {"reference", std::move(reference)}, {"pairs", std::move(pairs)}};
 }
 
@@ -179,15 +181,17 @@ Json values_json(const MeasureValues& values) {
   return out;
 }
 
-Json unmatched_json(const City& city, const std::vector<std::uint32_t>& buildings) {
+/// \param covered  for each building the share of its footprint that the other model covers
+Json unmatched_json(const City& city, const std::vector<std::uint32_t>& buildings, const std::vector<double>& covered) {
   Json out = Json::array();
-  for (const std::uint32_t b : buildings) {
-    const Building& building = city.buildings[b];
+  for (std::size_t i = 0; i < buildings.size(); ++i) {
+    const Building& building = city.buildings[buildings[i]];
     const Point2 place = place_of(city, building);
     out.push_back({{"id", building.id},
                    {"file", building.file < city.files.size() ? Json(city.files[building.file].path) : Json()},
                    {"place", {number(place.x), number(place.y)}},
-                   {"footprint_area", number(building.footprint_area)}});
+                   {"footprint_area", number(building.footprint_area)},
+                   {"covered", i < covered.size() ? number(covered[i]) : Json()}});
   }
   return out;
 }
@@ -280,8 +284,8 @@ std::string comparison_json(const Comparison& c, const OptionList& options) {
   out["distances"] = distances_json(c.distances);
   out["roof_confusion"] = confusion_json(c);
   out["totals"] = {{"model", side_json(c.model_total, nullptr)}, {"reference", side_json(c.reference_total, nullptr)}};
-  out["missing"] = unmatched_json(c.reference, c.missing);
-  out["extra"] = unmatched_json(c.model, c.extra);
+  out["missing"] = unmatched_json(c.reference, c.missing, c.missing_covered);
+  out["extra"] = unmatched_json(c.model, c.extra, c.extra_covered);
   Json matches = Json::array();
   for (const MatchResult& m : c.matches)
     matches.push_back({{"id", m.id},
