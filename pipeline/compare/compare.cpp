@@ -136,7 +136,10 @@ Comparison compare_cities(City model, City reference, const CompareOptions& opti
                          options.surface, out.values, tallies[i]);
         out.model.left_out = tallies[i].model;
         out.reference.left_out = tallies[i].reference;
-        out.facades = compare_facades(c.model, out.model.buildings, c.reference, out.reference.buildings, options.facade);
+        // The reference's ground also where heights are absolute: drawings and cellars need one.
+        const double zero = out.reference.ground.value_or(out.model.ground.value_or(0));
+        out.facades = compare_facades(c.model, out.model.buildings, zero - up, c.reference, out.reference.buildings,
+                                      zero, options.facade);
         measure_facades(out.facades, c.model, out.model.buildings, c.reference, out.reference.buildings, out.values);
       },
       [&](std::size_t i) {

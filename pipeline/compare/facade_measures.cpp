@@ -16,12 +16,6 @@ struct Totals {
   std::size_t axes_pairs = 0, storey_pitch_pairs = 0, axis_pitch_pairs = 0;
 };
 
-double opening_area(const Facade& facade) {
-  double area = 0;
-  for (const FacadeOpening& o : facade.openings) area += o.area;
-  return area;
-}
-
 Totals totals(const FacadeComparison& c, bool with_left_out) {
   Totals t;
   for (const FacadePair& pair : c.pairs) {
@@ -32,13 +26,13 @@ Totals totals(const FacadeComparison& c, bool with_left_out) {
       t.model_storeys = std::max(t.model_storeys, model->storeys);
       t.model_openings += model->openings.size();
       t.model_area += model->area;
-      t.model_opening_area += opening_area(*model);
+      t.model_opening_area += model->opening_area;
     }
     if (reference != nullptr) {
       t.reference_storeys = std::max(t.reference_storeys, reference->storeys);
       t.reference_openings += reference->openings.size();
       t.reference_area += reference->area;
-      t.reference_opening_area += opening_area(*reference);
+      t.reference_opening_area += reference->opening_area;
     }
     if (model == nullptr || reference == nullptr) continue;
     t.matched += pair.matches.size();

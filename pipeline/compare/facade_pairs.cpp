@@ -1,7 +1,6 @@
 // Which facades of two models stand for each other, and which of their openings.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <tuple>
 
@@ -71,19 +70,6 @@ double score_of(const Facade& a, const Facade& b, const FacadeOptions& options) 
   const double both = lie->both * height;
   const double together = lie->width_a * (a.top - a.bottom) + lie->width_b * (b.top - b.bottom) - both;
   return both / together * (1 - 0.5 * lie->distance / options.pair_distance);
-}
-
-/// Whether the nearest of the facades before or behind `facade` is blank.
-bool behind_a_blank_one(const Facade& facade, std::span<const Facade> others, const FacadeOptions& options) {
-  long long nearest = std::numeric_limits<long long>::max();
-  bool blank = false;
-  for (const Facade& other : others) {
-    const auto lie = lie_of(facade, other, options);
-    if (!lie || lie->both < options.pair_overlap * lie->width_a - 1e-9 || rounded(lie->distance) > nearest) continue;
-    blank = other.blank && (blank || rounded(lie->distance) < nearest);
-    nearest = rounded(lie->distance);
-  }
-  return blank;
 }
 
 /// A key that is the same when the two facades are exchanged.
@@ -180,17 +166,17 @@ std::vector<FacadePair> pair_facades(std::span<const Facade> model, std::span<co
   for (const std::size_t r : by_area(reference, of_reference, false))
     pairs.push_back({FacadePair::kNone, r, {}, reference[r].left_out()});
   for (const std::size_t m : by_area(model, of_model, false))
-    pairs.push_back(
-        {m, FacadePair::kNone, {}, model[m].is_covered() || behind_a_blank_one(model[m], reference, options)});
+    pairs.push_back({m, FacadePair::kNone, {}, model[m].is_covered() && model[m].openings.empty()});
   return pairs;
 }
 
 FacadeComparison compare_facades(const City& model, std::span<const std::uint32_t> model_buildings,
-                                 const City& reference, std::span<const std::uint32_t> reference_buildings,
+                                 double model_zero, const City& reference,
+                                 std::span<const std::uint32_t> reference_buildings, double reference_zero,
                                  const FacadeOptions& options) {
   FacadeComparison out;
-  out.model = facades_of(model, model_buildings, options, &out.model_loose);
-  out.reference = facades_of(reference, reference_buildings, options, &out.reference_loose);
+  out.model = facades_of(model, model_buildings, model_zero, options, &out.model_loose);
+  out.reference = facades_of(reference, reference_buildings, reference_zero, options, &out.reference_loose);
   out.pairs = pair_facades(out.model, out.reference, options);
   return out;
 }

@@ -160,7 +160,7 @@ double area_of(const std::vector<FlatPolygon>& walls, const std::vector<std::vec
   return area;
 }
 
-void add_openings(const Draft& draft, const City& city, double ground, Facade& facade,
+void add_openings(const Draft& draft, const City& city, double zero, Facade& facade,
                   std::vector<std::vector<FlatPolygon>>& polygons) {
   std::vector<FacadeOpening> seen;
   std::vector<View> views;
@@ -169,8 +169,8 @@ void add_openings(const Draft& draft, const City& city, double ground, Facade& f
     FacadeOpening o;
     o.left = view.left;
     o.right = view.right;
-    o.bottom = view.bottom - ground;
-    o.top = view.top - ground;
+    o.bottom = view.bottom - zero;
+    o.top = view.top - zero;
     o.area = union_area(view.polygons);
     o.door = city.buildings[opening.building].openings[opening.opening].door;
     o.building = opening.building;
@@ -192,7 +192,7 @@ void add_openings(const Draft& draft, const City& city, double ground, Facade& f
   }
 }
 
-Facade finish(const Draft& draft, const City& city, const FacadeOptions& options) {
+Facade finish(const Draft& draft, const City& city, double zero, const FacadeOptions& options) {
   const WallGroup& group = draft.group;
   Facade facade;
   std::map<std::uint32_t, double> area_in;
@@ -207,15 +207,14 @@ Facade finish(const Draft& draft, const City& city, const FacadeOptions& options
       facade.building = building;
     }
   }
-  const double ground = city.buildings[facade.building].ground;
   const Point2 along = group.along();
   const auto place = [&](double at) {
     return Point2{group.offset * group.normal.x + at * along.x, group.offset * group.normal.y + at * along.y};
   };
   facade.left = place(group.left);
   facade.right = place(group.right);
-  facade.bottom = group.bottom - ground;
-  facade.top = group.top - ground;
+  facade.bottom = group.bottom - zero;
+  facade.top = group.top - zero;
 
   std::vector<FlatPolygon> walls, covered;
   for (const WallPiece& piece : group.pieces) {
@@ -225,12 +224,15 @@ Facade finish(const Draft& draft, const City& city, const FacadeOptions& options
     Rings3& outline = facade.outline.emplace_back();
     for (const auto& ring : walls.back()) {
       auto& points = outline.emplace_back();
-      for (const Point2& p : ring) points.push_back({p.x, p.y - ground, 0});
+      for (const Point2& p : ring) points.push_back({p.x, p.y - zero, 0});
     }
   }
   std::vector<std::vector<FlatPolygon>> openings;
-  add_openings(draft, city, ground, facade, openings);
+  add_openings(draft, city, zero, facade, openings);
   facade.area = area_of(walls, openings);
+  std::vector<FlatPolygon> all_openings;
+  for (const auto& polygons : openings) all_openings.insert(all_openings.end(), polygons.begin(), polygons.end());
+  facade.opening_area = std::min(facade.area, union_area(all_openings));
   facade.covered = covered.empty() ? 0 : std::min(facade.area, union_area(covered));
   find_rows_and_columns(facade, options);
   return facade;
@@ -243,8 +245,8 @@ double Facade::width() const {
   return std::sqrt(dot(d, d));
 }
 
-std::vector<Facade> facades_of(const City& city, std::span<const std::uint32_t> buildings, const FacadeOptions& options,
-                               std::size_t* loose) {
+std::vector<Facade> facades_of(const City& city, std::span<const std::uint32_t> buildings, double zero,
+                               const FacadeOptions& options, std::size_t* loose) {
   std::vector<Draft> drafts;
   for (WallGroup& group : wall_groups(city, buildings, options)) drafts.push_back({std::move(group), {}});
   std::size_t without = 0;
@@ -266,7 +268,7 @@ std::vector<Facade> facades_of(const City& city, std::span<const std::uint32_t> 
   if (loose != nullptr) *loose = without;
 
   std::vector<Facade> facades;
-  for (const Draft& draft : drafts) facades.push_back(finish(draft, city, options));
+  for (const Draft& draft : drafts) facades.push_back(finish(draft, city, zero, options));
   const bool any_openings =
       std::any_of(facades.begin(), facades.end(), [](const Facade& f) { return !f.openings.empty(); });
   for (Facade& f : facades)
@@ -285,7 +287,7 @@ std::size_t mark_blank(City& reference, std::span<const std::vector<std::uint32_
                        const FacadeOptions& options) {
   std::size_t blank = 0;
   for (const auto& group : groups) {
-    for (const Facade& facade : facades_of(reference, group, options)) {
+    for (const Facade& facade : facades_of(reference, group, 0, options)) {
       if (!facade.blank) continue;
       ++blank;
       for (const auto& [building, index] : facade.faces) {

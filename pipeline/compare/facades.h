@@ -33,7 +33,7 @@ struct FacadeOptions {
 /// along the facade's normal or against it: panes and frames, not the sides of reveals.
 struct FacadeOpening {
   double left = 0, right = 0;  ///< m along the facade, from its left end as seen from outside
-  double bottom = 0, top = 0;  ///< m above the building's own ground
+  double bottom = 0, top = 0;  ///< m above the match's zero (facades_of)
   double area = 0;             ///< m² of the opening itself in the facade's plane
   bool door = false;
   int row = -1,
@@ -47,11 +47,12 @@ struct Facade {
   std::size_t building = 0;  ///< index into its City's buildings: the one with most of its area
   std::vector<std::pair<std::uint32_t, std::uint32_t>> faces;  ///< (building, index into its faces), sorted
   Point2 left, right;           ///< plan, relative to City::origin; left and right as seen from outside
-  double bottom = 0, top = 0;   ///< m above the building's own ground
+  double bottom = 0, top = 0;   ///< m above the match's zero (facades_of)
   double area = 0;              ///< m² of its walls and openings in the facade's plane, each place once
+  double opening_area = 0;      ///< m² of its openings in the facade's plane, each place once
   double covered = 0;           ///< m² of `area` that faces with LeftOut::covered make
   std::vector<Rings3> outline;  ///< of its walls in the facade's plane: x along the facade from `left`, y above the
-                                ///< own ground, z 0; for drawings, may overlap
+                                ///< zero, z 0; for drawings, may overlap
   std::vector<FacadeOpening> openings;             ///< from left to right, then from below
   int storeys = 0;                                 ///< rows of openings that are storeys
   int axes = 0;                                    ///< columns of openings that are axes
@@ -77,9 +78,12 @@ struct Facade {
 /// (in roofs and dormers, on curved walls in narrow pieces, in niches, or without an area) are in none; `loose` counts
 /// them.
 ///
+/// Heights are above `zero` (z in m), which is one for all buildings: on a slope the houses of a block have grounds of
+/// their own, and the block has one.
+///
 /// Neither the order of buildings, faces and openings nor the way in which walls are cut into polygons matters.
 /// Cost: O(pieces x planes) for walls, for openings O(openings x facades) plus a sweep over each one's polygons.
-std::vector<Facade> facades_of(const City& city, std::span<const std::uint32_t> buildings,
+std::vector<Facade> facades_of(const City& city, std::span<const std::uint32_t> buildings, double zero,
                                const FacadeOptions& options = {}, std::size_t* loose = nullptr);
 
 /// Marks the faces of blank facades LeftOut::blank: the groups are the reference's sides of the matches. Faces that are
@@ -98,11 +102,10 @@ struct FacadePair {
   std::size_t model = kNone, reference = kNone;  ///< indices into the lists of facades; kNone: has no partner
   /// Openings that match at match_iou, one to one: (index into the model's openings, into the reference's), ascending.
   /// Both are seen in the direction half way between both facades (which are one plane's in most pairs), so that the
-  /// model and the reference can be exchanged; heights above each building's own ground.
+  /// model and the reference can be exchanged; heights above each side's zero.
   std::vector<std::pair<std::size_t, std::size_t>> matches;
-  /// Takes no part in `counted`: the reference's facade is left_out(); or there is none and the model's is covered, or
-  /// the nearest facade of the reference that looks the same way and stands before or behind it (half of its width in
-  /// common) is blank: a wing in a yard that the survey did not see.
+  /// Takes no part in `counted`: the reference's facade is left_out(); or there is none and the model's is covered and
+  /// without openings. (What stands where the reference has nothing is wrong, also in a yard.)
   bool left_out = false;
 };
 /// Pairs facades within pair_angle and pair_distance (across, in the middle of what they have in common) that have
@@ -120,9 +123,10 @@ struct FacadeComparison {
   std::vector<FacadePair> pairs;  ///< the reference's largest facade first, then facades without a partner
   std::size_t model_loose = 0, reference_loose = 0;  ///< openings that are in no facade, and in no measure
 };
-/// Requires marks of what is left out (Face::left_out).
+/// Requires marks of what is left out (Face::left_out). The zeros are the z (m) of both models that are one height.
 FacadeComparison compare_facades(const City& model, std::span<const std::uint32_t> model_buildings,
-                                 const City& reference, std::span<const std::uint32_t> reference_buildings,
+                                 double model_zero, const City& reference,
+                                 std::span<const std::uint32_t> reference_buildings, double reference_zero,
                                  const FacadeOptions& options = {});
 
 /// Sets the measures of Scope::facades, none else.

@@ -112,6 +112,7 @@ struct Summary {
   std::size_t count = 0;  ///< matches with a value
   double pooled = 0;      ///< by the measure's Pool
   double mean = 0, mean_abs = 0, rms = 0, median = 0, p95_abs = 0, min = 0, max = 0;  ///< of matches, each alike
+  double mean_factor = 1;  ///< of ratios (Better::one): mean_factor() of the matches, each alike
 };
 struct MeasureSummary {
   Summary counted, all;

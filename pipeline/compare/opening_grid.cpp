@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 namespace blockrand::compare {
@@ -49,28 +50,61 @@ std::vector<Lane> lanes_of(const std::vector<Extent>& extents, std::vector<std::
   const auto joins = [&](const Extent& a, const Extent& b) {
     return std::fabs(a.centre() - b.centre()) < gap * std::min(a.length(), b.length()) - kMargin;
   };
-  while (!which.empty()) {
-    std::size_t seed = which.front();
-    std::pair<long long, long long> best{-1, 0};  // weight, and how near its members lie
-    for (const std::size_t s : which) {
-      double weight = 0, spread = 0;
-      for (const std::size_t i : which) {
-        if (i != s && !joins(extents[s], extents[i])) continue;
-        weight += extents[i].weight;
-        spread += extents[i].weight * std::fabs(extents[i].centre() - extents[s].centre());
-      }
-      const std::pair<long long, long long> value{rounded(weight), -rounded(spread)};
-      if (value > best) {
-        best = value;
-        seed = s;
+  // What an extent may join lies in a stretch of `which`: its size, not that of all, is what a seed costs.
+  const auto near = [&](std::size_t at) {
+    const Extent& e = extents[which[at]];
+    const double reach = gap * e.length();
+    const auto from = std::lower_bound(
+        which.begin(), which.end(), rounded(e.centre() - reach) - 1,
+        [&](std::size_t i, long long centre) { return rounded(extents[i].centre()) < centre; });
+    const auto to = std::upper_bound(
+        which.begin(), which.end(), rounded(e.centre() + reach) + 1,
+        [&](long long centre, std::size_t i) { return centre < rounded(extents[i].centre()); });
+    return std::pair(static_cast<std::size_t>(from - which.begin()), static_cast<std::size_t>(to - which.begin()));
+  };
+  using Value = std::pair<long long, long long>;  // weight, and how near its members lie
+  std::vector<std::optional<Value>> values(which.size());
+  std::vector<bool> taken(which.size(), false);
+  const auto value_of = [&](std::size_t at) {
+    const Extent& seed = extents[which[at]];
+    const auto [from, to] = near(at);
+    double weight = 0, spread = 0;
+    for (std::size_t k = from; k < to; ++k) {
+      const Extent& e = extents[which[k]];
+      if (taken[k] || (k != at && !joins(seed, e))) continue;
+      weight += e.weight;
+      spread += e.weight * std::fabs(e.centre() - seed.centre());
+    }
+    return Value{rounded(weight), -rounded(spread)};
+  };
+  for (std::size_t left = which.size(); left > 0;) {
+    std::size_t seed = which.size();
+    Value best{-1, 0};
+    for (std::size_t at = 0; at < which.size(); ++at) {
+      if (taken[at]) continue;
+      if (!values[at]) values[at] = value_of(at);
+      if (seed == which.size() || *values[at] > best) {
+        best = *values[at];
+        seed = at;
       }
     }
     Lane lane;
-    for (const std::size_t i : which)
-      if (i == seed || joins(extents[seed], extents[i])) lane.members.push_back(i);
-    std::erase_if(which, [&](std::size_t i) {
-      return std::find(lane.members.begin(), lane.members.end(), i) != lane.members.end();
-    });
+    std::vector<std::size_t> members;  // indices into which
+    const auto [first, last] = near(seed);
+    for (std::size_t k = first; k < last; ++k)
+      if (!taken[k] && (k == seed || joins(extents[which[seed]], extents[which[k]]))) members.push_back(k);
+    for (const std::size_t k : members) {
+      lane.members.push_back(which[k]);
+      taken[k] = true;
+    }
+    left -= members.size();
+    // Those that could join a member are worth less now.
+    for (std::size_t at = 0; at < which.size(); ++at) {
+      if (taken[at] || !values[at]) continue;
+      const auto [from, to] = near(at);
+      const auto gone = std::lower_bound(members.begin(), members.end(), from);
+      if (gone != members.end() && *gone < to) values[at].reset();
+    }
     std::vector<double> lows, highs, centres;
     for (const std::size_t i : lane.members) {
       lane.weight += extents[i].weight;

@@ -10,9 +10,11 @@
 namespace blockrand::compare {
 namespace {
 
-/// RFC 4180: quoted where a comma, a quote or a line break is in it.
+/// RFC 4180: quoted where a comma, a quote or a line break is in it. What a spreadsheet would run as a formula gets an
+/// apostrophe before it: ids come from files of others.
 void append_text(std::string& out, std::string_view text) {
   std::string clean;
+  if (!text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos) clean = "'";
   base::append_clean(clean, text);
   if (clean.find_first_of(",\"\r\n") == std::string::npos) {
     out += clean;

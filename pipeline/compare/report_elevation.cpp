@@ -117,7 +117,7 @@ std::string drawing(const MatchResult& match, const FacadePair& pair, int width)
   sheet.top = box.top + kMargin / sheet.scale;
   const int w = std::max(120, static_cast<int>(std::ceil(wide * sheet.scale + 2 * kMargin)));
   const int h = static_cast<int>(std::ceil(high * sheet.scale + kMargin + kFoot));
-  const std::string_view left_out = reference ? left_out_because(*reference) : std::string_view();
+  const std::string_view left_out = left_out_because(pair, match.facades);
 
   std::string out = fmt::format(
       "<figure class=\"elevation{}\" style=\"width: {}px\"><svg viewBox=\"0 0 {} {}\" width=\"{}\" height=\"{}\" "
@@ -163,9 +163,9 @@ std::string drawing(const MatchResult& match, const FacadePair& pair, int width)
 
 }  // namespace
 
-std::string_view left_out_because(const Facade& facade) {
-  if (facade.blank) return "blank";
-  return facade.area > 0 && facade.covered >= facade.area / 2 ? "party wall" : "";
+std::string_view left_out_because(const FacadePair& pair, const FacadeComparison& facades) {
+  if (!pair.left_out) return "";
+  return pair.reference < facades.reference.size() && facades.reference[pair.reference].blank ? "blank" : "party wall";
 }
 
 std::string elevation_drawings(const MatchResult& match, int width) {
@@ -184,8 +184,8 @@ std::string elevation_drawings(const MatchResult& match, int width) {
   std::erase_if(drawn, [&](const FacadePair* p) { return area(*p) < largest * kWorthDrawing; });
   // Facades that both have, then those of one model, then what is left out.
   const auto rank = [&](const FacadePair* p) {
-    if (p->reference >= f.reference.size()) return 1;
-    return !left_out_because(f.reference[p->reference]).empty() ? 2 : p->model >= f.model.size() ? 1 : 0;
+    if (p->left_out) return 2;
+    return p->reference >= f.reference.size() || p->model >= f.model.size() ? 1 : 0;
   };
   std::stable_sort(drawn.begin(), drawn.end(), [&](const FacadePair* a, const FacadePair* b) {
     return rank(a) != rank(b) ? rank(a) < rank(b) : area(*a) > area(*b);

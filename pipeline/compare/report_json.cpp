@@ -70,10 +70,10 @@ Json registration_json(const Registration& r) {
           {"rule", r.rule}};
 }
 
-Json summary_json(const Summary& s) {
+Json summary_json(const Summary& s, Better better) {
   const bool any = s.count > 0;
   const auto value = [&](double v) { return any ? number(v) : Json(); };
-  return {{"count", s.count},
+  Json out = {{"count", s.count},
           {"pooled", value(s.pooled)},
           {"mean", value(s.mean)},
           {"mean_abs", value(s.mean_abs)},
@@ -82,6 +82,8 @@ Json summary_json(const Summary& s) {
           {"p95_abs", value(s.p95_abs)},
           {"min", value(s.min)},
           {"max", value(s.max)}};
+  if (better == Better::one) out["mean_factor"] = value(s.mean_factor);
+  return out;
 }
 
 Json summaries_json(const MeasureSummaries& summaries) {
@@ -95,8 +97,8 @@ Json summaries_json(const MeasureSummaries& summaries) {
                                     {"pool", name_of(measure.pool)},
                                     {"scope", name_of(measure.scope)},
                                     {"left_out", number(summaries[m].left_out)},
-                                    {"counted", summary_json(summaries[m].counted)},
-                                    {"all", summary_json(summaries[m].all)}};
+                                    {"counted", summary_json(summaries[m].counted, measure.better)},
+                                    {"all", summary_json(summaries[m].all, measure.better)}};
   }
   return out;
 }
@@ -159,8 +161,10 @@ Json facades_json(const FacadeComparison& facades, const Comparison& c) {
   for (const Facade& f : facades.reference) reference.push_back(facade_json(f, c.reference));
   const auto index = [](std::size_t i) { return i == FacadePair::kNone ? Json() : Json(i); };
   for (const FacadePair& p : facades.pairs)
-    pairs.push_back(
-        {{"model", index(p.model)}, {"reference", index(p.reference)}, {"matched_openings", p.matches.size()}});
+    pairs.push_back({{"model", index(p.model)},
+                     {"reference", index(p.reference)},
+                     {"matched_openings", p.matches.size()},
+                     {"left_out", p.left_out}});
   return {{"model", std::move(model)}, {"reference", std::move(reference)}, {"pairs", std::move(pairs)}};
 }
 
@@ -177,15 +181,17 @@ Json values_json(const MeasureValues& values) {
   return out;
 }
 
-Json unmatched_json(const City& city, const std::vector<std::uint32_t>& buildings) {
+/// \param covered  for each building the share of its footprint that the other model covers
+Json unmatched_json(const City& city, const std::vector<std::uint32_t>& buildings, const std::vector<double>& covered) {
   Json out = Json::array();
-  for (const std::uint32_t b : buildings) {
-    const Building& building = city.buildings[b];
+  for (std::size_t i = 0; i < buildings.size(); ++i) {
+    const Building& building = city.buildings[buildings[i]];
     const Point2 place = place_of(city, building);
     out.push_back({{"id", building.id},
                    {"file", building.file < city.files.size() ? Json(city.files[building.file].path) : Json()},
                    {"place", {number(place.x), number(place.y)}},
-                   {"footprint_area", number(building.footprint_area)}});
+                   {"footprint_area", number(building.footprint_area)},
+                   {"covered", i < covered.size() ? number(covered[i]) : Json()}});
   }
   return out;
 }
@@ -257,7 +263,7 @@ std::string comparison_json(const Comparison& c, const OptionList& options) {
   for (const auto& [key, value] : options) asked[key] = value;
   out["options"] = std::move(asked);
   out["crs"] = c.reference.crs.empty() ? c.model.crs : c.reference.crs;
-  out["heights"] = c.absolute_heights ? "absolute" : "above own ground";
+  out["heights"] = heights_key(c);
   out["model"] = city_json(c.model);
   out["reference"] = city_json(c.reference);
   out["registration"] = registration_json(c.registration);
@@ -271,13 +277,15 @@ std::string comparison_json(const Comparison& c, const OptionList& options) {
                    {"matched_reference_buildings", reference_buildings},
                    {"missing", c.missing.size()},
                    {"extra", c.extra.size()},
+                   {"missing_area", number(footprint_area(c.reference, c.missing))},
+                   {"extra_area", number(footprint_area(c.model, c.extra))},
                    {"blank_facades", c.blank_facades}};
   out["summary"] = summaries_json(c.summaries);
   out["distances"] = distances_json(c.distances);
   out["roof_confusion"] = confusion_json(c);
   out["totals"] = {{"model", side_json(c.model_total, nullptr)}, {"reference", side_json(c.reference_total, nullptr)}};
-  out["missing"] = unmatched_json(c.reference, c.missing);
-  out["extra"] = unmatched_json(c.model, c.extra);
+  out["missing"] = unmatched_json(c.reference, c.missing, c.missing_covered);
+  out["extra"] = unmatched_json(c.model, c.extra, c.extra_covered);
   Json matches = Json::array();
   for (const MatchResult& m : c.matches)
     matches.push_back({{"id", m.id},

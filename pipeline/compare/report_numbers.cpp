@@ -75,8 +75,15 @@ std::string value_with_unit(const MeasureInfo& measure, const std::optional<doub
   return out += unit;
 }
 
+double footprint_area(const City& city, std::span<const std::uint32_t> buildings) {
+  double area = 0;
+  for (const std::uint32_t b : buildings) area += city.buildings[b].footprint_area;
+  return area;
+}
+
 std::optional<double> headline(const MeasureInfo& measure, const Summary& summary) {
   if (summary.count == 0) return std::nullopt;
+  if (measure.better == Better::one) return finite(summary.mean_factor);
   return finite(measure.better == Better::zero ? summary.mean_abs : summary.pooled);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -34,11 +35,18 @@ bool is_share(const MeasureInfo& measure);
 /// The value with its unit, "0.42 m"; a dash without a value.
 std::string value_with_unit(const MeasureInfo& measure, const std::optional<double>& value, bool sign = true);
 
-/// Of a value with a sign the mean size of the errors (MAE), else what all matches have together; nothing without
-/// values.
+/// Of a value with a sign the mean size of the errors (MAE), of a ratio the factor by which it is off on average
+/// (mean_factor), else what all matches have together; nothing without values.
 std::optional<double> headline(const MeasureInfo& measure, const Summary& summary);
 
-/// Which heights are compared, for people.
+/// m² of the buildings' footprints.
+double footprint_area(const City& city, std::span<const std::uint32_t> buildings);
+
+/// Which heights are compared, as compare.json has it.
+inline std::string_view heights_key(const Comparison& comparison) {
+  return comparison.absolute_heights ? "absolute" : "above own ground";
+}
+/// The same for people.
 inline std::string_view heights_text(const Comparison& comparison) {
   return comparison.absolute_heights ? "as they stand in the files" : "above each building's own ground";
 }

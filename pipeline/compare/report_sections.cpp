@@ -163,7 +163,7 @@ std::string head_section(const Comparison& c) {
   if (!c.matches.empty()) {
     std::string tiles =
         tile(c, Measure::footprint_iou, "footprint IoU") + tile(c, Measure::eaves_error, "eaves, mean error") +
-        tile(c, Measure::ridge_error, "ridge, mean error") + tile(c, Measure::roof_volume_ratio, "volume under roofs") +
+        tile(c, Measure::ridge_error, "ridge, mean error") + tile(c, Measure::roof_volume_ratio, "volume under roofs, factor off") +
         tile(c, Measure::distance_rms, "surface distance, RMS") +
         tile(c, Measure::completeness_050, "complete within 0.5\u00a0m") +
         tile(c, Measure::opening_recall, "openings found");

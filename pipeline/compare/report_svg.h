@@ -33,8 +33,7 @@ std::string plan_drawing(const Comparison& comparison, const MatchResult& match,
 /// Empty where no side has a facade.
 std::string elevation_drawings(const MatchResult& match, int width);
 
-/// Whether a facade of the reference takes no part in what is counted, and why: "blank", "party wall"; empty if it
-/// does.
-std::string_view left_out_because(const Facade& facade);
+/// Why a pair of facades takes no part in what is counted: "blank", "party wall"; empty if it does.
+std::string_view left_out_because(const FacadePair& pair, const FacadeComparison& facades);
 
 }  // namespace blockrand::compare

@@ -23,18 +23,18 @@ constexpr std::array<Limit, 11> kLimits{{
     {Measure::footprint_iou, 0.9, 0.7, "footprints (IoU {})"},
     {Measure::eaves_error, 0.5, 1.5, "eaves ({} off on average)"},
     {Measure::ridge_error, 0.5, 1.5, "ridges ({} off on average)"},
-    {Measure::roof_volume_ratio, 1.05, 1.2, "volume under roofs ({} of the reference’s)"},
+    {Measure::roof_volume_ratio, 1.05, 1.2, "volume under roofs (off by a factor of {} on average)"},
     {Measure::distance_rms, 0.5, 1.5, "surfaces ({} apart, RMS)"},
     {Measure::roof_type_agrees, 0.9, 0.6, "roof forms (the same in {})"},
     {Measure::storeys_error, 0.25, 1, "storeys ({} off on average)"},
     {Measure::axes_error, 0.5, 1.5, "axes of facades ({} off on average)"},
-    {Measure::openings_ratio, 1.1, 1.5, "number of openings ({} of the reference’s)"},
+    {Measure::openings_ratio, 1.1, 1.5, "number of openings (off by a factor of {} on average)"},
     {Measure::opening_recall, 0.7, 0.3, "places of openings ({} found)"},
     {Measure::window_to_wall_error, 0.03, 0.1, "window-to-wall ratio ({} off on average)"},
 }};
 
 std::string with_unit(const MeasureInfo& measure, double value) {
-  return measure.better == Better::one ? percent(value, 0) : value_with_unit(measure, value, false);
+  return measure.better == Better::one ? fixed(value, 2) : value_with_unit(measure, value, false);
 }
 
 /// 1: agrees, 0: between, -1: differs.
@@ -42,10 +42,6 @@ int verdict(const MeasureInfo& measure, const Limit& limit, double value) {
   switch (measure.better) {
     case Better::higher:
       return value >= limit.agrees ? 1 : value < limit.differs ? -1 : 0;
-    case Better::one: {
-      const double factor = value >= 1 ? value : value > 0 ? 1 / value : limit.differs + 1;
-      return factor <= limit.agrees ? 1 : factor > limit.differs ? -1 : 0;
-    }
     default:
       return value <= limit.agrees ? 1 : value > limit.differs ? -1 : 0;
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "pipeline/base/portable_math.h"
+
 namespace blockrand::compare {
 
 namespace {
@@ -44,7 +46,7 @@ double pooled(const std::vector<Weighted>& values, Pool pool) {
   return pool == Pool::rms ? std::sqrt(sum / weight) : sum / weight;
 }
 
-Summary summary_of(const std::vector<Weighted>& values, Pool pool) {
+Summary summary_of(const std::vector<Weighted>& values, const MeasureInfo& measure) {
   Summary out;
   out.count = values.size();
   if (values.empty()) return out;
@@ -65,7 +67,8 @@ Summary summary_of(const std::vector<Weighted>& values, Pool pool) {
   out.p95_abs = quantile(absolute, 0.95);
   out.min = sorted.front();
   out.max = sorted.back();
-  out.pooled = pooled(values, pool);
+  out.pooled = pooled(values, measure.pool);
+  if (measure.better == Better::one) out.mean_factor = mean_factor(sorted);
   return out;
 }
 
@@ -86,6 +89,13 @@ double scope_area(const MatchResult& match, Scope scope) {
 
 }  // namespace
 
+double mean_factor(std::span<const double> ratios) {
+  if (ratios.empty()) return 1;
+  double sum = 0;
+  for (const double ratio : ratios) sum += std::fabs(base::log(std::clamp(ratio, 0.01, 100.0)));
+  return base::exp(sum / static_cast<double>(ratios.size()));
+}
+
 MeasureSummaries summarise(std::span<const MatchResult> matches) {
   MeasureSummaries out;
   for (std::size_t m = 0; m < kMeasureCount; ++m) {
@@ -100,8 +110,8 @@ MeasureSummaries summarise(std::span<const MatchResult> matches) {
       left += v.left_out * here;
       area += here;
     }
-    out[m].counted = summary_of(counted, kMeasures[m].pool);
-    out[m].all = summary_of(all, kMeasures[m].pool);
+    out[m].counted = summary_of(counted, kMeasures[m]);
+    out[m].all = summary_of(all, kMeasures[m]);
     out[m].left_out = area > 0 ? left / area : 0;
   }
   return out;

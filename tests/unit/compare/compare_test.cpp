@@ -240,6 +240,24 @@ TEST(Compare, ABoxOneStoreyHigher) {
   expect_distances(model, reference);
 }
 
+TEST(Compare, OpeningsAreComparedAtTheHeightsThatTheRestIs) {
+  // One window at one height, above a ground that lies 2 m higher in the reference.
+  const auto with_window = [](double ground) {
+    Building b = building_of({.height = 9 - ground, .ground = ground});
+    Opening window;
+    window.polygons = {{{{-1, -4, 4}, {1, -4, 4}, {1, -4, 5.5}, {-1, -4, 5.5}}}};
+    b.openings.push_back(window);
+    return city_of_blocks({b});
+  };
+  EXPECT_EQ(counted(compared(with_window(0), with_window(2)), Measure::opening_recall), 0);
+  CompareOptions options;
+  options.heights = Heights::absolute;
+  const Comparison absolute = compared(with_window(0), with_window(2), options);
+  EXPECT_EQ(counted(absolute, Measure::opening_recall), 1);
+  EXPECT_NEAR(absolute.matches[0].facades.reference[0].bottom, 0, 1e-9);
+  EXPECT_NEAR(absolute.matches[0].facades.model[0].bottom, -2, 1e-9);
+}
+
 TEST(Compare, HeightsAreAboveOnesOwnGround) {
   const Block reference{.ground = 34.5}, model{.height = 6.5, .ground = 0};
   const Comparison own = compared(building_of(model), building_of(reference));

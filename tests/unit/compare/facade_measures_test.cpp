@@ -158,6 +158,18 @@ TEST(FacadeMeasures, ChangeSidesWhenTheModelsDo) {
   }
 }
 
+TEST(FacadeMeasures, CountTheAreaOfNestedOpeningsOnce) {
+  // A glazed front that is one opening with its 20 windows in it.
+  auto windows = grid(5, 4);
+  const double small = 20 * 1.8, large = 12.9 * 12.4;
+  City nested = street_house({}, 12.5);
+  const City inner = street_house(windows, 12.5), outer = street_house({{0.05, 12.95, 0.05, 12.45}}, 12.5);
+  for (const City* city : {&inner, &outer})
+    for (const Opening& o : city->buildings[0].openings) nested.buildings[0].openings.push_back(o);
+  const MeasureValues values = measured(nested, inner);
+  EXPECT_THAT(value(values, Measure::window_to_wall_error).counted, is((large - small) / (13 * 12.5)));
+}
+
 TEST(FacadeMeasures, LeaveOutWhatIsBlank) {
   City reference = street_house(grid(5, 4), 12.5);
   const City model = city_of({house(rectangle(0, 0, 13, 11), 12.5, {grid(5, 4), grid(4, 4), grid(5, 4), grid(4, 4)})});
@@ -178,19 +190,26 @@ TEST(FacadeMeasures, LeaveOutWhatIsBlank) {
   for (const Measure m : kFacadeMeasures) EXPECT_NEAR(value(values, m).left_out, 35.0 / 48, kExact) << info(m).id;
 }
 
-TEST(FacadeMeasures, LeaveOutWingsInAYardThatTheReferenceDoesNotShow) {
+TEST(FacadeMeasures, CountWingsThatTheReferenceDoesNotShow) {
   // The reference is a plain block with a blank back; the model has a wing behind it, with windows to the back.
   const City reference = street_house(grid(5, 4), 12.5);
   const std::vector<Point2> plan{{0, 0}, {13, 0}, {13, 16}, {5, 16}, {5, 11}, {0, 11}};
   const City model = city_of({house(plan, 12.5, {grid(5, 4), {}, grid(3, 4), grid(1, 4), grid(1, 4)})});
-  const MeasureValues values = measured(model, reference);
-  // The wing's flank looks to the west beside the reference's west side, not behind it: it counts.
-  EXPECT_THAT(value(values, Measure::opening_precision).counted, is(20.0 / 24));
-  EXPECT_THAT(value(values, Measure::opening_precision).all, is(20.0 / 40));
-  EXPECT_EQ(value(values, Measure::opening_precision).weight, 24);
-  // Before a back with windows the wing's windows are wrong ones.
-  const City open = city_of({house(rectangle(0, 0, 13, 11), 12.5, {grid(5, 4), {}, grid(1, 1)})});
-  EXPECT_EQ(value(measured(model, open), Measure::opening_precision).weight, 40);
+  // What is paired with the blank back leaves: one column of windows.
+  EXPECT_EQ(value(measured(model, reference), Measure::opening_precision).weight, 36);
+  EXPECT_THAT(value(measured(model, reference), Measure::opening_precision).all, is(20.0 / 40));
+}
+
+TEST(FacadePairs, LeaveOutAModelsPartyWallsButNoWindowsInThem) {
+  City model = city_of({house(rectangle(0, 0, 13, 11), 12.5, {{}, grid(3, 3)})});
+  // South, east, north, west after ground and roof; nothing of the reference is near.
+  for (const std::size_t wall : {2, 3}) model.buildings[0].faces[wall].left_out = LeftOut::covered;
+  const auto found = facades(model);
+  const auto pairs = pair_facades(found, {});
+  ASSERT_EQ(pairs.size(), 4U);
+  for (const FacadePair& pair : pairs)
+    EXPECT_EQ(pair.left_out, found[pair.model].is_covered() && found[pair.model].openings.empty());
+  EXPECT_EQ(std::count_if(pairs.begin(), pairs.end(), [](const FacadePair& p) { return p.left_out; }), 1);
 }
 
 TEST(FacadeMeasures, LeaveOutWhatNeighboursCover) {
@@ -268,6 +287,32 @@ TEST(FacadeMeasures, OfABlockAgainstItsHouses) {
     EXPECT_THAT(value(values, Measure::opening_precision).counted, is(1));
     EXPECT_THAT(value(values, Measure::axes_error).counted, is(0));
     EXPECT_THAT(value(values, Measure::window_to_wall_error).counted, is(0));
+  }
+}
+
+TEST(FacadeMeasures, OfABlockAgainstItsHousesOnASlope) {
+  // The same walls: the upper house, with the larger part of the front, begins 3 m higher; so do its windows.
+  const double step = 3;
+  HouseStyle upper;
+  upper.ground += step;
+  auto left = grid(5, 4), right = grid(6, 3), whole = left;
+  for (Hole h : right) {
+    h.left += 13;
+    h.right += 13;
+    h.bottom += step;
+    h.top += step;
+    whole.push_back(h);
+  }
+  City block = city_of({house(rectangle(0, 0, 29, 11), 12.5, {whole})});
+  City houses = city_of({house(rectangle(0, 0, 13, 11), 12.5, {left}),
+                         house(rectangle(13, 0, 29, 11), 12.5 - step, {right}, upper)});
+  houses.buildings[0].faces[3].left_out = LeftOut::covered;  // east
+  houses.buildings[1].faces[5].left_out = LeftOut::covered;  // west
+  for (const auto& [a, b] : {std::pair(&block, &houses), std::pair(&houses, &block)}) {
+    const MeasureValues values = measured(*a, *b);
+    EXPECT_THAT(value(values, Measure::opening_recall).counted, is(1));
+    EXPECT_THAT(value(values, Measure::opening_precision).counted, is(1));
+    EXPECT_THAT(value(values, Measure::storeys_error).counted, is(0));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "pipeline/geometry/polygon.h"
@@ -164,7 +165,13 @@ std::vector<std::uint32_t> all_of(const City& city) {
   return out;
 }
 
-std::vector<Facade> facades(const City& city) { return facades_of(city, all_of(city)); }
+double ground_of(const City& city) {
+  double ground = std::numeric_limits<double>::infinity();
+  for (const Building& b : city.buildings) ground = std::min(ground, b.ground);
+  return ground;
+}
+
+std::vector<Facade> facades(const City& city) { return facades_of(city, all_of(city), ground_of(city)); }
 
 void turn(City& city, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
@@ -205,7 +212,7 @@ void reverse(Building& building) {
 MeasureValues measured(const City& model, const City& reference) {
   const auto m = all_of(model), r = all_of(reference);
   MeasureValues values;
-  measure_facades(compare_facades(model, m, reference, r), model, m, reference, r, values);
+  measure_facades(compare_facades(model, m, ground_of(model), reference, r, ground_of(reference)), model, m, reference, r, values);
   return values;
 }
 

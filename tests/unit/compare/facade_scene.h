@@ -43,6 +43,9 @@ std::vector<Hole> grid(int columns, int rows);
 
 City city_of(std::vector<Building> buildings);
 std::vector<std::uint32_t> all_of(const City& city);
+/// z of the lowest ground.
+double ground_of(const City& city);
+/// Heights above that.
 std::vector<Facade> facades(const City& city);
 
 /// Every coordinate turned about the origin.
@@ -50,7 +53,7 @@ void turn(City& city, double angle);
 /// Every face and opening drawn the other way round.
 void reverse(Building& building);
 
-/// All measures of facades, as one match.
+/// All measures of facades, as one match, each side above its lowest ground.
 MeasureValues measured(const City& model, const City& reference);
 const MeasureValue& value(const MeasureValues& values, Measure measure);
 

@@ -251,14 +251,14 @@ TEST(Facades, TakeOpeningsNearThemAndNoOthers) {
   add(-1.0, 12, 7.5, 0);  // a bay's, before the wall
   add(0.9, 12, 1, 0);     // in a deep niche
   std::size_t loose = 99;
-  EXPECT_EQ(facades_of(city, all_of(city), {}, &loose).size(), 4U);
+  EXPECT_EQ(facades_of(city, all_of(city), ground_of(city), {}, &loose).size(), 4U);
   EXPECT_EQ(loose, 0U);
   add(0.5, 6, 9.5, 0);        // a dormer's, above the eaves
   add(2.0, 12, 4, 0);         // too far behind
   add(0.1, 3, 8.0, 1.0);      // a roof window
   b.openings.emplace_back();  // of nothing
   std::size_t in = 0;
-  for (const Facade& f : facades_of(city, all_of(city), {}, &loose)) in += f.openings.size();
+  for (const Facade& f : facades_of(city, all_of(city), ground_of(city), {}, &loose)) in += f.openings.size();
   EXPECT_EQ(loose, 4U);
   EXPECT_EQ(in, 17U);
 }
@@ -285,7 +285,7 @@ TEST(Facades, SurviveWhatFilesHold) {
   Face none;
   b.faces.push_back(none);
   std::size_t loose = 0;
-  const auto found = facades_of(city, all_of(city), {}, &loose);
+  const auto found = facades_of(city, all_of(city), ground_of(city), {}, &loose);
   expect_same(found, expected);
   EXPECT_EQ(loose, 6U);
   const MeasureValues values = measured(city, city);
@@ -307,14 +307,14 @@ City tower(int sides, double radius) {
 TEST(Facades, OfRoundWallsAreThePiecesThatAreWideEnough) {
   std::size_t loose = 0;
   City city = tower(64, 5);  // sides of 0.49 m at 5.6 degrees
-  EXPECT_TRUE(facades_of(city, all_of(city), {}, &loose).empty());
+  EXPECT_TRUE(facades_of(city, all_of(city), ground_of(city), {}, &loose).empty());
   EXPECT_EQ(loose, 64U);
   city = tower(12, 5);  // sides of 2.6 m
-  EXPECT_EQ(facades_of(city, all_of(city), {}, &loose).size(), 12U);
+  EXPECT_EQ(facades_of(city, all_of(city), ground_of(city), {}, &loose).size(), 12U);
   EXPECT_EQ(loose, 0U);
   city = tower(600, 30);  // sides of 0.31 m at 0.6 degrees: stretches of as many sides as are within the angle
   std::size_t openings = 0;
-  for (const Facade& f : facades_of(city, all_of(city), {}, &loose)) {
+  for (const Facade& f : facades_of(city, all_of(city), ground_of(city), {}, &loose)) {
     EXPECT_LT(f.width(), 8);
     EXPECT_TRUE(std::isfinite(f.area));
     openings += f.openings.size();
@@ -340,7 +340,7 @@ TEST(Facades, AreFoundFast) {
   std::size_t openings = 0;
   for (std::uint32_t b = 0; b < 500; ++b) {
     const std::vector<std::uint32_t> one{b};
-    for (const Facade& f : facades_of(city, one)) openings += f.openings.size();
+    for (const Facade& f : facades_of(city, one, ground_of(city))) openings += f.openings.size();
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   RecordProperty("seconds", std::to_string(seconds));

@@ -34,7 +34,7 @@ TEST(RealFacades, OfTheFzkHouse) {
   const City city = read_city({path}, {});
   ASSERT_EQ(city.buildings.size(), 1U);
   std::size_t loose = 99;
-  const auto found = facades_of(city, all_of(city), {}, &loose);
+  const auto found = facades_of(city, all_of(city), ground_of(city), {}, &loose);
   EXPECT_EQ(loose, 0U);
   // Gable with door, two windows below and a round one above; the other gable without a door; eaves side with a door of
   // two leaves between two windows; eaves side with three windows.
@@ -68,7 +68,7 @@ TEST(RealFacades, OfIngolstadt) {
   for (std::uint32_t b = 0; b < city.buildings.size(); ++b) {
     groups.push_back({b});
     std::size_t loose_here = 0, in_here = 0;
-    for (const Facade& f : facades_of(city, groups.back(), {}, &loose_here)) {
+    for (const Facade& f : facades_of(city, groups.back(), city.buildings[b].ground, {}, &loose_here)) {
       ++facade_count;
       in_here += f.openings.size();
       area += f.area;
@@ -99,7 +99,7 @@ TEST(RealFacades, OfIngolstadt) {
   // Against itself all is ideal, blank sides and all.
   for (const auto& group : groups) {
     MeasureValues values;
-    measure_facades(compare_facades(city, group, city, group), city, group, city, group, values);
+    measure_facades(compare_facades(city, group, 0, city, group, 0), city, group, city, group, values);
     const MeasureValue& recall = value(values, Measure::opening_recall);
     if (!recall.counted) continue;
     EXPECT_EQ(recall.counted, 1.0);

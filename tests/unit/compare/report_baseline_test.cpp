@@ -56,7 +56,7 @@ TEST(Baseline, TheSameIsNotWorse) {
   EXPECT_TRUE(v.lost.empty());
   std::size_t judged = 0;
   for (const MeasureInfo& m : kMeasures) judged += m.better != Better::none ? 1 : 0;
-  EXPECT_EQ(v.lines.size(), judged);
+  EXPECT_EQ(v.lines.size(), judged + 2) << "missing and extra area";
   for (const auto& line : v.lines) EXPECT_EQ(line.worse_by, 0) << line.measure;
   EXPECT_THAT(verdict_text(v), HasSubstr("not worse than the baseline"));
 }
@@ -116,13 +116,81 @@ TEST(Baseline, WhatIsLostFails) {
   sum_up(now);
   const BaselineVerdict v = against(now, measured(), 0.02);
   EXPECT_TRUE(v.worse());
-  EXPECT_THAT(v.lost, ElementsAre("measure opening_recall", "match r2"));
+  EXPECT_THAT(v.lost, testing::Contains("measure opening_recall"));
+  EXPECT_THAT(v.lost, testing::Contains("measure eaves_error (in 2 matches, was in 3)"));
+  EXPECT_THAT(v.lost_buildings, ElementsAre("r2"));
+  EXPECT_THAT(verdict_text(v), HasSubstr("LOST: building r2\n"));
+  EXPECT_THAT(failed_text(v), HasSubstr("lost measure opening_recall"));
+  EXPECT_THAT(failed_text(v), testing::EndsWith(", 1 building lost"));
   EXPECT_FALSE(against(measured(), now, 0.02).worse()) << "a measure more is no loss";
+}
+
+TEST(Baseline, AnotherGroupingIsNoLossButALostHalfIs) {
+  // The first two houses as one block.
+  Comparison block = measured();
+  block.matches[1].id = block.matches[0].id;
+  block.matches[1].reference.buildings = block.matches[1].model.buildings = {0, 1};
+  block.matches.erase(block.matches.begin());
+  sum_up(block);
+  EXPECT_FALSE(against(block, measured(), 0.02).worse()) << verdict_text(against(block, measured(), 0.02));
+  EXPECT_FALSE(against(measured(), block, 0.02).worse());
+  Comparison half = block;
+  half.matches[0].reference.buildings = {0};
+  EXPECT_THAT(against(half, block, 0.02).lost_buildings, ElementsAre("r1"));
+}
+
+TEST(Baseline, AValueInFewerMatchesIsLost) {
+  Comparison now = measured();
+  now.matches[1].values[static_cast<std::size_t>(Measure::volume_ratio)] = {};
+  sum_up(now);
+  EXPECT_THAT(against(now, measured(), 0.02).lost, ElementsAre("measure volume_ratio (in 2 matches, was in 3)"));
+  EXPECT_FALSE(against(now, measured(), 0.5).worse());
+}
+
+TEST(Baseline, MissingAndExtraAreaAreJudged) {
+  Comparison now = measured();
+  now.extra.push_back(0);
+  const BaselineVerdict v = against(now, measured(), 0.02);
+  EXPECT_EQ(failed_text(v), "extra_area");
+  EXPECT_FALSE(against(measured(), now, 0.02).worse());
+  now.missing.push_back(0);
+  EXPECT_EQ(failed_text(against(now, measured(), 0.02)), "missing_area, extra_area");
+  auto j = nlohmann::json::parse(comparison_json(measured(), {}));
+  j["counts"].erase("missing_area");
+  j["counts"].erase("extra_area");
+  EXPECT_FALSE(compare_with_baseline(now, j.dump(), "before.json", 0.02).worse()) << "an older baseline";
+}
+
+TEST(Baseline, RatiosOnBothSidesOfOneDoNotCancel) {
+  Comparison now = measured(), before = measured();
+  for (MatchResult& match : before.matches) set(match, Measure::volume_ratio, 1);
+  set(now.matches[0], Measure::volume_ratio, 0.5);
+  set(now.matches[1], Measure::volume_ratio, 1.5);
+  set(now.matches[2], Measure::volume_ratio, 1);
+  sum_up(now);
+  sum_up(before);
+  EXPECT_EQ(failed_text(against(now, before, 0.02)), "volume_ratio");
+  // exp((log 2 + log 1.5) / 3)
+  EXPECT_NEAR(*headline(info(Measure::volume_ratio), summary_of(now.summaries, Measure::volume_ratio).counted), 1.442250,
+              1e-6);
+}
+
+TEST(Baseline, WhatWasComparedOtherwiseIsTold) {
+  Comparison now = measured();
+  now.absolute_heights = true;
+  now.reference.crs = "EPSG:25833";
+  const BaselineVerdict v = compare_with_baseline(now, comparison_json(measured(), {{"align", "none"}, {"seed", "1"}}),
+                                                  "before.json", 0.02, {{"align", "both"}, {"lod", "2"}});
+  EXPECT_FALSE(v.worse());
+  EXPECT_THAT(v.differs, ElementsAre("CRS was EPSG:25832 and is EPSG:25833",
+                                     "heights was above own ground and is absolute", "option align was none and is both",
+                                     "option lod was not set and is 2", "option seed was 1 and is not set"));
+  EXPECT_THAT(verdict_text(v), HasSubstr("warning: CRS was EPSG:25832 and is EPSG:25833\n"));
 }
 
 TEST(Baseline, IdsWithBrokenCharactersAreFoundAgain) {
   Comparison c = measured();
-  c.matches[0].id = "a\xff";
+  c.reference.buildings[0].id = "a\xff";
   EXPECT_FALSE(against(c, c, 0.02).worse());
 }
 
@@ -138,6 +206,7 @@ std::string error_of(const std::string& text) {
 TEST(Baseline, AnythingElseIsRefusedWithARemedy) {
   EXPECT_THAT(error_of(""), HasSubstr("before.json:byte"));
   EXPECT_THAT(error_of("{\"a\": "), HasSubstr("is no JSON"));
+  EXPECT_THAT(error_of("{\"a\": 1e999}"), HasSubstr("cannot be read"));
   EXPECT_THAT(error_of("[]"), HasSubstr("is no comparison"));
   EXPECT_THAT(error_of("{\"format\": \"geojson\"}"), HasSubstr("before.json:format: is no comparison"));
   auto j = nlohmann::json::parse(comparison_json(measured(), {}));

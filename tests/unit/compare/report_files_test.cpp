@@ -84,6 +84,26 @@ TEST(ComparisonJson, NoNumberIsNotANumber) {
   EXPECT_THAT(comparison_text(c), Not(HasSubstr("nan")));
 }
 
+TEST(ComparisonJson, SaysWhatIsLeftOutAndHowMuchOfTheUnmatchedIsCovered) {
+  const json j = json::parse(comparison_json(sample(), {}));
+  const json& pairs = j["matches"][0]["facades"]["pairs"];
+  EXPECT_EQ(pairs[0]["left_out"], false);
+  EXPECT_EQ(pairs[1]["left_out"], true);
+  EXPECT_EQ(j["missing"][0]["covered"], 0.25);
+  EXPECT_EQ(j["extra"][0]["covered"], 0);
+}
+
+TEST(ComparisonCsv, HoldsNoFormulas) {
+  for (const std::string id : {"=1+2", "+1", "-1", "@SUM(A1)", "\t=1"}) {
+    Comparison c = sample(1);
+    c.matches[0].id = id;
+    EXPECT_THAT(comparison_csv(c), HasSubstr("\n'" + id.substr(0, 1))) << id;
+  }
+  Comparison c = sample(1);
+  c.matches[0].id = "a=1";
+  EXPECT_THAT(comparison_csv(c), HasSubstr("\na=1,"));
+}
+
 TEST(ComparisonJson, BrokenUtf8IsReplaced) {
   Comparison c = sample(1);
   c.matches[0].id =

@@ -115,7 +115,7 @@ Comparison sample(std::size_t matches) {
       m.facades.reference = {front(i, x, height), front(i, x, height)};
       m.facades.reference[1].openings.clear();
       m.facades.reference[1].blank = true;
-      m.facades.pairs = {{0, 0, {{0, 0}}}, {FacadePair::kNone, 1, {}}};
+      m.facades.pairs = {{0, 0, {{0, 0}}}, {FacadePair::kNone, 1, {}, true}};
       c.blank_facades = 1;
     }
     m.id = reference.id;
@@ -141,6 +141,8 @@ Comparison sample(std::size_t matches) {
   c.model.buildings.push_back(box("w_extra", -40, 0, 5));
   c.reference.buildings.push_back(box("r_missing", -80, 34, 5));
   c.extra = c.missing = {last};
+  c.missing_covered = {0.25};
+  c.extra_covered = {0};
   c.distances = {{0.1, 0.5, 1, 5}, {0.2, 0.6, 0.9, 1}, {0.3, 0.7, 0.95, 1}, 2, 1};
   sum_up(c);
   return c;
