@@ -130,7 +130,7 @@ int run_compare(const std::vector<std::string>& arguments) {
       compare::compare_with_baseline(comparison, baseline, s.baseline, s.fail_if_worse.value_or(kShownOnly));
   if (!json && !s.quiet) std::fputs(compare::verdict_text(verdict).c_str(), stdout);
   if (s.fail_if_worse && verdict.worse()) {
-    progress.error("worse than " + s.baseline + " (--fail-if-worse)");
+    progress.error("worse than " + s.baseline + " (--fail-if-worse): " + compare::failed_text(verdict));
     return kBelowQuality;
   }
   return kSuccess;
