@@ -23,6 +23,7 @@ struct Document {
   std::vector<std::string> ids;
   std::vector<std::string> repeated;  ///< ids that stand twice; the last one counts
   std::string error;                  ///< not empty: no JSON
+  bool too_deep = false;              ///< no more text makes it better
 };
 
 Document parse(std::string_view text) {
@@ -30,6 +31,7 @@ Document parse(std::string_view text) {
   std::unordered_set<std::string> seen;
   bool in_objects = false;
   const auto order = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::array_start || event == Json::parse_event_t::object_start) check_depth(depth);
     if (event != Json::parse_event_t::key) return true;
     if (depth == 1) in_objects = parsed.get_ref<const std::string&>() == "CityObjects";
     if (depth == 2 && in_objects) {
@@ -40,6 +42,9 @@ Document parse(std::string_view text) {
   };
   try {
     out.json = Json::parse(text.begin(), text.end(), order);
+  } catch (const TooDeep&) {
+    out.too_deep = true;
+    out.error = too_deep_text();
   } catch (const Json::exception& error) {
     out.error = error.what();
     // "[json.exception.parse_error.101] parse error at line 1, column 5: …"
@@ -66,6 +71,7 @@ class Reader {
       if (++line == 1 && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
     }
     Document document = parse(text);
+    refuse_depth(document, line);
     if (!document.error.empty()) {  // a document over several lines
       while (auto next = bytes.line()) {
         if (text.size() > kLongestText) refuse("", "is longer than 4 GB", "Make it a CityJSON text sequence (.jsonl)");
@@ -73,6 +79,7 @@ class Reader {
         text += *next;
       }
       document = parse(text);
+      refuse_depth(document, 0);
       if (!document.error.empty()) {
         if (bytes.damaged()) refuse("", "the gzip archive is cut off or damaged", "");
         refuse("", "is no JSON that can be read: " + document.error, "The file is damaged or cut off");
@@ -106,8 +113,14 @@ class Reader {
     throw base::InputError(path_, place, what, remedy);
   }
 
+  void refuse_depth(const Document& document, int line) const {
+    if (document.too_deep)
+      refuse(line > 1 ? "line " + std::to_string(line) : "", document.error, "The file is damaged, or no model");
+  }
+
   void read_line(const std::string& text, int line) {
     Document document = parse(text);
+    refuse_depth(document, line);
     if (!document.error.empty()) {
       notes_.add(NoteKind::malformed_json, line, document.error);
       return;

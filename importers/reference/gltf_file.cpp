@@ -112,7 +112,12 @@ Matrix4 from_parts(const std::array<double, 3>& t, const std::array<double, 4>& 
 Json parse_json(const std::string& path, std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   try {
-    return Json::parse(text.begin(), text.end());
+    return Json::parse(text.begin(), text.end(), [](int depth, Json::parse_event_t event, const Json&) {
+      if (event == Json::parse_event_t::array_start || event == Json::parse_event_t::object_start) check_depth(depth);
+      return true;
+    });
+  } catch (const TooDeep&) {
+    throw base::InputError(path, "", too_deep_text(), "The file is damaged, or no model");
   } catch (const Json::exception& error) {
     std::string what = error.what();
     if (const std::size_t end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
@@ -332,6 +337,20 @@ bool GltfFile::fill(const Json& view_number, std::size_t offset, int component_t
       out[i * components + c] = value;
     }
   return true;
+}
+
+std::size_t GltfFile::accessor_count(const Json& number) const {
+  const Json& stated = element_of(member(json_, "accessors"), number);
+  const std::size_t count = index(member(stated, "count")).value_or(0);
+  const Json& view = member(stated, "bufferView");
+  const auto bytes = index(member(element_of(member(json_, "bufferViews"), view), "byteLength"));
+  std::size_t held = kMostWithoutBytes;
+  if (!view.is_null()) {
+    held = 0;
+    for (const std::string& buffer : buffers_) held = std::max(held, buffer.size());
+    held = std::min(held, bytes.value_or(0));
+  }
+  return count <= held ? count : 0;
 }
 
 std::optional<AccessorValues> GltfFile::accessor(const Json& number) {

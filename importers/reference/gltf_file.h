@@ -41,6 +41,9 @@ class GltfFile {
   /// Nothing (and a note) where the number leads nowhere.
   std::optional<std::span<const unsigned char>> view(const Json& number);
 
+  /// Elements of an accessor whose bytes may be there; 0 where they cannot, or there is no such accessor.
+  std::size_t accessor_count(const Json& number) const;
+
   /// Numbers as they count: normalised integers as fractions, sparse ones in place. Nothing (and a note) where the
   /// accessor does not exist, reaches out of its buffer, or is of no type.
   std::optional<AccessorValues> accessor(const Json& number);

@@ -7,12 +7,15 @@
 #include <utility>
 
 #include "importers/reference/coordinate_text.h"
+#include "pipeline/base/error.h"
 
 namespace blockrand::importers::reference {
 namespace {
 
-/// More triangles than any model has that fits this memory: instances multiply without end.
-constexpr std::size_t kMostTriangles = 100'000'000;
+/// In all that is read at once, instances counted: about 2 GB of polygons. Instances multiply without end.
+constexpr std::size_t kMostTriangles = 10'000'000;
+/// Primitives where nodes and instances put them, and instances of a node: each costs a matrix, also without triangles.
+constexpr std::size_t kMostInstances = 1'000'000;
 
 template <std::size_t N>
 std::array<double, N> numbers_or(const Json& value, std::array<double, N> fallback) {
@@ -212,6 +215,7 @@ std::vector<GltfScene::Instance> GltfScene::instances_of(const Json& node, const
   std::optional<AccessorValues> numbers;
   if (const auto set = index(member(ids, "attribute"))) numbers = read(("_FEATURE_ID_" + std::to_string(*set)).c_str());
   const auto none = index(member(ids, "nullFeatureId"));
+  if (count > kMostInstances) refuse_number(kMostInstances, "instances");
   std::vector<Instance> out;
   out.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -241,8 +245,30 @@ void GltfScene::add_node(std::size_t node, const Matrix4& world) {
     notes_.add(NoteKind::bad_index, 0, "the mesh of node " + std::to_string(node) + " does not exist");
     return;
   }
-  for (const Instance& instance : instances_of(stated, world))
+  const std::vector<Instance> instances = instances_of(stated, world);
+  for (const Json& primitive : member(mesh, "primitives")) {
+    if ((placed_primitives_ += instances.size()) > kMostInstances) refuse_number(kMostInstances, "instances");
+    if (!instances.empty()) count_triangles(primitive, instances.size());
+  }
+  for (const Instance& instance : instances)
     for (const Json& primitive : member(mesh, "primitives")) add_primitive(primitive, node, instance);
+}
+
+void GltfScene::refuse_number(std::size_t most, const std::string& what) const {
+  throw base::InputError(model_.path, "", "has more than " + std::to_string(most) + " " + what,
+                         "Split it, or name a part of it; a file of a few megabytes with so many is damaged");
+}
+
+/// Before any is made. Corners that an accessor states without having them do not count: it will not be read.
+void GltfScene::count_triangles(const Json& primitive, std::size_t instances) {
+  const Json& indices = member(primitive, "indices");
+  const auto corners =
+      file_->accessor_count(indices.is_null() ? member(member(primitive, "attributes"), "POSITION") : indices);
+  constexpr std::size_t kStrip = 5, kFan = 6;
+  const std::size_t mode = index(member(primitive, "mode")).value_or(4);
+  const std::size_t triangles = mode == kStrip || mode == kFan ? corners : corners / 3;
+  if (triangles > (kMostTriangles - placed_triangles_) / instances) refuse_number(kMostTriangles, "triangles");
+  placed_triangles_ += triangles * instances;
 }
 
 std::vector<GltfScene::Feature> GltfScene::features_of(const Json& primitive, std::size_t vertices) {
@@ -359,10 +385,6 @@ void GltfScene::add_primitive(const Json& primitive, std::size_t node, const Ins
       continue;
     }
     if (a == b || b == c || c == a) continue;  // of strips and rounded meshes: nothing to see
-    if (model_.polygons.size() >= kMostTriangles) {
-      notes_.add(NoteKind::not_read, 0, "more than " + std::to_string(kMostTriangles) + " triangles");
-      break;
-    }
     Feature feature = !instance.features.empty() ? instance.features[0]
                       : features.empty()         ? Feature()
                                                  : features[corners[t]];

@@ -22,6 +22,7 @@ class GltfScene {
   GltfScene(ReferenceModel& model, NoteLog& notes) : model_(model), notes_(notes) {}
 
   /// \param place  leads from the file's axes (y up) to where the polygons are wanted
+  /// \throws base::InputError  when instances multiply without end
   void add(GltfFile& file, const std::string& path, const Matrix4& place);
 
  private:
@@ -47,6 +48,8 @@ class GltfScene {
   std::string name_of_node(std::size_t node) const;
   void walk(const Matrix4& place);
   void add_node(std::size_t node, const Matrix4& world);
+  void count_triangles(const Json& primitive, std::size_t instances);
+  [[noreturn]] void refuse_number(std::size_t most, const std::string& what) const;
   std::vector<Instance> instances_of(const Json& node, const Matrix4& world);
   void add_primitive(const Json& primitive, std::size_t node, const Instance& instance);
   /// The feature of each vertex; empty where the file says none.
@@ -57,7 +60,8 @@ class GltfScene {
 
   ReferenceModel& model_;
   NoteLog& notes_;
-  std::unordered_map<std::string, std::size_t> by_key_;  ///< buildings of all files; looked up only
+  std::size_t placed_triangles_ = 0, placed_primitives_ = 0;  ///< of all files
+  std::unordered_map<std::string, std::size_t> by_key_;       ///< buildings of all files; looked up only
 
   // Of the file that is being read.
   GltfFile* file_ = nullptr;

@@ -10,15 +10,15 @@
 #include "importers/reference/coordinate_text.h"
 #include "importers/reference/file_bytes.h"
 #include "importers/reference/gltf.h"
+#include "importers/reference/json_access.h"
 #include "pipeline/base/error.h"
 
 namespace blockrand::importers::reference {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
-enum class Format { unknown, citygml, cityjson, gltf, tileset, old_tile };
+enum class Format { unknown, too_deep, citygml, cityjson, gltf, tileset, old_tile };
 
 bool any_of(std::string_view name, std::initializer_list<std::string_view> names) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -44,9 +44,9 @@ class FormatSniffer : public nlohmann::json_sax<Json> {
     if (depth_ == 1 && key_ == "type" && value.starts_with("CityJSON")) format = Format::cityjson;
     return format == Format::unknown;
   }
-  bool start_object(std::size_t) override { return ++depth_ > 0; }
+  bool start_object(std::size_t) override { return enter(); }
   bool end_object() override { return depth_-- > 1; }
-  bool start_array(std::size_t) override { return ++depth_ > 1; }  // no format is an array
+  bool start_array(std::size_t) override { return enter() && depth_ > 1; }  // no format is an array
   bool end_array() override { return depth_-- > 0; }
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
@@ -57,6 +57,11 @@ class FormatSniffer : public nlohmann::json_sax<Json> {
   bool parse_error(std::size_t, const std::string&, const Json::exception&) override { return false; }
 
  private:
+  bool enter() {
+    if (++depth_ > kDeepestJson) format = Format::too_deep;
+    return format == Format::unknown;
+  }
+
   int depth_ = 0;
   std::string key_;
 };
@@ -109,7 +114,7 @@ bool is_model(const fs::path& path) {
   }
   if (extension != ".json") return false;
   const Format format = format_of(path.string());
-  return format != Format::unknown;
+  return format != Format::unknown && format != Format::too_deep;
 }
 
 std::vector<fs::path> sorted_entries(const fs::path& folder) {
@@ -185,6 +190,8 @@ ReferenceModel read_model(const std::string& path, const ReadOptions& options) {
     case Format::tileset:
     case Format::old_tile:  // refused with what to do
       return read_gltf(path, options);
+    case Format::too_deep:
+      throw base::InputError(path, "", too_deep_text(), "The file is damaged, or no model");
     case Format::unknown:
       break;
   }

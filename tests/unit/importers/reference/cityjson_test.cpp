@@ -361,13 +361,15 @@ TEST(DamagedCityJson, BadVerticesTakeTheirRingsWithThem) {
   EXPECT_THAT(m.buildings[0].geometries, IsEmpty());
 }
 
-TEST(DamagedCityJson, DeepNestingAndLongChainsDoNotOverflow) {
-  const std::size_t deep = 200000;
-  const std::string nest = std::string(deep, '[') + std::string(deep, ']');
-  const auto m =
-      read_json(cityjson(object("b", "Building", solid() + "," + nest, R"(,"attributes":{"a":)" + nest + "}") + "," +
-                         object("c", "Building", R"({"type":"Solid","lod":"2","boundaries":)" + nest + "}")));
-  EXPECT_THAT(m.buildings, SizeIs(2));
+TEST(DamagedCityJson, DeepNestingIsRefusedAndLongChainsDoNotOverflow) {
+  const auto nested = [](std::size_t deep) {
+    const std::string nest = std::string(deep, '[') + std::string(deep, ']');
+    return cityjson(object("b", "Building", solid() + "," + nest, R"(,"attributes":{"a":)" + nest + "}") + "," +
+                    object("c", "Building", R"({"type":"Solid","lod":"2","boundaries":)" + nest + "}"));
+  };
+  EXPECT_THAT(read_json(nested(500)).buildings, SizeIs(2));
+  EXPECT_THAT(refused(nested(513)), AllOf(HasSubstr("m.city.json"), HasSubstr("deeper than 512 levels")));
+  EXPECT_THAT(refused(R"({"type":"CityJSON","a":)" + std::string(5'000'000, '[')), HasSubstr("deeper than 512 levels"));
   std::string chain = object("p0", "Building", solid());
   for (int i = 1; i < 20000; ++i)
     chain +=

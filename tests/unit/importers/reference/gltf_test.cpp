@@ -441,13 +441,32 @@ TEST(DamagedGltf, NumbersThatAreNoneAndIndicesThatLeadNowhere) {
   EXPECT_EQ(m.buildings[0].geometries[0].outer_faces, 1u);
 }
 
+TEST(DamagedGltf, InstancesThatMultiplyAreRefused) {
+  const auto read_with = [](std::size_t triangles, std::size_t instances) {
+    GltfMaker maker;
+    std::vector<std::uint16_t> corners;
+    for (std::size_t i = 0; i < triangles; ++i) corners.insert(corners.end(), {0, 1, 2});
+    const std::vector<float> points{0, 0, 0, 1, 0, 0, 1, 1, 0};
+    const int position = maker.accessor(points, "VEC3", 5126), indices = maker.accessor(corners, "SCALAR", 5123);
+    maker.json["accessors"].push_back({{"componentType", 5126}, {"type", "VEC3"}, {"count", instances}});
+    const Json attributes = {{"TRANSLATION", maker.json["accessors"].size() - 1}};
+    maker.node({{"mesh", maker.mesh({{"POSITION", position}}, indices)},
+                {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}}});
+    maker.place(kLon, kLat);
+    return refused(maker.glb());
+  };
+  EXPECT_EQ(read_with(10, 20), "read");
+  EXPECT_THAT(read_with(1001, 10'000), AllOf(HasSubstr("m.glb"), HasSubstr("more than 10000000 triangles")));
+  EXPECT_THAT(read_with(1, 1'000'001), AllOf(HasSubstr("m.glb"), HasSubstr("more than 1000000 instances")));
+}
+
 TEST(DamagedGltf, DeepNestingDoesNotOverflow) {
   GltfMaker maker;
   maker.node({{"mesh", maker.cube(10)}});
   maker.place(kLon, kLat);
   std::string json = maker.gltf();
   json.insert(1, "\"extras\":" + std::string(300000, '[') + std::string(300000, ']') + ",");
-  EXPECT_THAT(read_bytes(json).polygons, SizeIs(12));
+  EXPECT_THAT(refused(json), AllOf(HasSubstr("m.glb"), HasSubstr("deeper than 512 levels")));
   GltfMaker chain;
   const int cube = chain.cube(10);
   for (int i = 0; i < 50000; ++i) chain.node({{"children", {i + 1}}});

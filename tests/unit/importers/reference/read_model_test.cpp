@@ -63,6 +63,18 @@ TEST(ReadModel, TellsTheFormatByItsContent) {
   EXPECT_EQ(read_model(folder.write("i.gml", kHouse)).bytes, kHouse.size());
 }
 
+TEST(ReadModel, RefusesDeepNestingBeforeAllIsUnpacked) {
+  const TempFolder folder;
+  const std::string bomb = folder.write_gzipped("bomb.json", R"({"a":)" + std::string(3'000'000, '['));
+  try {
+    read_model(bomb);
+    ADD_FAILURE() << "read";
+  } catch (const std::exception& error) {
+    EXPECT_THAT(error.what(),
+                testing::AllOf(testing::HasSubstr("bomb.json"), testing::HasSubstr("deeper than 512 levels")));
+  }
+}
+
 TEST(ReadModel, RefusesWhatIsNoModel) {
   const TempFolder folder;
   for (const char* bytes : {"hello", "{\"a\":1}", "[1]", "\x1f\x8b\x08", "{", "PK\x03\x04"})
