@@ -110,6 +110,10 @@ TEST(ComparePage, DrawsFacadesWithWhatIsLeftOut) {
   EXPECT_THAT(page.text, HasSubstr("left out: blank"));
   EXPECT_THAT(page.text, HasSubstr("Facade to the south, 10.0\u00a0m wide. Openings 1 / 1, 1 matched"));
   EXPECT_THAT(page.text, HasSubstr("No facades to draw."));
+  // A party wall with windows above the neighbour's roof counts.
+  Comparison c = sample();
+  c.matches[0].facades.reference[0].covered = c.matches[0].facades.reference[0].area;
+  EXPECT_THAT(Page(html(c)).text, testing::Not(HasSubstr("left out: party wall")));
 }
 
 TEST(ComparePage, TheSameBytesWithAnyNumberOfThreads) { EXPECT_EQ(html(sample(9), 200, 1), html(sample(9), 200, 4)); }
