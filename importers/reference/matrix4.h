@@ -61,10 +61,10 @@ inline std::optional<Matrix4> matrix_of(const Json& value) {
   }
   for (const std::size_t i : {3, 7, 11})
     if (std::fabs(out[i]) > kMatrixRounding) return std::nullopt;
-  const double weight = out[15];
-  if (std::fabs(weight - 1) > kMatrixRounding) return std::nullopt;
-  for (double& v : out) v /= weight;
+  if (std::fabs(out[15] - 1) > kMatrixRounding) return std::nullopt;
+  // Not divided by: it is rounding, and places measured from the earth's centre would move by it.
   out[3] = out[7] = out[11] = 0;
+  out[15] = 1;
   return out;
 }
 

@@ -127,7 +127,7 @@ int run_compare(const std::vector<std::string>& arguments) {
   if (s.baseline.empty()) return kSuccess;
   constexpr double kShownOnly = 0.02;  // without --fail-if-worse the marks in the table say what 2 % would have failed
   const compare::BaselineVerdict verdict =
-      compare::compare_with_baseline(comparison, baseline, s.baseline, s.fail_if_worse.value_or(kShownOnly));
+      compare::compare_with_baseline(comparison, baseline, s.baseline, s.fail_if_worse.value_or(kShownOnly), options);
   if (!json && !s.quiet) std::fputs(compare::verdict_text(verdict).c_str(), stdout);
   if (s.fail_if_worse && verdict.worse()) {
     progress.error("worse than " + s.baseline + " (--fail-if-worse): " + compare::failed_text(verdict));

@@ -344,7 +344,7 @@ std::string wanted_crs(const ReferenceModel& model) {
   const auto extent = extent_of(model);
   if (!extent)
     throw base::InputError(model.path, "", "has no place that PROJ knows (" + model.crs.name + ")",
-                           "Name a projected coordinate reference system with --reference-crs");
+                           "Name a projected coordinate reference system with --crs");
   return georef::choose_crs((extent->west + extent->east) / 2, (extent->south + extent->north) / 2);
 }
 
@@ -465,8 +465,9 @@ City read_city(const std::vector<std::string>& paths, const ReadCityOptions& opt
   const auto load = [&](const std::string& file, bool first) {
     ReferenceModel model = reference::read_model(file, options.read);
     const std::string stated = model.crs.stated.empty() ? model.crs.horizontal : model.crs.stated;
-    if (model.buildings.empty()) {
+    if (model.buildings.empty() || model.polygons.empty()) {
       City none;
+      none.without_geometry = model.buildings.size();
       none.files.push_back(facts_of(model, stated));
       return none;
     }
