@@ -71,9 +71,10 @@ std::optional<georef::GeoBox> to_degrees(ReferenceModel& model, NoteLog& notes) 
     }
   }
   if (!box)
-    throw base::InputError(
-        model.path, "", "nothing says where on the Earth it lies: its transforms lead nowhere near the ground",
-        "--reference-origin (of the judged model --model-origin) LON,LAT,HEIGHT says where a glTF file's origin is (degrees, m above the ellipsoid)");
+    throw base::InputError(model.path, "",
+                           "nothing says where on the Earth it lies: its transforms lead nowhere near the ground",
+                           "--reference-origin (of the judged model --model-origin) LON,LAT,HEIGHT says where a glTF "
+                           "file's origin is (degrees, m above the ellipsoid)");
   if (const auto count = std::count(lost.begin(), lost.end(), true); count > 0) {
     notes.add(NoteKind::bad_coordinates, 0, std::to_string(count) + " triangles are nowhere near the ground");
     drop_polygons(model, lost);
@@ -163,7 +164,8 @@ void read_single(const std::string& path, const ReadOptions& options, ReferenceM
   if (options.gltf_origin) place = matrix_at(*options.gltf_origin);
   if (!place)
     throw base::InputError(path, "", "nothing says where on the Earth it lies: it has no asset.extras.georeference",
-                           "--reference-origin (of the judged model --model-origin) LON,LAT,HEIGHT says where its origin is (degrees, m above the ellipsoid); or "
+                           "--reference-origin (of the judged model --model-origin) LON,LAT,HEIGHT says where its "
+                           "origin is (degrees, m above the ellipsoid); or "
                            "name the tileset.json that places it");
   GltfScene scene(model, notes);
   scene.add(file, path, *place * kYUpToZUp);

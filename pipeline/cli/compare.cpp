@@ -70,16 +70,21 @@ settings::CommandText compare_text() {
       .usage = "MODEL REFERENCE... [-o FOLDER] [options]",
       .description =
           "Finds the buildings of both models that stand for each other and measures how well they agree: footprints, "
-          "heights, volumes, surfaces both ways, roofs, facades with their openings, classes and validity. Reads CityGML "
+          "heights, volumes, surfaces both ways, roofs, facades with their openings, classes and validity. Reads "
+          "CityGML "
           "0.4 to 2.0, CityJSON, glTF and 3D Tiles, of Blockrand and of anybody else.\n"
-          "An offset between the models is estimated and reported, and taken off with --align only. Sides of the reference "
-          "that show nothing (blank walls, walls against neighbours, undersides) are recognised; every measure is given "
+          "An offset between the models is estimated and reported, and taken off with --align only. Sides of the "
+          "reference "
+          "that show nothing (blank walls, walls against neighbours, undersides) are recognised; every measure is "
+          "given "
           "without and with them.\n"
           "With --output a folder is written: compare.json, compare.csv, compare.gpkg and compare.html, a page with "
-          "pictures that needs nothing else. With --baseline the measures are set against those of an earlier comparison.",
+          "pictures that needs nothing else. With --baseline the measures are set against those of an earlier "
+          "comparison.",
       .options = settings::kCompare,
       .examples = {{"blockrand compare out/leipzig handbuilt/*.gml -o report", ""},
-                   {"blockrand compare surveyed.gml other.city.json --align horizontal", "the tables only, on the terminal"},
+                   {"blockrand compare surveyed.gml other.city.json --align horizontal",
+                    "the tables only, on the terminal"},
                    {"blockrand compare out/leipzig handbuilt -o new --baseline old/compare.json --fail-if-worse 2%",
                     "a gate: exit code 3 when a measure got worse by more than 2 %"}},
       .exit_codes = {{"0", "all well"},
@@ -115,15 +120,18 @@ int run_compare(const std::vector<std::string>& arguments) {
   s.comparison.surface.seed = s.build.seed;
   const compare::Comparison comparison = compare::compare_models(s.comparison, progress);
   if (comparison.matches.empty())
-    progress.warn(fmt::format("no building of {} stands where one of {} does: {} and {} buildings were read. Do both say the "
-                              "right coordinate system? --model-crs and --reference-crs name others",
-                              s.comparison.model, fmt::join(s.comparison.reference, ", "), read_in(comparison.model),
-                              read_in(comparison.reference)));
+    progress.warn(
+        fmt::format("no building of {} stands where one of {} does: {} and {} buildings were read. Do both say the "
+                    "right coordinate system? --model-crs and --reference-crs name others",
+                    s.comparison.model, fmt::join(s.comparison.reference, ", "), read_in(comparison.model),
+                    read_in(comparison.reference)));
   const compare::OptionList options = options_of(s);
   if (folder) write_report(comparison, s, options, *folder, progress);
   const bool json = s.json || s.log_format == base::LogFormat::json;
-  if (json) std::fputs(compare::comparison_json(comparison, options).c_str(), stdout);
-  else if (!s.quiet) std::fputs(compare::comparison_text(comparison).c_str(), stdout);
+  if (json)
+    std::fputs(compare::comparison_json(comparison, options).c_str(), stdout);
+  else if (!s.quiet)
+    std::fputs(compare::comparison_text(comparison).c_str(), stdout);
   if (s.baseline.empty()) return kSuccess;
   constexpr double kShownOnly = 0.02;  // without --fail-if-worse the marks in the table say what 2 % would have failed
   const compare::BaselineVerdict verdict =

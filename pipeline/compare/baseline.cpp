@@ -24,7 +24,9 @@ using Json = nlohmann::json;
 constexpr std::string_view kRemedy = "Give the compare.json that `blockrand compare` of this version wrote";
 
 /// What a measure's values are rounded to: a change within it is none.
-double rounding(const MeasureInfo& measure) { return measure.unit == "m" ? 1e-3 : measure.unit == "deg" ? 1e-2 : measure.unit == "m²" ? 0.1 : 1e-6; }
+double rounding(const MeasureInfo& measure) {
+  return measure.unit == "m" ? 1e-3 : measure.unit == "deg" ? 1e-2 : measure.unit == "m²" ? 0.1 : 1e-6;
+}
 
 /// Values of headline().
 BaselineVerdict::Line judge(const MeasureInfo& measure, double before, double after, double allowed) {
@@ -252,8 +254,10 @@ BaselineVerdict compare_with_baseline(const Comparison& comparison, const std::s
       matched.insert(as_stored(comparison.reference.buildings[b].id));
   for (const std::string& id : baseline.matched_buildings()) {
     const auto found = matched.find(id);
-    if (found == matched.end()) verdict.lost_buildings.push_back(id);
-    else matched.erase(found);
+    if (found == matched.end())
+      verdict.lost_buildings.push_back(id);
+    else
+      matched.erase(found);
   }
   verdict.differs = differences(baseline, comparison, options);
   return verdict;

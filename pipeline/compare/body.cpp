@@ -20,9 +20,9 @@ namespace {
 
 using model::Polygon;
 
-/// Sums that tell whether faces close, and what they enclose. Over a closed surface the integral of the normal is 0, and
-/// that of place × normal (a matrix) is the volume times the unit matrix (divergence theorem). Walls that are missing
-/// in pairs leave the first at 0, not the second.
+/// Sums that tell whether faces close, and what they enclose. Over a closed surface the integral of the normal is 0,
+/// and that of place × normal (a matrix) is the volume times the unit matrix (divergence theorem). Walls that are
+/// missing in pairs leave the first at 0, not the second.
 struct Enclosed {
   Point3 vector;  ///< twice the sum of area vectors
   double area = 0, volume = 0;
@@ -178,15 +178,18 @@ SideFacts side_facts(const City& city, std::span<const std::uint32_t> buildings)
       out.area_of[static_cast<std::size_t>(f.hull)] += f.area;
       if (!f.stated) out.unclassified_area += f.area;
     }
-    if (!b.footprint.empty() || !b.faces.empty())
-      out.ground = out.ground ? std::min(*out.ground, b.ground) : b.ground;
-    if (const auto v = volume_of(b)) volume += *v;
-    else has_volume = false;
+    if (!b.footprint.empty() || !b.faces.empty()) out.ground = out.ground ? std::min(*out.ground, b.ground) : b.ground;
+    if (const auto v = volume_of(b))
+      volume += *v;
+    else
+      has_volume = false;
     for (const Shell& shell : b.shells) {
       ++out.solids;
       const std::string defect = shell_defect(shell);
-      if (defect.empty()) ++out.valid_solids;
-      else ++out.defects[defect];
+      if (defect.empty())
+        ++out.valid_solids;
+      else
+        ++out.defects[defect];
     }
     out.openings += b.openings.size();
     out.triangles += b.triangles;
@@ -241,10 +244,8 @@ void measure_bodies(const City& model, const SideFacts& a, const City& reference
   if (a.roof_form != RoofForm::none && b.roof_form != RoofForm::none)
     set(Measure::roof_type_agrees, a.roof_form == b.roof_form ? 1 : 0);
   if (a.pitch && b.pitch) set(Measure::roof_pitch_error, *a.pitch - *b.pitch);
-  if (a.surface_area > 0)
-    set(Measure::semantic_model, 1 - a.unclassified_area / a.surface_area, a.surface_area);
-  if (b.surface_area > 0)
-    set(Measure::semantic_reference, 1 - b.unclassified_area / b.surface_area, b.surface_area);
+  if (a.surface_area > 0) set(Measure::semantic_model, 1 - a.unclassified_area / a.surface_area, a.surface_area);
+  if (b.surface_area > 0) set(Measure::semantic_reference, 1 - b.unclassified_area / b.surface_area, b.surface_area);
   const auto share = [](std::size_t part, std::size_t whole) {
     return static_cast<double>(part) / static_cast<double>(whole);
   };

@@ -79,12 +79,12 @@ struct Building {
   int lod = -1;                           ///< the level of detail that was taken
   std::vector<Face> faces;                ///< of the building and its parts, interiors left out
   std::vector<Opening> openings;
-  std::vector<Shell> shells;              ///< of its solids, in the file's order
-  bool all_in_shells = true;              ///< every part that has a body has a solid
-  int bodies = 0;                         ///< the building and parts of it that have faces of their own
-  std::optional<int> storeys;             ///< above ground, as stated (the most of building and parts)
-  std::string roof_type;                  ///< code or text as stated; empty without one
-  std::size_t triangles = 0;              ///< that its polygons (openings included) make
+  std::vector<Shell> shells;   ///< of its solids, in the file's order
+  bool all_in_shells = true;   ///< every part that has a body has a solid
+  int bodies = 0;              ///< the building and parts of it that have faces of their own
+  std::optional<int> storeys;  ///< above ground, as stated (the most of building and parts)
+  std::string roof_type;       ///< code or text as stated; empty without one
+  std::size_t triangles = 0;   ///< that its polygons (openings included) make
 };
 
 /// What is known of one file of a model.
@@ -97,7 +97,7 @@ struct CityFile {
 
 /// All buildings of one side of the comparison, sorted by id, then by place.
 struct City {
-  std::string name;               ///< for people: the path as given
+  std::string name;  ///< for people: the path as given
   std::vector<CityFile> files;
   std::string crs;                ///< common to both cities: "EPSG:25833"
   Point2 origin;                  ///< of all x and y in it, m in `crs`; common to both cities

@@ -66,10 +66,12 @@ void settle_registration(City& model, const City& reference, bool absolute, cons
     r.vertical_removed = true;
   }
   if (r.horizontal_removed || r.vertical_removed) move(model, by);
-  if (options.align == Align::none) r.rule = "reported only: removed where --align asks for it";
+  if (options.align == Align::none)
+    r.rule = "reported only: removed where --align asks for it";
   else if (options.align != Align::horizontal && !r.vertical_removed)
     r.rule = "no vertical offset is known: heights are compared above each building's own ground";
-  else r.rule = "removed as --align asks";
+  else
+    r.rule = "removed as --align asks";
 }
 
 /// Ids of matches, unique: that of the reference's first building.
@@ -132,8 +134,8 @@ Comparison compare_cities(City model, City reference, const CompareOptions& opti
         measure_bodies(c.model, out.model, c.reference, out.reference, c.absolute_heights, out.values);
         const double up = model_up(out, c.absolute_heights);
         measure_surfaces(MatchSurface(c.model, out.model.buildings, up), model_cover,
-                         MatchSurface(c.reference, out.reference.buildings, 0), reference_cover, up, 0,
-                         options.surface, out.values, tallies[i]);
+                         MatchSurface(c.reference, out.reference.buildings, 0), reference_cover, up, 0, options.surface,
+                         out.values, tallies[i]);
         out.model.left_out = tallies[i].model;
         out.reference.left_out = tallies[i].reference;
         // The reference's ground also where heights are absolute: drawings and cellars need one.
@@ -193,9 +195,8 @@ DistanceQuery distance_query(const Comparison& c) {
     std::vector<float> out;
     out.reserve(points.size());
     for (const Point3& p : points)
-      out.push_back(other.empty() ? 0.0f
-                                  : static_cast<float>(
-                                        other.nearest({p.x, p.y, p.z + (from_model ? up : 0)}).distance));
+      out.push_back(
+          other.empty() ? 0.0f : static_cast<float>(other.nearest({p.x, p.y, p.z + (from_model ? up : 0)}).distance));
     return out;
   };
 }

@@ -19,8 +19,8 @@ constexpr double kBelow = 0.5;     // m. Grounds of neighbours on a slope differ
 constexpr double kSpacing = 0.5;   // m between the places of a face that are asked, at least;
 constexpr double kPlaces = 64;     // more on large faces: half of a face is told from so many
 
-/// Whether two buildings stand on the same ground, as repetitions and what stands over a garage do: they hide nothing of
-/// each other that could be seen if they did not.
+/// Whether two buildings stand on the same ground, as repetitions and what stands over a garage do: they hide nothing
+/// of each other that could be seen if they did not.
 bool share_their_ground(const Building& a, const geometry::PlanBox& box_a, const Building& b,
                         const geometry::PlanBox& box_b) {
   const double smaller = std::min(a.footprint_area, b.footprint_area);

@@ -170,10 +170,9 @@ std::vector<FacadePair> pair_facades(std::span<const Facade> model, std::span<co
   return pairs;
 }
 
-FacadeComparison compare_facades(const City& model, std::span<const std::uint32_t> model_buildings,
-                                 double model_zero, const City& reference,
-                                 std::span<const std::uint32_t> reference_buildings, double reference_zero,
-                                 const FacadeOptions& options) {
+FacadeComparison compare_facades(const City& model, std::span<const std::uint32_t> model_buildings, double model_zero,
+                                 const City& reference, std::span<const std::uint32_t> reference_buildings,
+                                 double reference_zero, const FacadeOptions& options) {
   FacadeComparison out;
   out.model = facades_of(model, model_buildings, model_zero, options, &out.model_loose);
   out.reference = facades_of(reference, reference_buildings, reference_zero, options, &out.reference_loose);

@@ -124,10 +124,9 @@ struct FacadeComparison {
   std::size_t model_loose = 0, reference_loose = 0;  ///< openings that are in no facade, and in no measure
 };
 /// Requires marks of what is left out (Face::left_out). The zeros are the z (m) of both models that are one height.
-FacadeComparison compare_facades(const City& model, std::span<const std::uint32_t> model_buildings,
-                                 double model_zero, const City& reference,
-                                 std::span<const std::uint32_t> reference_buildings, double reference_zero,
-                                 const FacadeOptions& options = {});
+FacadeComparison compare_facades(const City& model, std::span<const std::uint32_t> model_buildings, double model_zero,
+                                 const City& reference, std::span<const std::uint32_t> reference_buildings,
+                                 double reference_zero, const FacadeOptions& options = {});
 
 /// Sets the measures of Scope::facades, none else.
 ///

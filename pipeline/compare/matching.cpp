@@ -72,15 +72,14 @@ class Plans {
   double reference_area(std::uint32_t i) const { return reference_[i].area(); }
   /// Whether a match of one building each is certain.
   bool alike(const Match& m, Point2 shift, const MatchOptions& options) const {
-    const double common =
-        model_[m.model[0]].moved({-shift.x, -shift.y}).common_area(reference_[m.reference[0]]);
+    const double common = model_[m.model[0]].moved({-shift.x, -shift.y}).common_area(reference_[m.reference[0]]);
     return overlap_of({m.model[0], m.reference[0], common}) > options.certain_overlap;
   }
   std::size_t models() const { return model_.size(); }
   std::size_t references() const { return reference_.size(); }
 
-  /// The shift from reference to model that most pairs of about the same size agree on, the shorter of two; nothing where
-  /// fewer than `least` do.
+  /// The shift from reference to model that most pairs of about the same size agree on, the shorter of two; nothing
+  /// where fewer than `least` do.
   std::optional<Point2> vote(double reach, std::size_t least) const {
     constexpr double kSameSize = 1.15;
     std::map<std::pair<int, int>, std::vector<Point2>> votes;
@@ -151,8 +150,9 @@ std::vector<Match> matches_at(const Plans& plans, Point2 shift, const MatchOptio
     groups.join(p.reference, n + p.model);
     linked[p.reference] = linked[n + p.model] = true;
   };
-  // The same house in both models is certain. What else has much in common with one of a certain pair joins it where it is
-  // the smaller (an annex drawn apart), and not where it is the larger: a garage under six houses makes no block of them.
+  // The same house in both models is certain. What else has much in common with one of a certain pair joins it where it
+  // is the smaller (an annex drawn apart), and not where it is the larger: a garage under six houses makes no block of
+  // them.
   std::vector<bool> certain(n + plans.models(), false);
   for (const Plans::Pair& p : pairs)
     if (plans.overlap_of(p) > options.certain_overlap) {
@@ -179,8 +179,10 @@ std::vector<Match> matches_at(const Plans& plans, Point2 shift, const MatchOptio
   for (std::size_t i = 0; i < linked.size(); ++i) {
     if (!linked[i]) continue;
     Match& match = all[groups.find(i)];
-    if (i < n) match.reference.push_back(static_cast<std::uint32_t>(i));
-    else match.model.push_back(static_cast<std::uint32_t>(i - n));
+    if (i < n)
+      match.reference.push_back(static_cast<std::uint32_t>(i));
+    else
+      match.model.push_back(static_cast<std::uint32_t>(i - n));
   }
   std::erase_if(all, [](const Match& m) { return m.model.empty() || m.reference.empty(); });
   return all;

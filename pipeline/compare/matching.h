@@ -14,7 +14,8 @@ struct MatchOptions {
   double certain_overlap = 0.5;
   /// Share of the smaller footprint that two buildings have in common from which on they stand for each other.
   double link_share = 0.5;
-  /// What is left unmatched is linked to its best partner from this share of its own footprint on: the same house, drawn badly or built on.
+  /// What is left unmatched is linked to its best partner from this share of its own footprint on: the same house,
+  /// drawn badly or built on.
   double rest_share = 0.25;
   /// m. How far apart the same building may lie in two models for the first guess of an offset.
   double largest_offset = 30;
@@ -25,11 +26,10 @@ struct Match {
   std::vector<std::uint32_t> model, reference;
 };
 
-/// Matches by area. Two of the same house are certain; then, as comparisons of OSM with surveys do (Hecht, Kunze and Hahmann 2013; Fan, Zipf, Fu and Neis 2014):
-/// buildings are linked by what they have in common of the smaller one (not with one that is larger than a certain
-/// pair, such as a garage under six houses); all that hangs together is one match. In the
-/// order of the reference's first building.
-/// \param shift  taken off the model's places before
+/// Matches by area. Two of the same house are certain; then, as comparisons of OSM with surveys do (Hecht, Kunze and
+/// Hahmann 2013; Fan, Zipf, Fu and Neis 2014): buildings are linked by what they have in common of the smaller one (not
+/// with one that is larger than a certain pair, such as a garage under six houses); all that hangs together is one
+/// match. In the order of the reference's first building. \param shift  taken off the model's places before
 std::vector<Match> match_buildings(const City& model, const City& reference, Point2 shift,
                                    const MatchOptions& options = {});
 
@@ -40,7 +40,8 @@ std::vector<Match> match_buildings(const City& model, const City& reference, Poi
 /// \param absolute  heights of both are over the same surface: the vertical offset is estimated too
 Registration register_models(const City& model, const City& reference, bool absolute, const MatchOptions& options = {});
 
-/// Share of each building's footprint that footprints of the other city cover. \param shift  added to the buildings' places
+/// Share of each building's footprint that footprints of the other city cover. \param shift  added to the buildings'
+/// places
 std::vector<double> covered_shares(const City& city, const std::vector<std::uint32_t>& buildings, const City& other,
                                    Point2 shift);
 

@@ -54,12 +54,12 @@ std::vector<Lane> lanes_of(const std::vector<Extent>& extents, std::vector<std::
   const auto near = [&](std::size_t at) {
     const Extent& e = extents[which[at]];
     const double reach = gap * e.length();
-    const auto from = std::lower_bound(
-        which.begin(), which.end(), rounded(e.centre() - reach) - 1,
-        [&](std::size_t i, long long centre) { return rounded(extents[i].centre()) < centre; });
-    const auto to = std::upper_bound(
-        which.begin(), which.end(), rounded(e.centre() + reach) + 1,
-        [&](long long centre, std::size_t i) { return centre < rounded(extents[i].centre()); });
+    const auto from =
+        std::lower_bound(which.begin(), which.end(), rounded(e.centre() - reach) - 1,
+                         [&](std::size_t i, long long centre) { return rounded(extents[i].centre()) < centre; });
+    const auto to =
+        std::upper_bound(which.begin(), which.end(), rounded(e.centre() + reach) + 1,
+                         [&](long long centre, std::size_t i) { return centre < rounded(extents[i].centre()); });
     return std::pair(static_cast<std::size_t>(from - which.begin()), static_cast<std::size_t>(to - which.begin()));
   };
   using Value = std::pair<long long, long long>;  // weight, and how near its members lie

@@ -124,8 +124,10 @@ class Gatherer {
     const auto look = [&](const std::vector<reference::Geometry>& geometries) {
       for (const reference::Geometry& g : geometries) {
         if (!is_body(g)) continue;
-        if (g.lod <= max_lod_) best = std::max(best, g.lod);
-        else lowest_above = std::min(lowest_above, g.lod);
+        if (g.lod <= max_lod_)
+          best = std::max(best, g.lod);
+        else
+          lowest_above = std::min(lowest_above, g.lod);
       }
     };
     look(part.geometries);
@@ -290,13 +292,11 @@ void drop_repetitions(City& city) {
     for (const std::uint32_t k : index.near(boxes[i], 0)) {
       const Building& first = city.buildings[k];
       if (k >= i || gone[k] || first.footprint.empty()) continue;
-      const double share =
-          shape_of(b).common_area(shape_of(first)) / std::max(b.footprint_area, first.footprint_area);
+      const double share = shape_of(b).common_area(shape_of(first)) / std::max(b.footprint_area, first.footprint_area);
       // Within a file what stands over another (a hall over its garage) is another building, unless nothing differs.
-      const bool same = first.file != b.file
-                            ? share > kRepetition
-                            : share > kSame && b.faces.size() == first.faces.size() &&
-                                  std::fabs(b.ground - first.ground) < kSameGround;
+      const bool same = first.file != b.file ? share > kRepetition
+                                             : share > kSame && b.faces.size() == first.faces.size() &&
+                                                   std::fabs(b.ground - first.ground) < kSameGround;
       if (!same) continue;
       gone[i] = true;
       break;
@@ -433,8 +433,8 @@ City city_of(const ReferenceModel& model, Point2 origin, int max_lod) {
     b.ground = footprints[i].ground_height;
     classify(b);
   }
-  city.without_geometry = std::erase_if(
-      city.buildings, [](const Building& b) { return b.footprint.empty() && b.faces.empty(); });
+  city.without_geometry =
+      std::erase_if(city.buildings, [](const Building& b) { return b.footprint.empty() && b.faces.empty(); });
   return city;
 }
 

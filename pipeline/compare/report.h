@@ -65,17 +65,16 @@ struct BaselineVerdict {
 };
 /// Compares what is `counted`, pooled. Worse is farther from the ideal, and fails where by more than `allowed` (0.02):
 /// higher: the value falls by more than that share of the baseline's; one: the ratios go away from 1 by more than that
-/// factor (mean of |log ratio| over the matches, so that 1.30 to 1.33 counts like 1.00 to 1.02); lower, and zero by its mean size
-/// (MAE): the value grows by more than that share and by more than rounding (1 mm, 0.01 degrees, 1e-6 of shares and
-/// counts, 0.1 m² of areas).
+/// factor (mean of |log ratio| over the matches, so that 1.30 to 1.33 counts like 1.00 to 1.02); lower, and zero by its
+/// mean size (MAE): the value grows by more than that share and by more than rounding (1 mm, 0.01 degrees, 1e-6 of
+/// shares and counts, 0.1 m² of areas).
 ///
 /// Lost are buildings of the reference that had a match and have none (how they are grouped into matches does not
 /// matter), and measures without a value any more, or with one in fewer matches and for fewer of the reference's
 /// buildings, both by more than `allowed`. `options` are set against the baseline's, where there are any.
 /// \throws base::InputError  when the text is no compare.json of a known format version
 BaselineVerdict compare_with_baseline(const Comparison& comparison, const std::string& baseline_json,
-                                      const std::string& baseline_path, double allowed,
-                                      const OptionList& options = {});
+                                      const std::string& baseline_path, double allowed, const OptionList& options = {});
 std::string verdict_text(const BaselineVerdict& verdict);
 /// What is worse in one line, "eaves_error, missing_area, 2 buildings lost"; empty where nothing is.
 std::string failed_text(const BaselineVerdict& verdict);

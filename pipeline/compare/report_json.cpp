@@ -74,14 +74,14 @@ Json summary_json(const Summary& s, Better better) {
   const bool any = s.count > 0;
   const auto value = [&](double v) { return any ? number(v) : Json(); };
   Json out = {{"count", s.count},
-          {"pooled", value(s.pooled)},
-          {"mean", value(s.mean)},
-          {"mean_abs", value(s.mean_abs)},
-          {"rms", value(s.rms)},
-          {"median", value(s.median)},
-          {"p95_abs", value(s.p95_abs)},
-          {"min", value(s.min)},
-          {"max", value(s.max)}};
+              {"pooled", value(s.pooled)},
+              {"mean", value(s.mean)},
+              {"mean_abs", value(s.mean_abs)},
+              {"rms", value(s.rms)},
+              {"median", value(s.median)},
+              {"p95_abs", value(s.p95_abs)},
+              {"min", value(s.min)},
+              {"max", value(s.max)}};
   if (better == Better::one) out["mean_factor"] = value(s.mean_factor);
   return out;
 }

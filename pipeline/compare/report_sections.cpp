@@ -161,12 +161,13 @@ std::string head_section(const Comparison& c) {
   if (!words.between.empty()) out += "<p><b class=\"fair\">In between:</b> " + words.between + ".</p>\n";
   if (!words.differs.empty()) out += "<p><b class=\"bad\">Differs:</b> " + words.differs + ".</p>\n";
   if (!c.matches.empty()) {
-    std::string tiles =
-        tile(c, Measure::footprint_iou, "footprint IoU") + tile(c, Measure::eaves_error, "eaves, mean error") +
-        tile(c, Measure::ridge_error, "ridge, mean error") + tile(c, Measure::roof_volume_ratio, "volume under roofs, factor off") +
-        tile(c, Measure::distance_rms, "surface distance, RMS") +
-        tile(c, Measure::completeness_050, "complete within 0.5\u00a0m") +
-        tile(c, Measure::opening_recall, "openings found");
+    std::string tiles = tile(c, Measure::footprint_iou, "footprint IoU") +
+                        tile(c, Measure::eaves_error, "eaves, mean error") +
+                        tile(c, Measure::ridge_error, "ridge, mean error") +
+                        tile(c, Measure::roof_volume_ratio, "volume under roofs, factor off") +
+                        tile(c, Measure::distance_rms, "surface distance, RMS") +
+                        tile(c, Measure::completeness_050, "complete within 0.5\u00a0m") +
+                        tile(c, Measure::opening_recall, "openings found");
     if (!tiles.empty()) out += "<div class=\"sum\">\n" + tiles + "</div>\n";
     out +=
         "<details class=\"small soft\"><summary>When the page says that something agrees or "

@@ -242,7 +242,7 @@ int common_directions(const std::vector<double>& a, const std::vector<double>& b
 }
 
 SurfaceError vertical_error(const RoofSurfaces& built, const RoofSurfaces& surveyed, std::span<const Point2> points,
-                     double built_up) {
+                            double built_up) {
   SurfaceError out;
   double squares = 0;
   for (const Point2 p : points) {

@@ -44,8 +44,8 @@ class RoofSurfaces {
 struct RoofHeights {
   double ridge = 0;  ///< highest point
   double eaves = 0;
-  double mean = 0;  ///< over the part of the plan that the roof covers: volume over area
-  double cover = 0; ///< that part, share of the plan
+  double mean = 0;   ///< over the part of the plan that the roof covers: volume over area
+  double cover = 0;  ///< that part, share of the plan
 };
 
 /// Ridge: the highest corner of a roof face. Eaves: the outline is walked in steps of 0.5 m; a step counts where the
@@ -79,7 +79,7 @@ struct SurfaceError {
   std::size_t points = 0;
   double mean = 0, rms = 0;  ///< m, of (built - surveyed)
 };
-SurfaceError vertical_error(const RoofSurfaces& built, const RoofSurfaces& surveyed, std::span<const model::Point2> points,
-                     double built_up = 0);
+SurfaceError vertical_error(const RoofSurfaces& built, const RoofSurfaces& surveyed,
+                            std::span<const model::Point2> points, double built_up = 0);
 
 }  // namespace blockrand::compare

@@ -128,8 +128,10 @@ SideFacts total_of(std::span<const MatchResult> matches, bool model) {
     for (std::size_t i = 0; i < out.area_of.size(); ++i) out.area_of[i] += side.area_of[i];
     for (std::size_t i = 0; i < out.left_out.size(); ++i) out.left_out[i] += side.left_out[i];
     out.unclassified_area += side.unclassified_area;
-    if (side.volume) volume += *side.volume;
-    else has_volume = false;
+    if (side.volume)
+      volume += *side.volume;
+    else
+      has_volume = false;
     out.solids += side.solids;
     out.valid_solids += side.valid_solids;
     for (const auto& [defect, n] : side.defects) out.defects[defect] += n;

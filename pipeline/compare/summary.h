@@ -13,8 +13,8 @@ double mean_factor(std::span<const double> ratios);
 
 MeasureSummaries summarise(std::span<const MatchResult> matches);
 
-/// Sums of both sides' areas, counts, volumes and defects; volume only of sides where every match has one. Heights, roof
-/// forms and buildings are left empty.
+/// Sums of both sides' areas, counts, volumes and defects; volume only of sides where every match has one. Heights,
+/// roof forms and buildings are left empty.
 SideFacts total_of(std::span<const MatchResult> matches, bool model);
 
 }  // namespace blockrand::compare

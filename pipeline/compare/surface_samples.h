@@ -52,8 +52,8 @@ void for_each_sample(std::span<const Triangle3> triangles, Point3 normal, Point3
     const std::int64_t k0 = cell(std::min({y[0], y[1], y[2]})), k1 = cell(std::max({y[0], y[1], y[2]}));
     for (std::int64_t k = k0; k <= k1; ++k)
       for (std::int64_t i = i0; i <= i1; ++i) {
-        const std::uint64_t bits = base::mix64(base::mix64(seed ^ base::mix64(static_cast<std::uint64_t>(i))) ^
-                                               static_cast<std::uint64_t>(k));
+        const std::uint64_t bits =
+            base::mix64(base::mix64(seed ^ base::mix64(static_cast<std::uint64_t>(i))) ^ static_cast<std::uint64_t>(k));
         const double px = (static_cast<double>(i) + static_cast<double>(bits >> 32) * 0x1.0p-32) * spacing;
         const double py = (static_cast<double>(k) + static_cast<double>(bits & 0xffffffff) * 0x1.0p-32) * spacing;
         const double b = ((px - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (py - y[0])) / twice;

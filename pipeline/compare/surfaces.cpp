@@ -14,7 +14,7 @@ namespace blockrand::compare {
 namespace {
 
 constexpr std::array<double, 3> kBounds{0.25, 0.5, 1.0};  // m, of completeness and correctness
-constexpr double kSameWall = 1.0;    // m. A wall farther from a left-out one is another wall, and wrong.
+constexpr double kSameWall = 1.0;   // m. A wall farther from a left-out one is another wall, and wrong.
 constexpr double kRounding = 1e-6;  // m. What lies at a bound but for rounding lies within it.
 constexpr double kDegrees = 180 / std::numbers::pi;
 
@@ -121,8 +121,7 @@ double spacing_of(double area, const SurfaceOptions& options) {
 
 }  // namespace
 
-MatchSurface::MatchSurface(const City& city, std::span<const std::uint32_t> buildings, double up)
-    : nearest_({}) {
+MatchSurface::MatchSurface(const City& city, std::span<const std::uint32_t> buildings, double up) : nearest_({}) {
   for (const std::uint32_t b : buildings) {
     const Building& building = city.buildings[b];
     Point3 anchor{1e300, 1e300, 1e300};
@@ -142,8 +141,7 @@ MatchSurface::MatchSurface(const City& city, std::span<const std::uint32_t> buil
       patch.count = static_cast<std::uint32_t>(triangles_.size()) - patch.first;
       if (patch.count > 0) patches_.push_back(patch);
     };
-    for (const Face& f : building.faces)
-      add(f.rings, {.hull = f.hull, .left_out = f.left_out, .normal = f.normal});
+    for (const Face& f : building.faces) add(f.rings, {.hull = f.hull, .left_out = f.left_out, .normal = f.normal});
     for (const Opening& o : building.openings)
       for (const Rings3& rings : o.polygons) {
         const Point3 n = area_vector(rings[0]);
@@ -210,12 +208,14 @@ double DistanceHistogram::quantile(double share) const {
 }
 
 void measure_surfaces(const MatchSurface& model, const Cover& model_cover, const MatchSurface& reference,
-                      const Cover& reference_cover, double model_up, double reference_up,
-                      const SurfaceOptions& options, MeasureValues& values, SurfaceTally& tally) {
+                      const Cover& reference_cover, double model_up, double reference_up, const SurfaceOptions& options,
+                      MeasureValues& values, SurfaceTally& tally) {
   if (model.empty() || reference.empty()) return;
   const double spacing = spacing_of(std::max(model.area(), reference.area()), options);
-  const OneWay there = walk(model, model_cover, reference, reference_cover, model_up, reference_up, spacing, options.seed);
-  const OneWay back = walk(reference, reference_cover, model, model_cover, reference_up, model_up, spacing, options.seed);
+  const OneWay there =
+      walk(model, model_cover, reference, reference_cover, model_up, reference_up, spacing, options.seed);
+  const OneWay back =
+      walk(reference, reference_cover, model, model_cover, reference_up, model_up, spacing, options.seed);
   double reference_area = 0, left_out = 0;
   for (const Place& p : there.places) {
     tally.model[static_cast<std::size_t>(p.why)] += p.weight;
@@ -224,8 +224,10 @@ void measure_surfaces(const MatchSurface& model, const Cover& model_cover, const
   for (const Place& p : back.places) {
     tally.reference[static_cast<std::size_t>(p.why)] += p.weight;
     reference_area += p.weight;
-    if (p.why == LeftOut::no) tally.to_model.add(p.distance, p.weight);
-    else left_out += p.weight;
+    if (p.why == LeftOut::no)
+      tally.to_model.add(p.distance, p.weight);
+    else
+      left_out += p.weight;
   }
   const double share = reference_area > 0 ? left_out / reference_area : 0;
 

@@ -15,7 +15,7 @@
 namespace blockrand::compare {
 
 struct SurfaceOptions {
-  int samples = 4000;         ///< places on each side of a match, about
+  int samples = 4000;  ///< places on each side of a match, about
   std::uint64_t seed = 1;
   double least_spacing = 0.05;  ///< m. Small buildings need no more.
 };
@@ -30,7 +30,7 @@ class MatchSurface {
     LeftOut left_out = LeftOut::no;
     bool opening = false;
     Point3 normal{};
-    Point3 anchor{};  ///< of its building's lattice
+    Point3 anchor{};                     ///< of its building's lattice
     std::uint32_t first = 0, count = 0;  ///< triangles
   };
   /// \param up  m, added to every height
@@ -49,8 +49,8 @@ class MatchSurface {
   struct NearestPatch {
     double distance = 0;  ///< m
     const Patch* patch = nullptr;
-    double cosine = 0;    ///< of the angle between both normals, without their signs
-    Point3 place{};       ///< on it
+    double cosine = 0;  ///< of the angle between both normals, without their signs
+    Point3 place{};     ///< on it
   };
   NearestPatch nearest_patch(Point3 p, Point3 normal) const;
 
@@ -80,7 +80,7 @@ class DistanceHistogram {
 
 /// What pooling needs beyond the measures.
 struct SurfaceTally {
-  DistanceHistogram to_reference, to_model;  ///< counted surface only
+  DistanceHistogram to_reference, to_model;                ///< counted surface only
   std::array<double, kLeftOutCount> model{}, reference{};  ///< m² by reason
 };
 
@@ -89,7 +89,7 @@ struct SurfaceTally {
 /// blank and less than a metre away, since there is nothing to be compared with.
 /// \param model_up, reference_up  m, as the surfaces were raised
 void measure_surfaces(const MatchSurface& model, const Cover& model_cover, const MatchSurface& reference,
-                      const Cover& reference_cover, double model_up, double reference_up,
-                      const SurfaceOptions& options, MeasureValues& values, SurfaceTally& tally);
+                      const Cover& reference_cover, double model_up, double reference_up, const SurfaceOptions& options,
+                      MeasureValues& values, SurfaceTally& tally);
 
 }  // namespace blockrand::compare

@@ -30,7 +30,8 @@ class NearestSurface {
   };
   /// Requires a surface that is not empty.
   Nearest nearest(model::Point3 p) const;
-  /// All triangles that have a place of the surface (to about a micrometre): several where it lies on an edge. Ascending.
+  /// All triangles that have a place of the surface (to about a micrometre): several where it lies on an edge.
+  /// Ascending.
   std::vector<std::uint32_t> triangles_at(model::Point3 place) const;
 
  private:

@@ -238,7 +238,7 @@ class DoubledWindows(CompareTest):
                 model = self.path('doubled_' + names[-1])
                 windows = reference_osm.double_windows(source, model)
                 original = self.compare('original_' + name, source, source)
-                self.ideal(original, 1e-4, but=('valid_model',))  # degrees: the last digits of acos near 1
+                self.ideal(original, 1e-4, but=('valid_model', 'semantic_model'))  # facts of the file
                 doubled = self.compare('doubled_' + name, model, source, '--baseline',
                                        self.path('original_' + name, 'compare.json'), *GATE, code=3)
                 results[name], results[name + ' x2'] = original, doubled
@@ -250,7 +250,8 @@ class DoubledWindows(CompareTest):
                 self.assertAlmostEqual(headline(doubled, 'opening_precision'), 1 / ratio, delta=1e-6)
                 self.assertEqual(headline(doubled, 'opening_recall'), 1)
                 self.assertGreater(headline(doubled, 'axes_error'), 1)
-                self.assertGreater(headline(doubled, 'window_to_wall_error'), 0.05)
+                # Half of a copy lies on the first window, and a place counts once.
+                self.assertGreater(headline(doubled, 'window_to_wall_error'), 0.02)
                 worse = verdict(self.last.out)
                 for measure in ('openings_ratio', 'opening_precision', 'axes_error', 'window_to_wall_error'):
                     self.assertIn(measure, worse, self.last)

@@ -54,8 +54,7 @@ Building prism(const std::string& id, const std::vector<Point2>& plan, double gr
   b.faces.push_back(face_of(Hull::roof, roof));
   for (std::size_t i = 0; i < plan.size(); ++i) {
     const Point2 p = plan[i], q = plan[(i + 1) % plan.size()];
-    b.faces.push_back(
-        face_of(Hull::wall, {{p.x, p.y, ground}, {q.x, q.y, ground}, {q.x, q.y, top}, {p.x, p.y, top}}));
+    b.faces.push_back(face_of(Hull::wall, {{p.x, p.y, ground}, {q.x, q.y, ground}, {q.x, q.y, top}, {p.x, p.y, top}}));
   }
   Shell shell;
   for (const Face& f : b.faces) shell.polygons.push_back(f.rings);

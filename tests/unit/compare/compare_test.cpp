@@ -73,7 +73,8 @@ double distance_to(const Block& b, Point3 p) {
   return outside > 0 ? outside : std::min({-x, -y, -z});
 }
 
-/// Degrees between a normal and that of the block's nearest face; of faces that share the nearest place, the most alike.
+/// Degrees between a normal and that of the block's nearest face; of faces that share the nearest place, the most
+/// alike.
 double angle_to(const Block& b, Point3 p, Point3 normal) {
   const double c = std::cos(b.turned), s = std::sin(b.turned);
   const double dx = p.x - b.centre.x, dy = p.y - b.centre.y;
@@ -82,8 +83,7 @@ double angle_to(const Block& b, Point3 p, Point3 normal) {
   const double alike[] = {std::fabs(normal.x * c + normal.y * s), std::fabs(-normal.x * s + normal.y * c),
                           std::fabs(normal.z)};
   double best = -1, depth = 1e9;
-  const bool outside =
-      std::fabs(at[0]) > half[0] || std::fabs(at[1]) > half[1] || std::fabs(at[2]) > half[2];
+  const bool outside = std::fabs(at[0]) > half[0] || std::fabs(at[1]) > half[1] || std::fabs(at[2]) > half[2];
   for (int i = 0; i < 3; ++i) {
     const double here = half[i] - std::fabs(at[i]);
     if (outside ? here <= 0 : here < depth) {
@@ -108,10 +108,9 @@ Quadrature quadrature(const Block& from, const Block& to, bool with_ground) {
     for (int i = 0; i < m; ++i)
       for (int k = 0; k < n; ++k) {
         const double s = (i + 0.5) / m, t = (k + 0.5) / n;
-        const double d =
-            distance_to(to, {o.x + s * u.x + t * v.x, o.y + s * u.y + t * v.y, o.z + s * u.z + t * v.z});
-        q.angle += weight * angle_to(to, {o.x + s * u.x + t * v.x, o.y + s * u.y + t * v.y, o.z + s * u.z + t * v.z},
-                                     normal);
+        const double d = distance_to(to, {o.x + s * u.x + t * v.x, o.y + s * u.y + t * v.y, o.z + s * u.z + t * v.z});
+        q.angle +=
+            weight * angle_to(to, {o.x + s * u.x + t * v.x, o.y + s * u.y + t * v.y, o.z + s * u.z + t * v.z}, normal);
         q.mean += weight * d;
         q.rms += weight * d * d;
         q.area += weight;
@@ -138,7 +137,8 @@ Quadrature quadrature(const Block& from, const Block& to, bool with_ground) {
 void expect_distances(const Block& model, const Block& reference) {
   CompareOptions options;
   options.surface.samples = 400000;  // what is left of chance is well below a millimetre
-  const Comparison c = compared(city_of_blocks({building_of(model)}), city_of_blocks({building_of(reference)}), options);
+  const Comparison c =
+      compared(city_of_blocks({building_of(model)}), city_of_blocks({building_of(reference)}), options);
   ASSERT_EQ(c.matches.size(), 1u);
   constexpr double kMillimetre = 0.001;
   for (const bool with_ground : {false, true}) {
@@ -183,10 +183,10 @@ TEST(Compare, IdenticalModelsAreIdealInEveryMeasure) {
   EXPECT_TRUE(c.missing.empty());
   EXPECT_TRUE(c.extra.empty());
   expect_ideal(c);
-  for (const Measure m : {Measure::footprint_iou, Measure::area_ratio, Measure::eaves_error, Measure::ridge_error,
-                          Measure::volume_ratio, Measure::distance_mean, Measure::distance_max,
-                          Measure::completeness_025, Measure::normal_deviation, Measure::roof_type_agrees,
-                          Measure::valid_model, Measure::semantic_model})
+  for (const Measure m :
+       {Measure::footprint_iou, Measure::area_ratio, Measure::eaves_error, Measure::ridge_error, Measure::volume_ratio,
+        Measure::distance_mean, Measure::distance_max, Measure::completeness_025, Measure::normal_deviation,
+        Measure::roof_type_agrees, Measure::valid_model, Measure::semantic_model})
     EXPECT_EQ(c.summaries[static_cast<std::size_t>(m)].counted.count, 6u) << info(m).id;
   EXPECT_NEAR(c.registration.east, 0, 1e-9);
   EXPECT_NEAR(c.registration.north, 0, 1e-9);
@@ -265,7 +265,8 @@ TEST(Compare, HeightsAreAboveOnesOwnGround) {
   EXPECT_FALSE(value(own, Measure::base_error).counted);
   EXPECT_LT(counted(own, Measure::distance_max), 0.51);
 
-  const Comparison absolute = compared(city_of_blocks({building_of(model)}, true), city_of_blocks({building_of(reference)}, true));
+  const Comparison absolute =
+      compared(city_of_blocks({building_of(model)}, true), city_of_blocks({building_of(reference)}, true));
   EXPECT_NEAR(counted(absolute, Measure::base_error), -34.5, 1e-9);
   EXPECT_NEAR(counted(absolute, Measure::eaves_error), 0.5, 1e-9);
   EXPECT_GT(counted(absolute, Measure::distance_mean), 25);
@@ -274,13 +275,15 @@ TEST(Compare, HeightsAreAboveOnesOwnGround) {
 
   CompareOptions options;
   options.align = Align::vertical;
-  const Comparison moved = compared(city_of_blocks({building_of(model)}, true), city_of_blocks({building_of(reference)}, true), options);
+  const Comparison moved =
+      compared(city_of_blocks({building_of(model)}, true), city_of_blocks({building_of(reference)}, true), options);
   EXPECT_TRUE(moved.registration.vertical_removed);
   EXPECT_NEAR(counted(moved, Measure::base_error), 0, 1e-9);
   EXPECT_LT(counted(moved, Measure::distance_max), 0.51);
 
   // Heights of which one is no height over anything are never compared as they stand, unless the user says so.
-  const Comparison mixed = compared(city_of_blocks({building_of(model)}, false), city_of_blocks({building_of(reference)}, true));
+  const Comparison mixed =
+      compared(city_of_blocks({building_of(model)}, false), city_of_blocks({building_of(reference)}, true));
   EXPECT_FALSE(value(mixed, Measure::base_error).counted);
   EXPECT_FALSE(mixed.registration.up);
   City ellipsoidal = city_of_blocks({building_of(model)}, true);
@@ -296,9 +299,9 @@ TEST(Compare, HeightsAreAboveOnesOwnGround) {
 TEST(Compare, IsSymmetric) {
   const Block a{.width = 11, .height = 7, .turned = 0.05}, b{.centre = {0.4, -0.2}, .depth = 8.5};
   const Comparison c = compared(building_of(a), building_of(b)), d = compared(building_of(b), building_of(a));
-  for (const Measure m : {Measure::footprint_iou, Measure::outline_distance, Measure::distance_mean,
-                          Measure::distance_rms, Measure::distance_p95, Measure::distance_max,
-                          Measure::normal_deviation, Measure::roof_type_agrees}) {
+  for (const Measure m :
+       {Measure::footprint_iou, Measure::outline_distance, Measure::distance_mean, Measure::distance_rms,
+        Measure::distance_p95, Measure::distance_max, Measure::normal_deviation, Measure::roof_type_agrees}) {
     EXPECT_NEAR(counted(c, m), counted(d, m), 1e-9) << info(m).id;
     EXPECT_NEAR(all(c, m), all(d, m), 1e-9) << info(m).id;
   }
@@ -306,11 +309,10 @@ TEST(Compare, IsSymmetric) {
     EXPECT_NEAR(counted(c, m), -counted(d, m), 1e-9) << info(m).id;
   for (const Measure m : {Measure::area_ratio, Measure::volume_ratio})
     EXPECT_NEAR(counted(c, m) * counted(d, m), 1, 1e-9) << info(m).id;
-  for (const auto& [there, back] :
-       {std::pair(Measure::to_reference_mean, Measure::to_model_mean),
-        std::pair(Measure::completeness_025, Measure::correctness_025),
-        std::pair(Measure::completeness_050, Measure::correctness_050),
-        std::pair(Measure::completeness_100, Measure::correctness_100)}) {
+  for (const auto& [there, back] : {std::pair(Measure::to_reference_mean, Measure::to_model_mean),
+                                    std::pair(Measure::completeness_025, Measure::correctness_025),
+                                    std::pair(Measure::completeness_050, Measure::correctness_050),
+                                    std::pair(Measure::completeness_100, Measure::correctness_100)}) {
     EXPECT_NEAR(counted(c, there), counted(d, back), 1e-9) << info(there).id;
     EXPECT_NEAR(counted(c, back), counted(d, there), 1e-9) << info(back).id;
   }
@@ -474,13 +476,15 @@ TEST(Compare, AGarageUnderSixHousesMakesNoBlockOfThem) {
   std::vector<Building> houses;
   for (int i = 0; i < 6; ++i) houses.push_back(building_of({.id = "h" + std::to_string(i), .centre = {i * 14.0, 0}}));
   std::vector<Building> model = houses;
-  model.push_back(building_of({.id = "garage", .centre = {35, 0}, .width = 90, .depth = 30, .height = 3, .ground = -3}));
+  model.push_back(
+      building_of({.id = "garage", .centre = {35, 0}, .width = 90, .depth = 30, .height = 3, .ground = -3}));
   const Comparison c = compared(city_of_blocks(model), city_of_blocks(houses));
   EXPECT_EQ(c.matches.size(), 6u);
   ASSERT_EQ(c.extra.size(), 1u);
   EXPECT_EQ(c.model.buildings[c.extra[0]].id, "garage");
   EXPECT_NEAR(c.summaries[static_cast<std::size_t>(Measure::eaves_error)].counted.max, 0, 1e-9);
-  EXPECT_NEAR(c.summaries[static_cast<std::size_t>(Measure::distance_mean)].left_out, 80 / 376.0, 0.02) << "grounds only";
+  EXPECT_NEAR(c.summaries[static_cast<std::size_t>(Measure::distance_mean)].left_out, 80 / 376.0, 0.02)
+      << "grounds only";
 }
 
 TEST(Compare, AnAnnexDrawnApartJoinsItsHouse) {
@@ -645,10 +649,14 @@ TEST(FaceTriangles, OfPolygonsAsTheyCome) {
   EXPECT_NEAR(area_of(triangles_of({wall})), 35, 1e-9);
   EXPECT_NEAR(area_of(triangles_of({{wall.rbegin(), wall.rend()}})), 35, 1e-9);
   // Repeated points, points on edges.
-  EXPECT_NEAR(area_of(triangles_of({{{0, 0, 0}, {5, 0, 0}, {5, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}, {0, 0, 0}}})), 100, 1e-9);
+  EXPECT_NEAR(
+      area_of(triangles_of({{{0, 0, 0}, {5, 0, 0}, {5, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}, {0, 0, 0}}})), 100,
+      1e-9);
   bool mended = false;
   // A spike, a hole that touches the outer ring, a figure of eight.
-  EXPECT_NEAR(area_of(triangles_of({{{0, 0, 0}, {10, 0, 0}, {15, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}}}, &mended)), 100, 0.01);
+  EXPECT_NEAR(
+      area_of(triangles_of({{{0, 0, 0}, {10, 0, 0}, {15, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}}}, &mended)), 100,
+      0.01);
   EXPECT_NEAR(area_of(triangles_of({square, {{0, 0, 0}, {2, 4, 0}, {4, 2, 0}}}, &mended)), 94, 0.1);
   EXPECT_TRUE(mended);
   EXPECT_GT(area_of(triangles_of({{{0, 0, 0}, {10, 0, 0}, {0, 7, 0}, {8, 9, 0}}})), 0);

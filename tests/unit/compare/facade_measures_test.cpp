@@ -304,8 +304,8 @@ TEST(FacadeMeasures, OfABlockAgainstItsHousesOnASlope) {
     whole.push_back(h);
   }
   City block = city_of({house(rectangle(0, 0, 29, 11), 12.5, {whole})});
-  City houses = city_of({house(rectangle(0, 0, 13, 11), 12.5, {left}),
-                         house(rectangle(13, 0, 29, 11), 12.5 - step, {right}, upper)});
+  City houses = city_of(
+      {house(rectangle(0, 0, 13, 11), 12.5, {left}), house(rectangle(13, 0, 29, 11), 12.5 - step, {right}, upper)});
   houses.buildings[0].faces[3].left_out = LeftOut::covered;  // east
   houses.buildings[1].faces[5].left_out = LeftOut::covered;  // west
   for (const auto& [a, b] : {std::pair(&block, &houses), std::pair(&houses, &block)}) {

@@ -212,7 +212,8 @@ void reverse(Building& building) {
 MeasureValues measured(const City& model, const City& reference) {
   const auto m = all_of(model), r = all_of(reference);
   MeasureValues values;
-  measure_facades(compare_facades(model, m, ground_of(model), reference, r, ground_of(reference)), model, m, reference, r, values);
+  measure_facades(compare_facades(model, m, ground_of(model), reference, r, ground_of(reference)), model, m, reference,
+                  r, values);
   return values;
 }
 

@@ -161,7 +161,8 @@ TEST(ReadCity, ABodyThatLooksInwardsKeepsItsRoof) {
 TEST(ReadCity, InteriorsAndPolygonsWithoutAreaDoNotCount) {
   ReferenceModel m = empty_model();
   m.buildings = {house(m, "a", {0, 0, 0}, {10, 8, 6})};
-  reference::Surface inside = surface_of(SurfaceClass::interior_wall, 2, add_polygon(m, {{1, 1, 0}, {5, 1, 0}, {5, 1, 3}}));
+  reference::Surface inside =
+      surface_of(SurfaceClass::interior_wall, 2, add_polygon(m, {{1, 1, 0}, {5, 1, 0}, {5, 1, 3}}));
   inside.interior = true;
   m.buildings[0].surfaces.push_back(inside);
   m.buildings[0].surfaces.push_back(surface_of(SurfaceClass::wall, 2, add_polygon(m, {{1, 1, 0}, {5, 1, 0}})));

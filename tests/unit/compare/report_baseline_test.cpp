@@ -171,8 +171,8 @@ TEST(Baseline, RatiosOnBothSidesOfOneDoNotCancel) {
   sum_up(before);
   EXPECT_EQ(failed_text(against(now, before, 0.02)), "volume_ratio");
   // exp((log 2 + log 1.5) / 3)
-  EXPECT_NEAR(*headline(info(Measure::volume_ratio), summary_of(now.summaries, Measure::volume_ratio).counted), 1.442250,
-              1e-6);
+  EXPECT_NEAR(*headline(info(Measure::volume_ratio), summary_of(now.summaries, Measure::volume_ratio).counted),
+              1.442250, 1e-6);
 }
 
 TEST(Baseline, WhatWasComparedOtherwiseIsTold) {
@@ -182,9 +182,10 @@ TEST(Baseline, WhatWasComparedOtherwiseIsTold) {
   const BaselineVerdict v = compare_with_baseline(now, comparison_json(measured(), {{"align", "none"}, {"seed", "1"}}),
                                                   "before.json", 0.02, {{"align", "both"}, {"lod", "2"}});
   EXPECT_FALSE(v.worse());
-  EXPECT_THAT(v.differs, ElementsAre("CRS was EPSG:25832 and is EPSG:25833",
-                                     "heights was above own ground and is absolute", "option align was none and is both",
-                                     "option lod was not set and is 2", "option seed was 1 and is not set"));
+  EXPECT_THAT(v.differs,
+              ElementsAre("CRS was EPSG:25832 and is EPSG:25833", "heights was above own ground and is absolute",
+                          "option align was none and is both", "option lod was not set and is 2",
+                          "option seed was 1 and is not set"));
   EXPECT_THAT(verdict_text(v), HasSubstr("warning: CRS was EPSG:25832 and is EPSG:25833\n"));
 }
 
