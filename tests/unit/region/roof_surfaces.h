@@ -7,14 +7,14 @@
 
 namespace blockrand::region::test {
 
-using compare::RoofPlanes;
-using compare::RoofHeights;
-using compare::RoofSurfaces;
-using compare::SurfaceError;
 using compare::common_directions;
 using compare::common_grid;
 using compare::kFlatSlope;
 using compare::kSteepest;
+using compare::RoofHeights;
+using compare::RoofPlanes;
+using compare::RoofSurfaces;
+using compare::SurfaceError;
 
 /// Roof faces of a built solid.
 void add_roof_of(const model::Solid& solid, RoofSurfaces& out);

@@ -233,7 +233,8 @@ TEST(Heights, AreWhatTheFileSaysTheyAre) {
   EXPECT_EQ(heights("urn:ogc:def:crs:EPSG::4979"), HeightReference::ellipsoidal);
   EXPECT_EQ(heights("EPSG:25833", "CRS: x; heights: heights above local ground; data: y"),
             HeightReference::above_local_ground);
-  EXPECT_EQ(heights("EPSG:25833", "heights: heights of the terrain raster, above sea level"), HeightReference::sea_level);
+  EXPECT_EQ(heights("EPSG:25833", "heights: heights of the terrain raster, above sea level"),
+            HeightReference::sea_level);
 }
 
 }  // namespace
