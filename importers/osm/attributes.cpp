@@ -3,6 +3,7 @@
 #include <initializer_list>
 #include <string>
 
+#include "importers/osm/construction_date.h"
 #include "importers/osm/tag_values.h"
 
 namespace blockrand::importers::osm {
@@ -70,9 +71,28 @@ class AttributeReader {
 bool any_key_of_the_scheme(Tags tags) {
   for (const auto& [k, v] : tags)
     if (k.starts_with("building:") || k.starts_with("roof:") || k.ends_with("height") || k.ends_with("level") ||
-        k == "levels" || k == "layer" || k == "building" || k.starts_with("facade:"))
-      if (k != "building") return true;
+        k == "levels" || k == "layer" || k.starts_with("facade:") || k == "start_date" || k == "construction_date" ||
+        k == "year_of_construction")
+      return true;
   return false;
+}
+
+/// `start_date` of an object that is a business as well may be the day it opened.
+bool is_a_business_too(const AttributeReader& read) {
+  for (const std::string_view key : {"shop", "amenity", "office", "craft"})
+    if (const std::string_view value = read.value(key); !value.empty() && value != "no") return true;
+  const std::string_view tourism = read.value("tourism");
+  return tourism == "hotel" || tourism == "museum";
+}
+
+std::optional<model::ConstructionDate> read_construction_date(AttributeReader& read) {
+  const auto of_the_building =
+      read.first({"building:start_date", "building:year_of_construction", "year_of_construction", "construction_date"},
+                 parse_construction_date);
+  if (of_the_building) return of_the_building;
+  auto date = read.first({"start_date"}, parse_construction_date);
+  if (date && is_a_business_too(read)) date->confidence /= 2;
+  return date;
 }
 
 }  // namespace
@@ -111,6 +131,7 @@ model::MappedAttributes read_attributes(model::OsmId id, model::ObjectKind kind,
   a.wall_material =
       strings.intern(read.first_text({"building:material", "building:facade:material", "facade:material"}));
   a.roof_material = strings.intern(read.first_text({"roof:material", "building:roof:material"}));
+  a.built = read_construction_date(read);
   return a;
 }
 

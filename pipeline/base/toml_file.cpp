@@ -65,6 +65,16 @@ struct TomlTable::Data {
     asked.emplace(key);
     return table->get(key);
   }
+  /// `node` is a table.
+  std::unique_ptr<Data> below(const toml::node& node, std::string path_of_keys) const {
+    auto data = std::make_unique<Data>();
+    data->root = root;
+    data->table = node.as_table();
+    data->file = file;
+    data->path = std::move(path_of_keys);
+    data->position = node.source().begin;
+    return data;
+  }
   [[noreturn]] void fail(const toml::node& node, std::string_view key, const std::string& what,
                          const std::string& remedy) const {
     throw InputError(file, place(node.source().begin), path + std::string(key) + " " + what, remedy);
@@ -178,14 +188,60 @@ std::optional<TomlTable> TomlTable::table(std::string_view key) {
   if (!node->is_table())
     data_->fail(*node, key, "must be a table, not " + kind_name(*node),
                 "Write it as a section: [" + data_->path + std::string(key) + "].");
-  auto data = std::make_unique<Data>();
-  data->root = data_->root;
-  data->table = node->as_table();
-  data->file = data_->file;
-  data->path = data_->path + std::string(key) + ".";
-  data->position = node->source().begin;
-  return TomlTable(std::move(data));
+  return TomlTable(data_->below(*node, data_->path + std::string(key) + "."));
 }
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key) {
+  std::vector<TomlTable> out;
+  const toml::node* node = data_->ask(key);
+  if (!node) return out;
+  if (node->is_table()) {
+    out.push_back(TomlTable(data_->below(*node, data_->path + std::string(key) + ".")));
+    return out;
+  }
+  const std::string remedy = "Write each as a section: [[" + data_->path + std::string(key) + "]].";
+  if (!node->is_array()) data_->fail(*node, key, "must be an array of tables, not " + kind_name(*node), remedy);
+  for (const toml::node& entry : *node->as_array()) {
+    if (!entry.is_table()) data_->fail(entry, key, "must hold tables only, not " + kind_name(entry), remedy);
+    out.push_back(TomlTable(data_->below(entry, data_->path + std::string(key) + ".")));
+  }
+  return out;
+}
+
+std::optional<std::vector<std::pair<double, double>>> TomlTable::pairs(std::string_view key) {
+  const toml::node* node = data_->ask(key);
+  if (!node) return std::nullopt;
+  const std::string remedy = "Write it like [[1, 2], [3, 4]].";
+  if (!node->is_array()) data_->fail(*node, key, "must be an array of pairs, not " + kind_name(*node), remedy);
+  std::vector<std::pair<double, double>> values;
+  for (const toml::node& entry : *node->as_array()) {
+    const toml::array* pair = entry.as_array();
+    if (!pair || pair->size() != 2 || !(*pair)[0].is_number() || !(*pair)[1].is_number())
+      data_->fail(entry, key, "must hold pairs of numbers only", remedy);
+    values.emplace_back(*(*pair)[0].value<double>(), *(*pair)[1].value<double>());
+    if (!std::isfinite(values.back().first) || !std::isfinite(values.back().second))
+      data_->fail(entry, key, "must hold finite numbers only", remedy);
+  }
+  return values;
+}
+
+bool TomlTable::holds_table(std::string_view key) const {
+  const toml::node* node = data_->table->get(key);
+  return node && node->is_table();
+}
+
+bool TomlTable::holds_text(std::string_view key) const {
+  const toml::node* node = data_->table->get(key);
+  return node && node->is_string();
+}
+
+int TomlTable::line(std::string_view key) const {
+  if (!key.empty())
+    if (const toml::node* node = data_->table->get(key)) return static_cast<int>(node->source().begin.line);
+  return static_cast<int>(data_->position.line);
+}
+
+const std::string& TomlTable::file() const { return data_->file; }
 
 std::optional<std::string> TomlTable::plain(std::string_view key) {
   const toml::node* node = data_->ask(key);

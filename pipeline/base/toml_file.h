@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace blockrand::base {
@@ -34,6 +35,15 @@ class TomlTable {
   std::optional<std::vector<std::string>> texts(std::string_view key);
   std::optional<std::vector<double>> numbers(std::string_view key);
   std::optional<TomlTable> table(std::string_view key);
+  /// The tables of an array of tables ([[key]]), in the order of the file; of a single table that one; empty: absent.
+  std::vector<TomlTable> tables(std::string_view key);
+  /// An array of pairs of numbers, [[1, 2], [3, 4]].
+  std::optional<std::vector<std::pair<double, double>>> pairs(std::string_view key);
+  bool holds_table(std::string_view key) const;
+  bool holds_text(std::string_view key) const;
+  /// Line of `key` in the file, from 1; without such a key that of the table; 0 for the root.
+  int line(std::string_view key = {}) const;
+  const std::string& file() const;
   /// Keys of this table in alphabetical order.
   std::vector<std::string> keys() const;
   /// The value of `key` as the user would write it on a command line: text without quotes, numbers and booleans as

@@ -4,6 +4,7 @@
 
 #include "pipeline/cli/build.h"
 #include "pipeline/cli/compare.h"
+#include "pipeline/cli/districts.h"
 #include "pipeline/cli/explain.h"
 #include "pipeline/cli/help.h"
 #include "pipeline/cli/info.h"
@@ -16,6 +17,7 @@ const std::vector<Command>& commands() {
       {build_text(), run_build},
       {explain_text(), run_explain},
       {compare_text(), run_compare},
+      {districts_text(), run_districts},
       {validate_text(), run_validate},
       {info_text(), run_info},
       {help_text(), run_help},

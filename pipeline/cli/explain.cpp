@@ -9,43 +9,14 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/cli/exit_codes.h"
+#include "pipeline/cli/explain_style.h"
+#include "pipeline/cli/terminal_text.h"
 #include "pipeline/settings/command_line.h"
 
 namespace blockrand::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::size_t kWidth = 100;  // columns
-
-/// `text` at column `indent`, broken between words; the first line starts where the caller stands.
-std::string wrapped(const std::string& text, std::size_t indent) {
-  std::string out;
-  std::size_t column = indent;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
-    const std::size_t length = end - at;
-    if (column > indent && column + 1 + length > kWidth) {
-      out += "\n" + std::string(indent, ' ');
-      column = indent;
-    } else if (column > indent) {
-      out += ' ';
-      ++column;
-    }
-    out.append(text, at, length);
-    column += length;
-    at = end + 1;
-  }
-  return out;
-}
-
-/// A name, padded to the column where the rest starts.
-std::string row(const std::string& name, std::size_t width, const std::string& rest) {
-  std::string line = "  " + name;
-  if (line.size() + 1 > width) line += "\n" + std::string(width, ' ');
-  while (line.size() < width) line += ' ';
-  return line + wrapped(rest, width) + "\n";
-}
 
 std::string in_words(const std::string& source) {
   if (source == "override") return "as you ordered";
@@ -75,6 +46,10 @@ std::string value_text(const Json& attribute) {
     const double number = value.get<double>();
     text = number == std::floor(number) ? fmt::format("{:.0f}", number) : fmt::format("{:.2f}", number);
   } else {
+    const std::string name = attribute.value("name", "");
+    if (name == "era" && value.is_string()) return era_in_words(value.get<std::string>());
+    // Ids stay as they stand in the configuration.
+    if ((name == "substyle" || name == "preset") && value.is_string()) return value.get<std::string>();
     text = value.is_string() ? spaced(value.get<std::string>()) : value.dump();
   }
   if (unit == "degree") return text + "°";
@@ -87,6 +62,7 @@ std::string attribute_rows(const Json& attributes) {
   constexpr std::size_t kValueColumn = 20, kReasonColumn = 34;
   std::string text;
   for (const Json& a : attributes) {
+    if (a.at("value").is_string() && a.at("value").get_ref<const std::string&>().empty()) continue;  // nothing is known
     std::string line = "  " + spaced(a.value("name", ""));
     line.resize(std::max(line.size() + 1, kValueColumn), ' ');
     line += value_text(a);
@@ -279,7 +255,7 @@ std::string edge_rows(const Json& j) {
 
 namespace {
 
-std::string text_of(const Json& j, const region::FoundExplanation& found, const std::string& asked_body, bool edges) {
+std::string text_of(const Json& j, const region::FoundExplanation& found, const std::string& asked_body, bool edges, bool style) {
   if (!found.in_model) return not_modelled(j, found);
 
   const std::string id = j.at("id"), asked = found.asked.text();
@@ -304,6 +280,7 @@ std::string text_of(const Json& j, const region::FoundExplanation& found, const 
   if (j.value("state", "") == "reported")
     text += "\n  " + wrapped(fmt::format("It is not in the model. {}: {}", j.value("code", ""), j.value("meaning", "")), 2) + "\n";
 
+  if (j.contains("style")) text += style_text(j.at("style"), style);
   text += "\nWhat the map says\n" + tag_rows(j.at("tags"));
   if (!bodies.empty()) text += "\nEvery value, where it comes from, how sure that is, and what else was considered\n" + attribute_rows(attributes);
   text += body_rows(j, asked, asked_body);
@@ -324,17 +301,18 @@ std::string text_of(const Json& j, const region::FoundExplanation& found, const 
     for (const Json& file : j["files"]) text += "  " + file.get<std::string>() + "\n";
   }
   if (!bodies.empty())
-    text += "\n" + wrapped("To change a value, tag the building in OpenStreetMap: what is tagged beats every other source.", 0) + "\n";
+    text += "\n" + wrapped("To change a value, tag the building in OpenStreetMap, or order it in a file for --overrides: an order (override) beats "
+                            "what is tagged, and what is tagged beats every other source.", 0) + "\n";
   return text;
 }
 
 }  // namespace
 
-std::string explanation_text(const region::FoundExplanation& found, const std::string& body, bool edges) {
+std::string explanation_text(const region::FoundExplanation& found, const std::string& body, bool edges, bool style) {
   try {
     Json j = Json::parse(found.json);
     make_printable(j);
-    return text_of(j, found, body, edges);
+    return text_of(j, found, body, edges, style);
   } catch (const Json::exception& error) {
     throw base::InputError("explain/", found.explained.text(), std::string("the explanation is damaged: ") + error.what(),
                            "Build again; 'blockrand validate' lists all damage");
@@ -346,13 +324,14 @@ settings::CommandText explain_text() {
           .summary = "why one building looks as it does",
           .usage = "FOLDER ID [options]",
           .description =
-              "Tells everything that a build knows of one building or building part: each value with its source, how "
+              "Tells everything that a build knows of one building or building part: its style and what spoke for it, each value with its source, how "
               "sure it is and what else was considered, what each stage did with it, what fell back and why, and the "
               "files it stands in. An object that is not in the model is explained, too.",
           .options = settings::kExplain,
           .examples = {{"blockrand explain out/leipzig w123", ""},
                        {"blockrand explain out/leipzig https://www.openstreetmap.org/way/123", ""},
                        {"blockrand explain out/leipzig w123 --edges", ""},
+                       {"blockrand explain out/leipzig w123 --style", ""},
                        {"blockrand explain out/leipzig r45 --json | jq .attributes", ""}},
           .exit_codes = {{"0", "all well"},
                          {"1", "wrong usage"},
@@ -381,7 +360,7 @@ int run_explain(const std::vector<std::string>& arguments) {
   if (s.json)
     std::printf("%s\n", found->json.c_str());
   else
-    std::fputs(explanation_text(*found, is_body ? s.id : "", s.edges).c_str(), stdout);
+    std::fputs(explanation_text(*found, is_body ? s.id : "", s.edges, s.style).c_str(), stdout);
   return kSuccess;
 }
 

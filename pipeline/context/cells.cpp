@@ -12,8 +12,7 @@ namespace {
 
 constexpr double kStepsPerUnit = 1024;  ///< of areas and lengths in CellSums
 constexpr double kStoreySteps = 100;
-constexpr int kYearZero = 1900;                    ///< keeps the sums of squares small
-constexpr int kFirstYear = 500, kLastYear = 2100;  ///< what is beyond is a slip of the pen
+constexpr int kYearZero = 1900;  ///< keeps the sums of squares small
 
 std::int64_t steps(double value, double per_unit) { return static_cast<std::int64_t>(std::llrint(value * per_unit)); }
 
@@ -42,29 +41,6 @@ double quantile(const CellSums& sums, double share) {
   return kFootprintBins.back();  // the last bin has no upper bound
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/// A run of digits in a date.
-struct Number {
-  int value = 0;
-  std::size_t at = 0, digits = 0;
-};
-
-std::vector<Number> numbers_in(std::string_view text) {
-  std::vector<Number> out;
-  for (std::size_t i = 0; i < text.size();) {
-    if (!is_digit(text[i])) {
-      ++i;
-      continue;
-    }
-    Number n{0, i, 0};
-    for (; i < text.size() && is_digit(text[i]); ++i, ++n.digits)
-      if (n.digits < 6) n.value = n.value * 10 + (text[i] - '0');
-    out.push_back(n);
-  }
-  return out;
-}
-
 }  // namespace
 
 CellIndex cell_of(model::Point2 p) {
@@ -79,26 +55,6 @@ model::Point2 cell_place(const model::Polygon& footprint) {
   if (geometry::signed_area(points) < 0) std::reverse(points.begin(), points.end());
   std::rotate(points.begin(), std::min_element(points.begin(), points.end()), points.end());
   return model::snap(geometry::centroid(points));
-}
-
-std::optional<int> year_of(std::string_view text) {
-  const std::vector<Number> numbers = numbers_in(text);
-  if (numbers.empty()) return std::nullopt;
-  const Number first = numbers[0];
-  const auto valid = [](int year) {
-    return year >= kFirstYear && year <= kLastYear ? std::optional(year) : std::nullopt;
-  };
-  const std::string_view behind = text.substr(first.at + first.digits);
-  if (first.digits == 4) {
-    if (behind.starts_with("s")) return valid(first.value + 5);
-    // A range has two years; in a date the second number is a month.
-    if (numbers.size() == 2 && numbers[1].digits == 4 && numbers[1].value >= first.value)
-      return valid((first.value + numbers[1].value) / 2);
-    return valid(first.value);
-  }
-  const bool century = (first.at > 0 && (text[first.at - 1] == 'C' || text[first.at - 1] == 'c')) ||
-                       behind.find("cent") != std::string_view::npos;
-  return first.digits <= 2 && century ? valid(first.value * 100 - 50) : std::nullopt;
 }
 
 void CellSums::add(const CellBuilding& b) {

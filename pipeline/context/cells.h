@@ -8,7 +8,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "pipeline/model/point.h"
 #include "pipeline/model/polygon.h"
@@ -37,16 +36,11 @@ struct CellBuilding {
   double wall_length = 0;         ///< m, outline
   double party_wall_length = 0;   ///< m of it shared with other buildings
   std::optional<double> storeys;  ///< as tagged
-  std::optional<int> year;        ///< of start_date
+  std::optional<int> year;        ///< as tagged; the middle where the tag tells several
 };
 
 /// The place of a building in the grid: the centre of mass of its outer ring, on the 1/1024 m grid.
 model::Point2 cell_place(const model::Polygon& footprint);
-
-/// The year of a `start_date`: `1898`, `1898-05-01`, `~1900`, `1890s` (their middle), `C19` or `19th century` (their
-/// middle, 1850), `1871..1914` and `1871-1914` (the middle), with `before`, `after`, `early`, `mid`, `late` in front.
-/// Empty where no year from 500 to 2100 is told.
-std::optional<int> year_of(std::string_view start_date);
 
 /// m². Upper bounds of the bins of footprint sizes, excluded; a last bin holds what is larger.
 inline constexpr std::array<double, 20> kFootprintBins = {10,  20,  30,  45,  60,  80,  100,  125,  150,  180,

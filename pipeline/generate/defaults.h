@@ -16,6 +16,8 @@ namespace blockrand::generate {
 /// What is assumed of a building of one use. Lengths in metres, angles in degrees.
 struct UseDefaults {
   std::string name;           ///< value of building=*, or "default"
+  std::string style;          ///< id of the style in the catalogue whose measures and colours these are; empty for none
+  double plinth = 0;          ///< m, from the ground to the ground floor
   std::uint8_t group = 0;     ///< index into Defaults::groups
   double storeys = 2;
   double storey_height = 3.0;

@@ -134,9 +134,18 @@ struct Resolver {
 
   model::Point2 place() const { return plans.empty() || plans[0].outer.points.empty() ? model::Point2{} : plans[0].outer.points[0]; }
 
-  Source preset_source() const { return preset.name == "default" ? Source::default_ : Source::preset; }
-  double preset_confidence() const { return preset.name == "default" ? kDefaultConfidence : kPresetConfidence; }
-  std::string preset_name() const { return preset.name == "default" ? "default for all buildings" : "usual for building=" + preset.name; }
+  Source preset_source() const { return preset.name == "default" && preset.style.empty() ? Source::default_ : Source::preset; }
+  double preset_confidence() const {
+    if (!preset.style.empty()) return std::max<double>(kDefaultConfidence, 0.6 * static_cast<double>(building.inferred.style_confidence));
+    return preset.name == "default" ? kDefaultConfidence : kPresetConfidence;
+  }
+  std::string preset_name() const {
+    if (!preset.style.empty()) return "usual for the style " + preset.style;
+    return preset.name == "default" ? "default for all buildings" : "usual for building=" + preset.name;
+  }
+
+  /// A monument, a garage, a tank: houses around it say nothing of it.
+  bool is_non_house() const { return building.style_known && building.style.non_house; }
 
   bool has_own_height() const { return own.height || own.storeys; }
 
@@ -149,7 +158,9 @@ struct Resolver {
       choices.push_back({*own.storeys, Source::tag, kTagConfidence, "tagged"});
     if (outline && !own.height && outline->storeys)
       choices.push_back({*outline->storeys, Source::implied, kOutlineConfidence, "the outline's storeys"});
-    if (const auto opinion = in.neighbours.storeys(place(), group, id, options.neighbour_minimum))
+    if (const auto& offer = building.inferred.storeys; offer.confidence > 0)
+      choices.push_back({static_cast<double>(offer.value), offer.source, static_cast<double>(offer.confidence), offer.why});
+    else if (const auto opinion = in.neighbours.storeys(place(), group, id, options.neighbour_minimum); opinion && !is_non_house())
       choices.push_back({opinion->value, Source::neighbours, 0.3 + 0.4 * opinion->share,
                          fmt::format("median of {} neighbours within {:.0f} m", opinion->voices, in.neighbours.reach())});
     choices.push_back({preset.storeys, preset_source(), preset_confidence(), preset_name()});
@@ -174,8 +185,20 @@ struct Resolver {
   Sourced<RoofShape> roof_shape() {
     std::vector<Choice<RoofShape>> choices;
     if (own.roof_shape) choices.push_back({*own.roof_shape, Source::tag, kTagConfidence, "tagged"});
-    const auto opinion = in.neighbours.roof_shape(place(), group, id, options.neighbour_minimum);
-    const bool agreed = opinion && opinion->share >= 0.5;
+    // What neighbours and evidence say; sloped roofs only where rafters reach.
+    std::optional<context::NeighbourOpinion<RoofShape>> opinion;
+    if (!is_non_house()) opinion = in.neighbours.roof_shape(place(), group, id, options.neighbour_minimum);
+    const model::Offer<RoofShape>& offer = building.inferred.roof_shape;
+    std::string opinion_why;
+    Source opinion_source = Source::neighbours;
+    if (offer.confidence > 0) {
+      opinion = context::NeighbourOpinion<RoofShape>{offer.value, 0, static_cast<double>(offer.confidence)};
+      opinion_why = offer.why;
+      opinion_source = offer.source;
+    } else if (opinion) {
+      opinion_why = fmt::format("{:.0f} % of {} neighbours within {:.0f} m", 100 * opinion->share, opinion->voices, in.neighbours.reach());
+    }
+    const bool agreed = opinion && (offer.confidence > 0 || opinion->share >= 0.5);
     if (part && !part->roof_lines.empty())
       choices.push_back({RoofShape::gabled, Source::implied, kImpliedConfidence, "ridges are mapped"});
     if ((own.roof_height && *own.roof_height < kNoRoofHeight) || (own.roof_angle && *own.roof_angle < kNoRoofAngle))
@@ -199,9 +222,8 @@ struct Resolver {
     if (preset.roof_shape != RoofShape::flat && part && roofs::is_enclosed(plan(), part->roof_edges))
       choices.push_back({RoofShape::flat, Source::geometry, kImpliedConfidence, "neighbours stand at all sides: no side for eaves"});
     if (agreed && (opinion->value == RoofShape::flat || !wide))
-      choices.push_back({opinion->value, Source::neighbours, 0.2 + 0.5 * opinion->share,
-                         fmt::format("{:.0f} % of {} neighbours within {:.0f} m", 100 * opinion->share, opinion->voices,
-                                     in.neighbours.reach())});
+      choices.push_back({opinion->value, opinion_source, offer.confidence > 0 ? static_cast<double>(offer.confidence) : 0.2 + 0.5 * opinion->share,
+                         std::move(opinion_why)});
     if (preset.roof_shape != RoofShape::flat && wide)
       choices.push_back({RoofShape::flat, Source::geometry, kGeometryConfidence,
                          fmt::format("the plan is {:.0f} m wide, too wide for rafters", width())});
@@ -309,7 +331,7 @@ struct Resolver {
     if (leaves_common_floor()) return rise;
     if (floor) return *floor;
     if (is_canopy()) return rise;
-    return std::max({ground.entrance, rise - preset.storey_height, 0.0});
+    return std::max({ground.entrance, rise - preset.storey_height, 0.0}) + preset.plinth;
   }
 
   void set_plinth(Attributes& a, double height, std::string why = {}) {
@@ -320,9 +342,11 @@ struct Resolver {
       if (leaves_common_floor()) why = fmt::format("highest ground under this part; the building's ground floor lies {:.1f} m higher", *floor - rise);
       if (floor && height == *floor && part) why = "the building's ground floor; " + why;
     }
-    if (!terrain) why = "no terrain";
-    a.plinth_height = make<double>(height, terrain ? Source::terrain : Source::default_,
-                                   terrain ? kPlinthConfidence : kDefaultConfidence, std::move(why));
+    const bool usual = preset.plinth > 0 && height > 0;
+    if (usual && terrain) why += fmt::format("; {:.1f} m up to the ground floor, {}", preset.plinth, preset_name());
+    if (!terrain) why = usual ? "no terrain; " + preset_name() : "no terrain";
+    a.plinth_height = make<double>(height, terrain ? Source::terrain : usual ? Source::preset : Source::default_,
+                                   terrain ? kPlinthConfidence : usual ? preset_confidence() : kDefaultConfidence, std::move(why));
   }
 
   /// What remains of a body under its roof. One that is all roof has its storeys in there.
@@ -506,9 +530,87 @@ struct Resolver {
     heights(a);
     if (own.roof_direction) a.roof_direction = make<double>(*own.roof_direction, Source::tag, kTagConfidence, "tagged");
     looks(a);
+    derived(a);
     return a;
   }
+
+  /// What follows from the other values: eaves, pitch, direction of the ridge.
+  void derived(Attributes& a) {
+    const bool weaker = a.roof_height.confidence < a.height.confidence;
+    a.eaves_height = make<double>(std::max(a.height.value - a.roof_height.value, 0.0), weaker ? a.roof_height.source : a.height.source,
+                                  std::min(a.height.confidence, a.roof_height.confidence), "height less that of the roof");
+    if (a.roof_shape.value == RoofShape::flat) {
+      a.roof_pitch = make<double>(0, a.roof_shape.source, a.roof_shape.confidence, "flat roof");
+      return;
+    }
+    roofs::RoofRequest request = tagged_request(own, a.roof_shape.value, row());
+    request.across = a.roof_orientation.value == RoofOrientation::across;
+    if (const auto angle = useful_roof_angle(own, a.roof_shape.value)) {
+      a.roof_pitch = make<double>(*angle, Source::tag, kTagConfidence, "tagged");
+    } else {
+      const roofs::MainSlope slope = plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
+      const double pitch = slope.run > 0 ? base::atan2(a.roof_height.value * slope.rise, slope.run) / base::kRadiansPerDegree : 0;
+      a.roof_pitch = make<double>(pitch, a.roof_height.source, a.roof_height.confidence,
+                                  fmt::format("{:.1f} m over a run of {:.1f} m", a.roof_height.value, slope.run));
+    }
+    if (plan().outer.size() < 3 || !has_ridge(a.roof_shape.value)) return;
+    const auto axis = roofs::row_axis(plan(), request);
+    const model::Point2 longer = geometry::long_axis(plan().outer.points);
+    model::Point2 along = axis ? *axis : request.across ? model::Point2{-longer.y, longer.x} : longer;
+    if (along.x < 0 || (along.x == 0 && along.y < 0)) along = {-along.x, -along.y};
+    const double north = base::atan2(along.x, along.y) / base::kRadiansPerDegree;  // along.x >= 0: 0 to 180
+    a.ridge_direction = make<double>(north >= 180 ? 0 : north, a.roof_orientation.source, a.roof_orientation.confidence,
+                                     text(a.roof_orientation));
+  }
+  std::string text(const Sourced<RoofOrientation>& orientation) const { return region.evidence[orientation.evidence].text; }
+
+  static bool has_ridge(RoofShape shape) {
+    switch (shape) {
+      case RoofShape::gabled:
+      case RoofShape::gabled_height_moved:
+      case RoofShape::hipped:
+      case RoofShape::half_hipped:
+      case RoofShape::side_hipped:
+      case RoofShape::side_half_hipped:
+      case RoofShape::hipped_and_gabled:
+      case RoofShape::mansard:
+      case RoofShape::gambrel:
+      case RoofShape::saltbox:
+      case RoofShape::double_saltbox:
+      case RoofShape::quadruple_saltbox:
+      case RoofShape::berlin: return true;
+      default: return false;
+    }
+  }
 };
+
+/// A use whose buildings have the storeys, roofs and colours of their time; churches, halls and sheds have those of their use.
+bool follows_style(const Defaults& defaults, const UseDefaults& use) {
+  const std::string& group = defaults.groups[use.group];
+  return group == "residential" || group == "commercial" || group == "other" || group == "public";
+}
+
+/// The measures and colours of the style that a building is thought to have. \param storage  holds them
+const UseDefaults& with_style(const Building& building, const ResolveInputs& in, const UseDefaults& usual, UseDefaults& storage) {
+  if (in.catalogue == nullptr || building.inferred.style_confidence <= 0 || !follows_style(in.defaults, usual)) return usual;
+  const classify::Style& style = (*in.catalogue)[building.inferred.style];
+  if (style.style_class == model::StyleClass::other && !style.eaves) return usual;
+  // What is no house has the measures of its kind only where its use has none.
+  if (building.style.non_house && usual.name != "yes" && usual.name != "default") return usual;
+  storage = usual;
+  storage.style = style.id;
+  storage.storeys = style.storeys.typ;
+  // Gross: the wall above the topmost ceiling is shared out, so that storeys, plinth and roof add up to the height.
+  storage.storey_height = style.storey_height + style.attic_wall / style.storeys.typ;
+  storage.plinth = style.plinth;
+  if (style.roof_pitch) storage.roof_pitch = style.roof_pitch->typ;
+  storage.wall_colours = style.wall_colours;
+  storage.roof_colours = style.roof_colours;
+  storage.wall_material = style.wall_material;
+  // A flat roof keeps its felt whatever lies on sloped ones.
+  storage.roof_material = style.roof_material;
+  return storage;
+}
 
 std::string ground_reason(Source source) {
   switch (source) {
@@ -540,14 +642,17 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
   const auto use_text = [&](const MappedAttributes& mapped) { return region.extract->strings.view(mapped.use); };
   for (Building& building : region.buildings) {
     prepare_roof_plans(building, options.collinear_tolerance);
-    const BuildingGround ground = in.ground(building);
+    const OverrideEntry* const ordered = in.overrides ? in.overrides->find(building.osm) : nullptr;
+    BuildingGround ground = in.ground(building);
+    override_ground(ordered, ground);
     Sourced<double> lowest = ground.lowest;
     lowest.evidence = region.evidence.add({ground_reason(lowest.source), {}});
     const std::string_view use = use_text(building.mapped);
     const double area = area_of(building.outline);
     // An outline of a few square metres that says nothing but `yes` is no house.
     const bool small = use == "yes" && !building.outline.empty() && area < in.defaults.small_area;
-    const UseDefaults& preset = small ? in.defaults.small : in.defaults.use(use);
+    UseDefaults styled, changed;
+    const UseDefaults& preset = with_overrides(ordered, with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled), changed);
     const std::uint8_t group = neighbour_group(in.defaults, use, area);
 
     std::vector<model::ReportRow> conflicts;
@@ -568,9 +673,12 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
       const std::string_view part_use = use_text(part.mapped);
       // building:part=yes says nothing; a use of its own does.
       const bool own_use = own_tags && in.defaults.uses.contains(part_use) && part_use != "yes";
+      UseDefaults part_styled, part_changed;
+      const UseDefaults& part_preset = with_overrides(own_tags && in.overrides ? in.overrides->find(part.osm) : nullptr,
+                                                      own_use ? with_style(building, in, in.defaults.use(part_use), part_styled) : preset, part_changed);
       const std::vector<model::Polygon> plan{part.roof_plan};
       Resolver r{region, in, options, building, &part, part.mapped,
-                 own_tags && building.osm != part.osm ? &building.mapped : nullptr, own_use ? in.defaults.use(part_use) : preset,
+                 own_tags && building.osm != part.osm ? &building.mapped : nullptr, part_preset,
                  group, plan, building.osm, ground, index < ground.part_rise.size() ? ground.part_rise[index] : ground.rise,
                  one_body ? std::nullopt : std::optional(building.attributes.plinth_height.value)};
       part.attributes = r.resolve(lowest);

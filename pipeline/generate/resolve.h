@@ -10,7 +10,9 @@
 #include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/generate/defaults.h"
 #include "pipeline/generate/options.h"
+#include "pipeline/generate/overrides.h"
 #include "pipeline/model/region.h"
+#include "styles/classify/catalogue.h"
 
 namespace blockrand::generate {
 
@@ -32,6 +34,9 @@ struct ResolveInputs {
   const context::TaggedNeighbours& neighbours;
   std::uint64_t seed = 1;
   std::function<BuildingGround(const model::Building&)> ground;
+  const Overrides* overrides = nullptr;  ///< already given to the extract (apply_overrides); null: none
+  /// Of Building::inferred; may be null.
+  const classify::Catalogue* catalogue = nullptr;
 };
 
 /// m. Of the storey behind a mansard's steep slopes, where floors are `storey_height` apart: attics are lower (styles.md 2.7:

@@ -5,15 +5,18 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pipeline/model/colour.h"
+#include "pipeline/model/detail_override.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/model/polygon.h"
 #include "pipeline/model/roof_line.h"
 #include "pipeline/model/roof_shape.h"
 #include "pipeline/model/solid.h"
 #include "pipeline/model/sourced.h"
+#include "pipeline/model/style.h"
 
 namespace blockrand::model {
 
@@ -33,6 +36,15 @@ struct Attributes {
   Sourced<double> plinth_height;       ///< from there up to the level of the ground floor
   Sourced<Colour> wall_colour, roof_colour;
   Sourced<std::string> wall_material, roof_material;  ///< names of material classes
+  Sourced<double> eaves_height;        ///< lowest ground to the eaves: height less roof_height
+  Sourced<double> roof_pitch;          ///< degrees, of the main slope; 0 for flat roofs
+  std::optional<Sourced<double>> ridge_direction;  ///< degrees [0, 180) clockwise from north; absent for roofs without a ridge
+  Sourced<std::string> ground_floor_use;  ///< `shop`, `gastronomy`, `office`, ... or as `use`
+  Sourced<std::string> construction_date;  ///< a year, or `from..to`
+  Sourced<std::string> era;            ///< model::Era
+  Sourced<std::string> style;          ///< model::StyleClass; its confidence is its probability
+  Sourced<std::string> substyle;       ///< id in configs/styles/catalogue.toml
+  Sourced<std::string> preset;         ///< grammar preset, by the district rules
 };
 
 /// Text form of a colour: `#rrggbb`.
@@ -70,6 +82,18 @@ void for_each_attribute(A& a, Visit&& visit, Absent&& absent) {
   visit("roof_colour", "", a.roof_colour);
   visit("wall_material", "", a.wall_material);
   visit("roof_material", "", a.roof_material);
+  visit("eaves_height", "m", a.eaves_height);
+  visit("roof_pitch", "degree", a.roof_pitch);
+  if (a.ridge_direction)
+    visit("ridge_direction", "degree", *a.ridge_direction);
+  else
+    absent("ridge_direction", "degree");
+  visit("ground_floor_use", "", a.ground_floor_use);
+  visit("construction_date", "", a.construction_date);
+  visit("era", "", a.era);
+  visit("style", "", a.style);
+  visit("substyle", "", a.substyle);
+  visit("preset", "", a.preset);
 }
 
 inline constexpr std::uint32_t kNoIndex = 0xffffffff;
@@ -205,6 +229,23 @@ struct BuildingPart {
   std::vector<IssueCode> fallbacks;
 };
 
+/// A value that classification offers where the map is silent.
+template <class T>
+struct Offer {
+  T value{};
+  Source source = Source::default_;
+  float confidence = 0;  ///< 0: nothing is offered
+  std::string why;
+};
+
+/// What classification offers for a building's attributes.
+struct Inferred {
+  Offer<float> storeys;
+  Offer<RoofShape> roof_shape;
+  std::uint8_t style = 0;      ///< index into the catalogue of styles: usual heights, pitches, colours
+  float style_confidence = 0;  ///< 0: nothing is offered
+};
+
 struct Building {
   OsmId osm;
   std::uint32_t mapped_index = kNoIndex;  ///< into Extract::buildings
@@ -217,6 +258,12 @@ struct Building {
   RepairRecord repaired;             ///< what repair did to the outline
   BuildingSituation situation;       ///< what context found
   std::vector<NearTree> trees;       ///< before its walls, by id
+  BuildingStyle style;               ///< what classification found
+  bool style_known = false;          ///< false: it was not classified (no outline)
+  Inferred inferred;                 ///< and what it offers
+  StyleExplanation style_why;        ///< and what spoke for it
+  std::vector<std::pair<std::string, std::string>> preset_parameters;  ///< by name; what district rules give the preset
+  std::vector<DetailOverride> detail_overrides;  ///< of its storeys, edges and bays, and of its parts'
   Attributes attributes;             ///< of the whole building
   std::vector<BuildingPart> parts;   ///< at least one after `generate` unless nothing could be built
   bool has_mapped_parts = false;

@@ -18,6 +18,7 @@
 #include "pipeline/model/point.h"
 #include "pipeline/model/report.h"
 #include "pipeline/model/roof_shape.h"
+#include "pipeline/model/style.h"
 
 namespace blockrand::model {
 
@@ -51,6 +52,7 @@ struct MappedAttributes {
   std::optional<Colour> wall_colour, roof_colour;
   base::StringId wall_material = 0, roof_material = 0;  ///< as tagged, 0 where absent
   base::StringId use = 0;                               ///< the value of building=* or building:part=*
+  std::optional<ConstructionDate> built;                ///< start_date and its kin
 };
 
 enum class ObjectKind : std::uint8_t { building, building_part };

@@ -74,6 +74,7 @@ enum class IssueClass : std::uint8_t {
   X(reach_cut, "REACH_CUT", notice, "A row of buildings longer than 1 km was cut at the grid.")                      \
   X(terrain_missing, "TERRAIN_MISSING", notice, "The terrain has no value here; the ground height was used.")        \
   X(roof_with_bays, "ROOF_WITH_BAYS", notice, "A roof along whole facades does not fit the plan; every bay has its own slopes.") \
+  X(override_unmatched, "OVERRIDE_UNMATCHED", notice, "An entry of the overrides has nothing in the extract to act on.") \
   X(text_cleaned, "TEXT_CLEANED", notice, "Characters that no XML file may hold were replaced in a tag.")
 
 enum class IssueCode : std::uint8_t {

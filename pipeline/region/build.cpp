@@ -16,7 +16,6 @@
 #include <fmt/format.h>
 
 #include "importers/elevation/terrain.h"
-#include "importers/osm/read_extract.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/publish.h"
@@ -31,6 +30,7 @@
 #include "pipeline/georef/round_trip.h"
 #include "pipeline/georef/tiles.h"
 #include "pipeline/region/area.h"
+#include "pipeline/region/assign_extract.h"
 #include "pipeline/region/context_extract.h"
 #include "pipeline/region/context_layers.h"
 #include "pipeline/region/documents.h"
@@ -40,9 +40,11 @@
 #include "pipeline/region/outcome.h"
 #include "pipeline/region/pictures.h"
 #include "pipeline/region/plan_picture.h"
+#include "pipeline/region/prepare_extract.h"
 #include "pipeline/region/region_facts.h"
 #include "pipeline/region/repair_extract.h"
 #include "pipeline/region/report_facts.h"
+#include "pipeline/region/rule_book.h"
 #include "pipeline/region/shard.h"
 #include "pipeline/region/statistics.h"
 #include "pipeline/region/surroundings.h"
@@ -159,7 +161,7 @@ std::uint64_t estimated_bytes(const BuildOptions& options, std::uint64_t buildin
   constexpr double kGlbBytes = 3000;
   const auto lod = static_cast<std::size_t>(std::clamp(options.lod, 0, 2));
   constexpr double kJsonBytes[] = {1500, 2000, 3500};
-  constexpr double kGeoPackageBytes = 4800, kExplainBytes = 750, kReportBytes = 150;
+  constexpr double kGeoPackageBytes = 4800, kExplainBytes = 2100, kReportBytes = 150;
   double each = 300;
   if (options.citygml) each += options.gzip ? kGmlBytes[lod] / 7 : kGmlBytes[lod];
   if (options.cityjson) each += options.gzip ? kJsonBytes[lod] / 5 : kJsonBytes[lod];
@@ -195,44 +197,39 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   record.heights = choose_height_reference(terrain ? &terrain->describe() : nullptr, asked, options.ground_height.has_value());
   const std::optional<TileChoice> tile = choose_tile(options);
 
-  progress.begin("read");
-  importers::osm::ReadOptions read_options;
-  read_options.bbox = tile ? tile->window : options.bbox;
-  Extract extract = importers::osm::read_extract(options.input, read_options);
-  malloc_trim(0);  // libosmium's buffers go back to the system before tiles need the room
+  const classify::Tables tables = classify::Tables::read(options.configs);
+  ReadRuleBook rules = read_rule_book(options.configs, options.districts);
+  generate::Overrides overrides;
+  if (!options.overrides.empty()) {
+    generate::OverrideNames names{{}, rules.book.substyles};
+    for (const styles::districts::Preset& p : rules.book.presets) names.presets.push_back(p.name);
+    overrides = generate::read_overrides(options.overrides, defaults, names);
+  }
+
+  LocatedExtract located = locate_extract(options, tile, progress);
+  Extract& extract = located.extract;
+  const std::optional<Area>& area = located.area;
+  const georef::Projection& projection = located.projection;
   record.inputs.push_back(input_file("extract", options.input));
   if (terrain) record.inputs.push_back(input_file("terrain", options.terrain));
-  record.inputs.push_back(input_file("config", options.configs + "/defaults/uses.toml"));
-  record.inputs.push_back(input_file("config", options.configs + "/materials/materials.toml"));
   // Where configs lie differs between installations; what they say does not.
-  record.inputs[record.inputs.size() - 2].path = "defaults/uses.toml";
-  record.inputs.back().path = "materials/materials.toml";
+  std::vector<std::pair<std::string, std::string>> configs = {
+      {"defaults/uses.toml", options.configs + "/defaults/uses.toml"},
+      {"materials/materials.toml", options.configs + "/materials/materials.toml"}};
+  for (const char* name : classify::kTableFiles) configs.emplace_back(std::string("styles/") + name, options.configs + "/styles/" + name);
+  configs.insert(configs.end(), rules.files.begin(), rules.files.end());
+  for (const auto& [name, path] : configs) {
+    record.inputs.push_back(input_file("config", path));
+    record.inputs.back().path = name;
+  }
+  if (!options.overrides.empty()) record.inputs.push_back(input_file("overrides", options.overrides));
   record.data_time = extract.data_time;
   record.counts = extract.counts;
-
-  progress.begin("locate");
-  const std::optional<Area> area = area_of(extract);
-  if (!area)
-    progress.warn(fmt::format("{}: no building with an outline{}; the outputs are valid but empty", options.input,
-                              options.bbox || tile ? " in the given place" : ""));
-  RegionFacts& facts = record.facts;
-  if (tile) {
-    facts = tile->facts;
-  } else {
-    if (area) facts = {"", area->box, area->centre, {}};
-    facts.crs = options.crs.empty() ? georef::choose_crs(facts.centre.lon, facts.centre.lat) : options.crs;
-  }
-  const georef::GeoBox box = facts.box;
-  const georef::LonLat centre = facts.centre;
-  record.crs = georef::open_crs(facts.crs, box);
-  const georef::Projection projection(record.crs, box);
+  record.crs = located.crs;
   record.portable = projection.portable();
-  record.round_trip = georef::measure_round_trip(projection, box);
-  if (!record.round_trip.ok())
-    throw base::UsageError(fmt::format("{}: positions do not come back within 1 mm here (error {:.4f} m, {} of {} sample points undefined). "
-                                       "Choose another --crs, or leave it out",
-                                       record.crs.authority_code, record.round_trip.projection_m, record.round_trip.undefined,
-                                       record.round_trip.points));
+  record.round_trip = located.round_trip;
+  const georef::LonLat centre = located.facts.centre;
+
   if (area && !terrain && !options.ground_height)
     progress.warn("no --terrain and no --ground-height: the model lies at ellipsoid height 0");
   if (area)
@@ -240,18 +237,30 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
 
   const int workers = base::worker_count(options.jobs);
   model::Report region_report;
-  std::vector<Shard> shards = make_shards(extract, region_report, tile ? tile->id.level : kTileLevel);
-  if (!tile) facts.coverage = context::coverage_of(building_places(extract, projection));
-  const repair::KeptNodes kept(extract);
-  const RepairedExtract repaired = repair_extract(extract, shards, projection, kept, options.repair, workers, progress);
+  generate::apply_overrides(overrides, extract, region_report);
+  // A tile alone does not see what lies elsewhere: the build of the whole tells what matches nothing.
+  if (tile) region_report.rows.clear();
+  if (!region_report.rows.empty())
+    progress.warn(fmt::format("{}: {} of {} entries match nothing in the extract, the first in {}; report.json lists them",
+                              options.overrides, region_report.rows.size(), overrides.entries.size(), region_report.rows.front().detail));
+  PreparedExtract prepared = prepare_extract(located, options, tile, tables, rules.book, progress);
+  const std::vector<Shard>& shards = prepared.shards;
+  region_report.append(std::move(prepared.report));
+  const repair::KeptNodes& kept = prepared.kept;
+  const RepairedExtract& repaired = prepared.repaired;
+  const ContextExtract& context = prepared.context;
   record.repair = repaired.totals;
-  malloc_trim(0);
-  const ContextExtract context = context_extract(extract, repaired.footprints, facts.coverage, projection, workers, progress);
-  malloc_trim(0);
+  record.facts = located.facts;
   const SurroundingsFinder surroundings(extract, repaired.footprints, context);
   const RoofLineFinder roof_lines(extract, projection);
   const BuildingNumbers numbers(repaired.footprints);
   const context::TaggedNeighbours neighbours(tagged_buildings(extract, defaults, projection), options.generate.neighbour_reach);
+  const DistrictAssigner assigner(rules.book, {extract, repaired.footprints, context, prepared.styles, projection, defaults, neighbours,
+                                               options.generate.neighbour_minimum, &overrides, located.facts.areas, options.seed});
+  if (!tile) {  // a tile alone does not see what lies elsewhere
+    record.facts.areas = assigner.to_pin();
+    for (const std::string& what : assigner.unanswered()) progress.warn(what);
+  }
   const std::vector<std::size_t> todo = shards_to_build(shards, tile);
 
   std::uint64_t to_build = 0;
@@ -326,8 +335,9 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   };
 
   std::atomic<std::int64_t> context_time = 0;
+  const StyleInputs style_inputs{prepared.facts, prepared.tags, prepared.styles, tables};
   const TileInputs inputs{extract,      shards,         projection, defaults,      kept,
-                          repaired,     context,        surroundings, roof_lines,  numbers, neighbours,
+                          repaired,     context,        surroundings, roof_lines,  numbers, neighbours, assigner, overrides, style_inputs, options.explain,
                           options.repair, options.generate, options.seed, options.lod, terrain.has_value(), ground_under,
                           context_time};
   const auto work = [&](std::size_t i) {

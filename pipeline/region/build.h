@@ -41,6 +41,8 @@ struct BuildOptions {
   std::uint64_t seed = 1;                     ///< of all random choices
   std::string terrain;                        ///< raster with ground heights, or empty
   std::string terrain_height_reference;       ///< "EPSG:7837", "sea-level", "ellipsoid"; empty: what the raster says
+  std::string districts;                      ///< rule set by name or file; empty: chosen by place from configs/districts/
+  std::string overrides;                      ///< overrides.toml, or empty
   std::optional<double> ground_height;        ///< m above sea level for every base where there is no terrain
   repair::RepairOptions repair;
   generate::GenerateOptions generate;

@@ -155,7 +155,6 @@ Point2 place_of(const std::vector<model::Polygon>& polygons) {
 
 context::Cells district_cells(const Extract& extract, const FootprintStore& store) {
   std::vector<context::CellBuilding> buildings;
-  const base::StringId start_date = extract.strings.find("start_date");
   for (std::uint32_t b = 0; b < store.size(); ++b) {
     const StoredFootprint& f = store[b];
     if (!is_built_land(f)) continue;
@@ -168,7 +167,7 @@ context::Cells district_cells(const Extract& extract, const FootprintStore& stor
     c.place = place_of(polygons);
     c.party_wall_length = f.party_wall_length;
     c.storeys = tagged_storeys(extract, f);
-    c.year = context::year_of(extract.tag(extract.buildings[f.lead].tags, start_date));
+    if (const auto& built = extract.buildings[f.lead].attributes.built) c.year = built->years.middle();
     buildings.push_back(c);
   }
   return context::cells_of(buildings);
@@ -176,8 +175,10 @@ context::Cells district_cells(const Extract& extract, const FootprintStore& stor
 
 }  // namespace
 
+Point2 place_of(const FootprintStore& footprints, std::uint32_t building) { return place_of(footprints.polygons(building)); }
+
 context::CellIndex cell_of_building(const FootprintStore& footprints, std::uint32_t building) {
-  return context::cell_of(place_of(footprints.polygons(building)));
+  return context::cell_of(place_of(footprints, building));
 }
 
 ContextExtract context_extract(const Extract& extract, const FootprintStore& footprints, std::span<const Point2> coverage,

@@ -46,6 +46,8 @@ ContextExtract context_extract(const model::Extract& extract, const FootprintSto
                                std::span<const model::Point2> coverage, const georef::Projection& projection, int workers,
                                base::Progress& progress);
 
+/// The middle of the largest polygon of a building's outline, which must not be empty.
+model::Point2 place_of(const FootprintStore& footprints, std::uint32_t building);
 /// The district cell of a building: that of the largest polygon of its outline, which must not be empty.
 context::CellIndex cell_of_building(const FootprintStore& footprints, std::uint32_t building);
 

@@ -34,6 +34,8 @@ nlohmann::ordered_json configuration(const BuildOptions& options) {
   c["seed"] = options.seed;
   if (!options.tile.empty()) c["tile"] = options.tile;
   c["bbox"] = options.bbox ? Json(*options.bbox) : Json(nullptr);
+  c["districts"] = options.districts;
+  c["overrides"] = options.overrides;
   c["terrain"] = options.terrain;
   c["terrain_height_reference"] = options.terrain_height_reference;
   c["ground_height"] = options.ground_height ? Json(*options.ground_height) : Json(nullptr);
@@ -99,6 +101,19 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
                  {"centre", {r.facts.centre.lon, r.facts.centre.lat}},
                  {"coverage", Json::array()}};
   for (const model::Point2 p : r.facts.coverage) j["region"]["coverage"].push_back({p.x, p.y});
+  j["region"]["areas"] = Json::array();
+  for (const PinnedArea& area : r.facts.areas) {
+    Json rings = Json::array();
+    for (const auto& ring : area.rings) {
+      Json numbers = Json::array();  // 1e-7 degrees: longitude, latitude, longitude, ...
+      for (const model::Location p : ring) {
+        numbers.push_back(p.lon);
+        numbers.push_back(p.lat);
+      }
+      rings.push_back(std::move(numbers));
+    }
+    j["region"]["areas"].push_back({{"question", area.question}, {"value", area.value}, {"id", area.id.text()}, {"rings", std::move(rings)}});
+  }
   const RepairTotals& m = r.repair;
   j["repair"] = {{"outlines", m.outlines},
                  {"rows", m.rows},

@@ -19,13 +19,25 @@ double finite(const nlohmann::json& value) {
 
 /// The first option that shapes a building and differs; empty for none.
 std::string first_difference(const nlohmann::json& theirs, const nlohmann::json& ours) {
-  for (const char* name : {"lod", "seed", "ground_height", "terrain_height_reference"})
+  for (const char* name : {"lod", "seed", "ground_height", "terrain_height_reference", "districts", "overrides"})
     if (theirs.at(name) != ours.at(name)) return name;
   for (const char* section : {"repair", "generate"})
     for (const auto& [name, value] : ours.at(section).items())
       if (!theirs.at(section).contains(name) || theirs.at(section).at(name) != value)
         return std::string(section) + "." + name;
   return {};
+}
+
+PinnedArea pinned_area(const nlohmann::json& j) {
+  PinnedArea area{j.at("question").get<std::string>(), j.at("value").get<std::string>(), {}, {}};
+  const std::string id = j.at("id").get<std::string>();
+  area.id.type = id.at(0) == 'n' ? model::OsmType::node : id.at(0) == 'w' ? model::OsmType::way : model::OsmType::relation;
+  area.id.number = std::stoll(id.substr(1));
+  for (const nlohmann::json& ring : j.at("rings")) {
+    std::vector<model::Location>& out = area.rings.emplace_back();
+    for (std::size_t i = 0; i + 1 < ring.size(); i += 2) out.push_back({ring.at(i).get<std::int32_t>(), ring.at(i + 1).get<std::int32_t>()});
+  }
+  return area;
 }
 
 }  // namespace
@@ -46,6 +58,7 @@ RegionFacts read_region_facts(const std::string& path, const BuildOptions& optio
       throw base::UsageError(path + ": that build had another " + name +
                              ", so this tile would not fit into it. Build with the same options");
     for (const nlohmann::json& p : r.at("coverage")) facts.coverage.push_back({finite(p.at(0)), finite(p.at(1))});
+    for (const nlohmann::json& area : r.at("areas")) facts.areas.push_back(pinned_area(area));
     return facts;
   } catch (const base::UsageError&) {
     throw;

@@ -8,6 +8,7 @@
 
 #include "pipeline/georef/lon_lat.h"
 #include "pipeline/model/point.h"
+#include "pipeline/region/area_set.h"
 #include "pipeline/region/build.h"
 
 namespace blockrand::region {
@@ -17,6 +18,7 @@ struct RegionFacts {
   georef::GeoBox box;                   ///< of the buildings, degrees
   georef::LonLat centre;                ///< degrees
   std::vector<model::Point2> coverage;  ///< m, build CRS: where the data is (context::coverage_of)
+  std::vector<PinnedArea> areas;        ///< large ones that district rules ask for (DistrictAssigner::to_pin)
 };
 
 /// Reads the facts that an earlier build wrote into its build.json.

@@ -60,7 +60,7 @@ Region prepare(const Shard& shard, std::span<const std::uint32_t> numbers, const
 }
 
 void resolve(Region& region, const TileInputs& in) {
-  generate::resolve_attributes(region, {in.defaults, in.neighbours, in.seed, in.ground}, in.generate);
+  generate::resolve_attributes(region, {in.defaults, in.neighbours, in.seed, in.ground, &in.overrides, &in.styles.tables.catalogue}, in.generate);
 }
 
 /// m above the height reference up to which a building's outer walls reach.
@@ -102,6 +102,7 @@ void cover_party_walls(Region& region, const TileInputs& in) {
   if (!beside.seeds.empty()) {
     halo = prepare(beside, numbers, in);
     in.surroundings.label_edges(halo, numbers);  // party walls turn ridges, and with them heights
+    put_styles(halo, numbers, in.styles, false);
     resolve(halo, in);
   }
   for (Building& building : region.buildings)
@@ -123,7 +124,11 @@ Region run_tile(std::size_t shard, const TileInputs& in) {
   Region region = prepare(in.shards[shard], numbers, in);
   in.surroundings.label_edges(region, numbers);
   in.context_time += std::chrono::nanoseconds(std::chrono::steady_clock::now() - start).count();
+  put_styles(region, numbers, in.styles, in.explain);
   resolve(region, in);
+  put_style_attributes(region, numbers, in.styles);
+  assign_region(region, numbers, in.assigner);
+  generate::mark_overrides(region, in.overrides, &in.styles.tables.catalogue);
   if (in.has_terrain)
     for (const Building& b : region.buildings)
       if (b.attributes.ground_height.source != model::Source::terrain)

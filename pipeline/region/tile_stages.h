@@ -13,10 +13,12 @@
 #include "pipeline/generate/resolve.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/region.h"
+#include "pipeline/region/assign_extract.h"
 #include "pipeline/region/context_extract.h"
 #include "pipeline/region/repair_extract.h"
 #include "pipeline/region/roof_lines.h"
 #include "pipeline/region/shard.h"
+#include "pipeline/region/style_values.h"
 #include "pipeline/region/surroundings.h"
 #include "pipeline/repair/kept_nodes.h"
 #include "pipeline/repair/options.h"
@@ -47,6 +49,10 @@ struct TileInputs {
   const RoofLineFinder& roof_lines;
   const BuildingNumbers& numbers;
   const context::TaggedNeighbours& neighbours;
+  const DistrictAssigner& assigner;
+  const generate::Overrides& overrides;
+  const StyleInputs& styles;
+  bool explain = true;  ///< reasons are kept
   const repair::RepairOptions& repair;
   const generate::GenerateOptions& generate;
   std::uint64_t seed = 1;

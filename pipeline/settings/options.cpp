@@ -241,6 +241,26 @@ void add_build(Table& t) {
           .help = "what 'blockrand build' wrote",
           .if_missing = "no FOLDER is given: name the output folder of a build."},
          FIELD(folder));
+  t.other({.name = "ACTION",
+           .argument = "ACTION",
+           .section = S,
+           .commands = kDistricts,
+           .help = "check, show or diff",
+           .if_missing = "no ACTION is given: check, show or diff.",
+           .choices = {"check", "show", "diff"}},
+          [](Settings& s, const std::string& text) {
+            s.action = choose<std::string>(text, {{"check", "check"}, {"show", "show"}, {"diff", "diff"}});
+          },
+          [](const Settings& s) { return s.action; });
+  t.other({.name = "FILE",
+           .argument = "FILE",
+           .type = OptionType::path,
+           .section = S,
+           .commands = kDistricts,
+           .help = "check: rule sets, without any those that came with the program; show: an extract; diff: two rule sets and an extract",
+           .several = true},
+          [](Settings& s, const std::string& text) { s.files.push_back(text); },
+          [](const Settings& s) { return s.files.empty() ? "" : fmt::format("{}", fmt::join(s.files, " ")); });
   t.text({.name = "ID",
           .argument = "ID",
           .section = S,
@@ -254,10 +274,10 @@ void add_build(Table& t) {
           .argument = "FOLDER",
           .type = OptionType::folder,
           .section = S,
-          .commands = kBuild | kCompare,
-          .help = "folder that is written; it appears when everything in it is complete",
+          .commands = kBuild | kCompare | kDistricts,
+          .help = "folder that is written; it appears when everything in it is complete; districts diff: a file",
           .if_missing = "no output folder is given: name one with --output FOLDER.",
-          .optional_for = kCompare},
+          .optional_for = kCompare | kDistricts},
          FIELD(build.output));
   t.other(
       {.name = "formats",
@@ -283,7 +303,7 @@ void add_build(Table& t) {
        .argument = "W,S,E,N",
        .type = OptionType::list,
        .section = S,
-       .commands = both,
+       .commands = both | kDistricts,
        .help = "only what lies in this box: west,south,east,north in degrees"},
       [](Settings& s, const std::string& text) { s.build.bbox = parse_bbox(text); },
       [](const Settings& s) { return show_bbox(s.build.bbox); });
@@ -302,10 +322,33 @@ void add_build(Table& t) {
            .key = "crs",
            .argument = "EPSG:CODE",
            .section = S,
-           .commands = both | kCompare,
+           .commands = both | kCompare | kDistricts,
            .help = "projected coordinate system in metres; else ETRS89/UTM in Europe and WGS 84/UTM elsewhere; compare: else "
                    "that of the reference"},
           set_crs, [](const Settings& s) { return s.build.crs; });
+  t.text({.name = "districts",
+          .key = "districts",
+          .argument = "NAME",
+          .section = S,
+          .commands = kBuild | kDistricts,
+          .help = "district rules for everything: the name of a rule set in configs/districts/, or a file; else each place's own"},
+         FIELD(build.districts));
+  t.text({.name = "overrides",
+          .key = "overrides",
+          .argument = "FILE",
+          .type = OptionType::path,
+          .section = S,
+          .commands = kBuild | kDistricts,
+          .help = "corrections by OSM id, stronger than every tag (docs/districts.md)"},
+         FIELD(build.overrides));
+  t.other({.name = "by",
+           .argument = "WHAT",
+           .section = S,
+           .commands = kDistricts,
+           .help = "districts show: what the map is coloured by, preset or rule",
+           .choices = {"preset", "rule"}},
+          [](Settings& s, const std::string& text) { s.map_by = choose<std::string>(text, {{"preset", "preset"}, {"rule", "rule"}}); },
+          [](const Settings& s) { return s.map_by; });
   t.text({.name = "terrain",
           .key = "terrain",
           .argument = "RASTER",
@@ -361,7 +404,7 @@ void add_build(Table& t) {
              .key = "seed",
              .argument = "N",
              .section = S,
-             .commands = kBuild | kCompare,
+             .commands = kBuild | kCompare | kDistricts,
              .minimum = 0,
              .maximum = kMaxSeed,
              .help = "of all random choices; the same seed gives the same bytes"},
@@ -371,7 +414,7 @@ void add_build(Table& t) {
              .key = "jobs",
              .argument = "N",
              .section = S,
-             .commands = both | kValidate | kCompare,
+             .commands = both | kValidate | kCompare | kDistricts,
              .minimum = 0,
              .maximum = 1024,
              .help = "worker threads; 0 is one per core"},
@@ -386,9 +429,10 @@ void add_build(Table& t) {
           .argument = "DIR",
           .type = OptionType::folder,
           .section = S,
+          .commands = kBuild | kDistricts,
           .help = "folder with defaults/ and materials/; else the configs/ that came with the program"},
          FIELD(build.configs));
-  t.flag({.name = "force", .section = S, .commands = kBuild | kCompare, .help = "replace an existing build or comparison"},
+  t.flag({.name = "force", .section = S, .commands = kBuild | kCompare | kDistricts, .help = "replace an existing build, comparison or map"},
          FIELD(build.force));
   t.text({.name = "config",
           .argument = "FILE.toml",
@@ -423,6 +467,11 @@ void add_build(Table& t) {
           .commands = kExplain,
           .help = "list the walls as well: what each faces, how long it is, where it looks"},
          FIELD(edges));
+  t.flag({.name = "style",
+          .section = S,
+          .commands = kExplain,
+          .help = "list everything that spoke for or against its style, not the weightiest alone"},
+         FIELD(style));
   t.flag({.name = "json", .section = S, .commands = kInfo | kExplain | kValidate | kCompare, .help = "print JSON"}, FIELD(json));
 }
 
@@ -763,7 +812,7 @@ void add_compare(Table& t) {
 
 void add_messages(Table& t) {
   constexpr auto S = Section::messages;
-  constexpr unsigned all = kBuild | kInfo | kValidate | kCompare;
+  constexpr unsigned all = kBuild | kInfo | kValidate | kCompare | kDistricts;
   t.other(
       {.name = "progress",
        .argument = "STYLE",
@@ -821,6 +870,7 @@ std::string_view name(Commands command) {
     case kExplain: return "explain";
     case kValidate: return "validate";
     case kCompare: return "compare";
+    case kDistricts: return "districts";
   }
   return "";
 }

@@ -25,17 +25,21 @@ struct Settings {
   blockrand::compare::ReportOptions comparison_report;
   std::string baseline;                 ///< compare.json of an earlier comparison
   std::optional<double> fail_if_worse;  ///< share: 0.02 is 2 %
+  std::string action;                     ///< of `districts`: check, show, diff
+  std::vector<std::string> files;         ///< of `districts`: what its action is about
+  std::string map_by = "preset";          ///< of `districts show`: what the map is coloured by
   std::string id;      ///< of the building that `explain` is asked about
   bool json = false;   ///< print JSON
   bool edges = false;  ///< `explain` lists the stretches of the outline
+  bool style = false;  ///< `explain` lists all evidence for the style
   base::ProgressStyle progress = base::ProgressStyle::automatic;
   base::LogFormat log_format = base::LogFormat::text;
   bool quiet = false;  ///< warnings and errors only
 };
 
 /// Which commands know an option; bits.
-enum Commands : unsigned { kBuild = 1, kInfo = 2, kExplain = 4, kValidate = 8, kCompare = 16 };
-inline constexpr Commands kAllCommands[] = {kBuild, kInfo, kExplain, kValidate, kCompare};
+enum Commands : unsigned { kBuild = 1, kInfo = 2, kExplain = 4, kValidate = 8, kCompare = 16, kDistricts = 32 };
+inline constexpr Commands kAllCommands[] = {kBuild, kInfo, kExplain, kValidate, kCompare, kDistricts};
 std::string_view name(Commands command);  ///< "build"
 
 /// Where an option stands in the help and the reference; the first three are the sections of the config file.

@@ -99,7 +99,7 @@ class RowReader {
     const auto source_wrong = [&](std::string detail) {
       findings_.push_back({Check::source_wrong, file_, id_, a.name + ": " + std::move(detail)});
     };
-    if (row_.null(column) && a.name == "roof_direction") {
+    if (row_.null(column) && (a.name == "roof_direction" || a.name == "ridge_direction")) {
       if (!row_.null(column + 1) || !row_.null(column + 2)) source_wrong("a source or confidence without a value");
       return;
     }
@@ -114,9 +114,10 @@ class RowReader {
                          : a.name == "roof_orientation" ? value == "along" || value == "across"
                          : a.name.ends_with("_colour")  ? is_colour(value)
                                                         : row_.is_text(column) && !value.empty();
+      const bool no_rule_chose = a.name == "preset" && row_.null(column);
       if (sound)
         attributes[a.name] = value;
-      else
+      else if (!no_rule_chose)
         rule(fmt::format("{} cannot be \"{}\"", a.name, value));
     }
     const std::string_view source = row_.text(column + 1);
@@ -165,6 +166,7 @@ const std::vector<GeoPackageAttribute>& geopackage_attributes() {
     std::vector<GeoPackageAttribute> out;
     model::Attributes all;
     all.roof_direction.emplace();
+    all.ridge_direction.emplace();
     model::for_each_attribute(
         all,
         [&](std::string_view name, std::string_view, const auto& sourced) {

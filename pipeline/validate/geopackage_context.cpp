@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "pipeline/base/text.h"
 #include "pipeline/model/building.h"
 #include "pipeline/validate/geopackage_state.h"
 #include "pipeline/validate/ids.h"
@@ -175,6 +176,7 @@ class ContextRules {
 
   void buildings() {
     each("buildings", WkbType::multi_polygon, [&](Fields& f, const GeoPackageGeometry&) {
+      style(f);
       if (!is_position(f.text("position"))) f.error(fmt::format("position \"{}\" is unknown", f.text("position")));
       for (const char* direction : {"front_orientation", "squared_direction"}) f.number(direction, 0, 360);
       for (const char* length : {"depth", "width", "setback", "party_wall_length"}) f.number(length, 0, 1e6);
@@ -191,6 +193,27 @@ class ContextRules {
       if (f.integer("gaps_closed") > f.integer("shared_walls"))
         f.error(fmt::format("{} gaps closed, but {} shared walls", f.text("gaps_closed"), f.text("shared_walls")));
     });
+  }
+
+  /// What classification says: all of it or nothing.
+  static void style(Fields& f) {
+    constexpr const char* kProbabilities[] = {"p_gruenderzeit", "p_tenement", "p_modern", "p_other"};
+    f.number("style_p", 0, 1);
+    double sum = 0, most = 0;
+    std::size_t nulls = f.null("style_p") + f.null("morphology");
+    for (const char* p : kProbabilities) {
+      f.number(p, 0, 1);
+      nulls += f.null(p);
+      sum += f.real(p);
+      most = std::max(most, f.real(p));
+    }
+    if (nulls == std::size(kProbabilities) + 2) return;
+    if (nulls > 0) return f.error("some probabilities of its style are missing");
+    if (!(std::fabs(sum - 1) <= kShareSlack)) f.error(fmt::format("the probabilities of its style sum to {:.4f}", sum));
+    if (f.real("style_p") != most)
+      f.error(fmt::format("style_p is {}, the likeliest class has {}", f.text("style_p"), base::shortest(most)));
+    if (!is_one_of(f.text("morphology"), model::kMorphologyNames))
+      f.error(fmt::format("morphology \"{}\" is unknown", f.text("morphology")));
   }
 
   // ---- edges: building by building, against its footprint
@@ -366,7 +389,8 @@ class ContextRules {
 
 std::vector<std::string> context_columns(std::string_view table) {
   if (table == "buildings")
-    return {"position",    "front_orientation", "depth",     "width",     "setback",      "party_wall_length",
+    return {"style_p",     "p_gruenderzeit",    "p_tenement", "p_modern",  "p_other",     "morphology",
+            "position",    "front_orientation", "depth",     "width",     "setback",      "party_wall_length",
             "block",       "courtyards",        "moved",     "mean_shift", "max_shift",   "mapped_area",
             "shared_walls", "gaps_closed",      "overlaps_resolved", "overlap_left", "squared_direction"};
   if (table == "facade_edges")

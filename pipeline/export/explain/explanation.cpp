@@ -9,6 +9,7 @@
 
 #include "pipeline/export/explain/json_text.h"
 #include "pipeline/export/explain/situation.h"
+#include "pipeline/export/explain/style.h"
 #include "pipeline/export/text.h"
 #include "pipeline/geometry/polygon.h"
 
@@ -56,6 +57,7 @@ class Writer {
     identity(building);
     outline(building.mapped_index);
     stages(building, fate);
+    append_style(json_, building);
     attributes(building.attributes);
     bodies(building);
     notes(building);
@@ -155,6 +157,7 @@ class Writer {
     if (!building.parts.empty()) {
       stage("context", context_text(building));
       stage("resolve", resolve_text(building));
+      if (const std::string text = assign_text(building); !text.empty()) stage("assign", text);
     }
     stage("build", build_text(building, fate));
     if (!building.parts.empty()) stage("check", check_text(building));
@@ -248,6 +251,19 @@ class Writer {
     model::for_each_attribute(building.attributes, count, [](std::string_view, std::string_view) {});
     return fmt::format("{} values: {} tagged, {} following from other values, parts or the plan, {} from the surroundings, {} assumed",
                        tagged + followed + around + assumed, tagged, followed, around, assumed);
+  }
+
+  /// The preset with its parameters, and what is ordered for single storeys, edges and bays.
+  std::string assign_text(const Building& building) const {
+    std::string text;
+    if (const std::string& preset = building.attributes.preset.value; !preset.empty()) text = "preset " + preset;
+    for (const auto& [key, value] : building.preset_parameters) text += fmt::format("{}{}={}", text.empty() ? "" : ", ", key, value);
+    for (const model::DetailOverride& d : building.detail_overrides) {
+      text += fmt::format("{}{}{} {} ordered", text.empty() ? "" : "; ", d.body == building.id() ? "" : d.body + " ", model::name(d.kind), d.name);
+      for (const auto& [key, value] : d.values) text += fmt::format(" {}={}", key, value);
+      text += " (" + d.from + ")";
+    }
+    return text;
   }
 
   std::string build_text(const Building& building, const Fate& fate) {

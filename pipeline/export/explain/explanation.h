@@ -13,6 +13,11 @@
 //                 "block":…,"courtyards":[…],"trees":[{"id":"n5","distance":3.1}]},            where context looked
 //    "edges":[{"id":"w1.e11_12","kind":"street","confidence":0.9,"length":18,"looks":"S","front":true,"neighbour":…,
 //              "street":…,"street_name":…,"street_distance":…,"visibility":…,"radius":…},…],    where context looked
+//    "style":{"class":"gruenderzeit","probabilities":{"gruenderzeit":0.82,…},"era":{"pre1840":0.01,…},"years":[1890,1895],
+//             "morphology":{"perimeter_block":0.9,…},"substyle":"gz_mk_front","substyle_p":0.64,"rule":…,
+//             "prior":{"gruenderzeit":-0.2,…},"elsewhere":{…},"second":"modern",
+//             "terms":[{"feature":"depth_ratio","meaning":…,"value":1.9,"unit":…,"low":1.5,"high":2.2,"weights":{…}},…],
+//             "changes":[…]},       where it was classified: model/style.h; weights are log-odds, open bins have no low, high
 //    "attributes":[{"name":"storeys","value":5,"unit":"","source":"neighbours","confidence":0.6,"why":…,
 //                   "lost":[{"value":"4","source":"preset","confidence":0.3,"why":…}]},…],
 //    "bodies":[{"id":"w1","lod":2,"asked_roof":"gabled","built_roof":"hipped","fallbacks":["ROOF_SHAPE_ADAPTED"],…}],

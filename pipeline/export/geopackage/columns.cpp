@@ -11,7 +11,7 @@ namespace {
 
 /// What an attribute means, for people who open the table without our documentation.
 std::string_view meaning(std::string_view attribute) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kMeanings{{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 25> kMeanings{{
       {"use", "What the building is used for: the value of building=*, refined where it said only yes"},
       {"storeys", "Full storeys above ground, ground floor included, roof storeys not"},
       {"storey_height", "Height of a storey"},
@@ -28,6 +28,15 @@ std::string_view meaning(std::string_view attribute) {
       {"roof_colour", "Colour of the roof in sRGB"},
       {"wall_material", "Material class of the walls"},
       {"roof_material", "Material class of the roof"},
+      {"eaves_height", "From the lowest ground to the eaves"},
+      {"roof_pitch", "Of the main slope; 0 for flat roofs"},
+      {"ridge_direction", "Where the ridge runs, clockwise from north, from 0 to 180"},
+      {"ground_floor_use", "What the ground floor is used for"},
+      {"construction_date", "Year of construction, or from..to"},
+      {"era", "When it was built: pre1840, 1840_1918, 1919_1945, post1945"},
+      {"style", "Class of appearance: gruenderzeit, tenement, modern, other"},
+      {"substyle", "Id of its style in configs/styles/catalogue.toml"},
+      {"preset", "Preset of the grammar that the district's rules chose"},
   }};
   for (const auto& [name, text] : kMeanings)
     if (name == attribute) return text;
@@ -44,6 +53,7 @@ void add_attributes(std::vector<Column>& columns) {
   // The visitor needs a value of every type, absent ones included.
   model::Attributes all;
   all.roof_direction.emplace();
+  all.ridge_direction.emplace();
   model::for_each_attribute(
       all,
       [&](std::string_view attribute, std::string_view unit, const auto& sourced) {
@@ -82,7 +92,7 @@ std::vector<Column> building_columns() {
   for (const char* name : {"country", "city", "suburb", "postcode", "street", "house_number"})
     c.push_back({name, ColumnKind::text, "", "Address as mapped: " + std::string(name)});
   add_attributes(c);
-  for (const auto& more : {situation_columns(), repair_columns()}) c.insert(c.end(), more.begin(), more.end());
+  for (const auto& more : {style_columns(), situation_columns(), repair_columns()}) c.insert(c.end(), more.begin(), more.end());
   c.push_back({"tags", ColumnKind::text, "", "All OpenStreetMap tags as a JSON object"});
   return c;
 }

@@ -12,7 +12,7 @@ using geopackage::ColumnKind;
 
 /// Columns in the order of the table, without `fid` and `geom`. Those of buildings and parts hold, for each attribute x
 /// of model::for_each_attribute and in its order, `x`, `x_source`, `x_confidence`.
-/// After the attributes, buildings have situation_columns() and repair_columns().
+/// After the attributes, buildings have style_columns(), situation_columns() and repair_columns().
 std::vector<Column> building_columns();
 std::vector<Column> part_columns();
 std::vector<Column> reported_columns();
@@ -22,6 +22,7 @@ std::vector<Column> block_columns();
 std::vector<Column> courtyard_columns();
 std::vector<Column> cell_columns();
 
+std::vector<Column> style_columns();      ///< probabilities of classification
 std::vector<Column> situation_columns();  ///< how a building stands to its neighbours and its block
 std::vector<Column> repair_columns();     ///< what repair did to its outline
 

@@ -1,4 +1,4 @@
-// Columns of what repair and context find.
+// Columns of what repair, context and classification find.
 #include "pipeline/export/geopackage/columns.h"
 
 namespace blockrand::export_ {
@@ -7,6 +7,18 @@ namespace {
 constexpr ColumnKind kInteger = ColumnKind::integer, kReal = ColumnKind::real, kText = ColumnKind::text;
 
 }  // namespace
+
+std::vector<Column> style_columns() {
+  return {
+      {"style_p", kReal, "", "Probability of the likeliest class of appearance; empty: was not classified"},
+      {"p_gruenderzeit", kReal, "", "Probability: street-side house of 1840 to 1918 with a composed front"},
+      {"p_tenement", kReal, "", "Probability: mass housing of that time without one, wings and rear buildings"},
+      {"p_modern", kReal, "", "Probability: designed after 1918"},
+      {"p_other", kReal, "", "Probability: church, shed, garage, house from before 1840"},
+      {"morphology", kText, "",
+       "How the houses of its quarter stand: perimeter_block, old_town, slab, detached, terrace; empty: was not classified"},
+  };
+}
 
 std::vector<Column> situation_columns() {
   return {

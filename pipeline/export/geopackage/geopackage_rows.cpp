@@ -1,10 +1,12 @@
 #include "pipeline/export/geopackage/geopackage_rows.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/export/geopackage/cell_writer.h"
 #include "pipeline/export/geopackage/columns.h"
 #include "pipeline/export/geopackage/edge_rows.h"
+#include "pipeline/export/style_basis.h"
 #include "pipeline/export/text.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon.h"
@@ -27,6 +29,18 @@ void write_attributes(RowWriter& row, const model::Attributes& attributes) {
       [&](std::string_view, std::string_view) {
         for (int i = 0; i < 3; ++i) row.null();
       });
+}
+
+/// Probabilities to a ten-thousandth, as other shares.
+void write_style(RowWriter& row, const model::BuildingStyle& style) {
+  if (!is_classified(style)) {
+    for (int i = 0; i < model::kStyleClassCount + 2; ++i) row.null();
+    return;
+  }
+  const auto share = [](float p) { return std::nearbyint(static_cast<double>(p) * 10000) / 10000; };
+  row.real(share(style.style[static_cast<std::size_t>(style.style_class())]));
+  for (const float p : style.style) row.real(share(p));
+  row.text(model::name(style.quarter()));
 }
 
 void write_tags(RowWriter& row, const model::Region& region, model::Range tags) {
@@ -137,6 +151,7 @@ class Builder {
                                          address.house_number.empty() ? address.house_name : address.house_number})
       row.text(field);
     write_attributes(row, b.attributes);
+    write_style(row, b.style);
     write_situation(row, b);
     write_repair(row, b.repaired);
     write_tags(row, region_, b.tags);

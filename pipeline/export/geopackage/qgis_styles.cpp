@@ -172,6 +172,35 @@ std::string positions() {
   return std::move(qml).done();
 }
 
+std::string style_classes() {
+  // Gruenderzeit in the red of its bricks, tenements brown, modern blue.
+  constexpr std::array<std::pair<std::string_view, Colour>, model::kStyleClassCount> kClasses{{
+      {"Gr\u00fcnderzeit: front house of 1840 to 1918", {200, 70, 55}},
+      {"tenement: wings, rear buildings, workers' houses", {165, 120, 75}},
+      {"modern: designed after 1918", {95, 145, 200}},
+      {"other: church, shed, garage, before 1840", {170, 185, 130}},
+  }};
+  Qml qml(Shape::fill);
+  qml.categories("style");
+  for (std::size_t i = 0; i < kClasses.size(); ++i) qml.category(model::kStyleClassNames[i], kClasses[i].first, kClasses[i].second);
+  qml.category("", "not known", kOthers);
+  return std::move(qml).done();
+}
+
+std::string eras() {
+  constexpr std::array<std::pair<std::string_view, Colour>, model::kEraCount> kEras{{
+      {"before 1840", {90, 35, 90}},
+      {"1840 to 1918", {200, 70, 55}},
+      {"1919 to 1945", {245, 175, 85}},
+      {"after 1945", {150, 190, 220}},
+  }};
+  Qml qml(Shape::fill);
+  qml.categories("era");
+  for (std::size_t i = 0; i < kEras.size(); ++i) qml.category(model::kEraNames[i], kEras[i].first, kEras[i].second);
+  qml.category("", "not known", kOthers);
+  return std::move(qml).done();
+}
+
 /// A class of a graduated style: from `lower`, excluded, to `upper`.
 struct Step {
   const char *lower, *upper, *label;
@@ -233,6 +262,8 @@ std::vector<QgisStyle> qgis_styles() {
       {"buildings", "Roofs", "The roof that was built", built_roof(), false},
       {"buildings", "Source of the storeys", "Mapped, concluded or assumed", source_of("storeys"), false},
       {"buildings", "Position", "How a building stands to its neighbours", positions(), false},
+      {"buildings", "Style", "Class of appearance", style_classes(), false},
+      {"buildings", "Era", "When it was built", eras(), false},
       {"parts", "Roofs", "The roof that was built", built_roof(), true},
       {"parts", "Level of detail", "Where less than asked was built", level_of_detail(), false},
       {"facade_edges", "Kinds", "What each stretch of an outline faces", edge_kinds(), true},

@@ -44,9 +44,10 @@ class Builder {
     // The visitor needs a value of every type, absent ones included.
     model::Attributes all;
     all.roof_direction.emplace();
+    all.ridge_direction.emplace();
     const auto column = [&](std::string_view name, std::string_view unit, const auto& sourced) {
       const std::string base(name);
-      const bool optional = name == "roof_direction";
+      const bool optional = name == "roof_direction" || name == "ridge_direction";
       const Kind kind = KindOf{}(sourced.value);
       AttributeColumns c;
       PropertyTable::Column value{base, kind, std::string(unit), enum_of(sourced.value),

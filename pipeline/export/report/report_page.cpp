@@ -26,6 +26,7 @@ void ReportBuilder::add(ReportTile&& tile) {
   std::move(from.names.begin(), from.names.end(), std::back_inserter(footprints_.names));
   for (const auto& [part, building] : from.parts) footprints_.parts.emplace_back(part, building + buildings);
   footprints_.bodies += from.bodies;
+  styles_.add(tile.styles);
 }
 
 std::uint64_t ReportBuilder::buildings_built() const {
@@ -45,11 +46,12 @@ std::string ReportBuilder::html(const ReportFacts& facts, const ReportOptions& o
   out += base::kPageStyle;
   out += kReportStyle;
   out += "</style>\n</head>\n<body>\n";
-  out += head_section(facts);
+  out += head_section(facts, has_styles(styles_));
   out += "<main>\n";
   out += picture_section(facts);
   out += map_section(map, facts);
   out += context_section(facts);
+  out += style_section(styles_);
   out += source_section(facts);
   out += issue_section(footprints_, issues, map.marks, facts, options);
   out += statistics_section(facts);

@@ -30,6 +30,7 @@ class ReportBuilder {
 
  private:
   MapFootprints footprints_;
+  StyleCounts styles_;
 };
 
 }  // namespace blockrand::export_

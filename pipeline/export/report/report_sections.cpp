@@ -56,7 +56,7 @@ std::string swatch(const std::string& css_class) {
 
 }  // namespace
 
-std::string head_section(const ReportFacts& f) {
+std::string head_section(const ReportFacts& f, bool styles) {
   std::string out = "<header>\n<p class=\"kicker\">Blockrand report</p>\n<h1>" + escaped(file_name(f.input)) + "</h1>\n";
   out += "<p class=\"lead\">" + count_of(f.buildings_built, "building", "buildings") + " rebuilt in 3D as " +
          count_of(f.bodies, "body", "bodies") + ", from what OpenStreetMap says about them and, where it is silent, from " +
@@ -94,7 +94,7 @@ std::string head_section(const ReportFacts& f) {
   fact(out, "Built by", "Blockrand " + escaped(f.program_version));
   out += "</dl>\n<nav>" + std::string(f.pictures.empty() ? "" : "<a href=\"#pictures\">Pictures</a>") +
          "<a href=\"#map\">Map</a>" + (has_context(f) ? "<a href=\"#context\">Footprints and context</a>" : "") +
-         "<a href=\"#sources\">Where values come from</a><a href=\"#issues\">Fallbacks and issues</a>"
+         (styles ? "<a href=\"#styles\">Styles</a>" : "") + "<a href=\"#sources\">Where values come from</a><a href=\"#issues\">Fallbacks and issues</a>"
          "<a href=\"#statistics\">Statistics</a><a href=\"#files\">Files</a></nav>\n</header>\n";
   return out;
 }

@@ -12,8 +12,12 @@
 namespace blockrand::export_ {
 
 /// What was built, from what: title, key figures.
-std::string head_section(const ReportFacts& facts);
+/// \param styles  the page has a section on styles
+std::string head_section(const ReportFacts& facts, bool styles);
 std::string picture_section(const ReportFacts& facts);
+/// Classes of appearance and eras, and what they rest on; empty where nothing was classified.
+std::string style_section(const StyleCounts& counts);
+bool has_styles(const StyleCounts& counts);
 /// Where attributes come from: one stacked bar for each.
 std::string source_section(const ReportFacts& facts);
 /// Roofs, areas, volumes.

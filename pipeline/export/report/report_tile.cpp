@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "pipeline/export/text.h"
 #include "pipeline/geometry/polygon.h"
@@ -33,7 +34,34 @@ void add_polygon(MapFootprints& map, const model::Polygon& polygon) {
   for (const model::Ring& hole : polygon.holes) add_ring(map, hole);
 }
 
+/// The position of a value among names, or nothing.
+template <std::size_t N>
+std::optional<std::size_t> place_in(const std::array<std::string_view, N>& names, std::string_view value) {
+  const auto found = std::find(names.begin(), names.end(), value);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+void count_style(const model::Building& building, StyleCounts& counts) {
+  if (!is_classified(building.style)) return;
+  // What outputs say, so that a user's correction counts; the attribute may be empty where nothing was resolved.
+  const model::Attributes& a = building.attributes;
+  const auto style = place_in(model::kStyleClassNames, a.style.value).value_or(static_cast<std::size_t>(building.style.style_class()));
+  const auto era = place_in(model::kEraNames, a.era.value).value_or(static_cast<std::size_t>(building.style.built()));
+  ++counts.classes[style][static_cast<std::size_t>(basis_of(a.style.source, building.style.non_house))];
+  ++counts.eras[era][static_cast<std::size_t>(basis_of(a.era.source, false))];
+}
+
 }  // namespace
+
+void StyleCounts::add(const StyleCounts& other) {
+  const auto sum = [](auto& into, const auto& from) {
+    for (std::size_t i = 0; i < into.size(); ++i)
+      for (std::size_t k = 0; k < into[i].size(); ++k) into[i][k] += from[i][k];
+  };
+  sum(classes, other.classes);
+  sum(eras, other.eras);
+}
 
 ReportTile report_tile(const model::Region& region) {
   ReportTile tile;
@@ -41,6 +69,7 @@ ReportTile report_tile(const model::Region& region) {
   const TagReader tags(region.extract);
   for (const model::Building& building : region.buildings) {
     if (!building.owned) continue;
+    count_style(building, tile.styles);
     const auto index = static_cast<std::uint32_t>(map.buildings.size());
     MapBuilding b;
     b.osm = building.osm;

@@ -1,11 +1,13 @@
 // What a tile gives to the report's map: footprints in decimetres and the classes they are coloured by.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "pipeline/export/style_basis.h"
 #include "pipeline/model/region.h"
 
 namespace blockrand::export_ {
@@ -41,8 +43,16 @@ struct MapFootprints {
   std::uint32_t ring_begin(std::uint32_t ring) const { return ring == 0 ? 0 : ring_ends[ring - 1]; }
 };
 
+/// Buildings that were classified, by answer and by what the answer rests on (StyleBasis).
+struct StyleCounts {
+  std::array<std::array<std::uint64_t, kStyleBasisCount>, model::kStyleClassCount> classes{};
+  std::array<std::array<std::uint64_t, kStyleBasisCount>, model::kEraCount> eras{};
+  void add(const StyleCounts& other);
+};
+
 struct ReportTile {
   MapFootprints footprints;
+  StyleCounts styles;
 };
 
 /// The owned buildings of a finished tile. Pure: safe for different tiles at the same time.

@@ -113,23 +113,5 @@ TEST(Cells, OrderOfBuildingsDoesNotMatter) {
   EXPECT_EQ(whole.size(), 16u);
 }
 
-TEST(StartDate, YearsInTheWordsOfMappers) {
-  EXPECT_EQ(year_of("1898"), 1898);
-  EXPECT_EQ(year_of("1898-05-01"), 1898);
-  EXPECT_EQ(year_of("~1900"), 1900);
-  EXPECT_EQ(year_of("before 1945"), 1945);
-  EXPECT_EQ(year_of("1890s"), 1895);
-  EXPECT_EQ(year_of("1900s"), 1905) << "the decade, as the wiki has it";
-  EXPECT_EQ(year_of("C19"), 1850);
-  EXPECT_EQ(year_of("late 19th century"), 1850);
-  EXPECT_EQ(year_of("1871..1914"), 1892);
-  EXPECT_EQ(year_of("1871-1914"), 1892);
-  EXPECT_FALSE(year_of(""));
-  EXPECT_FALSE(year_of("old"));
-  EXPECT_FALSE(year_of("12"));
-  EXPECT_FALSE(year_of("9999"));
-  EXPECT_FALSE(year_of("99999999999999999999"));
-}
-
 }  // namespace
 }  // namespace blockrand::context

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -217,6 +218,71 @@ TEST(Gzip, ComesBackAndNoticesDamage) {
   std::string damaged = packed;
   damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 0x55);
   EXPECT_THROW(gunzip(damaged), std::runtime_error);
+}
+
+/// A house that classification looked at.
+model::Building& classified(test::SampleRegion& sample) {
+  model::Building& b = sample.add_building(7, {{"building", "yes"}});
+  sample.add_box(b, "w7", 0, 0, 10, 8, 0, 6);
+  b.style.style = {0.825f, 0.05f, 0.11f, 0.015f};
+  b.style.era = {0.0625f, 0.875f, 0.03125f, 0.03125f};
+  b.style.morphology = {0.75f, 0, 0.25f, 0, 0};
+  b.style.substyle_p = 0.64f;
+  b.style.years = model::YearRange{1890, 1895};
+  b.attributes.substyle.value = "gz_mk_front";
+  b.style_why.second = model::StyleClass::modern;
+  b.style_why.prior = {0.125f, -0.125f, 0, 0};
+  b.style_why.elsewhere = {1.3333334f, 0, -1, 0};
+  b.style_why.terms = {{"depth_ratio", "", "greatest depth: wings", 1.9f, 1.5f, std::numeric_limits<float>::infinity(), {2.f, 1.f, -0.5f, 0.f}},
+                       {"area", "m2", "footprint area", 312.40001f, -std::numeric_limits<float>::infinity(), 400.f, {0.25f, 0, 0, 0}}};
+  b.style_why.changes = {{"depth_ratio", "", "greatest depth: wings", 1.9f, -std::numeric_limits<float>::infinity(), 1.2f, {-2.f, 0, 1.f, 0}}};
+  return b;
+}
+
+TEST(ExplainStyle, IsToldToMachines) {
+  test::SampleRegion sample;
+  classified(sample);
+  const json style = lines_of(explain(sample.region(), plain_options()).lines).at("w7").at("style");
+  EXPECT_EQ(style.at("class"), "gruenderzeit");
+  EXPECT_EQ(style.at("probabilities"), json({{"gruenderzeit", 0.825}, {"tenement", 0.05}, {"modern", 0.11}, {"other", 0.015}}));
+  EXPECT_EQ(style.at("era"), json({{"pre1840", 0.0625}, {"1840_1918", 0.875}, {"1919_1945", 0.0312}, {"post1945", 0.0312}}));
+  EXPECT_EQ(style.at("morphology").at("slab"), 0.25);
+  EXPECT_EQ(style.at("years"), json({1890, 1895}));
+  EXPECT_EQ(style.at("substyle"), "gz_mk_front");
+  EXPECT_EQ(style.at("substyle_p"), 0.64);
+  EXPECT_EQ(style.at("second"), "modern");
+  EXPECT_EQ(style.at("prior").at("gruenderzeit"), 0.125);
+  EXPECT_EQ(style.at("elsewhere").at("gruenderzeit"), 1.333) << "weights have three decimals";
+  EXPECT_FALSE(style.contains("rule"));
+  ASSERT_EQ(style.at("terms").size(), 2u);
+  EXPECT_EQ(style.at("terms")[0], json({{"feature", "depth_ratio"},
+                                        {"meaning", "greatest depth: wings"},
+                                        {"value", 1.9},
+                                        {"low", 1.5},
+                                        {"weights", {{"gruenderzeit", 2}, {"tenement", 1}, {"modern", -0.5}, {"other", 0}}}}))
+      << "an open bin has no high";
+  EXPECT_EQ(style.at("terms")[1].at("unit"), "m2");
+  EXPECT_EQ(style.at("terms")[1].at("value"), 312.4);
+  EXPECT_FALSE(style.at("terms")[1].contains("low"));
+  EXPECT_EQ(style.at("terms")[1].at("high"), 400);
+  ASSERT_EQ(style.at("changes").size(), 1u);
+  EXPECT_EQ(style.at("changes")[0].at("high"), 1.2);
+}
+
+TEST(ExplainStyle, NamesTheRuleForWhatIsNoHouse) {
+  test::SampleRegion sample;
+  model::Building& b = classified(sample);
+  b.style_why.rule = "building=garage: a \"garage\"";
+  b.attributes.substyle.value.clear();
+  const json style = lines_of(explain(sample.region(), plain_options()).lines).at("w7").at("style");
+  EXPECT_EQ(style.at("rule"), "building=garage: a \"garage\"");
+  EXPECT_FALSE(style.contains("substyle"));
+}
+
+TEST(ExplainStyle, IsLeftOutWhereNothingWasClassified) {
+  test::SampleRegion sample;
+  classified(sample).style.style = {};
+  EXPECT_FALSE(lines_of(explain(sample.region(), plain_options()).lines).at("w7").contains("style"));
 }
 
 }  // namespace

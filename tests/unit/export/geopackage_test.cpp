@@ -154,7 +154,7 @@ TEST_F(GeoPackage, EachAttributeHasValueSourceAndConfidence) {
   };
   model::for_each_attribute(
       all, [&](const char* x, auto, const auto&) { three(x); }, [&](const char* x, auto) { three(x); });
-  EXPECT_EQ(attributes, 16);
+  EXPECT_EQ(attributes, 25);
   EXPECT_THAT(query(path,
                     "SELECT storeys, storeys_source, storeys_confidence, roof_shape, wall_colour, typeof(storeys),"
                     "roof_direction, roof_direction_source FROM parts WHERE id = 'w12'"),
@@ -163,6 +163,25 @@ TEST_F(GeoPackage, EachAttributeHasValueSourceAndConfidence) {
       query(path,
             "SELECT roof_direction, roof_direction_source, roof_direction_confidence FROM parts WHERE id = 'w40'"),
       ElementsAre(ElementsAre("NULL", "NULL", "NULL")));
+}
+
+TEST(GeoPackageRows, ProbabilitiesOfTheStyleStandWhereThereAreSome) {
+  SampleRegion sample;
+  sample.region().buildings.reserve(2);
+  model::Building& classified = sample.add_building(5, {});
+  sample.add_box(classified, "w5", 391000, 5819000, 8, 8, 30, 9);
+  classified.style.style = {0.1f, 0.2f, 0.66666f, 0.03334f};
+  classified.style.morphology = {0.1f, 0.1f, 0.6f, 0.1f, 0.1f};
+  model::Building& unknown = sample.add_building(6, {});
+  sample.add_box(unknown, "w6", 391020, 5819000, 8, 8, 30, 9);
+  const Folder folder;
+  GeoPackageWriter writer(folder / "a.gpkg", kOptions);
+  writer.add(geopackage_rows(sample.region(), 2));
+  writer.close();
+  const std::string columns = "SELECT style_p, p_gruenderzeit, p_tenement, p_modern, p_other, morphology FROM buildings WHERE id = ";
+  EXPECT_THAT(query(folder / "a.gpkg", columns + "'w5'"), ElementsAre(ElementsAre("0.6667", "0.1", "0.2", "0.6667", "0.0333", "slab")));
+  EXPECT_THAT(query(folder / "a.gpkg", columns + "'w6'"), ElementsAre(ElementsAre("NULL", "NULL", "NULL", "NULL", "NULL", "NULL")));
+  EXPECT_EQ(column(folder / "a.gpkg", "SELECT type FROM pragma_table_info('buildings') WHERE name = 'style_p'").at(0), "REAL");
 }
 
 TEST_F(GeoPackage, BuildingsSayWhatStands) {

@@ -126,6 +126,45 @@ TEST(Report, TheZooAsPage) {
   EXPECT_EQ(std::count(court.begin(), court.end(), 'z'), 2);
 }
 
+TEST(Report, StylesAreCountedByWhatTheyRestOn) {
+  SampleRegion sample;
+  sample.region().buildings.reserve(5);
+  const auto add = [&](std::int64_t id, model::StyleClass c, model::Era era, model::Source source) -> model::Building& {
+    model::Building& b = sample.add_building(id, {{"building", "yes"}});
+    sample.add_box(b, b.id(), 391000 + 20.0 * static_cast<double>(id), 5819000, 10, 10, 30, 9);
+    b.style.style[static_cast<std::size_t>(c)] = 1;
+    b.style.era[static_cast<std::size_t>(era)] = 1;
+    b.attributes.style = {std::string(model::name(c)), source, 1, 0};
+    b.attributes.era = {std::string(model::name(era)), source, 1, 0};
+    return b;
+  };
+  add(1, model::StyleClass::gruenderzeit, model::Era::from1840, model::Source::geometry);
+  add(2, model::StyleClass::gruenderzeit, model::Era::from1840, model::Source::tag);
+  add(3, model::StyleClass::gruenderzeit, model::Era::from1919, model::Source::neighbours);
+  add(4, model::StyleClass::other, model::Era::post1945, model::Source::geometry).style.non_house = true;
+  add(5, model::StyleClass::modern, model::Era::post1945, model::Source::geometry).owned = false;
+  ReportBuilder page;
+  page.add(report_tile(sample.region()));
+  const Page html(page.html(some_facts()));
+  ASSERT_TRUE(html.well_formed());
+  EXPECT_EQ(html.count("//h:section[@id='styles']"), 1u);
+  EXPECT_EQ(html.count("//h:nav/h:a[@href='#styles']"), 1u);
+  const std::string row = "//h:section[@id='styles']//h:table[1]//h:tr[h:td[1]=";
+  EXPECT_EQ(html.one(row + "'Gr\u00fcnderzeit']/h:td[3]"), "3 75\u00a0%");
+  EXPECT_EQ(html.one(row + "'Gr\u00fcnderzeit']//s:svg/@aria-label"), "tags 1 (33\u00a0%), evidence 2 (67\u00a0%)");
+  EXPECT_EQ(html.one(row + "'Other']//s:svg/@aria-label"), "rule 1 (100\u00a0%)");
+  EXPECT_EQ(html.one(row + "'Modern']/h:td[3]"), "0 0\u00a0%") << "of the halo";
+  EXPECT_EQ(html.one("//h:section[@id='styles']//h:tr[h:td[1]='1840 to 1918']/h:td[3]"), "2 50\u00a0%");
+  EXPECT_EQ(html.one("//h:section[@id='styles']//h:tr[h:td[1]='After 1945']//s:svg/@aria-label"), "evidence 1 (100\u00a0%)");
+  EXPECT_THAT(html.one("//h:section[@id='styles']/h:ul"), HasSubstr("evidence 50\u00a0%"));
+}
+
+TEST(Report, HasNoSectionOnStylesWhereNothingWasClassified) {
+  const Page html(zoo_page().html(some_facts()));
+  EXPECT_EQ(html.count("//h:section[@id='styles']"), 0u);
+  EXPECT_EQ(html.count("//h:nav/h:a[@href='#styles']"), 0u);
+}
+
 TEST(Report, FootprintsAreTheMapInDecimetres) {
   const Page html(zoo_page().html(some_facts()));
   ASSERT_TRUE(html.well_formed());
@@ -280,7 +319,7 @@ MapFootprints town(int count) {
   return report_tile(SampleRegion::settlement(count, false).region()).footprints;
 }
 
-ReportTile town_tile(int count) { return {town(count)}; }
+ReportTile town_tile(int count) { return {town(count), {}}; }
 
 TEST(ReportMap, ManyFootprintsAreDrawnInGroups) {
   ReportBuilder page;

@@ -177,6 +177,13 @@ model::BuildingPart& SampleRegion::add_part(model::Building& building, const std
   a.roof_colour = {{160, 60, 40}, model::Source::tag, 1.0f, 0};
   a.wall_material = {"plaster", model::Source::default_, 0.1f, 0};
   a.roof_material = {"roof_tiles", model::Source::default_, 0.1f, 0};
+  a.eaves_height = {6.5, model::Source::implied, 0.4f, 0};
+  a.roof_pitch = {35, model::Source::preset, 0.3f, 0};
+  a.ground_floor_use = {"apartments", model::Source::preset, 0.6f, 0};
+  a.construction_date = {"1862..1914", model::Source::geometry, 0.5f, 0};
+  a.era = {"1840_1918", model::Source::geometry, 0.8f, 0};
+  a.style = {"gruenderzeit", model::Source::geometry, 0.7f, 0};
+  a.substyle = {"gz_mk_front", model::Source::preset, 0.6f, 0};
   building.parts.push_back(std::move(part));
   return building.parts.back();
 }

@@ -1,14 +1,20 @@
 #include "tests/unit/region/built_town.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/context/blocks.h"
 #include "pipeline/georef/crs.h"
 #include "pipeline/region/area.h"
+#include "pipeline/region/assign_extract.h"
+#include "pipeline/region/classify_extract.h"
 #include "pipeline/region/context_extract.h"
 #include "pipeline/region/load.h"
+#include "pipeline/region/prepare_extract.h"
+#include "pipeline/region/rule_book.h"
+#include "pipeline/region/style_values.h"
 #include "pipeline/region/surroundings.h"
 #include "pipeline/region/tile_stages.h"
 
@@ -48,6 +54,14 @@ struct BuiltTown::State {
   RoofLineFinder roof_lines;
   BuildingNumbers numbers;
   context::TaggedNeighbours neighbours;
+  classify::Tables tables = classify::Tables::read(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
+  ReadRuleBook rules = read_rule_book(std::string(BLOCKRAND_SOURCE_DIR) + "/configs", "");
+  generate::Overrides overrides;
+  FactsExtract facts;
+  TagFacts tags;
+  StyleExtract style_extract;
+  StyleInputs style_inputs{facts, tags, style_extract, tables};
+  std::optional<DistrictAssigner> assigner;
 
   explicit State(const std::filesystem::path& file)
       : extract(importers::osm::read_extract(file.string())),
@@ -61,7 +75,32 @@ struct BuiltTown::State {
         surroundings(extract, repaired.footprints, context),
         roof_lines(extract, projection),
         numbers(repaired.footprints),
-        neighbours(tagged_buildings(extract, defaults, projection), usual_generation().neighbour_reach) {}
+        neighbours(tagged_buildings(extract, defaults, projection), usual_generation().neighbour_reach),
+        facts(facts_extract(extract, repaired.footprints, context, surroundings, workers, progress)),
+        tags(tag_facts(extract, repaired.footprints, context, tables, projection, facts)),
+        style_extract(classified()) {
+    assigner.emplace(rules.book, AssignInputs{.extract = extract,
+                                              .footprints = repaired.footprints,
+                                              .context = context,
+                                              .styles = style_extract,
+                                              .projection = projection,
+                                              .defaults = defaults,
+                                              .neighbours = neighbours,
+                                              .overrides = &overrides,
+                                              .pinned = {}});
+  }
+
+  /// With the priors of its region, as a build does.
+  StyleExtract classified() {
+    const std::vector<classify::RegionPrior> priors = region_priors(rules.book, tables);
+    return classify_extract(
+        facts, tags, tables,
+        [&](std::uint32_t b) -> const classify::RegionPrior* {
+          const std::uint32_t set = rules.book.choose(box_centre(extract, extract.buildings[repaired.footprints[b].lead]));
+          return set == blockrand::styles::districts::RuleBook::kNoSet ? nullptr : &priors[set];
+        },
+        {}, workers, progress);
+  }
 };
 
 BuiltTown::BuiltTown(const std::filesystem::path& file) : state_(std::make_unique<State>(file)) {}
@@ -92,6 +131,9 @@ model::Region BuiltTown::tile(std::size_t shard, int lod) const {
                           .roof_lines = s.roof_lines,
                           .numbers = s.numbers,
                           .neighbours = s.neighbours,
+                          .assigner = *s.assigner,
+                          .overrides = s.overrides,
+                          .styles = s.style_inputs,
                           .repair = s.repair,
                           .generate = usual_generation(),
                           .lod = lod,

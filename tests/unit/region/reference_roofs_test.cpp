@@ -478,15 +478,18 @@ TEST(ReferenceRoofs, OfTownsStandAtTheSurveysHeights) {
   std::printf("All together\n");
   print_heights(all);
   print_surfaces(all);
-  // Measured: 101 matches; 7.1 m, of offices whose storeys are higher than 3 m; 60 of 69 slopes, 44 where 62 were asked
-  // for.
+  // Before classification 60 of 69 slopes were found, because nearly every roof was built sloped: 18 of 35 flat ones too.
   EXPECT_GT(all.size(), 80u);
   EXPECT_LT(ridge_error(all, [](const Match& m) { return m.tagged != "untagged"; }), 8.5);
   const auto map = cases(all, &Match::on_map);
-  EXPECT_GT(print_cases("all but stepped", map, [](const RoofCase& c) { return c.seen != "flat, stepped"; }).found,
-            0.78);
-  // 17 roofs; 0.95 since they stand in rows, below 0.9 before.
-  EXPECT_LT(print_cases("gabled", map, [](const RoofCase& c) { return c.seen == "gabled"; }).median_rms, 1.0);
+  // Two questions apart: is a roof told as sloped that is, and do the slopes that are built lie where the survey has them?
+  const auto is_flat = [](const RoofCase& c) { return c.seen.starts_with("flat"); };
+  const auto right = std::count_if(map.begin(), map.end(), [&](const RoofCase& c) { return (c.asked == RoofShape::flat) == is_flat(c); });
+  std::printf("Flat or sloped: %td of %zu right\n", right, map.size());
+  EXPECT_GT(static_cast<double>(right), 0.75 * static_cast<double>(map.size())) << "measured 0.78";
+  const auto sloped = [&](const RoofCase& c) { return c.asked != RoofShape::flat; };
+  EXPECT_GT(print_cases("asked sloped", map, [&](const RoofCase& c) { return sloped(c) && c.seen != "flat, stepped"; }).found, 0.78);
+  EXPECT_LT(print_cases("gabled", map, [&](const RoofCase& c) { return sloped(c) && c.seen == "gabled"; }).median_rms, 1.0);
 }
 
 /// Building of a part: "GUID_…_2" is part 2 of "GUID_…".

@@ -23,7 +23,7 @@ class Pinned : public ::testing::Test {
   void TearDown() override { std::filesystem::remove(path_); }
   std::string path_ = ::testing::TempDir() + "pinned-" + std::to_string(::getpid()) + ".json";
   std::string good_ = R"({"configuration":)" + configuration({}).dump() + R"(,"crs":{"code":"EPSG:25833"},"region":{"box":[13.3,52.4,13.5,52.6],"centre":[13.4,52.5],
-                          "coverage":[[380000,5800000],[390000,5800000],[385000,5810000.5]]}})";
+                          "areas":[],"coverage":[[380000,5800000],[390000,5800000],[385000,5810000.5]]}})";
 };
 
 template <class Error>

@@ -41,7 +41,10 @@ model::Polygon rectangle(double x, double y, double width, double depth) {
 }
 
 void write_sound(const std::string& path) {
-  const auto sample = row_sample();
+  auto sample = row_sample();
+  model::BuildingStyle& style = sample.region().buildings.at(1).style;  // w2, the others were not classified
+  style.style = {0.8f, 0.1f, 0.05f, 0.05f};
+  style.morphology = {1, 0, 0, 0, 0};
   export_::GeoPackageWriter writer(path, {"EPSG:25833", "2024-05-01T00:00:00Z", "", ""});
   const export_::GeoPackageRows rows = export_::geopackage_rows(sample.region(), 2);
   writer.add(rows);
@@ -132,6 +135,13 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{"layer_lost", "DROP TABLE facade_edges", "facade_edges: the table is missing"},
         Damage{"column_lost", "ALTER TABLE blocks DROP COLUMN closure", "blocks: the column closure is missing"},
         Damage{"building_column_lost", "ALTER TABLE buildings DROP COLUMN max_shift", "the column max_shift is missing"},
+        Damage{"style_column_lost", "ALTER TABLE buildings DROP COLUMN p_other", "the column p_other is missing"},
+        Damage{"style_p", "UPDATE buildings SET style_p = 0.9 WHERE id = 'w2'", "w2: layer buildings: style_p is 0.9, the likeliest class has 0.8"},
+        Damage{"style_probability", "UPDATE buildings SET p_modern = 1.5 WHERE id = 'w2'", "p_modern \"1.5\" is no number from 0 to 1"},
+        Damage{"style_sum", "UPDATE buildings SET p_modern = 0.25 WHERE id = 'w2'", "the probabilities of its style sum to 1.2000"},
+        Damage{"style_half", "UPDATE buildings SET p_modern = NULL WHERE id = 'w2'", "some probabilities of its style are missing"},
+        Damage{"style_alone", "UPDATE buildings SET style_p = 0.5 WHERE id = 'w1'", "w1: layer buildings: some probabilities"},
+        Damage{"morphology", "UPDATE buildings SET morphology = 'garden' WHERE id = 'w2'", "morphology \"garden\" is unknown"},
         Damage{"kind", edges("kind = 'garden'"), "w2.e20_21: layer facade_edges: kind \"garden\" is unknown"},
         Damage{"confidence", edges("confidence = 1.5"), "confidence \"1.5\" is no number from 0 to 1"},
         Damage{"no_confidence", edges("confidence = NULL"), "confidence \"\" is no number"},

@@ -1,0 +1,34 @@
+// The presets that rules may name: configs/styles/presets.toml.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/model/style.h"
+
+namespace blockrand::base {
+class TomlTable;
+}
+
+namespace blockrand::styles::districts {
+
+struct Preset {
+  std::string name;
+  std::string description;  ///< one line
+  model::StyleClass style = model::StyleClass::other;
+  std::vector<std::string> substyles;  ///< ids of the catalogue of styles that it is meant for
+};
+
+/// Reads a list of presets, in alphabetical order of names.
+/// \throws base::InputError  with file, line and column
+std::vector<Preset> read_presets(const std::string& path);
+
+/// One preset, from the table of its name.
+Preset read_preset(const std::string& name, base::TomlTable table);
+
+/// kNoPreset where there is none.
+inline constexpr std::size_t kNoPreset = static_cast<std::size_t>(-1);
+std::size_t find_preset(const std::vector<Preset>& presets, std::string_view name);
+
+}  // namespace blockrand::styles::districts

@@ -1,0 +1,27 @@
+// Rule sets from TOML files, checked as they are read.
+#pragma once
+
+#include <string>
+
+#include "styles/districts/rule_set.h"
+
+namespace blockrand::styles::districts {
+
+/// m. A tile that is built alone reads 3 km around it: a feature farther away could not be seen.
+inline constexpr double kMaxNear = 2000;
+inline constexpr double kMaxPlaceRadius = 30000;  ///< m; places are region data
+
+/// Reads a rule set and adds it, and the presets it declares itself, to the book. The language: docs/districts.md.
+///
+/// \throws base::InputError  with file, line and column: not TOML, unknown keys and names (with the nearest known),
+/// values
+///                           out of range, predicates that nothing can satisfy (an empty list, a minimum above its
+///                           maximum, years outside of the eras, a box outside of the set's polygon), weights that are
+///                           not positive or do not sum to 1, two rules of one name, a rule that can have no effect
+///                           because stronger ones without conditions take all it gives
+void read_rule_set(const std::string& path, RuleBook& book);
+
+/// The same from text; files that it names are relative to the folder of `name`.
+void parse_rule_set(std::string_view text, const std::string& name, RuleBook& book);
+
+}  // namespace blockrand::styles::districts

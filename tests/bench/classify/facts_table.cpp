@@ -1,0 +1,251 @@
+// Everything that classification measures of the buildings of an extract, what their mappers noted, and, with weights,
+// what classification makes of it with and without that: the tables that fit.py and evaluate.py read.
+//
+//   facts_table EXTRACT CONFIGS OUT.csv           features and tags; needs no weights
+//   facts_table EXTRACT CONFIGS OUT.csv answers   and what is answered; with `quick` behind it without hiding by tenths
+//
+// Hiding: a tenth of the buildings at a time (by a hash of the id) loses its tag, and is asked then; `_alone` columns
+// are answers where every tag of the kind is hidden.
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <string>
+
+#include "importers/osm/read_extract.h"
+#include "pipeline/base/random.h"
+#include "pipeline/context/blocks.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/region/area.h"
+#include "pipeline/region/building_facts.h"
+#include "pipeline/region/classify_extract.h"
+#include "pipeline/region/context_extract.h"
+#include "pipeline/region/load.h"
+#include "pipeline/region/prepare_extract.h"
+#include "pipeline/region/repair_extract.h"
+#include "pipeline/region/rule_book.h"
+#include "pipeline/region/shard.h"
+#include "pipeline/repair/kept_nodes.h"
+
+using namespace blockrand;
+
+namespace {
+
+using classify::Feature;
+
+constexpr int kParts = 10;  ///< of the tags, hidden one after the other
+constexpr int kWorkers = 2;
+
+int part_of(model::OsmId id) {
+  std::uint64_t h = id.number * 4u + static_cast<std::uint64_t>(id.type);
+  h = (h ^ (h >> 31)) * 0x7fb5d329728ea185ull;
+  h = (h ^ (h >> 27)) * 0x81dadef4bc2dd44dull;
+  return static_cast<int>((h ^ (h >> 33)) % kParts);
+}
+
+std::string number(float v) { return v == v ? fmt::format("{:.5g}", v) : std::string(); }
+
+struct Answers {
+  region::StyleExtract tagged, untagged, no_region, no_smooth, permuted, era, storeys, storeys_alone, roof, roof_alone;
+};
+
+/// Gives each building the geometry of another: what classification is worth without it.
+region::FactsExtract permuted(const region::FactsExtract& facts) {
+  region::FactsExtract out = facts;
+  std::vector<std::uint32_t> known;
+  for (std::uint32_t b = 0; b < facts.features.size(); ++b)
+    if (facts.features[b].has(Feature::area)) known.push_back(b);
+  for (std::size_t i = known.size(); i > 1; --i) std::swap(known[i - 1], known[base::random_bits(1, i, "permute") % i]);
+  std::size_t next = 0;
+  for (std::uint32_t b = 0; b < facts.features.size(); ++b)
+    if (facts.features[b].has(Feature::area)) {
+      const classify::FeatureVector& other = facts.features[known[next++]];
+      for (std::size_t f = 0; f < classify::kFeatureCount; ++f)
+        if (!classify::is_tag(static_cast<Feature>(f))) out.features[b][static_cast<Feature>(f)] = other.at(f);
+    }
+  return out;
+}
+
+/// Classifies with one tenth hidden after the other and keeps the answers of those hidden.
+template <class Hide, class Keep>
+void in_tenths(
+    const region::FactsExtract& facts, const region::TagFacts& tags, const region::FootprintStore& store, Hide hide,
+    Keep keep,
+    const std::function<region::StyleExtract(const region::FactsExtract&, const region::TagFacts&)>& classify) {
+  for (int part = 0; part < kParts; ++part) {
+    region::FactsExtract f = facts;
+    region::TagFacts t = tags;
+    bool any = false;
+    for (std::uint32_t b = 0; b < store.size(); ++b)
+      if (part_of(store[b].id) == part) any = hide(f, t, b) || any;
+    if (!any) continue;
+    const region::StyleExtract answer = classify(f, t);
+    for (std::uint32_t b = 0; b < store.size(); ++b)
+      if (part_of(store[b].id) == part) keep(answer, b);
+  }
+}
+
+void run(const std::string& input, const std::string& configs, const std::string& table, bool answers, bool quick) {
+  base::Progress progress;
+  const model::Extract extract = importers::osm::read_extract(input, {});
+  const auto area = region::area_of(extract);
+  if (!area) throw std::runtime_error("no buildings in " + input);
+  const auto crs = georef::open_crs(georef::choose_crs(area->centre.lon, area->centre.lat), area->box);
+  const georef::Projection projection(crs, area->box);
+  model::Report report;
+  const auto shards = region::make_shards(extract, report);
+  const auto coverage = context::coverage_of(region::building_places(extract, projection));
+  const repair::KeptNodes kept(extract);
+  const auto repaired = region::repair_extract(extract, shards, projection, kept, {}, kWorkers, progress);
+  const auto& store = repaired.footprints;
+  const auto context = region::context_extract(extract, store, coverage, projection, kWorkers, progress);
+  const region::SurroundingsFinder surroundings(extract, store, context);
+  region::FactsExtract facts = region::facts_extract(extract, store, context, surroundings, kWorkers, progress);
+  classify::Tables tables = answers ? classify::Tables::read(configs) : classify::Tables::read_without_weights(configs);
+  const region::TagFacts tags = region::tag_facts(extract, store, context, tables, projection, facts);
+
+  Answers a;
+  if (answers) {
+    const auto rules = region::read_rule_book(configs, "");
+    const std::vector<classify::RegionPrior> priors = region::region_priors(rules.book, tables);
+    const region::PriorOf prior = [&](std::uint32_t b) -> const classify::RegionPrior* {
+      const std::uint32_t set = rules.book.choose(region::box_centre(extract, extract.buildings[store[b].lead]));
+      return set == styles::districts::RuleBook::kNoSet ? nullptr : &priors[set];
+    };
+    constexpr region::ClassifyOptions kUntagged{.tags = false, .dates = false, .smooth = true},
+        kAlone{.tags = false, .dates = false, .smooth = false};
+    a.tagged = region::classify_extract(facts, tags, tables, prior, {}, kWorkers, progress);
+    a.untagged = region::classify_extract(facts, tags, tables, prior, kUntagged, kWorkers, progress);
+    a.no_region = region::classify_extract(facts, tags, tables, {}, kUntagged, kWorkers, progress);
+    a.no_smooth = region::classify_extract(facts, tags, tables, prior, kAlone, kWorkers, progress);
+    a.permuted = region::classify_extract(permuted(facts), tags, tables, prior, kUntagged, kWorkers, progress);
+    const auto again = [&](const region::FactsExtract& f, const region::TagFacts& t) {
+      return region::classify_extract(f, t, tables, prior, {}, kWorkers, progress);
+    };
+    const std::size_t n = store.size();
+    a.storeys.storeys.resize(n);
+    a.roof.roofs.resize(n);
+    a.era.styles.resize(n);
+    a.storeys_alone.storeys.resize(n);
+    a.roof_alone.roofs.resize(n);
+    constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+    const auto hide_storeys = [&](region::FactsExtract& f, region::TagFacts&, std::uint32_t b) {
+      const bool any = f.features[b].has(Feature::tag_storeys);
+      f.features[b][Feature::tag_storeys] = kUnknown;
+      return any;
+    };
+    const auto hide_roof = [&](region::FactsExtract& f, region::TagFacts& t, std::uint32_t b) {
+      const bool any = f.features[b].has(Feature::tag_roof);
+      f.features[b][Feature::tag_roof] = f.features[b][Feature::tag_roof_storeys] = kUnknown;
+      t.roofs[b].reset();
+      return any;
+    };
+    const auto hide_date = [&](region::FactsExtract& f, region::TagFacts& t, std::uint32_t b) {
+      const bool any = f.features[b].has(Feature::tag_year) || f.features[b].has(Feature::tag_heritage);
+      f.features[b][Feature::tag_year] = f.features[b][Feature::tag_heritage] = kUnknown;
+      t.dates[b] = {};
+      t.years[b].reset();
+      return any;
+    };
+    if (!quick) {
+      in_tenths(
+          facts, tags, store, hide_storeys,
+          [&](const auto& r, std::uint32_t b) { a.storeys.storeys[b] = r.storeys[b]; }, again);
+      in_tenths(
+          facts, tags, store, hide_roof, [&](const auto& r, std::uint32_t b) { a.roof.roofs[b] = r.roofs[b]; }, again);
+      in_tenths(
+          facts, tags, store, hide_date, [&](const auto& r, std::uint32_t b) { a.era.styles[b] = r.styles[b]; }, again);
+      region::FactsExtract f = facts;
+      region::TagFacts t = tags;
+      for (std::uint32_t b = 0; b < n; ++b) hide_storeys(f, t, b);
+      a.storeys_alone = again(f, t);
+      f = facts;
+      for (std::uint32_t b = 0; b < n; ++b) hide_roof(f, t, b);
+      a.roof_alone = again(f, t);
+    }
+  }
+
+  constexpr std::string_view kTags[] = {"building", "start_date", "building:architecture", "name"};
+  auto out = fmt::output_file(table);
+  std::string head =
+      "id,x,y,lon,lat,block,street,house,parts,storeys,height,roof_shape,year,year_confidence,years_from,years_to,non_"
+      "house,contacts";
+  for (const auto t : kTags) head += fmt::format(",t_{}", t);
+  for (const auto& f : classify::kFeatures) head += fmt::format(",{}", f.name);
+  if (answers) {
+    for (const char* set : {"tagged", "untagged", "noregion", "nosmooth", "permuted", "hidden"}) {
+      for (const auto c : model::kStyleClassNames) head += fmt::format(",{}_style_{}", set, c);
+      for (const auto c : model::kEraNames) head += fmt::format(",{}_era_{}", set, c);
+      for (const auto c : model::kMorphologyNames) head += fmt::format(",{}_morphology_{}", set, c);
+      head += fmt::format(",{}_substyle", set);
+    }
+    head +=
+        ",storeys_hidden,storeys_hidden_p,storeys_votes,storeys_alone,storeys_alone_p,roof_hidden,roof_hidden_p,roof_"
+        "alone";
+  }
+  out.print("{}\n", head);
+  const auto clean = [](std::string_view text) {
+    std::string c;
+    for (const char ch : text) c += ch == ',' || ch == '"' || ch == '\n' || ch == '\r' ? ' ' : ch;
+    return c;
+  };
+  std::uint32_t n = 0;
+  for (const region::Shard& shard : shards)
+    for (const region::Seed& seed : shard.seeds) {
+      const std::uint32_t b = n++;
+      if (!facts.features[b].has(Feature::area)) continue;
+      const model::MappedBuilding& m = extract.buildings[seed.lead()];
+      const region::BuildingPlace& p = facts.places[b];
+      const model::Location l = region::box_centre(extract, m);
+      std::string touching;
+      for (const region::Contact& c : facts.contacts_of(b))
+        touching += (touching.empty() ? "" : " ") + store[c.other].id.text() + ":" + fmt::format("{:.1f}", c.length);
+      const auto optional = [](const auto& v) { return v ? fmt::format("{:g}", *v) : std::string(); };
+      std::string row = fmt::format(
+          "{},{:.1f},{:.1f},{:.6f},{:.6f},{},{:x},{},{},{},{},{},{},{},{},{},{},{}", m.id.text(), p.place.x, p.place.y,
+          l.lon_degrees(), l.lat_degrees(), p.block == model::kNoIndex ? "" : context.blocks[p.block].id, p.street,
+          p.house ? 1 : 0, seed.parts.size(), optional(m.attributes.storeys), optional(m.attributes.height),
+          m.attributes.roof_shape ? model::name(*m.attributes.roof_shape) : "",
+          tags.dates[b].confidence > 0 ? fmt::format("{:g}", tags.dates[b].year) : "", tags.dates[b].confidence,
+          tags.years[b] ? std::to_string(tags.years[b]->from) : "",
+          tags.years[b] ? std::to_string(tags.years[b]->to) : "",
+          tags.non_house[b] < 0 ? "" : tags.reasons[static_cast<std::size_t>(tags.non_house[b])].kind, touching);
+      for (const auto t : kTags) row += "," + clean(extract.tag(m.tags, t));
+      for (std::size_t f = 0; f < classify::kFeatureCount; ++f) row += "," + number(facts.features[b].at(f));
+      if (answers) {
+        for (const region::StyleExtract* set :
+             {&a.tagged, &a.untagged, &a.no_region, &a.no_smooth, &a.permuted, &a.era}) {
+          const model::BuildingStyle& s = set->styles[b];
+          for (const float v : s.style) row += "," + number(v);
+          for (const float v : s.era) row += "," + number(v);
+          for (const float v : s.morphology) row += "," + number(v);
+          row += "," + tables.catalogue[s.substyle].id;
+        }
+        row += fmt::format(",{:g},{:.3f},{:.3f},{:g},{:.3f},{},{:.3f},{}", a.storeys.storeys[b].storeys,
+                           a.storeys.storeys[b].confidence, a.storeys.storeys[b].votes,
+                           a.storeys_alone.storeys[b].storeys, a.storeys_alone.storeys[b].confidence,
+                           classify::name(classify::family_of(a.roof.roofs[b].shape)), a.roof.roofs[b].confidence,
+                           classify::name(classify::family_of(a.roof_alone.roofs[b].shape)));
+      }
+      out.print("{}\n", row);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const bool answers = argc >= 5 && std::string(argv[4]) == "answers",
+             quick = argc == 6 && std::string(argv[5]) == "quick";
+  if (argc != 4 && !(answers && (argc == 5 || quick))) {
+    std::fputs("usage: facts_table EXTRACT CONFIGS OUT.csv [answers [quick]]\n", stderr);
+    return 1;
+  }
+  try {
+    run(argv[1], argv[2], argv[3], answers, quick);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    return 2;
+  }
+}
