@@ -135,12 +135,28 @@ class PageTest(BuildTest):
         for roof, n in build['statistics']['roofs'].items():
             self.assertRegex(text, rf"(?i){roof.replace('_', ' ')}\s*{counts_of(n)}")
         # One bar for every attribute, and together its parts are all of it.
-        bars = page.all(SVG + 'svg', preserveAspectRatio='none')
+        bars = [bar for table in page.all(HTML + 'table', class_='sources') for bar in table.iter(SVG + 'svg')]
         self.assertEqual(len(bars), len(build['statistics']['sources']))
         for bar in bars:
             self.assertEqual(sum(int(r.get('width')) for r in bar.findall(SVG + 'rect')), 10000)
         shares = sorted(sorted(int(n.replace(',', '')) for n in re.findall(r' ([\d,]+) \(', bar.get('aria-label'))) for bar in bars)
         self.assertEqual(shares, sorted(sorted(by.values()) for by in build['statistics']['sources'].values()))
+        self.styles_agree(page)
+
+    def styles_agree(self, page):
+        """Classes and eras count the same buildings; a bar is as long as its row's share."""
+        tables = page.all(HTML + 'table', class_='sources styles')
+        self.assertEqual(len(tables), 2)
+        totals = set()
+        for table in tables:
+            rows = table.find(HTML + 'tbody').findall(HTML + 'tr')
+            counts = [int(row.find(HTML + "td[@class='n']").text.strip().replace(',', '')) for row in rows]
+            totals.add(sum(counts))
+            for row, n in zip(rows, counts):
+                bar = row.find('.//' + SVG + 'svg')
+                self.assertEqual(sum(int(r.get('width')) for r in bar.findall(SVG + 'rect')), n * 10000 // sum(counts))
+                self.assertEqual(sum(int(c.replace(',', '')) for c in re.findall(r' ([\d,]+) \(', bar.get('aria-label'))), n)
+        self.assertEqual(len(totals), 1, totals)
 
     def rows_are_listed(self, page, build, report):
         wanted = {}
