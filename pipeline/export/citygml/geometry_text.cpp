@@ -6,7 +6,8 @@ namespace blockrand::export_ {
 namespace {
 
 constexpr std::string_view kSurfaceNames[model::kSurfaceKindCount] = {
-    "GroundSurface", "WallSurface", "RoofSurface", "OuterCeilingSurface", "OuterFloorSurface", "ClosureSurface"};
+    "GroundSurface",       "WallSurface",    "RoofSurface", "OuterCeilingSurface",
+    "OuterFloorSurface",   "ClosureSurface", "Window",      "Door"};
 
 void append_id(std::string& out, std::string_view id, const char* kind, std::size_t number) {
   out += id;
