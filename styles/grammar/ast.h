@@ -1,5 +1,5 @@
-// A rule file as the parser read it: plain nodes in vectors, referred to by index. It never changes once parsed; what names
-// mean is kept outside (program.h), since one file may be imported several times.
+// A rule file as the parser read it: plain nodes in vectors, referred to by index. It never changes once parsed; what
+// names mean is kept outside (program.h), since one file may be imported several times.
 #pragma once
 
 #include <cstdint>
@@ -45,31 +45,53 @@ enum class ExpressionKind : std::uint8_t {
 
 enum class Operator : std::uint8_t {
   none,
-  negate, plus, logical_not,
-  add, subtract, multiply, divide, modulo,
-  equal, not_equal, less, less_equal, greater, greater_equal,
-  logical_and, logical_or,
+  negate,
+  plus,
+  logical_not,
+  add,
+  subtract,
+  multiply,
+  divide,
+  modulo,
+  equal,
+  not_equal,
+  less,
+  less_equal,
+  greater,
+  greater_equal,
+  logical_and,
+  logical_or,
   // The element-wise forms with a leading dot.
-  each_add, each_subtract, each_multiply, each_divide, each_modulo,
-  each_equal, each_not_equal, each_less, each_less_equal, each_greater, each_greater_equal,
-  each_and, each_or,
+  each_add,
+  each_subtract,
+  each_multiply,
+  each_divide,
+  each_modulo,
+  each_equal,
+  each_not_equal,
+  each_less,
+  each_less_equal,
+  each_greater,
+  each_greater_equal,
+  each_and,
+  each_or,
 };
 
 struct Expression {
   Location location;
   ExpressionKind kind = ExpressionKind::number;
   Operator op = Operator::none;
-  bool parentheses = false;     ///< name: written with parentheses, be they empty
+  bool parentheses = false;  ///< name: written with parentheses, be they empty
   double number = 0;
-  std::uint32_t text = kNone;   ///< into Unit::texts
+  std::uint32_t text = kNone;  ///< into Unit::texts
   NameId name = kNone;
   UseId use = kNone;
   NodeId first = kNone, second = kNone, third = kNone;  ///< expressions
-  Range arguments;              ///< into Unit::arguments
-  Range list;                   ///< into Unit::expression_lists
-  Range rows;                   ///< into Unit::rows
-  Range branches;               ///< into Unit::branches; Branch::result is an expression
-  Range component_values;       ///< into Unit::component_values
+  Range arguments;                                      ///< into Unit::arguments
+  Range list;                                           ///< into Unit::expression_lists
+  Range rows;                                           ///< into Unit::rows
+  Range branches;                                       ///< into Unit::branches; Branch::result is an expression
+  Range component_values;                               ///< into Unit::component_values
 };
 
 /// An argument of a call; whether a bare name is a word (x, world.up, byHeight) or a value tells the target of its use.
@@ -126,12 +148,12 @@ struct Step {
 
 struct Call {
   Location location;
-  NameId name = kNone;   ///< without the trailing dot; of a dynamic import only what follows the prefix
+  NameId name = kNone;  ///< without the trailing dot; of a dynamic import only what follows the prefix
   UseId use = kNone;
-  bool terminal = false;     ///< `Name.`: the terminal symbol, never a rule
-  bool parentheses = false;  ///< written with parentheses
-  Range arguments;           ///< into Unit::arguments
-  NodeId block = kNone;      ///< into Unit::blocks
+  bool terminal = false;          ///< `Name.`: the terminal symbol, never a rule
+  bool parentheses = false;       ///< written with parentheses
+  Range arguments;                ///< into Unit::arguments
+  NodeId block = kNone;           ///< into Unit::blocks
   NodeId dynamic_import = kNone;  ///< into Unit::dynamic_imports: `imp( h = 3 ).Rule`
 };
 
@@ -225,7 +247,7 @@ struct Import {
   NameId name = kNone;
   std::uint32_t path = kNone;  ///< into Unit::texts
   Location path_location;
-  Range styles;  ///< into Unit::style_names
+  Range styles;              ///< into Unit::style_names
   bool parentheses = false;  ///< `( … )` after the file: with nothing inside all attributes are protected
   Range overrides;           ///< into Unit::overrides
   std::uint32_t style = 0;   ///< where the import stands: into Unit::styles

@@ -35,10 +35,10 @@ enum class Status : std::uint8_t {
 struct BuiltIn {
   NameKind kind = NameKind::operation;
   std::string_view name;
-  /// Alternatives separated by " | ". Each: parameters separated by blanks, and for functions and attributes "-> type" at
-  /// the end. A parameter is a type letter, or words in angle brackets; "?" after it: it and what follows may be left
-  /// out; "+": once or more. Types: n number, b truth, s text, N B S arrays, v any single value, V any array, a any
-  /// value, r a number that may have ' or ~, e what selects components. "<axis>" is a set of words (word_set).
+  /// Alternatives separated by " | ". Each: parameters separated by blanks, and for functions and attributes "-> type"
+  /// at the end. A parameter is a type letter, or words in angle brackets; "?" after it: it and what follows may be
+  /// left out; "+": once or more. Types: n number, b truth, s text, N B S arrays, v any single value, V any array, a
+  /// any value, r a number that may have ' or ~, e what selects components. "<axis>" is a set of words (word_set).
   std::string_view signature;
   Tier tier = Tier::b;
   Status status = Status::runs;
@@ -77,8 +77,8 @@ bool is_reserved_prefix(std::string_view name);
 /// The prefix of our own operations: blockrand.window(…).
 inline constexpr std::string_view kExtensionPrefix = "blockrand";
 
-/// The entry of `known` nearest to `word` by letters changed, added, left out or swapped (upper and lower case being the
-/// same), at most a third of the word's length; empty when none is near. Of equally near ones the first.
+/// The entry of `known` nearest to `word` by letters changed, added, left out or swapped (upper and lower case being
+/// the same), at most a third of the word's length; empty when none is near. Of equally near ones the first.
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> known);
 /// The nearest among the built-ins of a kind.
 std::string_view nearest_built_in(NameKind kind, std::string_view word);

@@ -20,10 +20,10 @@ namespace blockrand::grammar {
 
 /// What a use of a name means. Uses are name expressions and calls in successors.
 enum class TargetKind : std::uint8_t {
-  leaf,       ///< a successor's symbol without rule, or with trailing dot
-  unknown,    ///< an expression's name that nothing defines: told as an error; evaluates to 0
-  operation,  ///< index: number of the built-in (operation)
-  function,   ///< index: number of the built-in (function)
+  leaf,             ///< a successor's symbol without rule, or with trailing dot
+  unknown,          ///< an expression's name that nothing defines: told as an error; evaluates to 0
+  operation,        ///< index: number of the built-in (operation)
+  function,         ///< index: number of the built-in (function)
   shape_attribute,  ///< index: number of the built-in (attribute)
   word,             ///< a bare argument or selector: its text is the name; index: kNone
   local,            ///< index: place in the frame of parameters, then bindings
@@ -43,8 +43,8 @@ struct Target {
 
 /// A rule, function, attribute or constant of one module.
 struct Definition {
-  std::uint32_t module = 0;  ///< whose targets its expressions use
-  NodeId declaration = 0;    ///< in the unit of that module
+  std::uint32_t module = 0;    ///< whose targets its expressions use
+  NodeId declaration = 0;      ///< in the unit of that module
   std::uint32_t slot = kNone;  ///< attributes and constants: place in Shape::attributes
   /// Types of the parameters as far as their use tells; nullopt fits any.
   std::vector<std::optional<Type>> parameter_types;
@@ -54,12 +54,12 @@ struct Definition {
 /// A rule file as one import statement sees it. The same file imported twice makes two.
 struct Module {
   std::shared_ptr<const Unit> unit;
-  std::string prefix;  ///< of the start file's view: "" for itself, "roof." or "roof.tiles." for imports
+  std::string prefix;            ///< of the start file's view: "" for itself, "roof." or "roof.tiles." for imports
   std::uint32_t parent = kNone;  ///< the module that imports it
   std::uint32_t style = 0;       ///< the style in force: into Unit::styles
   bool dynamic = false;  ///< made for one dynamic import: its slots (and its imports') are evaluated at each call of it
-  std::uint32_t first_slot = 0, slot_count = 0;  ///< its own slots
-  std::vector<Target> targets;  ///< by UseId
+  std::uint32_t first_slot = 0, slot_count = 0;                ///< its own slots
+  std::vector<Target> targets;                                 ///< by UseId
   std::vector<std::pair<std::string, std::uint32_t>> imports;  ///< prefix → module, ordered by prefix
 };
 
@@ -68,11 +68,13 @@ struct Slot {
   std::uint32_t definition = 0;
   std::string name;       ///< qualified: "h", "roof.h"; user values and random streams go by it
   bool constant = false;  ///< not settable from outside
-  /// What gives the value if nothing from outside does: the expression `value` in the frame of `module`. With an override
-  /// in an import statement it is the importer's; with propagation that of the importer's attribute of the same name.
+  /// What gives the value if nothing from outside does: the expression `value` in the frame of `module`. With an
+  /// override in an import statement it is the importer's; with propagation that of the importer's attribute of the
+  /// same name.
   std::uint32_t module = 0;
   NodeId value = kNone;
-  /// The importer's attribute that propagates into this one (its value is taken, also when set from outside); kNone: none.
+  /// The importer's attribute that propagates into this one (its value is taken, also when set from outside); kNone:
+  /// none.
   std::uint32_t source_slot = kNone;
 };
 
@@ -85,7 +87,8 @@ struct Program {
   /// Slots in an order in which each comes after those that its expression reads, as far as that is possible; those of
   /// dynamic modules left out.
   std::vector<std::uint32_t> slot_order;
-  std::uint32_t start_rule = kNone;  ///< a definition: `start`, else the first @StartRule, else the first rule without parameters
+  std::uint32_t start_rule =
+      kNone;  ///< a definition: `start`, else the first @StartRule, else the first rule without parameters
   std::vector<Diagnostic> diagnostics;  ///< of reading and resolving, in the order of files and lines
 
   const Unit& unit(std::uint32_t module) const { return *modules[module].unit; }
@@ -98,22 +101,24 @@ struct Program {
 
 /// Reads a file; nullopt where there is none. Must not throw.
 using FileReader = std::function<std::optional<std::string>(const std::string& path)>;
-/// Names of the files in a folder, for spellings that differ in case only; may be empty (then there is no such fallback).
+/// Names of the files in a folder, for spellings that differ in case only; may be empty (then there is no such
+/// fallback).
 using FolderLister = std::function<std::vector<std::string>(const std::string& folder)>;
 
 struct LoadOptions {
   /// Where imports are looked for: a path that begins with "/" below each root, others beside the importing file first,
   /// then below each root, its `rules` and its `assets` (cga.md §1.5).
   std::vector<std::string> roots;
-  /// Prefixes of workspace paths with the folder that holds them: {"/ESRI.lib", "/home/me/esri"}. The longest one that fits wins.
+  /// Prefixes of workspace paths with the folder that holds them: {"/ESRI.lib", "/home/me/esri"}. The longest one that
+  /// fits wins.
   std::vector<std::pair<std::string, std::string>> mounts;
   FileReader read;
   FolderLister list;
   std::string style;  ///< of the start file; empty: Default
 };
 
-/// Reads a file and all its imports, resolves styles and names. Never throws for what a file says: what is wrong is told in
-/// Program::diagnostics, and what is right runs.
+/// Reads a file and all its imports, resolves styles and names. Never throws for what a file says: what is wrong is
+/// told in Program::diagnostics, and what is right runs.
 Program load(const std::string& path, const LoadOptions& options);
 
 /// The definition that fits the types of the arguments; the first whose count fits, when types decide nothing.

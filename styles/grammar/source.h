@@ -8,8 +8,8 @@
 
 namespace blockrand::grammar {
 
-/// A place in a rule file. Lines and columns count from 1; columns count characters (code points), not bytes; a tab is one.
-/// Line 0: the file as a whole.
+/// A place in a rule file. Lines and columns count from 1; columns count characters (code points), not bytes; a tab is
+/// one. Line 0: the file as a whole.
 struct Location {
   std::uint32_t file = 0;  ///< index into Program::files
   std::uint32_t line = 0, column = 0;
