@@ -8,17 +8,11 @@
 #include <string_view>
 #include <tl/expected.hpp>
 
+#include "styles/grammar/ast.h"
 #include "styles/grammar/shape.h"
 #include "styles/grammar/value.h"
 
 namespace blockrand::grammar {
-
-/// How a size is meant (references/cga.md §2.3, §1.3,4).
-enum class Mark : std::uint8_t {
-  plain,     ///< metres (or whatever the operation takes)
-  relative,  ///< ' : times what the operation relates it to
-  floating   ///< ~ : shares what room is left
-};
 
 /// An evaluated argument of an operation.
 struct Argument {
