@@ -246,6 +246,7 @@ struct Override {
   OverrideKind kind = OverrideKind::protect;
   NameId name = kNone;
   NodeId value = kNone;        ///< attribute: an expression of the importing file
+  Range own_expressions;       ///< into Unit::expressions: what was read for the value
   NodeId declaration = kNone;  ///< rule: into Unit::declarations
 };
 

@@ -365,7 +365,9 @@ Override Parser::one_override() {
     ++at_;
     if (accept(K::assign)) {
       node.kind = OverrideKind::attribute;
+      node.own_expressions.first = static_cast<std::uint32_t>(unit_.expressions.size());
       node.value = value();
+      node.own_expressions.count = static_cast<std::uint32_t>(unit_.expressions.size()) - node.own_expressions.first;
     }
     return node;
   }
