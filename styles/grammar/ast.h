@@ -19,6 +19,11 @@ using NameId = std::uint32_t;
 using UseId = std::uint32_t;
 inline constexpr std::uint32_t kNone = 0xffffffffU;
 
+/// How deep brackets, blocks and branches may stand in one another, so that nobody who walks the tree needs much stack.
+inline constexpr int kMaximumNesting = 256;
+/// Levels of an expression's tree: a sum of n terms has n.
+inline constexpr int kMaximumHeight = 1000;
+
 /// `count` entries from `first` on, in the vector that the member's comment names.
 struct Range {
   std::uint32_t first = 0, count = 0;
@@ -214,13 +219,15 @@ struct Declaration {
   NameId name = kNone;    ///< without the prefix
   NameId prefix = kNone;  ///< `imp.R -->`: the import whose rule is redefined
   bool start = false, extension = false;
-  bool override_rule = false;  ///< stands in the parentheses of an import
-  std::uint32_t style = 0;     ///< into Unit::styles; 0 is Default
-  Range parameters;            ///< into Unit::parameters
-  Range bindings;              ///< into Unit::parameters; they follow the parameters in the frame of local values
-  NodeId value = kNone;        ///< attribute, constant, function: an expression
-  NodeId successor = kNone;    ///< rule
-  Range annotations;           ///< into Unit::annotations
+  bool override_rule = false;        ///< stands in the parentheses of an import
+  std::uint32_t style = 0;           ///< into Unit::styles; 0 is Default
+  Range parameters;                  ///< into Unit::parameters
+  Range bindings;                    ///< into Unit::parameters; they follow the parameters in the frame of local values
+  NodeId value = kNone;              ///< attribute, constant, function: an expression
+  NodeId successor = kNone;          ///< rule
+  Range annotations;                 ///< into Unit::annotations
+  bool broken = false;               ///< could not be read (that was told): it has no value and no successor
+  Range own_expressions, own_calls;  ///< into Unit::expressions and ::calls: what was read between its begin and end
   std::uint32_t frame_size() const { return parameters.count + bindings.count; }
 };
 
@@ -239,6 +246,7 @@ struct Override {
   OverrideKind kind = OverrideKind::protect;
   NameId name = kNone;
   NodeId value = kNone;        ///< attribute: an expression of the importing file
+  Range own_expressions;       ///< into Unit::expressions: what was read for the value
   NodeId declaration = kNone;  ///< rule: into Unit::declarations
 };
 

@@ -152,7 +152,7 @@ void Run::apply(Node node) {
   work.base = &node.shape;
   Place place{definition.module, 0, &work.shape, &rule_, true, nullptr};
   push_bindings(declaration, place);
-  execute(declaration.successor, work, place, true);
+  if (declaration.successor != kNone) execute(declaration.successor, work, place, true);
   if (work.alive && !work.produced) leave_leaf(node.symbol, std::move(work.shape), node.location, node.number);
 }
 

@@ -133,12 +133,7 @@ void Run::enter_dynamic(std::uint32_t module, Shape& shape, Place& importer) {
   phase.values = shape.attributes != nullptr ? *shape.attributes : std::vector<Value>();
   phase.values.resize(program_.slots.size(), 0.0);
   phase.state.assign(program_.slots.size(), 2);
-  std::vector<std::uint32_t> modules{module}, slots;
-  for (std::size_t i = 0; i < modules.size(); ++i) {
-    const Module& m = program_.modules[modules[i]];
-    for (std::uint32_t s = 0; s < m.slot_count; ++s) slots.push_back(m.first_slot + s);
-    for (const auto& [prefix, imported] : m.imports) modules.push_back(imported);
-  }
+  const std::vector<std::uint32_t>& slots = program_.modules[module].dynamic_slots;
   for (const std::uint32_t slot : slots) phase.state[slot] = 0;
   phase.shape = &initial_;
   phase.importer = &importer;

@@ -324,7 +324,7 @@ Value Run::call_own(const Expression& e, const Target& found, Place& place) {
     Place inner{definition.module, first, place.shape, place.rule, false, nullptr};
     ++function_depth_;
     push_bindings(declaration, inner);
-    out = evaluate(declaration.value, inner);
+    if (declaration.value != kNone) out = evaluate(declaration.value, inner);
     --function_depth_;
   }
   locals_.resize(first);

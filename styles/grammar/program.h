@@ -37,7 +37,8 @@ struct Target {
   TargetKind kind = TargetKind::unknown;
   std::uint32_t index = kNone;
   std::uint32_t count = 0;
-  /// The module whose attributes begin anew before a dynamically imported rule runs (Module::dynamic); kNone otherwise.
+  /// The module whose attributes begin anew before a dynamically imported rule runs (Module::dynamic_slots); kNone
+  /// otherwise.
   std::uint32_t dynamic_module = kNone;
 };
 
@@ -57,9 +58,13 @@ struct Module {
   std::string prefix;            ///< of the start file's view: "" for itself, "roof." or "roof.tiles." for imports
   std::uint32_t parent = kNone;  ///< the module that imports it
   std::uint32_t style = 0;       ///< the style in force: into Unit::styles
-  bool dynamic = false;  ///< made for one dynamic import: its slots (and its imports') are evaluated at each call of it
+  /// The module made for one dynamic import of which this is a part (itself or an import below it); kNone: none. Slots
+  /// of such modules are evaluated at each call of the dynamic import, in the order of the root's `dynamic_slots`.
+  std::uint32_t dynamic_root = kNone;
+  std::vector<std::uint32_t> dynamic_slots;
   std::uint32_t first_slot = 0, slot_count = 0;                ///< its own slots
   std::vector<Target> targets;                                 ///< by UseId
+  std::vector<std::pair<std::string, std::uint32_t>> start_rules;  ///< rules without parameters, ordered by name
   std::vector<std::pair<std::string, std::uint32_t>> imports;  ///< prefix → module, ordered by prefix
 };
 
@@ -76,6 +81,8 @@ struct Slot {
   /// The importer's attribute that propagates into this one (its value is taken, also when set from outside); kNone:
   /// none.
   std::uint32_t source_slot = kNone;
+  /// The override reads the attribute that it overrides: the file's own default is evaluated into the slot first.
+  bool reads_itself = false;
 };
 
 struct Program {
