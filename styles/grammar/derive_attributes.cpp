@@ -101,6 +101,13 @@ void Run::evaluate_slot(std::uint32_t index) {
     Place place{slot.module, frame, &shape, nullptr, false, nullptr};
     if (phase.importer != nullptr && phase.importer->module == slot.module && !own) place.frame = phase.importer->frame;
     ++function_depth_;
+    if (slot.reads_itself) {  // h = imp.h + 1: the file's own value first
+      Place file{definition.module, frame, &shape, nullptr, false, nullptr};
+      push_bindings(declaration, file);
+      phase.values[index] = declaration.value == kNone ? Value(0.0) : evaluate(declaration.value, file);
+      locals_.resize(frame);
+      phase.state[index] = 2;
+    }
     if (own) push_bindings(declaration, place);
     value = evaluate(slot.value, place);
     --function_depth_;

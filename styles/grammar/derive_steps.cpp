@@ -99,7 +99,7 @@ void Run::execute_symbol(const Call& call, const Target& found, Work& work, Plac
       child.arguments.assign(std::make_move_iterator(locals_.begin() + static_cast<std::ptrdiff_t>(first)),
                              std::make_move_iterator(locals_.end()));
     locals_.resize(first);
-  } else if (!call.terminal && found.kind != TargetKind::rule) {
+  } else if (!call.terminal && told_leaves_.insert((std::uint64_t{place.module} << 32) | call.use).second) {
     tell(Severity::warning, "no_rule", call.location, "there is no rule of this name; the shape is a leaf",
          child.symbol, std::string(nearest_built_in(NameKind::operation, child.symbol)));
   }

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "styles/grammar/components.h"
@@ -209,6 +209,7 @@ class Run {
   Node* node_ = nullptr;        ///< whose rule runs
   std::uint32_t ordinals_ = 0;  ///< of its children
   std::set<std::pair<std::string, std::array<std::uint32_t, 3>>, std::less<>> told_;
+  std::unordered_set<std::uint64_t> told_leaves_;  ///< uses of symbols without rule: told once
   std::map<std::string, std::optional<Value>, std::less<>> source_values_;
   std::map<std::pair<std::string, Type>, Report> reports_;
 
