@@ -11,7 +11,7 @@
 namespace blockrand::grammar {
 
 struct FoundFile {
-  std::string path;   ///< lexically normal: two searches that find one file give one path
+  std::string path;  ///< lexically normal: two searches that find one file give one path
   std::string bytes;
   std::string written_otherwise;  ///< the path with the letters' case as the disk has it, where it had to be corrected
 };

@@ -19,6 +19,8 @@ using detail::Scope;
 
 /// A file that imports itself over many ways would otherwise fill the memory.
 constexpr std::size_t kMostModules = 1000;
+/// The same, as expressions of all modules together.
+constexpr std::size_t kMostExpressions = 4'000'000;
 
 class Loader {
  public:
@@ -155,9 +157,10 @@ class Loader {
 
   std::uint32_t load_import(std::uint32_t m, const Import& import, const DynamicImport* dynamic) {
     const std::shared_ptr<const Unit> unit = program_.modules[m].unit;
-    if (program_.modules.size() >= kMostModules) {
+    if (program_.modules.size() >= kMostModules || expressions_ > kMostExpressions) {
       tell(Severity::error, "too_many_imports", import.location,
-           "all imports together make more than " + std::to_string(kMostModules) + " modules");
+           "all imports together make more than " + std::to_string(kMostModules) + " modules or " +
+               std::to_string(kMostExpressions) + " expressions");
       return kNone;
     }
     const std::shared_ptr<const Unit> imported =
@@ -181,6 +184,7 @@ class Loader {
     if (styles.size() > 1)
       tell(Severity::warning, "several_styles", import.location, "only the first of these styles is used",
            unit->name(import.name));
+    expressions_ += imported->expressions.size() + imported->calls.size();
     Scope scope;
     scope.protect_all = import.parentheses && import.overrides.empty();
     for (const Override& o : Unit::slice(unit->overrides, import.overrides)) scope.overrides.push_back({m, o});
@@ -221,13 +225,18 @@ class Loader {
              "start and extension rules stand before the first style", unit.name(declaration.name));
       switch (declaration.kind) {
         case DeclarationKind::attribute:
-        case DeclarationKind::constant: define_attribute(m, d, r, entry); break;
-        case DeclarationKind::function: add_overload(entry.functions, m, d, r); break;
-        case DeclarationKind::rule: add_overload(entry.rules, m, d, r); break;
+        case DeclarationKind::constant:
+          define_attribute(m, d, r, entry);
+          break;
+        case DeclarationKind::function:
+          add_overload(entry.functions, m, d, r);
+          break;
+        case DeclarationKind::rule:
+          add_overload(entry.rules, m, d, r);
+          break;
       }
     }
-    program_.modules[m].slot_count =
-        static_cast<std::uint32_t>(program_.slots.size()) - program_.modules[m].first_slot;
+    program_.modules[m].slot_count = static_cast<std::uint32_t>(program_.slots.size()) - program_.modules[m].first_slot;
   }
 
   void define_attribute(std::uint32_t m, NodeId d, std::uint32_t r, Entry& entry) {
@@ -355,7 +364,8 @@ class Loader {
         const bool protect = o.node.kind == OverrideKind::protect;
         const bool far = name.find('.') != std::string::npos;
         tell(protect ? Severity::warning : Severity::error, "unknown_attribute", o.node.location,
-             far ? "attributes of imports of imports cannot be set here" : "the imported file has no attribute of this name",
+             far ? "attributes of imports of imports cannot be set here"
+                 : "the imported file has no attribute of this name",
              name, nearest_name(name, names));
         continue;
       }
@@ -427,6 +437,7 @@ class Loader {
   const LoadOptions& options_;
   detail::Building building_;
   std::map<std::string, std::shared_ptr<const Unit>> units_;
+  std::size_t expressions_ = 0;
 };
 
 /// Each thing once (a file may be imported many times), in the order of files and lines.

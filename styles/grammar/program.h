@@ -62,10 +62,11 @@ struct Module {
   /// of such modules are evaluated at each call of the dynamic import, in the order of the root's `dynamic_slots`.
   std::uint32_t dynamic_root = kNone;
   std::vector<std::uint32_t> dynamic_slots;
-  std::uint32_t first_slot = 0, slot_count = 0;                ///< its own slots
-  std::vector<Target> targets;                                 ///< by UseId
+  std::uint32_t first_slot = 0, slot_count = 0;  ///< its own slots
+  std::vector<Target> targets;                   ///< by UseId
+  std::vector<std::optional<Type>> types;        ///< of the unit's expressions, as far as known without running
   std::vector<std::pair<std::string, std::uint32_t>> start_rules;  ///< rules without parameters, ordered by name
-  std::vector<std::pair<std::string, std::uint32_t>> imports;  ///< prefix → module, ordered by prefix
+  std::vector<std::pair<std::string, std::uint32_t>> imports;      ///< prefix → module, ordered by prefix
 };
 
 /// An `attr` or `const`: how its value comes about.

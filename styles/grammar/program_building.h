@@ -24,12 +24,12 @@ struct Override_ {
 
 /// What is known of a module while it is built.
 struct Scope {
-  std::unordered_map<std::string_view, Entry> names;              ///< looked up only
-  std::unordered_map<std::string_view, std::uint32_t> imports;    ///< kNone: could not be read
-  std::vector<std::uint32_t> style_chain;                         ///< the style in force first, Default last
-  std::vector<Override_> overrides;                               ///< later ones beat earlier ones
+  std::unordered_map<std::string_view, Entry> names;            ///< looked up only
+  std::unordered_map<std::string_view, std::uint32_t> imports;  ///< kNone: could not be read
+  std::vector<std::uint32_t> style_chain;                       ///< the style in force first, Default last
+  std::vector<Override_> overrides;                             ///< later ones beat earlier ones
   bool protect_all = false;
-  std::vector<std::uint32_t> dynamic_modules;                     ///< by DynamicImport; kNone: could not be made
+  std::vector<std::uint32_t> dynamic_modules;  ///< by DynamicImport; kNone: could not be made
   std::uint32_t start_rule = kNone;
 };
 
@@ -38,10 +38,9 @@ struct Building {
   std::vector<Scope> scopes;  ///< by module
 };
 
-/// What a name means from a module on, prefixes followed; nullptr: nothing. `missing` is set where an import that could not
-/// be read stands in the way.
-const Entry* find_entry(const Building& building, std::uint32_t module, std::string_view name, bool* missing,
-                        std::uint32_t* owner = nullptr);
+/// What a name means from a module on, prefixes followed; nullptr: nothing. `missing` is set where an import that could
+/// not be read stands in the way.
+const Entry* find_entry(const Building& building, std::uint32_t module, std::string_view name, bool* missing);
 
 /// Fills Module::targets of all modules.
 void resolve_names(Building& building);
