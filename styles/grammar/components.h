@@ -70,6 +70,7 @@ struct Component {
   Vector3 up;                                    ///< face edges: the face's normal
   bool border = false;                           ///< has, or is, an edge with one face (or lies on one)
   Selector::Kind roof_edge = Selector::Kind::none;  ///< edges: eave, hip, valley, ridge
+  std::vector<TrimPlane> trim_planes;               ///< faces: towards the neighbours, in object coordinates
   std::vector<std::uint32_t> faces;                 ///< groups, materials and connected sets: all their faces
 };
 
@@ -89,6 +90,9 @@ ComponentSplit components(const Shape& shape, ComponentKind kind,
 /// True when the selector takes the component. Index selectors count from 0 among `split.items`; negative ones from the
 /// end.
 bool selected(const ComponentSplit& split, std::size_t item, const Selector& selector);
+
+/// Of a direction in the scope's axes (length one): direction, side, vertical …, street and all; false for other kinds.
+bool direction_selected(const Shape& shape, Vector3 normal, const Selector& selector);
 
 /// `sel : X`: the component as a shape. Faces get trim planes towards their neighbours. `component` records are the
 /// caller's: selector text, index within the selector, total.

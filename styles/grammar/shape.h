@@ -55,6 +55,7 @@ struct ComponentRecord {
 struct Origin {
   Frame world;                        ///< object coordinates in the world: x east, y up, z south
   std::vector<double> street_widths;  ///< m by edge of the first face, for street.*; empty when not known, 0: no street
+  std::vector<Vector3> edge_normals;  ///< outward, by edge of the first face, in object coordinates
 };
 
 /// Everything that a rule sees and changes (cga.md §2.0). Copying is cheap: what is large is shared and replaced, never
