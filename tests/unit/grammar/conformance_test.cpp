@@ -16,8 +16,8 @@ constexpr double kTolerance = 1e-6;  // m, m², m³: the kernel works in doubles
 
 /// The rows whose expectation rests on inference (I): a later correction is one line here.
 struct Inferred {
-  static constexpr double kFrameTz = -20;          // 1: the pivot lies at the first point, so a footprint has tz = -depth
-  static constexpr std::size_t kVariantLeaves = 1;  // 3: what follows the last child has no effect
+  static constexpr double kFrameTz = -20;  // 1: the pivot lies at the first point, so a footprint has tz = -depth
+  static constexpr std::size_t kVariantLeaves = 1;      // 3: what follows the last child has no effect
   static constexpr std::size_t kRidges = 1, kHips = 4;  // 30: roof edges with the bottom face present
   static constexpr double kRidgeLength = 10;            // 30
   static constexpr double kGableRidge = 20;             // 31: along the longer side
@@ -43,7 +43,9 @@ bool has_flat_face_at(const Shape& shape, double y) {
 std::string split_on(double length, const std::string& block) {
   return lengths(derive_text("Lot --> split(x)" + block, rectangle(length, 4)));
 }
-std::size_t count(const Derivation& derivation, std::string_view symbol) { return leaves_of(derivation, symbol).size(); }
+std::size_t count(const Derivation& derivation, std::string_view symbol) {
+  return leaves_of(derivation, symbol).size();
+}
 double area(const Derivation& derivation, std::string_view symbol) {
   double out = 0;
   for (const Leaf* leaf : leaves_of(derivation, symbol)) out += geometry_area(leaf->shape);
@@ -100,8 +102,8 @@ TEST(Conformance, Row06SplitsCapWhatTheyCut) {
 
 TEST(Conformance, Row07To12SplitSizes) {
   EXPECT_EQ(split_on(5, "{ 2 : A. | 1 : B. | 1 : C. | 2 : D. | 1 : E. }"), "A 2, B 1, C 1, D 1");
-  const auto eight = derive_text(
-      "Lot --> split(x){ 1.5 : A. | -2 : B. | 1.5 : C. | 1.5 : D. | 0 : E. | 1.5 : F. }", rectangle(5, 4));
+  const auto eight =
+      derive_text("Lot --> split(x){ 1.5 : A. | -2 : B. | 1.5 : C. | 1.5 : D. | 0 : E. | 1.5 : F. }", rectangle(5, 4));
   EXPECT_EQ(lengths(eight), "A 1.5, C 1.5, D 1.5, F 0.5");
   EXPECT_NEAR(leaf(eight, "C.").scope.origin.x, 1.5, kTolerance);
   EXPECT_EQ(split_on(10, "{ '0.5 : A. | '0.1 : B. | '0.2 : C. }"), "A 5, B 1, C 2");
@@ -115,8 +117,8 @@ TEST(Conformance, Row13To16Repeats) {
   EXPECT_EQ(split_on(10, "{ 2 : A. | 1 : B. }*"), "A 2, B 1, A 2, B 1, A 2, B 1, A 1");
   EXPECT_EQ(split_on(10, "{ ~2 : A. | ~1 : B. }*"), "A 2.222, B 1.111, A 2.222, B 1.111, A 2.222, B 1.111");
   EXPECT_EQ(split_on(10, "{ ~2.1 : A. }*"), "A 2, A 2, A 2, A 2, A 2");
-  const auto fifteen = derive_text("Lot --> split(x){ 1 : A. | { ~1 : B. | 0.2 : C. | ~1 : B. }* | 1 : A. }",
-                                   rectangle(10, 4));
+  const auto fifteen =
+      derive_text("Lot --> split(x){ 1 : A. | { ~1 : B. | 0.2 : C. | ~1 : B. }* | 1 : A. }", rectangle(10, 4));
   EXPECT_EQ(fifteen.leaves.size(), 14u);
   for (const Leaf* b : leaves_of(fifteen, "B.")) EXPECT_NEAR(b->shape.size.x, 0.9, kTolerance);
   for (const Leaf* c : leaves_of(fifteen, "C.")) EXPECT_NEAR(c->shape.size.x, 0.2, kTolerance);
@@ -143,7 +145,8 @@ TEST(Conformance, Row18Adjust) {
 }
 
 TEST(Conformance, Row19To22Components) {
-  const auto nineteen = derive_text("Lot --> extrude(5) comp(f){ side : S. | top : T. | bottom : B. }", rectangle(10, 20));
+  const auto nineteen =
+      derive_text("Lot --> extrude(5) comp(f){ side : S. | top : T. | bottom : B. }", rectangle(10, 20));
   EXPECT_EQ(count(nineteen, "S."), 4u);
   EXPECT_EQ(count(nineteen, "T."), 1u);
   EXPECT_EQ(count(nineteen, "B."), 1u);
@@ -327,8 +330,8 @@ TEST(Conformance, Row37AttributesFunctionsConstants) {
   EXPECT_EQ(d.prints[0], d.prints[1]);
   EXPECT_NE(d.prints[2], d.prints[3]);
   for (std::size_t i = 4; i < 10; ++i) EXPECT_EQ(d.prints[i], "-1");
-  const auto set = derive_text("attr n = 0\nLot --> split(x){ '0.5 : set(n,1) Q | '0.5 : Q }\nQ --> print(n)",
-                               rectangle(10, 20));
+  const auto set =
+      derive_text("attr n = 0\nLot --> split(x){ '0.5 : set(n,1) Q | '0.5 : Q }\nQ --> print(n)", rectangle(10, 20));
   EXPECT_THAT(set.prints, ElementsAre("1", "0"));
 }
 
