@@ -30,6 +30,12 @@ bool cut_small(const SmallLoop& in, int axis, double at, double side, SmallLoop&
     const double d = side * (component(in.points[i], axis) - at);
     distance[i] = std::fabs(d) <= kInPlane ? 0 : d;
   }
+  // Nothing to cut away: edges in the plane stay what they are.
+  if (std::none_of(distance.begin(), distance.begin() + static_cast<std::ptrdiff_t>(in.size),
+                   [](double d) { return d < 0; })) {
+    out = in;
+    return true;
+  }
   for (std::size_t i = 0; i < in.size; ++i) {
     const std::size_t j = i + 1 == in.size ? 0 : i + 1;
     const double a = distance[i], b = distance[j];

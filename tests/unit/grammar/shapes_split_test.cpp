@@ -6,7 +6,7 @@
 namespace blockrand::grammar {
 namespace {
 
-using enum Mark;
+constexpr Mark relative = Mark::relative, floating = Mark::floating;
 
 TEST(SplitSizes, AbsoluteSizesFillUp) {  // cga.md §7.4, 7
   EXPECT_EQ(pieces_text({item('A', 2), item('B', 1), item('C', 1), item('D', 2), item('E', 1)}, false, 5),
