@@ -34,6 +34,16 @@ BLOCKRAND_OPERATION(run_trim);
 // raise_operations.cpp
 BLOCKRAND_OPERATION(run_extrude);
 BLOCKRAND_OPERATION(run_taper);
+// roofs.cpp
+BLOCKRAND_OPERATION(run_roof_hip);
+BLOCKRAND_OPERATION(run_roof_gable);
+BLOCKRAND_OPERATION(run_roof_shed);
+BLOCKRAND_OPERATION(run_roof_pyramid);
+BLOCKRAND_OPERATION(run_roof_ridge);
+// offset.cpp
+BLOCKRAND_OPERATION(run_offset);
+// inner_rectangle.cpp
+BLOCKRAND_OPERATION(run_inner_rect);
 // mesh_operations.cpp
 BLOCKRAND_OPERATION(run_reverse_normals);
 BLOCKRAND_OPERATION(run_delete_holes);
