@@ -1,0 +1,294 @@
+// Surrounds, sills and pediments.
+#include "styles/elements/trim.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pipeline/base/portable_math.h"
+#include "styles/elements/sweep.h"
+
+namespace blockrand::elements {
+namespace {
+
+using model::Point2;
+using model::Point3;
+
+Point3 in_wall(double x, double y, double out) { return {x, y, out}; }
+
+/// A section in (out of the wall, up) as one in (across the band, out of the wall), `from` the path.
+Outline across(const Outline& section, double from) {
+  Outline out;
+  for (auto p = section.rbegin(); p != section.rend(); ++p) out.push_back({p->y + from, p->x});
+  return out;
+}
+
+/// The path along an opening from its lower right corner over the head to its lower left one.
+std::vector<Point2> path_round(const Outline& outline) {
+  std::vector<Point2> path(outline.begin() + 1, outline.end());
+  path.push_back(outline.front());
+  return path;
+}
+
+Made swept(MeshBuilder& builder, const PathSweep& sweep, const char* what) {
+  if (!add_sweep(builder, sweep)) return tl::unexpected(fmt::format("the {} has no room", what));
+  return {};
+}
+
+/// Where the section goes per metre across at each point of a path: the bisectors.
+std::vector<Point2> bisectors(const std::vector<Point2>& path, bool closed) {
+  std::vector<Point2> out(path.size());
+  const std::size_t n = path.size();
+  const auto normal = [&](std::size_t i) {
+    const Point2 a = path[i % n], b = path[(i + 1) % n];
+    const double l = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+    return Point2{(b.y - a.y) / l, -(b.x - a.x) / l};
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool first = !closed && i == 0, last = !closed && i + 1 == n;
+    const Point2 a = normal(first ? 0 : i + n - 1), b = normal(last ? n - 2 : i);
+    const double c = a.x * b.x + a.y * b.y;
+    out[i] = {(a.x + b.x) / (1 + c), (a.y + b.y) / (1 + c)};
+  }
+  return out;
+}
+
+/// Stones along the edges of a path, standing out of a bed of mortar.
+void add_stones(MeshBuilder& builder, const std::vector<Point2>& path, bool closed, double width, double length,
+                double gap, double z_back, double z_front) {
+  const std::vector<Point2> offset = bisectors(path, closed);
+  const std::size_t n = path.size(), edges = closed ? n : n - 1;
+  for (std::size_t e = 0; e < edges; ++e) {
+    const Point2 a = path[e], b = path[(e + 1) % n], oa = offset[e], ob = offset[(e + 1) % n];
+    const double whole = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+    const Point2 d{(b.x - a.x) / whole, (b.y - a.y) / whole}, normal{d.y, -d.x};
+    // On arcs each piece of the arc is a wedge.
+    const int count = std::max(1, static_cast<int>(std::lround(whole / length)));
+    const auto at = [&](double s, double across_, double mitre) {
+      return Point2{a.x + d.x * (s + mitre * across_) + normal.x * across_,
+                    a.y + d.y * (s + mitre * across_) + normal.y * across_};
+    };
+    const double skew_a = oa.x * d.x + oa.y * d.y, skew_b = ob.x * d.x + ob.y * d.y;
+    for (int k = 0; k < count; ++k) {
+      const double from = whole * k / count + gap / 2, to = whole * (k + 1) / count - gap / 2;
+      if (to - from < gap) continue;
+      const double skew_from = k == 0 ? skew_a : 0, skew_to = k + 1 == count ? skew_b : 0;
+      const double near = kApart + 0.002, far = kApart + width - 0.002;
+      Outline stone{at(to, near, skew_to), at(from, near, skew_from), at(from, far, skew_from), at(to, far, skew_to)};
+      if (signed_area(stone) < 0) std::reverse(stone.begin(), stone.end());
+      builder.begin_body();
+      builder.prism(stone, z_front, z_back, Part::surround);
+    }
+  }
+}
+
+/// y of the moulding's upper front edge: above it there is only the slope that sheds water.
+double front_edge(const Profile& profile) {
+  double y = 0;
+  for (const Point2 p : profile.points)
+    if (p.x >= profile.projection() - 1e-9) y = std::max(y, p.y);
+  return y;
+}
+
+}  // namespace
+
+OpeningShape opening_shape(const Request& r) {
+  OpeningShape shape;
+  shape.width = r.width;
+  shape.height = r.height;
+  if (r.values.has("head")) {
+    const std::string& head = r.values.word("head");
+    shape.head = head == "segmental" ? Head::segmental
+                 : head == "round"   ? Head::round
+                 : head == "gabled"  ? Head::gabled
+                                     : Head::straight;
+    shape.rise = r.values.number("rise");
+  }
+  shape.chords = chords_at(r.values.detail());
+  return shape;
+}
+
+Made add_surround(MeshBuilder& builder, const OpeningShape& shape, const Outline& outline, const Values& v, bool foot) {
+  const std::string& type = v.word("surround");
+  if (type == "none") {
+    if (v.is("keystone", "yes")) return tl::unexpected<std::string>("a keystone wants a surround");
+    return {};
+  }
+  const double width = v.number("surround_width"), projection = v.number("surround_projection");
+  PathSweep band;
+  band.place = in_wall;
+  band.closed = foot;
+  band.path = foot ? std::vector<Point2>(outline) : path_round(outline);
+  const bool brick = type == "brick" && v.detail() > 0;
+  const double out = brick ? std::max(projection - 0.012, 0.01) : projection;
+  if (type == "moulded" && v.detail() > 0) {
+    const auto section = section_of(scaled_to_height(v.profile("surround_profile"), width, projection));
+    if (!section) return tl::unexpected<std::string>("surround: " + section.error());
+    band.section = across(*section, kApart);
+  } else {
+    band.section = {{kApart, -kApart}, {kApart + width, -kApart}, {kApart + width, out}, {kApart, out}};
+  }
+  if (Made made = swept(builder, band, "surround"); !made) return made;
+  if (brick)
+    add_stones(builder, band.path, band.closed, width, v.number("stone_length"), v.number("stone_gap"), out - kApart,
+               std::max(projection, out + 0.008));
+  if (v.is("keystone", "yes")) {
+    const double half = std::min(0.09, shape.width / 8), top = shape.height + kApart + width + 0.04;
+    builder.prism(
+        {{-half, shape.height + 2 * kApart}, {half, shape.height + 2 * kApart}, {half * 1.4, top}, {-half * 1.4, top}},
+        projection + 0.03, -kApart, Part::surround);
+  }
+  if (type == "double_cornice") {
+    const double base = shape.height + 2 * kApart + width + (v.is("keystone", "yes") ? 0.05 : 0);
+    const double span = shape.width + 2 * (kApart + width) + 0.10, height = std::max(0.10, 0.7 * width);
+    return add_pediment(builder, span, base, height,
+                        shape.head == Head::straight || shape.head == Head::gabled ? "triangular" : "segmental", v);
+  }
+  return {};
+}
+
+Made add_sill(MeshBuilder& builder, double width, double top, double height, double overhang, double reveal,
+              const Values& v, bool moulded) {
+  const double projection = v.number("sill_projection");
+  Profile profile;
+  if (moulded && v.detail() > 0) {
+    profile = scaled_to_height(v.profile("sill_profile"), height + kSillLip, projection);
+    // A flat moulding is stretched to stand out as asked: water must drip clear of the wall.
+    const double own = profile.projection();
+    for (Point2& p : profile.points) p.x = p.x > 0 ? p.x * projection / own : p.x;
+  } else {
+    profile.points = {{0, 0}, {projection, 0}, {projection, height - kApart}, {0, height + kSillLip}};
+  }
+  const auto section = section_of(profile);
+  if (!section) return tl::unexpected<std::string>("sill: " + section.error());
+  const double half = width / 2 + overhang, base = top - height;
+  PathSweep slab;
+  slab.part = Part::sill;
+  slab.section = *section;
+  slab.path = {{-half, 0}, {half, 0}};
+  slab.place = [base](double x, double y, double up) { return Point3{x, base + up, -y}; };
+  if (Made made = swept(builder, slab, "sill"); !made) return made;
+  if (reveal < 2 * kApart) return {};
+  // The tongue runs a little into the wall on both sides and into the frame; its slope carries on the slab's.
+  PathSweep tongue = slab;
+  const double side = width / 2 + kApart, front = 0.002;
+  tongue.section = {
+      {-reveal - kApart, -0.02}, {front, -0.02}, {front, kSillLip - 0.002}, {-reveal - kApart, kSillLip + 0.006}};
+  tongue.path = {{-side, 0}, {side, 0}};
+  tongue.place = [top](double x, double y, double up) { return Point3{x, top + up, -y}; };
+  return swept(builder, tongue, "sill");
+}
+
+Made add_pediment(MeshBuilder& builder, double span, double base, double height, std::string_view shape,
+                  const Values& v) {
+  const bool given = v.has("pediment_projection");
+  const double projection = given ? v.number("pediment_projection") : std::max(0.08, height);
+  const double rise = (v.has("pediment_rise") ? v.number("pediment_rise") : 0.22) * span;
+  const Profile drawn = v.has("pediment_profile") ? v.profile("pediment_profile") : v.preset("hood");
+  if (drawn.points.empty()) return tl::unexpected<std::string>("the library lacks the profile \"hood\"");
+  const auto scaled = [&](double to_height, double out) {
+    Profile p = scaled_to_height(drawn, to_height, out);
+    const double own = p.projection();
+    for (Point2& q : p.points) q.x = q.x > 0 ? q.x * out / own : q.x;
+    return p;
+  };
+  const Profile level = scaled(height, projection);
+  SweepOptions options;
+  options.base = base;
+  options.ends = v.detail() == 2 ? RunEnd::returned : RunEnd::cut;
+  const auto straight = sweep(level, std::vector<Point2>{{-span / 2, 0}, {span / 2, 0}}, false, options);
+  if (!straight) return tl::unexpected<std::string>("pediment: " + straight.error());
+  builder.append(straight->mesh);
+  if (v.has("pediment_consoles") && v.is("pediment_consoles", "yes")) {
+    const double width = std::min(0.14, span / 6), x = span / 2 - width / 2 - 0.02;
+    for (const double side : {-1.0, 1.0})
+      add_console(builder, side * x, base + 0.3 * height, width, height * 1.8, projection * 0.75, v.detail());
+  }
+  if (shape == "straight") return {};
+
+  const double foot = base + front_edge(level), half = span / 2 - kApart;
+  PathSweep raking;
+  raking.place = in_wall;
+  raking.mitre_limit = 6;
+  const auto section = section_of(scaled(height * 0.8, projection - kApart));
+  if (!section) return tl::unexpected<std::string>("pediment: " + section.error());
+  raking.section = across(*section, 0);
+  Outline field{{-half + 2 * kApart, foot - kApart}, {half - 2 * kApart, foot - kApart}};
+  if (shape == "triangular") {
+    raking.path = {{half, foot}, {0, foot + rise}, {-half, foot}};
+    field.push_back({0, foot + rise + kApart});
+  } else {
+    const int chords = v.detail() == 2 ? 12 : v.detail() == 1 ? 6 : 3;
+    const double radius = (half * half + rise * rise) / (2 * rise), middle = foot + rise - radius;
+    const double from = base::atan2(half, radius - rise);
+    for (int k = 0; k <= chords; ++k) {
+      const auto turned = base::sin_cos(from * (1 - 2.0 * k / chords));
+      raking.path.push_back({radius * turned.sin, middle + radius * turned.cos});
+      if (k > 0 && k < chords) field.push_back({raking.path.back().x, raking.path.back().y + kApart});
+    }
+  }
+  // Both ends are cut upright.
+  const auto upright = [](Point2 a, Point2 b) {
+    const double l = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+    return Point2{0, l / -(b.x - a.x)};
+  };
+  raking.start = upright(raking.path[0], raking.path[1]);
+  raking.end = upright(raking.path[raking.path.size() - 2], raking.path.back());
+  if (Made made = swept(builder, raking, "pediment"); !made) return made;
+  if (v.detail() > 0) builder.prism(field, 3 * kApart, -kApart, Part::surround);
+  return {};
+}
+
+Made add_trim(MeshBuilder& builder, const OpeningShape& shape, const Outline& outline, double reveal, const Values& v) {
+  const bool has_sill = v.has("sill") && !v.is("sill", "none");
+  const bool surrounded = !v.is("surround", "none");
+  const bool pediment = v.has("pediment") && !v.is("pediment", "none");
+  if (pediment && v.is("surround", "double_cornice"))
+    return tl::unexpected<std::string>(
+        "a surround of type double_cornice brings its own pediment: set pediment to none");
+  if (Made made = add_surround(builder, shape, outline, v, v.has("sill") && !has_sill); !made) return made;
+  const double beside = surrounded ? kApart + v.number("surround_width") : 0;
+  if (has_sill)
+    if (Made made = add_sill(builder, shape.width, 0, v.number("sill_height"), v.number("sill_overhang") + beside,
+                             reveal, v, v.is("sill", "moulded"));
+        !made)
+      return made;
+  if (pediment) {
+    const double keystone = v.is("keystone", "yes") ? 0.05 : 0;
+    const double base = shape.height + beside + keystone + kApart + v.number("pediment_frieze");
+    return add_pediment(builder, shape.width + 2 * (beside + v.number("pediment_overhang")), base,
+                        v.number("pediment_height"), v.word("pediment"), v);
+  }
+  return {};
+}
+
+Made make_sill(const Request& r, Element& element) {
+  MeshBuilder builder;
+  if (Made made = add_sill(builder, r.width, r.height, r.height, r.values.number("sill_overhang"),
+                           r.values.number("reveal"), r.values, r.values.is("sill", "moulded"));
+      !made)
+    return made;
+  element.mesh = builder.take();
+  return {};
+}
+
+Made make_surround(const Request& r, Element& element) {
+  const OpeningShape shape = opening_shape(r);
+  const auto outline = outline_of(shape);
+  if (!outline) return tl::unexpected(outline.error());
+  MeshBuilder builder;
+  if (Made made = add_surround(builder, shape, *outline, r.values, r.values.is("foot", "closed")); !made) return made;
+  element.mesh = builder.take();
+  return {};
+}
+
+Made make_pediment(const Request& r, Element& element) {
+  MeshBuilder builder;
+  if (Made made = add_pediment(builder, r.width, 0, r.height, r.values.word("pediment"), r.values); !made) return made;
+  element.mesh = builder.take();
+  return {};
+}
+
+}  // namespace blockrand::elements
