@@ -39,8 +39,11 @@ Made make_main_cornice(const Request& r, Element& element) {
   row.width = v.number("bracket_width");
   row.height = (v.number("bracket_head") - v.number("bracket_foot")) * r.height;
   row.top = v.number("bracket_head") * r.height;
-  row.projection = v.number("bracket_projection") * profile.projection();
+  row.projection =
+      clear_of(profile, v.number("bracket_projection") * profile.projection(), row.top - row.height, row.top);
   if (row.spacing > 0) {
+    if (profile.projection() < 0.10)
+      return tl::unexpected<std::string>("a cornice that stands out less than 0.10 m is too flat for brackets");
     if (row.height < 0.05)
       return tl::unexpected<std::string>("brackets lower than 0.05 m: bracket_head must lie above bracket_foot");
     if (row.spacing < 1.2 * row.width)

@@ -44,6 +44,8 @@ class MeshBuilder {
   /// Another mesh, moved.
   void append(const ElementMesh& mesh, model::Point3 by = {});
 
+  /// What is there so far.
+  const ElementMesh& mesh() const { return mesh_; }
   ElementMesh take();
 
  private:

@@ -147,6 +147,29 @@ class Parser {
   ProfileError error_;
 };
 
+/// Leaves out corners that lie nearer than kFinestMember to the line between their neighbours, flattest first. The foot
+/// and the upper end inside the wall stay.
+Outline without_fine_members(const Outline& section) {
+  Outline out = section;
+  while (out.size() > 4) {
+    std::size_t flattest = 0;
+    double least = kFinestMember;
+    for (std::size_t i = 1; i + 1 < out.size(); ++i) {
+      const Point2 a = out[i - 1], b = out[i], c = out[i + 1];
+      const double l = std::sqrt((c.x - a.x) * (c.x - a.x) + (c.y - a.y) * (c.y - a.y));
+      const double ab = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+      const double off = l > 1e-9 ? std::fabs((c.x - a.x) * (b.y - a.y) - (c.y - a.y) * (b.x - a.x)) / l : ab;
+      if (off < least) {
+        least = off;
+        flattest = i;
+      }
+    }
+    if (flattest == 0) break;
+    out.erase(out.begin() + static_cast<std::ptrdiff_t>(flattest));
+  }
+  return is_simple(out) ? out : section;
+}
+
 }  // namespace
 
 std::string ProfileError::text() const { return fmt::format("line {}, column {}: {}", line, column, message); }
@@ -211,6 +234,21 @@ Profile silhouette(const Profile& profile) {
   return out;
 }
 
+double clear_of(const Profile& profile, double wanted, double from, double to) {
+  double x = wanted;
+  for (bool again = true; again && wanted - x < 0.03;) {
+    again = false;
+    for (std::size_t i = 1; i < profile.points.size(); ++i) {
+      const Point2 a = profile.points[i - 1], b = profile.points[i];
+      if (std::fabs(a.x - b.x) > kApart || std::max(a.y, b.y) < from || std::min(a.y, b.y) > to) continue;
+      if (std::fabs(a.x - x) >= kApart && std::fabs(b.x - x) >= kApart) continue;
+      x = std::min(a.x, b.x) - kApart - 1e-6;
+      again = true;
+    }
+  }
+  return x;
+}
+
 tl::expected<Outline, std::string> section_of(const Profile& profile) {
   const Bounds2 box = bounds_of(profile.points);
   if (profile.points.size() < 2 || box.most.x < kApart || box.height() < kApart)
@@ -241,6 +279,7 @@ tl::expected<Outline, std::string> section_of(const Profile& profile) {
     }
     clean.push_back(p);
   }
+  if (clean.size() >= 3) clean = without_fine_members(clean);
   if (clean.size() < 3 || !is_simple(clean))
     return tl::unexpected<std::string>("the line of the profile crosses itself");
   if (signed_area(clean) <= 0)

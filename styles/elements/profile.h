@@ -66,6 +66,14 @@ Profile scaled_to_height(const Profile& profile, double height, double most_proj
 /// The three or four straight pieces that stand for a profile from afar: out to where it is widest, up, and back.
 Profile silhouette(const Profile& profile);
 
+/// m. What is finer than this in a section is left out: members of mouldings are centimetres, and solids on the 1/1024
+/// m grid need walls 2/1024 m apart.
+inline constexpr double kFinestMember = 0.003;
+
+/// A projection near `wanted`, at most 3 cm less, at which the front of something that stands before the profile
+/// between two heights lies kApart off every upright face of it: nothing coplanar.
+double clear_of(const Profile& profile, double wanted, double from, double to);
+
 /// A closed section for sweeps, counter-clockwise in (out of the wall, up): what stands out of the wall, and kApart of
 /// its foot inside the wall. Error: nothing stands out, or the line crosses itself.
 tl::expected<Outline, std::string> section_of(const Profile& profile);

@@ -177,6 +177,7 @@ struct Stretch {
   std::vector<Point2> points;
   std::vector<std::size_t> index;  ///< of each point in the chain; of cut ends the next one
   bool closed = false;
+  bool gap_before = false, gap_after = false;  ///< an end is an interruption's, not the chain's
   double length = 0;
 };
 
@@ -207,6 +208,8 @@ std::vector<Stretch> stretches_of(std::span<const Point2> chain, bool closed,
     Stretch s;
     s.closed = round;
     s.length = stop - start;
+    s.gap_before = closed || start > 0;
+    s.gap_after = closed || stop < whole;
     for (std::size_t e = 0; e < edges; ++e) {
       if (at[e + 1] <= start || at[e] >= stop) continue;
       const Point2 a = chain[e], b = chain[(e + 1) % chain.size()];
@@ -229,6 +232,7 @@ std::vector<Stretch> stretches_of(std::span<const Point2> chain, bool closed,
     last.points.insert(last.points.end(), out.front().points.begin() + 1, out.front().points.end());
     last.index.insert(last.index.end(), out.front().index.begin() + 1, out.front().index.end());
     last.length += out.front().length;
+    last.gap_after = true;
     out.front() = std::move(last);
   }
   return out;
@@ -300,6 +304,7 @@ tl::expected<Sweep, std::string> sweep(const Profile& profile, std::span<const P
     if (turned) {
       std::reverse(s.points.begin(), s.points.end());
       std::reverse(s.index.begin(), s.index.end());
+      std::swap(s.gap_before, s.gap_after);
     }
     PathSweep path;
     path.section = *section;
@@ -311,12 +316,21 @@ tl::expected<Sweep, std::string> sweep(const Profile& profile, std::span<const P
     path.place = [base](double x, double y, double up) { return Point3{x, base + up, -y}; };
     std::size_t added = 0;
     if (options.ends == RunEnd::returned && !s.closed) {
-      // Two steps into the wall at either end: the corner's mitre makes the return.
-      const auto corners = corners_of(s.points, false);
+      // Two steps into the wall at either end: the corner's mitre makes the return. It stands out beyond the end as far
+      // as the moulding does; beside an interruption the end steps back by that, where the wall is long enough.
+      std::vector<Corner> corners = corners_of(s.points, false);
       if (corners.size() < 2) continue;
+      const double out_of_wall = bounds_of(*section).most.x;
+      const auto step_back = [&](Point2 end, Point2 next) {
+        const Point2 d = minus(next, end);
+        const double l = length(d);
+        return l > 2.5 * out_of_wall ? plus(end, times(d, out_of_wall / l)) : end;
+      };
+      const std::size_t n = corners.size();
+      if (s.gap_before) path.path.front() = corners[0].at = step_back(corners[0].at, corners[1].at);
+      if (s.gap_after) path.path.back() = corners[n - 1].at = step_back(corners[n - 1].at, corners[n - 2].at);
       const auto into = [](Point2 d) { return times(right_of(d), -2 * kApart / length(d)); };
       path.path.insert(path.path.begin(), plus(corners[0].at, into(minus(corners[1].at, corners[0].at))));
-      const std::size_t n = corners.size();
       path.path.push_back(plus(corners[n - 1].at, into(minus(corners[n - 1].at, corners[n - 2].at))));
       added = 1;
     }
@@ -362,8 +376,9 @@ std::vector<ConsolePlace> console_places(std::span<const Point2> chain, bool clo
     const double whole = length(minus(b, a));
     const double from = std::max(0.0, joints[e].taken) * projection,
                  to = whole - std::max(0.0, joints[(e + 1) % n].taken) * projection;
-    if (to - from < width) continue;
-    const int count = static_cast<int>(std::floor((to - from - width) / spacing + 1e-9)) + 1;
+    const double room = to - from - width - 2 * kApart;  // clear of the ends: nothing in one plane with them
+    if (room < 0) continue;
+    const int count = static_cast<int>(std::floor(room / spacing + 1e-9)) + 1;
     const Point2 d = times(minus(b, a), 1 / whole);
     const double first = (from + to) / 2 - spacing * (count - 1) / 2;
     for (int k = 0; k < count; ++k) out.push_back({plus(a, times(d, first + spacing * k)), right_of(d)});

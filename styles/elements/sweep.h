@@ -18,8 +18,10 @@ enum class WallSide : std::uint8_t { left, right };
 
 /// How a run ends that does not meet its own beginning.
 enum class RunEnd : std::uint8_t {
-  cut,       ///< a plane at right angles to the wall: party walls, corners of openings
-  returned,  ///< the moulding turns round the end and dies into the wall
+  cut,  ///< a plane at right angles to the wall: party walls, corners of openings
+  /// The moulding turns round the end and dies into the wall: it reaches beyond the end by its projection, beside an
+  /// interruption only up to it.
+  returned,
 };
 
 /// Brackets under a moulding (finkenzeller.md §3.7.4), equally spaced, the row centred on each straight wall.
@@ -70,7 +72,8 @@ struct ConsolePlace {
 };
 
 /// Where brackets of a row stand on a chain: floor((L - width) / spacing) + 1 of them on each wall of length L, less
-/// what re-entrant corners take (finkenzeller.md §3.7.4). For instances of one "console" element.
+/// what re-entrant corners take and kApart at each end (finkenzeller.md §3.7.4). For instances of one "console"
+/// element.
 std::vector<ConsolePlace> console_places(std::span<const model::Point2> chain, bool closed, WallSide wall,
                                          double spacing, double width, double projection);
 

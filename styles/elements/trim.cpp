@@ -55,6 +55,14 @@ std::vector<Point2> bisectors(const std::vector<Point2>& path, bool closed) {
   return out;
 }
 
+/// y of the highest point of a band round an opening: mitres of gables and arcs reach higher than the band is wide.
+double band_top(const Outline& outline, double width) {
+  const std::vector<Point2> path = path_round(outline), offset = bisectors(path, false);
+  double top = 0;
+  for (std::size_t i = 0; i < path.size(); ++i) top = std::max(top, path[i].y + offset[i].y * (kApart + width));
+  return top;
+}
+
 /// Stones along the edges of a path, standing out of a bed of mortar.
 void add_stones(MeshBuilder& builder, const std::vector<Point2>& path, bool closed, double width, double length,
                 double gap, double z_back, double z_front) {
@@ -75,7 +83,7 @@ void add_stones(MeshBuilder& builder, const std::vector<Point2>& path, bool clos
       const double from = whole * k / count + gap / 2, to = whole * (k + 1) / count - gap / 2;
       if (to - from < gap) continue;
       const double skew_from = k == 0 ? skew_a : 0, skew_to = k + 1 == count ? skew_b : 0;
-      const double near = kApart + 0.002, far = kApart + width - 0.002;
+      const double near = 2 * kApart, far = width;
       Outline stone{at(to, near, skew_to), at(from, near, skew_from), at(from, far, skew_from), at(to, far, skew_to)};
       if (signed_area(stone) < 0) std::reverse(stone.begin(), stone.end());
       builder.begin_body();
@@ -135,13 +143,14 @@ Made add_surround(MeshBuilder& builder, const OpeningShape& shape, const Outline
     add_stones(builder, band.path, band.closed, width, v.number("stone_length"), v.number("stone_gap"), out - kApart,
                std::max(projection, out + 0.008));
   if (v.is("keystone", "yes")) {
-    const double half = std::min(0.09, shape.width / 8), top = shape.height + kApart + width + 0.04;
-    builder.prism(
-        {{-half, shape.height + 2 * kApart}, {half, shape.height + 2 * kApart}, {half * 1.4, top}, {-half * 1.4, top}},
-        projection + 0.03, -kApart, Part::surround);
+    // It hangs a little into the opening: its underside is in no plane with the band's.
+    const double half = std::min(0.09, shape.width / 8), foot = shape.height - kApart,
+                 top = band_top(outline, width) + 0.04;
+    builder.prism({{-half, foot}, {half, foot}, {half * 1.4, top}, {-half * 1.4, top}}, projection + 0.03, -kApart,
+                  Part::surround);
   }
   if (type == "double_cornice") {
-    const double base = shape.height + 2 * kApart + width + (v.is("keystone", "yes") ? 0.05 : 0);
+    const double base = band_top(outline, width) + kApart + (v.is("keystone", "yes") ? 0.05 : 0);
     const double span = shape.width + 2 * (kApart + width) + 0.10, height = std::max(0.10, 0.7 * width);
     return add_pediment(builder, span, base, height,
                         shape.head == Head::straight || shape.head == Head::gabled ? "triangular" : "segmental", v);
@@ -171,9 +180,10 @@ Made add_sill(MeshBuilder& builder, double width, double top, double height, dou
   slab.place = [base](double x, double y, double up) { return Point3{x, base + up, -y}; };
   if (Made made = swept(builder, slab, "sill"); !made) return made;
   if (reveal < 2 * kApart) return {};
-  // The tongue runs a little into the wall on both sides and into the frame; its slope carries on the slab's.
+  // The tongue runs a little into the wall on both sides and into the frame; its slope carries on the slab's, from
+  // where the slab ends inside the wall.
   PathSweep tongue = slab;
-  const double side = width / 2 + kApart, front = 0.002;
+  const double side = width / 2 + kApart, front = -kApart;
   tongue.section = {
       {-reveal - kApart, -0.02}, {front, -0.02}, {front, kSillLip - 0.002}, {-reveal - kApart, kSillLip + 0.006}};
   tongue.path = {{-side, 0}, {side, 0}};
@@ -185,7 +195,7 @@ Made add_pediment(MeshBuilder& builder, double span, double base, double height,
                   const Values& v) {
   const bool given = v.has("pediment_projection");
   const double projection = given ? v.number("pediment_projection") : std::max(0.08, height);
-  const double rise = (v.has("pediment_rise") ? v.number("pediment_rise") : 0.22) * span;
+  const double rise = (v.has("pediment_rise") ? v.number("pediment_rise") : 0.22) * (span + 2 * projection);
   const Profile drawn = v.has("pediment_profile") ? v.profile("pediment_profile") : v.preset("hood");
   if (drawn.points.empty()) return tl::unexpected<std::string>("the library lacks the profile \"hood\"");
   const auto scaled = [&](double to_height, double out) {
@@ -195,47 +205,83 @@ Made add_pediment(MeshBuilder& builder, double span, double base, double height,
     return p;
   };
   const Profile level = scaled(height, projection);
+  // Returned or cut, the cornice is as wide: its own projection more than the span at each end.
+  const bool returned = v.detail() == 2;
+  const double reach = span / 2 + projection, run = returned ? span / 2 : reach;
   SweepOptions options;
   options.base = base;
-  options.ends = v.detail() == 2 ? RunEnd::returned : RunEnd::cut;
-  const auto straight = sweep(level, std::vector<Point2>{{-span / 2, 0}, {span / 2, 0}}, false, options);
+  options.ends = returned ? RunEnd::returned : RunEnd::cut;
+  const auto straight = sweep(level, std::vector<Point2>{{-run, 0}, {run, 0}}, false, options);
   if (!straight) return tl::unexpected<std::string>("pediment: " + straight.error());
   builder.append(straight->mesh);
   if (v.has("pediment_consoles") && v.is("pediment_consoles", "yes")) {
-    const double width = std::min(0.14, span / 6), x = span / 2 - width / 2 - 0.02;
+    // They stand before the band and not in one plane with any of its faces.
+    const bool banded = v.has("surround") && !v.is("surround", "none");
+    const double band = banded ? v.number("surround_projection") : 0;
+    const double out = clear_of(level, std::max(projection * 0.75, band + 0.03), 0, 0.3 * height);
+    if (out > projection - kApart || out < band + kApart)
+      return tl::unexpected(fmt::format("brackets want a pediment that stands out at least {:.2f} m", band + 0.06));
+    const double width = std::min(0.14, span / 6);
+    double edge = span / 2 - 0.02;
+    const auto touches = [&](double x) {
+      for (const Point3& p : builder.mesh().vertices)
+        if (std::fabs(p.x - x) < kApart) return true;
+      return false;
+    };
+    for (int tries = 0; tries < 40 && (touches(edge) || touches(edge - width)); ++tries) edge -= 0.004;
     for (const double side : {-1.0, 1.0})
-      add_console(builder, side * x, base + 0.3 * height, width, height * 1.8, projection * 0.75, v.detail());
+      add_console(builder, side * (edge - width / 2), base + 0.3 * height, width, height * 1.8, out, v.detail());
   }
   if (shape == "straight") return {};
 
-  const double foot = base + front_edge(level), half = span / 2 - kApart;
+  const double foot = base + front_edge(level), half = reach - kApart;
   PathSweep raking;
   raking.place = in_wall;
   raking.mitre_limit = 6;
   const auto section = section_of(scaled(height * 0.8, projection - kApart));
   if (!section) return tl::unexpected<std::string>("pediment: " + section.error());
   raking.section = across(*section, 0);
-  Outline field{{-half + 2 * kApart, foot - kApart}, {half - 2 * kApart, foot - kApart}};
+  // The field ends where the raking cornice begins, and reaches into the level one.
+  Outline field{{-half, foot}, {-half, foot - kApart}, {half, foot - kApart}, {half, foot}};
+  bool upright = true;
   if (shape == "triangular") {
     raking.path = {{half, foot}, {0, foot + rise}, {-half, foot}};
-    field.push_back({0, foot + rise + kApart});
+    field.push_back({0, foot + rise});
   } else {
-    const int chords = v.detail() == 2 ? 12 : v.detail() == 1 ? 6 : 3;
-    const double radius = (half * half + rise * rise) / (2 * rise), middle = foot + rise - radius;
-    const double from = base::atan2(half, radius - rise);
+    // The first piece of the arc must be longer than what the upright cut takes of it: else fewer pieces, and at last
+    // ends that are cut square, within the same width.
+    const double thick = bounds_of(raking.section).most.x;
+    int chords = v.detail() == 2 ? 12 : v.detail() == 1 ? 6 : 3;
+    double foot_half = half, radius = 0, from = 0;
+    for (;; --chords) {
+      if (chords < 3) {
+        chords = 4;
+        upright = false;
+        foot_half = half - thick;
+      }
+      radius = (foot_half * foot_half + rise * rise) / (2 * rise);
+      from = base::atan2(foot_half, radius - rise);
+      const double turn = 2 * from / chords, piece = 2 * radius * base::sin(turn / 2);
+      if (!upright || piece + thick * base::tan(turn / 2) > 1.1 * thick * base::tan(from - turn / 2)) break;
+    }
+    if (foot_half < rise)
+      return tl::unexpected<std::string>("no room for a segmental gable so thick and high: make it lower");
+    const double middle = foot + rise - radius;
+    field = {{-foot_half, foot}, {-foot_half, foot - kApart}, {foot_half, foot - kApart}, {foot_half, foot}};
     for (int k = 0; k <= chords; ++k) {
       const auto turned = base::sin_cos(from * (1 - 2.0 * k / chords));
       raking.path.push_back({radius * turned.sin, middle + radius * turned.cos});
-      if (k > 0 && k < chords) field.push_back({raking.path.back().x, raking.path.back().y + kApart});
+      if (k > 0 && k < chords) field.push_back(raking.path.back());
     }
   }
-  // Both ends are cut upright.
-  const auto upright = [](Point2 a, Point2 b) {
+  const auto cut_upright = [](Point2 a, Point2 b) {
     const double l = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
     return Point2{0, l / -(b.x - a.x)};
   };
-  raking.start = upright(raking.path[0], raking.path[1]);
-  raking.end = upright(raking.path[raking.path.size() - 2], raking.path.back());
+  if (upright) {
+    raking.start = cut_upright(raking.path[0], raking.path[1]);
+    raking.end = cut_upright(raking.path[raking.path.size() - 2], raking.path.back());
+  }
   if (Made made = swept(builder, raking, "pediment"); !made) return made;
   if (v.detail() > 0) builder.prism(field, 3 * kApart, -kApart, Part::surround);
   return {};
@@ -250,14 +296,19 @@ Made add_trim(MeshBuilder& builder, const OpeningShape& shape, const Outline& ou
         "a surround of type double_cornice brings its own pediment: set pediment to none");
   if (Made made = add_surround(builder, shape, outline, v, v.has("sill") && !has_sill); !made) return made;
   const double beside = surrounded ? kApart + v.number("surround_width") : 0;
-  if (has_sill)
-    if (Made made = add_sill(builder, shape.width, 0, v.number("sill_height"), v.number("sill_overhang") + beside,
-                             reveal, v, v.is("sill", "moulded"));
+  if (has_sill) {
+    // Jambs stand on the sill: their outer faces and its ends are not one plane.
+    const double least = surrounded ? 2 * kApart : 0;
+    const double overhang = std::max(v.number("sill_overhang"), least) + beside;
+    if (Made made =
+            add_sill(builder, shape.width, 0, v.number("sill_height"), overhang, reveal, v, v.is("sill", "moulded"));
         !made)
       return made;
+  }
   if (pediment) {
     const double keystone = v.is("keystone", "yes") ? 0.05 : 0;
-    const double base = shape.height + beside + keystone + kApart + v.number("pediment_frieze");
+    const double head = surrounded ? band_top(outline, v.number("surround_width")) : shape.height;
+    const double base = head + keystone + kApart + v.number("pediment_frieze");
     return add_pediment(builder, shape.width + 2 * (beside + v.number("pediment_overhang")), base,
                         v.number("pediment_height"), v.word("pediment"), v);
   }
@@ -286,7 +337,8 @@ Made make_surround(const Request& r, Element& element) {
 
 Made make_pediment(const Request& r, Element& element) {
   MeshBuilder builder;
-  if (Made made = add_pediment(builder, r.width, 0, r.height, r.values.word("pediment"), r.values); !made) return made;
+  if (Made made = add_pediment(builder, r.width, 0, r.height, r.values.word("pediment"), r.values); !made)
+    return made;
   element.mesh = builder.take();
   return {};
 }

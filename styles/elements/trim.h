@@ -18,6 +18,7 @@ Made add_sill(MeshBuilder& builder, double width, double top, double height, dou
 inline constexpr double kSillLip = 0.012;
 
 /// A straight, triangular or segmental hood with its lower edge at `base`.
+/// \param span     m, without what its mouldings stand out at both ends
 Made add_pediment(MeshBuilder& builder, double span, double base, double height, std::string_view shape,
                   const Values& values);
 

@@ -122,7 +122,11 @@ std::string flicker(const ElementMesh& mesh) {
     Point3 n = normal(c);
     const double l = length(n);
     n = {n.x / l, n.y / l, n.z / l};
-    planes.push_back({n, dot(n, c[0]), std::move(c)});
+    const double d = dot(n, c[0]);
+    // Never seen: what lies on the ground, and backs of trim inside the wall.
+    if (n.y < -0.999 && -d < 1e-6) continue;
+    if (n.z < -0.999 && -d > -0.03) continue;
+    planes.push_back({n, d, std::move(c)});
   }
   for (std::size_t i = 0; i < planes.size(); ++i)
     for (std::size_t j = i + 1; j < planes.size(); ++j) {
@@ -147,8 +151,10 @@ std::string flicker(const ElementMesh& mesh) {
         common = clipped(common, out, out.x * p.x + out.y * p.y);
       }
       if (!common.empty() && signed_area(common) > 1e-4)
-        return fmt::format("faces {} and {} overlap by {:.4f} m² in one plane near ({:.3f} {:.3f} {:.3f}), looking along ({:.2f} {:.2f} {:.2f})",
-                           i, j, signed_area(common), a.c[0].x, a.c[0].y, a.c[0].z, a.n.x, a.n.y, a.n.z);
+        return fmt::format(
+            "faces {} and {} overlap by {:.4f} m² in one plane near ({:.3f} {:.3f} {:.3f}), looking along ({:.2f} "
+            "{:.2f} {:.2f})",
+            i, j, signed_area(common), a.c[0].x, a.c[0].y, a.c[0].z, a.n.x, a.n.y, a.n.z);
     }
   return {};
 }
@@ -156,11 +162,13 @@ std::string flicker(const ElementMesh& mesh) {
 std::string open_place(const Element& element) {
   const Outline& outline = element.opening.outline;
   const Bounds2 box = bounds_of(outline);
+  const Outline sure = inset(outline, 0.002);
   constexpr int kSteps = 23;
   for (int i = 1; i < kSteps; ++i)
     for (int j = 1; j < kSteps; ++j) {
-      const Point2 p{box.least.x + box.width() * (i + 0.013) / kSteps, box.least.y + box.height() * (j + 0.017) / kSteps};
-      if (!geometry::contains(outline, p)) continue;
+      const Point2 p{box.least.x + box.width() * (i + 0.013) / kSteps,
+                     box.least.y + box.height() * (j + 0.017) / kSteps};
+      if (!geometry::contains(sure, p)) continue;
       bool covered = false;
       for (const ElementFace& f : element.mesh.faces) {
         const auto c = corners(element.mesh, f);

@@ -28,7 +28,7 @@ Colour colour_of(Part part) {
     case Part::glass:
       return {88, 108, 122};
     case Part::leaf:
-      return {96, 66, 50};
+      return {128, 90, 62};
     case Part::surround:
       return {236, 226, 204};
     case Part::sill:
@@ -59,7 +59,8 @@ class Wall {
         c.push_back(turned({p.x + at.x, p.y + at.y, p.z}));
       }
       // From behind nothing is there: what faces the wrong way shows as a hole.
-      for (std::size_t i = 1; i + 1 < c.size(); ++i) scene_.add_triangle({c[0], c[i], c[i + 1]}, colour_of(f.part), object_);
+      for (std::size_t i = 1; i + 1 < c.size(); ++i)
+        scene_.add_triangle({c[0], c[i], c[i + 1]}, colour_of(f.part), object_);
     }
   }
 
@@ -94,7 +95,8 @@ class Wall {
     ++object_;
     const auto at = [&](std::uint32_t i) { return turned({points[i].x, points[i].y, 0}); };
     for (const auto& f : *faces)
-      for (std::size_t i = 1; i + 1 < f.size(); ++i) scene_.add_triangle({at(f[0]), at(f[i]), at(f[i + 1])}, kWall, object_);
+      for (std::size_t i = 1; i + 1 < f.size(); ++i)
+        scene_.add_triangle({at(f[0]), at(f[i]), at(f[i + 1])}, kWall, object_);
     if (pavement) scene_.set_ground(foot, kPaving);
     view_ = {turned({left, foot, 0}), turned({right, top, 0}), turned({left, top, 0}), turned({right, foot, 0})};
   }
@@ -108,7 +110,7 @@ class Wall {
     options.sun_elevation = 44;
     options.crease_angle = 24;
     options.line_strength = 0.4;
-    const auto camera = picture::fit_perspective(view_, from, static_cast<double>(width) / height, 30, 0.02);
+    const auto camera = picture::fit_perspective(view_, from, static_cast<double>(width) / height, 14, 0.02);
     const std::string bytes = picture::palette_png(picture::render(scene_, camera, options), 96);
     std::ofstream(path, std::ios::binary) << bytes;
   }
@@ -136,7 +138,15 @@ std::vector<Shown> shown_of(const ElementKind& kind) {
   if (n == "casement_window")
     return {{w, h, {full}},
             {w, h, {full, {"leaves", 1.0}, {"surround", "plain"}, {"head", "round"}, {"sill", "moulded"}}},
-            {1.6, h, {full, {"leaves", 3.0}, {"transom", 0.7}, {"bars", 1.0}, {"head", "segmental"}, {"surround", "brick"}, {"keystone", "yes"}}}};
+            {1.6,
+             h,
+             {full,
+              {"leaves", 3.0},
+              {"transom", 0.7},
+              {"bars", 1.0},
+              {"head", "segmental"},
+              {"surround", "brick"},
+              {"keystone", "yes"}}}};
   if (n == "double_casement")
     return {{w, h, {full, {"pediment", "triangular"}, {"pediment_consoles", "yes"}}},
             {w, h, {full, {"head", "segmental"}, {"keystone", "yes"}}},
@@ -145,30 +155,49 @@ std::vector<Shown> shown_of(const ElementKind& kind) {
   if (n == "shop_window")
     return {{w, h, {full}}, {4.2, h, {full, {"door", "middle"}, {"mullions", 1.0}, {"surround", "plain"}}}};
   if (n == "cellar_window")
-    return {{w, h, {full}}, {w, h, {full, {"head", "segmental"}, {"surround", "plain"}, {"grille", 0.0}}}, {w, h, {full, {"sill", "plain"}, {"leaves", 2.0}}}};
+    return {{w, h, {full}},
+            {w, h, {full, {"head", "segmental"}, {"surround", "plain"}, {"grille", 0.0}}},
+            {w, h, {full, {"sill", "plain"}, {"leaves", 2.0}}}};
   if (n == "house_door")
     return {{1.1, 2.5, {full, {"leaves", 1.0}, {"surround", "none"}, {"glazing", "upper"}, {"top_light", 0.0}}},
             {w, h, {full, {"pediment", "straight"}, {"pediment_consoles", "yes"}}},
-            {w, h, {full, {"head", "round"}, {"top_light", 0.9}, {"surround", "moulded"}, {"keystone", "yes"}, {"upright_bars", 3.0}}}};
+            {w,
+             h,
+             {full,
+              {"head", "round"},
+              {"top_light", 0.9},
+              {"surround", "moulded"},
+              {"keystone", "yes"},
+              {"upright_bars", 3.0}}}};
   if (n == "carriage_gateway")
     return {{w, h, {full, {"keystone", "yes"}, {"guards", "yes"}}},
             {w, h, {full, {"leaves", "open"}, {"head", "round"}, {"surround", "moulded"}, {"surround_width", 0.35}}},
             {w, h, {full, {"leaves", "absent"}, {"head", "straight"}, {"surround", "brick"}}}};
   if (n == "reveal")
-    return {{w, h, {full}}, {w, h, {full, {"head", "round"}, {"surround", "moulded"}, {"sill", "plain"}}}, {w, h, {full, {"head", "gabled"}, {"rise", 0.45}, {"surround", "plain"}}}};
+    return {{w, h, {full}},
+            {w, h, {full, {"head", "round"}, {"surround", "moulded"}, {"sill", "plain"}}},
+            {w, h, {full, {"head", "gabled"}, {"rise", 0.45}, {"surround", "plain"}}}};
   if (n == "sill") return {{w, h, {full}}, {w, h, {full, {"sill", "plain"}, {"sill_projection", 0.12}}}};
   if (n == "surround")
-    return {{w, h, {full, {"surround", "plain"}}}, {w, h, {full, {"surround", "moulded"}, {"head", "segmental"}}},
-            {w, h, {full, {"surround", "double_cornice"}}}, {w, h, {full, {"surround", "brick"}, {"keystone", "yes"}, {"head", "round"}}}};
+    return {{w, h, {full, {"surround", "plain"}}},
+            {w, h, {full, {"surround", "moulded"}, {"head", "segmental"}}},
+            {w, h, {full, {"surround", "double_cornice"}}},
+            {w, h, {full, {"surround", "brick"}, {"keystone", "yes"}, {"head", "round"}}}};
   if (n == "pediment")
-    return {{w, h, {full, {"pediment", "straight"}, {"pediment_consoles", "yes"}}}, {w, h, {full}}, {w, h, {full, {"pediment", "segmental"}}}};
+    return {{w, h, {full, {"pediment", "straight"}, {"pediment_consoles", "yes"}}},
+            {w, h, {full}},
+            {w, h, {full, {"pediment", "segmental"}}}};
   if (n == "string_course")
-    return {{2, h, {full, {"ends", "returned"}}}, {2, h, {full, {"profile", "cyma"}, {"ends", "returned"}}}, {2, h, {full, {"profile", "drip"}, {"ends", "returned"}}},
-            {2, h, {full, {"profile", "corona"}, {"ends", "returned"}, {"projection", 0.2}}}};
+    return {{0.7, h, {full, {"ends", "returned"}}},
+            {0.7, h, {full, {"profile", "cyma"}, {"ends", "returned"}}},
+            {0.7, h, {full, {"profile", "drip"}, {"ends", "returned"}}},
+            {0.7, h, {full, {"profile", "corona"}, {"ends", "returned"}, {"projection", 0.2}}}};
   if (n == "main_cornice")
-    return {{3, h, {full, {"ends", "returned"}}}, {3, 0.75, {full, {"profile", "main_cornice"}, {"bracket_spacing", 0.0}, {"ends", "returned"}}}};
+    return {{3, h, {full, {"ends", "returned"}}},
+            {3, 0.75, {full, {"profile", "main_cornice"}, {"bracket_spacing", 0.0}, {"ends", "returned"}}}};
   if (n == "plinth")
-    return {{2, h, {full, {"ends", "returned"}}}, {2, h, {full, {"profile", "plinth_moulded"}, {"projection", 0.12}, {"ends", "returned"}}}};
+    return {{2, h, {full, {"ends", "returned"}}},
+            {2, h, {full, {"profile", "plinth_moulded"}, {"projection", 0.12}, {"ends", "returned"}}}};
   if (n == "console") return {{w, h, {full}}, {0.3, 0.6, {full, {"projection", 0.5}}}};
   return {{w, h, {full}}};
 }
@@ -190,19 +219,17 @@ TEST(ElementPictures, WritesFigures) {
       const double gap = kind.name == "console" ? 0.25 : 0.35;
       x += gap - box.least.x;
       wall.add(*element, {x, 0});
-      if (kind.name == "surround") {
-        const auto bare = make_element("reveal", s.width, s.height, {});
-        (void)bare;
-      }
       x += box.most.x;
       top = std::max(top, box.most.y);
       bottom = std::min(bottom, box.least.y);
     }
+    const bool small =
+        kind.name == "console" || kind.name == "string_course" || kind.name == "sill" || kind.name == "pediment";
     const double pad = kind.name == "console" || kind.name == "sill" ? 0.15 : 0.3;
     wall.close(0, standing ? 0 : bottom - pad, x + 0.35, top + pad, standing);
     const double aspect = (x + 0.35) / (top + pad - (standing ? 0 : bottom - pad));
     const int width = aspect > 1.2 ? 900 : 640;
-    wall.write(fmt::format("{}/{}.png", folder, kind.name), {205, standing ? 6.0 : -12.0}, width,
+    wall.write(fmt::format("{}/{}.png", folder, kind.name), {small ? 220.0 : 204.0, standing ? 4.0 : -10.0}, width,
                std::clamp(static_cast<int>(width / aspect * 1.05), 260, 700));
   }
   // A chain with an avant-corps, an obtuse and an acute corner, interrupted.
@@ -220,7 +247,8 @@ TEST(ElementPictures, WritesFigures) {
   wall.add(cornice->mesh, {});
   SweepOptions low;
   low.part = Part::wall;
-  const auto foot = sweep(scaled_to_height(trace(built_in_profiles().at("plinth_moulded").program, 5), 0.7, 0.12), chain, false, low);
+  const auto foot =
+      sweep(scaled_to_height(trace(built_in_profiles().at("plinth_moulded").program, 5), 0.7, 0.12), chain, false, low);
   ASSERT_TRUE(foot.has_value());
   wall.add(foot->mesh, {});
   for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
