@@ -65,7 +65,8 @@ tl::expected<Outline, std::string> opening_outline(const OpeningRectangle& r, co
     const bool reversed = k >= 2;
     double from = (reversed ? e.dist_right : e.dist_left) * whole,
            to = whole - (reversed ? e.dist_left : e.dist_right) * whole;
-    if (!e.dominant) {
+    // A straight dominant edge ends where its neighbours' inner lines meet it: what lies beyond would be a spike.
+    if (!e.dominant || !e.profile || e.size == 0) {
       from = std::max(from, depth[(k + 3) % 4]);
       to = std::min(to, whole - depth[(k + 1) % 4]);
     }

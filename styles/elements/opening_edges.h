@@ -48,7 +48,8 @@ using OpeningEdges = std::array<OpeningEdge, 4>;
 
 /// The opening's outline: counter-clockwise, simple, within the rectangle, on the 1/1024 m grid.
 ///
-/// A dominant edge spans the whole width; its neighbours end at its inner line. Two dominant neighbours are an error;
+/// A dominant edge spans the whole width (a straight one up to its neighbours' inner lines); its neighbours end at its
+/// inner line. Two dominant neighbours are an error;
 /// where neither of two neighbours is dominant, head and sill are (finkenzeller.md §4.7, 5). \param door  the lower
 /// edge is taken as it is: no strip, no shortening
 tl::expected<Outline, std::string> opening_outline(const OpeningRectangle& rectangle, const OpeningEdges& edges,

@@ -215,7 +215,7 @@ Profile scaled_to_height(const Profile& profile, double height, double most_proj
 }
 
 Profile silhouette(const Profile& profile) {
-  if (profile.points.size() < 3) return profile;
+  if (profile.points.size() <= 5) return profile;
   const Bounds2 box = bounds_of(profile.points);
   // The outermost tenth is what casts the shadow line.
   double low = box.most.y, high = box.least.y;

@@ -120,11 +120,15 @@ OpeningShape opening_shape(const Request& r) {
 
 Made add_surround(MeshBuilder& builder, const OpeningShape& shape, const Outline& outline, const Values& v, bool foot) {
   const std::string& type = v.word("surround");
-  if (type == "none") {
-    if (v.is("keystone", "yes")) return tl::unexpected<std::string>("a keystone wants a surround");
-    return {};
-  }
   const double width = v.number("surround_width"), projection = v.number("surround_projection");
+  if (v.is("keystone", "yes")) {
+    // It hangs a little into the opening: its underside is in no plane with the band's.
+    const double half = std::min(0.09, shape.width / 8), low = shape.height - kApart,
+                 top = band_top(outline, width) + 0.04;
+    builder.prism({{-half, low}, {half, low}, {half * 1.4, top}, {-half * 1.4, top}}, projection + 0.03, -kApart,
+                  Part::surround);
+  }
+  if (type == "none") return {};
   PathSweep band;
   band.place = in_wall;
   band.closed = foot;
@@ -142,13 +146,6 @@ Made add_surround(MeshBuilder& builder, const OpeningShape& shape, const Outline
   if (brick)
     add_stones(builder, band.path, band.closed, width, v.number("stone_length"), v.number("stone_gap"), out - kApart,
                std::max(projection, out + 0.008));
-  if (v.is("keystone", "yes")) {
-    // It hangs a little into the opening: its underside is in no plane with the band's.
-    const double half = std::min(0.09, shape.width / 8), foot = shape.height - kApart,
-                 top = band_top(outline, width) + 0.04;
-    builder.prism({{-half, foot}, {half, foot}, {half * 1.4, top}, {-half * 1.4, top}}, projection + 0.03, -kApart,
-                  Part::surround);
-  }
   if (type == "double_cornice") {
     const double base = band_top(outline, width) + kApart + (v.is("keystone", "yes") ? 0.05 : 0);
     const double span = shape.width + 2 * (kApart + width) + 0.10, height = std::max(0.10, 0.7 * width);
@@ -241,8 +238,15 @@ Made add_pediment(MeshBuilder& builder, double span, double base, double height,
   const auto section = section_of(scaled(height * 0.8, projection - kApart));
   if (!section) return tl::unexpected<std::string>("pediment: " + section.error());
   raking.section = across(*section, 0);
-  // The field ends where the raking cornice begins, and reaches into the level one.
-  Outline field{{-half, foot}, {-half, foot - kApart}, {half, foot - kApart}, {half, foot}};
+  // The field ends where the raking cornice begins, and reaches into the level one, to no height of its members.
+  double low = foot - kApart;
+  const auto member = [&](double y) {
+    for (const Point2 p : level.points)
+      if (std::fabs(base + p.y - y) < kApart - 1e-9 && p.y < foot - base - 1e-9) return true;
+    return false;
+  };
+  for (int tries = 0; tries < 20 && member(low); ++tries) low -= 0.001;
+  Outline field{{-half, foot}, {-half, low}, {half, low}, {half, foot}};
   bool upright = true;
   if (shape == "triangular") {
     raking.path = {{half, foot}, {0, foot + rise}, {-half, foot}};
@@ -267,7 +271,7 @@ Made add_pediment(MeshBuilder& builder, double span, double base, double height,
     if (foot_half < rise)
       return tl::unexpected<std::string>("no room for a segmental gable so thick and high: make it lower");
     const double middle = foot + rise - radius;
-    field = {{-foot_half, foot}, {-foot_half, foot - kApart}, {foot_half, foot - kApart}, {foot_half, foot}};
+    field = {{-foot_half, foot}, {-foot_half, low}, {foot_half, low}, {foot_half, foot}};
     for (int k = 0; k <= chords; ++k) {
       const auto turned = base::sin_cos(from * (1 - 2.0 * k / chords));
       raking.path.push_back({radius * turned.sin, middle + radius * turned.cos});
@@ -307,7 +311,7 @@ Made add_trim(MeshBuilder& builder, const OpeningShape& shape, const Outline& ou
   }
   if (pediment) {
     const double keystone = v.is("keystone", "yes") ? 0.05 : 0;
-    const double head = surrounded ? band_top(outline, v.number("surround_width")) : shape.height;
+    const double head = surrounded || keystone > 0 ? band_top(outline, v.number("surround_width")) : shape.height;
     const double base = head + keystone + kApart + v.number("pediment_frieze");
     return add_pediment(builder, shape.width + 2 * (beside + v.number("pediment_overhang")), base,
                         v.number("pediment_height"), v.word("pediment"), v);
@@ -337,8 +341,7 @@ Made make_surround(const Request& r, Element& element) {
 
 Made make_pediment(const Request& r, Element& element) {
   MeshBuilder builder;
-  if (Made made = add_pediment(builder, r.width, 0, r.height, r.values.word("pediment"), r.values); !made)
-    return made;
+  if (Made made = add_pediment(builder, r.width, 0, r.height, r.values.word("pediment"), r.values); !made) return made;
   element.mesh = builder.take();
   return {};
 }

@@ -150,7 +150,7 @@ std::string flicker(const ElementMesh& mesh) {
         const Point2 out{(q.y - p.y) / m, -(q.x - p.x) / m};
         common = clipped(common, out, out.x * p.x + out.y * p.y);
       }
-      if (!common.empty() && signed_area(common) > 1e-4)
+      if (!common.empty() && signed_area(common) > 5e-4)
         return fmt::format(
             "faces {} and {} overlap by {:.4f} m² in one plane near ({:.3f} {:.3f} {:.3f}), looking along ({:.2f} "
             "{:.2f} {:.2f})",

@@ -26,7 +26,7 @@ double volume(const ElementMesh& mesh, const Body& body);
 /// The judge of solids on a closed body, on the 1/1024 m grid; "none" when sound.
 std::string solid_defect(const ElementMesh& mesh, const Body& body);
 
-/// Two faces that look the same way, overlap by more than 1 cm², and lie nearer than 3 mm: they would flicker.
+/// Two faces that look the same way, overlap by more than 5 cm², and lie nearer than 3 mm: they would flicker.
 /// Backs of trim inside the wall and what lies on the ground are never seen. Empty when none.
 std::string flicker(const ElementMesh& mesh);
 

@@ -29,9 +29,19 @@ class Draws {
 /// Every other parameter is drawn; a third of these at one of its limits.
 std::vector<Parameter> drawn(const ElementKind& kind, Draws& draws) {
   // Mouldings that stand on their own; slabs as high as a storey's foot are no hoods.
-  static const std::vector<std::string> presets{"plain_band", "plinth_cornice", "string_course", "sill_band", "sill",
-                                                "cyma",       "chamfer",        "drip",          "corona",    "hood",
-                                                "casing",     "main_cornice",   "main_cornice_brackets"};
+  static const std::vector<std::string> presets{"plain_band",
+                                                "plinth_cornice",
+                                                "string_course",
+                                                "sill_band",
+                                                "sill",
+                                                "cyma",
+                                                "chamfer",
+                                                "drip",
+                                                "corona",
+                                                "hood",
+                                                "casing",
+                                                "main_cornice",
+                                                "main_cornice_brackets"};
   std::vector<Parameter> out;
   for (const ParameterInfo& info : kind.parameters) {
     if (draws.unit() < 0.5) continue;
