@@ -44,6 +44,24 @@ bool segments_meet(Point2 a, Point2 b, Point2 c, Point2 d) {
 /// they are; coordinates up to 2 km fit its 31 bits.
 constexpr double kFineSteps = 1048576.0;
 
+/// Sine of the turn from which a corner is one.
+constexpr double kStraight = 1e-6;
+
+/// True for polygons that turn left at every corner and go round once.
+bool is_convex(std::span<const Point2> points, const std::vector<std::uint32_t>& loop) {
+  const std::size_t n = loop.size();
+  if (n < 3) return false;
+  double turned = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point2 a = points[loop[i]], b = points[loop[(i + 1) % n]], c = points[loop[(i + 2) % n]];
+    const double scale = distance(a, b) * distance(b, c);
+    if (!(cross(a, b, c) > kStraight * scale)) return false;
+    // Directions that turn from below to above the x axis: once a round.
+    turned += (b.y - a.y < 0 || (b.y == a.y && b.x < a.x)) && !(c.y - b.y < 0 || (c.y == b.y && c.x < b.x));
+  }
+  return turned == 1;
+}
+
 }  // namespace
 
 double signed_area(std::span<const Point2> polygon) {
@@ -115,46 +133,61 @@ Outline inset(const Outline& convex, double by) {
 
 std::optional<std::vector<std::vector<std::uint32_t>>> convex_faces(std::span<const Point2> points,
                                                                     std::span<const std::vector<std::uint32_t>> loops) {
+  const auto turns_left = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    const double scale = distance(points[a], points[b]) * distance(points[b], points[c]);
+    return cross(points[a], points[b], points[c]) > kStraight * scale;
+  };
+  if (loops.size() == 1 && is_convex(points, loops[0])) return std::vector<std::vector<std::uint32_t>>{loops[0]};
   std::vector<geometry::Grid2> grid;
   grid.reserve(points.size());
   for (const Point2 p : points) grid.push_back({std::llrint(p.x * kFineSteps), std::llrint(p.y * kFineSteps)});
   const auto triangles = geometry::triangulate(grid, loops);
   if (!triangles) return std::nullopt;
-  std::vector<std::vector<std::uint32_t>> faces;
-  for (const auto& t : *triangles) faces.push_back({t[0], t[1], t[2]});
+
   // Two faces become one wherever their common edge can go and both of its ends stay strictly convex.
-  const auto turns_left = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    const double scale = distance(points[a], points[b]) * distance(points[b], points[c]);
-    return cross(points[a], points[b], points[c]) > 1e-6 * scale;
+  std::vector<std::vector<std::uint32_t>> faces;
+  struct Side {
+    std::uint32_t from, to, face;
   };
-  const auto joined = [&](const std::vector<std::uint32_t>& f,
-                          const std::vector<std::uint32_t>& g) -> std::vector<std::uint32_t> {
-    for (std::size_t i = 0; i < f.size(); ++i)
-      for (std::size_t j = 0; j < g.size(); ++j) {
-        const std::uint32_t a = f[i], b = f[(i + 1) % f.size()];
-        if (g[j] != b || g[(j + 1) % g.size()] != a) continue;
-        // f from b round to a, then g's corners between a and b.
-        std::vector<std::uint32_t> out;
-        for (std::size_t k = 0; k < f.size(); ++k) out.push_back(f[(i + 1 + k) % f.size()]);
-        for (std::size_t k = 2; k < g.size(); ++k) out.push_back(g[(j + k) % g.size()]);
-        const std::size_t n = out.size(), at_a = f.size() - 1;
-        if (!turns_left(out[n - 1], out[0], out[1])) return {};
-        if (!turns_left(out[at_a - 1], out[at_a], out[(at_a + 1) % n])) return {};
-        return out;
-      }
-    return {};
+  std::vector<Side> sides;
+  for (std::uint32_t f = 0; f < triangles->size(); ++f) {
+    const auto& t = (*triangles)[f];
+    faces.push_back({t[0], t[1], t[2]});
+    for (std::size_t k = 0; k < 3; ++k) sides.push_back({t[k], t[(k + 1) % 3], f});
+  }
+  std::vector<std::uint32_t> merged_into(faces.size());
+  for (std::uint32_t f = 0; f < faces.size(); ++f) merged_into[f] = f;
+  const auto now = [&](std::uint32_t f) {
+    while (merged_into[f] != f) f = merged_into[f] = merged_into[merged_into[f]];
+    return f;
   };
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    for (std::size_t j = i + 1; j < faces.size();) {
-      std::vector<std::uint32_t> both = joined(faces[i], faces[j]);
-      if (both.empty()) {
-        ++j;
-        continue;
-      }
-      faces[i] = std::move(both);
-      faces.erase(faces.begin() + static_cast<std::ptrdiff_t>(j));
-      j = i + 1;
-    }
+  std::vector<Side> ordered = sides;
+  std::sort(ordered.begin(), ordered.end(),
+            [](const Side& a, const Side& b) { return std::pair(a.from, a.to) < std::pair(b.from, b.to); });
+  for (const Side& s : sides) {
+    if (s.from > s.to) continue;
+    const auto other = std::lower_bound(ordered.begin(), ordered.end(), s, [](const Side& a, const Side& b) {
+      return std::pair(a.from, a.to) < std::pair(b.to, b.from);
+    });
+    if (other == ordered.end() || other->from != s.to || other->to != s.from) continue;
+    const std::uint32_t one = now(s.face), two = now(other->face);
+    if (one == two) continue;
+    const auto &f = faces[one], &g = faces[two];
+    // f from `to` round to `from`, then g's corners between them.
+    const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), s.to) - f.begin());
+    const auto in = static_cast<std::size_t>(std::find(g.begin(), g.end(), s.from) - g.begin());
+    std::vector<std::uint32_t> both;
+    both.reserve(f.size() + g.size() - 2);
+    for (std::size_t k = 0; k < f.size(); ++k) both.push_back(f[(at + k) % f.size()]);
+    for (std::size_t k = 1; k + 1 < g.size(); ++k) both.push_back(g[(in + k) % g.size()]);
+    const std::size_t n = both.size(), end = f.size() - 1;
+    if (!turns_left(both[n - 1], both[0], both[1])) continue;
+    if (!turns_left(both[end - 1], both[end], both[(end + 1) % n])) continue;
+    faces[one] = std::move(both);
+    faces[two].clear();
+    merged_into[two] = one;
+  }
+  std::erase_if(faces, [](const auto& f) { return f.empty(); });
   return faces;
 }
 

@@ -327,8 +327,9 @@ tl::expected<Sweep, std::string> sweep(const Profile& profile, std::span<const P
         return l > 2.5 * out_of_wall ? plus(end, times(d, out_of_wall / l)) : end;
       };
       const std::size_t n = corners.size();
-      if (s.gap_before) path.path.front() = corners[0].at = step_back(corners[0].at, corners[1].at);
-      if (s.gap_after) path.path.back() = corners[n - 1].at = step_back(corners[n - 1].at, corners[n - 2].at);
+      if (s.gap_before) s.points.front() = corners[0].at = step_back(corners[0].at, corners[1].at);
+      if (s.gap_after) s.points.back() = corners[n - 1].at = step_back(corners[n - 1].at, corners[n - 2].at);
+      path.path = s.points;
       const auto into = [](Point2 d) { return times(right_of(d), -2 * kApart / length(d)); };
       path.path.insert(path.path.begin(), plus(corners[0].at, into(minus(corners[1].at, corners[0].at))));
       path.path.push_back(plus(corners[n - 1].at, into(minus(corners[n - 1].at, corners[n - 2].at))));

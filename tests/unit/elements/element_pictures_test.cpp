@@ -133,7 +133,8 @@ struct Shown {
 /// What the figure of a kind shows beside its default: left to right.
 std::vector<Shown> shown_of(const ElementKind& kind) {
   const double w = kind.usual_width, h = kind.usual_height;
-  const auto full = Parameter{"detail", 2.0};
+  const char* const detail = std::getenv("ELEMENTS_DETAIL");
+  const auto full = Parameter{"detail", detail ? std::atof(detail) : 2.0};
   const std::string n = kind.name;
   if (n == "casement_window")
     return {{w, h, {full}},
@@ -202,7 +203,8 @@ std::vector<Shown> shown_of(const ElementKind& kind) {
   return {{w, h, {full}}};
 }
 
-/// With ELEMENTS_PICTURES=<folder>: a PNG per kind, and cornice_chain.png for sweeps.
+/// With ELEMENTS_PICTURES=<folder>: a PNG per kind, and cornice_chain.png for sweeps. ELEMENTS_KIND limits it to one,
+/// ELEMENTS_DETAIL shows another level of detail than 2.
 TEST(ElementPictures, WritesFigures) {
   const char* const folder = std::getenv("ELEMENTS_PICTURES");
   if (!folder) GTEST_SKIP() << "ELEMENTS_PICTURES names no folder";

@@ -227,7 +227,8 @@ TEST(AllKinds, EveryParameterCounts) {
       {"upper_upright_bars", {{"transom", 0.6}}},
       {"bar", {{"bars", 1.0}, {"upright_bars", 1.0}}},
       {"door_width", {{"door", "left"}}},
-      {"fanlight", {{"rise", 0.3}}}, {"detail", {{"head", "round"}}},
+      {"fanlight", {{"rise", 0.3}}},
+      {"detail", {{"head", "round"}}},
       {"upright_bars", {{"rise", 0.3}}},
   };
   for (const ElementKind& kind : element_kinds())

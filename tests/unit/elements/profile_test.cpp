@@ -9,6 +9,7 @@
 #include <set>
 
 #include "pipeline/base/error.h"
+#include "pipeline/base/random.h"
 #include "styles/elements/mesh_builder.h"
 #include "styles/elements/profile_library.h"
 
@@ -93,6 +94,41 @@ TEST(ProfileLanguage, TellsWhereAProgramIsWrong) {
   std::string endless = "Modifications {";
   for (int i = 0; i < 2000; ++i) endless += "line, rel, 1, 1;";
   EXPECT_THAT(error((endless + "}").c_str()), HasSubstr("more than 1000 commands"));
+}
+
+TEST(ProfileLanguage, AnyBytesEndInAProfileOrAnError) {
+  const std::string golden = kGolden;
+  int parsed_well = 0;
+  for (std::uint64_t seed = 0; seed < 20000; ++seed) {
+    std::string text = golden;
+    const auto draw = [&](std::uint64_t n, std::uint64_t below) { return base::random_bits(seed, n, "bytes") % below; };
+    const std::uint64_t changes = 1 + draw(0, 4);
+    for (std::uint64_t k = 1; k <= changes; ++k) {
+      const std::size_t at = draw(10 * k, text.size());
+      switch (draw(10 * k + 1, 3)) {
+        case 0:
+          text[at] = static_cast<char>(draw(10 * k + 2, 256));
+          break;
+        case 1:
+          text.erase(at, 1 + draw(10 * k + 3, 5));
+          break;
+        default:
+          text.insert(at, text.substr(draw(10 * k + 4, text.size()), draw(10 * k + 5, 12)));
+      }
+    }
+    const auto program = parse_profile(text);
+    if (!program) {
+      EXPECT_FALSE(program.error().message.empty());
+      continue;
+    }
+    ++parsed_well;
+    const Profile profile = trace(*program, 3);
+    const auto section = section_of(scaled_to_height(profile, 0.5, 1));
+    if (section) {
+      EXPECT_TRUE(is_simple(*section)) << text;
+    }
+  }
+  EXPECT_GT(parsed_well, 300);
 }
 
 TEST(Profile, ScalesEvenlyUntilTheCap) {
