@@ -61,8 +61,9 @@ Made make_console(const Request&, Element&);
 /// The generator of a kind, parallel to element_kinds().
 std::span<const Generator> generators();
 
-/// Straight pieces of a segmental head and of a quarter circle of a moulding at a level of detail.
-inline int chords_at(int detail) { return detail == 0 ? 2 : detail == 1 ? 4 : 8; }
+/// Straight pieces of a segmental head over an opening (m wide), and of a quarter circle of a moulding, at a level of
+/// detail. Gateways and shop fronts show their arcs more than windows do.
+inline int chords_at(int detail, double width) { return detail == 0 ? 2 : detail == 2 ? 8 : width > 1.6 ? 6 : 4; }
 inline int arc_steps_at(int detail) { return detail == 2 ? 5 : 2; }
 
 }  // namespace blockrand::elements

@@ -114,7 +114,7 @@ OpeningShape opening_shape(const Request& r) {
                                      : Head::straight;
     shape.rise = r.values.number("rise");
   }
-  shape.chords = chords_at(r.values.detail());
+  shape.chords = chords_at(r.values.detail(), r.width);
   return shape;
 }
 

@@ -132,6 +132,11 @@ TEST_P(RandomElements, KeepTheirPromises) {
     ASSERT_NEAR(hole.width(), w, 0.0015) << what;
     ASSERT_NEAR(hole.height(), h, 0.001) << what;
     ASSERT_EQ(hole.least.y, 0) << what;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      ASSERT_EQ(model::snap(outline[i]), outline[i]) << what;
+      const model::Point2 a = outline[i], b = outline[(i + 1) % outline.size()], c = outline[(i + 2) % outline.size()];
+      ASSERT_GT((b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x), 0) << what << ": convex";
+    }
     // Behind the reveal everything stays within the opening; before it only trim leaves it.
     for (const ElementFace& f : mesh.faces)
       for (std::uint32_t i = 0; i < f.count; ++i) {

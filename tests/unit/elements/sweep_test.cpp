@@ -205,6 +205,27 @@ TEST(Sweep, RandomChainsGiveSoundBodies) {
   EXPECT_GE(sound, all * 85 / 100) << all;
 }
 
+TEST(Sweep, FarFromTheOriginIsTheSame) {
+  // A house in UTM coordinates.
+  const double east = 391234.5, north = 5819876.25;
+  const std::vector<Point2> house{
+      {east, north}, {east + 12.3, north + 4.1}, {east + 9, north + 15}, {east - 3, north + 11}};
+  std::vector<Point2> near;
+  for (const Point2 p : house) near.push_back({p.x - east, p.y - north});
+  const auto far_made = sweep(band(), house, true), near_made = sweep(band(), near, true);
+  ASSERT_TRUE(far_made.has_value() && near_made.has_value());
+  ASSERT_EQ(far_made->mesh.vertices.size(), near_made->mesh.vertices.size());
+  EXPECT_EQ(far_made->mesh.indices, near_made->mesh.indices);
+  for (std::size_t i = 0; i < near_made->mesh.vertices.size(); ++i) {
+    const Point3 a = far_made->mesh.vertices[i], b = near_made->mesh.vertices[i];
+    EXPECT_NEAR(a.x - east, b.x, 1e-7);
+    EXPECT_NEAR(a.z + north, b.z, 1e-7);
+  }
+  const auto bodies = checks::bodies(far_made->mesh);
+  ASSERT_EQ(bodies.size(), 1u);
+  EXPECT_TRUE(bodies[0].closed);
+}
+
 TEST(Sweep, RefusesWhatIsNoChain) {
   EXPECT_FALSE(sweep(band(), std::vector<Point2>{{0, 0}}, false).has_value());
   EXPECT_FALSE(sweep(band(), std::vector<Point2>{{0, 0}, {0, 0}}, false).has_value());
