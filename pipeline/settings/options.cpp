@@ -103,6 +103,9 @@ struct Format {
 constexpr Format kFormats[] = {{"gltf", &region::BuildOptions::gltf},         {"citygml", &region::BuildOptions::citygml},
                                {"cityjson", &region::BuildOptions::cityjson}, {"gpkg", &region::BuildOptions::geopackage}};
 
+const std::vector<std::pair<std::string, export_::Instancing>> kInstancings = {
+    {"ext", export_::Instancing::ext}, {"nodes", export_::Instancing::nodes}, {"baked", export_::Instancing::baked}};
+
 void set_formats(Settings& s, const std::string& text) {
   std::vector<std::pair<std::string, bool region::BuildOptions::*>> names;
   for (const Format& f : kFormats) names.emplace_back(f.name, f.field);
@@ -294,9 +297,19 @@ void add_build(Table& t) {
              .argument = "N",
              .section = S,
              .minimum = 0,
-             .maximum = 2,
-             .help = "highest level of detail: 0 footprints, 1 blocks, 2 roofs"},
+             .maximum = 3,
+             .help = "highest level of detail: 0 footprints, 1 blocks, 2 roofs, 3 facades with windows and doors"},
             FIELD(build.lod));
+  t.other({.name = "instancing",
+           .key = "instancing",
+           .argument = "HOW",
+           .type = OptionType::text,
+           .section = S,
+           .help = "how GLBs of level 3 hold windows and ornaments: ext stores each once and places it (EXT_mesh_gpu_instancing), nodes "
+                   "makes a node of each place for programs without that, baked makes triangles of all",
+           .choices = names_of(kInstancings)},
+          [](Settings& s, const std::string& text) { s.build.instancing = choose(text, kInstancings); },
+          [](const Settings& s) { return name_of(kInstancings, s.build.instancing); });
   t.other(
       {.name = "bbox",
        .key = "bbox",
