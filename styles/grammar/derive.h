@@ -23,6 +23,8 @@ struct DeriveLimits {
   std::size_t shapes = 100000;          ///< shapes with a symbol, of all levels
   std::uint32_t depth = 1024;           ///< from the start rule down
   std::uint32_t function_depth = 1024;  ///< of functions that call functions
+  std::size_t pieces = 1000000;         ///< of blocks, with symbols or without
+  std::size_t calls = 10000000;         ///< of the file's own functions, so that none runs for hours
   std::size_t diagnostics = 1000;       ///< told; further ones are counted only
 };
 

@@ -8,6 +8,7 @@
 
 #include "derive_support.h"
 #include "styles/grammar/measure.h"
+#include "styles/grammar/run.h"
 
 namespace blockrand::grammar {
 namespace {
@@ -61,7 +62,8 @@ TEST(Seeds, TheSameSeedGivesTheSameModelAndAnotherOneAnother) {
 TEST(Seeds, RulesOfOneSubtreeDoNotTouchTheOther) {
   const auto right = [](const std::string& left_rules, std::uint64_t seed) {
     const auto d = derive_text(
-        "Lot --> split(x){ '0.5 : A | '0.5 : B }\nB --> split(x){ ~1 : C }*\nC --> print(rand) C2\nC2 --> 50% : D. else : E.\n" +
+        "Lot --> split(x){ '0.5 : A | '0.5 : B }\nB --> split(x){ ~1 : C }*\nC --> print(rand) C2\nC2 --> 50% : D. "
+        "else : E.\n" +
             left_rules,
         rectangle(10, 20), seeded(seed));
     std::string out = prints_text(d);
@@ -244,6 +246,20 @@ TEST(Rules, ComponentsAsFunction) {
   EXPECT_EQ(prints("Lot --> extrude(5) print(size(comp(e){ all = rand }))"), "12");
 }
 
+TEST(Names, WhatTheTableSaysIsTrue) {
+  const BuiltInActions& actions = built_in_actions();
+  for (const BuiltIn& entry : built_ins()) {
+    const std::uint32_t number = built_in_number(entry);
+    if (entry.kind == NameKind::operation) {
+      const bool runs = actions.operations[number] != nullptr || actions.special_steps[number] != &Run::step_not_yet;
+      EXPECT_EQ(runs, entry.status != Status::not_yet) << entry.name;
+    }
+    if (entry.kind == NameKind::function && entry.status != Status::not_yet) {
+      EXPECT_TRUE(actions.special_functions[number] != nullptr || !actions.functions[number].empty()) << entry.name;
+    }
+  }
+}
+
 TEST(Orders, CarryTheirArgumentsAndTheShape) {
   const auto d = derive_text(
       "Lot --> split(x){ 4 : blockrand.window(\"double_casement\", \"head\", \"segmental\", \"bars\", 1 + 1) | ~1 : B. "
@@ -325,6 +341,28 @@ TEST(Errors, EndlessFunctionsEnd) {
   EXPECT_EQ(lengths(d), "B 10");
   const auto nested = derive_text("f(n) = [f([n+1][0])+1][0]\nLot --> print(f(0)) B.", rectangle(10, 20));
   EXPECT_EQ(lengths(nested), "B 10");
+}
+
+TEST(Errors, NothingTakesForeverOrAllMemory) {
+  DeriveOptions options;
+  options.limits.calls = 10000;
+  options.limits.pieces = 1000;
+  const auto calls = derive_text("f(n) = f(n - 1) + f(n - 1)\nLot --> print(f(1)) B.", rectangle(10, 20), options);
+  EXPECT_EQ(places(calls, "too_many_calls").size(), 1u);
+  EXPECT_EQ(lengths(calls), "B 10");
+  const auto pieces =
+      derive_text("Lot --> split(x){ ~0.1 : split(z){ ~0.1 : s('1,1,'1) }* }* B.", rectangle(10, 20), options);
+  EXPECT_EQ(places(pieces, "too_many_pieces").size(), 1u);
+  EXPECT_LE(pieces.leaves.size(), 1001u);
+  const auto text = derive_text(
+      "double(s, n) = case n == 0 : s else : double(s + s, n - 1)\nLot --> print(len(double(\"ab\", 100))) B.",
+      rectangle(10, 20));
+  EXPECT_FALSE(places(text, "type").empty());
+  EXPECT_EQ(lengths(text), "B 10");
+  const auto array = derive_text(
+      "double(s, n) = case n == 0 : s else : double([s, s], n - 1)\nLot --> print(size(double([1], 100))) B.",
+      rectangle(10, 20));
+  EXPECT_EQ(lengths(array), "B 10");
 }
 
 TEST(Errors, HaveTheirPlace) {
