@@ -352,7 +352,7 @@ TEST(Errors, NothingTakesForeverOrAllMemory) {
   EXPECT_EQ(lengths(calls), "B 10");
   const auto pieces =
       derive_text("Lot --> split(x){ ~0.1 : split(z){ ~0.1 : s('1,1,'1) }* }* B.", rectangle(10, 20), options);
-  EXPECT_EQ(places(pieces, "too_many_pieces").size(), 1u);
+  EXPECT_FALSE(places(pieces, "too_many_pieces").empty());
   EXPECT_LE(pieces.leaves.size(), 1001u);
   const auto text = derive_text(
       "double(s, n) = case n == 0 : s else : double(s + s, n - 1)\nLot --> print(len(double(\"ab\", 100))) B.",
