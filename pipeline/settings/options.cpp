@@ -264,6 +264,43 @@ void add_build(Table& t) {
            .several = true},
           [](Settings& s, const std::string& text) { s.files.push_back(text); },
           [](const Settings& s) { return s.files.empty() ? "" : fmt::format("{}", fmt::join(s.files, " ")); });
+  t.other({.name = "TASK",
+           .argument = "TASK",
+           .section = S,
+           .commands = kGrammar,
+           .help = "check or import",
+           .if_missing = "no TASK is given: check or import.",
+           .choices = {"check", "import"}},
+          [](Settings& s, const std::string& text) {
+            s.task = choose<std::string>(text, {{"check", "check"}, {"import", "import"}});
+          },
+          [](const Settings& s) { return s.task; });
+  t.other({.name = "RULES",
+           .argument = "RULES",
+           .type = OptionType::path,
+           .section = S,
+           .commands = kGrammar,
+           .help = "check: rule files; import: a file of facade rules in XML",
+           .several = true,
+           .if_missing = "no RULES are given: name rule files."},
+          [](Settings& s, const std::string& text) { s.rule_files.push_back(text); },
+          [](const Settings& s) { return s.rule_files.empty() ? "" : fmt::format("{}", fmt::join(s.rule_files, " ")); });
+  t.other({.name = "roots",
+           .argument = "LIST",
+           .type = OptionType::list,
+           .section = S,
+           .commands = kGrammar,
+           .help = "folders, separated by commas, in which imported files are looked for besides the importing file's; "
+                   "/PREFIX=FOLDER: where paths that begin with /PREFIX lie"},
+          [](Settings& s, const std::string& text) {
+            s.rule_roots.clear();
+            for (std::size_t at = 0; at <= text.size();) {
+              const std::size_t end = std::min(text.find(',', at), text.size());
+              if (end > at) s.rule_roots.push_back(text.substr(at, end - at));
+              at = end + 1;
+            }
+          },
+          [](const Settings& s) { return fmt::format("{}", fmt::join(s.rule_roots, ",")); });
   t.text({.name = "ID",
           .argument = "ID",
           .section = S,
@@ -277,10 +314,10 @@ void add_build(Table& t) {
           .argument = "FOLDER",
           .type = OptionType::folder,
           .section = S,
-          .commands = kBuild | kCompare | kDistricts,
-          .help = "folder that is written; it appears when everything in it is complete; districts diff: a file",
+          .commands = kBuild | kCompare | kDistricts | kGrammar,
+          .help = "folder that is written; it appears when everything in it is complete; districts diff, grammar import: a file",
           .if_missing = "no output folder is given: name one with --output FOLDER.",
-          .optional_for = kCompare | kDistricts},
+          .optional_for = kCompare | kDistricts | kGrammar},
          FIELD(build.output));
   t.other(
       {.name = "formats",
@@ -445,7 +482,7 @@ void add_build(Table& t) {
           .commands = kBuild | kDistricts,
           .help = "folder with defaults/ and materials/; else the configs/ that came with the program"},
          FIELD(build.configs));
-  t.flag({.name = "force", .section = S, .commands = kBuild | kCompare | kDistricts, .help = "replace an existing build, comparison or map"},
+  t.flag({.name = "force", .section = S, .commands = kBuild | kCompare | kDistricts | kGrammar, .help = "replace an existing build, comparison, map or file"},
          FIELD(build.force));
   t.text({.name = "config",
           .argument = "FILE.toml",
@@ -825,7 +862,7 @@ void add_compare(Table& t) {
 
 void add_messages(Table& t) {
   constexpr auto S = Section::messages;
-  constexpr unsigned all = kBuild | kInfo | kValidate | kCompare | kDistricts;
+  constexpr unsigned all = kBuild | kInfo | kValidate | kCompare | kDistricts | kGrammar;
   t.other(
       {.name = "progress",
        .argument = "STYLE",
@@ -884,6 +921,7 @@ std::string_view name(Commands command) {
     case kValidate: return "validate";
     case kCompare: return "compare";
     case kDistricts: return "districts";
+    case kGrammar: return "grammar";
   }
   return "";
 }

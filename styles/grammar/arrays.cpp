@@ -51,7 +51,7 @@ tl::expected<std::vector<long long>, std::string> places(const Value& index) {
       if (mask->items[i]) out.push_back(static_cast<long long>(i));
   } else {
     return failure("an index is a number, an array of numbers or of truth values, not a " +
-                          std::string(type_name(type_of(index))));
+                   std::string(type_name(type_of(index))));
   }
   return out;
 }
@@ -107,6 +107,12 @@ ValueResult joined_rows(std::span<const std::vector<Value>> rows) {
     done.push_back(std::move(line));
   }
   if (columns * total_rows > kMostArrayItems) return failure("the array has too many elements");
+  if constexpr (std::is_same_v<T, std::string>) {
+    std::size_t bytes = 0;
+    for (const Array<T>& line : done)
+      for (const std::string& item : line.items) bytes += item.size();
+    if (bytes > kMostTextBytes) return failure("the texts of the array become too long");
+  }
   Array<T> out;
   for (const Array<T>& line : done)
     for (std::size_t y = 0; y < line.rows(); ++y)
@@ -158,8 +164,8 @@ ValueResult make_array(std::span<const std::vector<Value>> rows) {
     for (const Value& value : row) {
       const Type found = item_type(type_of(value));
       if (type && *type != found)
-        return failure("an array holds " + std::string(type_name(*type)) + "s or " +
-                              std::string(type_name(found)) + "s, not both");
+        return failure("an array holds " + std::string(type_name(*type)) + "s or " + std::string(type_name(found)) +
+                       "s, not both");
       type = found;
     }
   switch (type.value_or(Type::number)) {

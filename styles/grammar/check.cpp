@@ -67,7 +67,7 @@ void check_calls(const Checked& c, const CheckOptions& options) {
   for (const Call& call : c.unit.calls) {
     const Target& target = c.module.targets[call.use];
     const std::string_view name = c.unit.name(call.name);
-    if (target.kind == TargetKind::extension) check_extension(c, call, name, options);
+    if (target.kind == TargetKind::extension && !options.extensions.empty()) check_extension(c, call, name, options);
     if (target.kind != TargetKind::operation) continue;
     status(target.index, call.location);
     const BuiltIn& operation = built_ins()[target.index];

@@ -17,7 +17,7 @@ struct ExtensionOperation {
 };
 
 struct CheckOptions {
-  std::vector<ExtensionOperation> extensions;
+  std::vector<ExtensionOperation> extensions;  ///< empty: calls of our own operations are not checked
   /// Operations and functions that run with a fixed answer or not at all are told (as notes and warnings).
   bool tell_status = true;
 };

@@ -23,6 +23,8 @@ struct DeriveLimits {
   std::size_t shapes = 100000;          ///< shapes with a symbol, of all levels
   std::uint32_t depth = 1024;           ///< from the start rule down
   std::uint32_t function_depth = 1024;  ///< of functions that call functions
+  std::size_t pieces = 1000000;         ///< of blocks, with symbols or without
+  std::size_t calls = 10000000;         ///< of the file's own functions, so that none runs for hours
   std::size_t diagnostics = 1000;       ///< told; further ones are counted only
 };
 
@@ -38,7 +40,7 @@ struct DeriveOptions {
   /// building and of a row of houses.
   std::uint64_t building_seed = 0, row_seed = 0;
   /// Attribute values from outside, by qualified name ("h", "roof.h"); ":" in a name counts as "__" (cga.md §4.1).
-  /// Texts are turned into the attribute's type.
+  /// Texts are turned into the attribute's type. Values that the program gives ("building.storeys") may stand here, too.
   std::vector<std::pair<std::string, Value>> attributes;
   AttributeSource source;
   const FileAccess* files = nullptr;

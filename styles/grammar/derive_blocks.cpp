@@ -9,12 +9,15 @@
 namespace blockrand::grammar {
 
 void Run::run_item(NodeId successor, Shape piece, Work& parent, Place& place) {
-  piece.seed = child_seed(parent);
-  piece.draws = 0;
   parent.produced = true;
-  Work inner;
   const Unit& unit = program_.unit(place.module);
   const Successor& item = unit.successors[successor];
+  if (++pieces_ > options_.limits.pieces)
+    return tell(Severity::error, "too_many_pieces", item.location,
+                "there are more than " + std::to_string(options_.limits.pieces) + " pieces; further ones are left out");
+  piece.seed = child_seed(parent);
+  piece.draws = 0;
+  Work inner;
   const bool single =
       item.kind == SuccessorKind::steps && item.steps.count == 1 && unit.steps[item.steps.first].kind == StepKind::call;
   Shape base;

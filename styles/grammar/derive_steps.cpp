@@ -176,6 +176,9 @@ void Run::execute_operation(const Call& call, std::uint32_t number, Work& work, 
   const BuiltInActions& actions = built_in_actions();
   if (const SpecialStep special = actions.special_steps[number]) return (this->*special)(call, work, place);
   const OperationEntry& entry = *actions.operations[number];
+  if (built_ins()[number].status == Status::not_yet)
+    tell(Severity::warning, "not_yet", call.location,
+         "this operation is not there in full: something simple stands in for it", std::string(entry.name));
   evaluate_operation_arguments(call, place);
   const auto given = static_cast<int>(operands_.size());
   if (given < entry.least || given > entry.most)

@@ -238,6 +238,9 @@ Value Run::read_source(const Expression& e, std::string_view name) {
   if (known == source_values_.end()) {
     std::optional<Value> value;
     if (options_.source) value = options_.source(name);
+    if (!value)
+      for (const auto& [given, given_value] : options_.attributes)
+        if (given == name) value = given_value;
     known = source_values_.emplace(std::string(name), std::move(value)).first;
   }
   if (known->second) return *known->second;
@@ -312,6 +315,12 @@ Value Run::call_function(const Expression& e, const Target& found, Place& place)
 
 Value Run::call_own(const Expression& e, const Target& found, Place& place) {
   if (too_deep(e.location)) return 0.0;
+  if (++calls_ > options_.limits.calls) {
+    tell(Severity::error, "too_many_calls", {e.location.file, 0, 0},
+         "functions were called more than " + std::to_string(options_.limits.calls) + " times; 0 is taken from here on",
+         program_.unit(place.module).name(e.name));
+    return 0.0;
+  }
   const std::size_t first = push_arguments(e.arguments, place);
   const std::uint32_t chosen = choose(program_, found, std::span<const Value>(locals_).subspan(first));
   Value out = 0.0;

@@ -93,8 +93,13 @@ const FunctionEntry* choose_overload(std::span<const FunctionEntry> overloads, s
 }
 
 FunctionResult call(const FunctionEntry& entry, std::span<const Value> arguments, FunctionContext& context) {
-  if (entry.takes_nan || std::all_of(arguments.begin(), arguments.end(), is_finite))
-    return entry.run(arguments, context);
+  if (entry.takes_nan || std::all_of(arguments.begin(), arguments.end(), is_finite)) {
+    auto result = entry.run(arguments, context);
+    if (result)
+      if (const auto* text = std::get_if<std::string>(&*result); text != nullptr && text->size() > kMostTextBytes)
+        return failure("the text becomes too long");
+    return result;
+  }
   std::vector<Value> mended(arguments.begin(), arguments.end());
   for (std::size_t i = 0; i < mended.size(); ++i)
     if (make_finite(mended[i]))

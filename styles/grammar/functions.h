@@ -18,6 +18,9 @@ namespace blockrand::grammar {
 /// Most elements of an array (cga.md §4.2).
 inline constexpr std::size_t kMostArrayItems = 100000;
 
+/// Most bytes of a text, and of all texts of an array together: beyond, joining is told as an error.
+inline constexpr std::size_t kMostTextBytes = std::size_t{1} << 20;
+
 /// Size and lowest corner of an asset, in metres.
 struct AssetBox {
   Vector3 size{1, 1, 1};

@@ -44,6 +44,22 @@ BLOCKRAND_OPERATION(run_roof_ridge);
 BLOCKRAND_OPERATION(run_offset);
 // inner_rectangle.cpp
 BLOCKRAND_OPERATION(run_inner_rect);
+// envelope.cpp
+BLOCKRAND_OPERATION(run_envelope);
+// uv_operations.cpp
+BLOCKRAND_OPERATION(run_setup_projection);
+BLOCKRAND_OPERATION(run_project_uv);
+BLOCKRAND_OPERATION(run_tile_uv);
+BLOCKRAND_OPERATION(run_scale_uv);
+BLOCKRAND_OPERATION(run_translate_uv);
+BLOCKRAND_OPERATION(run_rotate_uv);
+BLOCKRAND_OPERATION(run_normalize_uv);
+BLOCKRAND_OPERATION(run_copy_uv);
+BLOCKRAND_OPERATION(run_delete_uv);
+// tag_operations.cpp
+BLOCKRAND_OPERATION(run_tag);
+BLOCKRAND_OPERATION(run_delete_tags);
+BLOCKRAND_OPERATION(run_insert_along_uv);
 // mesh_operations.cpp
 BLOCKRAND_OPERATION(run_reverse_normals);
 BLOCKRAND_OPERATION(run_delete_holes);

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "styles/grammar/arrays.h"
+#include "styles/grammar/functions.h"
 #include "styles/grammar/value_text.h"
 
 namespace blockrand::grammar {
@@ -10,7 +11,7 @@ namespace {
 
 ValueResult wrong(const char* sign, const Value& left, const Value& right) {
   return failure(std::string(sign) + " does not go with a " + std::string(type_name(type_of(left))) + " and a " +
-                        std::string(type_name(type_of(right))));
+                 std::string(type_name(type_of(right))));
 }
 
 template <typename T>
@@ -141,9 +142,12 @@ ValueResult apply_each(Operator op, const Value& left, const Value& right) {
   else if (item_type(type_of(right)) == Type::text)
     type = Type::text;
   Value out = default_value(array_type(type));
+  std::size_t bytes = 0;
   for (std::size_t i = 0; i < count; ++i) {
     auto one = apply_binary(plain, item(left, i), item(right, i));
     if (!one) return one;
+    if (const auto* text = std::get_if<std::string>(&*one)) bytes += text->size();
+    if (bytes > kMostTextBytes) return failure("the texts become too long");
     if (auto* numbers = std::get_if<NumberArray>(&out))
       numbers->items.push_back(std::get<double>(*one));
     else if (auto* truths = std::get_if<TruthArray>(&out))
@@ -189,8 +193,11 @@ ValueResult apply_binary(Operator op, const Value& left, const Value& right) {
   }
   if (op >= Operator::each_add) return apply_each(op, left, right);
   const Type type = type_of(left);
-  if (op == Operator::add && (type == Type::text || type_of(right) == Type::text))
-    return Value(value_text(left) + value_text(right));
+  if (op == Operator::add && (type == Type::text || type_of(right) == Type::text)) {
+    std::string joined = value_text(left) + value_text(right);
+    if (joined.size() > kMostTextBytes) return failure("the text becomes too long");
+    return Value(std::move(joined));
+  }
   if (type == type_of(right)) {
     if (type == Type::truth) {
       const bool x = std::get<bool>(left), y = std::get<bool>(right);

@@ -44,8 +44,9 @@ void Parser::expect(K kind, const char* what, std::string_view suggestion) {
   if (!accept(kind)) fail(token(), "syntax", "expected " + std::string(what) + ", found", suggestion);
 }
 
-void Parser::fail(const Token& t, const char* code, std::string message, std::string_view) {
-  tell(Severity::error, t, code, std::move(message));
+void Parser::fail(const Token& t, const char* code, std::string message, std::string_view suggestion) {
+  // A single bracket or colon is named by the message already.
+  tell(Severity::error, t, code, std::move(message), suggestion.size() > 1 ? suggestion : std::string_view());
   throw SyntaxError{};
 }
 

@@ -29,6 +29,13 @@ std::optional<SweptPlan> sweep_plan(const FlatFace& face, std::span<const double
   for (const double slope : slopes)
     profiles.push_back(
         {slope >= geometry::kSteepestSlope ? geometry::kUpright : std::max(slope, geometry::kLeastSlope), {}});
+  return sweep_plan(face, std::move(profiles), deck);
+}
+
+std::optional<SweptPlan> sweep_plan(const FlatFace& face, std::vector<geometry::EdgeProfile> profiles,
+                                    std::optional<double> deck) {
+  for (auto& profile : profiles)
+    for (auto& change : profile.changes) change.height *= face.scale;
   const auto skeleton = geometry::weighted_skeleton(face.polygon, profiles,
                                                     deck ? std::optional<double>(*deck * face.scale) : std::nullopt);
   if (!skeleton) return {};

@@ -31,6 +31,10 @@ struct SweptPlan {
 std::optional<SweptPlan> sweep_plan(const FlatFace& face, std::span<const double> slopes,
                                     std::optional<double> deck = {});
 
+/// As above with whole profiles; heights in metres.
+std::optional<SweptPlan> sweep_plan(const FlatFace& face, std::vector<geometry::EdgeProfile> profiles,
+                                    std::optional<double> deck = {});
+
 /// The face with every edge moved outwards by its distance (metres; negative ones inwards) with its corners mitred;
 /// nothing when the result would cross itself. Corners keep their numbers.
 std::optional<FlatFace> expanded(const FlatFace& face, std::span<const double> distances);

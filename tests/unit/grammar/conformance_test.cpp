@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "derive_support.h"
+#include "styles/grammar/insert.h"
 #include "styles/grammar/measure.h"
 #include "styles/grammar/scope.h"
 
@@ -296,6 +297,39 @@ TEST(Conformance, Row33FlatTop) {
     const auto d = derive_text("Lot --> extrude(world.up.flatTop, " + std::string(height) + ") X.", sloped);
     EXPECT_TRUE(has_flat_face_at(leaf(d, "X."), y)) << height;
   }
+}
+
+/// No assets are read: `i` puts a box in their place. So the asset's rule is tried behind `s`, on the shape that `i`
+/// gets.
+TEST(Conformance, Row34InsertedSizes) {
+  const auto inserted = [](const std::string& sizes) {
+    const auto d = derive_text("Lot --> t(0,0,0) s(" + sizes + ") X.", rectangle(10, 20));
+    Shape s = leaf(d, "X.");
+    const Vector3 before = s.scope.origin;
+    Mesh box = cube_mesh();
+    for (Vector3& v : box.vertices) v = {1 + v.x * 3, 1 + v.y * 6, 1 + v.z * 2};
+    insert_asset(s, std::move(box));
+    return std::pair(s.size, s.scope.origin - before);
+  };
+  EXPECT_EQ(inserted("0,0,0"), (std::pair(Vector3{3, 6, 2}, Vector3{1, 1, 1})));
+  EXPECT_EQ(inserted("0,12,0"), (std::pair(Vector3{6, 12, 4}, Vector3{2, 0, 2})));
+  EXPECT_EQ(inserted("9,9,0"), (std::pair(Vector3{9, 9, 4.5}, Vector3{0, 0, 0})));
+  const auto placeholder = derive_text("Lot --> s(2,3,4) i(\"assets/column.obj\") X.", rectangle(10, 20));
+  EXPECT_EQ(size_text(leaf(placeholder, "X.")), "2 3 4");
+  EXPECT_NEAR(geometry_volume(leaf(placeholder, "X.")), 24, kTolerance);
+}
+
+/// Row 40 asks what touches what. Context functions give their default answers (false), so both walls are Blue; when
+/// they look at the scene, the first line becomes 1 and the second 1.
+TEST(Conformance, Row40ContextHasDefaultAnswers) {
+  const auto d = derive_text(
+      "Lot --> split(x){ '0.5 : A | '0.5 : B }\n"
+      "A --> extrude(10) comp(f){ right : Q | left : Q | all : X. }\n"
+      "B --> extrude(10) comp(f){ all : X. }\n"
+      "Q --> case touches(intra) : Red. else : Blue.",
+      rectangle(10, 10));
+  EXPECT_EQ(count(d, "Red."), 0u);
+  EXPECT_EQ(count(d, "Blue."), 2u);
 }
 
 TEST(Conformance, Row35CenterAndPivot) {

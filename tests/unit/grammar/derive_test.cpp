@@ -8,6 +8,7 @@
 
 #include "derive_support.h"
 #include "styles/grammar/measure.h"
+#include "styles/grammar/run.h"
 
 namespace blockrand::grammar {
 namespace {
@@ -61,7 +62,8 @@ TEST(Seeds, TheSameSeedGivesTheSameModelAndAnotherOneAnother) {
 TEST(Seeds, RulesOfOneSubtreeDoNotTouchTheOther) {
   const auto right = [](const std::string& left_rules, std::uint64_t seed) {
     const auto d = derive_text(
-        "Lot --> split(x){ '0.5 : A | '0.5 : B }\nB --> split(x){ ~1 : C }*\nC --> print(rand) C2\nC2 --> 50% : D. else : E.\n" +
+        "Lot --> split(x){ '0.5 : A | '0.5 : B }\nB --> split(x){ ~1 : C }*\nC --> print(rand) C2\nC2 --> 50% : D. "
+        "else : E.\n" +
             left_rules,
         rectangle(10, 20), seeded(seed));
     std::string out = prints_text(d);
@@ -244,6 +246,20 @@ TEST(Rules, ComponentsAsFunction) {
   EXPECT_EQ(prints("Lot --> extrude(5) print(size(comp(e){ all = rand }))"), "12");
 }
 
+TEST(Names, WhatTheTableSaysIsTrue) {
+  const BuiltInActions& actions = built_in_actions();
+  for (const BuiltIn& entry : built_ins()) {
+    const std::uint32_t number = built_in_number(entry);
+    if (entry.kind == NameKind::operation) {
+      const bool runs = actions.operations[number] != nullptr || actions.special_steps[number] != &Run::step_not_yet;
+      EXPECT_TRUE(runs || entry.status == Status::not_yet) << entry.name;
+    }
+    if (entry.kind == NameKind::function && entry.status != Status::not_yet) {
+      EXPECT_TRUE(actions.special_functions[number] != nullptr || !actions.functions[number].empty()) << entry.name;
+    }
+  }
+}
+
 TEST(Orders, CarryTheirArgumentsAndTheShape) {
   const auto d = derive_text(
       "Lot --> split(x){ 4 : blockrand.window(\"double_casement\", \"head\", \"segmental\", \"bars\", 1 + 1) | ~1 : B. "
@@ -325,6 +341,72 @@ TEST(Errors, EndlessFunctionsEnd) {
   EXPECT_EQ(lengths(d), "B 10");
   const auto nested = derive_text("f(n) = [f([n+1][0])+1][0]\nLot --> print(f(0)) B.", rectangle(10, 20));
   EXPECT_EQ(lengths(nested), "B 10");
+}
+
+/// Rule files that were typed carelessly: letters lost, doubled, exchanged, lines moved.
+TEST(Errors, DamagedRulesNeitherCrashNorHang) {
+  const std::string whole_text =
+      std::string(kTown) +
+      "Extra(n) --> [ t(1,'0.5,0) r(0,45,0) roofHip(30) comp(e){ ridge : X. | all = Y. } ]\n"
+      "  setback(1){ front : A. | remainder : scatter(surface, 3, uniform){ P. } }\n"
+      "g(a) = [1:3; a, 2, size([a])] .* 2\n"
+      "Roof --> roofGable(40, 0.5) split(y){ '0.5 : offset(-1) Extra(1) | ~1 : Extra(rand) }\n";
+  std::uint64_t state = 1;
+  const auto next = [&](std::size_t below) {
+    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<std::size_t>((state >> 33) % below);
+  };
+  DeriveOptions options;
+  options.limits.shapes = 500;
+  options.limits.pieces = 2000;
+  options.limits.calls = 10000;
+  options.limits.depth = 60;
+  std::size_t leaves = 0;
+  for (int round = 0; round < 600; ++round) {
+    std::string text = whole_text;
+    for (std::size_t edit = 0; edit <= next(3); ++edit) {
+      const std::size_t at = next(text.size());
+      switch (next(4)) {
+        case 0:
+          text.erase(at, 1 + next(3));
+          break;
+        case 1:
+          text.insert(at, text.substr(next(text.size()), 1 + next(12)));
+          break;
+        case 2:
+          text[at] = "(){}[]|:~'*%+-/.,\"=<>aT0 1\n"[next(29)];
+          break;
+        default:
+          std::swap(text[at], text[next(text.size())]);
+          break;
+      }
+    }
+    options.seed = static_cast<std::uint64_t>(round);
+    leaves += derive(load_text(text), rectangle(6, 8), options).leaves.size();
+  }
+  EXPECT_GT(leaves, 10000u) << "most of each file still runs";
+}
+
+TEST(Errors, NothingTakesForeverOrAllMemory) {
+  DeriveOptions options;
+  options.limits.calls = 10000;
+  options.limits.pieces = 1000;
+  const auto calls = derive_text("f(n) = f(n - 1) + f(n - 1)\nLot --> print(f(1)) B.", rectangle(10, 20), options);
+  EXPECT_EQ(places(calls, "too_many_calls").size(), 1u);
+  EXPECT_EQ(lengths(calls), "B 10");
+  const auto pieces =
+      derive_text("Lot --> split(x){ ~0.1 : split(z){ ~0.1 : s('1,1,'1) }* }* B.", rectangle(10, 20), options);
+  EXPECT_FALSE(places(pieces, "too_many_pieces").empty());
+  EXPECT_LE(pieces.leaves.size(), 1001u);
+  const auto text = derive_text(
+      "double(s, n) = case n == 0 : s else : double(s + s, n - 1)\nLot --> print(len(double(\"ab\", 100))) B.",
+      rectangle(10, 20));
+  EXPECT_FALSE(places(text, "type").empty());
+  EXPECT_EQ(lengths(text), "B 10");
+  const auto array = derive_text(
+      "double(s, n) = case n == 0 : s else : double([s, s], n - 1)\nLot --> print(size(double([1], 100))) B.",
+      rectangle(10, 20));
+  EXPECT_EQ(lengths(array), "B 10");
 }
 
 TEST(Errors, HaveTheirPlace) {
