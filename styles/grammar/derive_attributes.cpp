@@ -95,7 +95,12 @@ void Run::evaluate_slot(std::uint32_t index) {
   if (!found && slot.value != kNone && !too_deep(declaration.location)) {
     // A stream of random numbers of its own: no attribute disturbs another, nor the shape (cga.md §4.1, 3).
     Shape shape = *phase.shape;
-    shape.seed = base::random_bits(shape.seed, 0, slot.name);
+    // @Consistent before an attribute: one value in all derivations of a building, or of a row.
+    const Consistency consistency = facts_[slot.definition].consistency;
+    shape.seed = base::random_bits(consistency == Consistency::row        ? options_.row_seed
+                                   : consistency == Consistency::building ? options_.building_seed
+                                                                          : shape.seed,
+                                   0, slot.name);
     shape.draws = 0;
     const std::size_t frame = locals_.size();
     Place place{slot.module, frame, &shape, nullptr, false, nullptr};
