@@ -200,7 +200,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const classify::Tables tables = classify::Tables::read(options.configs);
   ReadRuleBook rules = read_rule_book(options.configs, options.districts);
   std::optional<generate::GrammarBook> grammars;
-  if (options.lod >= 3) grammars = read_grammars(options.configs, rules);
+  if (options.lod >= 3) grammars.emplace(read_grammars(options.configs, rules));
   generate::Overrides overrides;
   if (!options.overrides.empty()) {
     generate::OverrideNames names{{}, rules.book.substyles};
