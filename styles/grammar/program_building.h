@@ -36,7 +36,16 @@ struct Scope {
 struct Building {
   Program& program;
   std::vector<Scope> scopes;  ///< by module
+  /// Looking for what may have been meant costs as much as there are names: a broken file is not searched without end.
+  int suggestions_left = 200;
+
+  std::string_view suggestion(std::string_view word, std::span<const std::string_view> known) {
+    return --suggestions_left < 0 ? std::string_view() : nearest_name(word, known);
+  }
 };
+
+/// Declarations of one name, of which types choose; more are told.
+inline constexpr std::size_t kMostOverloads = 64;
 
 /// What a name means from a module on, prefixes followed; nullptr: nothing. `missing` is set where an import that could
 /// not be read stands in the way.
