@@ -237,9 +237,7 @@ Result run_convexify(Shape& shape, const OperationInput&, Arguments arguments) {
                 for (std::size_t m = 0; m < ring.size() && good; ++m)
                   good = turn_at(ring[m], ring[(m + 1) % ring.size()], ring[(m + 2) % ring.size()]) >= -1e-9;
               } else {  // a ring round a hole would touch itself
-                std::vector<std::uint32_t> sorted = ring;
-                std::sort(sorted.begin(), sorted.end());
-                good = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+                good = std::set<std::uint32_t>(ring.begin(), ring.end()).size() == ring.size();
               }
               if (!good) continue;
               parts[a] = std::move(ring);
