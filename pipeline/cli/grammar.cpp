@@ -15,6 +15,7 @@
 #include "pipeline/base/error.h"
 #include "pipeline/base/text.h"
 #include "pipeline/cli/exit_codes.h"
+#include "pipeline/cli/grammar_run.h"
 #include "pipeline/cli/staged_file.h"
 #include "pipeline/settings/command_line.h"
 #include "styles/grammar/bilke_import.h"
@@ -176,27 +177,42 @@ constexpr Task kTasks[] = {{"check", check}, {"import", import}};
 }  // namespace
 
 settings::CommandText grammar_text() {
-  return {.name = "grammar",
-          .summary = "rule files: checked, and translated from other programs' rules",
-          .usage = "check FILE... | import FILE.xml [-o FILE.cga]",
-          .description =
-              "Rule files (CGA shape, as CityEngine reads them) say how facades are made. 'check' reads rule files "
-              "with all that "
-              "they import and tells what is wrong or looks wrong, with file, line and column. 'import' translates the "
-              "facade "
-              "rules in XML of Bilke's CityGenerator into a rule file.",
-          .options = settings::kGrammar,
-          .examples = {{"blockrand grammar check facade.cga", ""},
-                       {"blockrand grammar check --roots shared,/ESRI.lib=/data/esri rules/*.cga",
-                        "with places for imports"},
-                       {"blockrand grammar import FacadeStructure.xml -o facade.cga", ""}},
-          .exit_codes = {{"0", "all well"},
-                         {"1", "wrong usage"},
-                         {"2", "unreadable or invalid input"},
-                         {"4", "output could not be written or internal error"}}};
+  return {
+      .name = "grammar",
+      .summary = "rule files: checked, run, tested, and translated from other rules",
+      .usage = "check FILE... | run FILE [--lot 12x10] [-o FILE.glb] | test FILE... | import FILE.xml [-o FILE.cga]",
+      .description =
+          "Rule files (CGA shape, as CityEngine reads them) say how facades are made. 'check' reads rule files "
+          "with all that "
+          "they import and tells what is wrong or looks wrong, with file, line and column. 'import' translates the "
+          "facade "
+          "rules in XML of Bilke's CityGenerator into a rule file.\n"
+          "'run' derives a rule file on a rectangular lot and prints what it prints, its reports and its leaves: "
+          "--lot 20x12 (metres), --storeys N (building.storeys and building__levels), --seed N, --attr NAME=VALUE "
+          "(several), --rule NAME (where to begin), --tree (all shapes, not only leaves), --roots LIST, -o FILE.glb "
+          "(the model, a material for each colour). 'test' derives what the comments of rule files expect, lines such "
+          "as '// expect: lot 10x20; leaves W 4; report area sum 1800' (docs/grammar_tests.md), and tells what "
+          "differs.",
+      .options = settings::kGrammar,
+      .examples = {{"blockrand grammar check facade.cga", ""},
+                   {"blockrand grammar check --roots shared,/ESRI.lib=/data/esri rules/*.cga",
+                    "with places for imports"},
+                   {"blockrand grammar run facade.cga --lot 14x11 --storeys 5 --seed 7 -o facade.glb", ""},
+                   {"blockrand grammar test facade.cga", ""},
+                   {"blockrand grammar import FacadeStructure.xml -o facade.cga", ""}},
+      .exit_codes = {{"0", "all well"},
+                     {"1", "wrong usage"},
+                     {"2", "unreadable or invalid input"},
+                     {"4", "output could not be written or internal error"}}};
 }
 
 int run_grammar(const std::vector<std::string>& arguments) {
+  // These two take options of their own, which no other command has (grammar_run.h).
+  if (!arguments.empty() && (arguments[0] == "run" || arguments[0] == "test") &&
+      std::find(arguments.begin(), arguments.end(), "--help") == arguments.end()) {
+    const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
+    return arguments[0] == "run" ? run_grammar_run(rest) : run_grammar_test(rest);
+  }
   const settings::CommandLine line = settings::read_command_line(settings::kGrammar, arguments);
   if (line.help) {
     std::fputs(settings::command_help(grammar_text()).c_str(), stdout);

@@ -25,16 +25,17 @@ struct Corner {
   std::uint16_t edge_tags = 0;  ///< index into Mesh::tag_sets; 0 is none
 };
 
-/// A plane polygon. The first loop is the outline, counter-clockwise seen from where the normal points to; holes follow,
-/// clockwise. The first corner of the outline starts the face's *first edge*, which decides scopes of components
-/// (cga.md §7.2, 2); every operation says which edge is first.
+/// A plane polygon. The first loop is the outline, counter-clockwise seen from where the normal points to; holes
+/// follow, clockwise. The first corner of the outline starts the face's *first edge*, which decides scopes of
+/// components (cga.md §7.2, 2); every operation says which edge is first.
 struct MeshFace {
   std::vector<std::vector<Corner>> loops;
   std::uint16_t tags = 0;      ///< index into Mesh::tag_sets; 0 is none
   std::uint16_t material = 0;  ///< 0: the shape's own material
 };
 
-/// UV coordinates of one set: per face, per loop, per corner, as MeshFace::loops is laid out; empty when the set has none.
+/// UV coordinates of one set: per face, per loop, per corner, as MeshFace::loops is laid out; empty when the set has
+/// none.
 using UvSet = std::vector<std::vector<std::vector<Vector2>>>;
 inline constexpr int kUvSetCount = 10;
 
@@ -44,6 +45,7 @@ struct Mesh {
   std::vector<MeshFace> faces;
   std::array<UvSet, kUvSetCount> uv;
   std::vector<std::vector<std::string>> tag_sets{{}};  ///< entry 0 is the empty set
+  std::string asset;  ///< the stem of the asset's name that this stands for (`i`); empty for everything else
 
   bool empty() const { return faces.empty(); }
 };

@@ -134,6 +134,11 @@ bool is_reserved_prefix(std::string_view name) {
   return std::find(std::begin(kReserved), std::end(kReserved), name) != std::end(kReserved);
 }
 
+bool is_engine_prefix(std::string_view name) {
+  constexpr std::string_view kEngine[] = {"building", "edge", "storey", "roof", "row"};
+  return std::find(std::begin(kEngine), std::end(kEngine), name) != std::end(kEngine);
+}
+
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> known) {
   constexpr std::size_t kLongest = 64;  // No name of the language is longer; what is, has no near one.
   if (word.size() > kLongest) return {};

@@ -101,7 +101,7 @@ constexpr BuiltIn kRows[] = {
     operation("color", "s | n n n n?", b, 247),
     operation("set", "i a", b, 246),
     missing("setMaterial", "S", g),
-    missing("resetMaterial", " | <material_part>", g),
+    operation("resetMaterial", " | <material_part>", g),
     // Telling.
     operation("report", "s v", b, 84),
     operation("print", "a", b, 45),

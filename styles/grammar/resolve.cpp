@@ -386,6 +386,9 @@ class Resolver {
       return;
     }
     const std::size_t dot = name.find('.');
+    if (dot != std::string_view::npos && is_engine_prefix(name.substr(0, dot)) &&
+        scope_.imports.find(name.substr(0, dot)) == scope_.imports.end())
+      return;  // the evaluator asks the program for it
     if (dot != std::string_view::npos && !is_reserved_prefix(name.substr(0, dot)) &&
         scope_.imports.find(name.substr(0, dot)) == scope_.imports.end()) {
       tell(Severity::error, "unknown_import", e.location, "there is no import of this name", name,

@@ -51,22 +51,31 @@ struct ComponentRecord {
   std::int32_t index = -1, total = 0;
 };
 
+/// What stays the same in a whole derivation: where the object stands, and what it was at the start.
+struct Origin {
+  Frame world;                        ///< object coordinates in the world: x east, y up, z south
+  std::vector<double> street_widths;  ///< m by edge of the first face, for street.*; empty when not known, 0: no street
+  std::vector<Vector3> edge_normals;  ///< outward, by edge of the first face, in object coordinates
+};
+
 /// Everything that a rule sees and changes (cga.md §2.0). Copying is cheap: what is large is shared and replaced, never
 /// changed in place.
 struct Shape {
-  Frame pivot;    ///< in object coordinates, the frame of the initial shape
-  Frame scope;    ///< in the pivot's frame: scope.t and scope.r
-  Vector3 size;   ///< m; negative ones are legal
-  MeshPointer mesh;  ///< in the scope's frame and in metres: turning and moving the scope does not touch it. May be null: empty
-  std::shared_ptr<const Material> material;
+  Frame pivot;   ///< in object coordinates, the frame of the initial shape
+  Frame scope;   ///< in the pivot's frame: scope.t and scope.r
+  Vector3 size;  ///< m; negative ones are legal
+  MeshPointer
+      mesh;  ///< in the scope's frame and in metres: turning and moving the scope does not touch it. May be null: empty
+  std::shared_ptr<const Origin> origin;                  ///< may be null: object and world coordinates are the same
+  std::shared_ptr<const Material> material;              ///< may be null: the default material
   std::shared_ptr<const std::vector<Value>> attributes;  ///< every `attr` and `const`, by the program's slot
   std::shared_ptr<const std::vector<TrimPlane>> trim_planes;
   std::shared_ptr<const std::array<Projection, kUvSetCount>> projections;
   bool trim_vertical = true, trim_horizontal = false;
   SplitRecord split;
   ComponentRecord component;
-  std::uint64_t seed = 0;       ///< `seedian`
-  std::uint32_t draws = 0;      ///< random numbers drawn with this seed so far
+  std::uint64_t seed = 0;   ///< `seedian`
+  std::uint32_t draws = 0;  ///< random numbers drawn with this seed so far
 };
 
 }  // namespace blockrand::grammar
