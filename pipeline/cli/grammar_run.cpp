@@ -239,10 +239,7 @@ int run_grammar_run(const std::vector<std::string>& words) {
   if (program.modules.empty()) return kInvalidInput;
   if (arguments.storeys) {
     arguments.options.attributes.emplace_back("building__levels", *arguments.storeys);
-    arguments.options.source = [&](std::string_view name) -> std::optional<grammar::Value> {
-      if (name == "building.storeys") return *arguments.storeys;
-      return std::nullopt;
-    };
+    arguments.options.attributes.emplace_back("building.storeys", *arguments.storeys);
   }
   arguments.options.keep_tree = arguments.tree;
   const grammar::Shape lot = grammar::initial_shape(

@@ -129,6 +129,7 @@ void Run::evaluate_attributes() {
     if (!program_.slots[slot].constant) out_.attributes.emplace_back(program_.slots[slot].name, phase.values[slot]);
   for (const auto& [name, value] : options_.attributes) {
     const std::string wanted = attribute_name(name);
+    if (is_engine_prefix(name.substr(0, name.find('.')))) continue;
     if (std::none_of(program_.slots.begin(), program_.slots.end(), [&](const Slot& s) { return s.name == wanted; }))
       tell(Severity::note, "unused_value", {}, "no attribute of this name takes the value from outside", name);
   }

@@ -238,6 +238,9 @@ Value Run::read_source(const Expression& e, std::string_view name) {
   if (known == source_values_.end()) {
     std::optional<Value> value;
     if (options_.source) value = options_.source(name);
+    if (!value)
+      for (const auto& [given, given_value] : options_.attributes)
+        if (given == name) value = given_value;
     known = source_values_.emplace(std::string(name), std::move(value)).first;
   }
   if (known->second) return *known->second;

@@ -343,6 +343,50 @@ TEST(Errors, EndlessFunctionsEnd) {
   EXPECT_EQ(lengths(nested), "B 10");
 }
 
+/// Rule files that were typed carelessly: letters lost, doubled, exchanged, lines moved.
+TEST(Errors, DamagedRulesNeitherCrashNorHang) {
+  const std::string whole_text =
+      std::string(kTown) +
+      "Extra(n) --> [ t(1,'0.5,0) r(0,45,0) roofHip(30) comp(e){ ridge : X. | all = Y. } ]\n"
+      "  setback(1){ front : A. | remainder : scatter(surface, 3, uniform){ P. } }\n"
+      "g(a) = [1:3; a, 2, size([a])] .* 2\n"
+      "Roof --> roofGable(40, 0.5) split(y){ '0.5 : offset(-1) Extra(1) | ~1 : Extra(rand) }\n";
+  std::uint64_t state = 1;
+  const auto next = [&](std::size_t below) {
+    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<std::size_t>((state >> 33) % below);
+  };
+  DeriveOptions options;
+  options.limits.shapes = 500;
+  options.limits.pieces = 2000;
+  options.limits.calls = 10000;
+  options.limits.depth = 60;
+  std::size_t leaves = 0;
+  for (int round = 0; round < 600; ++round) {
+    std::string text = whole_text;
+    for (std::size_t edit = 0; edit <= next(3); ++edit) {
+      const std::size_t at = next(text.size());
+      switch (next(4)) {
+        case 0:
+          text.erase(at, 1 + next(3));
+          break;
+        case 1:
+          text.insert(at, text.substr(next(text.size()), 1 + next(12)));
+          break;
+        case 2:
+          text[at] = "(){}[]|:~'*%+-/.,\"=<>aT0 1\n"[next(29)];
+          break;
+        default:
+          std::swap(text[at], text[next(text.size())]);
+          break;
+      }
+    }
+    options.seed = static_cast<std::uint64_t>(round);
+    leaves += derive(load_text(text), rectangle(6, 8), options).leaves.size();
+  }
+  EXPECT_GT(leaves, 10000u) << "most of each file still runs";
+}
+
 TEST(Errors, NothingTakesForeverOrAllMemory) {
   DeriveOptions options;
   options.limits.calls = 10000;

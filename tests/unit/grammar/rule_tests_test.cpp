@@ -33,6 +33,7 @@ TEST(RuleTests, Hold) {
       failures("attr height=3; size W. 10 3 0; size W. - - 0; area 180; area W. 180; print 1 1 1 1; lot 10x20", kWalls),
       IsEmpty());
   EXPECT_THAT(failures("lot 10x20; volume 1000; seed 4; rule Box", "First --> X.\nBox --> extrude(5)"), IsEmpty());
+  EXPECT_THAT(failures("attr building.storeys=4; print 4", "Lot --> print(building.storeys)"), IsEmpty());
   EXPECT_THAT(failures("warning no_rule; leaves 1", "Lot --> Unknown"), IsEmpty());
   EXPECT_THAT(failures("error operation; leaves 1", "Lot --> color(\"red\") X."), IsEmpty());
 }
