@@ -296,7 +296,7 @@ class Loader {
   /// Rules that importers redefine: in their import statement, or as `imp.Rule -->`.
   void redefine(std::uint32_t m) {
     // Later ones are put in front, so that the last word wins.
-    for (const detail::Override_& o : building_.scopes[m].overrides) {
+    for (const detail::ImporterOverride& o : building_.scopes[m].overrides) {
       if (o.node.kind != OverrideKind::rule) continue;
       redefine_rule(m, o.module, o.node.declaration, true);
     }
@@ -361,7 +361,7 @@ class Loader {
     if (parent == kNone) return;
     const Module& module = program_.modules[m];
     std::vector<char> own(module.slot_count, scope.protect_all ? 1 : 0);
-    for (const detail::Override_& o : scope.overrides) {
+    for (const detail::ImporterOverride& o : scope.overrides) {
       if (o.node.kind == OverrideKind::rule) continue;
       const std::string& name = program_.unit(o.module).name(o.node.name);
       const auto found = scope.names.find(name);

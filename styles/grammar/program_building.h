@@ -17,7 +17,7 @@ struct Entry {
   bool broken = false;  ///< a declaration of this name could not be read
 };
 
-struct Override_ {
+struct ImporterOverride {
   std::uint32_t module = 0;  ///< the importer
   Override node;
 };
@@ -27,7 +27,7 @@ struct Scope {
   std::unordered_map<std::string_view, Entry> names;            ///< looked up only
   std::unordered_map<std::string_view, std::uint32_t> imports;  ///< kNone: could not be read
   std::vector<std::uint32_t> style_chain;                       ///< the style in force first, Default last
-  std::vector<Override_> overrides;                             ///< later ones beat earlier ones
+  std::vector<ImporterOverride> overrides;                      ///< later ones beat earlier ones
   bool protect_all = false;
   std::vector<std::uint32_t> dynamic_modules;  ///< by DynamicImport; kNone: could not be made
   std::uint32_t start_rule = kNone;

@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -138,6 +141,7 @@ TEST(Mutations, SamplesUseTheWholeLanguage) {
 TEST(Mutations, NeverCrashOrHang) {
   constexpr std::uint64_t kTexts = 10000;
   std::size_t errors = 0, clean = 0;
+  std::set<std::string> codes;
   for (std::uint64_t seed = 0; seed < kTexts; ++seed) {
     Random random(seed);
     const std::string_view text = sample(random.below(test::kSampleRules.size()));
@@ -157,12 +161,19 @@ TEST(Mutations, NeverCrashOrHang) {
     const std::vector<Diagnostic> checked = check(program, {});
     expect_sound(checked, program);
     if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed << "\n" << broken;
+    for (const auto* all : {&program.diagnostics, &checked})
+      for (const Diagnostic& d : *all) codes.insert(d.code);
     errors += has_errors(program.diagnostics) ? 1U : 0U;
     clean += program.diagnostics.empty() ? 1U : 0U;
   }
   // Most mutations break something: else nothing was tried.
   EXPECT_GT(errors, kTexts / 2);
   EXPECT_LT(clean, kTexts / 2);
+  // Every code that was told is explained.
+  std::ifstream page(BLOCKRAND_SOURCE_DIR "/docs/rule_files.md");
+  const std::string text{std::istreambuf_iterator<char>(page), std::istreambuf_iterator<char>()};
+  for (const std::string& code : codes) EXPECT_NE(text.find("`" + code + "`"), std::string::npos) << code;
+  EXPECT_GT(codes.size(), 40U);
 }
 
 }  // namespace

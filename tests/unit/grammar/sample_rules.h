@@ -92,7 +92,8 @@ D --> modify(f){ top : extrude(1) } tag("a.b", faces) deleteTags("?.b") E
 E --> blockrand.window("casement", "head", "arch", "bars", 2) union(B)
 )",
     // Texture, material, strings with odd contents.
-    "T --> setupProjection(0, scope.xy, ~1.5, '1, 0, 0, 1) projectUV(0) texture(\"maps\\\\a \\\"b\\\".png\") tileUV(0, ~2, 0)\r\n"
+    "T --> setupProjection(0, scope.xy, ~1.5, '1, 0, 0, 1) projectUV(0) texture(\"maps\\\\a \\\"b\\\".png\") tileUV(0, "
+    "~2, 0)\r\n"
     "set(material.color.r, 0.5) set(trim.vertical, false) set(material.colormap, \"x\ny\")\r\n"
     "normalizeUV(0, uv, collectiveAllFaces) label(\"l\") print(\"p\" + geometry.nFaces) P\r\n"
     "@Consistent(\"building\")\r\nP --> 33.333% : X. 33.333% : Y. else : Z.\r\n",
@@ -125,7 +126,8 @@ style a-b
 O --> "unclosed
 )",
     // Many things at once, deep nesting.
-    "A --> case ((((((1 + 2) * 3) - 4) / 5) % 6) > 7) : split(x){ 1 : split(y){ 1 : split(z){ { { { 1 : [ [ [ X. ] ] ] }* }* }* } } }\n"
+    "A --> case ((((((1 + 2) * 3) - 4) / 5) % 6) > 7) : split(x){ 1 : split(y){ 1 : split(z){ { { { 1 : [ [ [ X. ] ] ] "
+    "}* }* }* } } }\n"
     "else : case true : case false : B else : C else : 10% : 20% : D else : E else : F\n"
     "B(a,b,c,d,e) --> B(-(-(-a)), !!b, [c,[d]], f(f(f(e))), case a : b else : c)\nf(x)=x\n",
 };
