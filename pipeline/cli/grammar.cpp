@@ -180,7 +180,7 @@ settings::CommandText grammar_text() {
   return {
       .name = "grammar",
       .summary = "rule files: checked, run, tested, and translated from other rules",
-      .usage = "check FILE... | run FILE [--lot 12x10] [-o FILE.glb] | test FILE... | import FILE.xml [-o FILE.cga]",
+      .usage = "check FILE... | run FILE --lot 12x10 | test FILE... | import FILE.xml",
       .description =
           "Rule files (CGA shape, as CityEngine reads them) say how facades are made. 'check' reads rule files "
           "with all that "

@@ -1,3 +1,4 @@
+// Rule files on a rectangular lot: run and tested from the command line.
 #include "pipeline/cli/grammar_run.h"
 
 #include <fmt/format.h>

@@ -14,8 +14,7 @@ namespace blockrand::grammar {
 
 /// f, e, fe, v, fv, g, m, h (references/cga.md §2.4).
 enum class ComponentKind : std::uint8_t { faces, edges, face_edges, vertices, face_vertices, groups, materials, holes };
-std::optional<ComponentKind> component_kind(
-    std::string_view word);  ///< "f" … "h", with or without the "comp." of the kind
+std::optional<ComponentKind> component_kind(std::string_view word);  ///< of "f" … "h"
 
 /// How the new pivot and scope lie.
 enum class ComponentAlignment : std::uint8_t {

@@ -102,9 +102,10 @@ Derivation Run::go() {
     tell(Severity::error, "no_program", {}, "the rule file could not be read; there is nothing to derive");
     return std::move(out_);
   }
-  evaluate_attributes();
   const std::uint32_t start =
       options_.start_rule.empty() ? program_.start_rule : find_start_rule(program_, options_.start_rule);
+  if (start != kNone) start_name_ = program_.qualified_name(program_.definitions[start]);
+  evaluate_attributes();
   if (start == kNone) {
     tell(Severity::error, "no_start_rule", {},
          options_.start_rule.empty() ? "there is no rule to begin with"

@@ -40,7 +40,8 @@ struct DeriveOptions {
   /// building and of a row of houses.
   std::uint64_t building_seed = 0, row_seed = 0;
   /// Attribute values from outside, by qualified name ("h", "roof.h"); ":" in a name counts as "__" (cga.md §4.1).
-  /// Texts are turned into the attribute's type. Values that the program gives ("building.storeys") may stand here, too.
+  /// Texts are turned into the attribute's type. Values that the program gives ("building.storeys") may stand here,
+  /// too.
   std::vector<std::pair<std::string, Value>> attributes;
   AttributeSource source;
   const FileAccess* files = nullptr;

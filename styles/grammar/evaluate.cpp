@@ -267,7 +267,7 @@ Value Run::read_shape_attribute(const Expression& e, std::uint32_t number, Place
   const std::string_view name = built_ins()[number].name;
   if (name.starts_with("initialShape.")) {
     if (name == "initialShape.name") return options_.shape_name;
-    if (name == "initialShape.startRule" || name == "initialShape.symbol") return options_.start_rule;
+    if (name == "initialShape.startRule" || name == "initialShape.symbol") return start_name_;
     // Its origin is the pivot of the initial shape.
     const std::string pivot = "pivot." + std::string(name.substr(name.rfind('.') + 1));
     return read_attribute(initial_, pivot).value_or(0.0);

@@ -359,6 +359,10 @@ std::string to_utf8(std::string_view bytes) {
     const auto byte = static_cast<unsigned char>(c);
     if (byte < 0x80) {
       text += c;
+    } else if (byte == 0x91 || byte == 0x92) {
+      text += "\u2019";  // Windows' quotes stand where Latin-1 has control characters.
+    } else if (byte == 0x93 || byte == 0x94) {
+      text += "\u201d";
     } else {
       text += static_cast<char>(0xc0U | (byte >> 6U));
       text += static_cast<char>(0x80U | (byte & 0x3fU));

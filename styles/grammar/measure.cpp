@@ -184,13 +184,20 @@ bool geometry_is_rectangular(const Shape& shape, double tolerance_degrees) {
   constexpr double kLeast = 1e-4;
   const double tolerance = std::max(kLeast, tolerance_degrees);
   for (const MeshFace& face : mesh.faces) {
-    if (face.loops.size() != 1 || face.loops[0].size() != 4) return false;
+    if (face.loops.size() != 1) return false;
+    // Vertices on a straight edge are no corners: neighbours put them there.
+    constexpr double kStraight = 1e-3;  // degrees
     const Loop& loop = face.loops[0];
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Vector3 a = mesh.vertices[loop[i].vertex], b = mesh.vertices[loop[(i + 1) % 4].vertex],
-                    c = mesh.vertices[loop[(i + 2) % 4].vertex];
-      if (std::fabs(90 - degrees_between(a - b, c - b)) > tolerance) return false;
+    int corners = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Vector3 a = mesh.vertices[loop[i].vertex], b = mesh.vertices[loop[(i + 1) % loop.size()].vertex],
+                    c = mesh.vertices[loop[(i + 2) % loop.size()].vertex];
+      const double angle = degrees_between(a - b, c - b);
+      if (angle > 180 - kStraight) continue;
+      if (std::fabs(90 - angle) > tolerance) return false;
+      ++corners;
     }
+    if (corners != 4) return false;
   }
   return true;
 }

@@ -45,6 +45,8 @@ class Cutter {
       for (UvSet& set : mesh_.uv) set.clear();
       return true;
     }
+    // Of a solid that is inside out (negative sizes) the caps are, too.
+    const double cap_side = cap && signed_volume(mesh_) < 0 ? 1 : -1;
     std::vector<MeshFace> old;
     old.swap(mesh_.faces);
     old_uv_.swap(mesh_.uv);
@@ -60,7 +62,7 @@ class Cutter {
             if (distance_[a] == 0 && distance_[b] == 0)
               edges.push_back({b, a, 0, static_cast<std::uint32_t>(edges.size())});
           }
-      for (MeshFace& face : faces_of_edges(mesh_.vertices, std::move(edges), -plane_.normal))
+      for (MeshFace& face : faces_of_edges(mesh_.vertices, std::move(edges), plane_.normal * cap_side))
         mesh_.faces.push_back(std::move(face));
     }
     if (mesh_.faces.size() > before_caps)

@@ -166,18 +166,19 @@ Result run_cleanup_geometry(Shape& shape, const OperationInput&, Arguments argum
   if (!shape.mesh) return {};
   Mesh mesh = *shape.mesh;
   // Rounding is mended at tolerance 0, too.
-  if (what == "vertices" || what == "all") weld(mesh, std::max(1e-6, tolerance));
-  if (what == "edges" || what == "all") {
-    const auto turn = base::sin_cos(std::max(1e-4, 10 * tolerance) * base::kRadiansPerDegree);
-    join_coplanar(mesh, turn.cos);
-    drop_straight_vertices(mesh, turn.sin);
-  }
+  weld(mesh, std::max(1e-6, tolerance));
+  const auto turn = base::sin_cos(std::max(1e-4, 10 * tolerance) * base::kRadiansPerDegree);
+  if (what == "edges" || what == "all") join_coplanar(mesh, turn.cos);
+  if (what == "vertices" || what == "all") drop_straight_vertices(mesh, turn.sin);
   if (what == "faces" || what == "all") drop_tiny_and_double_faces(mesh, std::max(1e-9, tolerance));
   take_mesh(shape, std::move(mesh));
   return {};
 }
 
-Result run_convexify(Shape& shape, const OperationInput&, Arguments) {
+Result run_convexify(Shape& shape, const OperationInput&, Arguments arguments) {
+  if (auto ok = wants_numbers(arguments); !ok) return ok;
+  // Only cuts shorter than this are made; a part that a longer one would divide stays concave.
+  const double longest = arguments.empty() ? 1e300 : number(arguments, 0);
   if (!shape.mesh) return {};
   const Mesh& old = *shape.mesh;
   Mesh out;
@@ -232,8 +233,12 @@ Result run_convexify(Shape& shape, const OperationInput&, Arguments) {
               for (std::size_t m = 1; m <= parts[a].size(); ++m) ring.push_back(parts[a][(i + m) % parts[a].size()]);
               for (std::size_t m = 2; m < parts[b].size(); ++m) ring.push_back(parts[b][(k + m) % parts[b].size()]);
               bool good = true;
-              for (std::size_t m = 0; m < ring.size() && good; ++m)
-                good = turn_at(ring[m], ring[(m + 1) % ring.size()], ring[(m + 2) % ring.size()]) >= -1e-9;
+              if (length(old.vertices[q] - old.vertices[p]) < longest) {
+                for (std::size_t m = 0; m < ring.size() && good; ++m)
+                  good = turn_at(ring[m], ring[(m + 1) % ring.size()], ring[(m + 2) % ring.size()]) >= -1e-9;
+              } else {  // a ring round a hole would touch itself
+                good = std::set<std::uint32_t>(ring.begin(), ring.end()).size() == ring.size();
+              }
               if (!good) continue;
               parts[a] = std::move(ring);
               parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(b));

@@ -65,7 +65,6 @@ void reverse_faces(Mesh& mesh);
 
 /// Index of the tag set that has all of set `tags` and `tag`.
 std::uint16_t add_tag(Mesh& mesh, std::uint16_t tags, std::string_view tag);
-bool has_tag(const Mesh& mesh, std::uint16_t tags, std::string_view query);
 
 /// The uv loops of a face, or null when the set has none for it.
 const std::vector<std::vector<Vector2>>* uv_of(const Mesh& mesh, int set, std::size_t face);

@@ -74,9 +74,9 @@ std::span<const Signature> signatures(const BuiltIn& entry);
 /// Whether a first part of a name belongs to the language, so that no import can be called so (cga.md §7.2, 20).
 bool is_reserved_prefix(std::string_view name);
 
-/// Whether a first part of a name stands for values that the program gives about the building, its storey, its edge, its
-/// roof or its row (DeriveOptions::source): "building", "edge", "storey", "roof", "row". An import of the same name goes
-/// before.
+/// Whether a first part of a name stands for values that the program gives about the building, its storey, its edge,
+/// its roof or its row (DeriveOptions::source): "building", "edge", "storey", "roof", "row". An import of the same name
+/// goes before.
 bool is_engine_prefix(std::string_view name);
 
 /// The prefix of our own operations: blockrand.window(…).

@@ -15,6 +15,7 @@ namespace blockrand::grammar {
 namespace {
 
 using detail::Entry;
+using detail::kMostOverloads;
 using detail::Scope;
 
 /// A file that imports itself over many ways would otherwise fill the memory.
@@ -89,7 +90,8 @@ class Loader {
       known.push_back(unit.name(unit.styles[i].name));
     }
     if (name != "Default")
-      tell(Severity::error, "unknown_style", place, "no such style", std::string(name), nearest_name(name, known));
+      tell(Severity::error, "unknown_style", place, "no such style", std::string(name),
+           building_.suggestion(name, known));
     return 0;
   }
 
@@ -148,7 +150,7 @@ class Loader {
         std::vector<std::string_view> known;
         for (const auto& [name, import] : chosen) known.push_back(unit->name(name));
         tell(Severity::error, "unknown_import", dynamic.location, "no import of this name", unit->name(dynamic.name),
-             nearest_name(unit->name(dynamic.name), known));
+             building_.suggestion(unit->name(dynamic.name), known));
         continue;
       }
       building_.scopes[m].dynamic_modules[d] = load_import(m, *found->second, &dynamic);
@@ -282,13 +284,19 @@ class Loader {
       if (other_rank < r) return;
       all.erase(all.begin() + static_cast<std::ptrdiff_t>(i));
     }
+    if (all.size() >= kMostOverloads) return tell_overloads(declaration, unit);
     all.push_back(add_definition(m, d));
+  }
+
+  void tell_overloads(const Declaration& declaration, const Unit& unit) {
+    tell(Severity::error, "too_many_overloads", declaration.location,
+         "more than " + std::to_string(kMostOverloads) + " declarations of this name", unit.name(declaration.name));
   }
 
   /// Rules that importers redefine: in their import statement, or as `imp.Rule -->`.
   void redefine(std::uint32_t m) {
     // Later ones are put in front, so that the last word wins.
-    for (const detail::Override_& o : building_.scopes[m].overrides) {
+    for (const detail::ImporterOverride& o : building_.scopes[m].overrides) {
       if (o.node.kind != OverrideKind::rule) continue;
       redefine_rule(m, o.module, o.node.declaration, true);
     }
@@ -308,7 +316,7 @@ class Loader {
         for (const auto& [name, module] : scope.imports) known.push_back(name);
         std::sort(known.begin(), known.end());
         tell(Severity::error, "unknown_import", declaration.location, "no import of this name", prefix,
-             nearest_name(prefix, known));
+             building_.suggestion(prefix, known));
         continue;
       }
       if (found->second != kNone) redefine_rule(found->second, m, d, false);
@@ -336,11 +344,13 @@ class Loader {
         if (!o.rules.empty()) names.push_back(other);
       std::sort(names.begin(), names.end());
       tell(Severity::warning, "unknown_rule", declaration.location,
-           "the imported file has no rule of this name with as many parameters", name, nearest_name(name, names));
+           "the imported file has no rule of this name with as many parameters", name,
+           building_.suggestion(name, names));
     } else if (must_be_extension && !extension && known) {
       tell(Severity::warning, "no_extension", declaration.location,
            "this rule is not declared as extension by the imported file; it is replaced all the same", name);
     }
+    if (entry.rules.size() >= kMostOverloads) return tell_overloads(declaration, unit);
     entry.rules.insert(entry.rules.begin(), add_definition(importer, d));
   }
 
@@ -351,7 +361,7 @@ class Loader {
     if (parent == kNone) return;
     const Module& module = program_.modules[m];
     std::vector<char> own(module.slot_count, scope.protect_all ? 1 : 0);
-    for (const detail::Override_& o : scope.overrides) {
+    for (const detail::ImporterOverride& o : scope.overrides) {
       if (o.node.kind == OverrideKind::rule) continue;
       const std::string& name = program_.unit(o.module).name(o.node.name);
       const auto found = scope.names.find(name);
@@ -366,7 +376,7 @@ class Loader {
         tell(protect ? Severity::warning : Severity::error, "unknown_attribute", o.node.location,
              far ? "attributes of imports of imports cannot be set here"
                  : "the imported file has no attribute of this name",
-             name, nearest_name(name, names));
+             name, building_.suggestion(name, names));
         continue;
       }
       const std::uint32_t number = program_.definitions[found->second.attribute].slot;

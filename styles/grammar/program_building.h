@@ -17,7 +17,7 @@ struct Entry {
   bool broken = false;  ///< a declaration of this name could not be read
 };
 
-struct Override_ {
+struct ImporterOverride {
   std::uint32_t module = 0;  ///< the importer
   Override node;
 };
@@ -27,7 +27,7 @@ struct Scope {
   std::unordered_map<std::string_view, Entry> names;            ///< looked up only
   std::unordered_map<std::string_view, std::uint32_t> imports;  ///< kNone: could not be read
   std::vector<std::uint32_t> style_chain;                       ///< the style in force first, Default last
-  std::vector<Override_> overrides;                             ///< later ones beat earlier ones
+  std::vector<ImporterOverride> overrides;                      ///< later ones beat earlier ones
   bool protect_all = false;
   std::vector<std::uint32_t> dynamic_modules;  ///< by DynamicImport; kNone: could not be made
   std::uint32_t start_rule = kNone;
@@ -36,7 +36,16 @@ struct Scope {
 struct Building {
   Program& program;
   std::vector<Scope> scopes;  ///< by module
+  /// Looking for what may have been meant costs as much as there are names: a broken file is not searched without end.
+  int suggestions_left = 200;
+
+  std::string_view suggestion(std::string_view word, std::span<const std::string_view> known) {
+    return --suggestions_left < 0 ? std::string_view() : nearest_name(word, known);
+  }
 };
+
+/// Declarations of one name, of which types choose; more are told.
+inline constexpr std::size_t kMostOverloads = 64;
 
 /// What a name means from a module on, prefixes followed; nullptr: nothing. `missing` is set where an import that could
 /// not be read stands in the way.

@@ -155,13 +155,14 @@ class Resolver {
            name, nearest_of(scope_.imports, name.substr(0, dot)));
       return;
     }
-    std::string_view near = nearest_built_in(NameKind::operation, name);
+    std::string_view near =
+        building_.suggestions_left > 0 ? nearest_built_in(NameKind::operation, name) : std::string_view();
     if (near.empty()) {
       std::vector<std::string_view> rules;
       for (const auto& [known, e] : building_.scopes[module].names)
         if (!e.rules.empty()) rules.push_back(known);
       std::sort(rules.begin(), rules.end());
-      near = nearest_name(name, rules);
+      near = building_.suggestion(name, rules);
     }
     tell(Severity::warning, "undefined_symbol", call.location,
          "nothing defines this symbol: the shape is a leaf (write it with a dot at its end if that is meant)", name,
@@ -169,11 +170,11 @@ class Resolver {
   }
 
   template <typename Map>
-  static std::string_view nearest_of(const Map& map, std::string_view name) {
+  std::string_view nearest_of(const Map& map, std::string_view name) {
     std::vector<std::string_view> known;
     for (const auto& entry : map) known.push_back(entry.first);
     std::sort(known.begin(), known.end());
-    return nearest_name(name, known);
+    return building_.suggestion(name, known);
   }
 
   static std::string spelled_out(const BuiltIn& entry) {
@@ -215,7 +216,7 @@ class Resolver {
       } else if (only_words && !is_defined(id)) {
         uses_[id].word = true;
         tell(Severity::error, "unknown_word", e.location, "this word is not known here", name,
-             nearest_name(name, known));
+             building_.suggestion(name, known));
       }
     }
   }
@@ -355,7 +356,7 @@ class Resolver {
     for (const BuiltIn& b : built_ins())
       if (b.kind == NameKind::attribute && b.settable) known.push_back(b.name);
     tell(Severity::error, "unknown_attribute", e.location, "there is no attribute of this name to set", name,
-         nearest_name(name, known));
+         building_.suggestion(name, known));
   }
 
   void tell_unknown(NodeId id, const Expression& e, const Use& use, std::string_view name, const Entry* entry,
@@ -364,7 +365,8 @@ class Resolver {
       std::vector<std::string_view> known;
       for (const BuiltIn& b : built_ins())
         if (b.kind == NameKind::selector) known.push_back(b.name);
-      tell(Severity::error, "unknown_selector", e.location, "this selects nothing", name, nearest_name(name, known));
+      tell(Severity::error, "unknown_selector", e.location, "this selects nothing", name,
+           building_.suggestion(name, known));
       return;
     }
     const std::string arguments =
@@ -407,7 +409,7 @@ class Resolver {
     for (const BuiltIn& b : built_ins())
       if (b.kind == NameKind::function || (b.kind == NameKind::attribute && !e.parentheses)) known.push_back(b.name);
     tell(Severity::error, "unknown_name", e.location, "nothing of this name has a value", name,
-         nearest_name(name, known));
+         building_.suggestion(name, known));
   }
 
   Building& building_;

@@ -1,3 +1,4 @@
+// Expectations in comments: reading them, deriving, comparing.
 #include "styles/grammar/rule_tests.h"
 
 #include <charconv>

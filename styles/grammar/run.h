@@ -206,6 +206,7 @@ class Run {
   const char* stack_start_ = nullptr;
   bool full_ = false;  ///< the limit of shapes was told
   std::size_t pieces_ = 0, calls_ = 0;
+  std::string start_name_;  ///< `initialShape.startRule`
   RuleContext rule_;
   Node* node_ = nullptr;        ///< whose rule runs
   std::uint32_t ordinals_ = 0;  ///< of its children

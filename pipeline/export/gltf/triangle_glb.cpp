@@ -1,3 +1,4 @@
+// Coloured triangles as binary glTF.
 #include "pipeline/export/gltf/triangle_glb.h"
 
 #include <tiny_gltf.h>

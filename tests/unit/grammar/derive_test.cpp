@@ -436,6 +436,10 @@ TEST(Errors, SymbolsWithoutRuleAreLeavesWithAWarning) {
 
 TEST(Errors, StartRules) {
   DeriveOptions options;
+  EXPECT_EQ(
+      prints(
+          "attr name = initialShape.startRule\nFirst --> print(name) Second\nSecond --> print(initialShape.startRule)"),
+      "First First");
   options.start_rule = "Second";
   EXPECT_EQ(prints("First --> print(1)\nSecond --> print(2)", options), "2");
   options.start_rule = "Third";

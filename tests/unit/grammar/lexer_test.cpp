@@ -83,6 +83,10 @@ TEST(Lexer, ReadsEncodings) {
             "attr");
   EXPECT_EQ(to_utf8("gr\xfcn"), "gr\u00fcn");
   EXPECT_EQ(to_utf8("gr\u00fcn"), "gr\u00fcn");
+  EXPECT_EQ(to_utf8("\x92"
+                    "1"),
+            "\u2019"
+            "1");
   EXPECT_EQ(to_utf8("\xe2\x82"), "\u00e2\u0082");
 }
 

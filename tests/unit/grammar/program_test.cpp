@@ -287,6 +287,15 @@ TEST(Program, ManyWaysToOneFileAreBounded) {
   EXPECT_LE(p.modules.size(), 1000U);
 }
 
+TEST(Program, ManyDeclarationsOfOneNameAreBounded) {
+  std::string text;
+  for (int i = 0; i < 20000; ++i) text += "A --> A B" + std::to_string(i) + "\n";
+  const Program p = load_text(text);
+  EXPECT_TRUE(has_errors(p.diagnostics));
+  EXPECT_LE(p.definitions.size(), 64U);
+  EXPECT_LE(p.candidates.size(), 64U * 20000U);
+}
+
 TEST(Program, ChoosesTheStartRule) {
   const auto start = [](const Program& p) {
     return p.start_rule == kNone ? "" : p.qualified_name(p.definitions[p.start_rule]);
