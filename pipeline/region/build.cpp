@@ -396,6 +396,12 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
         const model::EvidenceId offset = whole.evidence.append(std::move(result.region.evidence));
         for (model::Building& b : result.region.buildings) move_evidence(b, offset);
       }
+      // Placements count the elements of their tile.
+      const auto elements = static_cast<std::uint32_t>(whole.elements.size());
+      std::move(result.region.elements.begin(), result.region.elements.end(), std::back_inserter(whole.elements));
+      for (model::Building& b : result.region.buildings)
+        for (model::BuildingPart& part : b.parts)
+          for (model::Placement& p : part.lod3.placements) p.element += elements;
       std::move(result.region.buildings.begin(), result.region.buildings.end(), std::back_inserter(whole.buildings));
     }
     done += shards[todo[i]].seeds.size();
