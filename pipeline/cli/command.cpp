@@ -6,6 +6,7 @@
 #include "pipeline/cli/compare.h"
 #include "pipeline/cli/districts.h"
 #include "pipeline/cli/explain.h"
+#include "pipeline/cli/grammar.h"
 #include "pipeline/cli/help.h"
 #include "pipeline/cli/info.h"
 #include "pipeline/cli/validate.h"
@@ -18,6 +19,7 @@ const std::vector<Command>& commands() {
       {explain_text(), run_explain},
       {compare_text(), run_compare},
       {districts_text(), run_districts},
+      {grammar_text(), run_grammar},
       {validate_text(), run_validate},
       {info_text(), run_info},
       {help_text(), run_help},

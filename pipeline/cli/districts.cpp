@@ -1,13 +1,11 @@
 #include "pipeline/cli/districts.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -20,6 +18,7 @@
 #include "pipeline/cli/configs_folder.h"
 #include "pipeline/cli/exit_codes.h"
 #include "pipeline/cli/signals.h"
+#include "pipeline/cli/staged_file.h"
 #include "pipeline/region/district_survey.h"
 #include "pipeline/region/rule_book.h"
 #include "pipeline/settings/command_line.h"
@@ -145,42 +144,6 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// A file that is written beside its place and moved there at the end: what stood there stays where something fails.
-class StagedTable {
- public:
-  /// \throws OutputError  nothing can be written there
-  explicit StagedTable(std::string target)
-      : target_(std::move(target)),
-        staging_(target_ + ".part-" + std::to_string(getpid())),
-        out_(staging_, std::ios::binary) {
-    std::error_code none;
-    if (!out_ || std::filesystem::is_directory(target_, none)) fail();
-  }
-  ~StagedTable() {
-    std::error_code none;
-    std::filesystem::remove(staging_, none);
-  }
-  StagedTable(const StagedTable&) = delete;
-  StagedTable& operator=(const StagedTable&) = delete;
-  void publish(const std::string& text) {
-    out_ << text;
-    out_.close();
-    std::error_code error;
-    if (out_) std::filesystem::rename(staging_, target_, error);
-    if (!out_ || error) fail();
-  }
-
- private:
-  [[noreturn]] void fail() {
-    out_.close();
-    std::error_code none;
-    std::filesystem::remove(staging_, none);
-    throw base::OutputError(target_ + ": cannot be written. Check the folder and the space on the disk");
-  }
-  std::string target_, staging_;
-  std::ofstream out_;
-};
-
 int diff(Settings& s) {
   if (s.files.size() != 3)
     throw base::UsageError(
@@ -189,7 +152,7 @@ int diff(Settings& s) {
   std::error_code none;
   if (!csv.empty() && std::filesystem::exists(csv, none) && !s.build.force)
     throw base::UsageError(csv + " exists already. Choose another file with -o, or --force");
-  std::optional<StagedTable> staged;
+  std::optional<StagedFile> staged;
   if (!csv.empty()) staged.emplace(csv);
   s.build.input = s.files[2];
   base::Progress progress(s.progress, s.log_format, s.quiet);

@@ -11,6 +11,7 @@
 #include "pipeline/model/colour.h"
 #include "pipeline/model/detail_override.h"
 #include "pipeline/model/extract.h"
+#include "pipeline/model/facade.h"
 #include "pipeline/model/polygon.h"
 #include "pipeline/model/roof_line.h"
 #include "pipeline/model/roof_shape.h"
@@ -223,9 +224,10 @@ struct BuildingPart {
   double usual_pitch = 0;  ///< degrees; what was asked of a roof that no tag measures, 0 for others
   bool canopy = false;     ///< building=roof: a closed slab without walls
   RoofShape built_roof = RoofShape::flat;
-  int lod = -1;            ///< highest level of detail built: 2, 1, 0, or -1 for none
+  int lod = -1;            ///< highest level of detail built: 3, 2, 1, 0, or -1 for none
   Solid lod1, lod2;        ///< empty above `lod`, or where not asked for
   SolidTriangles lod1_triangles, lod2_triangles;
+  Detail lod3;             ///< its solid is empty below lod 3
   std::vector<IssueCode> fallbacks;
 };
 

@@ -39,6 +39,9 @@ enum class IssueClass : std::uint8_t {
   X(roof_row_ignored, "ROOF_ROW_IGNORED", fallback, "No valid roof between the party walls; it falls to all sides.")  \
   X(roof_height_clamped, "ROOF_HEIGHT_CLAMPED", fallback, "The roof was higher than the building allows.")           \
   X(lod1_only, "LOD1_ONLY", fallback, "No valid LoD2 solid; a block was built.")                                     \
+  X(facade_failed, "FACADE_FAILED", fallback, "The solid with openings failed its check; the walls stay closed.")     \
+  X(opening_left_out, "OPENING_LEFT_OUT", fallback, "Windows or doors did not fit their walls; the others were built.") \
+  X(grammar_error, "GRAMMAR_ERROR", fallback, "A rule asked for what cannot be made; the rest of the facade was built.") \
   X(plan_simplified, "PLAN_SIMPLIFIED", fallback, "The plan was simplified to get a valid solid.")                   \
   X(rest_failed, "REST_FAILED", fallback, "The part of the outline that its parts leave free could not be built.")   \
   /* mended, ignored, unreadable */                                                                                  \

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipeline/model/building.h"
+#include "pipeline/model/element.h"
 #include "pipeline/model/report.h"
 #include "pipeline/model/sourced.h"
 
@@ -28,6 +29,7 @@ struct Region {
   const Extract* extract = nullptr;      ///< for tags; outlives the region
   std::vector<Building> buildings;       ///< sorted by OSM id
   std::vector<MaterialClass> materials;  ///< what Face::material indexes
+  std::vector<ColouredElement> elements;  ///< what Placement::element indexes
   EvidenceTable evidence;
   std::vector<PartFailure> part_failures;
   Report report;

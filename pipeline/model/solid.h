@@ -20,8 +20,10 @@ enum class SurfaceKind : std::uint8_t {
   outer_ceiling,  ///< underside of passages, bays, raised parts, canopies
   outer_floor,    ///< loggias, set-back terraces
   closure,
+  window,         ///< polygon of an opening, at the end of its reveal
+  door,           ///< the same
 };
-inline constexpr int kSurfaceKindCount = 6;
+inline constexpr int kSurfaceKindCount = 8;
 
 /// How a material class reflects light; colours come per face. Read from configs/materials.
 struct MaterialClass {

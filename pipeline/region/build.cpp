@@ -157,10 +157,10 @@ struct TileResult {
 
 /// Rough size of the output, from builds of whole cities; with a reserve of a quarter.
 std::uint64_t estimated_bytes(const BuildOptions& options, std::uint64_t buildings) {
-  constexpr double kGmlBytes[] = {2500, 5500, 12500};  // per building and level of detail
+  constexpr double kGmlBytes[] = {2500, 5500, 12500, 120000};  // per building and level of detail
   constexpr double kGlbBytes = 3000;
-  const auto lod = static_cast<std::size_t>(std::clamp(options.lod, 0, 2));
-  constexpr double kJsonBytes[] = {1500, 2000, 3500};
+  const auto lod = static_cast<std::size_t>(std::clamp(options.lod, 0, 3));
+  constexpr double kJsonBytes[] = {1500, 2000, 3500, 3500};
   constexpr double kGeoPackageBytes = 4800, kExplainBytes = 2100, kReportBytes = 150;
   double each = 300;
   if (options.citygml) each += options.gzip ? kGmlBytes[lod] / 7 : kGmlBytes[lod];
@@ -199,6 +199,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
 
   const classify::Tables tables = classify::Tables::read(options.configs);
   ReadRuleBook rules = read_rule_book(options.configs, options.districts);
+  std::optional<generate::GrammarBook> grammars;
+  if (options.lod >= 3) grammars.emplace(read_grammars(options.configs, rules));
   generate::Overrides overrides;
   if (!options.overrides.empty()) {
     generate::OverrideNames names{{}, rules.book.substyles};
@@ -218,6 +220,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       {"materials/materials.toml", options.configs + "/materials/materials.toml"}};
   for (const char* name : classify::kTableFiles) configs.emplace_back(std::string("styles/") + name, options.configs + "/styles/" + name);
   configs.insert(configs.end(), rules.files.begin(), rules.files.end());
+  if (grammars)
+    for (const std::string& path : grammars->files()) configs.emplace_back("grammars/" + std::filesystem::path(path).filename().string(), path);
   for (const auto& [name, path] : configs) {
     record.inputs.push_back(input_file("config", path));
     record.inputs.back().path = name;
@@ -338,7 +342,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const StyleInputs style_inputs{prepared.facts, prepared.tags, prepared.styles, tables};
   const TileInputs inputs{extract,      shards,         projection, defaults,      kept,
                           repaired,     context,        surroundings, roof_lines,  numbers, neighbours, assigner, overrides, style_inputs, options.explain,
-                          options.repair, options.generate, options.seed, options.lod, terrain.has_value(), ground_under,
+                          options.repair, options.generate, options.seed, options.lod, grammars ? &*grammars : nullptr, terrain.has_value(), ground_under,
                           context_time};
   const auto work = [&](std::size_t i) {
     TileResult result;
@@ -364,7 +368,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       object.state = fate.state;
       object.code = fate.code;
       object.related = fate.related;
-      if (o.state == ObjectState::modelled) ++summary.models_by_lod[static_cast<std::size_t>(std::clamp(o.lod, 0, 2))];
+      if (o.state == ObjectState::modelled) ++summary.models_by_lod[static_cast<std::size_t>(std::clamp(o.lod, 0, 3))];
     }
     std::move(result.rows.begin(), result.rows.end(), std::back_inserter(rows));
     if (result.output.tile) tiles.push_back(*result.output.tile);
@@ -392,6 +396,12 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
         const model::EvidenceId offset = whole.evidence.append(std::move(result.region.evidence));
         for (model::Building& b : result.region.buildings) move_evidence(b, offset);
       }
+      // Placements count the elements of their tile.
+      const auto elements = static_cast<std::uint32_t>(whole.elements.size());
+      std::move(result.region.elements.begin(), result.region.elements.end(), std::back_inserter(whole.elements));
+      for (model::Building& b : result.region.buildings)
+        for (model::BuildingPart& part : b.parts)
+          for (model::Placement& p : part.lod3.placements) p.element += elements;
       std::move(result.region.buildings.begin(), result.region.buildings.end(), std::back_inserter(whole.buildings));
     }
     done += shards[todo[i]].seeds.size();

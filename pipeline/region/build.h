@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pipeline/base/progress.h"
+#include "pipeline/export/gltf/instance_writer.h"
 #include "pipeline/generate/options.h"
 #include "pipeline/generate/roofscape.h"
 #include "pipeline/repair/options.h"
@@ -24,7 +25,8 @@ struct BuildOptions {
   std::string tile;                           ///< "15/35207/25941": build this tile alone; needs `pinned`
   std::string pinned;                         ///< build.json of an earlier build of the extract: its CRS, its coverage
   std::string crs;                            ///< "EPSG:…"; empty: chosen from the extent
-  int lod = 2;                                ///< highest level of detail, 0 to 2
+  int lod = 2;                                ///< highest level of detail, 0 to 3
+  export_::Instancing instancing = export_::Instancing::ext;  ///< how GLBs hold what stands in facades
   bool gltf = true;                           ///< tileset.json and tiles/
   bool citygml = true;                        ///< citygml/
   bool cityjson = true;                       ///< cityjson/
@@ -52,7 +54,7 @@ struct BuildOptions {
 struct BuildSummary {
   std::uint64_t buildings_in = 0, parts_in = 0;
   std::uint64_t models = 0, represented = 0, duplicates = 0, reported = 0;
-  std::array<std::uint64_t, 3> models_by_lod{};   ///< objects whose best solid is LoD 0, 1, 2
+  std::array<std::uint64_t, 4> models_by_lod{};   ///< objects whose best solid is LoD 0, 1, 2, 3
   std::map<std::string, std::uint64_t> issues;    ///< rows by code
   generate::Roofscape roofscape;                  ///< how roofs stand in their rows
   std::uint64_t files = 0, bytes = 0;             ///< written

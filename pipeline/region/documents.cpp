@@ -143,6 +143,7 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
                  {"models_lod0", s.models_by_lod[0]},
                  {"models_lod1", s.models_by_lod[1]},
                  {"models_lod2", s.models_by_lod[2]},
+                 {"models_lod3", s.models_by_lod[3]},
                  // What every format holds, to the last one.
                  {"buildings", r.statistics.buildings},
                  {"bodies", r.statistics.bodies},

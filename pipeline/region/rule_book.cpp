@@ -100,4 +100,11 @@ ReadRuleBook read_rule_book(const std::string& configs, const std::string& distr
   return out;
 }
 
+generate::GrammarBook read_grammars(const std::string& configs, const ReadRuleBook& rules) {
+  std::vector<generate::PresetGrammar> grammars;
+  for (const styles::districts::Preset& preset : rules.book.presets)
+    if (!preset.grammar.empty()) grammars.push_back({preset.name, preset.grammar, preset.attributes});
+  return {(fs::path(configs) / "grammars").string(), grammars};
+}
+
 }  // namespace blockrand::region

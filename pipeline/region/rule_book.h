@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/generate/grammar_book.h"
 #include "styles/districts/rule_set.h"
 
 namespace blockrand::region {
@@ -21,5 +22,9 @@ struct ReadRuleBook {
 /// \throws base::InputError  from the files; two sets without polygon
 /// \throws base::UsageError  there is no such set
 ReadRuleBook read_rule_book(const std::string& configs, const std::string& districts);
+
+/// The rule files of its presets, from configs/grammars.
+/// \throws base::InputError  with the errors of a file
+generate::GrammarBook read_grammars(const std::string& configs, const ReadRuleBook& rules);
 
 }  // namespace blockrand::region

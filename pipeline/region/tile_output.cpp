@@ -53,6 +53,7 @@ GeoidPlane geoid_plane(const OutputContext& context, georef::LonLat centre) {
 export_::GlbOptions glb_options(const OutputContext& context, const georef::EnuFrame& frame) {
   export_::GlbOptions o;
   o.lod = context.options.lod;
+  o.instancing = context.options.instancing;
   o.crs = context.record.crs.authority_code;
   o.height_reference = context.record.heights.in_tiles;
   o.generator = generator();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pipeline/context/facade_edges.h"
+#include "pipeline/generate/facades.h"
 #include "pipeline/generate/mass.h"
 #include "pipeline/generate/part_overlaps.h"
 #include "pipeline/generate/resolve.h"
@@ -134,7 +135,8 @@ Region run_tile(std::size_t shard, const TileInputs& in) {
       if (b.attributes.ground_height.source != model::Source::terrain)
         region.report.add(b.osm, model::IssueCode::terrain_missing);
   cover_party_walls(region, in);
-  generate::build_masses(region, in.defaults, in.generate, in.lod);
+  generate::build_masses(region, in.defaults, in.generate, std::min(in.lod, 2));
+  if (in.lod >= 3 && in.grammars) generate::build_facades(region, *in.grammars, in.defaults, {in.seed});
   generate::tell_part_overlaps(region);
   return region;
 }

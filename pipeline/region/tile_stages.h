@@ -9,6 +9,7 @@
 
 #include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/generate/defaults.h"
+#include "pipeline/generate/grammar_book.h"
 #include "pipeline/generate/options.h"
 #include "pipeline/generate/resolve.h"
 #include "pipeline/georef/projection.h"
@@ -57,6 +58,7 @@ struct TileInputs {
   const generate::GenerateOptions& generate;
   std::uint64_t seed = 1;
   int lod = 2;
+  const generate::GrammarBook* grammars = nullptr;  ///< of LoD3
   bool has_terrain = false;
   /// Ground under a building, above the build's height reference.
   std::function<generate::BuildingGround(const model::Building&)> ground;

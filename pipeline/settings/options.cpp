@@ -103,6 +103,9 @@ struct Format {
 constexpr Format kFormats[] = {{"gltf", &region::BuildOptions::gltf},         {"citygml", &region::BuildOptions::citygml},
                                {"cityjson", &region::BuildOptions::cityjson}, {"gpkg", &region::BuildOptions::geopackage}};
 
+const std::vector<std::pair<std::string, export_::Instancing>> kInstancings = {
+    {"ext", export_::Instancing::ext}, {"nodes", export_::Instancing::nodes}, {"baked", export_::Instancing::baked}};
+
 void set_formats(Settings& s, const std::string& text) {
   std::vector<std::pair<std::string, bool region::BuildOptions::*>> names;
   for (const Format& f : kFormats) names.emplace_back(f.name, f.field);
@@ -261,6 +264,43 @@ void add_build(Table& t) {
            .several = true},
           [](Settings& s, const std::string& text) { s.files.push_back(text); },
           [](const Settings& s) { return s.files.empty() ? "" : fmt::format("{}", fmt::join(s.files, " ")); });
+  t.other({.name = "TASK",
+           .argument = "TASK",
+           .section = S,
+           .commands = kGrammar,
+           .help = "check or import",
+           .if_missing = "no TASK is given: check or import.",
+           .choices = {"check", "import"}},
+          [](Settings& s, const std::string& text) {
+            s.task = choose<std::string>(text, {{"check", "check"}, {"import", "import"}});
+          },
+          [](const Settings& s) { return s.task; });
+  t.other({.name = "RULES",
+           .argument = "RULES",
+           .type = OptionType::path,
+           .section = S,
+           .commands = kGrammar,
+           .help = "check: rule files; import: a file of facade rules in XML",
+           .several = true,
+           .if_missing = "no RULES are given: name rule files."},
+          [](Settings& s, const std::string& text) { s.rule_files.push_back(text); },
+          [](const Settings& s) { return s.rule_files.empty() ? "" : fmt::format("{}", fmt::join(s.rule_files, " ")); });
+  t.other({.name = "roots",
+           .argument = "LIST",
+           .type = OptionType::list,
+           .section = S,
+           .commands = kGrammar,
+           .help = "folders, separated by commas, in which imported files are looked for besides the importing file's; "
+                   "/PREFIX=FOLDER: where paths that begin with /PREFIX lie"},
+          [](Settings& s, const std::string& text) {
+            s.rule_roots.clear();
+            for (std::size_t at = 0; at <= text.size();) {
+              const std::size_t end = std::min(text.find(',', at), text.size());
+              if (end > at) s.rule_roots.push_back(text.substr(at, end - at));
+              at = end + 1;
+            }
+          },
+          [](const Settings& s) { return fmt::format("{}", fmt::join(s.rule_roots, ",")); });
   t.text({.name = "ID",
           .argument = "ID",
           .section = S,
@@ -274,10 +314,10 @@ void add_build(Table& t) {
           .argument = "FOLDER",
           .type = OptionType::folder,
           .section = S,
-          .commands = kBuild | kCompare | kDistricts,
-          .help = "folder that is written; it appears when everything in it is complete; districts diff: a file",
+          .commands = kBuild | kCompare | kDistricts | kGrammar,
+          .help = "folder that is written; it appears when everything in it is complete; districts diff, grammar import: a file",
           .if_missing = "no output folder is given: name one with --output FOLDER.",
-          .optional_for = kCompare | kDistricts},
+          .optional_for = kCompare | kDistricts | kGrammar},
          FIELD(build.output));
   t.other(
       {.name = "formats",
@@ -294,9 +334,19 @@ void add_build(Table& t) {
              .argument = "N",
              .section = S,
              .minimum = 0,
-             .maximum = 2,
-             .help = "highest level of detail: 0 footprints, 1 blocks, 2 roofs"},
+             .maximum = 3,
+             .help = "highest level of detail: 0 footprints, 1 blocks, 2 roofs, 3 facades with windows and doors"},
             FIELD(build.lod));
+  t.other({.name = "instancing",
+           .key = "instancing",
+           .argument = "HOW",
+           .type = OptionType::text,
+           .section = S,
+           .help = "how GLBs of level 3 hold windows and ornaments: ext stores each once and places it (EXT_mesh_gpu_instancing), nodes "
+                   "makes a node of each place for programs without that, baked makes triangles of all",
+           .choices = names_of(kInstancings)},
+          [](Settings& s, const std::string& text) { s.build.instancing = choose(text, kInstancings); },
+          [](const Settings& s) { return name_of(kInstancings, s.build.instancing); });
   t.other(
       {.name = "bbox",
        .key = "bbox",
@@ -432,7 +482,7 @@ void add_build(Table& t) {
           .commands = kBuild | kDistricts,
           .help = "folder with defaults/ and materials/; else the configs/ that came with the program"},
          FIELD(build.configs));
-  t.flag({.name = "force", .section = S, .commands = kBuild | kCompare | kDistricts, .help = "replace an existing build, comparison or map"},
+  t.flag({.name = "force", .section = S, .commands = kBuild | kCompare | kDistricts | kGrammar, .help = "replace an existing build, comparison, map or file"},
          FIELD(build.force));
   t.text({.name = "config",
           .argument = "FILE.toml",
@@ -812,7 +862,7 @@ void add_compare(Table& t) {
 
 void add_messages(Table& t) {
   constexpr auto S = Section::messages;
-  constexpr unsigned all = kBuild | kInfo | kValidate | kCompare | kDistricts;
+  constexpr unsigned all = kBuild | kInfo | kValidate | kCompare | kDistricts | kGrammar;
   t.other(
       {.name = "progress",
        .argument = "STYLE",
@@ -871,6 +921,7 @@ std::string_view name(Commands command) {
     case kValidate: return "validate";
     case kCompare: return "compare";
     case kDistricts: return "districts";
+    case kGrammar: return "grammar";
   }
   return "";
 }

@@ -27,6 +27,9 @@ struct Settings {
   std::optional<double> fail_if_worse;  ///< share: 0.02 is 2 %
   std::string action;                     ///< of `districts`: check, show, diff
   std::vector<std::string> files;         ///< of `districts`: what its action is about
+  std::string task;                       ///< of `grammar`: check, import
+  std::vector<std::string> rule_files;    ///< of `grammar`: what its task is about
+  std::vector<std::string> rule_roots;    ///< of `grammar`: where imports are looked for; "/PREFIX=DIR" is one place for one prefix
   std::string map_by = "preset";          ///< of `districts show`: what the map is coloured by
   std::string id;      ///< of the building that `explain` is asked about
   bool json = false;   ///< print JSON
@@ -38,8 +41,8 @@ struct Settings {
 };
 
 /// Which commands know an option; bits.
-enum Commands : unsigned { kBuild = 1, kInfo = 2, kExplain = 4, kValidate = 8, kCompare = 16, kDistricts = 32 };
-inline constexpr Commands kAllCommands[] = {kBuild, kInfo, kExplain, kValidate, kCompare, kDistricts};
+enum Commands : unsigned { kBuild = 1, kInfo = 2, kExplain = 4, kValidate = 8, kCompare = 16, kDistricts = 32, kGrammar = 64 };
+inline constexpr Commands kAllCommands[] = {kBuild, kInfo, kExplain, kValidate, kCompare, kDistricts, kGrammar};
 std::string_view name(Commands command);  ///< "build"
 
 /// Where an option stands in the help and the reference; the first three are the sections of the config file.

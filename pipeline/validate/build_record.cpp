@@ -56,6 +56,9 @@ class Reader {
   void read_configuration() {
     const Json* c = member(r_.json, "configuration");
     const auto lod = whole(member(c, "lod"));
+    if (lod && *lod == 3)
+      throw base::InputError(kFile, "configuration.lod", "the build has facades (LoD 3), which validate cannot read yet",
+                             "Validate a build of the same extract with --lod 2");
     if (!lod || *lod > 2)
       wrong("configuration.lod", "is not 0, 1 or 2");
     else

@@ -18,6 +18,11 @@ Preset read_preset(const std::string& name, base::TomlTable table) {
     table.fail("class", "is no class of appearance", "Write gruenderzeit, tenement, modern or other.");
   preset.style = static_cast<model::StyleClass>(found - model::kStyleClassNames.begin());
   preset.substyles = table.texts("substyles").value_or(std::vector<std::string>{});
+  preset.grammar = table.text("grammar").value_or("");
+  if (auto values = table.table("attributes")) {
+    for (const std::string& key : values->keys()) preset.attributes.emplace_back(key, values->text(key).value_or(""));
+    values->finish();
+  }
   table.finish();
   return preset;
 }

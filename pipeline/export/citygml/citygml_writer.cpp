@@ -50,6 +50,9 @@ Envelope envelope(const model::Region& region, int lod) {
         for (const model::Point3& p : part.lod1.vertices) box.add(p);
       if (lod >= 2)
         for (const model::Point3& p : part.lod2.vertices) box.add(p);
+      if (lod >= 3)
+        for (const model::WallInstallation& body : part.lod3.installations)
+          for (const model::Point3& p : body.solid.vertices) box.add(p);
     }
   }
   return box;
@@ -65,12 +68,25 @@ class Looks {
  public:
   void add(const model::Solid& solid, std::string_view id) {
     for (std::size_t f = 0; f < solid.faces.size(); ++f) {
-      const model::Face& face = solid.faces[f];
-      const std::uint32_t n = numbers_.number(MaterialNumbers::key(face.material, face.colour));
-      if (n == targets_.size()) targets_.emplace_back();
-      targets_[n] += "<app:target>#";
-      append_polygon_id(targets_[n], id, f);
-      targets_[n] += "</app:target>\n";
+      append_polygon_id(target(solid.faces[f].material, solid.faces[f].colour), id, f);
+      close();
+    }
+  }
+
+  /// The polygons of a LoD3 solid that its LoD2 solid does not have.
+  void add_detail(const model::Solid& lod2, const model::Solid& lod3, std::string_view id) {
+    for (std::size_t f = 0; f < lod3.faces.size(); ++f)
+      if (!is_shared_face(lod2, lod3, f)) {
+        append_detail_polygon_id(target(lod3.faces[f].material, lod3.faces[f].colour), id, f);
+        close();
+      }
+  }
+  void add(const model::ColouredElement& element, std::string_view id) {
+    const auto& faces = element.element->mesh.faces;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const model::PartLook& look = element.looks[static_cast<std::size_t>(faces[f].part)];
+      append_polygon_id(target(look.material, look.colour), id, f);
+      close();
     }
   }
 
@@ -102,8 +118,18 @@ class Looks {
   }
 
  private:
+  /// Opens a target of this look; the caller appends the id and closes it.
+  std::string& target(std::uint8_t material, model::Colour colour) {
+    last_ = numbers_.number(MaterialNumbers::key(material, colour));
+    if (last_ == targets_.size()) targets_.emplace_back();
+    targets_[last_] += "<app:target>#";
+    return targets_[last_];
+  }
+  void close() { targets_[last_] += "</app:target>\n"; }
+
   MaterialNumbers numbers_;
   std::vector<std::string> targets_;  // by number of the material
+  std::uint32_t last_ = 0;
 };
 
 /// Writes the text of one building after the other. Buildings are put together by hand from fixed pieces: an element at
@@ -323,9 +349,93 @@ class BuildingText {
       out_ += "<bldg:lod2Solid>";
       geometry_.solid_of_references(part.lod2, id + "_lod2", id);
       out_ += "</bldg:lod2Solid>\n";
-      geometry_.surfaces(part.lod2, id);
       looks_.add(part.lod2, id);
+      if (options_.lod >= 3 && part.lod >= 3 && !part.lod3.solid.empty())
+        detail(part, id);
+      else
+        geometry_.surfaces(part.lod2, id);
     }
+  }
+
+  /// What stands on walls, the surfaces of both levels with windows and doors, and the solid of LoD3.
+  void detail(const model::BuildingPart& part, const std::string& id) {
+    const model::Detail& lod3 = part.lod3;
+    std::vector<const model::Placement*> in_opening(lod3.openings.size(), nullptr);
+    std::size_t number = 0;
+    for (const model::Placement& p : lod3.placements) {
+      if (p.opening != model::kNoOpening) {
+        in_opening[p.opening] = &p;
+        continue;
+      }
+      open_installation(id, number++, region_.elements.at(p.element).element->kind);
+      implicit(p);
+      out_ += "</bldg:BuildingInstallation></bldg:outerBuildingInstallation>\n";
+    }
+    for (const model::WallInstallation& body : lod3.installations) {
+      const std::string body_id = open_installation(id, number++, body.kind);
+      out_ += "<bldg:lod3Geometry>";
+      geometry_.multi_surface(body.solid, body_id);
+      out_ += "</bldg:lod3Geometry>\n</bldg:BuildingInstallation></bldg:outerBuildingInstallation>\n";
+      looks_.add(body.solid, body_id);
+    }
+    geometry_.surfaces(part.lod2, lod3, id, [&](std::size_t o) {
+      if (in_opening[o]) implicit(*in_opening[o]);
+    });
+    looks_.add_detail(part.lod2, lod3.solid, id);
+    out_ += "<bldg:lod3Solid>";
+    geometry_.solid_of_detail(part.lod2, lod3.solid, id + "_lod3", id);
+    out_ += "</bldg:lod3Solid>\n";
+  }
+
+  /// \return the installation's id
+  std::string open_installation(const std::string& id, std::size_t number, std::string_view kind) {
+    std::string own = id + "_i";
+    append_number(own, static_cast<std::int64_t>(number));
+    out_ += "<bldg:outerBuildingInstallation><bldg:BuildingInstallation gml:id=\"";
+    out_ += own;
+    out_ += "\">";
+    coded("function", {}, kind);
+    return own;
+  }
+
+  /// An element where it stands; its own geometry is written with the first of its places in the file.
+  void implicit(const model::Placement& p) {
+    out_ += "<bldg:lod3ImplicitRepresentation><ImplicitGeometry><transformationMatrix>";
+    const auto number = [&](double v) {
+      append_number(out_, std::nearbyint(v * 1e9) / 1e9 + 0.0);
+      out_ += ' ';
+    };
+    number(p.along.x);
+    number(0 - p.along.y);
+    out_ += "0 0 ";
+    number(p.along.y);
+    number(p.along.x);
+    out_ += "0 0 0 0 1 0 0 0 0 1</transformationMatrix><relativeGMLGeometry";
+    if (written_.size() < region_.elements.size()) written_.resize(region_.elements.size(), false);
+    std::string id = "element_" + region_tile();
+    append_number(id, static_cast<std::int64_t>(p.element));
+    if (written_[p.element]) {
+      out_ += " xlink:href=\"#" + id + "\"/>";
+    } else {
+      written_[p.element] = true;
+      out_ += '>';
+      geometry_.multi_surface(region_.elements[p.element].element->mesh, id);
+      out_ += "</relativeGMLGeometry>";
+      looks_.add(region_.elements[p.element], id);
+    }
+    out_ += "<referencePoint><gml:Point><gml:pos>";
+    append_grid(out_, p.origin.x);
+    out_ += ' ';
+    append_grid(out_, p.origin.y);
+    out_ += ' ';
+    append_grid(out_, p.origin.z);
+    out_ += "</gml:pos></gml:Point></referencePoint></ImplicitGeometry></bldg:lod3ImplicitRepresentation>\n";
+  }
+
+  /// Ids of elements differ between the files of a build.
+  std::string region_tile() const {
+    const model::TileId& tile = region_.tile;
+    return std::to_string(tile.level) + "_" + std::to_string(tile.x) + "_" + std::to_string(tile.y) + "_";
   }
 
   void address(model::Range tags) {
@@ -369,6 +479,7 @@ class BuildingText {
   std::string out_;
   GeometryText geometry_;
   Looks& looks_;
+  std::vector<bool> written_;  ///< elements whose geometry stands in the file
 };
 
 /// What the callback of libxml2 sees: exceptions must not pass through C code. After an error the rest is swallowed;

@@ -10,7 +10,8 @@ namespace blockrand::export_ {
 namespace {
 
 constexpr std::string_view kSurfaceNames[model::kSurfaceKindCount] = {
-    "GroundSurface", "WallSurface", "RoofSurface", "OuterCeilingSurface", "OuterFloorSurface", "ClosureSurface"};
+    "GroundSurface",       "WallSurface",    "RoofSurface", "OuterCeilingSurface",
+    "OuterFloorSurface",   "ClosureSurface", "Window",      "Door"};
 constexpr std::uint32_t kUnknown = 0xffffffff;
 
 void append_index(std::string& out, std::uint32_t index) {

@@ -5,25 +5,28 @@
 #include <string>
 
 #include "pipeline/export/frame.h"
+#include "pipeline/export/gltf/instance_writer.h"
 #include "pipeline/model/region.h"
 
 namespace blockrand::export_ {
 
 struct GlbOptions {
-  int lod = 2;                   ///< highest level of detail: 0 to 2; with 0 the mesh is the footprints
+  int lod = 2;                   ///< highest level of detail: 0 to 3; with 0 the mesh is the footprints
   std::string crs;               ///< of the build, for example "EPSG:25833"
   std::string height_reference;  ///< in words: "ellipsoidal heights (EGM96 + terrain)", "heights above local ground"
   std::string generator;         ///< program and version, for asset.generator
   std::string attribution;       ///< asset.copyright: "© OpenStreetMap contributors, ODbL 1.0"
   Frame frame;
-  bool evidence = false;  ///< also why each attribute has its value
+  Instancing instancing = Instancing::ext;  ///< of what stands in facades, at LoD3
+  bool evidence = false;                    ///< also why each attribute has its value
 };
 
 struct Glb {
   std::string bytes;
   std::size_t rows = 0;       ///< of the property table: parts of owned buildings
-  std::size_t triangles = 0;  ///< 0: the file is valid, but shows nothing; a tileset should leave it out
-  model::Point3 min, max;     ///< of the mesh in east, north, up; zero without triangles
+  std::size_t triangles = 0;  ///< as drawn; 0: the file is valid, but shows nothing; a tileset should leave it out
+  std::size_t elements = 0, placements = 0;  ///< distinct elements and their places, where they are not baked
+  model::Point3 min, max;                    ///< of the mesh in east, north, up; zero without triangles
 };
 
 /// The owned buildings of `region` as one GLB.
@@ -31,7 +34,9 @@ struct Glb {
 /// One mesh with a primitive per material class, indexed, y up. Vertices are interleaved: POSITION (float, or 16-bit
 /// integers in steps of 1/4096 m where the whole mesh is smaller than 16 m), NORMAL (8 bits), COLOR_0 (16 bits, linear
 /// light) and _FEATURE_ID_0, the row of the part in the property table. Extensions: KHR_mesh_quantization (required),
-/// EXT_mesh_features, EXT_structural_metadata. `asset.extras.georeference` says where on the Earth the mesh stands.
+/// EXT_mesh_features, EXT_structural_metadata. Elements of LoD3 as GlbOptions::instancing says (instance_writer.h),
+/// with EXT_mesh_gpu_instancing (required) and EXT_instance_features. `asset.extras.georeference` says where on the
+/// Earth the mesh stands.
 ///
 /// The same region gives the same bytes. A region without parts gives a valid file with an empty scene.
 /// \throws std::length_error when the tile has more than 2^24 parts or 4 GB of data

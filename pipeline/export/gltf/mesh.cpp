@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "pipeline/export/gltf/element_geometry.h"
 #include "pipeline/export/gltf/linear_light.h"
 #include "pipeline/geometry/solid_builder.h"
 #include "pipeline/geometry/triangulate.h"
@@ -19,10 +20,25 @@ struct SolidRef {
   const model::SolidTriangles* triangles = nullptr;
   std::uint32_t feature = 0;
   std::uint32_t first_position = 0;
+  std::vector<bool> hidden;  ///< faces that elements stand for; empty: none
 };
+
+/// Faces of a LoD3 solid that are left to elements.
+std::vector<bool> hidden_faces(const model::Detail& detail, bool bake) {
+  std::vector<bool> hidden(detail.solid.faces.size(), false);
+  for (const model::Placement& p : detail.placements) {
+    if (p.opening == model::kNoOpening) continue;
+    const model::Opening& o = detail.openings[p.opening];
+    if (o.kind == model::OpeningKind::passage) continue;
+    hidden[o.polygon] = true;
+    for (std::uint32_t i = 0; i < o.reveal_count && !bake; ++i) hidden[o.first_reveal + i] = true;
+  }
+  return hidden;
+}
 
 /// The best solid of the part at or below `lod`, or nullptr.
 std::pair<const model::Solid*, const model::SolidTriangles*> solid_of(const model::BuildingPart& part, int lod) {
+  if (lod >= 3 && part.lod >= 3 && !part.lod3.solid.empty()) return {&part.lod3.solid, &part.lod3.triangles};
   if (lod >= 2 && part.lod >= 2 && !part.lod2.empty()) return {&part.lod2, &part.lod2_triangles};
   if (lod >= 1 && part.lod >= 1 && !part.lod1.empty()) return {&part.lod1, &part.lod1_triangles};
   return {nullptr, nullptr};
@@ -131,9 +147,43 @@ void unify_equal_points(const std::vector<model::Point3>& points, std::uint32_t 
         i > 0 && points[order[i]] == points[order[i - 1]] ? representative[order[i - 1]] : order[i];
 }
 
+/// Puts every placed element's triangles into the mesh.
+void bake_elements(const model::Region& region, const Frame& frame, Mesh& mesh,
+                   std::vector<MeshPrimitive>& primitives) {
+  for (const InstanceGroup& group : element_instances(region, frame)) {
+    const model::ColouredElement& element = region.elements[group.element];
+    const ElementGeometry geometry = element_geometry(*element.element, false);
+    for (const ElementInstance& at : group.instances) {
+      const model::Point2 out{at.along.y, -at.along.x};
+      const auto turn = [&](double x, double y, double z) {
+        return model::Point3{at.along.x * x + out.x * z, at.along.y * x + out.y * z, y};
+      };
+      for (const ElementGeometry::PartTriangles& part : geometry.parts) {
+        const model::PartLook& look = element.looks[static_cast<std::size_t>(part.part)];
+        MeshPrimitive& primitive = primitives[look.material];
+        const auto first = static_cast<std::uint32_t>(primitive.vertices.size());
+        for (const ElementVertex& v : part.vertices) {
+          const model::Point3 d = turn(v.position.x, v.position.y, v.position.z);
+          const model::Point3 n = turn(v.normal[0], v.normal[1], v.normal[2]);
+          MeshVertex vertex;
+          vertex.position = static_cast<std::uint32_t>(mesh.positions.size());
+          mesh.positions.push_back({at.origin.x + d.x, at.origin.y + d.y, at.origin.z + d.z});
+          vertex.feature = at.feature;
+          vertex.normal = {static_cast<std::int8_t>(std::nearbyint(n.x)), static_cast<std::int8_t>(std::nearbyint(n.y)),
+                           static_cast<std::int8_t>(std::nearbyint(n.z))};
+          vertex.colour = {kLinearLight[look.colour.r], kLinearLight[look.colour.g], kLinearLight[look.colour.b]};
+          primitive.vertices.push_back(vertex);
+        }
+        for (const std::uint32_t i : part.indices) primitive.indices.push_back(first + i);
+        mesh.triangles += part.indices.size() / 3;
+      }
+    }
+  }
+}
+
 }  // namespace
 
-Mesh build_mesh(const model::Region& region, int lod, const Frame& frame) {
+Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake) {
   std::vector<SolidRef> solids;
   std::deque<Footprint> footprints;  // a deque keeps its elements in place
   std::vector<model::Point3> source;
@@ -149,8 +199,15 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame) {
         }
       }
       if (solid) {
-        solids.push_back({solid, triangles, feature, static_cast<std::uint32_t>(source.size())});
+        const bool detailed = solid == &part.lod3.solid;
+        solids.push_back({solid, triangles, feature, static_cast<std::uint32_t>(source.size()),
+                          detailed ? hidden_faces(part.lod3, bake) : std::vector<bool>{}});
         source.insert(source.end(), solid->vertices.begin(), solid->vertices.end());
+        if (detailed)
+          for (const model::WallInstallation& body : part.lod3.installations) {
+            solids.push_back({&body.solid, &body.triangles, feature, static_cast<std::uint32_t>(source.size()), {}});
+            source.insert(source.end(), body.solid.vertices.begin(), body.solid.vertices.end());
+          }
       }
       ++feature;
     }
@@ -173,6 +230,7 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame) {
     unify_equal_points(source, ref.first_position, count, representative, order);
     welder.start(ref.triangles->triangles.size() * 3);
     for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+      if (!ref.hidden.empty() && ref.hidden[f]) continue;
       const model::Face& face = solid.faces[f];
       MeshPrimitive& primitive = primitives[face.material];
       MeshVertex vertex;
@@ -188,6 +246,8 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame) {
       }
     }
   }
+
+  if (bake && lod >= 3) bake_elements(region, frame, mesh, primitives);
 
   for (std::size_t m = 0; m < primitives.size(); ++m) {
     if (primitives[m].indices.empty()) continue;

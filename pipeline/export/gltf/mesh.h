@@ -35,10 +35,14 @@ struct Mesh {
 };
 
 /// The solids of all parts of owned buildings, each at level of detail `lod` or, where it was not reached, the best
-/// one below; with `lod` 0 their footprints. Features count the parts, with or without a solid, in the order of building_table().
+/// one below; with `lod` 0 their footprints. Features count the parts, with or without a solid, in the order of
+/// building_table().
+///
+/// Of a LoD3 solid, what an element covers is left to the element: the polygon of its opening, and the reveal as well
+/// unless `bake` is set, which puts the elements themselves into this mesh. Bodies on walls are always part of it.
 ///
 /// Shading is flat: a face's vertices share the normal of its plane (Newell's method in the local frame). Corners of a
 /// part with equal position, normal, colour and material become one vertex.
-Mesh build_mesh(const model::Region& region, int lod, const Frame& frame);
+Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake = false);
 
 }  // namespace blockrand::export_

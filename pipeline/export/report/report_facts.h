@@ -59,7 +59,7 @@ struct ReportFacts {
 
   std::uint64_t buildings_in = 0, parts_in = 0;
   std::uint64_t models = 0, represented = 0, duplicates = 0, reported = 0;  ///< represented without duplicates
-  std::array<std::uint64_t, 3> models_by_lod{};
+  std::array<std::uint64_t, 4> models_by_lod{};
   std::uint64_t buildings_built = 0, bodies = 0;  ///< buildings with at least one body; bodies of all
 
   std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → bodies

@@ -72,8 +72,9 @@ std::string head_section(const ReportFacts& f, bool styles) {
   if (f.duplicates > 0) out += " Of those represented, " + with_thousands(f.duplicates) + " are mapped twice.";
   out += "</p>\n<dl class=\"facts\">\n";
   std::string levels;
-  constexpr std::string_view kLevels[] = {"LoD\u00a00 (footprint)", "LoD\u00a01 (block)", "LoD\u00a02 (with roof)"};
-  for (int lod = 2; lod >= 0; --lod) {
+  constexpr std::string_view kLevels[] = {"LoD\u00a00 (footprint)", "LoD\u00a01 (block)", "LoD\u00a02 (with roof)",
+                                             "LoD\u00a03 (with facades)"};
+  for (int lod = 3; lod >= 0; --lod) {
     const std::uint64_t n = f.models_by_lod[static_cast<std::size_t>(lod)];
     if (n == 0 && lod != f.lod) continue;
     if (!levels.empty()) levels += ", ";

@@ -1,0 +1,49 @@
+// Facade elements as triangles, and where they stand in a tile's frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/export/frame.h"
+#include "pipeline/model/region.h"
+
+namespace blockrand::export_ {
+
+/// A corner in the element's frame.
+struct ElementVertex {
+  model::Point3 position;               ///< m: x right, y up, z out of the wall
+  std::array<std::int8_t, 3> normal{};  ///< in 1/127, the same axes
+};
+
+/// The triangles of an element by part; vertices are shared within a part.
+struct ElementGeometry {
+  struct PartTriangles {
+    model::ElementPart part = model::ElementPart::frame;
+    std::vector<ElementVertex> vertices;
+    std::vector<std::uint32_t> indices;  ///< counter-clockwise from outside
+  };
+  std::vector<PartTriangles> parts;  ///< in the order of ElementPart; none is empty
+  double reach = 0;                  ///< m, the largest coordinate
+};
+
+/// \param with_reveal  also the strip from the wall to the opening's end, as part `wall`, which solids have as faces
+ElementGeometry element_geometry(const model::Element& element, bool with_reveal);
+
+/// An element where it stands, in east, north, up.
+struct ElementInstance {
+  std::uint32_t feature = 0;  ///< row of the property table
+  model::Point3 origin;       ///< m
+  model::Point2 along;        ///< unit vector, east and north
+};
+
+/// All places of one element.
+struct InstanceGroup {
+  std::uint32_t element = 0;  ///< into Region::elements
+  std::vector<ElementInstance> instances;
+};
+
+/// The placements of parts that were built at LoD3, by element; features as build_mesh() counts them.
+std::vector<InstanceGroup> element_instances(const model::Region& region, const Frame& frame);
+
+}  // namespace blockrand::export_

@@ -1,0 +1,32 @@
+// What rules can ask about the building and the wall that they work on.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/generate/facade_stretches.h"
+#include "pipeline/generate/wall_frame.h"
+#include "pipeline/model/building.h"
+#include "styles/grammar/value.h"
+
+namespace blockrand::generate {
+
+struct FacadeContext {
+  const model::Building& building;
+  const model::BuildingPart& part;
+  const WallFrame& wall;
+  const FacadeStretch& stretch;
+};
+
+/// One value that rules may read: "building.storeys". docs/grammar_attributes.md is printed from the list.
+struct ContextAttribute {
+  std::string_view name, unit, meaning;
+  grammar::Value (*read)(const FacadeContext&);
+};
+
+/// All of them, by name.
+const std::vector<ContextAttribute>& context_attributes();
+std::optional<grammar::Value> context_value(const FacadeContext& context, std::string_view name);
+
+}  // namespace blockrand::generate

@@ -1,0 +1,194 @@
+// Clipping, insets and convex pieces of small polygons.
+#include "styles/elements/flat_shapes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pipeline/geometry/triangulate.h"
+
+namespace blockrand::elements {
+namespace {
+
+using model::Point2;
+
+double cross(Point2 o, Point2 a, Point2 b) { return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x); }
+double distance(Point2 a, Point2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
+
+/// Points that follow one another too closely become one.
+Outline without_repetitions(const Outline& polygon) {
+  Outline out;
+  for (const Point2 p : polygon)
+    if (out.empty() || distance(out.back(), p) > kSamePoint) out.push_back(p);
+  while (out.size() > 1 && distance(out.back(), out.front()) <= kSamePoint) out.pop_back();
+  if (out.size() < 3) out.clear();
+  return out;
+}
+
+bool segments_meet(Point2 a, Point2 b, Point2 c, Point2 d) {
+  const auto side = [](Point2 o, Point2 p, Point2 q) {
+    const double v = cross(o, p, q);
+    return v > 1e-12 ? 1 : v < -1e-12 ? -1 : 0;
+  };
+  const auto within = [](Point2 p, Point2 q, Point2 x) {
+    return std::min(p.x, q.x) - 1e-9 <= x.x && x.x <= std::max(p.x, q.x) + 1e-9 && std::min(p.y, q.y) - 1e-9 <= x.y &&
+           x.y <= std::max(p.y, q.y) + 1e-9;
+  };
+  const int s1 = side(a, b, c), s2 = side(a, b, d), s3 = side(c, d, a), s4 = side(c, d, b);
+  if (s1 * s2 < 0 && s3 * s4 < 0) return true;
+  return (s1 == 0 && within(a, b, c)) || (s2 == 0 && within(a, b, d)) || (s3 == 0 && within(c, d, a)) ||
+         (s4 == 0 && within(c, d, b));
+}
+
+/// Steps of the integer grid that the triangulation works on: a thousandth of a millimetre, so that shapes stay what
+/// they are; coordinates up to 2 km fit its 31 bits.
+constexpr double kFineSteps = 1048576.0;
+
+/// Sine of the turn from which a corner is one.
+constexpr double kStraight = 1e-6;
+
+/// True for polygons that turn left at every corner and go round once.
+bool is_convex(std::span<const Point2> points, const std::vector<std::uint32_t>& loop) {
+  const std::size_t n = loop.size();
+  if (n < 3) return false;
+  double turned = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point2 a = points[loop[i]], b = points[loop[(i + 1) % n]], c = points[loop[(i + 2) % n]];
+    const double scale = distance(a, b) * distance(b, c);
+    if (!(cross(a, b, c) > kStraight * scale)) return false;
+    // Directions that turn from below to above the x axis: once a round.
+    turned += (b.y - a.y < 0 || (b.y == a.y && b.x < a.x)) && !(c.y - b.y < 0 || (c.y == b.y && c.x < b.x));
+  }
+  return turned == 1;
+}
+
+}  // namespace
+
+double signed_area(std::span<const Point2> polygon) {
+  double twice = 0;
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) twice += cross(polygon[0], polygon[i], polygon[i + 1]);
+  return twice / 2;
+}
+
+Bounds2 bounds_of(std::span<const Point2> polygon) {
+  if (polygon.empty()) return {};
+  Bounds2 b{polygon[0], polygon[0]};
+  for (const Point2 p : polygon) {
+    b.least = {std::min(b.least.x, p.x), std::min(b.least.y, p.y)};
+    b.most = {std::max(b.most.x, p.x), std::max(b.most.y, p.y)};
+  }
+  return b;
+}
+
+bool is_simple(std::span<const Point2> polygon) {
+  const std::size_t n = polygon.size();
+  if (n < 3) return false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point2 a = polygon[i], b = polygon[(i + 1) % n], c = polygon[(i + 2) % n];
+    if (distance(a, b) < 1e-9) return false;
+    // A spike: the next edge runs back along this one.
+    if (std::fabs(cross(a, b, c)) < 1e-12 && (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y) < 0) return false;
+    for (std::size_t j = i + 2; j < n; ++j) {
+      if (i == 0 && j + 1 == n) continue;
+      if (segments_meet(a, b, polygon[j], polygon[(j + 1) % n])) return false;
+    }
+  }
+  return true;
+}
+
+Outline clipped(const Outline& convex, Point2 normal, double limit) {
+  Outline out;
+  const std::size_t n = convex.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point2 a = convex[i], b = convex[(i + 1) % n];
+    const double da = a.x * normal.x + a.y * normal.y - limit, db = b.x * normal.x + b.y * normal.y - limit;
+    if (da <= 0) out.push_back(a);
+    if ((da < 0 && db > 0) || (da > 0 && db < 0)) {
+      const double t = da / (da - db);
+      out.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)});
+    }
+  }
+  out = without_repetitions(out);
+  return signed_area(out) > kSamePoint * kSamePoint ? out : Outline{};
+}
+
+Outline between_x(const Outline& convex, double from, double to) {
+  return clipped(clipped(convex, {1, 0}, to), {-1, 0}, -from);
+}
+Outline between_y(const Outline& convex, double from, double to) {
+  return clipped(clipped(convex, {0, 1}, to), {0, -1}, -from);
+}
+
+Outline inset(const Outline& convex, double by) {
+  Outline out = convex;
+  for (std::size_t i = 0; i < convex.size() && !out.empty(); ++i) {
+    const Point2 a = convex[i], b = convex[(i + 1) % convex.size()];
+    const double length = distance(a, b);
+    if (length < 1e-9) continue;
+    const Point2 outward{(b.y - a.y) / length, -(b.x - a.x) / length};
+    out = clipped(out, outward, outward.x * a.x + outward.y * a.y - by);
+  }
+  return out;
+}
+
+std::optional<std::vector<std::vector<std::uint32_t>>> convex_faces(std::span<const Point2> points,
+                                                                    std::span<const std::vector<std::uint32_t>> loops) {
+  const auto turns_left = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    const double scale = distance(points[a], points[b]) * distance(points[b], points[c]);
+    return cross(points[a], points[b], points[c]) > kStraight * scale;
+  };
+  if (loops.size() == 1 && is_convex(points, loops[0])) return std::vector<std::vector<std::uint32_t>>{loops[0]};
+  std::vector<geometry::Grid2> grid;
+  grid.reserve(points.size());
+  for (const Point2 p : points) grid.push_back({std::llrint(p.x * kFineSteps), std::llrint(p.y * kFineSteps)});
+  const auto triangles = geometry::triangulate(grid, loops);
+  if (!triangles) return std::nullopt;
+
+  // Two faces become one wherever their common edge can go and both of its ends stay strictly convex.
+  std::vector<std::vector<std::uint32_t>> faces;
+  struct Side {
+    std::uint32_t from, to, face;
+  };
+  std::vector<Side> sides;
+  for (std::uint32_t f = 0; f < triangles->size(); ++f) {
+    const auto& t = (*triangles)[f];
+    faces.push_back({t[0], t[1], t[2]});
+    for (std::size_t k = 0; k < 3; ++k) sides.push_back({t[k], t[(k + 1) % 3], f});
+  }
+  std::vector<std::uint32_t> merged_into(faces.size());
+  for (std::uint32_t f = 0; f < faces.size(); ++f) merged_into[f] = f;
+  const auto now = [&](std::uint32_t f) {
+    while (merged_into[f] != f) f = merged_into[f] = merged_into[merged_into[f]];
+    return f;
+  };
+  std::vector<Side> ordered = sides;
+  std::sort(ordered.begin(), ordered.end(),
+            [](const Side& a, const Side& b) { return std::pair(a.from, a.to) < std::pair(b.from, b.to); });
+  for (const Side& s : sides) {
+    if (s.from > s.to) continue;
+    const auto other = std::lower_bound(ordered.begin(), ordered.end(), s, [](const Side& a, const Side& b) {
+      return std::pair(a.from, a.to) < std::pair(b.to, b.from);
+    });
+    if (other == ordered.end() || other->from != s.to || other->to != s.from) continue;
+    const std::uint32_t one = now(s.face), two = now(other->face);
+    if (one == two) continue;
+    const auto &f = faces[one], &g = faces[two];
+    // f from `to` round to `from`, then g's corners between them.
+    const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), s.to) - f.begin());
+    const auto in = static_cast<std::size_t>(std::find(g.begin(), g.end(), s.from) - g.begin());
+    std::vector<std::uint32_t> both;
+    both.reserve(f.size() + g.size() - 2);
+    for (std::size_t k = 0; k < f.size(); ++k) both.push_back(f[(at + k) % f.size()]);
+    for (std::size_t k = 1; k + 1 < g.size(); ++k) both.push_back(g[(in + k) % g.size()]);
+    const std::size_t n = both.size(), end = f.size() - 1;
+    if (!turns_left(both[n - 1], both[0], both[1])) continue;
+    if (!turns_left(both[end - 1], both[end], both[(end + 1) % n])) continue;
+    faces[one] = std::move(both);
+    faces[two].clear();
+    merged_into[two] = one;
+  }
+  std::erase_if(faces, [](const auto& f) { return f.empty(); });
+  return faces;
+}
+
+}  // namespace blockrand::elements

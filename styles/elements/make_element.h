@@ -1,0 +1,68 @@
+// Makes any element from the name of its kind, its size and named parameters: what rule files call.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <variant>
+#include <vector>
+
+#include "styles/elements/element.h"
+#include "styles/elements/profile_library.h"
+
+namespace blockrand::elements {
+
+/// A parameter as a rule file gives it. Metres, degrees, shares; words and names of profiles are texts.
+struct Parameter {
+  std::string name;
+  std::variant<double, std::string> value;
+};
+
+/// What a parameter of a kind is.
+struct ParameterInfo {
+  enum class Type : std::uint8_t {
+    number,
+    whole,    ///< a whole number
+    word,     ///< one of `words`
+    profile,  ///< the name of a moulding in the library, or a program of the profile language
+  };
+  std::string name;
+  std::string unit;  ///< "m", "degrees", "of the width"; empty for words and counts
+  Type type = Type::number;
+  double initial = 0, least = 0, most = 0;  ///< of numbers; of words `initial` is the index
+  std::vector<std::string> words;           ///< allowed words; of profiles the default's name alone
+  std::string meaning;
+};
+
+struct ElementKind {
+  std::string name;
+  ElementClass semantic = ElementClass::installation;
+  std::string meaning;
+  std::string width_is, height_is;                                ///< what width and height of make_element() measure
+  double least_width = 0.3, usual_width = 1, most_width = 10;     ///< m
+  double least_height = 0.3, usual_height = 1, most_height = 10;  ///< m
+  std::vector<ParameterInfo> parameters;
+};
+
+/// Every kind, in the order of docs/elements.md.
+std::span<const ElementKind> element_kinds();
+/// Null when there is none of that name.
+const ElementKind* find_element_kind(std::string_view name);
+
+/// m. No element reaches farther into the wall than this from its front (leaves of gateways that stand open apart,
+/// which reach into the passage by their width).
+inline constexpr double kDeepest = 0.80;
+
+/// Makes an element. Pure: the same arguments give the same bytes.
+///
+/// \param width, height  m, what they measure is in ElementKind
+/// \param parameters     those that are not named keep their defaults
+/// \param profiles       mouldings by name
+/// Error: unknown kinds, parameters and words, each with the nearest known; values out of range, with the range; sizes
+/// that leave no room for what is asked for.
+tl::expected<Element, std::string> make_element(std::string_view kind, double width, double height,
+                                                std::span<const Parameter> parameters = {},
+                                                const ProfileLibrary& profiles = built_in_profiles());
+
+}  // namespace blockrand::elements

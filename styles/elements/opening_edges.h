@@ -1,0 +1,58 @@
+// Openings drawn edge by edge: a rough rectangle whose four edges are moved, shortened and shaped (finkenzeller.md
+// §3.11).
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "styles/elements/profile.h"
+
+namespace blockrand::elements {
+
+/// Where the rough opening lies in its wall. Shares of the wall's height and width, or metres.
+struct RoughOpening {
+  bool relative = true;
+  double bottom = 0.2, top = 0.8;  ///< shares of the wall's height (v_s, v_e), or m above the wall's foot
+  double left = 0.25,
+         right = 0.75;  ///< shares of the wall's width (h_s, h_e), or m of wall left and right of the opening
+};
+
+/// Axis-parallel rectangle in the wall's plane, m.
+struct OpeningRectangle {
+  double left = 0, bottom = 0, right = 0, top = 0;
+  double width() const { return right - left; }
+  double height() const { return top - bottom; }
+};
+
+/// Error: the opening leaves the wall or has no size.
+tl::expected<OpeningRectangle, std::string> rough_opening(const RoughOpening& opening, double wall_width,
+                                                          double wall_height);
+
+/// What becomes of one edge. Shares in [0, 1]: along the edge of its length, across it of the opening's extent there.
+/// Everything grows into the opening.
+struct OpeningEdge {
+  bool dominant = false;
+  double dist_left = 0,
+         dist_right = 0;   ///< the edge is shortened at the viewer's left and right (jambs: lower and upper)
+  double dist_inward = 0;  ///< the edge moves inwards
+  double size = 0;         ///< depth of the strip in which the profile runs
+  /// Shape of the edge: the walk's start and end lie on the strip's inner line, its highest point touches the outer
+  /// one. A round head is "arc, abs, 0, 180, 1;". Without one the edge is straight at the strip's inner line.
+  std::optional<Profile> profile;
+};
+
+/// Bottom, right, top, left.
+using OpeningEdges = std::array<OpeningEdge, 4>;
+
+/// The opening's outline: counter-clockwise, simple, within the rectangle, on the 1/1024 m grid.
+///
+/// A dominant edge spans the whole width (a straight one up to its neighbours' inner lines); its neighbours end at its
+/// inner line. Two dominant neighbours are an error;
+/// where neither of two neighbours is dominant, head and sill are (finkenzeller.md §4.7, 5). \param door  the lower
+/// edge is taken as it is: no strip, no shortening
+tl::expected<Outline, std::string> opening_outline(const OpeningRectangle& rectangle, const OpeningEdges& edges,
+                                                   bool door);
+
+}  // namespace blockrand::elements

@@ -1,0 +1,108 @@
+// docs/elements.md says of every kind what the code says, and has a figure of it.
+//   ELEMENTS_PAGE=1 build/ci/tests/test_elements --gtest_filter='ElementsPage.*'   writes the tables into the page.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "pipeline/base/text.h"
+#include "styles/elements/make_element.h"
+#include "styles/elements/mesh_builder.h"
+
+namespace blockrand::elements {
+namespace {
+
+const std::string kPage = BLOCKRAND_SOURCE_DIR "/docs/elements.md";
+
+std::string page() {
+  std::ifstream file(kPage);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string range(const ParameterInfo& p) {
+  switch (p.type) {
+    case ParameterInfo::Type::number:
+    case ParameterInfo::Type::whole:
+      return base::shortest(p.least) + " to " + base::shortest(p.most);
+    case ParameterInfo::Type::word: {
+      std::string out;
+      for (const std::string& w : p.words) out += (out.empty() ? "`" : ", `") + w + "`";
+      return out;
+    }
+    case ParameterInfo::Type::profile:
+      return "a profile";
+  }
+  return {};
+}
+
+std::string table(const ElementKind& kind) {
+  std::string out = fmt::format(
+      "{}. Width: of the {}, {} to {} m (usual {}); height: of the {}, {} to {} m (usual {}).\n\n"
+      "| parameter | unit | range | default | what it is |\n|---|---|---|---|---|\n",
+      kind.semantic == ElementClass::window ? "Window"
+      : kind.semantic == ElementClass::door ? "Door"
+                                            : "On the wall",
+      kind.width_is, base::shortest(kind.least_width), base::shortest(kind.most_width),
+      base::shortest(kind.usual_width), kind.height_is, base::shortest(kind.least_height),
+      base::shortest(kind.most_height), base::shortest(kind.usual_height));
+  for (const ParameterInfo& p : kind.parameters) {
+    const std::string initial = p.type == ParameterInfo::Type::word
+                                    ? "`" + p.words[static_cast<std::size_t>(p.initial)] + "`"
+                                : p.type == ParameterInfo::Type::profile ? "`" + p.words[0] + "`"
+                                                                         : base::shortest(p.initial);
+    out += fmt::format("| `{}` | {} | {} | {} | {} |\n", p.name, p.unit, range(p), initial, p.meaning);
+  }
+  out += "\nTriangles at detail 0, 1, 2:";
+  for (const double detail : {0.0, 1.0, 2.0}) {
+    const std::vector<Parameter> parameters{{"detail", detail}};
+    const auto e = make_element(kind.name, kind.usual_width, kind.usual_height, parameters);
+    out += fmt::format("{} {}", detail > 0 ? "," : "", e ? triangle_count(e->mesh) : 0);
+  }
+  return out + ".\n";
+}
+
+std::string profiles() {
+  std::string out = "| profile | height, m | what it is |\n|---|---|---|\n";
+  for (const auto& [name, p] : built_in_profiles())
+    out += fmt::format("| `{}` | {} to {}, usually {} | {} |\n", name, base::shortest(p.least), base::shortest(p.most),
+                       base::shortest(p.typical), p.meaning);
+  return out;
+}
+
+std::vector<std::pair<std::string, std::string>> sections() {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const ElementKind& kind : element_kinds()) out.emplace_back(kind.name, table(kind));
+  out.emplace_back("profiles", profiles());
+  return out;
+}
+
+TEST(ElementsPage, ListsKindsAndParametersOfTheCode) {
+  std::string text = page();
+  for (const auto& [name, wanted] : sections()) {
+    const std::string begin = "<!-- " + name + " -->\n", end = "<!-- /" + name + " -->";
+    const std::size_t from = text.find(begin), to = text.find(end);
+    ASSERT_TRUE(from != std::string::npos && to != std::string::npos) << "docs/elements.md lacks the marks of " << name;
+    const std::size_t at = from + begin.size();
+    if (std::getenv("ELEMENTS_PAGE"))
+      text.replace(at, to - at, wanted);
+    else
+      EXPECT_EQ(text.substr(at, to - at), wanted) << "run with ELEMENTS_PAGE=1 to write it";
+  }
+  if (std::getenv("ELEMENTS_PAGE")) std::ofstream(kPage) << text;
+}
+
+TEST(ElementsPage, HasAFigureOfEachKind) {
+  const std::string text = page();
+  for (const ElementKind& kind : element_kinds()) {
+    const std::string figure = "pictures/elements/" + kind.name + ".png";
+    EXPECT_THAT(text, testing::HasSubstr("](" + figure + ")")) << "show the figure";
+    EXPECT_TRUE(std::filesystem::exists(BLOCKRAND_SOURCE_DIR "/docs/" + figure)) << figure;
+  }
+}
+
+}  // namespace
+}  // namespace blockrand::elements

@@ -1,0 +1,341 @@
+// LoD3 in the files: elements stored once and placed, the same picture however they are written, CityGML with openings.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "pipeline/export/citygml/citygml_writer.h"
+#include "pipeline/export/gltf/glb_writer.h"
+#include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/second_judge.h"
+#include "tests/unit/export/facade_region.h"
+#include "tests/validators/citygml_reader.h"
+
+namespace blockrand::export_ {
+namespace {
+
+using nlohmann::json;
+using test::facade_region;
+using test::SampleRegion;
+
+GlbOptions options(Instancing how) {
+  GlbOptions o;
+  o.lod = 3;
+  o.instancing = how;
+  o.crs = "EPSG:25833";
+  o.frame.to_enu = [](std::span<const model::Point3> in, std::span<model::Point3> out) {
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      const double x = in[i].x - 391040.7, y = in[i].y - 5819030.2;
+      out[i] = {0.99978 * x - 0.02094 * y, 0.02094 * x + 0.99978 * y, in[i].z};
+    }
+  };
+  return o;
+}
+
+struct Vector {
+  double x = 0, y = 0, z = 0;
+};
+
+/// A GLB as a viewer sees it: every triangle in the scene's frame, with its feature. Written for this test alone.
+class Scene {
+ public:
+  explicit Scene(const std::string& bytes) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, &bytes[12], 4);
+    document = json::parse(bytes.substr(20, length));
+    binary_ = bytes.substr(20 + length + 8);
+    for (const int n : document["scenes"][0]["nodes"]) add_node(document["nodes"][n]);
+  }
+
+  json document;
+  struct Triangle {
+    Vector corner[3];
+    int feature = -1;
+    double colour[3];  ///< linear light
+  };
+  std::vector<Triangle> triangles;
+  std::size_t places = 0;
+
+ private:
+  std::vector<double> accessor(int number) const {
+    const json& a = document["accessors"][number];
+    const json& view = document["bufferViews"][a["bufferView"].get<int>()];
+    const int component = a["componentType"];
+    const std::size_t size = component == 5126 || component == 5125   ? 4
+                             : component == 5122 || component == 5123 ? 2
+                                                                      : 1;
+    const std::map<std::string, std::size_t> widths{{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
+    const std::size_t width = widths.at(a["type"]), count = a["count"];
+    const std::size_t stride = view.value("byteStride", size * width);
+    const std::size_t start = view.value("byteOffset", std::size_t{0}) + a.value("byteOffset", std::size_t{0});
+    EXPECT_EQ(a.value("byteOffset", std::size_t{0}) % size, 0u) << "accessors are aligned to their components";
+    const bool normalised = a.value("normalized", false);
+    std::vector<double> out;
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < width; ++k) {
+        const char* at = &binary_.at(start + i * stride + k * size);
+        EXPECT_LE(start + i * stride + k * size + size,
+                  view.value("byteOffset", std::size_t{0}) + view["byteLength"].get<std::size_t>());
+        const auto read = [&](auto zero, double most) {
+          std::memcpy(&zero, at, sizeof(zero));
+          out.push_back(normalised ? static_cast<double>(zero) / most : static_cast<double>(zero));
+        };
+        switch (component) {
+          case 5120:
+            read(std::int8_t{}, 127);
+            break;
+          case 5121:
+            read(std::uint8_t{}, 255);
+            break;
+          case 5122:
+            read(std::int16_t{}, 32767);
+            break;
+          case 5123:
+            read(std::uint16_t{}, 65535);
+            break;
+          case 5125:
+            read(std::uint32_t{}, 1);
+            break;
+          default:
+            read(float{}, 1);
+        }
+      }
+    return out;
+  }
+
+  static Vector turned(const std::vector<double>& q, Vector v) {
+    const double x = q[0], y = q[1], z = q[2], w = q[3];
+    const Vector t{2 * (y * v.z - z * v.y), 2 * (z * v.x - x * v.z), 2 * (x * v.y - y * v.x)};
+    return {v.x + w * t.x + y * t.z - z * t.y, v.y + w * t.y + z * t.x - x * t.z, v.z + w * t.z + x * t.y - y * t.x};
+  }
+
+  void add_node(const json& node) {
+    const auto list = [&](const char* key, std::vector<double> usual) {
+      return node.contains(key) ? node[key].get<std::vector<double>>() : usual;
+    };
+    const auto t = list("translation", {0, 0, 0}), r = list("rotation", {0, 0, 0, 1}), s = list("scale", {1, 1, 1});
+    std::vector<double> ts{0, 0, 0}, rs{0, 0, 0, 1}, fs{-1};
+    std::size_t n = 1;
+    const bool instanced = node.contains("extensions") && node["extensions"].contains("EXT_mesh_gpu_instancing");
+    if (instanced) {
+      const json& a = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+      ts = accessor(a["TRANSLATION"]);
+      rs = accessor(a["ROTATION"]);
+      fs = accessor(a["_FEATURE_ID_0"]);
+      n = fs.size();
+      const json& id = node["extensions"]["EXT_instance_features"]["featureIds"][0];
+      EXPECT_EQ(id["attribute"], 0);
+      EXPECT_EQ(id["propertyTable"], 0);
+      EXPECT_EQ(id["featureCount"].get<std::size_t>(), std::set<double>(fs.begin(), fs.end()).size());
+    } else if (node.contains("extras")) {
+      fs = {node["extras"]["feature"].get<double>()};
+    }
+    const bool placed = instanced || node.contains("extras");
+    places += placed ? n : 0;
+    for (const json& p : document["meshes"][node["mesh"].get<int>()]["primitives"]) {
+      const auto position = accessor(p["attributes"]["POSITION"]), index = accessor(p["indices"]);
+      std::vector<double> feature, colour;
+      if (!placed) feature = accessor(p["attributes"]["_FEATURE_ID_0"]);
+      if (p["attributes"].contains("COLOR_0")) colour = accessor(p["attributes"]["COLOR_0"]);
+      const json& material = document["materials"][p["material"].get<int>()]["pbrMetallicRoughness"];
+      for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t i = 0; i < index.size(); i += 3) {
+          Triangle out;
+          for (std::size_t c = 0; c < 3; ++c) {
+            const auto v = static_cast<std::size_t>(index[i + c]);
+            const Vector local = turned({rs[4 * k], rs[4 * k + 1], rs[4 * k + 2], rs[4 * k + 3]},
+                                        {position[3 * v], position[3 * v + 1], position[3 * v + 2]});
+            const Vector in_node{(local.x + ts[3 * k]) * s[0], (local.y + ts[3 * k + 1]) * s[1],
+                                 (local.z + ts[3 * k + 2]) * s[2]};
+            const Vector world = turned(r, in_node);
+            out.corner[c] = {world.x + t[0], world.y + t[1], world.z + t[2]};
+            for (std::size_t d = 0; d < 3; ++d)
+              out.colour[d] = colour.empty() ? material.value("baseColorFactor", std::vector<double>{1, 1, 1, 1})[d]
+                                             : colour[4 * v + d];
+          }
+          out.feature = static_cast<int>(placed ? fs[k] : feature[static_cast<std::size_t>(index[i])]);
+          triangles.push_back(out);
+        }
+    }
+  }
+
+  std::string binary_;
+};
+
+std::array<double, 3> middle(const Scene::Triangle& t) {
+  std::array<double, 3> m{};
+  for (const Vector& v : t.corner) m = {m[0] + v.x / 3, m[1] + v.y / 3, m[2] + v.z / 3};
+  return m;
+}
+
+double area(const Scene::Triangle& t) {
+  const Vector u{t.corner[1].x - t.corner[0].x, t.corner[1].y - t.corner[0].y, t.corner[1].z - t.corner[0].z};
+  const Vector v{t.corner[2].x - t.corner[0].x, t.corner[2].y - t.corner[0].y, t.corner[2].z - t.corner[0].z};
+  const Vector c{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+  return std::sqrt(c.x * c.x + c.y * c.y + c.z * c.z) / 2;
+}
+
+TEST(DetailGlb, ElementsAreStoredOnceAndLeadToTheirBuilding) {
+  const SampleRegion s = facade_region();
+  const Glb glb = write_glb(s.region(), options(Instancing::ext));
+  std::size_t wanted = 0;
+  std::map<int, std::size_t> by_feature;
+  int feature = 0;
+  for (const auto& b : s.region().buildings)
+    for (const auto& part : b.parts) {
+      wanted += part.lod3.placements.size();
+      by_feature[feature++] = part.lod3.placements.size();
+    }
+  ASSERT_GT(wanted, 100u);
+  EXPECT_EQ(glb.placements, wanted);
+  EXPECT_EQ(glb.elements, 6u) << "window, door and lamp in two colours";
+  const Scene scene(glb.bytes);
+  EXPECT_EQ(scene.places, wanted);
+  EXPECT_EQ(scene.triangles.size(), glb.triangles);
+  EXPECT_EQ(scene.document["meshes"].size(), 7u);
+  std::set<int> positions;  // accessors: other colours share them
+  for (std::size_t m = 1; m < 7; ++m)
+    for (const auto& p : scene.document["meshes"][m]["primitives"])
+      positions.insert(p["attributes"]["POSITION"].get<int>());
+  EXPECT_EQ(positions.size(), 3u * 3 + 2) << "three parts each, and the reveals of window and door";
+  for (const char* extension : {"EXT_mesh_gpu_instancing", "KHR_mesh_quantization"}) {
+    const auto& required = scene.document["extensionsRequired"];
+    EXPECT_NE(std::find(required.begin(), required.end(), extension), required.end()) << extension;
+  }
+  const Scene nodes(write_glb(s.region(), options(Instancing::nodes)).bytes);
+  EXPECT_EQ(nodes.places, wanted);
+  std::map<int, std::size_t> extras;
+  for (const auto& node : nodes.document["nodes"])
+    if (node.contains("extras")) ++extras[node["extras"]["feature"].get<int>()];
+  for (const auto& [row, n] : by_feature) EXPECT_EQ(extras[row], n) << row;
+}
+
+/// Each way of writing shows the same triangles in the same colours to within 2 mm, but for how reveals are cut in two.
+TEST(DetailGlb, BakedNodesAndInstancesShowTheSame) {
+  const SampleRegion s = facade_region();
+  const Scene ext(write_glb(s.region(), options(Instancing::ext)).bytes),
+      nodes(write_glb(s.region(), options(Instancing::nodes)).bytes),
+      baked(write_glb(s.region(), options(Instancing::baked)).bytes);
+  ASSERT_EQ(ext.triangles.size(), nodes.triangles.size());
+  EXPECT_EQ(ext.triangles.size(), baked.triangles.size());
+  EXPECT_EQ(baked.places, 0u);
+  const auto sums = [](const Scene& scene) {
+    std::map<int, std::array<double, 7>> out;  // by feature: area, area times middle, area times colour
+    for (const auto& t : scene.triangles) {
+      const double a = area(t);
+      const auto m = middle(t);
+      auto& sum = out[t.feature];
+      sum[0] += a;
+      for (std::size_t i = 0; i < 3; ++i) sum[1 + i] += a * m[i];
+      for (std::size_t i = 0; i < 3; ++i) sum[4 + i] += a * t.colour[i];
+    }
+    return out;
+  };
+  const auto a = sums(ext), b = sums(baked), c = sums(nodes);
+  ASSERT_EQ(a.size(), 4u);
+  for (const auto& [feature, sum] : a) {
+    EXPECT_NEAR(sum[0], c.at(feature)[0], 1e-5 * sum[0]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(sum[1 + i] / sum[0], b.at(feature)[1 + i] / b.at(feature)[0], 0.002) << feature;
+      EXPECT_NEAR(sum[1 + i] / sum[0], c.at(feature)[1 + i] / c.at(feature)[0], 0.002) << feature;
+    }
+    EXPECT_NEAR(sum[0], b.at(feature)[0], 0.002 * sum[0]);
+  }
+  // Every triangle of an element that is baked stands among the instanced ones.
+  std::set<std::array<long, 3>> near;
+  for (const auto& t : ext.triangles) {
+    const auto m = middle(t);
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dz = -1; dz <= 1; ++dz)
+          near.insert({std::lround(m[0] * 250) + dx, std::lround(m[1] * 250) + dy, std::lround(m[2] * 250) + dz});
+  }
+  std::size_t away = 0;
+  for (const auto& t : baked.triangles) {
+    const auto m = middle(t);
+    away += near.count({std::lround(m[0] * 250), std::lround(m[1] * 250), std::lround(m[2] * 250)}) == 0;
+  }
+  EXPECT_LT(away, baked.triangles.size() / 20) << "of reveals that are cut along the other diagonal";
+}
+
+TEST(DetailGlb, WithoutLod3NothingChanges) {
+  const SampleRegion s = facade_region();
+  GlbOptions o = options(Instancing::ext);
+  o.lod = 2;
+  const Glb two = write_glb(s.region(), o);
+  EXPECT_EQ(two.placements, 0u);
+  EXPECT_EQ(two.bytes.find("EXT_mesh_gpu_instancing"), std::string::npos);
+  EXPECT_EQ(write_glb(s.region(), options(Instancing::ext)).bytes,
+            write_glb(facade_region().region(), options(Instancing::ext)).bytes);
+}
+
+CityGmlOptions gml_options() {
+  CityGmlOptions o;
+  o.lod = 3;
+  o.srs_name = "urn:ogc:def:crs:EPSG::25833";
+  return o;
+}
+
+std::string verdict(const validators::GmlSolid& solid) {
+  std::vector<geometry::PolygonRings> polygons;
+  for (const auto& p : solid.polygons) polygons.push_back(p.rings);
+  return geometry::judge_solid(polygons);
+}
+
+TEST(DetailCityGml, SolidsOfBothLevelsAreClosed) {
+  const SampleRegion s = facade_region();
+  const std::string text = write_citygml(s.region(), gml_options());
+  const validators::GmlFile file = validators::read_citygml_text(text);
+  std::map<int, int> levels;
+  for (const auto& solid : file.solids) {
+    ++levels[solid.lod];
+    EXPECT_EQ(verdict(solid), "") << solid.id;
+  }
+  EXPECT_EQ(levels, (std::map<int, int>{{1, 4}, {2, 4}, {3, 3}}));
+  for (const auto& b : s.region().buildings)
+    for (const auto& part : b.parts) {
+      if (part.lod < 3) continue;
+      for (const auto& solid : file.solids)
+        if (solid.building == part.id && solid.lod == 3) {
+          EXPECT_EQ(solid.polygons.size(), part.lod3.solid.faces.size());
+        }
+    }
+  const auto count = [&](const std::string& what) {
+    std::size_t n = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+    return n;
+  };
+  std::size_t openings = 0, placements = 0;
+  for (const auto& b : s.region().buildings)
+    for (const auto& part : b.parts) openings += part.lod3.openings.size(), placements += part.lod3.placements.size();
+  EXPECT_EQ(count("<bldg:opening>"), openings);
+  EXPECT_EQ(count("<bldg:Door "), 3u);
+  EXPECT_EQ(count("<bldg:Window "), openings - 3);
+  EXPECT_EQ(count("<bldg:BuildingInstallation "), 3u);
+  EXPECT_EQ(count("<ImplicitGeometry>"), placements);
+  EXPECT_EQ(count("<relativeGMLGeometry>"), 6u) << "each element's geometry once";
+}
+
+TEST(DetailCityGml, ValidatesAgainstTheSchema) {
+  const std::filesystem::path schemas = std::filesystem::path(BLOCKRAND_SHARED_DIR) / "schemas";
+  if (!std::filesystem::exists(schemas / "citygml2.xsd")) GTEST_SKIP() << "no CityGML schemas in " << schemas;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "blockrand_detail_schema";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "a.gml", std::ios::binary) << write_citygml(facade_region().region(), gml_options());
+  const std::string command = "XML_CATALOG_FILES=" + (schemas / "catalog.xml").string() +
+                              " xmllint --nonet --noout --schema " + (schemas / "citygml2.xsd").string() + " " +
+                              (folder / "a.gml").string() + " > " + (folder / "log").string() + " 2>&1";
+  const int status = std::system(command.c_str());
+  std::ifstream log(folder / "log");
+  EXPECT_EQ(status, 0) << log.rdbuf();
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace blockrand::export_
