@@ -18,8 +18,8 @@ struct Preset {
   std::string description;  ///< one line
   model::StyleClass style = model::StyleClass::other;
   std::vector<std::string> substyles;  ///< ids of the catalogue of styles that it is meant for
-  std::string grammar;                 ///< rule file below configs/grammars; empty: its walls stay closed
-  std::vector<std::pair<std::string, std::string>> attributes;  ///< values of the rule file's attributes, by name
+  std::string grammar{};               ///< rule file below configs/grammars; empty: its walls stay closed
+  std::vector<std::pair<std::string, std::string>> attributes{};  ///< values of the rule file's attributes, by name
 };
 
 /// Reads a list of presets, in alphabetical order of names.

@@ -124,7 +124,7 @@ TEST(Options, NumbersAreCheckedForRangeAndForm) {
   EXPECT_THAT(error_of("jobs", "1.5"), HasSubstr("not a whole number"));
   EXPECT_THAT(error_of("jobs", "1e2"), HasSubstr("not a whole number"));
   EXPECT_THAT(error_of("jobs", ""), HasSubstr("not a number"));
-  EXPECT_THAT(error_of("lod", "3"), HasSubstr("from 0 to 2"));
+  EXPECT_THAT(error_of("lod", "4"), HasSubstr("from 0 to 3"));
   EXPECT_THAT(error_of("ground-height", "nan"), HasSubstr("not a number"));
   EXPECT_THAT(error_of("ground-height", "12m"), HasSubstr("not a number"));
   EXPECT_THAT(error_of("seed", "-3"), HasSubstr("at least 0"));
