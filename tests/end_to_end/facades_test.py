@@ -9,7 +9,7 @@ import unittest
 import judges
 from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, extract, files_of, main, read_json
 
-LOD3 = ('--lod', '3')
+LOD3 = ('--lod', '3', '--no-report', '--no-explain')
 
 
 def glb_json(path):
@@ -86,7 +86,7 @@ class Facades(BuildTest):
             text = f.read()
         with open(presets, 'w', encoding='utf-8') as f:
             f.write(re.sub(r'^attributes = .*\n', '', re.sub(r'grammar = "\w+\.cga"', 'grammar = "slab.cga"', text), flags=re.M))
-        plain = gml(self.build(SAMPLE, 'plain2', '--formats', 'citygml'))
+        plain = gml(self.build(SAMPLE, 'plain2', '--no-report', '--no-explain', '--formats', 'citygml'))
         usual = gml(self.build(SAMPLE, 'usual', *LOD3, '--formats', 'citygml'))
         slabs = gml(self.build(SAMPLE, 'slabs', *LOD3, '--formats', 'citygml', '--configs', configs))
         wanted = lod2_polygons(plain)

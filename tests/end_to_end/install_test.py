@@ -17,9 +17,9 @@ INSTALLED = ['bin/blockrand', 'share/bash-completion/completions/blockrand', 'sh
              'share/doc/blockrand/LICENSE', 'share/doc/blockrand/README.md',
              'share/doc/blockrand/examples/blockrand-viertel.osm', 'share/fish/vendor_completions.d/blockrand.fish',
              'share/man/man1/blockrand.1', 'share/zsh/site-functions/_blockrand']
-# Styles and district rules are many and grow: whatever the source tree holds.
+# Styles, district rules, grammars and profiles are many and grow: whatever the source tree holds.
 INSTALLED += ['share/blockrand/' + os.path.relpath(os.path.join(folder, name), SOURCE)
-              for part in ('styles', 'districts') for folder, _, names in os.walk(os.path.join(SOURCE, 'configs', part))
+              for part in ('styles', 'districts', 'grammars', 'profiles') for folder, _, names in os.walk(os.path.join(SOURCE, 'configs', part))
               for name in names]
 # Of what the Debian package holds, what is called otherwise there.
 DEBIAN = {'share/man/man1/blockrand.1': 'share/man/man1/blockrand.1.gz',

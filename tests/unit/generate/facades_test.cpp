@@ -1,0 +1,357 @@
+// Facades of the shipped presets on synthetic houses: proportions, alignment, variety, and that they are sound.
+#include "pipeline/generate/facades.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/text.h"
+#include "pipeline/generate/envelope.h"
+#include "pipeline/generate/facade_context.h"
+#include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/triangulate.h"
+#include "styles/roofs/roof.h"
+#include "tests/unit/geometry/shapes.h"
+
+namespace blockrand::generate {
+namespace {
+
+using model::EdgeKind;
+using model::Point2;
+using testing_shapes::Random;
+
+const std::filesystem::path kSource = BLOCKRAND_SOURCE_DIR;
+
+struct House {
+  double width = 18, depth = 12, storey_height = 3.8, plinth = 0.8;
+  int storeys = 5;
+  std::vector<EdgeKind> edges{EdgeKind::street, EdgeKind::party_wall, EdgeKind::courtyard, EdgeKind::party_wall};
+  double angle_x = 1, angle_y = 0;  ///< direction of the front
+};
+
+/// A region with one flat-roofed house whose first edge is the street front; id way `id`.
+model::Region region_of(const House& house, const std::string& preset, std::int64_t id) {
+  model::Region region;
+  region.materials = {{"plaster", 0.9f, 0}};
+  model::Building b;
+  b.osm = {model::OsmType::way, id};
+  const auto at = [&](double u, double v) {
+    return model::snap(
+        Point2{391000 + house.angle_x * u - house.angle_y * v, 5819000 + house.angle_y * u + house.angle_x * v});
+  };
+  const model::Polygon plan =
+      testing_shapes::polygon({at(0, 0), at(house.width, 0), at(house.width, house.depth), at(0, house.depth)});
+  b.outline = {plan};
+  for (std::uint32_t e = 0; e < 4; ++e) {
+    model::FacadeEdge edge;
+    edge.edge = e;
+    const Point2 p = plan.outer.points[e], q = plan.outer.points[(e + 1) % 4];
+    edge.end = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
+    edge.kind = house.edges[e];
+    b.edges.push_back(edge);
+  }
+  b.situation.fronts = {0};
+  b.situation.block = "block " + std::to_string(id / 10);
+  model::Attributes a;
+  a.storeys.value = house.storeys;
+  a.storey_height.value = house.storey_height;
+  a.plinth_height.value = house.plinth;
+  a.ground_height.value = 30;
+  a.height.value = model::snap(house.plinth + house.storeys * house.storey_height);
+  a.preset.value = preset;
+  a.use.value = a.ground_floor_use.value = "apartments";
+  a.wall_material.value = "plaster";
+  a.wall_colour.value = {220, 210, 180};
+  b.attributes = a;
+  model::BuildingPart part;
+  part.id = b.id();
+  part.osm = b.osm;
+  part.plan = part.roof_plan = plan;
+  part.attributes = a;
+  EnvelopeLooks looks;
+  looks.wall.kind = model::SurfaceKind::wall;
+  looks.wall.colour = a.wall_colour.value;
+  looks.roof.kind = model::SurfaceKind::roof;
+  part.lod2 = envelope(plan, 30, roofs::flat_roof(plan, 30 + a.height.value), looks);
+  part.lod2_triangles = *geometry::triangulate(part.lod2);
+  part.lod = 2;
+  b.parts.push_back(std::move(part));
+  region.buildings.push_back(std::move(b));
+  return region;
+}
+
+const GrammarBook& shipped() {
+  static const std::vector<PresetGrammar> presets{
+      {"gruenderzeit", "gruenderzeit.cga", {{"ornament", "0.7"}, {"stripped", "0"}}},
+      {"tenement", "workers_tenement.cga", {}},
+      {"slab", "slab.cga", {}},
+      {"plain", "plain.cga", {}}};
+  static const GrammarBook book((kSource / "configs/grammars").string(), presets);
+  return book;
+}
+
+House random_house(Random& random, int least_storeys, int most_storeys, double storey) {
+  House h;
+  h.width = 9 + 18 * random.unit();
+  h.depth = 9 + 6 * random.unit();
+  h.storeys =
+      least_storeys + static_cast<int>(random.next(static_cast<std::uint64_t>(most_storeys - least_storeys + 1)));
+  h.storey_height = storey * (0.94 + 0.12 * random.unit());
+  h.plinth = 0.4 + 0.6 * random.unit();
+  const double t = random.unit() * 0.9;  // a turned front, by the rational parametrisation of the circle
+  h.angle_x = (1 - t * t) / (1 + t * t);
+  h.angle_y = 2 * t / (1 + t * t);
+  return h;
+}
+
+/// One window or door of a wall, in the wall's coordinates.
+struct Placed {
+  double u = 0, v = 0, width = 0, height = 0;
+  std::string kind, name;
+};
+
+std::vector<Placed> on_wall(const model::Region& region, const model::BuildingPart& part, std::uint32_t edge) {
+  std::vector<Placed> out;
+  for (const model::Placement& p : part.lod3.placements) {
+    const auto wall = wall_frame(part.lod2, p.wall);
+    if (!wall || part.lod2.faces[p.wall].edge != static_cast<std::int32_t>(edge)) continue;
+    const model::Element& e = *region.elements[p.element].element;
+    Placed placed;
+    placed.u = (p.origin.x - wall->start.x) * wall->along.x + (p.origin.y - wall->start.y) * wall->along.y;
+    placed.v = p.origin.z - wall->base;
+    placed.kind = e.kind;
+    placed.name = e.name;
+    for (const Point2& q : e.opening.outline) {
+      placed.width = std::max(placed.width, 2 * std::fabs(q.x));
+      placed.height = std::max(placed.height, q.y);
+    }
+    out.push_back(placed);
+  }
+  return out;
+}
+
+struct Quantiles {
+  std::vector<double> values;
+  void add(double v) { values.push_back(v); }
+  double at(double share) {
+    std::sort(values.begin(), values.end());
+    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+  }
+};
+
+class Preset : public testing::TestWithParam<std::pair<const char*, std::array<double, 8>>> {};
+
+/// Proportions that references/styles.md 2.4 and its appendix give: distance of axes, width of windows, height over
+/// width, sill over the floor; asserted on a thousand houses each.
+TEST_P(Preset, KeepsTheProportionsOfItsStyle) {
+  const auto& [name, range] = GetParam();
+  const bool modern = std::string(name) == "slab";
+  Random random(7);
+  Quantiles axis, width, ratio, aligned;
+  std::set<std::string> fronts;
+  int houses = 0, with_door = 0, empty = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const House house = random_house(random, modern ? 4 : 3, modern ? 8 : 5, modern ? 2.8 : 3.75);
+    model::Region region = region_of(house, name, 1000 + i);
+    build_facades(region, shipped(), Defaults{}, {42});
+    const model::BuildingPart& part = region.buildings[0].parts[0];
+    ASSERT_EQ(part.lod, 3) << i;
+    for (const model::ReportRow& row : region.report.rows) ADD_FAILURE() << i << ": " << row.detail;
+    if (i % 10 == 0) {
+      EXPECT_EQ(geometry::check_solid(part.lod3.solid, part.lod3.triangles).text(), "none");
+    }
+    ++houses;
+    EXPECT_TRUE(on_wall(region, part, 1).empty()) << "a party wall has no openings";
+    EXPECT_FALSE(on_wall(region, part, 2).empty()) << "the court side has";
+    std::map<long, std::vector<Placed>> by_level;  // in centimetres
+    int doors = 0;
+    std::string signature;
+    for (const Placed& p : on_wall(region, part, 0)) {
+      const bool door = p.kind == "house_door" || p.kind == "carriage_gateway";
+      doors += door;
+      if (p.width > 0 && !door && p.kind != "shop_window") by_level[std::lround(p.v * 100)].push_back(p);
+      signature += p.name + " " + std::to_string(std::lround(p.u * 100)) + ";";
+    }
+    for (const model::ColouredElement& e : region.elements)
+      for (const model::PartLook& look : e.looks) signature += model::text(look.colour);
+    fronts.insert(signature);
+    with_door += modern ? doors >= 1 : doors == 1;  // slabs have one for each stair
+    if (by_level.empty()) {
+      ++empty;
+      continue;
+    }
+    std::map<long, int> columns;  // windows by place, in steps of 2 cm
+    for (auto& [v, level] : by_level) {
+      std::sort(level.begin(), level.end(), [](const Placed& a, const Placed& b) { return a.u < b.u; });
+      double least = 1e9;
+      for (std::size_t k = 1; k < level.size(); ++k) least = std::min(least, level[k].u - level[k - 1].u);
+      for (std::size_t k = 1; k < level.size(); ++k)  // doors and stairs leave gaps of two axes
+        if (level[k].u - level[k - 1].u < 1.5 * least && least < 1.5 * range[2]) axis.add(level[k].u - level[k - 1].u);
+      for (const Placed& p : level) {
+        width.add(p.width);
+        ratio.add(p.height / p.width);
+        ++columns[std::lround(p.u * 50)];
+      }
+    }
+    // Columns of windows line up: there is another one over or under each.
+    for (const auto& [v, level] : by_level)
+      for (const Placed& p : level) {
+        const long u = std::lround(p.u * 50);
+        int same = 0;
+        for (const long near : {u - 1, u, u + 1})
+          if (const auto column = columns.find(near); column != columns.end()) same += column->second;
+        aligned.add(same >= 2 ? 1 : 0);
+      }
+  }
+  double sum = 0;
+  for (const double v : aligned.values) sum += v;
+  std::printf(
+      "%s: axis %.2f %.2f %.2f, width %.2f %.2f %.2f, height over width %.2f %.2f %.2f (5, 50, 95 %%), aligned %.3f, "
+      "one door %d, distinct fronts %zu\n",
+      name, axis.at(.05), axis.at(.5), axis.at(.95), width.at(.05), width.at(.5), width.at(.95), ratio.at(.05),
+      ratio.at(.5), ratio.at(.95), sum / static_cast<double>(aligned.values.size()), with_door, fronts.size());
+  EXPECT_EQ(houses, 1000);
+  EXPECT_EQ(empty, 0);
+  EXPECT_GE(axis.at(.05), range[0]);
+  EXPECT_NEAR(axis.at(.5), range[1], 0.15 * range[1]);
+  EXPECT_LE(axis.at(.95), range[2]);
+  EXPECT_GE(width.at(.05), range[3]);
+  EXPECT_LE(width.at(.95), range[4]);
+  EXPECT_GE(ratio.at(.05), range[5]);
+  EXPECT_NEAR(ratio.at(.5), range[6], 0.15 * range[6]);
+  EXPECT_LE(ratio.at(.95), range[7]);
+  EXPECT_GE(sum / static_cast<double>(aligned.values.size()), 0.99);
+  EXPECT_EQ(with_door, 1000);
+  EXPECT_GE(fronts.size(), 990u);
+}
+
+// axis 5 %, 50 %, 95 %; window's width 5 %, 95 %; height over width 5 %, 50 %, 95 %.
+INSTANTIATE_TEST_SUITE_P(
+    Shipped, Preset,
+    testing::Values(std::pair("gruenderzeit", std::array<double, 8>{2.0, 2.4, 3.0, 0.95, 1.25, 1.2, 1.8, 2.3}),
+                    std::pair("tenement", std::array<double, 8>{1.9, 2.25, 2.8, 0.85, 1.1, 1.2, 1.65, 2.0}),
+                    std::pair("slab", std::array<double, 8>{2.2, 3.0, 4.0, 1.05, 2.15, 0.6, 0.85, 1.4})),
+    [](const auto& tested) { return std::string(tested.param.first); });
+
+TEST(Facades, TheSameHouseTwiceIsTheSame) {
+  for (const char* preset : {"gruenderzeit", "slab"}) {
+    const auto text = [&] {
+      model::Region region = region_of({}, preset, 77);
+      build_facades(region, shipped(), Defaults{}, {42});
+      std::string out;
+      for (const Placed& p : on_wall(region, region.buildings[0].parts[0], 0))
+        out += p.name + std::to_string(p.u) + std::to_string(p.v);
+      return out;
+    };
+    EXPECT_EQ(text(), text());
+    EXPECT_FALSE(text().empty());
+  }
+}
+
+TEST(Facades, NarrowHousesDegradeInOrder) {
+  std::size_t before = 0;
+  for (const double width : {0.9, 1.5, 2.0, 3.0, 4.5, 7.0, 12.0}) {
+    House house;
+    house.width = width;
+    model::Region region = region_of(house, "gruenderzeit", 5);
+    build_facades(region, shipped(), Defaults{}, {42});
+    const model::BuildingPart& part = region.buildings[0].parts[0];
+    EXPECT_EQ(part.lod, 3) << width;
+    EXPECT_EQ(geometry::check_solid(part.lod3.solid, part.lod3.triangles).text(), "none");
+    std::size_t openings = 0;
+    for (const Placed& p : on_wall(region, part, 0)) openings += p.width > 0;
+    EXPECT_GE(openings, before) << width;
+    before = openings;
+    if (width < 1.2) {
+      EXPECT_EQ(openings, 0u);
+    }
+  }
+  EXPECT_GT(before, 15u);
+}
+
+TEST(Facades, WithoutGrammarWallsStayAsTheyAre) {
+  model::Region region = region_of({}, "no such preset", 5);
+  build_facades(region, shipped(), Defaults{}, {42});
+  EXPECT_EQ(region.buildings[0].parts[0].lod, 2);
+  EXPECT_TRUE(region.elements.empty());
+}
+
+TEST(FacadeStretches, PartyWallsAndFreePiecesAreTold) {
+  House house;
+  model::Region region = region_of(house, "plain", 5);
+  model::Building& b = region.buildings[0];
+  // The street front's first 6 m are a neighbour's.
+  model::FacadeEdge rest = b.edges[0];
+  b.edges[0].kind = EdgeKind::party_wall;
+  b.edges[0].end = 6;
+  rest.start = 6;
+  b.edges.insert(b.edges.begin() + 1, rest);
+  std::vector<WallFrame> walls;
+  for (std::uint32_t f = 0; f < b.parts[0].lod2.faces.size(); ++f)
+    if (auto wall = wall_frame(b.parts[0].lod2, f)) walls.push_back(*wall);
+  const auto stretches = facade_stretches(b, walls);
+  ASSERT_EQ(stretches.size(), 5u);
+  int found = 0;
+  for (const FacadeStretch& s : stretches) {
+    if (s.kind != EdgeKind::street) continue;
+    ++found;
+    EXPECT_NEAR(s.from, 6, 1e-6);
+    EXPECT_NEAR(s.length(), 12, 1e-3);
+    EXPECT_FALSE(s.starts_wall);
+    EXPECT_TRUE(s.ends_wall);
+  }
+  EXPECT_EQ(found, 1);
+}
+
+TEST(GrammarBooks, MistakesAreLocated) {
+  const auto folder = std::filesystem::temp_directory_path() / "blockrand_grammar_book";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "bad.cga") << "Lot -->\n  split(x){ ~1 : A | \n";
+  const std::vector<PresetGrammar> bad{{"p", "bad.cga", {}}}, none{{"p", "nowhere.cga", {}}};
+  try {
+    GrammarBook book(folder.string(), bad);
+    ADD_FAILURE();
+  } catch (const base::InputError& e) {
+    EXPECT_THAT(e.what(), testing::ContainsRegex("bad.cga:[0-9]+:[0-9]+"));
+  }
+  EXPECT_THROW(GrammarBook(folder.string(), none), base::InputError);
+  std::filesystem::remove_all(folder);
+}
+
+/// docs/grammar_attributes.md; with GRAMMAR_PAGE=1 it is written.
+TEST(ContextAttributes, AreListedInTheManual) {
+  std::string table = "| name | unit | what it is |\n|---|---|---|\n";
+  std::string_view before;
+  for (const ContextAttribute& a : context_attributes()) {
+    EXPECT_LT(before, a.name) << "in order, so that they can be found";
+    before = a.name;
+    table += "| `" + std::string(a.name) + "` | " + std::string(a.unit) + " | " + std::string(a.meaning) + " |\n";
+  }
+  const auto path = kSource / "docs/grammar_attributes.md";
+  std::ifstream in(path);
+  std::stringstream all;
+  all << in.rdbuf();
+  std::string page = all.str();
+  const std::string open = "<!-- attributes -->\n", close = "<!-- /attributes -->";
+  const auto from = page.find(open) + open.size(), to = page.find(close);
+  ASSERT_NE(to, std::string::npos);
+  if (std::getenv("GRAMMAR_PAGE")) {
+    page.replace(from, to - from, table);
+    std::ofstream(path) << page;
+  } else {
+    EXPECT_EQ(page.substr(from, to - from), table) << "GRAMMAR_PAGE=1 test_facades writes it";
+  }
+}
+
+}  // namespace
+}  // namespace blockrand::generate
