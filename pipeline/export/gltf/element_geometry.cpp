@@ -27,16 +27,17 @@ class PartBuilder {
     const auto quantise = [&](double v) { return static_cast<std::int8_t>(std::nearbyint(v / length * 127)); };
     const std::array<std::int8_t, 3> normal{quantise(nx), quantise(ny), quantise(nz)};
     std::vector<std::uint32_t> at;
-    for (const Point3& p : corners) at.push_back(vertex(p, normal));
+    const Point3 exact{nx / length, ny / length, nz / length};
+    for (const Point3& p : corners) at.push_back(vertex(p, normal, exact));
     for (std::size_t i = 2; i < at.size(); ++i) indices.insert(indices.end(), {at[0], at[i - 1], at[i]});
   }
   std::vector<ElementVertex> vertices;
   std::vector<std::uint32_t> indices;
 
  private:
-  std::uint32_t vertex(const Point3& p, std::array<std::int8_t, 3> normal) {
+  std::uint32_t vertex(const Point3& p, std::array<std::int8_t, 3> normal, const Point3& exact) {
     const auto [place, added] = known_.try_emplace({p, normal}, static_cast<std::uint32_t>(vertices.size()));
-    if (added) vertices.push_back({p, normal});
+    if (added) vertices.push_back({p, normal, exact});
     return place->second;
   }
   std::map<std::pair<Point3, std::array<std::int8_t, 3>>, std::uint32_t> known_;

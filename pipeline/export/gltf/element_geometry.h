@@ -14,6 +14,7 @@ namespace blockrand::export_ {
 struct ElementVertex {
   model::Point3 position;               ///< m: x right, y up, z out of the wall
   std::array<std::int8_t, 3> normal{};  ///< in 1/127, the same axes
+  model::Point3 exact_normal;           ///< unit vector, for those who turn it before they round it
 };
 
 /// The triangles of an element by part; vertices are shared within a part.

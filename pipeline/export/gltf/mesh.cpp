@@ -164,13 +164,13 @@ void bake_elements(const model::Region& region, const Frame& frame, Mesh& mesh,
         const auto first = static_cast<std::uint32_t>(primitive.vertices.size());
         for (const ElementVertex& v : part.vertices) {
           const model::Point3 d = turn(v.position.x, v.position.y, v.position.z);
-          const model::Point3 n = turn(v.normal[0], v.normal[1], v.normal[2]);
+          const model::Point3 n = turn(v.exact_normal.x, v.exact_normal.y, v.exact_normal.z);
           MeshVertex vertex;
           vertex.position = static_cast<std::uint32_t>(mesh.positions.size());
           mesh.positions.push_back({at.origin.x + d.x, at.origin.y + d.y, at.origin.z + d.z});
           vertex.feature = at.feature;
-          vertex.normal = {static_cast<std::int8_t>(std::nearbyint(n.x)), static_cast<std::int8_t>(std::nearbyint(n.y)),
-                           static_cast<std::int8_t>(std::nearbyint(n.z))};
+          const auto quantise = [](double c) { return static_cast<std::int8_t>(std::nearbyint(c * 127)); };
+          vertex.normal = {quantise(n.x), quantise(n.y), quantise(n.z)};
           vertex.colour = {kLinearLight[look.colour.r], kLinearLight[look.colour.g], kLinearLight[look.colour.b]};
           primitive.vertices.push_back(vertex);
         }

@@ -142,6 +142,13 @@ class Scene {
       const auto position = accessor(p["attributes"]["POSITION"]), index = accessor(p["indices"]);
       std::vector<double> feature, colour;
       if (!placed) feature = accessor(p["attributes"]["_FEATURE_ID_0"]);
+      const auto normal = accessor(p["attributes"]["NORMAL"]);
+      double worst = 0;  // Khronos' validator takes up to 0.00674 off
+      for (std::size_t v = 0; v + 2 < normal.size(); v += 3)
+        worst = std::max(worst, std::fabs(std::sqrt(normal[v] * normal[v] + normal[v + 1] * normal[v + 1] +
+                                                    normal[v + 2] * normal[v + 2]) -
+                                          1));
+      EXPECT_LT(worst, 0.0067) << "normals have length one";
       if (p["attributes"].contains("COLOR_0")) colour = accessor(p["attributes"]["COLOR_0"]);
       const json& material = document["materials"][p["material"].get<int>()]["pbrMetallicRoughness"];
       for (std::size_t k = 0; k < n; ++k)
