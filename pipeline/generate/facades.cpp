@@ -20,6 +20,7 @@
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/triangulate.h"
 #include "styles/elements/make_element.h"
+#include "styles/grammar/colour_text.h"
 #include "styles/grammar/scope.h"
 #include "styles/grammar/split.h"
 
@@ -37,22 +38,12 @@ constexpr double kElementGrid = 100;
 constexpr model::Colour kFrame{0xF6, 0xF6, 0xF6}, kGlass{0x51, 0x62, 0x6E}, kLeaf{0x5A, 0x3A, 0x29},
     kMetal{0x37, 0x3F, 0x43}, kTrim{0xFD, 0xF4, 0xE3}, kSill{0xE9, 0xE5, 0xCE};
 
-std::optional<model::Colour> parse_colour(std::string_view text) {
-  if (text.size() != 7 || text[0] != '#') return std::nullopt;
-  std::array<int, 6> digit{};
-  for (std::size_t i = 0; i < 6; ++i) {
-    const char c = text[i + 1];
-    if (c >= '0' && c <= '9')
-      digit[i] = c - '0';
-    else if (c >= 'a' && c <= 'f')
-      digit[i] = c - 'a' + 10;
-    else if (c >= 'A' && c <= 'F')
-      digit[i] = c - 'A' + 10;
-    else
-      return std::nullopt;
-  }
-  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(16 * digit[i] + digit[i + 1]); };
-  return model::Colour{byte(0), byte(2), byte(4)};
+/// "#rrggbb", as rule files write colours.
+std::optional<model::Colour> colour_of_text(std::string_view text) {
+  const auto parsed = grammar::parse_colour(text);
+  if (!parsed) return std::nullopt;
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(std::nearbyint((*parsed)[i] * 255)); };
+  return model::Colour{byte(0), byte(1), byte(2)};
 }
 
 /// An element as a rule asked for it, in the coordinates of a wall.
@@ -108,8 +99,9 @@ class FacadeBuilder {
     options.seed = base::random_bits(seed, base::hash_text(place), "stretch");
     options.building_seed = seed;
     options.row_seed = row;
-    options.attributes = grammar.attributes;
+    // The first of a name counts: what district rules and overrides say is stronger than the preset's own values.
     for (const auto& [name, value] : context.building.preset_parameters) options.attributes.emplace_back(name, value);
+    options.attributes.insert(options.attributes.end(), grammar.attributes.begin(), grammar.attributes.end());
     options.source = [&](std::string_view name) { return context_value(context, name); };
     options.limits.shapes = options_.most_shapes;
     const grammar::Derivation derivation = grammar.deriver->run(shape, options);
@@ -180,7 +172,7 @@ class FacadeBuilder {
       if (name.ends_with("_colour") && std::holds_alternative<std::string>(value)) {
         const std::string_view part = std::string_view(name).substr(0, name.size() - 7);
         const auto at = std::find(std::begin(model::kElementPartNames), std::end(model::kElementPartNames), part);
-        const auto colour = parse_colour(std::get<std::string>(value));
+        const auto colour = colour_of_text(std::get<std::string>(value));
         if (at != std::end(model::kElementPartNames) && colour)
           looks[static_cast<std::size_t>(at - std::begin(model::kElementPartNames))].colour = *colour;
         else if (!std::get<std::string>(value).empty())

@@ -14,25 +14,25 @@ namespace blockrand::region {
 
 namespace {
 
+using classify::Feature;
+using classify::FeatureVector;
+using classify::kHouseArea;
+using classify::kNearReach;
 using model::Building;
 using model::BuildingPosition;
 using model::EdgeKind;
 using model::FacadeEdge;
 using model::Point2;
-using classify::Feature;
-using classify::FeatureVector;
-using classify::kHouseArea;
-using classify::kNearReach;
 
-constexpr double kCornerSine = 0.342;      ///< of 20 degrees: what turns less is a bend in a wall
-constexpr double kSectionStep = 1;         ///< m between sections across a house: half a window axis
-constexpr double kFrontCosine = 0.94;      ///< of 20 degrees: stretches of one front
-constexpr double kRunDepth = 0.35;         ///< quantile of the first runs behind the front: its depth (styles.md 2.2)
-constexpr double kWingRatio = 1.5;         ///< depth ratio from which a house has wings (styles.md 2.2)
-constexpr double kMinContact = 1.5;        ///< m. Shorter common walls tie no row together
-constexpr double kSameWidth = 0.75;        ///< m, and
-constexpr double kSameArea = 0.10;         ///< of the area: houses that repeat each other
-constexpr std::int32_t kTownCells = 2;     ///< cells to each side of a building's own that make its town
+constexpr double kCornerSine = 0.342;   ///< of 20 degrees: what turns less is a bend in a wall
+constexpr double kSectionStep = 1;      ///< m between sections across a house: half a window axis
+constexpr double kFrontCosine = 0.94;   ///< of 20 degrees: stretches of one front
+constexpr double kRunDepth = 0.35;      ///< quantile of the first runs behind the front: its depth (styles.md 2.2)
+constexpr double kWingRatio = 1.5;      ///< depth ratio from which a house has wings (styles.md 2.2)
+constexpr double kMinContact = 1.5;     ///< m. Shorter common walls tie no row together
+constexpr double kSameWidth = 0.75;     ///< m, and
+constexpr double kSameArea = 0.10;      ///< of the area: houses that repeat each other
+constexpr std::int32_t kTownCells = 2;  ///< cells to each side of a building's own that make its town
 constexpr int kCircleCorners = 24;
 
 double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
@@ -60,7 +60,8 @@ int corners_of(const model::Ring& ring) {
   int corners = 0;
   const std::size_t n = ring.points.size();
   for (std::size_t i = 0; i < n; ++i) {
-    const Point2 a = minus(ring.points[i], ring.points[(i + n - 1) % n]), b = minus(ring.points[(i + 1) % n], ring.points[i]);
+    const Point2 a = minus(ring.points[i], ring.points[(i + n - 1) % n]),
+                 b = minus(ring.points[(i + 1) % n], ring.points[i]);
     const double lengths = std::sqrt(dot(a, a) * dot(b, b));
     if (lengths > 0 && (std::fabs(cross(a, b)) > kCornerSine * lengths || dot(a, b) < 0)) ++corners;
   }
@@ -96,7 +97,8 @@ std::optional<Depths> depths_of(const Building& building, Point2 inward, double 
     std::sort(crossings.begin(), crossings.end());
     first_runs.push_back(crossings[1] - crossings[0]);
     double longest = 0;
-    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) longest = std::max(longest, crossings[i + 1] - crossings[i]);
+    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
+      longest = std::max(longest, crossings[i + 1] - crossings[i]);
     longest_runs.push_back(longest);
   }
   if (first_runs.empty()) return std::nullopt;
@@ -142,8 +144,8 @@ void measure_plan(const Building& building, FeatureVector& f) {
 float position_number(BuildingPosition p) { return static_cast<float>(static_cast<int>(p)); }
 
 float street_rank(std::string_view street_class) {
-  static constexpr std::string_view kNames[] = {"motorway",    "trunk",         "primary",    "secondary", "tertiary",
-                                                "residential", "living_street", "pedestrian"};
+  static constexpr std::string_view kNames[] = {"motorway", "trunk",       "primary",       "secondary",
+                                                "tertiary", "residential", "living_street", "pedestrian"};
   for (std::size_t i = 0; i < std::size(kNames); ++i)
     if (kNames[i] == street_class) return static_cast<float>(i + 1);
   return std::numeric_limits<float>::quiet_NaN();
@@ -171,19 +173,22 @@ void measure_situation(const Building& building, Own& own) {
   f[Feature::front_share] = as_float(front / all);
   f[Feature::court_share] = as_float(court / all);
   own.place.position = building.situation.position;
-  if (building.situation.position != BuildingPosition::unknown) f[Feature::position] = position_number(building.situation.position);
+  if (building.situation.position != BuildingPosition::unknown)
+    f[Feature::position] = position_number(building.situation.position);
   if (building.situation.setback) f[Feature::setback] = as_float(*building.situation.setback);
 
   const std::vector<std::uint32_t>& fronts = building.situation.fronts;
   if (fronts.empty() || !building.situation.orientation) return;
   const FacadeEdge& main = building.edges[fronts.front()];
-  own.place.street = main.street_name.empty() ? static_cast<std::uint64_t>(main.street.number) : hash_of(main.street_name);
+  own.place.street =
+      main.street_name.empty() ? static_cast<std::uint64_t>(main.street.number) : hash_of(main.street_name);
   f[Feature::street_distance] = main.street_distance;
   f[Feature::street_angle] = main.street_angle;
   f[Feature::street_class] = street_rank(main.street_class);
 
   const double turned = *building.situation.orientation * base::kRadiansPerDegree;
-  const Point2 outward{base::sin(turned), base::cos(turned)}, inward{-outward.x, -outward.y}, along{inward.y, -inward.x};
+  const Point2 outward{base::sin(turned), base::cos(turned)}, inward{-outward.x, -outward.y},
+      along{inward.y, -inward.x};
   double from = std::numeric_limits<double>::infinity(), to = -from;
   for (const std::uint32_t i : fronts) {
     const FacadeEdge& e = building.edges[i];
@@ -231,7 +236,8 @@ double covered_circle(Point2 centre, double radius, std::span<const Point2> ring
       const Point2 p = shape[k], q = shape[(k + 1) % shape.size()];
       const double sp = cross(d, minus(p, a)), sq = cross(d, minus(q, a));
       if (sp >= 0) next.push_back(p);
-      if ((sp >= 0) != (sq >= 0)) next.push_back({p.x + (q.x - p.x) * sp / (sp - sq), p.y + (q.y - p.y) * sp / (sp - sq)});
+      if ((sp >= 0) != (sq >= 0))
+        next.push_back({p.x + (q.x - p.x) * sp / (sp - sq), p.y + (q.y - p.y) * sp / (sp - sq)});
     }
     shape.swap(next);
   }
@@ -243,8 +249,8 @@ constexpr double kMinCircle = 0.1;
 
 class Around {
  public:
-  Around(const FactsExtract& facts, const FootprintStore& store, const ContextExtract& context, const PlaceIndex& houses,
-         const PlaceIndex& small)
+  Around(const FactsExtract& facts, const FootprintStore& store, const ContextExtract& context,
+         const PlaceIndex& houses, const PlaceIndex& small)
       : facts_(facts), store_(store), context_(context), houses_(houses), small_(small) {}
 
   /// What the buildings around say; the building's own features are known.
@@ -315,7 +321,8 @@ class Around {
     row.assign(1, building);
     for (std::size_t i = 0; i < row.size(); ++i)
       for (const Contact& c : facts_.contacts_of(row[i]))
-        if (std::binary_search(near_.begin(), near_.end(), c.other) && std::find(row.begin(), row.end(), c.other) == row.end())
+        if (std::binary_search(near_.begin(), near_.end(), c.other) &&
+            std::find(row.begin(), row.end(), c.other) == row.end())
           row.push_back(c.other);
     std::sort(row.begin(), row.end());
     double area = 0;
@@ -343,7 +350,8 @@ class Around {
       ++touching;
       const double a = static_cast<double>(f[Feature::area]), b = static_cast<double>(o[Feature::area]);
       const bool widths = f.has(Feature::frontage) && o.has(Feature::frontage);
-      const double apart = widths ? std::fabs(static_cast<double>(f[Feature::frontage] - o[Feature::frontage])) : kSameWidth + 1;
+      const double apart =
+          widths ? std::fabs(static_cast<double>(f[Feature::frontage] - o[Feature::frontage])) : kSameWidth + 1;
       if (apart <= kSameWidth && std::fabs(a - b) <= kSameArea * std::max(a, b)) ++alike;
     }
     f[Feature::neighbours] = as_float(touching);
@@ -362,13 +370,15 @@ class Around {
   void measure_gap(std::uint32_t building, FeatureVector& f) {
     std::vector<Point2>& own = points_;
     own.clear();
-    store_.for_each_ring(building, [&](std::span<const Point2> ring, bool) { own.insert(own.end(), ring.begin(), ring.end()); });
+    store_.for_each_ring(building,
+                         [&](std::span<const Point2> ring, bool) { own.insert(own.end(), ring.begin(), ring.end()); });
     double best = kNearReach;
     for (const std::uint32_t b : near_) {
       if (b == building || facts_.places[b].street == 0 || !store_[b].box.near(store_[building].box, best)) continue;
       store_.for_each_ring(b, [&](std::span<const Point2> ring, bool) {
         for (std::size_t i = 0; i < ring.size(); ++i)
-          for (const Point2 p : own) best = std::min(best, geometry::distance_to_segment(p, ring[i], ring[(i + 1) % ring.size()]));
+          for (const Point2 p : own)
+            best = std::min(best, geometry::distance_to_segment(p, ring[i], ring[(i + 1) % ring.size()]));
       });
     }
     if (best < kNearReach) f[Feature::front_gap] = as_float(best);
@@ -445,8 +455,8 @@ void measure_town(const ContextExtract& context, FactsExtract& facts) {
 }
 
 /// The buildings of one tile with their outlines and nothing else, labelled.
-model::Region labelled(const model::Extract& extract, const FootprintStore& store, const SurroundingsFinder& surroundings,
-                       std::span<const std::uint32_t> numbers) {
+model::Region labelled(const model::Extract& extract, const FootprintStore& store,
+                       const SurroundingsFinder& surroundings, std::span<const std::uint32_t> numbers) {
   model::Region region;
   region.extract = &extract;
   for (const std::uint32_t n : numbers) {
@@ -484,11 +494,13 @@ std::vector<std::size_t> runs_of(const FootprintStore& store) {
 
 }  // namespace
 
-PlaceIndex::PlaceIndex(const FactsExtract& facts, std::span<const std::uint32_t> chosen, double size) : facts_(facts), size_(size) {
+PlaceIndex::PlaceIndex(const FactsExtract& facts, std::span<const std::uint32_t> chosen, double size)
+    : facts_(facts), size_(size) {
   entries_.reserve(chosen.size());
   for (const std::uint32_t b : chosen) {
     const Point2 p = facts.places[b].place;
-    entries_.push_back({static_cast<std::int32_t>(std::floor(p.x / size_)), static_cast<std::int32_t>(std::floor(p.y / size_)), b});
+    entries_.push_back(
+        {static_cast<std::int32_t>(std::floor(p.x / size_)), static_cast<std::int32_t>(std::floor(p.y / size_)), b});
   }
   std::sort(entries_.begin(), entries_.end());
 }
@@ -544,11 +556,13 @@ FactsExtract facts_extract(const model::Extract& extract, const FootprintStore& 
       const std::size_t b = starts[i] + k;
       own.place.contacts.first = static_cast<std::uint32_t>(facts.contacts.size());
       for (const auto& [id, length] : own.contacts)
-        if (const std::uint32_t other = numbers.find(id); other != model::kNoIndex) facts.contacts.push_back({other, length});
+        if (const std::uint32_t other = numbers.find(id); other != model::kNoIndex)
+          facts.contacts.push_back({other, length});
       own.place.contacts.count = static_cast<std::uint32_t>(facts.contacts.size()) - own.place.contacts.first;
-      std::sort(facts.contacts.end() - own.place.contacts.count, facts.contacts.end(), [](const Contact& a, const Contact& c) {
-        return a.length > c.length || (a.length == c.length && a.other < c.other);
-      });
+      std::sort(facts.contacts.end() - own.place.contacts.count, facts.contacts.end(),
+                [](const Contact& a, const Contact& c) {
+                  return a.length > c.length || (a.length == c.length && a.other < c.other);
+                });
       facts.places[b] = own.place;
       facts.features[b] = own.features;
     }

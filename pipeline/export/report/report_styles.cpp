@@ -38,12 +38,14 @@ std::string bar(const Counts& counts, std::uint64_t all) {
     // Borders are rounded, not widths: together they are as long as the sum.
     const std::uint64_t from = before * 10000 / all, to = (before + counts[k]) * 10000 / all;
     before += counts[k];
-    const std::string text = std::string(kBases[k].name) + " " + with_thousands(counts[k]) + " (" + percent(counts[k], sum(counts)) + ")";
+    const std::string text =
+        std::string(kBases[k].name) + " " + with_thousands(counts[k]) + " (" + percent(counts[k], sum(counts)) + ")";
     rects += "<rect class=\"" + std::string(kBases[k].css_class) + "\" x=\"" + std::to_string(from) + "\" width=\"" +
              std::to_string(to - from) + "\" height=\"10\"><title>" + text + "</title></rect>";
     words += (words.empty() ? "" : ", ") + text;
   }
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10000 10\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"" +
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10000 10\" preserveAspectRatio=\"none\" role=\"img\" "
+         "aria-label=\"" +
          words + "\">" + rects + "</svg>";
 }
 
@@ -57,9 +59,9 @@ std::string table(std::string_view title, const std::array<Counts, N>& counts, c
                     "</th><th>Share of buildings</th><th class=\"n\">Buildings</th></tr></thead><tbody>\n";
   for (std::size_t i = 0; i < N; ++i) {
     const std::uint64_t n = sum(counts[i]);
-    out += "<tr><td" + (meanings ? " title=\"" + std::string(meanings[i]) + "\"" : std::string()) + ">" + std::string(labels[i]) +
-           "</td><td class=\"bar\">" + bar(counts[i], all) + "</td><td class=\"n\">" + with_thousands(n) + " <span class=\"soft\">" +
-           percent(n, all) + "</span></td></tr>\n";
+    out += "<tr><td" + (meanings ? " title=\"" + std::string(meanings[i]) + "\"" : std::string()) + ">" +
+           std::string(labels[i]) + "</td><td class=\"bar\">" + bar(counts[i], all) + "</td><td class=\"n\">" +
+           with_thousands(n) + " <span class=\"soft\">" + percent(n, all) + "</span></td></tr>\n";
   }
   return out + "</tbody></table>\n";
 }
@@ -79,14 +81,17 @@ std::string style_section(const StyleCounts& counts) {
     for (std::size_t k = 0; k < c.size(); ++k) by_basis[k] += c[k];
   const std::uint64_t all = sum(by_basis);
   std::string out =
-      "<section id=\"styles\">\n<h2>Styles</h2>\n<p>What each building looks like it was built as, and when. Where nothing is "
-      "tagged, the plan of the house and what stands around it speak for one answer or another; <code>blockrand explain</code> "
+      "<section id=\"styles\">\n<h2>Styles</h2>\n<p>What each building looks like it was built as, and when. Where "
+      "nothing is "
+      "tagged, the plan of the house and what stands around it speak for one answer or another; <code>blockrand "
+      "explain</code> "
       "lists what spoke for a building and how much.</p>\n<ul class=\"key\">";
   for (std::size_t k = 0; k < by_basis.size(); ++k)
     if (by_basis[k] > 0)
       out += "<li><svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\" aria-hidden=\"true\"><rect class=\"" +
-             std::string(kBases[k].css_class) + "\" width=\"10\" height=\"10\" rx=\"2\"/></svg>" + std::string(kBases[k].name) + " " +
-             percent(by_basis[k], all) + " <span class=\"soft\">" + std::string(kBases[k].meaning) + "</span></li>";
+             std::string(kBases[k].css_class) + "\" width=\"10\" height=\"10\" rx=\"2\"/></svg>" +
+             std::string(kBases[k].name) + " " + percent(by_basis[k], all) + " <span class=\"soft\">" +
+             std::string(kBases[k].meaning) + "</span></li>";
   out += "</ul>\n";
   out += table("Class of appearance", counts.classes, kClassLabels, kClassMeanings);
   out += table("Era", counts.eras, kEraLabels, nullptr);

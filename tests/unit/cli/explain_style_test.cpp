@@ -17,28 +17,35 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-Json weights(double gruenderzeit, double modern) { return {{"gruenderzeit", gruenderzeit}, {"tenement", 0}, {"modern", modern}, {"other", 0}}; }
+Json weights(double gruenderzeit, double modern) {
+  return {{"gruenderzeit", gruenderzeit}, {"tenement", 0}, {"modern", modern}, {"other", 0}};
+}
 
 Json house() {
-  Json style = {{"class", "gruenderzeit"},
-                {"probabilities", {{"gruenderzeit", 0.8203}, {"tenement", 0.0491}, {"modern", 0.1292}, {"other", 0.0014}}},
-                {"era", {{"pre1840", 0.031}, {"1840_1918", 0.91}, {"1919_1945", 0.056}, {"post1945", 0.003}}},
-                {"morphology", {{"perimeter_block", 0.97}, {"old_town", 0.03}, {"slab", 0}, {"detached", 0}, {"terrace", 0}}},
-                {"substyle", "gz_mk_front"},
-                {"substyle_p", 0.6431},
-                {"prior", weights(0.2, 0)},
-                {"elsewhere", weights(0.75, -0.25)},
-                {"second", "modern"},
-                {"terms", Json::array()},
-                {"changes", Json::array()}};
+  Json style = {
+      {"class", "gruenderzeit"},
+      {"probabilities", {{"gruenderzeit", 0.8203}, {"tenement", 0.0491}, {"modern", 0.1292}, {"other", 0.0014}}},
+      {"era", {{"pre1840", 0.031}, {"1840_1918", 0.91}, {"1919_1945", 0.056}, {"post1945", 0.003}}},
+      {"morphology", {{"perimeter_block", 0.97}, {"old_town", 0.03}, {"slab", 0}, {"detached", 0}, {"terrace", 0}}},
+      {"substyle", "gz_mk_front"},
+      {"substyle_p", 0.6431},
+      {"prior", weights(0.2, 0)},
+      {"elsewhere", weights(0.75, -0.25)},
+      {"second", "modern"},
+      {"terms", Json::array()},
+      {"changes", Json::array()}};
   const auto term = [](const char* feature, const char* unit, const char* meaning, double value, Json w) -> Json {
     return {{"feature", feature}, {"meaning", meaning}, {"value", value}, {"unit", unit}, {"weights", std::move(w)}};
   };
   style["terms"].push_back(term("position", "", "1 free standing, 2 end of row, 3 mid row", 3, weights(0.1, 0)));
-  style["terms"].push_back(term("depth_ratio", "", "greatest depth over depth behind the front: 1.5 and more with wings", 1.8999999, weights(1.5, -0.34)));
+  style["terms"].push_back(term("depth_ratio", "",
+                                "greatest depth over depth behind the front: 1.5 and more with wings", 1.8999999,
+                                weights(1.5, -0.34)));
   style["terms"].push_back(term("area", "m2", "footprint area", 312.4156, weights(0, 0.4)));
-  style["terms"].push_back(term("party_share", "", "share of the outline that touches other buildings", 0.4312, weights(0.6, 0)));
-  for (int i = 1; i <= 4; ++i) style["terms"].push_back(term("row_count", "", "houses in the row", 12 + i, weights(0.25, 0)));
+  style["terms"].push_back(
+      term("party_share", "", "share of the outline that touches other buildings", 0.4312, weights(0.6, 0)));
+  for (int i = 1; i <= 4; ++i)
+    style["terms"].push_back(term("row_count", "", "houses in the row", 12 + i, weights(0.25, 0)));
   Json change = style["terms"][1];
   change["high"] = 1.2;
   style["changes"].push_back(change);
@@ -54,7 +61,8 @@ Json house() {
 
 TEST(ExplainStyle, BeginsWithASentence) {
   EXPECT_THAT(style_text(house(), false),
-              testing::StartsWith("\nIts style, and why\n  Gr\u00fcnderzeit house (82 %), sub-style gz_mk_front (64 %): a street-side house of 1840 to 1918 with\n"
+              testing::StartsWith("\nIts style, and why\n  Gr\u00fcnderzeit house (82 %), sub-style gz_mk_front (64 "
+                                  "%): a street-side house of 1840 to 1918 with\n"
                                   "  a composed front. Or else: modern (13 %), tenement (5 %).\n"
                                   "  Era: 1840 to 1918 (91 %), 1919 to 1945 (6 %), before 1840 (3 %).\n"
                                   "  Its quarter: perimeter block (97 %), old town (3 %).\n"));
@@ -70,15 +78,21 @@ std::string line_with(const std::string& text, const std::string& part) {
 TEST(ExplainStyle, WeightsAreThoseAgainstTheNextLikelyAndAddUp) {
   const std::string text = style_text(house(), false);
   EXPECT_THAT(text, HasSubstr("What speaks for gruenderzeit and against modern, the next likely answer."));
-  EXPECT_EQ(line_with(text, "greatest depth over"), "    +1.84  1.9              greatest depth over depth behind the front: 1.5 and more with wings");
-  EXPECT_EQ(line_with(text, "share of the outline"), "    +0.60  43 %             share of the outline that touches other buildings");
+  EXPECT_EQ(line_with(text, "greatest depth over"),
+            "    +1.84  1.9              greatest depth over depth behind the front: 1.5 and more with wings");
+  EXPECT_EQ(line_with(text, "share of the outline"),
+            "    +0.60  43 %             share of the outline that touches other buildings");
   EXPECT_EQ(line_with(text, "footprint area"), "    -0.40  312 m\u00b2           footprint area");
   EXPECT_LT(text.find("greatest depth"), text.find("share of the outline")) << "the weightiest first";
-  EXPECT_EQ(line_with(text, "lighter ones"), "    +0.35                   2 lighter ones together (--style lists them)");
-  EXPECT_EQ(line_with(text, "before anything is known"), "    +0.20                   how frequent both are before anything is known of it");
-  EXPECT_EQ(line_with(text, "row and its block"), "    +1.00                   what is usual in the region, and the houses of its row and its block");
+  EXPECT_EQ(line_with(text, "lighter ones"),
+            "    +0.35                   2 lighter ones together (--style lists them)");
+  EXPECT_EQ(line_with(text, "before anything is known"),
+            "    +0.20                   how frequent both are before anything is known of it");
+  EXPECT_EQ(line_with(text, "row and its block"),
+            "    +1.00                   what is usual in the region, and the houses of its row and its block");
   // 1.84 + 0.6 - 0.4 + 4 x 0.25 + 0.1 + 0.2 + 1.0
-  EXPECT_THAT(line_with(text, "together: gr"), AllOf(HasSubstr("+4.34"), HasSubstr("gruenderzeit is 77 times as likely as modern")));
+  EXPECT_THAT(line_with(text, "together: gr"),
+              AllOf(HasSubstr("+4.34"), HasSubstr("gruenderzeit is 77 times as likely as modern")));
 }
 
 TEST(ExplainStyle, AllIsListedOnDemand) {
@@ -122,7 +136,8 @@ TEST(ExplainStyle, OfWhatIsNoHouseTheRuleIsTold) {
   shed["probabilities"] = {{"gruenderzeit", 0}, {"tenement", 0}, {"modern", 0.0004}, {"other", 0.9996}};
   shed["rule"] = "building=garage: a garage";
   const std::string text = style_text(shed, false);
-  EXPECT_THAT(text, AllOf(HasSubstr("Other building (> 99 %)"), HasSubstr("A stated rule says that it is no house (building=garage: a garage)")));
+  EXPECT_THAT(text, AllOf(HasSubstr("Other building (> 99 %)"),
+                          HasSubstr("A stated rule says that it is no house (building=garage: a garage)")));
   EXPECT_THAT(text, Not(HasSubstr("What speaks for"))) << "its shape did not decide";
   EXPECT_THAT(style_text(shed, true), AllOf(HasSubstr("What speaks for"), Not(HasSubstr("It would be"))));
 }
@@ -153,7 +168,8 @@ TEST(ExplainStyle, ValuesAreForPeople) {
 /// Numbers that stand for things are listed in the meaning ("1 flat, 2 gabled"): people are told the thing.
 TEST(ExplainStyle, EveryFeatureOfCategoriesHasWords) {
   for (const classify::FeatureInfo& f : classify::kFeatures) {
-    const bool categories = f.meaning.find("1 ") != std::string_view::npos && f.meaning.find(", 2 ") != std::string_view::npos;
+    const bool categories =
+        f.meaning.find("1 ") != std::string_view::npos && f.meaning.find(", 2 ") != std::string_view::npos;
     if (!categories) continue;
     EXPECT_THAT(value_in_words(f.name, f.unit, f.meaning, 2), testing::MatchesRegex("[a-z ]+")) << f.name;
   }
@@ -164,8 +180,9 @@ TEST(ExplainStyle, SharesArePercents) {
   int shares = 0;
   for (const classify::FeatureInfo& f : classify::kFeatures) {
     const bool percent = value_in_words(f.name, f.unit, f.meaning, 0.5) == "50 %";
-    const bool share = f.name.ends_with("_share") || f.name.ends_with("_built") || f.name.ends_with("_rear") || f.name == "around_depth_ratio" ||
-                       f.name == "row_alike" || f.name == "block_closure" || f.name == "block_court";
+    const bool share = f.name.ends_with("_share") || f.name.ends_with("_built") || f.name.ends_with("_rear") ||
+                       f.name == "around_depth_ratio" || f.name == "row_alike" || f.name == "block_closure" ||
+                       f.name == "block_court";
     EXPECT_EQ(percent, share) << f.name;
     shares += share;
   }
@@ -175,15 +192,17 @@ TEST(ExplainStyle, SharesArePercents) {
 // ---- the whole text
 
 region::FoundExplanation found(const Json& style) {
-  Json line = {{"id", "w7"},
-               {"state", "modelled"},
-               {"tags", Json::object()},
-               {"stages", Json::array()},
-               {"attributes", Json::array({{{"name", "era"}, {"value", "1840_1918"}, {"source", "geometry"}, {"confidence", 0.91}},
-                                           {{"name", "substyle"}, {"value", "gz_mk_front"}, {"source", "geometry"}, {"confidence", 0.64}},
-                                           {{"name", "preset"}, {"value", ""}, {"source", "default"}, {"confidence", 0}}})},
-               {"bodies", Json::array({{{"id", "w7"}, {"built_roof", "gabled"}}})},
-               {"notes", Json::array()}};
+  Json line = {
+      {"id", "w7"},
+      {"state", "modelled"},
+      {"tags", Json::object()},
+      {"stages", Json::array()},
+      {"attributes",
+       Json::array({{{"name", "era"}, {"value", "1840_1918"}, {"source", "geometry"}, {"confidence", 0.91}},
+                    {{"name", "substyle"}, {"value", "gz_mk_front"}, {"source", "geometry"}, {"confidence", 0.64}},
+                    {{"name", "preset"}, {"value", ""}, {"source", "default"}, {"confidence", 0}}})},
+      {"bodies", Json::array({{{"id", "w7"}, {"built_roof", "gabled"}}})},
+      {"notes", Json::array()}};
   if (!style.is_null()) line["style"] = style;
   region::FoundExplanation f;
   f.asked = f.explained = {model::OsmType::way, 7};

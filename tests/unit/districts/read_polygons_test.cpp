@@ -1,4 +1,6 @@
 // Vector files as plain polygons.
+#include "importers/vector/read_polygons.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "importers/vector/read_polygons.h"
 #include "pipeline/base/error.h"
 
 namespace blockrand::importers::vector {
@@ -38,16 +39,18 @@ class ReadPolygons : public testing::Test {
 
 std::string square(double x, double y, double size, const std::string& properties) {
   const auto p = [](double u, double v) { return "[" + std::to_string(u) + "," + std::to_string(v) + "]"; };
-  return R"({"type":"Feature","properties":{)" + properties + R"(},"geometry":{"type":"Polygon","coordinates":[[)" + p(x, y) + "," +
-         p(x + size, y) + "," + p(x + size, y + size) + "," + p(x, y + size) + "," + p(x, y) + "]]}}";
+  return R"({"type":"Feature","properties":{)" + properties + R"(},"geometry":{"type":"Polygon","coordinates":[[)" +
+         p(x, y) + "," + p(x + size, y) + "," + p(x + size, y + size) + "," + p(x, y + size) + "," + p(x, y) + "]]}}";
 }
 std::string collection(const std::string& features, const std::string& crs = "") {
-  return R"({"type":"FeatureCollection",)" + (crs.empty() ? "" : R"("crs":{"type":"name","properties":{"name":")" + crs + "\"}},") +
-         "\"features\":[" + features + "]}";
+  return R"({"type":"FeatureCollection",)" +
+         (crs.empty() ? "" : R"("crs":{"type":"name","properties":{"name":")" + crs + "\"}},") + "\"features\":[" +
+         features + "]}";
 }
 
 TEST_F(ReadPolygons, GivesRingsAndAttributesAndChoosesByThem) {
-  const std::string file = place("a.geojson", collection(square(12, 51, 0.1, R"("name":"north","n":1)") + "," + square(13, 51, 0.1, R"("name":"south","n":2)")));
+  const std::string file = place("a.geojson", collection(square(12, 51, 0.1, R"("name":"north","n":1)") + "," +
+                                                         square(13, 51, 0.1, R"("name":"south","n":2)")));
   const auto all = read_polygons(file);
   ASSERT_EQ(all.size(), 2u);
   ASSERT_EQ(all[0].polygons.size(), 1u);
@@ -60,15 +63,18 @@ TEST_F(ReadPolygons, GivesRingsAndAttributesAndChoosesByThem) {
 }
 
 TEST_F(ReadPolygons, BringsOtherSystemsToWgs84) {
-  const std::string file = place("utm.geojson", collection(square(390000, 5820000, 100, ""), "urn:ogc:def:crs:EPSG::25833"));
+  const std::string file =
+      place("utm.geojson", collection(square(390000, 5820000, 100, ""), "urn:ogc:def:crs:EPSG::25833"));
   const auto all = read_polygons(file);
   EXPECT_NEAR(all[0].polygons[0][0][0].lon_degrees(), 13.380, 0.02);
   EXPECT_NEAR(all[0].polygons[0][0][0].lat_degrees(), 52.52, 0.02);
 }
 
 TEST_F(ReadPolygons, PartsThatOverlapStayPolygonsOfTheirOwn) {
-  const std::string file = place("m.geojson", collection(R"({"type":"Feature","properties":{},"geometry":{"type":"MultiPolygon","coordinates":[)"
-                                                         "[[[12,51],[14,51],[14,53],[12,53],[12,51]]],[[[13,52],[15,52],[15,54],[13,54],[13,52]]]]}}"));
+  const std::string file =
+      place("m.geojson",
+            collection(R"({"type":"Feature","properties":{},"geometry":{"type":"MultiPolygon","coordinates":[)"
+                       "[[[12,51],[14,51],[14,53],[12,53],[12,51]]],[[[13,52],[15,52],[15,54],[13,54],[13,52]]]]}}"));
   const auto all = read_polygons(file);
   ASSERT_EQ(all.size(), 1u);
   ASSERT_EQ(all[0].polygons.size(), 2u);
@@ -88,11 +94,15 @@ TEST_F(ReadPolygons, AFileThatBreaksOffIsRefused) {
   EXPECT_EQ(read_polygons(place("whole.geojsonl", lines)).size(), 2000u);
   EXPECT_THAT(error_of(place("broken.geojson", whole.substr(0, whole.size() / 2))), HasSubstr("GDAL"));
   EXPECT_THAT(error_of(place("broken.geojsonl", lines.substr(0, lines.size() - 40))), HasSubstr("GDAL"));
-  std::string gml = "<?xml version=\"1.0\"?><f:FeatureCollection xmlns:f=\"http://f\" xmlns:gml=\"http://www.opengis.net/gml\">";
+  std::string gml =
+      "<?xml version=\"1.0\"?><f:FeatureCollection xmlns:f=\"http://f\" xmlns:gml=\"http://www.opengis.net/gml\">";
   for (int i = 0; i < 500; ++i)
-    gml += "<gml:featureMember><f:a><f:g><gml:Polygon srsName=\"EPSG:25832\"><gml:outerBoundaryIs><gml:LinearRing><gml:coordinates>"
-           "400000,5700000 400100,5700000 400100,5700100 400000,5700000</gml:coordinates></gml:LinearRing></gml:outerBoundaryIs>"
-           "</gml:Polygon></f:g></f:a></gml:featureMember>";
+    gml +=
+        "<gml:featureMember><f:a><f:g><gml:Polygon "
+        "srsName=\"EPSG:25832\"><gml:outerBoundaryIs><gml:LinearRing><gml:coordinates>"
+        "400000,5700000 400100,5700000 400100,5700100 "
+        "400000,5700000</gml:coordinates></gml:LinearRing></gml:outerBoundaryIs>"
+        "</gml:Polygon></f:g></f:a></gml:featureMember>";
   EXPECT_THAT(error_of(place("broken.gml", gml.substr(0, gml.size() - 300))), HasSubstr("GDAL"));
 }
 
@@ -103,7 +113,9 @@ TEST_F(ReadPolygons, SaysWhatIsWrongAndWhatToDo) {
   EXPECT_THAT(error_of(file, {"b", {}}), HasSubstr("no such layer"));
   EXPECT_THAT(error_of(file, {"", {{"nmae", "north"}}}), HasSubstr("Did you mean name"));
   EXPECT_THAT(error_of(file, {"", {{"name", "west"}}}), HasSubstr("no polygon with these attributes"));
-  EXPECT_THAT(error_of(place("p.geojson", collection(R"({"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,2]}})"))),
+  EXPECT_THAT(error_of(place(
+                  "p.geojson",
+                  collection(R"({"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,2]}})"))),
               HasSubstr("holds no polygon"));
 }
 

@@ -203,11 +203,14 @@ preset = "a"
   s.style = &style;
   s.cell = [](CellStatistic c) { return c == CellStatistic::built_share ? std::optional(0.5) : std::nullopt; };
   s.storeys = [] { return std::optional(5.0); };
-  s.tag = [](std::string_view key) -> std::string_view { return key == "heritage" ? "4" : key == "shop" ? "bakery" : ""; };
+  s.tag = [](std::string_view key) -> std::string_view {
+    return key == "heritage" ? "4" : key == "shop" ? "bakery" : "";
+  };
   bool near = true;
   s.holds = [&](std::uint32_t q) { return q == 0 && near; };
   EXPECT_EQ(preset_of(book, s), "a");
-  EXPECT_THAT(assign(book, 0, s, 1).why, AllOf(HasSubstr("within 300 m of railway=rail"), HasSubstr("built_share 0.50"), HasSubstr("5 storeys")));
+  EXPECT_THAT(assign(book, 0, s, 1).why,
+              AllOf(HasSubstr("within 300 m of railway=rail"), HasSubstr("built_share 0.50"), HasSubstr("5 storeys")));
   near = false;
   EXPECT_EQ(preset_of(book, s), "");
   near = true;
@@ -313,24 +316,35 @@ TEST(Errors, EveryMistakeIsToldAtItsPlace) {
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nlevel = \"distrikt\"\n", {"rules.toml:4", "Did you mean district"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nprioriti = 3\n", {"rules.toml:4", "unknown key", "priority"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.style = \"modren\"\n", {"rules.toml:4", "Did you mean modern"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.era = \"1840-1918\"\n", {"rules.toml:4", "Did you mean 1840_1918"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.position = \"midrow\"\n", {"rules.toml:4", "Did you mean mid_row"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.era = \"1840-1918\"\n",
+       {"rules.toml:4", "Did you mean 1840_1918"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.position = \"midrow\"\n",
+       {"rules.toml:4", "Did you mean mid_row"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.position = \"unknown\"\n", {"rules.toml:4", "position"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.use = []\n", {"rules.toml:4", "nothing can satisfy"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.area = [300, 200]\n", {"rules.toml:4", "least value is above its most"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.area = [300, 200]\n",
+       {"rules.toml:4", "least value is above its most"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.storeys = [300, 400]\n", {"rules.toml:4", "can never hold"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.party_wall_share = [1.5, 2]\n", {"rules.toml:4", "can never hold"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.era = \"pre1840\"\nwhich.years = [1900, 1910]\n", {"rules.toml:5", "outside of the eras"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.party_wall_share = [1.5, 2]\n",
+       {"rules.toml:4", "can never hold"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.era = \"pre1840\"\nwhich.years = [1900, 1910]\n",
+       {"rules.toml:5", "outside of the eras"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.probability = 0.3\n", {"rules.toml:4", "belongs to no style"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.substyle = \"gz_hihg\"\n", {"rules.toml:4", "Did you mean gz_high"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.substyle = \"gz_hihg\"\n",
+       {"rules.toml:4", "Did you mean gz_high"}},
       {"[[rule]]\nname = \"r\"\npreset = { a = 0.5, b = 0.2 }\n", {"rules.toml:3", "sum to 0.7"}},
       {"[[rule]]\nname = \"r\"\npreset = { a = 1, b = 0 }\n", {"rules.toml:3", "weight 0"}},
       {"[[rule]]\nname = \"r\"\npreset = { a = 1.5, b = -0.5 }\n", {"rules.toml:3", "weight -0.5"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.near = { railway = \"rail\" }\n", {"rules.toml:4", "within", "missing"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.near = { railway = \"rail\", within = 5000 }\n", {"rules.toml:4", "2000"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.near = { railwy = \"rail\", within = 50 }\n", {"rules.toml:4", "Did you mean railway"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.near = { railway = \"rail\" }\n",
+       {"rules.toml:4", "within", "missing"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.near = { railway = \"rail\", within = 5000 }\n",
+       {"rules.toml:4", "2000"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.near = { railwy = \"rail\", within = 50 }\n",
+       {"rules.toml:4", "Did you mean railway"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.bbox = [1, 2, 3]\n", {"rules.toml:4", "four numbers"}},
-      {"polygon = [[10, 50], [11, 50], [11, 51]]\n[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.bbox = [50, 10, 51, 11]\n", {"rules.toml:5", "can never hold"}},
+      {"polygon = [[10, 50], [11, 50], [11, 51]]\n[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.bbox = [50, 10, 51, "
+       "11]\n",
+       {"rules.toml:5", "can never hold"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.bbox = [190, 50, 200, 51]\n", {"rules.toml:4", "longitude 190"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.bbox = [10, 50, 11, 95]\n", {"rules.toml:4", "latitude 95"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.bbox = [11, 51, 10, 50]\n", {"rules.toml:4", "is empty"}},
@@ -338,16 +352,23 @@ TEST(Errors, EveryMistakeIsToldAtItsPlace) {
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.tag = \"foo=\"\n", {"rules.toml:4", "names no value"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.place = \"\"\n", {"rules.toml:4", "is empty"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.boundary = \"\"\n", {"rules.toml:4", "is empty"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.near = { railway = \"\", within = 50 }\n", {"rules.toml:4", "is empty"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.polygon = \"nowhere.geojson\"\n", {"rules.toml:4", "not there: nowhere.geojson"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.style = \"tenement\"\nwhich.substyle = \"reform_block\"\n", {"rules.toml:5", "another class than tenement"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.near = { railway = \"\", within = 50 }\n",
+       {"rules.toml:4", "is empty"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.polygon = \"nowhere.geojson\"\n",
+       {"rules.toml:4", "not there: nowhere.geojson"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.style = \"tenement\"\nwhich.substyle = \"reform_block\"\n",
+       {"rules.toml:5", "another class than tenement"}},
       {"", {"rules.toml:1", "no rule"}},
       {"title = \"x\"\n", {"rules.toml:1", "no rule"}},
       {"polygon = [[10, 50], [11, 50]]\n", {"rules.toml:1", "encloses nothing"}},
       {"polygon = [[10, 50], [11, 50], [11, 95]]\n", {"rules.toml:1", "nowhere"}},
-      {"[[rule]]\nname = \"r\"\npreset = \"a\"\n[[rule]]\nname = \"r\"\npreset = \"b\"\nwhich.use = \"yes\"\n", {"rules.toml:4", "line 1"}},
-      {"[[rule]]\nname = \"all\"\npreset = \"a\"\n[[rule]]\nname = \"dead\"\nlevel = \"city\"\npreset = \"b\"\n", {"rules.toml:4", "'dead'", "'all' (line 1"}},
-      {"[[rule]]\nname = \"all\"\npriority = 1\nparameters = { x = 1 }\n[[rule]]\nname = \"dead\"\nwhich.use = \"yes\"\nparameters = { x = 2 }\n", {"rules.toml:5", "can never have an effect"}},
+      {"[[rule]]\nname = \"r\"\npreset = \"a\"\n[[rule]]\nname = \"r\"\npreset = \"b\"\nwhich.use = \"yes\"\n",
+       {"rules.toml:4", "line 1"}},
+      {"[[rule]]\nname = \"all\"\npreset = \"a\"\n[[rule]]\nname = \"dead\"\nlevel = \"city\"\npreset = \"b\"\n",
+       {"rules.toml:4", "'dead'", "'all' (line 1"}},
+      {"[[rule]]\nname = \"all\"\npriority = 1\nparameters = { x = 1 }\n[[rule]]\nname = \"dead\"\nwhich.use = "
+       "\"yes\"\nparameters = { x = 2 }\n",
+       {"rules.toml:5", "can never have an effect"}},
       {"[prior]\nstyle = { modern = 0.5 }\n", {"rules.toml:2", "sums to 0.5"}},
       {"[prior]\nstyle = { modren = 1 }\n", {"rules.toml:2", "Did you mean modern"}},
       {"[prior]\nsubstyle = { gz_hgih = 1 }\n", {"rules.toml:2", "Did you mean gz_high"}},
@@ -362,8 +383,13 @@ TEST(Errors, EveryMistakeIsToldAtItsPlace) {
 }
 
 TEST(Errors, RulesThatCanStillActAreNone) {
-  EXPECT_EQ(error_of("[[rule]]\nname = \"all\"\npreset = \"a\"\nlevel = \"city\"\n[[rule]]\nname = \"r\"\npreset = \"b\"\nwhich.use = \"yes\"\n"), "no error");
-  EXPECT_EQ(error_of("[[rule]]\nname = \"all\"\nparameters = { x = 1 }\n[[rule]]\nname = \"r\"\nparameters = { x = 2, y = 3 }\n"), "no error");
+  EXPECT_EQ(error_of("[[rule]]\nname = \"all\"\npreset = \"a\"\nlevel = \"city\"\n[[rule]]\nname = \"r\"\npreset = "
+                     "\"b\"\nwhich.use = \"yes\"\n"),
+            "no error");
+  EXPECT_EQ(
+      error_of(
+          "[[rule]]\nname = \"all\"\nparameters = { x = 1 }\n[[rule]]\nname = \"r\"\nparameters = { x = 2, y = 3 }\n"),
+      "no error");
 }
 
 TEST(Priors, AreReadAndPresetsOfASetCount) {
@@ -394,7 +420,8 @@ TEST(Shipped, EveryRuleSetIsReadAndGivesEveryBuildingAPreset) {
   RuleBook book;
   book.presets = read_presets((configs / "styles" / "presets.toml").string());
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(configs / "districts")) files.push_back(entry.path().string());
+  for (const auto& entry : std::filesystem::directory_iterator(configs / "districts"))
+    files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
   for (const std::string& file : files) read_rule_set(file, book);
   EXPECT_GE(book.sets.size(), 6u);

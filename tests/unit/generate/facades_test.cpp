@@ -279,6 +279,20 @@ TEST(Facades, NarrowHousesDegradeInOrder) {
   EXPECT_GT(before, 15u);
 }
 
+TEST(Facades, DistrictRulesAreStrongerThanThePreset) {
+  const auto ornaments = [](const char* stripped) {
+    model::Region region = region_of({}, "gruenderzeit", 5);  // the preset says stripped = 0
+    if (stripped) region.buildings[0].preset_parameters = {{"stripped", stripped}};
+    build_facades(region, shipped(), Defaults{}, {42});
+    int n = 0;
+    for (const Placed& p : on_wall(region, region.buildings[0].parts[0], 0)) n += p.width == 0;
+    return n;
+  };
+  EXPECT_GT(ornaments(nullptr), 2) << "plinth, string course, cornice";
+  EXPECT_EQ(ornaments("1"), 0);
+  EXPECT_EQ(ornaments("0"), ornaments(nullptr));
+}
+
 TEST(Facades, WithoutGrammarWallsStayAsTheyAre) {
   model::Region region = region_of({}, "no such preset", 5);
   build_facades(region, shipped(), Defaults{}, {42});

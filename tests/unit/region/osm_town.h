@@ -1,9 +1,8 @@
 // Small towns as OSM files, measured as a build measures them.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
@@ -48,7 +47,8 @@ class OsmTown {
     way(800'000 + 2 * id, outer, {});
     way(800'001 + 2 * id, inner, {});
     relation_text_ += fmt::format(
-        "<relation id=\"{}\" version=\"1\"><member type=\"way\" ref=\"{}\" role=\"outer\"/><member type=\"way\" ref=\"{}\" role=\"inner\"/>"
+        "<relation id=\"{}\" version=\"1\"><member type=\"way\" ref=\"{}\" role=\"outer\"/><member type=\"way\" "
+        "ref=\"{}\" role=\"inner\"/>"
         "<tag k=\"type\" v=\"multipolygon\"/><tag k=\"building\" v=\"yes\"/></relation>\n",
         id, 800'000 + 2 * id, 800'001 + 2 * id);
   }
@@ -56,7 +56,8 @@ class OsmTown {
     way(id, line, {{"highway", kind}, {"name", name}});
   }
   void write(const std::string& path) const {
-    std::ofstream(path) << "<?xml version='1.0' encoding='UTF-8'?>\n<osm version=\"0.6\" generator=\"test\">\n" << node_text_ << way_text_ << relation_text_ << "</osm>\n";
+    std::ofstream(path) << "<?xml version='1.0' encoding='UTF-8'?>\n<osm version=\"0.6\" generator=\"test\">\n"
+                        << node_text_ << way_text_ << relation_text_ << "</osm>\n";
   }
 
  private:
@@ -65,7 +66,8 @@ class OsmTown {
     const std::int64_t id = (std::llround(p.x * 10) + 50'000) * 1'000'000 + std::llround(p.y * 10) + 50'000;
     // Metres per degree at 52.5 degrees north on the ellipsoid.
     if (nodes_.insert(id).second)
-      node_text_ += fmt::format("<node id=\"{}\" version=\"1\" lat=\"{:.7f}\" lon=\"{:.7f}\"/>\n", id, 52.5 + p.y / 111265.0, 13.4 + p.x / 67908.0);
+      node_text_ += fmt::format("<node id=\"{}\" version=\"1\" lat=\"{:.7f}\" lon=\"{:.7f}\"/>\n", id,
+                                52.5 + p.y / 111265.0, 13.4 + p.x / 67908.0);
     return id;
   }
   void way(std::int64_t id, const Points& points, const Tags& tags) {
@@ -86,20 +88,25 @@ struct MeasuredTown {
   FactsExtract facts;
 
   /// \param crs_of  the projection of another town, pinned as in a build; null: its own
-  explicit MeasuredTown(const OsmTown& town, const std::string& name, const MeasuredTown* crs_of = nullptr, int workers = 2) {
+  explicit MeasuredTown(const OsmTown& town, const std::string& name, const MeasuredTown* crs_of = nullptr,
+                        int workers = 2) {
     const std::string path = (std::filesystem::path(testing::TempDir()) / (name + ".osm")).string();
     town.write(path);
     extract = importers::osm::read_extract(path, {});
     std::filesystem::remove(path);
     const Area area = area_of(extract).value();
-    projection = crs_of ? crs_of->projection
-                        : std::make_shared<georef::Projection>(georef::open_crs(georef::choose_crs(area.centre.lon, area.centre.lat), area.box), area.box);
+    projection = crs_of
+                     ? crs_of->projection
+                     : std::make_shared<georef::Projection>(
+                           georef::open_crs(georef::choose_crs(area.centre.lon, area.centre.lat), area.box), area.box);
     base::Progress quiet;
     model::Report report;
     const auto shards = make_shards(extract, report);
     const repair::KeptNodes kept(extract);
-    repaired = std::make_unique<RepairedExtract>(repair_extract(extract, shards, *projection, kept, {}, workers, quiet));
-    context = context_extract(extract, repaired->footprints, context::coverage_of(building_places(extract, *projection)), *projection, workers, quiet);
+    repaired =
+        std::make_unique<RepairedExtract>(repair_extract(extract, shards, *projection, kept, {}, workers, quiet));
+    context = context_extract(extract, repaired->footprints,
+                              context::coverage_of(building_places(extract, *projection)), *projection, workers, quiet);
     const SurroundingsFinder surroundings(extract, repaired->footprints, context);
     facts = facts_extract(extract, repaired->footprints, context, surroundings, workers, quiet);
   }
