@@ -107,16 +107,18 @@ constexpr std::string_view name(EdgeKind kind) {
   return names[static_cast<int>(kind)];
 }
 
-/// A stretch of one edge of the outline with one situation. Edges are cut where their situation changes; the cuts are no
-/// corners of the outline, so that roofs and solids keep whole walls.
-/// A mapped entrance or address node, and the stretch of wall it belongs to.
+/// A mapped entrance, address, or shop node, and the stretch of wall it belongs to.
 struct EdgePoint {
   OsmId id;
   Point2 place;              ///< m
-  bool entrance = false;     ///< else an address alone
+  bool entrance = false;     ///< else an address or a shop alone
   std::string house_number;  ///< addr:housenumber, empty for none
+  std::string use;           ///< what is behind the wall there: a category of configs/styles/ground_floor.toml, "shop";
+                             ///< empty for none
 };
 
+/// A stretch of one edge of the outline with one situation. Edges are cut where their situation changes; the cuts are no
+/// corners of the outline, so that roofs and solids keep whole walls.
 struct FacadeEdge {
   std::int64_t from_node = 0, to_node = 0;  ///< OSM nodes of the ends of the whole edge (0 where a repair made the point)
   std::uint32_t polygon = 0;                ///< index into Building::outline

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/model/element.h"
+#include "pipeline/model/roof_element.h"
 #include "pipeline/model/solid.h"
 
 namespace blockrand::model {
@@ -61,6 +62,7 @@ struct Detail {
   std::vector<Opening> openings;
   std::vector<Placement> placements;
   std::vector<WallInstallation> installations;
+  std::vector<RoofInstallation> roof_installations;  ///< chimneys, roof windows, with their triangles
 };
 
 }  // namespace blockrand::model

@@ -36,6 +36,7 @@ constexpr std::string_view name(RoofElementKind kind) { return kRoofElementNames
 struct RoofInstallation {
   RoofElementKind kind = RoofElementKind::chimney;
   Solid solid;
+  SolidTriangles triangles;  ///< empty until LoD3 is built
 };
 
 }  // namespace blockrand::model
