@@ -261,11 +261,14 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
         solids.push_back({solid, triangles, feature, static_cast<std::uint32_t>(source.size()),
                           detailed ? hidden_faces(part.lod3, bake) : std::vector<bool>{}});
         source.insert(source.end(), solid->vertices.begin(), solid->vertices.end());
-        if (detailed)
-          for (const model::WallInstallation& body : part.lod3.installations) {
+        if (detailed) {
+          const auto add_body = [&](const auto& body) {
             solids.push_back({&body.solid, &body.triangles, feature, static_cast<std::uint32_t>(source.size()), {}});
             source.insert(source.end(), body.solid.vertices.begin(), body.solid.vertices.end());
-          }
+          };
+          for (const model::WallInstallation& body : part.lod3.installations) add_body(body);
+          for (const model::RoofInstallation& body : part.lod3.roof_installations) add_body(body);
+        }
       }
       ++feature;
     }
