@@ -154,15 +154,24 @@ std::optional<std::vector<Triangle>> triangulate_with_lines(std::span<const Grid
   return out;
 }
 
-std::optional<model::SolidTriangles> triangulate(const model::Solid& solid) {
+std::optional<model::SolidTriangles> triangulate(const model::Solid& solid) { return triangulate(solid, {}, {}); }
+
+std::optional<model::SolidTriangles> triangulate(const model::Solid& solid, const model::Solid& before,
+                                                 const model::SolidTriangles& known) {
   model::SolidTriangles out;
   out.first.reserve(solid.faces.size() + 1);
   std::vector<Grid3> grid(solid.vertices.size());
   for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = to_grid(solid.vertices[i]);
   std::vector<Grid2> flat(solid.vertices.size());
   std::vector<std::vector<std::uint32_t>> loops;
-  for (const model::Face& face : solid.faces) {
+  for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+    const model::Face& face = solid.faces[f];
     out.first.push_back(static_cast<std::uint32_t>(out.triangles.size()));
+    if (f + 1 < known.first.size() && f < before.faces.size() && face.loop_count == before.faces[f].loop_count) {
+      out.triangles.insert(out.triangles.end(), known.triangles.begin() + known.first[f],
+                           known.triangles.begin() + known.first[f + 1]);
+      continue;
+    }
     const auto face_loops = solid.loops_of(face);
     loops.resize(face_loops.size());
     for (std::size_t l = 0; l < face_loops.size(); ++l) {
