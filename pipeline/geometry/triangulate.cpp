@@ -6,15 +6,65 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 #include <vector>
+
+namespace blockrand::geometry::triangulation {
+
+using Epick = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// CGAL's predicates for points whose coordinates are whole numbers: rows of windows are full of points on one line and
+/// on one circle, where CGAL's filters fail and its exact numbers are slow. The results are the same.
+struct WholeNumberKernel : Epick {
+  /// Coordinates below this keep all of the arithmetic below in 64 and 128 bits.
+  static constexpr double kSmall = 536870912.0;  // 2^29: 524 km of the 1/1024 m grid
+  template <class... Points>
+  static bool small(const Points&... points) {
+    return ((std::fabs(points.x()) < kSmall && std::fabs(points.y()) < kSmall) && ...);
+  }
+  static Grid2 between(const Point_2& from, const Point_2& to) {
+    return {static_cast<std::int64_t>(to.x() - from.x()), static_cast<std::int64_t>(to.y() - from.y())};
+  }
+  static std::int64_t cross(Grid2 a, Grid2 b) { return a.x * b.y - a.y * b.x; }
+  static std::int64_t square(Grid2 a) { return a.x * a.x + a.y * a.y; }
+
+  struct Orientation_2 {
+    using result_type = CGAL::Orientation;
+    result_type operator()(const Point_2& p, const Point_2& q, const Point_2& r) const {
+      if (!small(p, q, r)) return Epick().orientation_2_object()(p, q, r);
+      const std::int64_t turn = cross(between(p, q), between(p, r));
+      return static_cast<CGAL::Orientation>((turn > 0) - (turn < 0));
+    }
+  };
+  struct Side_of_oriented_circle_2 {
+    using result_type = CGAL::Oriented_side;
+    result_type operator()(const Point_2& p, const Point_2& q, const Point_2& r, const Point_2& t) const {
+      if (!small(p, q, r, t)) return Epick().side_of_oriented_circle_2_object()(p, q, r, t);
+      const Grid2 a = between(t, p), b = between(t, q), c = between(t, r);
+      const Int128 side = static_cast<Int128>(square(a)) * cross(b, c) + static_cast<Int128>(square(b)) * cross(c, a) +
+                          static_cast<Int128>(square(c)) * cross(a, b);
+      return static_cast<CGAL::Oriented_side>(sign(side));
+    }
+  };
+  Orientation_2 orientation_2_object() const { return {}; }
+  Side_of_oriented_circle_2 side_of_oriented_circle_2_object() const { return {}; }
+};
+
+}  // namespace blockrand::geometry::triangulation
+
+/// Points are looked for as with CGAL's own kernel, which faces' order depends on.
+template <>
+struct CGAL::Triangulation_structural_filtering_traits<blockrand::geometry::triangulation::WholeNumberKernel> {
+  using Use_structural_filtering_tag = CGAL::Tag_true;
+};
 
 namespace blockrand::geometry {
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Kernel = triangulation::WholeNumberKernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>;
 using FaceInfoBase = CGAL::Triangulation_face_base_with_info_2<int, Kernel>;
 using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel, FaceInfoBase>;
