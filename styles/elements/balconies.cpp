@@ -78,8 +78,9 @@ Made make_balcony(const Request& r, Element& element) {
   for (const double side : {-x, x})
     builder.box({side - post / 2, -2 * kApart, z - post / 2}, {side + post / 2, r.height + 0.02, z + post / 2},
                 stone ? Part::surround : Part::metal);
-  // Rails end within the posts and within the wall.
-  const std::array<Side, 3> sides{{{true, z, -x + kGrip, x - kGrip},
+  // Rails end within the posts, where they do not overlap, and within the wall.
+  const double rail = stone ? 0.09 : kRail / 2;
+  const std::array<Side, 3> sides{{{true, z, -x + rail, x - rail},
                                    {false, -x, -kApart, z - kGrip},
                                    {false, x, -kApart, z - kGrip}}};
   for (const Side& s : sides) {
