@@ -68,6 +68,7 @@ Run::Run(const Program& program, const std::vector<RuleFacts>& facts, const Shap
          const DeriveOptions& options)
     : program_(program), facts_(facts), options_(options), initial_(initial) {
   locals_.reserve(256);
+  if (options.without != nullptr) without_ = built_in_number(*options.without);
   initial_.seed = options.seed;
   initial_.draws = 0;
 }

@@ -151,6 +151,7 @@ std::vector<std::size_t> Run::choose_components(NodeId id, const ComponentSplit&
   const Target* found = e.kind == ExpressionKind::name && e.use != kNone ? &target(place.module, e.use) : nullptr;
   if (found != nullptr && found->kind == TargetKind::word) {
     text = unit.name(e.name);
+    if (without_selector(text)) return {};
     selector = selector_of_word(text);
     if (!selector) tell(Severity::error, "selector", e.location, "this word selects nothing", text);
   } else if (found != nullptr && found->kind == TargetKind::function && built_ins()[found->index].name == "isTagged") {
@@ -252,7 +253,7 @@ std::vector<int> Run::edges_by_item(const Block& block, const ComponentSplit& ed
 std::string Run::selector_text(NodeId id, const Place& place) const {
   const Unit& unit = program_.unit(place.module);
   const Expression& e = unit.expressions[id];
-  return e.kind == ExpressionKind::name ? unit.name(e.name) : std::string();
+  return e.kind == ExpressionKind::name && !without_selector(unit.name(e.name)) ? unit.name(e.name) : std::string();
 }
 
 void Run::run_strips(const Call& call, const std::vector<int>& chosen_by, const std::vector<double>& distances,

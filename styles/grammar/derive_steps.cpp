@@ -173,6 +173,7 @@ void Run::evaluate_operation_arguments(const Call& call, Place& place) {
 }
 
 void Run::execute_operation(const Call& call, std::uint32_t number, Work& work, Place& place) {
+  if (without(number)) return;
   const BuiltInActions& actions = built_in_actions();
   if (const SpecialStep special = actions.special_steps[number]) return (this->*special)(call, work, place);
   const OperationEntry& entry = *actions.operations[number];

@@ -221,6 +221,7 @@ Value Run::evaluate_name(const Expression& e, Place& place) {
       return call_own(e, found, place);
     case TargetKind::word: {
       const std::string& name = program_.unit(place.module).name(e.name);
+      if (place.component != nullptr && without_selector(name)) return false;
       if (place.component != nullptr)
         if (const auto selector = selector_of_word(name))
           return selected(*place.component->split, place.component->item, *selector);
@@ -262,7 +263,31 @@ Value Run::read_attribute_slot(std::uint32_t slot, Place& place) {
   return (*place.shape->attributes)[slot];
 }
 
+namespace {
+
+/// What a name gives that does nothing: the default of the type that it has otherwise.
+Value nothing_of(const BuiltIn& entry) {
+  const auto all = signatures(entry);
+  switch (all.empty() ? 'n' : all.front().result) {
+    case 'b':
+      return default_value(Type::truth);
+    case 's':
+      return default_value(Type::text);
+    case 'N':
+      return default_value(Type::number_array);
+    case 'B':
+      return default_value(Type::truth_array);
+    case 'S':
+      return default_value(Type::text_array);
+    default:
+      return 0.0;
+  }
+}
+
+}  // namespace
+
 Value Run::read_shape_attribute(const Expression& e, std::uint32_t number, Place& place) {
+  if (without(number)) return nothing_of(built_ins()[number]);
   if (const auto read = built_in_actions().attributes[number]) return read(*place.shape);
   const std::string_view name = built_ins()[number].name;
   if (name.starts_with("initialShape.")) {
@@ -281,6 +306,7 @@ Value Run::read_shape_attribute(const Expression& e, std::uint32_t number, Place
 }
 
 Value Run::call_function(const Expression& e, const Target& found, Place& place) {
+  if (without(found.index)) return nothing_of(built_ins()[found.index]);
   const BuiltInActions& actions = built_in_actions();
   if (const SpecialFunction special = actions.special_functions[found.index]) return (this->*special)(e, place);
   const auto overloads = actions.functions[found.index];

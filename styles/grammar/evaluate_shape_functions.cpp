@@ -198,6 +198,8 @@ Value Run::evaluate_component_map(const Expression& e, Place& place) {
     tell(Severity::error, "value", e.location, "comp takes f, e, fe, v, fv, g, m or h");
     return NumberArray{};
   }
+  if (options_.without != nullptr && options_.without->kind == NameKind::function && options_.without->name == "comp")
+    return NumberArray{};
   const ComponentSplit split = components(*place.shape, *kind);
   std::vector<bool> taken(split.items.size(), false);
   std::vector<std::optional<Value>> values(split.items.size());

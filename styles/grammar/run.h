@@ -142,6 +142,11 @@ class Run {
   double draw_choice(const Location& location, Place& place);
   /// A bare word, or the text that stands for one; empty where the argument is something else.
   std::string_view word(const ArgumentNode& argument, Place& place);
+  /// Whether DeriveOptions::without takes this name out.
+  bool without(std::uint32_t number) const { return number == without_; }
+  bool without_selector(std::string_view name) const {
+    return options_.without != nullptr && options_.without->kind == NameKind::selector && options_.without->name == name;
+  }
   const Target& target(std::uint32_t module, UseId use) const { return program_.modules[module].targets[use]; }
   FunctionContext function_context(Place& place);
   void take_warnings(const Location& location);
@@ -192,6 +197,7 @@ class Run {
   const Program& program_;
   const std::vector<RuleFacts>& facts_;
   const DeriveOptions& options_;
+  std::uint32_t without_ = kNone;
   Shape initial_;
   Derivation out_;
   std::vector<Node> level_, next_;
