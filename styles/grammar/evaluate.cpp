@@ -5,6 +5,7 @@
 #include "pipeline/base/random.h"
 #include "styles/grammar/arrays.h"
 #include "styles/grammar/run.h"
+#include "styles/grammar/scope.h"
 #include "styles/grammar/value_text.h"
 
 namespace blockrand::grammar {
@@ -293,9 +294,10 @@ Value Run::read_shape_attribute(const Expression& e, std::uint32_t number, Place
   if (name.starts_with("initialShape.")) {
     if (name == "initialShape.name") return options_.shape_name;
     if (name == "initialShape.startRule" || name == "initialShape.symbol") return start_name_;
-    // Its origin is the pivot of the initial shape.
-    const std::string pivot = "pivot." + std::string(name.substr(name.rfind('.') + 1));
-    return read_attribute(initial_, pivot).value_or(0.0);
+    // Its origin in the world: where the first edge begins, and how the object's axes are turned.
+    const Frame frame = object_in_world(initial_);
+    const bool place_asked = name[name.size() - 2] == 'p';
+    return component(place_asked ? frame.origin : angles_of_axes(frame.axes), name.back() - 'x');
   }
   if (name == "uid") return static_cast<double>(place.rule != nullptr ? place.rule->node : 0);
   // A name below "material." that the table does not list.
@@ -356,7 +358,7 @@ Value Run::call_own(const Expression& e, const Target& found, Place& place) {
   } else {
     const Definition& definition = program_.definitions[chosen];
     const Declaration& declaration = program_.declaration(definition);
-    Place inner{definition.module, first, place.shape, place.rule, false, nullptr};
+    Place inner{definition.module, first, place.shape, place.rule, false, nullptr, place.lineage};
     ++function_depth_;
     push_bindings(declaration, inner);
     if (declaration.value != kNone) out = evaluate(declaration.value, inner);
