@@ -123,7 +123,7 @@ void assign_points(model::Building& building, const std::vector<OutlineEdge>& ou
     const auto stretch = stretch_of(point, place_at(building, point), walls);
     if (!stretch) continue;
     FacadeEdge& edge = building.edges[*stretch];
-    edge.points.push_back({point.id, point.place, entrance, point.house_number});
+    edge.points.push_back({point.id, point.place, entrance, point.house_number, {}});
     edge.entrances += entrance;
   }
   for (FacadeEdge& edge : building.edges)

@@ -100,7 +100,7 @@ class Caps {
         if (!line.capped || (kind == RoofElementKind::hip_cap) != hip) continue;
         CellBodies made = bodies_of_cells(cells(line), {SurfaceKind::roof, SurfaceKind::wall, SurfaceKind::closure});
         if (made.solids.size() == 1 && made.lost.empty()) {
-          out.bodies.push_back({kind, std::move(made.solids[0])});
+          out.bodies.push_back({kind, std::move(made.solids[0]), {}});
           if (line.cut_from || line.cut_to) ++out.shortened;
         } else {
           line.capped = false;

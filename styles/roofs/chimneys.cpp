@@ -191,7 +191,7 @@ std::optional<model::RoofInstallation> chimney(const Roof& roof, ChimneyPlace pl
     loop.insert(loop.end(), {under(r), upper(r), upper(q)});
     builder.add_face(loop, side);
   }
-  return model::RoofInstallation{model::RoofElementKind::chimney, builder.take()};
+  return model::RoofInstallation{model::RoofElementKind::chimney, builder.take(), {}};
 }
 
 }  // namespace blockrand::roofs

@@ -226,7 +226,7 @@ BuiltGable ornamental_gable(const model::Polygon& plan, const Roof& roof, std::u
     out.refusal = GableRefusal::no_body;
     return out;
   }
-  out.body = model::RoofInstallation{RoofElementKind::gable, std::move(*solid)};
+  out.body = model::RoofInstallation{RoofElementKind::gable, std::move(*solid), {}};
   out.place.assign(strip->corners.begin(), strip->corners.end());
   return out;
 }

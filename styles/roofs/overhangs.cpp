@@ -111,7 +111,7 @@ class Overhangs {
         strip_of.push_back(i);
       }
       CellBodies made = bodies_of_cells(cells, {SurfaceKind::roof, SurfaceKind::wall, SurfaceKind::outer_ceiling});
-      for (model::Solid& solid : made.solids) out.elements.bodies.push_back({kind, std::move(solid)});
+      for (model::Solid& solid : made.solids) out.elements.bodies.push_back({kind, std::move(solid), {}});
       for (const std::uint32_t lost : made.lost) {
         strips_[strip_of[lost]].reach = 0;
         bare.insert(strips_[strip_of[lost]].top.edge);

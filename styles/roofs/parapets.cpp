@@ -191,7 +191,7 @@ BuiltElements parapets(const Polygon& plan, const Roof& roof, std::span<const Ro
     };
     for (const Border& b : borders)
       if (b.height > 0 && b.edge && (!pieces || !stands_at(b))) lost.insert(*b.edge);
-    for (model::Solid& solid : made.solids) out.bodies.push_back({RoofElementKind::parapet, std::move(solid)});
+    for (model::Solid& solid : made.solids) out.bodies.push_back({RoofElementKind::parapet, std::move(solid), {}});
   }
   out.asked = static_cast<int>(asked.size());
   out.refused = static_cast<int>(lost.size());

@@ -72,7 +72,7 @@ std::optional<model::RoofInstallation> roof_window(const RoofSlope& plane, const
     builder.add_face({pane[k], pane[i], edge[i], edge[k]}, frame_face);
   }
   builder.add_face(loop(pane, false), pane_face);
-  return model::RoofInstallation{model::RoofElementKind::roof_window, builder.take()};
+  return model::RoofInstallation{model::RoofElementKind::roof_window, builder.take(), {}};
 }
 
 }  // namespace blockrand::roofs
