@@ -106,6 +106,9 @@ constexpr Format kFormats[] = {{"gltf", &region::BuildOptions::gltf},         {"
 const std::vector<std::pair<std::string, export_::Instancing>> kInstancings = {
     {"ext", export_::Instancing::ext}, {"nodes", export_::Instancing::nodes}, {"baked", export_::Instancing::baked}};
 
+const std::vector<std::pair<std::string, export_::Compression>> kCompressions = {{"none", export_::Compression::none},
+                                                                                  {"meshopt", export_::Compression::meshopt}};
+
 void set_formats(Settings& s, const std::string& text) {
   std::vector<std::pair<std::string, bool region::BuildOptions::*>> names;
   for (const Format& f : kFormats) names.emplace_back(f.name, f.field);
@@ -386,6 +389,16 @@ void add_build(Table& t) {
            .choices = names_of(kInstancings)},
           [](Settings& s, const std::string& text) { s.build.instancing = choose(text, kInstancings); },
           [](const Settings& s) { return name_of(kInstancings, s.build.instancing); });
+  t.other({.name = "compress",
+           .key = "compress",
+           .argument = "HOW",
+           .type = OptionType::text,
+           .section = S,
+           .help = "how GLBs are compressed: none, or meshopt (EXT_meshopt_compression), a third of the size, for viewers that can decompress "
+                   "it",
+           .choices = names_of(kCompressions)},
+          [](Settings& s, const std::string& text) { s.build.compression = choose(text, kCompressions); },
+          [](const Settings& s) { return name_of(kCompressions, s.build.compression); });
   t.other(
       {.name = "bbox",
        .key = "bbox",
