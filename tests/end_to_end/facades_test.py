@@ -3,37 +3,13 @@ import json
 import os
 import re
 import shutil
-import struct
 import unittest
 
 import judges
-from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, extract, files_of, main, read_json
+from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, files_of, main, read_json
+from glb_files import glb_json, places
 
 LOD3 = ('--lod', '3', '--no-report', '--no-explain')
-
-
-def glb_json(path):
-    with open(path, 'rb') as f:
-        f.read(12)
-        length, = struct.unpack('<I4x', f.read(8))
-        return json.loads(f.read(length))
-
-
-def places(folder):
-    """Placed elements of all GLBs below tiles/, by how they are written."""
-    found = {'ext': 0, 'nodes': 0, 'meshes': 0}
-    for name in files_of(folder, '.glb'):
-        if not name.startswith('tiles'):
-            continue
-        glb = glb_json(os.path.join(folder, name))
-        for node in glb.get('nodes', []):
-            instancing = node.get('extensions', {}).get('EXT_mesh_gpu_instancing')
-            if instancing:
-                found['ext'] += glb['accessors'][instancing['attributes']['TRANSLATION']]['count']
-            elif 'extras' in node:
-                found['nodes'] += 1
-        found['meshes'] += len(glb.get('meshes', []))
-    return found
 
 
 def gml(folder):
@@ -137,25 +113,6 @@ class Facades(BuildTest):
         run = blockrand('grammar', 'check', *[os.path.join(folder, f) for f in sorted(os.listdir(folder))])
         self.assertEqual(run.code, 0, run)
         self.assertIn('0 errors, 0 warnings', run.out + run.err)
-
-
-class RealExtracts(BuildTest):
-    def facades(self, name):
-        source = extract(name)
-        if not source:
-            self.skipTest(f'{name} is not there')
-        out = self.build(source, name.split('.')[0], *LOD3, '--formats', 'gltf,citygml')
-        self.assertEqual(judges.xmllint(out), '')
-        self.assertEqual(judges.khronos(out), '')
-        build = read_json(out, 'build.json')
-        self.assertLess(build['issues'].get('FACADE_FAILED', 0), 0.005 * build['counts']['models'])
-        self.assertGreater(build['counts']['models_lod3'], 0.8 * build['counts']['models'])
-
-    def test_berlin(self):
-        self.facades('berlin_frankfurter_allee.osm.pbf')
-
-    def test_a_town(self):
-        self.facades('husum_altstadt.osm.pbf')
 
 
 if __name__ == '__main__':

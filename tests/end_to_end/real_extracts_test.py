@@ -1,6 +1,8 @@
 """Real extracts as people download them: everything is counted, nearly everything stands, every solid is valid.
 
-    real_extracts_test.py --extracts small|towns|berlin|all|NAME-PART
+    real_extracts_test.py [--lod 3] --extracts small|towns|berlin|all|NAME-PART
+
+With --lod 3 builds have facades, as GLB and CityGML (Berlin: GLB alone, for its size).
 """
 import os
 import re
@@ -10,6 +12,7 @@ import unittest
 
 import judges
 from blockrand_run import NO_WHOLE_GEOMETRY, NOT_STANDING, BuildTest, Setup, call, extract, files_of, main, read_json
+from glb_files import places
 
 SMALL = ['berlin-zionskirchplatz-2020.osm', 'berlin_frankfurter_allee.osm.pbf', 'lauf-2020-clipped.osm.pbf']
 BERLIN = ['berlin-2014-06.osm.pbf']
@@ -62,6 +65,7 @@ def counted_by_osmium(source):
 class RealExtract:
     """One class per extract is made of this below."""
     name = ''
+    options = ()
 
     @classmethod
     def setUpClass(cls):
@@ -70,7 +74,7 @@ class RealExtract:
         if not source:
             raise unittest.SkipTest(f'{cls.name} is not in the shared data')
         cls.source = source
-        cls.out = cls().build(source, 'out', timeout=3600)
+        cls.out = cls().build(source, 'out', *cls.options, timeout=7200)
 
     @classmethod
     def tearDownClass(cls):
@@ -133,10 +137,39 @@ class RealExtract:
         self.assertEqual(judges.metadata(self.out, *files[::-(-len(files) // KHRONOS_FILES)]), '')
 
 
-TABLE = []
+class RealFacades(RealExtract):
+    """The same at LoD3; what LoD2 alone can show is left to the class above."""
+    test_nothing_is_lost = test_whole_geometry_is_built = test_metadata = None
+
+    def test_counts_add_up(self):
+        build, _ = self.counts_add_up(self.out)
+        run, c, issues = read_json(self.out, 'run.json'), build['counts'], build['issues']
+        told = ', '.join(f'{k} {issues[k]}' for k in DETAIL_CODES if k in issues)
+        size = sum(f['bytes'] for name, f in build['files'].items() if name.endswith('.glb'))
+        models = c['models_lod3']
+        DETAIL_TABLE.append(f'| {self.name} | {c["models"]:,} | {models:,} | {places(self.out)["ext"]:,} | {told} | '
+                            f'{run["seconds"]:.2f} | {c["models"] / run["seconds"]:.0f} | '
+                            f'{run["peak_rss_bytes"] / 1e6:.0f} | {size / 1e6:.1f} |')
+
+    def test_lod3(self):
+        """Every body with walls has a facade, but for those whose preset has no grammar."""
+        build = read_json(self.out, 'build.json')
+        c, issues = build['counts'], build['issues']
+        self.assertGreater(c['models_lod3'], 0.95 * c['models_lod2'], c)
+        self.assertLess(issues.get('FACADE_FAILED', 0), 0.001 * c['models'] + 1)
+        self.assertLess(issues.get('GRAMMAR_ERROR', 0), 0.002 * c['models'] + 1)
+        self.assertLess(issues.get('OPENING_LEFT_OUT', 0), 0.02 * c['models'] + 2)
+
+
+TABLE, DETAIL_TABLE = [], []
+DETAIL_CODES = ('FACADE_FAILED', 'GRAMMAR_ERROR', 'OPENING_LEFT_OUT')
 
 
 def print_table():
+    if DETAIL_TABLE:
+        print('\n| extract | models | LoD3 | placed elements | fallbacks | s | models/s | peak MB | GLB MB |')
+        print('|---|---|---|---|---|---|---|---|---|')
+        print('\n'.join(DETAIL_TABLE), flush=True)
     if TABLE:
         print('\n| extract | buildings | parts | LoD0/1/2 | represented | reported | fallbacks and reports | s | peak MB | output MB |')
         print('|---|---|---|---|---|---|---|---|---|---|')
@@ -145,14 +178,22 @@ def print_table():
 
 if __name__ == '__main__':
     arguments = sys.argv[1:]
-    wanted = 'small'
-    if '--extracts' in arguments:
-        at = arguments.index('--extracts')
-        wanted = arguments[at + 1]
+
+    def taken(option, otherwise):
+        if option not in arguments:
+            return otherwise
+        at = arguments.index(option)
+        value = arguments[at + 1]
         del arguments[at:at + 2]
+        return value
+
+    wanted, detail = taken('--extracts', 'small'), taken('--lod', '2') == '3'
     names = SETS.get(wanted) or [n for n in SETS['all'] if wanted in n]
     for n in names:
-        globals()[re.sub(r'\W', '_', n)] = type(re.sub(r'\W', '_', n), (RealExtract, BuildTest), {'name': n})
+        formats = 'gltf' if n in BERLIN else 'gltf,citygml'
+        options = ('--lod', '3', '--formats', formats, '--no-explain') if detail else ()
+        kind = RealFacades if detail else RealExtract
+        globals()[re.sub(r'\W', '_', n)] = type(re.sub(r'\W', '_', n), (kind, BuildTest), {'name': n, 'options': options})
     try:
         main(arguments)
     finally:
