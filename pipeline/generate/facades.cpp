@@ -18,6 +18,7 @@
 #include "pipeline/generate/facade_context.h"
 #include "pipeline/generate/opening_proof.h"
 #include "pipeline/generate/openings.h"
+#include "pipeline/generate/wall_corners.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/triangulate.h"
 #include "styles/elements/make_element.h"
@@ -83,7 +84,9 @@ class FacadeBuilder {
     const std::uint64_t seed = base::random_bits(options_.seed, building.osm.key(), "facades");
     const std::uint64_t row =
         base::random_bits(options_.seed, base::hash_text(building.situation.block), "row of facades");
-    for (const FacadeStretch& stretch : facade_stretches(building, walls)) {
+    std::vector<FacadeStretch> stretches = facade_stretches(building, walls);
+    link_corners(stretches, walls, eaves_level(part));
+    for (const FacadeStretch& stretch : stretches) {
       if (stretch.kind == model::EdgeKind::party_wall || stretch.kind == model::EdgeKind::unknown) continue;
       derive_stretch(*grammar, {building, part, walls[stretch.wall], stretch}, seed, row);
     }
