@@ -53,19 +53,24 @@ std::vector<PassageWay> passage_ways(const Extract& extract, const Project& proj
   return out;
 }
 
-std::vector<SitePoint> site_points(const Extract& extract, const Project& project) {
+std::vector<SitePoint> site_points(const Extract& extract, const Project& project, const UseOfTags& use_of) {
   std::vector<SitePoint> out;
   for (const Feature& f : extract.features) {
     if (f.id.type != model::OsmType::node) continue;
     SitePoint point;
+    if (use_of && (f.is(FeatureKind::shop) || f.is(FeatureKind::amenity)))
+      point.use = use_of([&](std::string_view key) { return extract.tag(f.tags, key); });
     if (f.is(FeatureKind::entrance) && extract.tag(f.tags, "entrance") != "no")
       point.kind = SitePointKind::entrance;
     else if (f.is(FeatureKind::address))
       point.kind = SitePointKind::address;
     else if (f.is(FeatureKind::tree))
       point.kind = SitePointKind::tree;
+    else if (!point.use.empty())
+      point.kind = SitePointKind::shop;
     else
       continue;
+    if (point.kind == SitePointKind::tree) point.use.clear();
     const auto rings = extract.rings_of(f.rings);
     if (rings.empty() || extract.vertices_of(rings[0]).empty()) continue;
     point.id = f.id;

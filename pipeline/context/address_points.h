@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,19 +34,24 @@ inline constexpr double kMinPassageWidth = 0.8, kMaxPassageWidth = 15;
 /// The passages of an extract, in the order of Extract::features.
 std::vector<PassageWay> passage_ways(const model::Extract& extract, const Project& project);
 
-enum class SitePointKind : std::uint8_t { entrance, address, tree };
+enum class SitePointKind : std::uint8_t { entrance, address, tree, shop };
 
 /// A node that may belong to a wall.
 struct SitePoint {
   model::OsmId id;
-  SitePointKind kind = SitePointKind::entrance;  ///< an entrance with an address is an entrance
+  SitePointKind kind = SitePointKind::entrance;  ///< an entrance with an address is an entrance; shop: neither
   model::Point2 place;                           ///< m, on the grid
   std::string street;                            ///< addr:street, or empty
   std::string house_number;                      ///< addr:housenumber, or empty
+  std::string use;                               ///< by UseOfTags, of whatever kind but trees; or empty
 };
 
-/// Entrances, address nodes and trees of an extract (nodes only), in the order of Extract::features.
-std::vector<SitePoint> site_points(const model::Extract& extract, const Project& project);
+/// What a mapped point is used for, by its tags: a category such as `shop`; empty for nothing that is known.
+using UseOfTags = std::function<std::string_view(const std::function<std::string_view(std::string_view)>& tag)>;
+
+/// Entrances, address nodes and trees of an extract, and shops and amenities that have a use (nodes only), in the order
+/// of Extract::features. \param use_of  may be empty: no use is known, and shops without an address are no points
+std::vector<SitePoint> site_points(const model::Extract& extract, const Project& project, const UseOfTags& use_of = {});
 
 /// What a building's own tags say of its address: addr:street and addr:housenumber, either may be empty.
 struct BuildingAddress {

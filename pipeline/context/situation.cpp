@@ -69,7 +69,7 @@ std::string address_of(const model::Building& building, const SurroundingsIndex&
   std::map<std::string, int> votes;
   for (const std::uint32_t p : index.points_near(box_of(building, 0.5))) {
     const SitePoint& point = index.all().points[p];
-    if (point.kind == SitePointKind::tree || point.street.empty()) continue;
+    if (point.kind == SitePointKind::tree || point.kind == SitePointKind::shop || point.street.empty()) continue;
     if (std::any_of(building.outline.begin(), building.outline.end(),
                     [&](const model::Polygon& polygon) { return geometry::contains(polygon, point.place); }))
       ++votes[point.street];

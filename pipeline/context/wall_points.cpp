@@ -77,14 +77,14 @@ Point2 place_at(const model::Building& building, const SitePoint& point) {
   return point.place;
 }
 
-/// The stretch that an entrance or address of the building belongs to.
+/// The stretch that an entrance, address or shop of the building belongs to.
 std::optional<std::uint32_t> stretch_of(const SitePoint& point, Point2 place, const Stretches& walls) {
   const auto at_its_street = [&](std::uint32_t i) { return !point.street.empty() && walls.edge(i).street_name == point.street; };
   const auto is_street = [&](std::uint32_t i) { return walls.edge(i).kind == EdgeKind::street; };
   const auto any = [](std::uint32_t) { return true; };
   const auto by_kind = [&](std::uint32_t i) { return std::pair(!at_its_street(i), rank(walls.edge(i).kind)); };
   if (const auto near = walls.nearest(place, kEntranceReach, any, by_kind)) return near;
-  if (point.house_number.empty()) return std::nullopt;
+  if (point.house_number.empty() && point.use.empty()) return std::nullopt;
   constexpr double kFar = std::numeric_limits<double>::infinity();
   if (const auto own = walls.nearest(place, kFar, at_its_street, by_kind)) return own;
   if (const auto front = walls.nearest(place, kFar, is_street, by_kind)) return front;
@@ -118,12 +118,12 @@ void assign_points(model::Building& building, const std::vector<OutlineEdge>& ou
       continue;
     }
     const bool entrance = point.kind == SitePointKind::entrance;
-    if ((!entrance && point.house_number.empty()) || !is_within(own, point.place)) continue;
+    if ((!entrance && point.house_number.empty() && point.use.empty()) || !is_within(own, point.place)) continue;
     if (owner_of(point, index, options) != building.osm) continue;
     const auto stretch = stretch_of(point, place_at(building, point), walls);
     if (!stretch) continue;
     FacadeEdge& edge = building.edges[*stretch];
-    edge.points.push_back({point.id, point.place, entrance, point.house_number, {}});
+    edge.points.push_back({point.id, point.place, entrance, point.house_number, point.use});
     edge.entrances += entrance;
   }
   for (FacadeEdge& edge : building.edges)

@@ -1,4 +1,4 @@
-// Which wall entrances, addresses and trees belong to.
+// Which wall entrances, addresses, shops and trees belong to.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,8 @@ inline constexpr double kTreeReach = 15;
 /// to the nearest stretch within kEntranceReach, party walls apart. Where several are as near (a corner, a node between
 /// two walls) one at the street of its address comes first, then streets, passages, courtyards, sides, then the longer
 /// stretch, then the earlier. A house number deeper within belongs to the nearest stretch at the street of its address;
-/// without one to the nearest street front; without one to the nearest stretch.
+/// without one to the nearest street front; without one to the nearest stretch. Shops likewise: they are mapped in the
+/// middle of their rooms. What is behind the wall (SitePoint::use) is kept with the point.
 /// A tree belongs to the nearest stretch within kTreeReach that is no party wall and has it in front, not behind.
 void assign_points(model::Building& building, const std::vector<OutlineEdge>& outline,
                    const SurroundingsIndex& surroundings, const EdgeOptions& options = {});

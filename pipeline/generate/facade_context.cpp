@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -31,18 +33,113 @@ bool any_edge(const C& c, Visit&& visit) {
                      [&](std::uint32_t i) { return visit(c.building.edges[i]); });
 }
 
-/// Entrances along the stretch, m from its left end, in order.
-std::vector<double> entrances(const C& c) {
+/// Uses that show a window to the street: categories of configs/styles/ground_floor.toml.
+constexpr std::string_view kShopUses[] = {"shop", "gastronomy", "service", "craft"};
+
+bool is_shop(const model::EdgePoint& p) {
+  return std::find(std::begin(kShopUses), std::end(kShopUses), p.use) != std::end(kShopUses);
+}
+bool is_entrance(const model::EdgePoint& p) { return p.entrance; }
+
+/// Points along the stretch that are `wanted`, m from its left end, in order, each place once.
+std::vector<double> places(const C& c, bool (*wanted)(const model::EdgePoint&)) {
   std::vector<double> out;
   for (const std::uint32_t i : c.stretch.edges)
     for (const model::EdgePoint& p : c.building.edges[i].points) {
-      if (!p.entrance) continue;
+      if (!wanted(p)) continue;
       const double u = (p.place.x - c.wall.start.x) * c.wall.along.x + (p.place.y - c.wall.start.y) * c.wall.along.y -
                        c.stretch.from;
       if (u >= 0 && u <= c.stretch.length()) out.push_back(std::floor(u * 64 + 0.5) / 64);
     }
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+std::vector<double> entrances(const C& c) { return places(c, is_entrance); }
+
+Value numbers(std::vector<double> items) {
+  grammar::NumberArray out;
+  out.columns = items.size();
+  out.items = std::move(items);
+  return out;
+}
+Value texts(std::vector<std::string> items) {
+  grammar::TextArray out;
+  out.columns = items.size();
+  out.items = std::move(items);
+  return out;
+}
+
+/// What is ordered for one storey, edge or bay of the part, of its whole building else; empty: nothing.
+std::string ordered(const C& c, model::DetailKind kind, std::string_view name, std::string_view key) {
+  std::string out;
+  for (const model::DetailOverride& d : c.building.detail_overrides) {
+    if (d.kind != kind || d.name != name || (d.body != c.part.id && d.body != c.building.id())) continue;
+    for (const auto& [known, value] : d.values)
+      if (known == key && (out.empty() || d.body == c.part.id)) out = value;
+  }
+  return out;
+}
+
+/// What is ordered for the edges that the stretch runs along; the first one counts.
+std::string ordered_edge(const C& c, std::string_view key) {
+  for (const std::uint32_t i : c.stretch.edges) {
+    const model::FacadeEdge& e = c.building.edges[i];
+    if (e.from_node == 0 || e.to_node == 0) continue;
+    const std::string id = "e" + std::to_string(e.from_node) + "_" + std::to_string(e.to_node);
+    for (const model::DetailOverride& d : c.building.detail_overrides)
+      if (d.kind == model::DetailKind::edge && (d.name == id || d.name.starts_with(id + "~")))
+        for (const auto& [known, value] : d.values)
+          if (known == key) return value;
+  }
+  return {};
+}
+
+std::size_t storey_count(const C& c) {
+  // More storeys than any building has are a slip of a tag; arrays stay small.
+  return static_cast<std::size_t>(std::clamp(std::ceil(c.part.attributes.storeys.value), 0.0, 200.0));
+}
+
+/// What is ordered for each storey from the ground floor up; empty texts where nothing is.
+std::vector<std::string> by_storey(const C& c, std::string_view key) {
+  std::vector<std::string> out(storey_count(c));
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = ordered(c, model::DetailKind::storey, std::to_string(i), key);
+  return out;
+}
+
+/// The same for the bays of the main front, counted from its left end; as many as the highest number that is ordered.
+std::vector<std::string> by_bay(const C& c, std::string_view key) {
+  std::size_t most = 0;
+  constexpr int kMostBays = 1000;
+  for (const model::DetailOverride& d : c.building.detail_overrides)
+    if (d.kind == model::DetailKind::bay)
+      most = std::max(most, static_cast<std::size_t>(std::clamp(std::atoi(d.name.c_str()), 0, kMostBays)) + 1);
+  std::vector<std::string> out(most);
+  for (std::size_t i = 0; i < most; ++i) out[i] = ordered(c, model::DetailKind::bay, std::to_string(i), key);
+  return out;
+}
+
+/// Gross heights by storey, m: as ordered, the rest shared out evenly. What is ordered beyond the wall's height is taken
+/// in proportion.
+std::vector<double> storey_heights(const C& c) {
+  const auto orders = by_storey(c, "height");
+  const model::Attributes& a = c.part.attributes;
+  std::vector<double> out(orders.size(), 0);
+  double sum = 0;
+  std::size_t open = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = orders[i].empty() ? 0 : std::atof(orders[i].c_str());
+    sum += out[i];
+    open += orders[i].empty() ? 1 : 0;
+  }
+  const double all = a.storey_height.value * static_cast<double>(out.size());
+  // The others keep 1.5 m, the least that overrides may order.
+  const double rest = open > 0 ? std::max(1.5, (all - sum) / static_cast<double>(open)) : 0;
+  const double total = sum + rest * static_cast<double>(open);
+  for (double& h : out) {
+    if (h == 0) h = rest;
+    if (total > 0) h *= all / total;
+  }
   return out;
 }
 
@@ -66,6 +163,12 @@ double eaves(const C& c) {
 }
 
 const std::vector<ContextAttribute> kAttributes = {
+    {"bay.uses", "", "ordered by bay of the main front, from its left end: door, shop, balcony …; empty: nothing",
+     [](const C& c) -> Value { return texts(is_main_front(c) ? by_bay(c, "parameters.use") : std::vector<std::string>{}); }},
+    {"bay.windows", "", "the same: none, or a kind of window",
+     [](const C& c) -> Value {
+       return texts(is_main_front(c) ? by_bay(c, "parameters.window") : std::vector<std::string>{});
+     }},
     {"building.class", "", "class of appearance: gruenderzeit, tenement, modern, other",
      [](const C& c) -> Value { return c.building.attributes.style.value; }},
     {"building.depth", "m", "across the main front; 0: not known",
@@ -114,10 +217,15 @@ const std::vector<ContextAttribute> kAttributes = {
        const auto at = entrances(c);
        return at.empty() ? -1.0 : at.front();
      }},
+    {"edge.entrance_places", "m", "left end to each mapped entrance of this stretch",
+     [](const C& c) -> Value { return numbers(entrances(c)); }},
     {"edge.entrances", "", "mapped entrances of this stretch",
      [](const C& c) -> Value { return static_cast<double>(entrances(c).size()); }},
-    {"edge.kind", "", "street, courtyard, side, passage",
-     [](const C& c) -> Value { return text(model::name(c.stretch.kind)); }},
+    {"edge.kind", "", "street, courtyard, side, passage; as ordered, if it is",
+     [](const C& c) -> Value {
+       const std::string order = ordered_edge(c, "kind");
+       return order.empty() ? text(model::name(c.stretch.kind)) : text(order);
+     }},
     {"edge.kind_left", "",
      "kind of the stretch beyond the left end, round the corner too; empty: none with the same base and eaves",
      [](const C& c) -> Value { return kind_text(c.stretch.kind_left); }},
@@ -128,6 +236,8 @@ const std::vector<ContextAttribute> kAttributes = {
      [](const C& c) -> Value { return is_main_front(c); }},
     {"edge.raised", "m", "the ground to the base of the wall: more than 0 above passages and lower parts",
      [](const C& c) -> Value { return std::max(0.0, c.wall.base - c.part.attributes.ground_height.value); }},
+    {"edge.shops", "m", "left end to each mapped shop, restaurant, bank or workshop behind this stretch",
+     [](const C& c) -> Value { return numbers(places(c, is_shop)); }},
     {"edge.street_class", "", "of the street it faces: primary, residential …; empty: none",
      [](const C& c) -> Value {
        const auto* e = edge_of(c);
@@ -153,6 +263,32 @@ const std::vector<ContextAttribute> kAttributes = {
      [](const C& c) -> Value { return c.part.attributes.roof_pitch.value; }},
     {"roof.shape", "", "as it was built: flat, gabled, hipped …",
      [](const C& c) -> Value { return text(model::name(c.part.built_roof)); }},
+    {"storey.bases", "m", "by storey: the ground floor's level to its floor",
+     [](const C& c) -> Value {
+       std::vector<double> out;
+       double at = 0;
+       for (const double h : storey_heights(c)) {
+         out.push_back(at);
+         at += h;
+       }
+       return numbers(std::move(out));
+     }},
+    {"storey.colours", "", "by storey: #rrggbb as ordered; empty: nothing",
+     [](const C& c) -> Value { return texts(by_storey(c, "colour")); }},
+    {"storey.count", "", "full storeys above ground, as many as the lists have entries",
+     [](const C& c) -> Value { return static_cast<double>(storey_count(c)); }},
+    {"storey.heights", "m", "by storey: floor to floor, as ordered; the others even",
+     [](const C& c) -> Value { return numbers(storey_heights(c)); }},
+    {"storey.ordered", "", "storeys whose height is ordered",
+     [](const C& c) -> Value {
+       const auto orders = by_storey(c, "height");
+       return static_cast<double>(
+           std::count_if(orders.begin(), orders.end(), [](const std::string& o) { return !o.empty(); }));
+     }},
+    {"storey.uses", "", "by storey: shop, office … as ordered; empty: nothing",
+     [](const C& c) -> Value { return texts(by_storey(c, "use")); }},
+    {"storey.windows", "", "by storey: none, or a kind of window, as ordered; empty: nothing",
+     [](const C& c) -> Value { return texts(by_storey(c, "parameters.window")); }},
 };
 
 }  // namespace

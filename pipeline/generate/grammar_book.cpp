@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "pipeline/base/error.h"
+#include "pipeline/generate/facade_context.h"
 #include "pipeline/model/element.h"
 #include "styles/elements/make_element.h"
 
@@ -37,19 +38,32 @@ std::vector<std::string> list_folder(const std::string& folder) {
 }  // namespace
 
 std::vector<grammar::ExtensionOperation> extension_operations() {
-  std::vector<grammar::ExtensionOperation> out(3);
-  out[0].name = "window";
-  out[1].name = "door";
-  out[2].name = "element";
-  std::vector<std::set<std::string>> parameters(3);
+  // The first three take all kinds of their class; the others those that are named after what they make (cga.md 7.1).
+  struct Named {
+    const char* name;
+    std::vector<std::string> kinds;
+  };
+  const std::vector<Named> named{{"window", {}},
+                                 {"door", {}},
+                                 {"element", {}},
+                                 {"balcony", {"balcony"}},
+                                 {"bay", {"bay"}},
+                                 {"cornice", {"main_cornice", "string_course", "plinth", "sill"}},
+                                 {"opening", {"reveal", "cellar_window"}},
+                                 {"quoin", {"quoin", "pilaster"}}};
+  std::vector<grammar::ExtensionOperation> out(named.size());
+  for (std::size_t i = 0; i < named.size(); ++i) out[i].name = named[i].name;
+  std::vector<std::set<std::string>> parameters(named.size());
   for (const elements::ElementKind& kind : elements::element_kinds()) {
     const std::size_t which = kind.semantic == model::ElementClass::window ? 0
                               : kind.semantic == model::ElementClass::door ? 1
                                                                            : 2;
-    out[which].kinds.push_back(kind.name);
-    for (const elements::ParameterInfo& p : kind.parameters) parameters[which].insert(p.name);
-    for (const std::string_view part : model::kElementPartNames)
-      parameters[which].insert(std::string(part) + "_colour");
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      if (i != which && std::find(named[i].kinds.begin(), named[i].kinds.end(), kind.name) == named[i].kinds.end()) continue;
+      out[i].kinds.push_back(kind.name);
+      for (const elements::ParameterInfo& p : kind.parameters) parameters[i].insert(p.name);
+      for (const std::string_view part : model::kElementPartNames) parameters[i].insert(std::string(part) + "_colour");
+    }
   }
   for (std::size_t i = 0; i < out.size(); ++i) out[i].parameters.assign(parameters[i].begin(), parameters[i].end());
   return out;
@@ -66,6 +80,9 @@ GrammarBook::GrammarBook(const std::string& folder, std::span<const PresetGramma
   options.roots = {folder};
   options.read = read_file;
   options.list = list_folder;
+  grammar::CheckOptions check_options;
+  check_options.extensions = extension_operations();
+  for (const ContextAttribute& attribute : context_attributes()) check_options.context.emplace_back(attribute.name);
   for (const PresetGrammar& preset : presets) {
     const std::string path = (std::filesystem::path(folder) / preset.file).string();
     auto file = std::find_if(files_.begin(), files_.end(), [&](const auto& f) { return f->path == path; });
@@ -74,7 +91,9 @@ GrammarBook::GrammarBook(const std::string& folder, std::span<const PresetGramma
       read->path = path;
       read->program = grammar::load(path, options);
       std::string errors;
-      for (const grammar::Diagnostic& d : read->program.diagnostics)
+      std::vector<grammar::Diagnostic> told = read->program.diagnostics;
+      if (!grammar::has_errors(told)) told = grammar::check(read->program, check_options);
+      for (const grammar::Diagnostic& d : told)
         if (d.severity == grammar::Severity::error && errors.size() < kMostErrorText)
           errors += (errors.empty() ? "" : "\n  ") + grammar::format(d, read->program.files);
       if (read->program.modules.empty() && errors.empty()) errors = "it is not there, or cannot be read";

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pipeline/base/progress.h"
+#include "pipeline/export/gltf/compression.h"
 #include "pipeline/export/gltf/instance_writer.h"
 #include "pipeline/generate/options.h"
 #include "pipeline/generate/roofscape.h"

@@ -182,13 +182,14 @@ context::CellIndex cell_of_building(const FootprintStore& footprints, std::uint3
 }
 
 ContextExtract context_extract(const Extract& extract, const FootprintStore& footprints, std::span<const Point2> coverage,
-                               const georef::Projection& projection, int workers, base::Progress& progress) {
+                               const georef::Projection& projection, int workers, base::Progress& progress,
+                               const context::UseOfTags& use_of) {
   progress.begin("context");
   ContextExtract out;
   const context::Project project = [&](model::Location l) { return projection.forward(l); };
   out.lines = context::network_lines(extract, project);
   out.passages = context::passage_ways(extract, project);
-  out.points = context::site_points(extract, project);
+  out.points = context::site_points(extract, project, use_of);
   out.blocks = context::find_blocks(out.lines, coverage);
   out.block_of.assign(footprints.size(), model::kNoIndex);
   std::vector<PlanBox> line_boxes;

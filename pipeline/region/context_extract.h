@@ -40,11 +40,12 @@ struct ContextExtract {
 };
 
 /// \param coverage  of the extract (context::coverage_of), made once and pinned
+/// \param use_of  what shops and amenities are (context::site_points)
 /// Deterministic for any number of workers. The value of a block, a courtyard, a cell depends on data within
 /// BlockOptions::max_extent of it, and on the repair of the buildings in it.
 ContextExtract context_extract(const model::Extract& extract, const FootprintStore& footprints,
                                std::span<const model::Point2> coverage, const georef::Projection& projection, int workers,
-                               base::Progress& progress);
+                               base::Progress& progress, const context::UseOfTags& use_of = {});
 
 /// The middle of the largest polygon of a building's outline, which must not be empty.
 model::Point2 place_of(const FootprintStore& footprints, std::uint32_t building);

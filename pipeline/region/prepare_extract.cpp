@@ -88,8 +88,12 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   RepairedExtract repaired =
       repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress);
   malloc_trim(0);
-  ContextExtract context =
-      context_extract(extract, repaired.footprints, located.facts.coverage, located.projection, workers, progress);
+  const context::UseOfTags use_of = [&](const std::function<std::string_view(std::string_view)>& tag) {
+    const auto category = tables.ground_floor.category(tag);
+    return category ? std::string_view(tables.ground_floor.categories[*category].name) : std::string_view();
+  };
+  ContextExtract context = context_extract(extract, repaired.footprints, located.facts.coverage, located.projection,
+                                           workers, progress, use_of);
   malloc_trim(0);
   FactsExtract facts = facts_extract(extract, repaired.footprints, context,
                                      SurroundingsFinder(extract, repaired.footprints, context), workers, progress);

@@ -417,22 +417,14 @@ class Parser {
 
   /// Elements are turned about the vertical alone.
   void end_implicit() {
-    constexpr double kTurn = 1e-6;  // what rounding to nine decimals leaves of a rotation, with room
-    const auto& m = matrix_;
-    const auto is = [&](std::size_t i, double v) { return std::fabs(m[i] - v) <= kTurn; };
-    const auto still = [&] {
-      for (const std::size_t i : {2u, 3u, 6u, 7u, 8u, 9u, 11u, 12u, 13u, 14u})
-        if (!is(i, 0)) return false;
-      return is(10, 1) && is(15, 1) && is(5, m[0]) && is(4, -m[1]) && std::fabs(m[0] * m[0] + m[1] * m[1] - 1) <= kTurn;
-    };
-    if (m.size() != 16 || !still())
+    if (!turns_about_the_vertical(matrix_))
       return rule("an implicit geometry whose matrix is no rotation about the vertical", object());
     if (!reference_point_) return rule("an implicit geometry without a reference point", object());
     if (element_.empty()) return rule("an implicit geometry without geometry", object());
     auto& placements = body()->detail.placements;
     if (!opening_.empty()) open_.back().openings.back().placement = placements.size();
     placed_.push_back({open_.back().body, placements.size(), element_});
-    placements.push_back({0, *reference_point_, {m[0], m[4]}});
+    placements.push_back({0, *reference_point_, {matrix_[0], matrix_[4]}});
   }
 
   void note_place(const std::string& id, Place place) {

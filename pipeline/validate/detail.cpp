@@ -113,6 +113,39 @@ void check_detail(const ReadBody& body, const Complain& complain) {
   }
 }
 
+bool turns_about_the_vertical(std::span<const double> m) {
+  constexpr double kTurn = 1e-6;  // what rounding to nine decimals leaves of a rotation, with room
+  if (m.size() != 16) return false;
+  const auto is = [&](std::size_t i, double v) { return std::fabs(m[i] - v) <= kTurn; };
+  for (const std::size_t i : {2u, 3u, 6u, 7u, 8u, 9u, 11u, 12u, 13u, 14u})
+    if (!is(i, 0)) return false;
+  return is(10, 1) && is(15, 1) && is(5, m[0]) && is(4, -m[1]) && std::fabs(m[0] * m[0] + m[1] * m[1] - 1) <= kTurn;
+}
+
+std::string detail_difference(const ReadBody& a, const ReadBody& b) {
+  const ReadDetail &x = a.detail, &y = b.detail;
+  if (x.openings.size() != y.openings.size())
+    return fmt::format("{} openings against {}", x.openings.size(), y.openings.size());
+  if (x.placements.size() != y.placements.size())
+    return fmt::format("{} placed elements against {}", x.placements.size(), y.placements.size());
+  auto p = x.placements, q = y.placements;
+  std::sort(p.begin(), p.end());
+  std::sort(q.begin(), q.end());
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (p[i] != q[i])
+      return fmt::format("another element, or one at another place (near {:.3f} {:.3f} {:.3f})", p[i].origin.x,
+                         p[i].origin.y, p[i].origin.z);
+  if (x.installations.size() != y.installations.size())
+    return fmt::format("{} installations against {}", x.installations.size(), y.installations.size());
+  for (std::size_t i = 0; i < x.installations.size(); ++i) {
+    const ReadInstallation &u = x.installations[i], &v = y.installations[i];
+    if (u.kind != v.kind) return fmt::format("installation {} is a {} against a {}", u.id, u.kind, v.kind);
+    if (element_digest(u.polygons) != element_digest(v.polygons))
+      return fmt::format("installation {} has other faces or colours", u.id);
+  }
+  return {};
+}
+
 std::uint64_t element_digest(std::span<const ReadPolygon> polygons) {
   std::uint64_t h = polygons.size();
   const auto mix = [&](std::uint64_t v) { h = base::mix64(h ^ v) + 0x9e3779b97f4a7c15ULL; };

@@ -23,6 +23,13 @@ void check_detail(const ReadBody& body, const Complain& complain);
 /// The same for equal elements, whichever format they come from: their polygons in order to 0.1 mm, with colours.
 std::uint64_t element_digest(std::span<const ReadPolygon> polygons);
 
+/// Whether a matrix (row by row) turns about the vertical and does nothing else: elements stand upright and keep their size.
+bool turns_about_the_vertical(std::span<const double> matrix);
+
+/// What two formats say differently of a body's LoD3 beside its solid: how many openings, which elements where, which
+/// installations. Empty where they say the same.
+std::string detail_difference(const ReadBody& a, const ReadBody& b);
+
 /// m. Walls are plane to 1 cm (ISO 19107's 203), on both sides of which corners may lie.
 inline constexpr double kWallTolerance = 0.02;
 /// m. No wall is thicker; Finkenzeller's deepest reveals have half of it.

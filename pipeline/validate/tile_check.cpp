@@ -14,6 +14,7 @@
 #include "pipeline/geometry/solid_defect.h"
 #include "pipeline/validate/attribute_names.h"
 #include "pipeline/validate/cityjson.h"
+#include "pipeline/validate/detail.h"
 #include "pipeline/validate/file_bytes.h"
 #include "pipeline/validate/glb.h"
 #include "pipeline/validate/ids.h"
@@ -318,10 +319,22 @@ class Checker {
       compare_objects(first, other, out_.findings);
       compare_attributes(first, other, f == kGltf, out_.findings);
       out_.compared += other.contents.bodies.size();
-      if (f == kCityJson) compare_polygons(first, other, out_.findings);
+      if (f == kCityJson) {
+        compare_polygons(first, other, out_.findings);
+        compare_details(first, other);
+      }
     }
     if (glb_ && reference != kGltf) compare_with_mesh(first);
     note_absent(reference, there);
+  }
+
+  void compare_details(const Side& a, const Side& b) {
+    std::unordered_map<std::string_view, const ReadBody*> bodies;
+    for (const ReadBody& body : a.contents.bodies) bodies.emplace(body.id, &body);
+    for (const ReadBody& body : b.contents.bodies)
+      if (const auto same = bodies.find(body.id); same != bodies.end())
+        if (std::string what = detail_difference(*same->second, body); !what.empty())
+          found(Check::geometry_differs, b.file, body.id, fmt::format("LoD 3: {}, in {}", what, a.file));
   }
 
   void compare_with_mesh(const Side& reference) {

@@ -420,6 +420,104 @@ ElementKind console_kind() {
   return k;
 }
 
+// Sizes and ranges of the following four: references/styles.md 2.6 (balconies, bays), 2.5 (quoins, pilasters).
+ElementKind balcony() {
+  ElementKind k{"balcony",
+                ElementClass::installation,
+                "balcony: slab on brackets with a railing; y = 0 is the slab's upper side",
+                "slab",
+                "railing",
+                1.00,
+                2.60,
+                8.00,
+                0.80,
+                0.95,
+                1.30,
+                {}};
+  k.parameters = {number("depth", "m", 1.00, 0.40, 1.80, "how far the slab stands out of the wall"),
+                  number("slab", "m", 0.18, 0.10, 0.35, "thickness of the slab"),
+                  whole("consoles", 2, 0, 5, "brackets under the slab"),
+                  number("console_width", "m", 0.24, 0.10, 0.45, "width of a bracket"),
+                  number("console_height", "m", 0.50, 0.15, 0.90, "height of a bracket"),
+                  word("railing", {"bars", "panels", "stone", "glass"}, "bars", "iron bars, boards, balusters, panes"),
+                  number("bar_spacing", "m", 0.14, 0.09, 0.30, "bars: from bar to bar; stone: half of it"),
+                  detail()};
+  return k;
+}
+
+ElementKind bay() {
+  ElementKind k{"bay",
+                ElementClass::installation,
+                "bay (Erker) over one or more storeys with windows of its own; y = 0 is its underside, without the base",
+                "bay at the wall",
+                "bay without base and roof",
+                1.20,
+                2.80,
+                5.00,
+                2.20,
+                7.00,
+                24.0,
+                {}};
+  k.parameters = {word("plan", {"rectangular", "polygonal"}, "rectangular", "plan; polygonal: slanting cheeks"),
+                  number("depth", "m", 0.90, 0.30, 1.50, "how far it stands out of the wall"),
+                  whole("storeys", 2, 1, 6, "storeys, all as high"),
+                  whole("windows", 2, 1, 4, "windows side by side at the front"),
+                  number("window_share", "of the width", 0.66, 0.30, 0.85, "glass share of front and cheeks"),
+                  number("sill", "of the storey", 0.24, 0.02, 0.32, "underside of the windows"),
+                  number("window_height", "of the storey", 0.55, 0.30, 0.62, "height of the windows"),
+                  word("cheek_windows", {"no", "yes"}, "yes", "windows in the cheeks, where 0.3 m are left for them"),
+                  word("base", {"corbel", "consoles", "none"}, "corbel", "what carries it"),
+                  number("base_height", "m", 0.60, 0.20, 1.20, "height of the base below the bay"),
+                  word("bands", {"no", "yes"}, "yes", "string courses at its floors"),
+                  word("roof", {"hipped", "flat"}, "hipped", "its own roof"),
+                  number("roof_height", "m", 0.60, 0.15, 2.00, "hipped: height of the roof"),
+                  detail()};
+  return k;
+}
+
+ElementKind quoin() {
+  ElementKind k{"quoin",
+                ElementClass::installation,
+                "corner stones (Eckquaderung), long and short ones in turn",
+                "long stones",
+                "stack",
+                0.30,
+                0.60,
+                1.20,
+                0.30,
+                3.00,
+                40.0,
+                {}};
+  k.parameters = {word("corner", {"left", "right", "middle"}, "left", "the straight side; middle: toothed on both sides"),
+                  number("short", "of the width", 0.66, 0.40, 0.95, "width of the short stones"),
+                  number("stone_height", "m", 0.36, 0.20, 0.80, "height of a stone, joint included"),
+                  number("joint", "m", 0.02, 0.01, 0.05, "height of the joints"),
+                  number("projection", "m", 0.04, 0.02, 0.12, "how far the stones stand out of the wall"),
+                  detail()};
+  return k;
+}
+
+ElementKind pilaster() {
+  ElementKind k{"pilaster",
+                ElementClass::installation,
+                "flat upright strip: a lesene, or a pilaster with base and capital",
+                "shaft",
+                "whole",
+                0.12,
+                0.50,
+                1.20,
+                0.80,
+                3.60,
+                24.0,
+                {}};
+  k.parameters = {word("order", {"tuscan", "lesene"}, "tuscan", "with base and capital, or without"),
+                  number("projection", "m", 0.10, 0.03, 0.30, "how far the shaft stands out of the wall"),
+                  number("base_height", "m", 0.30, 0.10, 0.80, "height of the base"),
+                  number("capital_height", "m", 0.35, 0.10, 0.90, "height of the capital"),
+                  detail()};
+  return k;
+}
+
 struct Table {
   std::vector<ElementKind> kinds;
   std::vector<Generator> generators;
@@ -446,6 +544,10 @@ const Table& table() {
     t.add(main_cornice(), make_main_cornice);
     t.add(plinth(), make_plinth);
     t.add(console_kind(), make_console);
+    t.add(balcony(), make_balcony);
+    t.add(bay(), make_bay);
+    t.add(quoin(), make_quoin);
+    t.add(pilaster(), make_pilaster);
     return t;
   }();
   return all;

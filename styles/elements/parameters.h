@@ -57,6 +57,10 @@ Made make_string_course(const Request&, Element&);
 Made make_main_cornice(const Request&, Element&);
 Made make_plinth(const Request&, Element&);
 Made make_console(const Request&, Element&);
+Made make_balcony(const Request&, Element&);
+Made make_bay(const Request&, Element&);
+Made make_quoin(const Request&, Element&);
+Made make_pilaster(const Request&, Element&);
 
 /// The generator of a kind, parallel to element_kinds().
 std::span<const Generator> generators();

@@ -135,7 +135,7 @@ bool is_reserved_prefix(std::string_view name) {
 }
 
 bool is_engine_prefix(std::string_view name) {
-  constexpr std::string_view kEngine[] = {"building", "edge", "storey", "roof", "row"};
+  constexpr std::string_view kEngine[] = {"bay", "building", "edge", "storey", "roof", "row"};
   return std::find(std::begin(kEngine), std::end(kEngine), name) != std::end(kEngine);
 }
 

@@ -75,7 +75,7 @@ std::span<const Signature> signatures(const BuiltIn& entry);
 bool is_reserved_prefix(std::string_view name);
 
 /// Whether a first part of a name stands for values that the program gives about the building, its storey, its edge,
-/// its roof or its row (DeriveOptions::source): "building", "edge", "storey", "roof", "row". An import of the same name
+/// its roof or its row (DeriveOptions::source): "bay", "building", "edge", "storey", "roof", "row". An import of the same name
 /// goes before.
 bool is_engine_prefix(std::string_view name);
 

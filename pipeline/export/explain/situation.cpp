@@ -231,6 +231,7 @@ void append_points(JsonText& json, const std::vector<model::EdgePoint>& points) 
     json.string("id", point.id.text());
     json.flag("entrance", point.entrance);
     if (!point.house_number.empty()) json.string("house_number", point.house_number);
+    if (!point.use.empty()) json.string("use", point.use);
     json.close('}');
   }
   json.close(']');

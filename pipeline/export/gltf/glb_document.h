@@ -15,13 +15,9 @@
 #include <type_traits>
 #include <vector>
 
-namespace blockrand::export_ {
+#include "pipeline/export/gltf/compression.h"
 
-/// How the bytes of vertices, indices and places are stored.
-enum class Compression : std::uint8_t {
-  none,
-  meshopt,  ///< EXT_meshopt_compression (required by the file); lossless, but for the first corner of a triangle
-};
+namespace blockrand::export_ {
 
 /// Bytes of one kind, which share a buffer view.
 enum class Stream : std::uint8_t {

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "pipeline/export/gltf/building_table.h"
+#include "pipeline/export/gltf/glb_document.h"
 #include "pipeline/export/gltf/linear_light.h"
 #include "pipeline/export/gltf/material.h"
 #include "pipeline/export/gltf/mesh.h"

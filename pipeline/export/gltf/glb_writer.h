@@ -5,7 +5,7 @@
 #include <string>
 
 #include "pipeline/export/frame.h"
-#include "pipeline/export/gltf/glb_document.h"
+#include "pipeline/export/gltf/compression.h"
 #include "pipeline/export/gltf/instance_writer.h"
 #include "pipeline/model/region.h"
 

@@ -200,6 +200,18 @@ std::vector<Shown> shown_of(const ElementKind& kind) {
     return {{2, h, {full, {"ends", "returned"}}},
             {2, h, {full, {"profile", "plinth_moulded"}, {"projection", 0.12}, {"ends", "returned"}}}};
   if (n == "console") return {{w, h, {full}}, {0.3, 0.6, {full, {"projection", 0.5}}}};
+  if (n == "balcony")
+    return {{w, h, {full}},
+            {3.0, h, {full, {"railing", "stone"}, {"consoles", 3.0}, {"depth", 1.2}}},
+            {w, h, {full, {"railing", "glass"}, {"consoles", 0.0}}}};
+  if (n == "bay")
+    return {{w, h, {full}},
+            {3.2,
+             h,
+             {full, {"plan", "polygonal"}, {"base", "consoles"}, {"roof", "flat"}, {"depth", 1.2}, {"storeys", 2.0}}}};
+  if (n == "quoin")
+    return {{w, h, {full}}, {w, h, {full, {"corner", "middle"}}}, {w, h, {full, {"corner", "right"}}}};
+  if (n == "pilaster") return {{w, h, {full}}, {w, h, {full, {"order", "lesene"}}}};
   return {{w, h, {full}}};
 }
 
