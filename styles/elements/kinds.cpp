@@ -336,8 +336,12 @@ Parameters course(const char* preset, double projection) {
   return {profile("profile", preset, "section"),
           number("projection", "m", projection, 0.02, 1.50,
                  "at most this far out of the wall; higher profiles are squeezed"),
-          word("ends", {"cut", "returned"}, "cut",
-               "cut: at right angles; returned: it turns round the end and dies into the wall")};
+          word("ends", {"cut", "returned", "left_returned", "right_returned"}, "cut",
+               "cut: at right angles; returned: it turns round the end and dies into the wall, at both or one of them"),
+          number("left_turn", "degrees", 0, -170, 170,
+                 "the wall turns there, positive at corners that stand out: the end lies on the bisector, for the same "
+                 "course on the next wall; 0: as ends says"),
+          number("right_turn", "degrees", 0, -170, 170, "the same of the right end")};
 }
 
 ElementKind string_course() {
