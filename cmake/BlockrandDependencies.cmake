@@ -15,5 +15,6 @@ find_package(LibXml2 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(PNG REQUIRED)
 find_package(TinyGLTF CONFIG REQUIRED)
+find_package(meshoptimizer CONFIG REQUIRED)
 find_package(Osmium REQUIRED)
 # CGAL marks its flags on its own target; -frounding-math is needed by its interval arithmetic and stays there.

@@ -16,6 +16,7 @@
 #include "pipeline/base/text.h"
 #include "pipeline/cli/exit_codes.h"
 #include "pipeline/cli/grammar_run.h"
+#include "pipeline/cli/rule_files.h"
 #include "pipeline/cli/staged_file.h"
 #include "pipeline/settings/command_line.h"
 #include "styles/grammar/bilke_import.h"
@@ -28,47 +29,6 @@ namespace {
 
 using settings::Settings;
 namespace fs = std::filesystem;
-
-std::optional<std::string> read_file(const std::string& path) {
-  std::error_code none;
-  if (!fs::is_regular_file(path, none)) return std::nullopt;
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in) return std::nullopt;
-  return bytes;
-}
-
-std::vector<std::string> names_in(const std::string& folder) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end; !error && entry != end;
-       entry.increment(error))
-    names.push_back(entry->path().filename().string());
-  return names;
-}
-
-/// The search table for a rule file: what --roots says, and the project that the file lies in (the folder above
-/// `rules`).
-grammar::LoadOptions load_options(const Settings& s, const std::string& file) {
-  grammar::LoadOptions options;
-  for (const std::string& root : s.rule_roots) {
-    const std::size_t equals = root.starts_with('/') ? root.find('=') : std::string::npos;
-    if (equals == std::string::npos)
-      options.roots.push_back(root);
-    else
-      options.mounts.emplace_back(root.substr(0, equals), root.substr(equals + 1));
-  }
-  std::error_code none;
-  const fs::path path = fs::absolute(file, none).lexically_normal();
-  for (fs::path folder = path.parent_path(); folder != folder.root_path(); folder = folder.parent_path())
-    if (folder.filename() == "rules") {
-      options.roots.push_back(folder.parent_path().string());
-      break;
-    }
-  options.read = read_file;
-  options.list = names_in;
-  return options;
-}
 
 constexpr const char* kSeverities[] = {"note", "warning", "error"};
 
@@ -116,11 +76,11 @@ struct Count {
 };
 
 Count check_file(const Settings& s, const std::string& file) {
-  const grammar::Program program = grammar::load(file, load_options(s, file));
+  const grammar::Program program = grammar::load(file, rule_load_options(s, file));
   std::vector<grammar::Diagnostic> all = program.diagnostics;
   // What could not be read would make checks tell of what follows from that only.
   if (!grammar::has_errors(all)) {
-    const std::vector<grammar::Diagnostic> checked = grammar::check(program, {});
+    const std::vector<grammar::Diagnostic> checked = grammar::check(program, rule_check_options());
     all.insert(all.end(), checked.begin(), checked.end());
   }
   std::stable_sort(all.begin(), all.end(), [](const grammar::Diagnostic& a, const grammar::Diagnostic& b) {
@@ -172,7 +132,7 @@ struct Task {
   const char* name;
   int (*run)(const Settings&);
 };
-constexpr Task kTasks[] = {{"check", check}, {"import", import}};
+constexpr Task kTasks[] = {{"check", check}, {"run", run_grammar_run}, {"test", run_grammar_test}, {"import", import}};
 
 }  // namespace
 
@@ -187,12 +147,10 @@ settings::CommandText grammar_text() {
           "they import and tells what is wrong or looks wrong, with file, line and column. 'import' translates the "
           "facade "
           "rules in XML of Bilke's CityGenerator into a rule file.\n"
-          "'run' derives a rule file on a rectangular lot and prints what it prints, its reports and its leaves: "
-          "--lot 20x12 (metres), --storeys N (building.storeys and building__levels), --seed N, --attr NAME=VALUE "
-          "(several), --rule NAME (where to begin), --tree (all shapes, not only leaves), --roots LIST, -o FILE.glb "
-          "(the model, a material for each colour). 'test' derives what the comments of rule files expect, lines such "
-          "as '// expect: lot 10x20; leaves W 4; report area sum 1800' (docs/grammar_tests.md), and tells what "
-          "differs.",
+          "'run' derives a rule file on a rectangular lot and prints what it prints, its reports and its leaves; with "
+          "-o FILE.glb it writes the model, a material for each colour. 'test' derives what the comments of rule files "
+          "expect, lines such as '// expect: lot 10x20; leaves W 4; report area sum 1800' (docs/grammar_tests.md), and "
+          "tells what differs.",
       .options = settings::kGrammar,
       .examples = {{"blockrand grammar check facade.cga", ""},
                    {"blockrand grammar check --roots shared,/ESRI.lib=/data/esri rules/*.cga",
@@ -207,12 +165,6 @@ settings::CommandText grammar_text() {
 }
 
 int run_grammar(const std::vector<std::string>& arguments) {
-  // These two take options of their own, which no other command has (grammar_run.h).
-  if (!arguments.empty() && (arguments[0] == "run" || arguments[0] == "test") &&
-      std::find(arguments.begin(), arguments.end(), "--help") == arguments.end()) {
-    const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
-    return arguments[0] == "run" ? run_grammar_run(rest) : run_grammar_test(rest);
-  }
   const settings::CommandLine line = settings::read_command_line(settings::kGrammar, arguments);
   if (line.help) {
     std::fputs(settings::command_help(grammar_text()).c_str(), stdout);

@@ -1,18 +1,17 @@
 // `blockrand grammar run` and `blockrand grammar test`: a rule file on a rectangular lot.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "pipeline/settings/options.h"
 
 namespace blockrand::cli {
 
-/// FILE --lot 20x12 [--storeys N] [--seed N] [--attr NAME=VALUE]… [--rule NAME] [--roots LIST] [--tree] [-o FILE.glb]
-/// \param arguments  after the word run
+/// Derives Settings::rule_files on Settings::rule_lot, prints what came out and writes the model.
 /// \returns the exit code: 0, or 2 where the rule file has errors
-int run_grammar_run(const std::vector<std::string>& arguments);
+/// \throws base::UsageError, base::OutputError
+int run_grammar_run(const settings::Settings& settings);
 
-/// FILE… [--roots LIST]: the expectations in the files' comments (docs/grammar_tests.md).
+/// The expectations in the files' comments (docs/grammar_tests.md).
 /// \returns the exit code: 0 all hold, 2 not
-int run_grammar_test(const std::vector<std::string>& arguments);
+int run_grammar_test(const settings::Settings& settings);
 
 }  // namespace blockrand::cli

@@ -22,11 +22,10 @@ void append_number(std::string& out, double value) { append_shortest(out, value)
 void append_number(std::string& out, float value) { append_shortest(out, value); }
 void append_number(std::string& out, std::int64_t value) { append_shortest(out, value); }
 
-void append_grid(std::string& out, double metres) {
-  const auto steps = static_cast<std::int64_t>(std::nearbyint(metres * model::kGridStepsPerMetre));
-  const std::uint64_t magnitude = steps < 0 ? static_cast<std::uint64_t>(-steps) : static_cast<std::uint64_t>(steps);
-  // 1/1024 m = 10000/1024 = 625/64 tenths of a millimetre, rounded half up.
-  std::uint64_t rest = (magnitude * 625 + 32) / 64;
+namespace {
+
+/// A number of ten-thousandths with its sign, without trailing zeros.
+void append_ten_thousandths_of(std::string& out, std::uint64_t rest, bool negative) {
   char buffer[24];
   char* p = buffer + sizeof(buffer);
   auto fraction = static_cast<unsigned>(rest % 10000);
@@ -47,8 +46,25 @@ void append_grid(std::string& out, double metres) {
     *--p = static_cast<char>('0' + rest % 10);
     rest /= 10;
   } while (rest != 0);
-  if (steps < 0) *--p = '-';
+  if (negative) *--p = '-';
   out.append(p, static_cast<std::size_t>(buffer + sizeof(buffer) - p));
+}
+
+std::uint64_t magnitude(std::int64_t v) {
+  return v < 0 ? static_cast<std::uint64_t>(-v) : static_cast<std::uint64_t>(v);
+}
+
+}  // namespace
+
+void append_grid(std::string& out, double metres) {
+  const auto steps = static_cast<std::int64_t>(std::nearbyint(metres * model::kGridStepsPerMetre));
+  // 1/1024 m = 10000/1024 = 625/64 tenths of a millimetre, rounded half up.
+  append_ten_thousandths_of(out, (magnitude(steps) * 625 + 32) / 64, steps < 0);
+}
+
+void append_four_decimals(std::string& out, double metres) {
+  const auto tenths_of_mm = static_cast<std::int64_t>(std::nearbyint(metres * 10000));
+  append_ten_thousandths_of(out, magnitude(tenths_of_mm), tenths_of_mm < 0);
 }
 
 std::string osm_page(model::OsmId id) {

@@ -5,17 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
-#include <map>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "pipeline/base/random.h"
 #include "pipeline/generate/facade_context.h"
+#include "pipeline/generate/opening_proof.h"
 #include "pipeline/generate/openings.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/triangulate.h"
@@ -34,6 +35,8 @@ using model::Point2;
 
 /// Elements are made in whole centimetres, so that equal ones are one.
 constexpr double kElementGrid = 100;
+/// Their parameters in millimetres, for the same reason.
+constexpr double kParameterGrid = 1000;
 /// Colours of parts that neither rule nor building says.
 constexpr model::Colour kFrame{0xF6, 0xF6, 0xF6}, kGlass{0x51, 0x62, 0x6E}, kLeaf{0x5A, 0x3A, 0x29},
     kMetal{0x37, 0x3F, 0x43}, kTrim{0xFD, 0xF4, 0xE3}, kSill{0xE9, 0xE5, 0xCE};
@@ -76,6 +79,7 @@ class FacadeBuilder {
       if (auto wall = wall_frame(part.lod2, f)) walls.push_back(std::move(*wall));
     asked_.clear();
     told_.clear();
+    usual_looks_ = usual_looks(part);
     const std::uint64_t seed = base::random_bits(options_.seed, building.osm.key(), "facades");
     const std::uint64_t row =
         base::random_bits(options_.seed, base::hash_text(building.situation.block), "row of facades");
@@ -161,9 +165,11 @@ class FacadeBuilder {
       return kNone;
     }
     const std::string& kind = std::get<std::string>(order.arguments[0]);
-    std::array<model::PartLook, model::kElementPartCount> looks = usual_looks(context.part);
+    std::array<model::PartLook, model::kElementPartCount> looks = usual_looks_;
     key_.clear();
-    fmt::format_to(std::back_inserter(key_), "{} {:.2f} {:.2f}", kind, width, height);
+    add_text(kind);
+    add_number(width, kElementGrid);
+    add_number(height, kElementGrid);
     parameters_.clear();
     for (std::size_t i = 1; i + 1 < order.arguments.size(); i += 2) {
       if (!std::holds_alternative<std::string>(order.arguments[i])) continue;
@@ -183,15 +189,16 @@ class FacadeBuilder {
       parameter.name = name;
       if (const auto* text = std::get_if<std::string>(&value)) {
         parameter.value = *text;
-        fmt::format_to(std::back_inserter(key_), " {}={}", name, *text);
+        add_text(name);
+        add_text(*text);
       } else if (const auto* number = std::get_if<double>(&value)) {
-        // To a millimetre, for the same reason as sizes.
-        const double rounded = std::nearbyint(*number * 1000) / 1000;
-        parameter.value = rounded;
-        fmt::format_to(std::back_inserter(key_), " {}={}", name, rounded);
+        parameter.value = std::nearbyint(*number * kParameterGrid) / kParameterGrid;
+        add_text(name);
+        add_number(*number, kParameterGrid);
       } else if (const auto* truth = std::get_if<bool>(&value)) {
         parameter.value = std::string(*truth ? "yes" : "no");
-        fmt::format_to(std::back_inserter(key_), " {}={}", name, *truth);
+        add_text(name);
+        add_text(*truth ? "yes" : "no");
       }
       parameters_.push_back(std::move(parameter));
     }
@@ -215,6 +222,19 @@ class FacadeBuilder {
     made->second.coloured.emplace_back(looks, number);
     region_.elements.push_back({made->second.element, looks});
     return number;
+  }
+
+  /// The key of an element is what was asked for, byte by byte: texts with their lengths, numbers in steps.
+  void add_text(std::string_view text) {
+    add_bytes(text.size());
+    key_.append(text);
+  }
+  void add_number(double value, double steps) { add_bytes(std::llrint(value * steps)); }
+  template <class T>
+  void add_bytes(T value) {
+    std::array<char, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), &value, sizeof(T));
+    key_.append(bytes.data(), bytes.size());
   }
 
   std::array<model::PartLook, model::kElementPartCount> usual_looks(const BuildingPart& part) const {
@@ -262,8 +282,8 @@ class FacadeBuilder {
       of_asked.push_back(i);
     }
     OpenedSolid opened = cut_openings(part.lod2, walls, openings);
-    auto triangles = geometry::triangulate(opened.solid);
-    if (!triangles || !geometry::check_solid(opened.solid, *triangles).valid()) {
+    auto triangles = geometry::triangulate(opened.solid, part.lod2, part.lod2_triangles);
+    if (!triangles || !(proved_valid(opened, *triangles) || geometry::check_solid(opened.solid, *triangles).valid())) {
       part.fallbacks.push_back(IssueCode::facade_failed);
       region_.report.add(part.osm, IssueCode::facade_failed, part.id);
       return;
@@ -314,9 +334,10 @@ class FacadeBuilder {
   std::uint8_t plaster_ = 0, wood_ = 0, glass_ = 0, metal_ = 0;
   std::vector<Asked> asked_;
   std::set<std::string> told_;
+  std::array<model::PartLook, model::kElementPartCount> usual_looks_;  ///< of the part at work
   std::string key_;
   std::vector<elements::Parameter> parameters_;
-  std::map<std::string, Made, std::less<>> made_;
+  std::unordered_map<std::string, Made> made_;
 };
 
 }  // namespace

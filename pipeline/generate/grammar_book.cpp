@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "pipeline/base/error.h"
+#include "pipeline/generate/facade_context.h"
 #include "pipeline/model/element.h"
 #include "styles/elements/make_element.h"
 
@@ -80,6 +81,9 @@ GrammarBook::GrammarBook(const std::string& folder, std::span<const PresetGramma
   options.roots = {folder};
   options.read = read_file;
   options.list = list_folder;
+  grammar::CheckOptions check_options;
+  check_options.extensions = extension_operations();
+  for (const ContextAttribute& attribute : context_attributes()) check_options.context.emplace_back(attribute.name);
   for (const PresetGrammar& preset : presets) {
     const std::string path = (std::filesystem::path(folder) / preset.file).string();
     auto file = std::find_if(files_.begin(), files_.end(), [&](const auto& f) { return f->path == path; });
@@ -88,7 +92,9 @@ GrammarBook::GrammarBook(const std::string& folder, std::span<const PresetGramma
       read->path = path;
       read->program = grammar::load(path, options);
       std::string errors;
-      for (const grammar::Diagnostic& d : read->program.diagnostics)
+      std::vector<grammar::Diagnostic> told = read->program.diagnostics;
+      if (!grammar::has_errors(told)) told = grammar::check(read->program, check_options);
+      for (const grammar::Diagnostic& d : told)
         if (d.severity == grammar::Severity::error && errors.size() < kMostErrorText)
           errors += (errors.empty() ? "" : "\n  ") + grammar::format(d, read->program.files);
       if (read->program.modules.empty() && errors.empty()) errors = "it is not there, or cannot be read";

@@ -7,7 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/geometry/grid.h"
+#include "pipeline/generate/opening_blocks.h"
+#include "pipeline/generate/outlines.h"
 #include "pipeline/geometry/polygon.h"
 
 namespace blockrand::generate {
@@ -23,129 +24,17 @@ constexpr double kPlaneTunnel = 0.002;
 /// Points of two mouths that shall be at one height.
 constexpr double kSameHeight = 0.01;
 
-double cross(Point2 a, Point2 b, Point2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
-
-/// True when the closed segments have a point in common.
-bool segments_meet(Point2 a, Point2 b, Point2 c, Point2 d) {
-  const double abc = cross(a, b, c), abd = cross(a, b, d), cda = cross(c, d, a), cdb = cross(c, d, b);
-  if (((abc > 0 && abd < 0) || (abc < 0 && abd > 0)) && ((cda > 0 && cdb < 0) || (cda < 0 && cdb > 0))) return true;
-  const auto between = [](Point2 p, Point2 q, Point2 r) {
-    return std::min(p.x, q.x) <= r.x && r.x <= std::max(p.x, q.x) && std::min(p.y, q.y) <= r.y &&
-           r.y <= std::max(p.y, q.y);
-  };
-  return (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) || (cda == 0 && between(c, d, a)) ||
-         (cdb == 0 && between(c, d, b));
-}
-
-bool nearer_than(double distance, Point2 a, Point2 b, Point2 c, Point2 d) {
-  if (std::max(a.x, b.x) + distance < std::min(c.x, d.x) || std::max(c.x, d.x) + distance < std::min(a.x, b.x) ||
-      std::max(a.y, b.y) + distance < std::min(c.y, d.y) || std::max(c.y, d.y) + distance < std::min(a.y, b.y))
-    return false;
-  return segments_meet(a, b, c, d) || geometry::distance_to_segment(a, c, d) < distance ||
-         geometry::distance_to_segment(b, c, d) < distance || geometry::distance_to_segment(c, a, b) < distance ||
-         geometry::distance_to_segment(d, a, b) < distance;
-}
-
-bool rings_nearer_than(double distance, std::span<const Point2> a, std::span<const Point2> b) {
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t k = 0; k < b.size(); ++k)
-      if (nearer_than(distance, a[i], a[i + 1 == a.size() ? 0 : i + 1], b[k], b[k + 1 == b.size() ? 0 : k + 1]))
-        return true;
-  return false;
-}
-
-struct Box {
-  double left = 0, right = 0, low = 0, high = 0;
-  bool apart(const Box& b, double distance) const {
-    return right + distance < b.left || b.right + distance < left || high + distance < b.low || b.high + distance < low;
-  }
-};
-
-Box box_of(std::span<const Point2> ring) {
-  Box box{ring[0].x, ring[0].x, ring[0].y, ring[0].y};
-  for (const Point2& p : ring)
-    box = {std::min(box.left, p.x), std::max(box.right, p.x), std::min(box.low, p.y), std::max(box.high, p.y)};
-  return box;
-}
-
-bool is_simple(std::span<const Point2> ring) {
-  const std::size_t n = ring.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Point2 a = ring[i], b = ring[(i + 1) % n], c = ring[(i + 2) % n];
-    if (a == b) return false;
-    // A turn back on the same line.
-    if (cross(a, b, c) == 0 && (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y) < 0) return false;
-    for (std::size_t k = i + 2; k < n; ++k)
-      if ((k + 1) % n != i && segments_meet(a, b, ring[k], ring[(k + 1) % n])) return false;
-  }
-  return true;
-}
-
-/// A convex quadrangle of the plan, counter-clockwise, from one height to another: what a reveal or a tunnel takes up.
-struct Block {
-  std::array<Point2, 4> plan;
-  double low = 0, high = 0;
-  bool valid() const {
-    for (int i = 0; i < 4; ++i)
-      if (!(cross(plan[i], plan[(i + 1) % 4], plan[(i + 2) % 4]) > 0)) return false;
-    return true;
-  }
-  bool contains(Point2 p) const {
-    for (int i = 0; i < 4; ++i)
-      if (cross(plan[i], plan[(i + 1) % 4], p) < 0) return false;
-    return true;
-  }
-  bool meets_segment(Point2 a, Point2 b) const {
-    if (contains(a) || contains(b)) return true;
-    for (int i = 0; i < 4; ++i)
-      if (segments_meet(plan[i], plan[(i + 1) % 4], a, b)) return true;
-    return false;
-  }
-  bool meets(const Block& other) const {
-    if (high < other.low || other.high < low) return false;
-    for (int i = 0; i < 4; ++i)
-      if (other.meets_segment(plan[i], plan[(i + 1) % 4])) return true;
-    return contains(other.plan[0]);
-  }
-};
-
-/// A face of the closed solid that is not upright.
-struct Slope {
-  std::vector<Point2> ring;
-  Box box;
-  double low = 0, high = 0;
-  bool steep = false;  ///< no height can be told of its plane
-  Point3 at;           ///< a point of its plane
-  double sx = 0, sy = 0;
-  double z(Point2 p) const { return at.z + (p.x - at.x) * sx + (p.y - at.y) * sy; }
-};
-
-struct Upright {
-  Point2 a, b;
-  double low = 0, high = 0;
-  std::uint32_t face = 0;
-};
-
 class Cutter {
  public:
   Cutter(const model::Solid& solid, std::span<const WallFrame> walls, std::span<const WallOpening> all)
-      : solid_(solid), walls_(walls), all_(all), cut_(walls.size()) {
-    for (std::uint32_t f = 0; f < solid.faces.size(); ++f) {
-      if (const auto frame = wall_frame(solid, f)) {
-        const Point3 end = frame->at({frame->length, 0});
-        uprights_.push_back({frame->start, end.xy(), frame->base, frame->base + frame->height, f});
-      } else {
-        add_slope(f);
-      }
-    }
-  }
+      : walls_(walls), all_(all), obstacles_(solid), cut_(walls.size()) {}
 
   OpeningRefusal try_opening(std::uint32_t index) {
     const WallOpening& o = all_[index];
     if (const auto bad = in_wall(o); bad != OpeningRefusal::none) return bad;
     if (o.kind != model::OpeningKind::passage) {
       const Block block = reveal_block(o);
-      if (!block.valid() || blocked(block, walls_[o.wall].face, walls_[o.wall].face))
+      if (!block.valid() || obstacles_.blocked(block, walls_[o.wall].face, walls_[o.wall].face))
         return OpeningRefusal::wall_too_thin;
       return take(block, {index});
     }
@@ -158,10 +47,10 @@ class Cutter {
     const std::optional<Block> tunnel = tunnel_block(o, other);
     for (const WallOpening* mouth : {&o, &other}) {
       const Block before = reveal_block(*mouth);
-      if (!before.valid() || blocked(before, walls_[o.wall].face, walls_[other.wall].face))
+      if (!before.valid() || obstacles_.blocked(before, walls_[o.wall].face, walls_[other.wall].face))
         return OpeningRefusal::passage_blocked;
     }
-    if (!tunnel || blocked(*tunnel, walls_[o.wall].face, walls_[other.wall].face) || !partners(o, other))
+    if (!tunnel || obstacles_.blocked(*tunnel, walls_[o.wall].face, walls_[other.wall].face) || !partners(o, other))
       return OpeningRefusal::passage_blocked;
     return take(*tunnel, {index, o.through});
   }
@@ -191,7 +80,7 @@ class Cutter {
 
  private:
   struct Cut {
-    Box box;
+    Box2 box;
     std::uint32_t opening = 0;
   };
 
@@ -203,60 +92,27 @@ class Cutter {
     return OpeningRefusal::none;
   }
 
-  void add_slope(std::uint32_t f) {
-    const model::Face& face = solid_.faces[f];
-    if (face.loop_count == 0) return;
-    Slope slope;
-    double nx = 0, ny = 0, nz = 0;
-    const auto outer = solid_.indices_of(solid_.loops_of(face)[0]);
-    slope.at = solid_.vertices[outer[0]];
-    slope.low = slope.high = slope.at.z;
-    for (std::size_t i = 0; i < outer.size(); ++i) {
-      const Point3& p = solid_.vertices[outer[i]];
-      const Point3& q = solid_.vertices[outer[i + 1 == outer.size() ? 0 : i + 1]];
-      const double px = p.x - slope.at.x, py = p.y - slope.at.y, pz = p.z - slope.at.z;
-      const double qx = q.x - slope.at.x, qy = q.y - slope.at.y, qz = q.z - slope.at.z;
-      nx += py * qz - pz * qy;
-      ny += pz * qx - px * qz;
-      nz += px * qy - py * qx;
-      slope.ring.push_back(p.xy());
-      slope.low = std::min(slope.low, p.z);
-      slope.high = std::max(slope.high, p.z);
-    }
-    slope.box = box_of(slope.ring);
-    slope.steep = std::fabs(nz) < 1e-3 * std::sqrt(nx * nx + ny * ny);
-    if (!slope.steep && nz != 0) {
-      slope.sx = -nx / nz;
-      slope.sy = -ny / nz;
-    }
-    slopes_.push_back(std::move(slope));
-  }
-
   OpeningRefusal in_wall(const WallOpening& o) const {
     if (o.wall >= walls_.size() || o.outline.size() < 3 || !(o.reveal >= 0)) return OpeningRefusal::bad_outline;
     for (const Point2& p : o.outline)
       if (!std::isfinite(p.x) || !std::isfinite(p.y)) return OpeningRefusal::bad_outline;
-    const Box box = box_of(o.outline);
+    const Box2 box = box_of(o.outline);
     if (!(box.right - box.left >= kLeastOpening && box.high - box.low >= kLeastOpening))
       return OpeningRefusal::bad_outline;
-    if (!(geometry::signed_area(o.outline) > 0) || !is_simple(o.outline)) return OpeningRefusal::bad_outline;
+    if (!(geometry::signed_area(o.outline) > 0) || !is_simple_by(kLeastFeature, o.outline))
+      return OpeningRefusal::bad_outline;
     const WallFrame& wall = walls_[o.wall];
-    for (std::size_t i = 0; i < o.outline.size(); ++i) {
-      const Point3 p = model::snap(wall.at(o.outline[i])),
-                   q = model::snap(wall.at(o.outline[(i + 1) % o.outline.size()]));
-      if (p == q) return OpeningRefusal::bad_outline;
-    }
     for (std::size_t l = 0; l < wall.loops.size(); ++l) {
-      if (geometry::contains(wall.loops[l], o.outline[0]) != (l == 0)) return OpeningRefusal::beyond_wall;
-      if (rings_nearer_than(kOpeningClearance, o.outline, wall.loops[l])) return OpeningRefusal::beyond_wall;
+      if (rings_nearer_than(kOpeningClearance, o.outline, box, wall.loops[l])) return OpeningRefusal::beyond_wall;
+      if (surely_inside(wall.loops[l], o.outline[0]) != (l == 0)) return OpeningRefusal::beyond_wall;
       // A hole of the wall inside the opening.
-      if (l > 0 && geometry::contains(o.outline, wall.loops[l][0])) return OpeningRefusal::beyond_wall;
+      if (l > 0 && surely_inside(o.outline, wall.loops[l][0])) return OpeningRefusal::beyond_wall;
     }
     for (const Cut& cut : cut_[o.wall]) {
       if (cut.box.apart(box, kOpeningClearance)) continue;
       const auto& other = all_[cut.opening].outline;
-      if (rings_nearer_than(kOpeningClearance, o.outline, other) || geometry::contains(other, o.outline[0]) ||
-          geometry::contains(o.outline, other[0]))
+      if (rings_nearer_than(kOpeningClearance, o.outline, box, other) || surely_inside(other, o.outline[0]) ||
+          surely_inside(o.outline, other[0]))
         return OpeningRefusal::meets_opening;
     }
     return OpeningRefusal::none;
@@ -265,7 +121,7 @@ class Cutter {
   /// From a little before the wall to behind the reveal: an opening that looks into a slit would meet the wall across.
   Block reveal_block(const WallOpening& o) const {
     const WallFrame& wall = walls_[o.wall];
-    const Box box = box_of(o.outline);
+    const Box2 box = box_of(o.outline);
     const double front = -kOpeningClearance, depth = o.reveal + kLeastBehind;
     const double left = box.left - kSideMargin, right = box.right + kSideMargin;
     const auto at = [&](double u, double d) { return wall.at({u, 0}, d).xy(); };
@@ -276,7 +132,7 @@ class Cutter {
 
   std::optional<Block> tunnel_block(const WallOpening& a, const WallOpening& b) const {
     const WallFrame &from = walls_[a.wall], &to = walls_[b.wall];
-    const Box near = box_of(a.outline), far = box_of(b.outline);
+    const Box2 near = box_of(a.outline), far = box_of(b.outline);
     const auto at = [](const WallFrame& wall, double u) { return wall.at({u, 0}).xy(); };
     // Seen along the tunnel both mouths must be wide enough: its sides then never cross.
     const Point2 a0 = at(from, near.left), a1 = at(from, near.right), b0 = at(to, far.right), b1 = at(to, far.left);
@@ -292,35 +148,9 @@ class Cutter {
     return block;
   }
 
-  /// Whether something of the closed solid but two of its faces comes into a block.
-  bool blocked(const Block& block, std::uint32_t own, std::uint32_t other) const {
-    for (const Upright& wall : uprights_)
-      if (wall.face != own && wall.face != other && wall.low <= block.high && wall.high >= block.low &&
-          block.meets_segment(wall.a, wall.b))
-        return true;
-    const Box around = box_of(block.plan);
-    for (const Slope& slope : slopes_) {
-      if (slope.low > block.high || slope.high < block.low || slope.box.apart(around, 0)) continue;
-      bool meets = geometry::contains(slope.ring, block.plan[0]);
-      for (std::size_t i = 0; i < slope.ring.size() && !meets; ++i)
-        meets = block.meets_segment(slope.ring[i], slope.ring[(i + 1) % slope.ring.size()]);
-      if (!meets) continue;
-      if (slope.steep) return true;
-      double low = slope.z(block.plan[0]), high = low;
-      for (const Point2& p : block.plan) {
-        low = std::min(low, slope.z(p));
-        high = std::max(high, slope.z(p));
-      }
-      if (low <= block.high && high >= block.low) return true;
-    }
-    return false;
-  }
-
-  const model::Solid& solid_;
   std::span<const WallFrame> walls_;
   std::span<const WallOpening> all_;
-  std::vector<Upright> uprights_;
-  std::vector<Slope> slopes_;
+  Obstacles obstacles_;
   std::vector<Block> blocks_;
   std::vector<std::vector<Cut>> cut_;  ///< by wall
 };

@@ -26,7 +26,7 @@ struct WallOpening {
 /// Why an opening is not cut.
 enum class OpeningRefusal : std::uint8_t {
   none,
-  bad_outline,      ///< not simple, not counter-clockwise, smaller than kLeastOpening, not finite
+  bad_outline,      ///< not simple by kLeastFeature, not counter-clockwise, smaller than kLeastOpening, not finite
   beyond_wall,      ///< nearer than kOpeningClearance to the wall's border, or beyond it
   meets_opening,    ///< nearer than that to an opening before it, in its wall or around a corner
   wall_too_thin,    ///< its reveal would come out of another wall, the roof or the ground; or it looks into a slit
@@ -42,8 +42,11 @@ constexpr std::string_view name(OpeningRefusal refusal) {
 inline constexpr double kOpeningClearance = 0.02;  ///< m of wall that stays around openings; 20 steps of the grid
 inline constexpr double kLeastReveal = 0.01;       ///< m; thinner reveals would be slivers
 inline constexpr double kLeastOpening = 0.05;      ///< m, width and height
-inline constexpr double kLeastPassage = 0.6;       ///< m across a tunnel, at both mouths: a person's width
-inline constexpr double kLeastBehind = 0.05;       ///< m between a reveal's end and what stands behind it
+/// m from a corner of an outline to any edge that does not end there. Rounding moves corners by less than 0.001 m, and
+/// geometry::check_solid wants 0.002 m.
+inline constexpr double kLeastFeature = 0.005;
+inline constexpr double kLeastPassage = 0.6;  ///< m across a tunnel, at both mouths: a person's width
+inline constexpr double kLeastBehind = 0.05;  ///< m between a reveal's end and what stands behind it
 
 /// A solid with openings.
 struct OpenedSolid {
@@ -59,9 +62,12 @@ struct OpenedSolid {
 /// a polygon of kind window or door, the outline's exact copy moved by the reveal. Reveals are exact parallelograms,
 /// since their depth is rounded to the grid once. A passage leads from one mouth to the other: floor (outer_floor),
 /// sides (wall) and ceiling (outer_ceiling), each quadrangle cut in two where it is not plane. That openings lie in
-/// their walls and apart is proved per wall plane in integers of the 1/1024 m grid; what stands behind them by boxes
-/// that are never too small. The result is closed where `solid` is. \param solid  valid (geometry::check_solid) \param
-/// walls  some of its walls, as wall_frame() makes them
+/// their walls and apart is tested in the drawing of each wall, with distances that rounding cannot use up; what stands
+/// behind them by boxes that are never too small. The result is closed where `solid` is, and valid where proved_valid()
+/// says so (opening_proof.h).
+///
+/// \param solid  valid (geometry::check_solid)
+/// \param walls  some of its walls, as wall_frame() makes them
 OpenedSolid cut_openings(const model::Solid& solid, std::span<const WallFrame> walls,
                          std::span<const WallOpening> openings);
 

@@ -640,6 +640,12 @@ SolidCheck check_mesh(std::span<const Grid3> vertices, std::span<const std::arra
   return check_shell(vertices, triangles, face_of, half_edges, triangles.size(), doubled_place(vertices));
 }
 
+bool triangles_conflict(std::span<const Grid3> vertices, const std::array<std::uint32_t, 3>& a,
+                        const std::array<std::uint32_t, 3>& b) {
+  return triangles_conflict(a, Corners{{vertices[a[0]], vertices[a[1]], vertices[a[2]]}}, b,
+                            Corners{{vertices[b[0]], vertices[b[1]], vertices[b[2]]}});
+}
+
 double volume(const Solid& solid, const SolidTriangles& triangles) {
   if (solid.vertices.empty()) return 0;
   std::vector<Grid3> grid(solid.vertices.size());

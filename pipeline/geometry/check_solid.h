@@ -44,6 +44,11 @@ SolidCheck check_solid(const model::Solid& solid);
 /// `1 / steps_per_metre`, equal positions merged by the caller.
 SolidCheck check_mesh(std::span<const Grid3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
 
+/// The judge's test of two triangles of different faces, given by indices into `vertices`: whether they share more than
+/// the corners and edges that they have in common by index. Exact.
+bool triangles_conflict(std::span<const Grid3> vertices, const std::array<std::uint32_t, 3>& a,
+                        const std::array<std::uint32_t, 3>& b);
+
 /// Volume enclosed by the triangles in m³; positive when they face outwards.
 double volume(const model::Solid& solid, const model::SolidTriangles& triangles);
 

@@ -6,15 +6,65 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 #include <vector>
+
+namespace blockrand::geometry::triangulation {
+
+using Epick = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// CGAL's predicates for points whose coordinates are whole numbers: rows of windows are full of points on one line and
+/// on one circle, where CGAL's filters fail and its exact numbers are slow. The results are the same.
+struct WholeNumberKernel : Epick {
+  /// Coordinates below this keep all of the arithmetic below in 64 and 128 bits.
+  static constexpr double kSmall = 536870912.0;  // 2^29: 524 km of the 1/1024 m grid
+  template <class... Points>
+  static bool small(const Points&... points) {
+    return ((std::fabs(points.x()) < kSmall && std::fabs(points.y()) < kSmall) && ...);
+  }
+  static Grid2 between(const Point_2& from, const Point_2& to) {
+    return {static_cast<std::int64_t>(to.x() - from.x()), static_cast<std::int64_t>(to.y() - from.y())};
+  }
+  static std::int64_t cross(Grid2 a, Grid2 b) { return a.x * b.y - a.y * b.x; }
+  static std::int64_t square(Grid2 a) { return a.x * a.x + a.y * a.y; }
+
+  struct Orientation_2 {
+    using result_type = CGAL::Orientation;
+    result_type operator()(const Point_2& p, const Point_2& q, const Point_2& r) const {
+      if (!small(p, q, r)) return Epick().orientation_2_object()(p, q, r);
+      const std::int64_t turn = cross(between(p, q), between(p, r));
+      return static_cast<CGAL::Orientation>((turn > 0) - (turn < 0));
+    }
+  };
+  struct Side_of_oriented_circle_2 {
+    using result_type = CGAL::Oriented_side;
+    result_type operator()(const Point_2& p, const Point_2& q, const Point_2& r, const Point_2& t) const {
+      if (!small(p, q, r, t)) return Epick().side_of_oriented_circle_2_object()(p, q, r, t);
+      const Grid2 a = between(t, p), b = between(t, q), c = between(t, r);
+      const Int128 side = static_cast<Int128>(square(a)) * cross(b, c) + static_cast<Int128>(square(b)) * cross(c, a) +
+                          static_cast<Int128>(square(c)) * cross(a, b);
+      return static_cast<CGAL::Oriented_side>(sign(side));
+    }
+  };
+  Orientation_2 orientation_2_object() const { return {}; }
+  Side_of_oriented_circle_2 side_of_oriented_circle_2_object() const { return {}; }
+};
+
+}  // namespace blockrand::geometry::triangulation
+
+/// Points are looked for as with CGAL's own kernel, which faces' order depends on.
+template <>
+struct CGAL::Triangulation_structural_filtering_traits<blockrand::geometry::triangulation::WholeNumberKernel> {
+  using Use_structural_filtering_tag = CGAL::Tag_true;
+};
 
 namespace blockrand::geometry {
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Kernel = triangulation::WholeNumberKernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>;
 using FaceInfoBase = CGAL::Triangulation_face_base_with_info_2<int, Kernel>;
 using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel, FaceInfoBase>;
@@ -154,15 +204,24 @@ std::optional<std::vector<Triangle>> triangulate_with_lines(std::span<const Grid
   return out;
 }
 
-std::optional<model::SolidTriangles> triangulate(const model::Solid& solid) {
+std::optional<model::SolidTriangles> triangulate(const model::Solid& solid) { return triangulate(solid, {}, {}); }
+
+std::optional<model::SolidTriangles> triangulate(const model::Solid& solid, const model::Solid& before,
+                                                 const model::SolidTriangles& known) {
   model::SolidTriangles out;
   out.first.reserve(solid.faces.size() + 1);
   std::vector<Grid3> grid(solid.vertices.size());
   for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = to_grid(solid.vertices[i]);
   std::vector<Grid2> flat(solid.vertices.size());
   std::vector<std::vector<std::uint32_t>> loops;
-  for (const model::Face& face : solid.faces) {
+  for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+    const model::Face& face = solid.faces[f];
     out.first.push_back(static_cast<std::uint32_t>(out.triangles.size()));
+    if (f + 1 < known.first.size() && f < before.faces.size() && face.loop_count == before.faces[f].loop_count) {
+      out.triangles.insert(out.triangles.end(), known.triangles.begin() + known.first[f],
+                           known.triangles.begin() + known.first[f + 1]);
+      continue;
+    }
     const auto face_loops = solid.loops_of(face);
     loops.resize(face_loops.size());
     for (std::size_t l = 0; l < face_loops.size(); ++l) {

@@ -31,4 +31,10 @@ std::optional<std::vector<Triangle>> triangulate_with_lines(std::span<const Grid
 /// simple polygon there.
 std::optional<model::SolidTriangles> triangulate(const model::Solid& solid);
 
+/// As above for a solid that begins with the faces and vertices of another, of which some got more loops: faces with
+/// as many loops as before take their triangles from `known`.
+/// \param known  triangulate(before)
+std::optional<model::SolidTriangles> triangulate(const model::Solid& solid, const model::Solid& before,
+                                                 const model::SolidTriangles& known);
+
 }  // namespace blockrand::geometry

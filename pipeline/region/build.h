@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pipeline/base/progress.h"
+#include "pipeline/export/gltf/compression.h"
 #include "pipeline/export/gltf/instance_writer.h"
 #include "pipeline/generate/options.h"
 #include "pipeline/generate/roofscape.h"
@@ -26,6 +27,7 @@ struct BuildOptions {
   std::string pinned;                         ///< build.json of an earlier build of the extract: its CRS, its coverage
   std::string crs;                            ///< "EPSG:…"; empty: chosen from the extent
   int lod = 2;                                ///< highest level of detail, 0 to 3
+  export_::Compression compression = export_::Compression::none;  ///< of vertices, indices and places in GLBs
   export_::Instancing instancing = export_::Instancing::ext;  ///< how GLBs hold what stands in facades
   bool gltf = true;                           ///< tileset.json and tiles/
   bool citygml = true;                        ///< citygml/

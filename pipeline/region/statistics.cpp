@@ -65,6 +65,15 @@ TileStatistics count_statistics(const model::Region& region) {
         s.volume += geometry::volume(part.lod1, part.lod1_triangles);
       }
       s.solids_lod1 += !part.lod1.empty();
+      if (part.lod >= 3 && !part.lod3.solid.empty()) {
+        ++s.solids_lod3;
+        for (const model::Opening& opening : part.lod3.openings) {
+          s.windows += opening.kind == model::OpeningKind::window;
+          s.doors += opening.kind == model::OpeningKind::door;
+        }
+        s.placements += part.lod3.placements.size();
+        s.installations += part.lod3.installations.size() + part.lod3.roof_installations.size();
+      }
       ++s.roofs[std::string(model::name(part.built_roof))];
       model::for_each_attribute(
           part.attributes,
@@ -86,6 +95,11 @@ void add(Statistics& sum, const Statistics& s) {
   sum.bodies += s.bodies;
   sum.solids_lod1 += s.solids_lod1;
   sum.solids_lod2 += s.solids_lod2;
+  sum.solids_lod3 += s.solids_lod3;
+  sum.windows += s.windows;
+  sum.doors += s.doors;
+  sum.placements += s.placements;
+  sum.installations += s.installations;
   for (std::size_t k = 0; k < s.edges.size(); ++k) {
     sum.edges[k] += s.edges[k];
     sum.edge_length[k] += s.edge_length[k];

@@ -22,7 +22,10 @@ struct Statistics {
   double volume = 0;            ///< m³ of the best solids
   std::uint64_t buildings = 0;  ///< with at least one body: what every format holds as a building
   std::uint64_t bodies = 0;     ///< parts, rests of outlines, and buildings without parts
-  std::uint64_t solids_lod1 = 0, solids_lod2 = 0;
+  std::uint64_t solids_lod1 = 0, solids_lod2 = 0, solids_lod3 = 0;
+  std::uint64_t windows = 0, doors = 0;  ///< polygons of openings in LoD3 solids
+  std::uint64_t placements = 0;          ///< elements placed in and on walls
+  std::uint64_t installations = 0;       ///< bodies of their own on walls and roofs
   std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → parts
   std::map<std::string, std::uint64_t> roofs;                           ///< built roof shape → parts
   std::array<std::uint64_t, model::kEdgeKindCount> edges{};  ///< stretches of outlines by model::EdgeKind

@@ -54,6 +54,7 @@ export_::GlbOptions glb_options(const OutputContext& context, const georef::EnuF
   export_::GlbOptions o;
   o.lod = context.options.lod;
   o.instancing = context.options.instancing;
+  o.compression = context.options.compression;
   o.crs = context.record.crs.authority_code;
   o.height_reference = context.record.heights.in_tiles;
   o.generator = generator();
@@ -64,6 +65,21 @@ export_::GlbOptions glb_options(const OutputContext& context, const georef::EnuF
   o.frame.height = frame.origin().height;
   o.frame.enu_to_ecef = frame.local_to_ecef();
   return o;
+}
+
+/// What viewers show from farther away than facades: blocks, then roofs (tileset.h says from how far).
+void write_coarser_levels(const model::Region& region, export_::GlbOptions options, const std::string& place,
+                          export_::TileEntry& entry, base::StagedFolder& folder,
+                          std::vector<base::PublishedFile>& files) {
+  for (const auto& [lod, error] : {std::pair(1, export_::kBlockError), std::pair(2, export_::kRoofError)}) {
+    options.lod = lod;
+    const export_::Glb glb = export_::write_glb(region, options);
+    if (glb.triangles == 0) continue;
+    entry.coarser.push_back({fmt::format("{}_lod{}.glb", place, lod), error});
+    files.push_back(folder.write(entry.coarser.back().uri, glb.bytes));
+    entry.min = {std::min(entry.min.x, glb.min.x), std::min(entry.min.y, glb.min.y), std::min(entry.min.z, glb.min.z)};
+    entry.max = {std::max(entry.max.x, glb.max.x), std::max(entry.max.y, glb.max.y), std::max(entry.max.z, glb.max.z)};
+  }
 }
 
 /// Geodetic bounds of a box in a local frame, from its corners and the middle of its underside, which lies deepest.
@@ -197,15 +213,17 @@ TileOutput write_tile(const model::Region& region, const OutputContext& context,
       for (std::size_t i = 0; i < in.size(); ++i)
         out[i] = frame.to_local({in[i].x, in[i].y, in[i].z + plane(in[i].x, in[i].y)});
     };
+    const std::string place = fmt::format("tiles/{}/{}/{}", id.level, id.x, id.y);
     const export_::Glb glb = export_::write_glb(region, options);
     if (glb.triangles > 0) {
       export_::TileEntry entry;
       entry.id = id;
-      entry.uri = fmt::format("tiles/{}/{}/{}.glb", id.level, id.x, id.y);
+      entry.uri = place + ".glb";
       out.files.push_back(folder.write(entry.uri, glb.bytes));
       entry.enu_to_ecef = options.frame.enu_to_ecef;
       entry.min = glb.min;
       entry.max = glb.max;
+      if (context.options.lod >= 3) write_coarser_levels(region, options, place, entry, folder, out.files);
       set_bounds(entry, frame.frame());
       out.tile = std::move(entry);
     }

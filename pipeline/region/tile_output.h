@@ -34,7 +34,7 @@ struct TileOutput {
   std::vector<std::pair<model::OsmId, model::OsmId>> explained;  ///< object, building whose line explains it
 };
 
-/// Writes tiles/l/x/y.glb, citygml/l_x_y.gml[.gz], cityjson/l_x_y.city.jsonl[.gz] and explain/l_x_y.jsonl.gz as asked
+/// Writes tiles/l/x/y.glb (at LoD3 y_lod1.glb and y_lod2.glb beside it, the same buildings seen from farther away), citygml/l_x_y.gml[.gz], cityjson/l_x_y.city.jsonl[.gz] and explain/l_x_y.jsonl.gz as asked
 /// for. `explain` lacks tile and files: they are filled in here.
 /// Safe for different tiles at the same time. \throws base::OutputError
 TileOutput write_tile(const model::Region& region, const OutputContext& context, export_::ExplainOptions explain,

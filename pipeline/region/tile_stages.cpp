@@ -11,6 +11,7 @@
 #include "pipeline/generate/mass.h"
 #include "pipeline/generate/part_overlaps.h"
 #include "pipeline/generate/resolve.h"
+#include "pipeline/generate/roof_furniture.h"
 #include "pipeline/region/load.h"
 #include "pipeline/repair/parts.h"
 #include "pipeline/repair/rings.h"
@@ -136,7 +137,10 @@ Region run_tile(std::size_t shard, const TileInputs& in) {
         region.report.add(b.osm, model::IssueCode::terrain_missing);
   cover_party_walls(region, in);
   generate::build_masses(region, in.defaults, in.generate, std::min(in.lod, 2));
-  if (in.lod >= 3 && in.grammars) generate::build_facades(region, *in.grammars, in.defaults, {in.seed});
+  if (in.lod >= 3 && in.grammars) {
+    generate::build_facades(region, *in.grammars, in.defaults, {in.seed});
+    generate::furnish_roofs(region, in.defaults, {in.seed});
+  }
   generate::tell_part_overlaps(region);
   return region;
 }

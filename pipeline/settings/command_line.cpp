@@ -63,10 +63,10 @@ CommandLine read_command_line(Commands command, const std::vector<std::string>& 
       // Every flag can be taken back, for what a config file sets.
       option =
           o.type == OptionType::flag ? app.add_flag(names + ",!--no-" + std::string(o.name)) : app.add_option(names);
-      option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+      option->multi_option_policy(o.several ? CLI::MultiOptionPolicy::TakeAll : CLI::MultiOptionPolicy::TakeLast);
     }
     // Else "[a,b]" would be split, in file names too.
-    option->allow_extra_args(o.several);
+    option->allow_extra_args(o.several && o.positional());
     parsed.emplace_back(&o, option);
   }
   try {

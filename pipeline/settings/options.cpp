@@ -106,6 +106,9 @@ constexpr Format kFormats[] = {{"gltf", &region::BuildOptions::gltf},         {"
 const std::vector<std::pair<std::string, export_::Instancing>> kInstancings = {
     {"ext", export_::Instancing::ext}, {"nodes", export_::Instancing::nodes}, {"baked", export_::Instancing::baked}};
 
+const std::vector<std::pair<std::string, export_::Compression>> kCompressions = {{"none", export_::Compression::none},
+                                                                                  {"meshopt", export_::Compression::meshopt}};
+
 void set_formats(Settings& s, const std::string& text) {
   std::vector<std::pair<std::string, bool region::BuildOptions::*>> names;
   for (const Format& f : kFormats) names.emplace_back(f.name, f.field);
@@ -268,11 +271,12 @@ void add_build(Table& t) {
            .argument = "TASK",
            .section = S,
            .commands = kGrammar,
-           .help = "check or import",
-           .if_missing = "no TASK is given: check or import.",
-           .choices = {"check", "import"}},
+           .help = "check, run, test or import",
+           .if_missing = "no TASK is given: check, run, test or import.",
+           .choices = {"check", "run", "test", "import"}},
           [](Settings& s, const std::string& text) {
-            s.task = choose<std::string>(text, {{"check", "check"}, {"import", "import"}});
+            s.task = choose<std::string>(
+                text, {{"check", "check"}, {"run", "run"}, {"test", "test"}, {"import", "import"}});
           },
           [](const Settings& s) { return s.task; });
   t.other({.name = "RULES",
@@ -280,7 +284,7 @@ void add_build(Table& t) {
            .type = OptionType::path,
            .section = S,
            .commands = kGrammar,
-           .help = "check: rule files; import: a file of facade rules in XML",
+           .help = "check, test: rule files; run: one; import: a file of facade rules in XML",
            .several = true,
            .if_missing = "no RULES are given: name rule files."},
           [](Settings& s, const std::string& text) { s.rule_files.push_back(text); },
@@ -301,6 +305,44 @@ void add_build(Table& t) {
             }
           },
           [](const Settings& s) { return fmt::format("{}", fmt::join(s.rule_roots, ",")); });
+  t.text({.name = "lot",
+          .argument = "WxD",
+          .section = S,
+          .commands = kGrammar,
+          .help = "run: the rectangle that the rules begin with, width and depth in metres, such as 20x12"},
+         FIELD(rule_lot));
+  t.number({.name = "storeys",
+            .argument = "N",
+            .section = S,
+            .commands = kGrammar,
+            .minimum = 0,
+            .maximum = 200,
+            .help = "run: building.storeys and building__levels"},
+            FIELD(rule_storeys));
+  t.other({.name = "attr",
+           .argument = "NAME=VALUE",
+           .section = S,
+           .commands = kGrammar,
+           .help = "run: value of an attribute, or of what the program gives (building.height); several times",
+           .several = true},
+          [](Settings& s, const std::string& text) {
+            const std::size_t equals = text.find('=');
+            if (equals == std::string::npos || equals == 0)
+              throw ValueError(fmt::format("'{}' is no NAME=VALUE", text), "For example: height=12");
+            s.rule_attributes.push_back(text);
+          },
+          [](const Settings& s) { return fmt::format("{}", fmt::join(s.rule_attributes, " ")); });
+  t.text({.name = "rule",
+          .argument = "NAME",
+          .section = S,
+          .commands = kGrammar,
+          .help = "run: where to begin; else the rule file's own start rule"},
+         FIELD(start_rule));
+  t.flag({.name = "tree",
+          .section = S,
+          .commands = kGrammar,
+          .help = "run: print all shapes, not only the leaves' number"},
+         FIELD(rule_tree));
   t.text({.name = "ID",
           .argument = "ID",
           .section = S,
@@ -315,7 +357,7 @@ void add_build(Table& t) {
           .type = OptionType::folder,
           .section = S,
           .commands = kBuild | kCompare | kDistricts | kGrammar,
-          .help = "folder that is written; it appears when everything in it is complete; districts diff, grammar import: a file",
+          .help = "folder that is written; it appears when everything in it is complete; districts diff, grammar run, grammar import: a file",
           .if_missing = "no output folder is given: name one with --output FOLDER.",
           .optional_for = kCompare | kDistricts | kGrammar},
          FIELD(build.output));
@@ -347,6 +389,16 @@ void add_build(Table& t) {
            .choices = names_of(kInstancings)},
           [](Settings& s, const std::string& text) { s.build.instancing = choose(text, kInstancings); },
           [](const Settings& s) { return name_of(kInstancings, s.build.instancing); });
+  t.other({.name = "compress",
+           .key = "compress",
+           .argument = "HOW",
+           .type = OptionType::text,
+           .section = S,
+           .help = "how GLBs are compressed: none, or meshopt (EXT_meshopt_compression), a third of the size, for viewers that can decompress "
+                   "it",
+           .choices = names_of(kCompressions)},
+          [](Settings& s, const std::string& text) { s.build.compression = choose(text, kCompressions); },
+          [](const Settings& s) { return name_of(kCompressions, s.build.compression); });
   t.other(
       {.name = "bbox",
        .key = "bbox",
@@ -454,7 +506,7 @@ void add_build(Table& t) {
              .key = "seed",
              .argument = "N",
              .section = S,
-             .commands = kBuild | kCompare | kDistricts,
+             .commands = kBuild | kCompare | kDistricts | kGrammar,
              .minimum = 0,
              .maximum = kMaxSeed,
              .help = "of all random choices; the same seed gives the same bytes"},

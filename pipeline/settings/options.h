@@ -27,9 +27,14 @@ struct Settings {
   std::optional<double> fail_if_worse;  ///< share: 0.02 is 2 %
   std::string action;                     ///< of `districts`: check, show, diff
   std::vector<std::string> files;         ///< of `districts`: what its action is about
-  std::string task;                       ///< of `grammar`: check, import
+  std::string task;                       ///< of `grammar`: check, run, test, import
   std::vector<std::string> rule_files;    ///< of `grammar`: what its task is about
   std::vector<std::string> rule_roots;    ///< of `grammar`: where imports are looked for; "/PREFIX=DIR" is one place for one prefix
+  std::string rule_lot = "10x10";              ///< of `grammar run`: width and depth in metres
+  std::optional<double> rule_storeys;          ///< of `grammar run`: building.storeys
+  std::vector<std::string> rule_attributes;    ///< of `grammar run`: NAME=VALUE
+  std::string start_rule;                      ///< of `grammar run`; empty: the rule file's own
+  bool rule_tree = false;                      ///< `grammar run` prints all shapes, not only leaves
   std::string map_by = "preset";          ///< of `districts show`: what the map is coloured by
   std::string id;      ///< of the building that `explain` is asked about
   bool json = false;   ///< print JSON
@@ -69,7 +74,7 @@ struct Option {
   double minimum = 0, maximum = 0;  ///< of integers and numbers
   std::string_view help{};          ///< one line, with the unit, without the default
   std::string_view without{};       ///< of a flag that is on by default: what --no-… leaves out; one line
-  bool several = false;             ///< of a positional argument: each one that is given is set in turn
+  bool several = false;             ///< may be given more than once: each value is set in turn
   std::string_view if_missing{};    ///< what to say when it has no value; empty: it need not have one
   unsigned optional_for = 0;        ///< commands that do without it all the same
   std::vector<std::string> choices{};  ///< words that are a value (of a list: an item), for completion

@@ -56,11 +56,8 @@ class Reader {
   void read_configuration() {
     const Json* c = member(r_.json, "configuration");
     const auto lod = whole(member(c, "lod"));
-    if (lod && *lod == 3)
-      throw base::InputError(kFile, "configuration.lod", "the build has facades (LoD 3), which validate cannot read yet",
-                             "Validate a build of the same extract with --lod 2");
-    if (!lod || *lod > 2)
-      wrong("configuration.lod", "is not 0, 1 or 2");
+    if (!lod || *lod > 3)
+      wrong("configuration.lod", "is not 0, 1, 2 or 3");
     else
       r_.lod = static_cast<int>(*lod);
     const Json* formats = member(c, "formats");
@@ -99,13 +96,14 @@ class Reader {
   void read_counts() {
     for (const char* key :
          {"buildings_in", "parts_in", "models", "represented", "reported", "represented_as_duplicates", "models_lod0",
-          "models_lod1", "models_lod2", "solids_lod1", "solids_lod2"})
+          "models_lod1", "models_lod2", "models_lod3", "solids_lod1", "solids_lod2", "solids_lod3", "windows", "doors",
+          "placements", "installations"})
       if (!r_.count(key)) wrong(fmt::format("counts.{}", key), "is missing or no count");
     const auto n = [&](const char* key) { return r_.count(key).value_or(0); };
     if (n("buildings_in") + n("parts_in") != n("models") + n("represented") + n("reported"))
       wrong("counts", fmt::format("{} buildings and {} parts in are not {} models, {} represented and {} reported",
                                   n("buildings_in"), n("parts_in"), n("models"), n("represented"), n("reported")));
-    if (n("models") != n("models_lod0") + n("models_lod1") + n("models_lod2"))
+    if (n("models") != n("models_lod0") + n("models_lod1") + n("models_lod2") + n("models_lod3"))
       wrong("counts", "models are not the sum over levels of detail");
     const Json* issues = member(r_.json, "issues");
     if (!issues || !issues->is_object()) wrong("issues", "missing");

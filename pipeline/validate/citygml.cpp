@@ -15,6 +15,7 @@
 #include "pipeline/geometry/solid_defect.h"
 #include "pipeline/validate/attribute_names.h"
 #include "pipeline/validate/citygml_names.h"
+#include "pipeline/validate/detail.h"
 #include "pipeline/validate/ids.h"
 
 namespace blockrand::validate {
@@ -97,14 +98,36 @@ class Parser {
   }
 
  private:
+  /// Where the polygons of a MultiSurface belong.
+  enum class Target { footprint, surface, detail_surface, installation, element };
+  /// A polygon of LoD3's boundary surfaces, or a reference to one of LoD2's.
+  struct Member {
+    std::string id;
+    std::size_t surface = 0;  ///< of the body's boundary surfaces, in their order
+    bool link = false;
+    ReadPolygon polygon;
+  };
+  struct OpenedWall {
+    std::string id;
+    std::size_t surface = 0;
+    std::string polygon;  ///< its id
+    std::optional<std::size_t> placement;
+  };
   /// A body in the making, beside what Contents keeps of it.
   struct Open {
     std::size_t body = 0;
     bool has_parts = false;
     std::string function;
     std::vector<std::pair<std::string, ReadPolygon>> surfaces;  ///< polygon id and polygon
-    std::vector<std::string> references;                        ///< of the LoD2 solid
-    bool has_reference_solid = false;
+    std::vector<Member> members;                                ///< of LoD3
+    std::vector<OpenedWall> openings;
+    std::array<std::vector<std::string>, 4> references;  ///< of the solids, by LoD
+    std::array<bool, 4> has_reference_solid{};
+    std::size_t boundary_surfaces = 0;
+  };
+  struct Element {
+    std::string id;
+    std::vector<ReadPolygon> polygons;
   };
   struct Material {
     std::string colour;
@@ -112,9 +135,11 @@ class Parser {
   };
   struct Place {
     std::size_t body = 0;
-    int solid = -1;  ///< -1: the footprint
+    int solid = kFootprint;  ///< of the body, or what else
     std::size_t polygon = 0;
+    std::size_t item = 0;  ///< the installation of the body, or the element
   };
+  static constexpr int kFootprint = -1, kInstallation = -2, kElement = -3;
 
   void found(Check check, std::string what, std::string object, int number = 0) {
     if (++found_ > 1000) return;  // of one file
@@ -149,6 +174,8 @@ class Parser {
       start_gml(reader, name, id);
     else if (space == kBuilding)
       start_building(name, id);
+    else if (space == kCore)
+      start_core(reader, name);
     else if (space == kGenerics && name.ends_with("Attribute"))
       attribute_ = attribute(reader, "name");
     else if (space == kGenerics && name == "value" && parent() == "measureAttribute" &&
@@ -164,7 +191,8 @@ class Parser {
       if (attribute(reader, "srsDimension") != "3") rule("the envelope is not three-dimensional", "");
     } else if (name == "Solid") {
       const std::string_view property = parent();
-      if (!body() || (property != "lod1Solid" && property != "lod2Solid")) return rule("a solid that is nobody's", id);
+      if (!body() || (property != "lod1Solid" && property != "lod2Solid" && property != "lod3Solid"))
+        return rule("a solid that is nobody's", id);
       ReadSolid solid;
       solid.lod = property[3] - '0';
       body()->solids.push_back(std::move(solid));
@@ -175,13 +203,50 @@ class Parser {
       const std::string href = attribute(reader, "href", kLink);
       if (href.empty()) return;
       if (href[0] != '#') return rule("a reference to another file: " + href, object());
-      open_.back().references.push_back(href.substr(1));
+      open_.back().references[static_cast<std::size_t>(body()->solids.back().lod)].push_back(href.substr(1));
       by_reference_ = true;
+    } else if (name == "surfaceMember" && target_ == Target::detail_surface && !open_.empty()) {
+      const std::string href = attribute(reader, "href", kLink);
+      if (href.empty()) return;
+      if (href[0] != '#') return rule("a reference to another file: " + href, object());
+      open_.back().members.push_back({href.substr(1), open_.back().boundary_surfaces, true, {}});
+    } else if (name == "MultiSurface") {
+      start_multi_surface(id);
     } else if (name == "Polygon") {
       polygon_ = {};
-      polygon_.kind = surface_;
+      polygon_.kind = opening_.empty() ? surface_ : opening_;
       polygon_id_ = id;
       in_polygon_ = true;
+    }
+  }
+
+  void start_multi_surface(const std::string& id) {
+    const std::string_view property = parent();
+    target_ = property == "lod3MultiSurface"      ? Target::detail_surface
+              : property == "lod3Geometry"        ? Target::installation
+              : property == "relativeGMLGeometry" ? Target::element
+              : surface_.empty()                  ? Target::footprint
+                                                  : Target::surface;
+    if (target_ == Target::installation && body()) {
+      body()->detail.installations.push_back({installation_, installation_kind_, {}});
+    } else if (target_ == Target::element) {
+      if (id.empty()) rule("the geometry of an element without a gml:id", object());
+      element_ = id;
+      element_at_.emplace(id, elements_.size());
+      elements_.push_back({id, {}});
+    }
+  }
+
+  void start_core(xmlTextReaderPtr reader, std::string_view name) {
+    if (name == "ImplicitGeometry") {
+      element_.clear();
+      matrix_.clear();
+      reference_point_.reset();
+    } else if (name == "relativeGMLGeometry") {
+      const std::string href = attribute(reader, "href", kLink);
+      if (href.empty()) return;
+      if (href[0] != '#') return rule("a reference to another file: " + href, object());
+      element_ = href.substr(1);
     }
   }
 
@@ -202,6 +267,17 @@ class Parser {
       out_.contents.bodies.push_back(std::move(body));
     } else if (const std::string_view kind = surface_kind(name); !kind.empty() && parent() == "boundedBy") {
       surface_ = kind;
+      if (!open_.empty()) ++open_.back().boundary_surfaces;
+    } else if (const std::string_view opening = opening_kind(name); !opening.empty()) {
+      if (parent() != "opening" || open_.empty() || surface_.empty())
+        return rule(fmt::format("{} out of its place", name), id);
+      opening_ = opening;
+      open_.back().openings.push_back({id, open_.back().boundary_surfaces, {}, {}});
+    } else if (name == "BuildingInstallation") {
+      if (parent() != "outerBuildingInstallation" || open_.empty()) rule("BuildingInstallation out of its place", id);
+      in_installation_ = true;
+      installation_ = id;
+      installation_kind_.clear();
     }
   }
 
@@ -213,7 +289,7 @@ class Parser {
       end_polygon();
     } else if (name == "Solid") {
       if (in_solid_ && by_reference_) {
-        open_.back().has_reference_solid = true;
+        open_.back().has_reference_solid[static_cast<std::size_t>(body()->solids.back().lod)] = true;
         if (!body()->solids.back().polygons.empty()) rule("a solid half of references, half of polygons", object());
       } else if (in_solid_ && body()->solids.back().polygons.empty()) {
         rule("a solid without faces", object());
@@ -221,6 +297,16 @@ class Parser {
       in_solid_ = false;
     } else if (!surface_kind(name).empty() && parent() == "boundedBy") {
       surface_.clear();
+    } else if (!opening_kind(name).empty()) {
+      opening_.clear();
+    } else if (name == "BuildingInstallation") {
+      in_installation_ = false;
+    } else if (name == "transformationMatrix") {
+      matrix_ = number_list(text_).value_or(std::vector<double>{});
+    } else if (name == "pos" && parent(2) == "referencePoint") {
+      end_reference_point();
+    } else if (name == "ImplicitGeometry") {
+      if (body()) end_implicit();
     } else if (name == "Building" || name == "BuildingPart") {
       if (!open_.empty()) end_body();
     } else if (name == "lowerCorner" || name == "upperCorner") {
@@ -251,6 +337,10 @@ class Parser {
       const Point3 p{(*values)[i], (*values)[i + 1], (*values)[i + 2]};
       if (std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) > kLargestCoordinate)
         return rule("a coordinate beyond any CRS", object());
+      if (target_ == Target::element && !in_solid_) {  // in a frame of its own
+        ring.push_back(p);
+        continue;
+      }
       const Point3 q = model::snap(p);
       off = std::max({off, std::fabs(p.x - q.x), std::fabs(p.y - q.y), std::fabs(p.z - q.z)});
       if (lower_ && upper_ &&
@@ -282,31 +372,145 @@ class Parser {
       ReadSolid& solid = body()->solids.back();
       note_place(polygon_id_, {open_.back().body, static_cast<int>(body()->solids.size()) - 1, solid.polygons.size()});
       solid.polygons.push_back(std::move(polygon_));
-    } else if (!surface_.empty()) {
-      open_.back().surfaces.emplace_back(polygon_id_, std::move(polygon_));
-    } else {
-      note_place(polygon_id_, {open_.back().body, -1, body()->footprint.size()});
-      body()->footprint.push_back(std::move(polygon_));
+      return;
     }
+    switch (target_) {
+      case Target::surface:
+        open_.back().surfaces.emplace_back(polygon_id_, std::move(polygon_));
+        break;
+      case Target::detail_surface:
+        if (!opening_.empty()) {
+          OpenedWall& opening = open_.back().openings.back();
+          if (!opening.polygon.empty()) rule("has two polygons", opening.id);
+          opening.polygon = polygon_id_;
+        }
+        open_.back().members.push_back({polygon_id_, open_.back().boundary_surfaces, false, std::move(polygon_)});
+        break;
+      case Target::installation: {
+        auto& installations = body()->detail.installations;
+        note_place(polygon_id_, {open_.back().body, kInstallation, installations.back().polygons.size(),
+                                 installations.size() - 1});
+        installations.back().polygons.push_back(std::move(polygon_));
+        break;
+      }
+      case Target::element:
+        note_place(polygon_id_,
+                   {open_.back().body, kElement, elements_.back().polygons.size(), elements_.size() - 1});
+        elements_.back().polygons.push_back(std::move(polygon_));
+        break;
+      case Target::footprint:
+        note_place(polygon_id_, {open_.back().body, kFootprint, body()->footprint.size()});
+        body()->footprint.push_back(std::move(polygon_));
+        break;
+    }
+  }
+
+  void end_reference_point() {
+    const auto values = number_list(text_);
+    if (!values || values->size() != 3) return;
+    const Point3 p{(*values)[0], (*values)[1], (*values)[2]}, q = model::snap(p);
+    const double off = std::max({std::fabs(p.x - q.x), std::fabs(p.y - q.y), std::fabs(p.z - q.z)});
+    if (off > kGridTolerance)
+      found(Check::off_grid, fmt::format("a reference point lies {:.6f} m off the 1/1024 m grid", off), object());
+    reference_point_ = q;
+  }
+
+  /// Elements are turned about the vertical alone.
+  void end_implicit() {
+    if (!turns_about_the_vertical(matrix_))
+      return rule("an implicit geometry whose matrix is no rotation about the vertical", object());
+    if (!reference_point_) return rule("an implicit geometry without a reference point", object());
+    if (element_.empty()) return rule("an implicit geometry without geometry", object());
+    auto& placements = body()->detail.placements;
+    if (!opening_.empty()) open_.back().openings.back().placement = placements.size();
+    placed_.push_back({open_.back().body, placements.size(), element_});
+    placements.push_back({0, *reference_point_, {matrix_[0], matrix_[4]}});
   }
 
   void note_place(const std::string& id, Place place) {
     if (!id.empty()) places_.emplace(id, place);
   }
 
-  /// The LoD2 solid gets the polygons of its boundary surfaces.
+  /// The LoD3 solid gets the polygons of its boundary surfaces, those of LoD2 among them.
+  void end_detail(const Open& open, ReadBody& body) {
+    ReadSolid* solid = nullptr;
+    int number = 0;
+    for (std::size_t s = 0; s < body.solids.size(); ++s)
+      if (body.solids[s].lod == 3) solid = &body.solids[s], number = static_cast<int>(s);
+    if (!solid || !open.has_reference_solid[3]) {
+      if (!open.members.empty()) rule("boundary surfaces of LoD3 without a solid", body.id);
+      return;
+    }
+    std::unordered_map<std::string_view, std::size_t> lod2, members;
+    for (std::size_t i = 0; i < open.surfaces.size(); ++i) lod2.emplace(open.surfaces[i].first, i);
+    for (std::size_t i = 0; i < open.members.size(); ++i)
+      if (!members.emplace(open.members[i].id, i).second)
+        rule("polygon " + open.members[i].id + " is twice in the surfaces of LoD3", body.id);
+    std::vector<std::size_t> polygon_of(open.members.size(), open.members.size());
+    for (const std::string& id : open.references[3]) {
+      const auto place = members.find(id);
+      if (place == members.end()) {
+        rule("a reference to #" + id + ", which is no polygon of LoD3", body.id);
+        continue;
+      }
+      const Member& member = open.members[place->second];
+      if (polygon_of[place->second] < open.members.size()) {
+        rule("polygon " + id + " is twice in the solid", body.id);
+        continue;
+      }
+      polygon_of[place->second] = solid->polygons.size();
+      if (!member.link) {
+        note_place(id, {open.body, number, solid->polygons.size()});
+        solid->polygons.push_back(member.polygon);
+        continue;
+      }
+      const auto shared = lod2.find(id);
+      if (shared == lod2.end()) {
+        rule("a reference to #" + id + ", which is no polygon of the building", body.id);
+        continue;
+      }
+      shared_.push_back({id, {open.body, number, solid->polygons.size()}});
+      solid->polygons.push_back(open.surfaces[shared->second].second);
+    }
+    for (std::size_t i = 0; i < polygon_of.size(); ++i)
+      if (polygon_of[i] == open.members.size())
+        rule(fmt::format("surface polygon {} is not in the solid of LoD3", open.members[i].id), body.id);
+    // The first polygon of a surface is the wall, what follows are its reveals; openings come after them.
+    std::vector<std::vector<std::size_t>> by_surface(open.boundary_surfaces + 1);
+    for (std::size_t i = 0; i < open.members.size(); ++i)
+      by_surface[open.members[i].surface].push_back(polygon_of[i]);
+    for (const OpenedWall& o : open.openings) {
+      const auto polygon = members.find(o.polygon);
+      if (o.polygon.empty() || polygon == members.end()) {
+        rule("has no polygon", o.id);
+        continue;
+      }
+      const auto& wall = by_surface[o.surface];
+      ReadOpening opening;
+      opening.id = o.id;
+      opening.polygon = polygon_of[polygon->second];
+      opening.wall = wall.front();
+      opening.reveals.assign(wall.begin() + 1, wall.end());
+      opening.placement = o.placement;
+      body.detail.openings.push_back(std::move(opening));
+    }
+    check_detail(body, [&](std::string what, const std::string& id) { rule(std::move(what), id); });
+  }
+
+  /// The solids get the polygons of their boundary surfaces.
   void end_body() {
     Open open = std::move(open_.back());
     ReadBody& body = out_.contents.bodies[open.body];
+    end_detail(open, body);
     ReadSolid* solid = nullptr;
     int number = -1;
     for (std::size_t s = 0; s < body.solids.size(); ++s)
       if (body.solids[s].lod == 2) solid = &body.solids[s], number = static_cast<int>(s);
-    if (open.has_reference_solid && solid) {
+    if (open.has_reference_solid[2] && solid) {
       std::unordered_map<std::string, std::size_t> index;
       for (std::size_t i = 0; i < open.surfaces.size(); ++i) index.emplace(open.surfaces[i].first, i);
       std::vector<int> used(open.surfaces.size(), 0);
-      for (const std::string& id : open.references) {
+      for (const std::string& id : open.references[2]) {
         const auto place = index.find(id);
         if (place == index.end()) {
           rule("a reference to #" + id + ", which is no polygon of the building", body.id);
@@ -394,7 +598,7 @@ class Parser {
       b.attributes[attribute] = number;
     };
     if (name == "function") {
-      b.attributes["use"] = text_;
+      (in_installation_ ? installation_kind_ : b.attributes["use"]) = text_;
     } else if (name == "measuredHeight") {
       number_of("height");
     } else if (name == "storeysAboveGround") {
@@ -427,6 +631,14 @@ class Parser {
                        std::lround((*values)[2] * 255));
   }
 
+  ReadPolygon& polygon_at(const Place& place) {
+    if (place.solid == kElement) return elements_[place.item].polygons[place.polygon];
+    ReadBody& body = out_.contents.bodies[place.body];
+    if (place.solid == kInstallation) return body.detail.installations[place.item].polygons[place.polygon];
+    if (place.solid == kFootprint) return body.footprint[place.polygon];
+    return body.solids[static_cast<std::size_t>(place.solid)].polygons[place.polygon];
+  }
+
   void finish() {
     for (const Material& m : materials_)
       for (const std::string& target : m.targets) {
@@ -435,13 +647,23 @@ class Parser {
           rule("an appearance of #" + target + ", which is no polygon", "");
           continue;
         }
-        ReadBody& body = out_.contents.bodies[place->second.body];
-        auto& polygons = place->second.solid < 0 ? body.footprint
-                                                 : body.solids[static_cast<std::size_t>(place->second.solid)].polygons;
-        std::string& slot = polygons[place->second.polygon].colour;
-        if (!slot.empty()) rule("#" + target + " has two colours", body.id);
+        std::string& slot = polygon_at(place->second).colour;
+        if (!slot.empty()) rule("#" + target + " has two colours", out_.contents.bodies[place->second.body].id);
         slot = m.colour;
       }
+    for (const auto& [id, place] : shared_)
+      if (const auto original = places_.find(id); original != places_.end())
+        polygon_at(place).colour = polygon_at(original->second).colour;
+    std::vector<std::uint64_t> digests;
+    for (const Element& element : elements_) digests.push_back(element_digest(element.polygons));
+    for (const Placed& p : placed_) {
+      ReadBody& body = out_.contents.bodies[p.body];
+      const auto element = element_at_.find(p.element);
+      if (element == element_at_.end())
+        rule("a reference to #" + p.element + ", which is no element", body.id);
+      else
+        body.detail.placements[p.placement].element = digests[element->second];
+    }
     if (!out_.contents.buildings.empty() && (!lower_ || !upper_ || out_.srs_name.empty()))
       rule("no envelope with a reference system", "");
     // Buildings of several parts are no bodies of their own.
@@ -464,6 +686,19 @@ class Parser {
   std::unordered_map<std::string, Place> places_;  ///< polygons by gml:id
   std::vector<Material> materials_;
   std::optional<Point3> lower_, upper_;
+  struct Placed {
+    std::size_t body = 0, placement = 0;
+    std::string element;
+  };
+  std::vector<std::pair<std::string, Place>> shared_;  ///< polygons of LoD3 that are those of LoD2, by their id
+  std::vector<Element> elements_;
+  std::unordered_map<std::string, std::size_t> element_at_;
+  std::vector<Placed> placed_;
+  Target target_ = Target::footprint;
+  std::vector<double> matrix_;
+  std::optional<Point3> reference_point_;
+  std::string opening_, element_, installation_, installation_kind_;
+  bool in_installation_ = false;
   ReadPolygon polygon_;
   std::string text_, surface_, attribute_, polygon_id_, solid_id_;
   bool in_solid_ = false, in_polygon_ = false, by_reference_ = false, outside_ = false;

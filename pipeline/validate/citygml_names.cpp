@@ -16,6 +16,7 @@ constexpr SurfaceName kSurfaces[] = {
     {"OuterFloorSurface", "outer_floor"},
     {"ClosureSurface", "closure"},
 };
+constexpr SurfaceName kOpenings[] = {{"Window", "window"}, {"Door", "door"}};
 
 }  // namespace
 
@@ -25,14 +26,23 @@ std::string_view surface_kind(std::string_view element) {
   return {};
 }
 
+std::string_view opening_kind(std::string_view element) {
+  for (const SurfaceName& s : kOpenings)
+    if (s.element == element) return s.kind;
+  return {};
+}
+
 bool known_element(std::string_view space, std::string_view name) {
   using Names = std::unordered_set<std::string_view>;
   static const Names gml = {"description", "name",         "boundedBy",     "Envelope", "lowerCorner",
                             "upperCorner", "MultiSurface", "surfaceMember", "Polygon",  "exterior",
-                            "interior",    "LinearRing",   "posList",       "Solid",    "CompositeSurface"};
+                            "interior",    "LinearRing",   "posList",       "Solid",    "CompositeSurface",
+                            "Point",       "pos"};
   static const Names core = {"CityModel",         "cityObjectMember", "externalReference",
                              "informationSystem", "externalObject",   "uri",
-                             "Address",           "xalAddress"};
+                             "Address",           "xalAddress",
+                             "ImplicitGeometry",  "transformationMatrix",
+                             "referencePoint",    "relativeGMLGeometry"};
   static const Names building = {"Building",
                                  "BuildingPart",
                                  "consistsOfBuildingPart",
@@ -49,6 +59,13 @@ bool known_element(std::string_view space, std::string_view name) {
                                  "lod2Solid",
                                  "boundedBy",
                                  "lod2MultiSurface",
+                                 "lod3Solid",
+                                 "lod3MultiSurface",
+                                 "lod3Geometry",
+                                 "lod3ImplicitRepresentation",
+                                 "opening",
+                                 "outerBuildingInstallation",
+                                 "BuildingInstallation",
                                  "address"};
   static const Names generics = {"stringAttribute", "doubleAttribute", "intAttribute", "measureAttribute", "value"};
   static const Names appearance = {"appearance",        "appearanceMember", "Appearance",    "theme",
@@ -57,7 +74,7 @@ bool known_element(std::string_view space, std::string_view name) {
                                    "transparency",      "isSmooth",         "target"};
   if (space == kGml) return gml.count(name) > 0;
   if (space == kCore) return core.count(name) > 0;
-  if (space == kBuilding) return building.count(name) > 0 || !surface_kind(name).empty();
+  if (space == kBuilding) return building.count(name) > 0 || !surface_kind(name).empty() || !opening_kind(name).empty();
   if (space == kGenerics) return generics.count(name) > 0;
   if (space == kAppearance) return appearance.count(name) > 0;
   return space == kAddress;

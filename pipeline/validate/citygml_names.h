@@ -15,6 +15,9 @@ inline constexpr std::string_view kGml = "http://www.opengis.net/gml", kCore = "
 /// "roof" for RoofSurface and so on; empty for what is no boundary surface.
 std::string_view surface_kind(std::string_view element);
 
+/// "window" for Window, "door" for Door; empty for what is no opening.
+std::string_view opening_kind(std::string_view element);
+
 /// Whether an element may stand in a file of Blockrand.
 bool known_element(std::string_view space, std::string_view name);
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "pipeline/validate/cityjson_objects.h"
+#include "pipeline/validate/cityjson_templates.h"
 
 namespace blockrand::validate {
 namespace {
@@ -56,6 +57,7 @@ class FileReader {
     if (!parsed(document, "")) return;
     header(document.json);
     objects(document, "");
+    tell_unused();
   }
 
   void read_sequence(std::string_view text) {
@@ -76,6 +78,7 @@ class FileReader {
       else
         feature(document, where);
     }
+    tell_unused();
   }
 
  private:
@@ -120,6 +123,14 @@ class FileReader {
       }
     }
     metadata(member(root, "metadata"));
+    CityJsonScope scope;  // of the appearance beside the templates
+    appearance(member(root, "appearance"), scope, "");
+    templates_ = read_templates(root, scope.colours, findings_);
+  }
+
+  void tell_unused() {
+    if (const auto unused = std::count(templates_.used.begin(), templates_.used.end(), false); unused > 0)
+      findings_.rule("", fmt::format("{} geometry templates are used by nothing", unused));
   }
 
   void metadata(const Json* m) {
@@ -198,7 +209,7 @@ class FileReader {
     appearance(member(root, "appearance"), scope, where);
     const Json* objects = member(root, "CityObjects");
     if (objects && objects->is_object())
-      read_city_objects(*objects, document.object_order, scope, ids_, out_, findings_);
+      read_city_objects(*objects, document.object_order, scope, templates_, ids_, out_, findings_);
     const auto unused = std::count(scope.used.begin(), scope.used.end(), false);
     if (unused > 0) findings_.rule("", fmt::format("{}{} vertices are used by nothing", prefix(where), unused));
   }
@@ -273,6 +284,7 @@ class FileReader {
   CityJsonFindings findings_;
   std::array<double, 3> scale_{1, 1, 1}, translate_{};
   std::vector<double> extent_;  // empty: not said
+  CityJsonTemplates templates_;
   std::unordered_set<std::string> ids_;
 };
 

@@ -9,6 +9,8 @@
 #include "pipeline/base/text.h"
 #include "pipeline/geometry/solid_defect.h"
 #include "pipeline/validate/attribute_names.h"
+#include "pipeline/validate/cityjson_templates.h"
+#include "pipeline/validate/detail.h"
 #include "pipeline/validate/ids.h"
 
 namespace blockrand::validate {
@@ -62,8 +64,9 @@ std::string scalar_text(const Json& value) {
 
 class ObjectReader {
  public:
-  ObjectReader(const Json& objects, CityJsonScope& scope, Contents& out, CityJsonFindings& findings)
-      : objects_(objects), scope_(scope), out_(out), findings_(findings) {}
+  ObjectReader(const Json& objects, CityJsonScope& scope, CityJsonTemplates& templates, Contents& out,
+               CityJsonFindings& findings)
+      : objects_(objects), scope_(scope), templates_(templates), out_(out), findings_(findings) {}
 
   void read(const std::string& id, const Json& object) {
     id_ = id;
@@ -88,6 +91,7 @@ class ObjectReader {
       geometry = nullptr;
     }
     if (type == "Building" || type == "BuildingPart") building(object, type, geometry);
+    if (type == "BuildingInstallation") installation(object, geometry);
   }
 
  private:
@@ -149,7 +153,8 @@ class ObjectReader {
     if (part && building_of(id_) != body.building) rule("belongs to another building than its id says");
     attributes(object, body);
     for (const Json& g : geometry ? *geometry : Json::array()) read_geometry(g, body);
-    if (const Json* children = member(object, "children"); children && children->is_array() && !children->empty()) {
+    check_detail(body, [&](std::string what, const std::string& id) { findings_.rule(id, std::move(what)); });
+    if (has_parts(object)) {
       if (!body.footprint.empty() || !body.solids.empty()) rule("has geometry beside its parts");
       return;  // a building of several parts is no body
     }
@@ -161,6 +166,41 @@ class ObjectReader {
     else if (lod->second >= "0" && lod->second <= "9" && body.footprint.empty())
       rule("has no geometry of LoD 0");
     out_.bodies.push_back(std::move(body));
+  }
+
+  bool has_parts(const Json& object) const {
+    const Json* children = member(object, "children");
+    for (const Json& child : children && children->is_array() ? *children : Json::array())
+      if (const Json* found = child.is_string() ? member(objects_, child.get<std::string>()) : nullptr;
+          found && text(member(*found, "type")) == "BuildingPart")
+        return true;
+    return false;
+  }
+
+  /// Elements where they stand, or a body of its own: of the body that its parent is.
+  void installation(const Json& object, const Json* geometry) {
+    const std::string parent = text(element(member(object, "parents"), 0));
+    const auto body = std::find_if(out_.bodies.rbegin(), out_.bodies.rend(),
+                                   [&](const ReadBody& b) { return b.id == parent; });
+    if (body == out_.bodies.rend()) return rule("its parent " + parent + " is no body that stands before it");
+    const std::string kind = text(member(member(object, "attributes"), "function"));
+    if (kind.empty()) rule("has no function");
+    if (!geometry || geometry->empty()) return rule("has no geometry");
+    for (const Json& g : *geometry) {
+      if (text(member(g, "type")) == "GeometryInstance") {
+        if (const auto placement =
+                read_instance(g, scope_, templates_, [&](std::string what) { rule(std::move(what)); }))
+          body->detail.placements.push_back(*placement);
+        continue;
+      }
+      ReadBody own;
+      read_geometry(g, own);
+      if (own.solids.size() != 1 || own.solids[0].lod != 3) {
+        rule("has a geometry that is no solid of LoD 3");
+        continue;
+      }
+      body->detail.installations.push_back({id_, kind, std::move(own.solids[0].polygons)});
+    }
   }
 
   // ---- attributes ----
@@ -219,7 +259,9 @@ class ObjectReader {
     if (!boundaries || !boundaries->is_array()) return rule("has a geometry without boundaries");
     where_ = fmt::format("its {} of LoD {}", type, lod);
     kinds_.clear();
+    parents_.clear();
     polygons_.clear();
+    semantic_of_.clear();
     const Json* kinds = semantics(g);
     const Json* single = nullptr;
     const Json* colours = material(g, single);
@@ -228,12 +270,31 @@ class ObjectReader {
       for (ReadPolygon& p : polygons_) body.footprint.push_back(std::move(p));
     } else {
       if (polygons_.size() < 4) rule(fmt::format("{} has {} faces", where_, polygons_.size()));
+      if (lod[0] == '3') openings(body);
       body.solids.push_back({lod[0] - '0', std::move(polygons_)});
     }
     polygons_.clear();
   }
 
-  /// The kinds of "surfaces" go to kinds_; returns "values".
+  /// Windows and doors with the wall whose surface is their parent: its first polygon, then its reveals.
+  void openings(ReadBody& body) {
+    std::vector<std::vector<std::size_t>> of_surface(kinds_.size());
+    for (std::size_t i = 0; i < polygons_.size(); ++i)
+      if (semantic_of_[i] < of_surface.size()) of_surface[semantic_of_[i]].push_back(i);
+    for (std::size_t i = 0; i < polygons_.size(); ++i) {
+      if (polygons_[i].kind != "window" && polygons_[i].kind != "door") continue;
+      const std::size_t parent = parents_[semantic_of_[i]];
+      if (parent >= of_surface.size() || of_surface[parent].empty()) {
+        rule(fmt::format("{} has a {} that is in no wall", where_, polygons_[i].kind));
+        continue;
+      }
+      const auto& wall = of_surface[parent];
+      body.detail.openings.push_back(
+          {fmt::format("{}_p{}", id_, i), i, wall.front(), {wall.begin() + 1, wall.end()}, std::nullopt});
+    }
+  }
+
+  /// The kinds of "surfaces" go to kinds_, their parents to parents_; returns "values".
   const Json* semantics(const Json& g) {
     const Json* s = member(g, "semantics");
     if (!s) return nullptr;
@@ -249,6 +310,15 @@ class ObjectReader {
       if (found == std::end(kSurfaces) && !type.starts_with('+'))
         rule(fmt::format("{} has a surface of the type \"{}\"", where_, type));
       kinds_.emplace_back(found == std::end(kSurfaces) ? "" : found->kind);
+      const auto parent = whole(member(surface, "parent"));
+      parents_.push_back(parent ? static_cast<std::size_t>(*parent) : kNoSurface);
+      const auto names = [&](const Json* other, std::size_t own) {
+        const Json* children = member(other, "children");
+        return children && children->is_array() &&
+               std::find(children->begin(), children->end(), Json(own)) != children->end();
+      };
+      if (parent && !names(element(list, *parent), kinds_.size() - 1))
+        rule(fmt::format("{} has a surface whose parent does not name it as a child", where_));
     }
     return values->is_null() ? nullptr : values;
   }
@@ -311,6 +381,8 @@ class ObjectReader {
       else
         rule(fmt::format("{} has the material index {} of {}", where_, colour->dump(), scope_.colours.size()));
     }
+    const auto semantic = whole(kind);
+    semantic_of_.push_back(semantic ? static_cast<std::size_t>(*semantic) : kNoSurface);
     polygons_.push_back(std::move(polygon));
   }
 
@@ -343,13 +415,17 @@ class ObjectReader {
     return true;
   }
 
+  static constexpr std::size_t kNoSurface = static_cast<std::size_t>(-1);
   const Json& objects_;
   CityJsonScope& scope_;
+  CityJsonTemplates& templates_;
   Contents& out_;
   CityJsonFindings& findings_;
   std::string id_, where_;
   std::vector<std::string> kinds_;     // of the semantic surfaces of the geometry at hand
-  std::vector<ReadPolygon> polygons_;  // of the geometry at hand
+  std::vector<std::size_t> parents_;      // of the same: their parents
+  std::vector<ReadPolygon> polygons_;     // of the geometry at hand
+  std::vector<std::size_t> semantic_of_;  // of the same: their semantic surfaces
 };
 
 }  // namespace
@@ -368,8 +444,9 @@ std::optional<std::string> read_colour(const Json* value) {
 }
 
 void read_city_objects(const Json& objects, const std::vector<std::string>& order, CityJsonScope& scope,
-                       std::unordered_set<std::string>& ids, Contents& out, CityJsonFindings& findings) {
-  ObjectReader reader(objects, scope, out, findings);
+                       CityJsonTemplates& templates, std::unordered_set<std::string>& ids, Contents& out,
+                       CityJsonFindings& findings) {
+  ObjectReader reader(objects, scope, templates, out, findings);
   for (const std::string& id : order) {
     if (!ids.insert(id).second) findings.rule(id, "its id is given twice in the file");
     reader.read(id, objects.at(id));

@@ -39,11 +39,14 @@ struct CityJsonScope {
   std::string theme;                    ///< of materials, to be preferred
 };
 
+struct CityJsonTemplates;
+
 /// Checks every city object and appends buildings and bodies.
 /// \param order  ids in the order of the file
 /// \param ids    of the file so far, to find those given twice
 void read_city_objects(const Json& objects, const std::vector<std::string>& order, CityJsonScope& scope,
-                       std::unordered_set<std::string>& ids, Contents& out, CityJsonFindings& findings);
+                       CityJsonTemplates& templates, std::unordered_set<std::string>& ids, Contents& out,
+                       CityJsonFindings& findings);
 
 /// "Building", "Bridge" …: city objects that stand by themselves.
 bool is_first_level(std::string_view type);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <set>
@@ -200,6 +201,15 @@ BodyDigest digest(const ReadBody& body) {
   d.geometry = mixed(digest_of(body.footprint), body.solids.size());
   for (const ReadSolid& solid : body.solids)
     d.geometry = mixed(mixed(d.geometry, static_cast<std::uint64_t>(solid.lod)), digest_of(solid.polygons));
+  std::uint64_t placed = body.detail.placements.size();  // in any order
+  for (const ReadPlacement& p : body.detail.placements) {
+    std::uint64_t one = p.element;
+    for (const double v : {p.origin.x, p.origin.y, p.origin.z, p.along.x, p.along.y})
+      one = mixed(one, std::bit_cast<std::uint64_t>(v + 0.0));
+    placed += one;
+  }
+  d.geometry = mixed(d.geometry, placed);
+  for (const ReadInstallation& i : body.detail.installations) d.geometry = mixed(d.geometry, digest_of(i.polygons));
   for (const auto& [name, value] : body.attributes) d.attributes = mixed(mixed(d.attributes, name), value);
   return d;
 }

@@ -1,7 +1,9 @@
 // What a file of a build holds, in the same terms for every format, so that formats can be compared.
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +15,8 @@ namespace blockrand::validate {
 /// One planar polygon with holes; rings without a repeated last point, outer counter-clockwise from outside.
 struct ReadPolygon {
   std::vector<std::vector<model::Point3>> rings;
-  std::string kind;    ///< "ground", "wall", "roof", "outer_ceiling", "outer_floor", "closure"; empty where not said
+  std::string kind;  ///< "ground", "wall", "roof", "outer_ceiling", "outer_floor", "closure", "window", "door"; empty
+                     ///< where not said
   std::string colour;  ///< "#rrggbb" in sRGB; empty where not said
 };
 
@@ -21,6 +24,36 @@ struct ReadPolygon {
 struct ReadSolid {
   int lod = 0;
   std::vector<ReadPolygon> polygons;
+};
+
+/// A window or door in a wall of a LoD3 solid.
+struct ReadOpening {
+  std::string id;
+  std::size_t polygon = 0;  ///< into the LoD3 solid's polygons: what closes the opening, its kind is "window" or "door"
+  std::size_t wall = 0;     ///< the polygon that it opens
+  std::vector<std::size_t> reveals;       ///< the other polygons of the wall's surface: of all its openings
+  std::optional<std::size_t> placement;  ///< into ReadDetail::placements: the element that stands in it
+};
+
+/// An element where it stands.
+struct ReadPlacement {
+  std::uint64_t element = 0;  ///< of its polygons and colours: the same for equal elements
+  model::Point3 origin;       ///< build CRS
+  model::Point2 along;        ///< its x axis
+  friend auto operator<=>(const ReadPlacement&, const ReadPlacement&) = default;
+};
+
+/// A closed body of its own on a wall or roof.
+struct ReadInstallation {
+  std::string id, kind;
+  std::vector<ReadPolygon> polygons;
+};
+
+/// What LoD3 adds to a body beside its solid.
+struct ReadDetail {
+  std::vector<ReadOpening> openings;
+  std::vector<ReadPlacement> placements;
+  std::vector<ReadInstallation> installations;
 };
 
 /// A building part with geometry of its own; the whole building where it has no parts.
@@ -32,6 +65,7 @@ struct ReadBody {
   std::map<std::string, std::string> attributes;
   std::vector<ReadPolygon> footprint;  ///< LoD0
   std::vector<ReadSolid> solids;
+  ReadDetail detail;
 };
 
 struct Contents {

@@ -57,8 +57,8 @@ class RowReader {
     const std::string_view roof = row_.text(5);
     if (!model::roof_shape(roof)) rule(fmt::format("built_roof \"{}\" is unknown", roof));
     attributes["built_roof"] = roof;
-    if (!row_.is_integer(4) || row_.integer(4) < -1 || row_.integer(4) > 2)
-      rule(fmt::format("lod \"{}\" is none of -1, 0, 1, 2", row_.text(4)));
+    if (!row_.is_integer(4) || row_.integer(4) < -1 || row_.integer(4) > 3)
+      rule(fmt::format("lod \"{}\" is none of -1, 0, 1, 2, 3", row_.text(4)));
     attributes["lod"] = std::to_string(row_.integer(4));
     if (!is_fallback_list(row_.text(8))) rule(fmt::format("fallbacks \"{}\" are no codes", row_.text(8)));
     if (!row_.null(9) && !tags_are_sound(row_.text(9))) rule("tags are no JSON object of texts");
@@ -242,7 +242,7 @@ GeoPackageTileRows GeoPackageReader::rows(const std::string& tile) {
   read(kGeoPackageLayers[1], "building", [&](const SqliteRow& row) {
     RowReader r(row, s.name, findings);
     r.read(kGeoPackageLayers[1], srs_id);
-    ReadBody body{r.id(), row.string(more), std::move(r.attributes), std::move(r.footprint), {}};
+    ReadBody body{r.id(), row.string(more), std::move(r.attributes), std::move(r.footprint), {}, {}};
     if (body.building != building_of(body.id))
       r.rule("the id does not begin with that of its building " + body.building);
     ++bodies[body.building];

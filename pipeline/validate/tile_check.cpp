@@ -14,6 +14,7 @@
 #include "pipeline/geometry/solid_defect.h"
 #include "pipeline/validate/attribute_names.h"
 #include "pipeline/validate/cityjson.h"
+#include "pipeline/validate/detail.h"
 #include "pipeline/validate/file_bytes.h"
 #include "pipeline/validate/glb.h"
 #include "pipeline/validate/ids.h"
@@ -239,6 +240,10 @@ class Checker {
       if (!verdict.valid()) unsound_.insert(body.id);
       note(verdict, file, body.id, fmt::format("LoD {}", solid.lod), out_.findings);
     }
+    for (const ReadInstallation& installation : body.detail.installations) {
+      ++out_.judged;
+      note(judge({3, installation.polygons}), file, installation.id, installation.kind, out_.findings);
+    }
   }
 
   /// Parts of one building, in the first format that has them; where two formats differ, that is a finding already.
@@ -314,10 +319,22 @@ class Checker {
       compare_objects(first, other, out_.findings);
       compare_attributes(first, other, f == kGltf, out_.findings);
       out_.compared += other.contents.bodies.size();
-      if (f == kCityJson) compare_polygons(first, other, out_.findings);
+      if (f == kCityJson) {
+        compare_polygons(first, other, out_.findings);
+        compare_details(first, other);
+      }
     }
     if (glb_ && reference != kGltf) compare_with_mesh(first);
     note_absent(reference, there);
+  }
+
+  void compare_details(const Side& a, const Side& b) {
+    std::unordered_map<std::string_view, const ReadBody*> bodies;
+    for (const ReadBody& body : a.contents.bodies) bodies.emplace(body.id, &body);
+    for (const ReadBody& body : b.contents.bodies)
+      if (const auto same = bodies.find(body.id); same != bodies.end())
+        if (std::string what = detail_difference(*same->second, body); !what.empty())
+          found(Check::geometry_differs, b.file, body.id, fmt::format("LoD 3: {}, in {}", what, a.file));
   }
 
   void compare_with_mesh(const Side& reference) {
@@ -498,8 +515,7 @@ class Checker {
         const bool shown = f == kGltf ? !glb_->triangles[i].empty() : has_geometry(body, context_.record.lod);
         if (shown) models.insert(owner(body.id));
         if (f == kGltf) n.solids[0] += shown;
-        if (f != kGltf)
-          for (const ReadSolid& solid : body.solids) ++n.solids[std::clamp(solid.lod, 0, 2)];
+        if (f != kGltf) count_detail(body, n);
         if (!counted_sources) {
           count_sources(body);
           if (shown || !body.footprint.empty()) out_.buildings.push_back(body.building);
@@ -513,6 +529,18 @@ class Checker {
       modelled.merge(models);
     }
     out_.modelled.assign(modelled.begin(), modelled.end());
+  }
+
+  static void count_detail(const ReadBody& body, FormatCounts& n) {
+    for (const ReadSolid& solid : body.solids) {
+      ++n.solids[std::clamp(solid.lod, 0, 3)];
+      for (const ReadPolygon& polygon : solid.polygons) {
+        n.windows += polygon.kind == "window";
+        n.doors += polygon.kind == "door";
+      }
+    }
+    n.placements += body.detail.placements.size();
+    n.installations += body.detail.installations.size();
   }
 
   void count_sources(const ReadBody& body) {
@@ -538,7 +566,11 @@ void FormatCounts::add(const FormatCounts& other) {
   files += other.files;
   buildings += other.buildings;
   bodies += other.bodies;
-  for (std::size_t i = 0; i < 3; ++i) solids[i] += other.solids[i];
+  for (std::size_t i = 0; i < std::size(solids); ++i) solids[i] += other.solids[i];
+  windows += other.windows;
+  doors += other.doors;
+  placements += other.placements;
+  installations += other.installations;
   models += other.models;
   incomplete = incomplete || other.incomplete;
 }

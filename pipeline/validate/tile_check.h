@@ -36,7 +36,8 @@ struct TileFiles {
 /// What one format holds of one or of all tiles.
 struct FormatCounts {
   std::uint64_t files = 0, buildings = 0, bodies = 0;
-  std::uint64_t solids[3] = {0, 0, 0};  ///< by LoD; of GLB, meshes in [0], whichever LoD they show
+  std::uint64_t solids[4] = {0, 0, 0, 0};  ///< by LoD; of GLB, meshes in [0], whichever LoD they show
+  std::uint64_t windows = 0, doors = 0, placements = 0, installations = 0;  ///< of LoD3; not of GLB
   std::uint64_t models = 0;             ///< objects of the map that own a solid, or at LoD 0 a footprint
   bool incomplete = false;              ///< a file is missing or unreadable: the counts mean nothing
   void add(const FormatCounts& other);

@@ -443,6 +443,11 @@ class Run {
       expect(std::string("bodies in ") + kFormatNames[f], n.bodies, "bodies");
       expect(std::string("solids of LoD 1 in ") + kFormatNames[f], n.solids[1], "solids_lod1");
       expect(std::string("solids of LoD 2 in ") + kFormatNames[f], n.solids[2], "solids_lod2");
+      expect(std::string("solids of LoD 3 in ") + kFormatNames[f], n.solids[3], "solids_lod3");
+      expect(std::string("windows in ") + kFormatNames[f], n.windows, "windows");
+      expect(std::string("doors in ") + kFormatNames[f], n.doors, "doors");
+      expect(std::string("placed elements in ") + kFormatNames[f], n.placements, "placements");
+      expect(std::string("installations in ") + kFormatNames[f], n.installations, "installations");
     }
     if (geopackage_) expect("bodies in buildings.gpkg", geopackage_total_.bodies, "bodies");
     if (any) check_statistics();

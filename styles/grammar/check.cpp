@@ -49,6 +49,19 @@ void check_extension(const Checked& c, const Call& call, std::string_view name, 
             "parameter");
 }
 
+/// `building.storys`: a value that the program does not give.
+void check_context(const Checked& c, const Expression& e, const CheckOptions& options) {
+  const std::string_view name = c.unit.name(e.name);
+  const std::size_t dot = name.find('.');
+  if (c.module.targets[e.use].kind != TargetKind::unknown || dot == std::string_view::npos ||
+      !is_engine_prefix(name.substr(0, dot)))
+    return;
+  if (std::find(options.context.begin(), options.context.end(), name) != options.context.end()) return;
+  const std::vector<std::string_view> known(options.context.begin(), options.context.end());
+  c.tell(Severity::error, "unknown_context", e.location,
+         "the program gives no value of this name (docs/grammar_attributes.md)", name, nearest_name(name, known));
+}
+
 constexpr std::string_view kConsistencies[] = {"building", "row"};
 
 }  // namespace
@@ -79,6 +92,9 @@ void check_calls(const Checked& c, const CheckOptions& options) {
   for (const Expression& e : c.unit.expressions)
     if (e.kind == ExpressionKind::name && c.module.targets[e.use].kind == TargetKind::function)
       status(c.module.targets[e.use].index, e.location);
+  if (!options.context.empty())
+    for (const Expression& e : c.unit.expressions)
+      if (e.kind == ExpressionKind::name) check_context(c, e, options);
   bool told_inline = false;
   for (const Step& step : c.unit.steps) {
     if (step.kind != StepKind::inlined && step.kind != StepKind::inlined_call) continue;

@@ -18,13 +18,17 @@ struct ExtensionOperation {
 
 struct CheckOptions {
   std::vector<ExtensionOperation> extensions;  ///< empty: calls of our own operations are not checked
+  /// Values that the program gives: "building.storeys". Empty: names below building, edge, storey, roof and row are not
+  /// checked.
+  std::vector<std::string> context;
   /// Operations and functions that run with a fixed answer or not at all are told (as notes and warnings).
   bool tell_status = true;
 };
 
 /// Beside what Program::diagnostics tells already: probabilities beyond 100 % or below 0, choices that can never
 /// happen, sizes that cannot fit, wrong types, rules that nothing reaches, recursion without condition, operations
-/// without their block, what does not run yet, wrong calls of our own operations, declarations that hide one another.
+/// without their block, what does not run yet, wrong calls of our own operations, values
+/// about the building that the program does not give, declarations that hide one another.
 /// Ordered by file and line, each thing once. Codes: docs of Diagnostic::code are the names in the tests.
 std::vector<Diagnostic> check(const Program& program, const CheckOptions& options);
 

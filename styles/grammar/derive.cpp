@@ -33,17 +33,37 @@ std::vector<RuleFacts> facts_of(const Program& program) {
 
 }  // namespace
 
+/// Whether a file asks about what stands around (cga.md §4.6): then there are two derivations.
+bool asks_around(const Program& program) {
+  for (const Module& module : program.modules)
+    for (const Target& target : module.targets)
+      if (target.kind == TargetKind::function &&
+          built_in_actions().special_functions[target.index] == &Run::context_query)
+        return true;
+  return false;
+}
+
 struct Deriver::Prepared {
   const Program& program;
   std::vector<RuleFacts> facts;
+  bool asks_around = false;
 };
 
-Deriver::Deriver(const Program& program) : prepared_(new Prepared{program, facts_of(program)}) { built_in_actions(); }
+Deriver::Deriver(const Program& program)
+    : prepared_(new Prepared{program, facts_of(program), grammar::asks_around(program)}) {}
 Deriver::~Deriver() = default;
 Deriver::Deriver(Deriver&&) noexcept = default;
 
 Derivation Deriver::run(const Shape& initial, const DeriveOptions& options) const {
-  return Run(prepared_->program, prepared_->facts, initial, options).go();
+  if (!prepared_->asks_around) return Run(prepared_->program, prepared_->facts, initial, options).go();
+  Surroundings surroundings;
+  Run first(prepared_->program, prepared_->facts, initial, options);
+  first.record(surroundings);
+  Derivation out = first.go();
+  if (!surroundings.asked || surroundings.occluders.empty()) return out;
+  Run second(prepared_->program, prepared_->facts, initial, options);
+  second.answer_from(surroundings);
+  return second.go();
 }
 
 Derivation derive(const Program& program, const Shape& initial, const DeriveOptions& options) {
@@ -68,6 +88,7 @@ Run::Run(const Program& program, const std::vector<RuleFacts>& facts, const Shap
          const DeriveOptions& options)
     : program_(program), facts_(facts), options_(options), initial_(initial) {
   locals_.reserve(256);
+  if (options.without != nullptr) without_ = built_in_number(*options.without);
   initial_.seed = options.seed;
   initial_.draws = 0;
 }
@@ -93,6 +114,28 @@ void Run::tell(Severity severity, std::string_view code, const Location& locatio
 
 std::uint64_t Run::child_seed(Work& work) const {
   return base::mix64(base::mix64(base::mix64(work.shape.seed) ^ work.seeds++) ^ kChildSeeds);
+}
+
+std::uint32_t Run::child_lineage(const Work& work) {
+  if (recorded_ == nullptr && known_ == nullptr) return kNone;
+  lineages_.push_back({work.lineage, work.seeds});
+  return static_cast<std::uint32_t>(lineages_.size() - 1);
+}
+
+std::vector<std::uint32_t> Run::way_of(std::uint32_t lineage) const {
+  std::vector<std::uint32_t> out;
+  for (; lineage != kNone; lineage = lineages_[lineage].parent) out.push_back(lineages_[lineage].ordinal);
+  std::reverse(out.begin(), out.end());
+  return out;
+}
+
+void Run::keep_occluder(const Shape& shape, std::uint32_t lineage, std::string label) {
+  if (recorded_ == nullptr) return;
+  Occluder made = occluder_of(shape);
+  if (made.mesh.empty() && label.empty()) return;
+  made.lineage = way_of(lineage);
+  made.label = std::move(label);
+  recorded_->occluders.push_back(std::move(made));
 }
 
 Derivation Run::go() {
@@ -151,14 +194,17 @@ void Run::apply(Node node) {
   Work work;
   work.shape = node.shape;
   work.base = &node.shape;
-  Place place{definition.module, 0, &work.shape, &rule_, true, nullptr};
+  work.lineage = node.lineage;
+  Place place{definition.module, 0, &work.shape, &rule_, true, nullptr, node.lineage};
   push_bindings(declaration, place);
   if (declaration.successor != kNone) execute(declaration.successor, work, place, true);
-  if (work.alive && !work.produced) leave_leaf(node.symbol, std::move(work.shape), node.location, node.number);
+  if (work.alive && !work.produced)
+    leave_leaf(node.symbol, std::move(work.shape), node.location, node.number, node.lineage);
 }
 
 void Run::leave_leaf(std::string symbol, Shape shape, const Location& location, std::uint32_t node,
-                     std::shared_ptr<const Order> order) {
+                     std::uint32_t lineage, std::shared_ptr<const Order> order) {
+  keep_occluder(shape, lineage);
   out_.leaves.push_back({std::move(symbol), std::move(shape), std::move(order), node, location});
 }
 

@@ -48,6 +48,10 @@ struct DeriveOptions {
   std::string shape_name;  ///< `initialShape.name`
   DeriveLimits limits;
   bool keep_tree = false;  ///< fill Derivation::tree
+  /// For tests: a name of the language that does nothing. Operations leave the shape as it is, functions and attributes
+  /// have the default value of their type, selectors choose nothing. What holds with the name and not without it is
+  /// the name's own work (docs/grammar_features.md).
+  const BuiltIn* without = nullptr;
 };
 
 /// `blockrand.NAME(arguments…)`: what to put where the leaf's shape is.

@@ -15,6 +15,7 @@ void Run::run_item(NodeId successor, Shape piece, Work& parent, Place& place) {
   if (++pieces_ > options_.limits.pieces)
     return tell(Severity::error, "too_many_pieces", item.location,
                 "there are more than " + std::to_string(options_.limits.pieces) + " pieces; further ones are left out");
+  const std::uint32_t lineage = child_lineage(parent);
   piece.seed = child_seed(parent);
   piece.draws = 0;
   Work inner;
@@ -30,10 +31,13 @@ void Run::run_item(NodeId successor, Shape piece, Work& parent, Place& place) {
     inner.base = &base;
   }
   inner.shape = std::move(piece);
+  inner.lineage = lineage;
   Place there = place;
   there.shape = &inner.shape;
+  there.lineage = lineage;
   execute(successor, inner, there, true);
-  if (inner.alive && !inner.produced) leave_leaf(node_->symbol, std::move(inner.shape), item.location, node_->number);
+  if (inner.alive && !inner.produced)
+    leave_leaf(node_->symbol, std::move(inner.shape), item.location, node_->number, lineage);
 }
 
 std::vector<SplitItem> Run::split_items(Range range, Place& place, std::vector<NodeId>& successors) {
@@ -151,9 +155,11 @@ std::vector<std::size_t> Run::choose_components(NodeId id, const ComponentSplit&
   const Target* found = e.kind == ExpressionKind::name && e.use != kNone ? &target(place.module, e.use) : nullptr;
   if (found != nullptr && found->kind == TargetKind::word) {
     text = unit.name(e.name);
+    if (without_selector(text)) return {};
     selector = selector_of_word(text);
     if (!selector) tell(Severity::error, "selector", e.location, "this word selects nothing", text);
   } else if (found != nullptr && found->kind == TargetKind::function && built_ins()[found->index].name == "isTagged") {
+    if (without(found->index)) return {};
     const auto given = arguments(e.arguments, place);
     const std::string query = given.empty() ? std::string() : this->text(given[0].value, place);
     selector = selector_of_tag(query, given.size() > 1 ? this->text(given[1].value, place) : std::string());
@@ -231,6 +237,7 @@ void Run::step_components(const Call& call, Work& work, Place& place) {
   const auto kind = operands_.empty() ? std::nullopt : component_kind(operands_[0].word);
   if (!kind) return tell(Severity::error, "arguments", call.location, "comp takes f, e, fe, v, fv, g, m or h", "comp");
   const bool keep = operands_.size() > 1 && operands_[1].word == "noAlign";
+  keep_occluder(work.shape, work.lineage);
   const ComponentSplit split =
       components(work.shape, *kind, keep ? ComponentAlignment::none : ComponentAlignment::z_up);
   run_selectors(program_.unit(place.module).blocks[call.block], split, work, place);
@@ -252,7 +259,7 @@ std::vector<int> Run::edges_by_item(const Block& block, const ComponentSplit& ed
 std::string Run::selector_text(NodeId id, const Place& place) const {
   const Unit& unit = program_.unit(place.module);
   const Expression& e = unit.expressions[id];
-  return e.kind == ExpressionKind::name ? unit.name(e.name) : std::string();
+  return e.kind == ExpressionKind::name && !without_selector(unit.name(e.name)) ? unit.name(e.name) : std::string();
 }
 
 void Run::run_strips(const Call& call, const std::vector<int>& chosen_by, const std::vector<double>& distances,

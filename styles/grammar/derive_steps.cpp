@@ -36,6 +36,7 @@ void Run::execute(NodeId id, Work& work, Place& place, bool last) {
         inner.shape = work.shape;
         inner.base = &work.shape;
         inner.seeds = work.seeds;
+        inner.lineage = work.lineage;
         Place there = place;
         there.shape = &inner.shape;
         execute(step.successor, inner, there, true);
@@ -109,6 +110,7 @@ void Run::execute_symbol(const Call& call, const Target& found, Work& work, Plac
          child.symbol);
     return;
   }
+  child.lineage = child_lineage(work);
   const std::uint64_t seed = child_seed(work);
   Location location = call.location;
   const auto number = static_cast<std::uint32_t>(links_.size());
@@ -128,7 +130,7 @@ void Run::execute_symbol(const Call& call, const Target& found, Work& work, Plac
   if (child.definition != kNone)
     next_.push_back(std::move(child));
   else
-    leave_leaf(std::move(child.symbol), std::move(child.shape), location, number);
+    leave_leaf(std::move(child.symbol), std::move(child.shape), location, number, child.lineage);
 }
 
 void Run::execute_order(const Call& call, Work& work, Place& place) {
@@ -141,9 +143,10 @@ void Run::execute_order(const Call& call, Work& work, Place& place) {
   locals_.resize(first);
   work.produced = true;
   Shape shape = work.shape;
+  const std::uint32_t lineage = child_lineage(work);
   shape.seed = child_seed(work);
   shape.draws = 0;
-  leave_leaf(name, std::move(shape), call.location, node_->number, std::move(order));
+  leave_leaf(name, std::move(shape), call.location, node_->number, lineage, std::move(order));
 }
 
 void Run::evaluate_operation_arguments(const Call& call, Place& place) {
@@ -173,6 +176,7 @@ void Run::evaluate_operation_arguments(const Call& call, Place& place) {
 }
 
 void Run::execute_operation(const Call& call, std::uint32_t number, Work& work, Place& place) {
+  if (without(number)) return;
   const BuiltInActions& actions = built_in_actions();
   if (const SpecialStep special = actions.special_steps[number]) return (this->*special)(call, work, place);
   const OperationEntry& entry = *actions.operations[number];
@@ -180,6 +184,8 @@ void Run::execute_operation(const Call& call, std::uint32_t number, Work& work, 
     tell(Severity::warning, "not_yet", call.location,
          "this operation is not there in full: something simple stands in for it", std::string(entry.name));
   evaluate_operation_arguments(call, place);
+  // offset(d, inside) takes a part: what was there before stays for context queries (cga.md §4.6).
+  if (recorded_ != nullptr && entry.name == "offset" && operands_.size() > 1) keep_occluder(work.shape, work.lineage);
   const auto given = static_cast<int>(operands_.size());
   if (given < entry.least || given > entry.most)
     return tell(Severity::error, "arguments", call.location,
@@ -239,9 +245,10 @@ void Run::step_print(const Call& call, Work&, Place& place) {
   out_.prints.push_back(value_text(evaluate(given[0].value, place)));
 }
 
-/// Labels matter to context queries only, which have default answers.
-void Run::step_label(const Call& call, Work&, Place& place) {
-  for (const ArgumentNode& argument : arguments(call.arguments, place)) evaluate(argument.value, place);
+/// Labels matter to context queries only.
+void Run::step_label(const Call& call, Work& work, Place& place) {
+  for (const ArgumentNode& argument : arguments(call.arguments, place))
+    keep_occluder(work.shape, work.lineage, text(argument.value, place));
 }
 
 }  // namespace blockrand::grammar

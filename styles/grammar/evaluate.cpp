@@ -5,6 +5,7 @@
 #include "pipeline/base/random.h"
 #include "styles/grammar/arrays.h"
 #include "styles/grammar/run.h"
+#include "styles/grammar/scope.h"
 #include "styles/grammar/value_text.h"
 
 namespace blockrand::grammar {
@@ -221,6 +222,7 @@ Value Run::evaluate_name(const Expression& e, Place& place) {
       return call_own(e, found, place);
     case TargetKind::word: {
       const std::string& name = program_.unit(place.module).name(e.name);
+      if (place.component != nullptr && without_selector(name)) return false;
       if (place.component != nullptr)
         if (const auto selector = selector_of_word(name))
           return selected(*place.component->split, place.component->item, *selector);
@@ -262,15 +264,40 @@ Value Run::read_attribute_slot(std::uint32_t slot, Place& place) {
   return (*place.shape->attributes)[slot];
 }
 
+namespace {
+
+/// What a name gives that does nothing: the default of the type that it has otherwise.
+Value nothing_of(const BuiltIn& entry) {
+  const auto all = signatures(entry);
+  switch (all.empty() ? 'n' : all.front().result) {
+    case 'b':
+      return default_value(Type::truth);
+    case 's':
+      return default_value(Type::text);
+    case 'N':
+      return default_value(Type::number_array);
+    case 'B':
+      return default_value(Type::truth_array);
+    case 'S':
+      return default_value(Type::text_array);
+    default:
+      return 0.0;
+  }
+}
+
+}  // namespace
+
 Value Run::read_shape_attribute(const Expression& e, std::uint32_t number, Place& place) {
+  if (without(number)) return nothing_of(built_ins()[number]);
   if (const auto read = built_in_actions().attributes[number]) return read(*place.shape);
   const std::string_view name = built_ins()[number].name;
   if (name.starts_with("initialShape.")) {
     if (name == "initialShape.name") return options_.shape_name;
     if (name == "initialShape.startRule" || name == "initialShape.symbol") return start_name_;
-    // Its origin is the pivot of the initial shape.
-    const std::string pivot = "pivot." + std::string(name.substr(name.rfind('.') + 1));
-    return read_attribute(initial_, pivot).value_or(0.0);
+    // Its origin in the world: where the first edge begins, and how the object's axes are turned.
+    const Frame frame = object_in_world(initial_);
+    const bool place_asked = name[name.size() - 2] == 'p';
+    return component(place_asked ? frame.origin : angles_of_axes(frame.axes), name.back() - 'x');
   }
   if (name == "uid") return static_cast<double>(place.rule != nullptr ? place.rule->node : 0);
   // A name below "material." that the table does not list.
@@ -281,6 +308,7 @@ Value Run::read_shape_attribute(const Expression& e, std::uint32_t number, Place
 }
 
 Value Run::call_function(const Expression& e, const Target& found, Place& place) {
+  if (without(found.index)) return nothing_of(built_ins()[found.index]);
   const BuiltInActions& actions = built_in_actions();
   if (const SpecialFunction special = actions.special_functions[found.index]) return (this->*special)(e, place);
   const auto overloads = actions.functions[found.index];
@@ -330,7 +358,7 @@ Value Run::call_own(const Expression& e, const Target& found, Place& place) {
   } else {
     const Definition& definition = program_.definitions[chosen];
     const Declaration& declaration = program_.declaration(definition);
-    Place inner{definition.module, first, place.shape, place.rule, false, nullptr};
+    Place inner{definition.module, first, place.shape, place.rule, false, nullptr, place.lineage};
     ++function_depth_;
     push_bindings(declaration, inner);
     if (declaration.value != kNone) out = evaluate(declaration.value, inner);

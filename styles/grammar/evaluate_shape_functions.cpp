@@ -108,6 +108,47 @@ Value Run::geometry_uv(const Expression& e, Place& place) {
   return name.ends_with("Min") ? geometry_uv_minimum(*place.shape, v, set) : geometry_uv_maximum(*place.shape, v, set);
 }
 
+/// inside, overlaps, touches, minimumDistance, contextCount: from what the first derivation left (cga.md §4.6). Shapes
+/// do not ask about their ancestors and descendants. There are no neighbours in a derivation: `inter` finds nothing.
+Value Run::context_query(const Expression& e, Place& place) {
+  const std::string_view name = built_ins()[target(place.module, e.use).index].name;
+  std::string goal = "all", label;
+  bool goal_given = false;
+  for (const ArgumentNode& argument : arguments(e.arguments, place)) {
+    const std::string given = text(argument.value, place);
+    if (!goal_given && (given == "intra" || given == "inter" || given == "all")) {
+      goal = given;
+      goal_given = true;
+    } else {
+      label = given;
+    }
+  }
+  if (recorded_ != nullptr && goal != "inter") recorded_->asked = true;
+  if (known_ == nullptr || goal == "inter") return context_default(e, place);
+  const std::vector<std::uint32_t> way = way_of(place.lineage);
+  const auto related = [&](const Occluder& other) {
+    const std::size_t shared = std::min(way.size(), other.lineage.size());
+    return std::equal(way.begin(), way.begin() + static_cast<std::ptrdiff_t>(shared), other.lineage.begin());
+  };
+  const bool by_distance = name == "minimumDistance", by_count = name == "contextCount";
+  const Mesh mesh = by_distance || by_count ? Mesh() : mesh_in_world(*place.shape);
+  const auto corners = scope_corners(*place.shape);
+  double nearest = std::numeric_limits<double>::infinity();
+  double count = 0;
+  for (const Occluder& other : known_->occluders) {
+    if ((!label.empty() && other.label != label) || related(other)) continue;
+    if (by_count)
+      ++count;
+    else if (by_distance)
+      nearest = std::min(nearest, box_distance(corners, other.scope_corners));
+    else if (name == "inside"     ? is_inside(mesh, other)
+             : name == "overlaps" ? overlaps(mesh, other)
+                                  : touches(mesh, other))
+      return true;
+  }
+  return by_count ? Value(count) : by_distance ? Value(nearest) : Value(false);
+}
+
 /// As if nothing stood near (cga.md §4.6, first pass).
 Value Run::context_default(const Expression& e, Place& place) {
   const std::string_view name = built_ins()[target(place.module, e.use).index].name;
@@ -198,6 +239,8 @@ Value Run::evaluate_component_map(const Expression& e, Place& place) {
     tell(Severity::error, "value", e.location, "comp takes f, e, fe, v, fv, g, m or h");
     return NumberArray{};
   }
+  if (options_.without != nullptr && options_.without->kind == NameKind::function && options_.without->name == "comp")
+    return NumberArray{};
   const ComponentSplit split = components(*place.shape, *kind);
   std::vector<bool> taken(split.items.size(), false);
   std::vector<std::optional<Value>> values(split.items.size());
@@ -286,11 +329,11 @@ const BuiltInActions& built_in_actions() {
         {"geometry.vMax", &Run::geometry_uv},
         {"isTagged", &Run::tagged},
         {"comp", &Run::component_words},
-        {"inside", &Run::context_default},
-        {"overlaps", &Run::context_default},
-        {"touches", &Run::context_default},
-        {"minimumDistance", &Run::context_default},
-        {"contextCount", &Run::context_default},
+        {"inside", &Run::context_query},
+        {"overlaps", &Run::context_query},
+        {"touches", &Run::context_query},
+        {"minimumDistance", &Run::context_query},
+        {"contextCount", &Run::context_query},
         {"contextCompare", &Run::context_default},
         {"getGeoCoord", &Run::context_default},
         {"convert", &Run::convert_coordinates},

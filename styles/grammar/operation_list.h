@@ -67,7 +67,9 @@ BLOCKRAND_OPERATION(run_cleanup_geometry);
 BLOCKRAND_OPERATION(run_convexify);
 BLOCKRAND_OPERATION(run_rectify);
 BLOCKRAND_OPERATION(run_footprint);
-BLOCKRAND_OPERATION(run_shading);  // setNormals, softenNormals: faces here are flat shaded, the geometry is what it was
+BLOCKRAND_OPERATION(run_shading);  // softenNormals: faces here are flat shaded, the geometry is what it was
+// normals.cpp
+BLOCKRAND_OPERATION(run_set_normals);
 // materials.cpp
 BLOCKRAND_OPERATION(run_color);
 BLOCKRAND_OPERATION(run_texture);

@@ -74,7 +74,7 @@ constexpr BuiltIn kRows[] = {
     operation("deleteHoles", "", d),
     operation("reverseNormals", "", d, 56),
     operation("setNormals", "<normals>", d, 5),
-    operation("softenNormals", "n", d),
+    missing("softenNormals", "n", d),
     operation("rectify", "n", d),
     missing("reduceGeometry", "n", g, 4),
     operation("resetGeometry", "", d),

@@ -57,7 +57,7 @@ constexpr OperationEntry kOperations[] = {
     {"rotateUV", 2, 2, 0, run_rotate_uv},
     {"s", 3, 3, 0, run_s},
     {"scaleUV", 3, 3, 0, run_scale_uv},
-    {"setNormals", 1, 1, kFirst, run_shading},
+    {"setNormals", 1, 1, kFirst, run_set_normals},
     {"setPivot", 2, 2, kFirst, run_set_pivot},
     {"setupProjection", 4, 7, kSecond, run_setup_projection},
     {"softenNormals", 1, 1, 0, run_shading},

@@ -13,6 +13,7 @@
 #include "styles/grammar/derive.h"
 #include "styles/grammar/operations.h"
 #include "styles/grammar/split.h"
+#include "styles/grammar/surroundings.h"
 
 namespace blockrand::grammar {
 
@@ -40,6 +41,7 @@ struct Place {
   const RuleContext* rule = nullptr;  ///< null in the attribute phase
   bool own_text = false;              ///< the rule's own successor, not a function that it calls
   const ComponentTest* component = nullptr;
+  std::uint32_t lineage = kNone;  ///< of the shape, in Run::lineages_
 };
 
 /// A shape that waits for its rule.
@@ -50,15 +52,17 @@ struct Node {
   std::string symbol;
   std::vector<Value> arguments;
   Location location;
+  std::uint32_t lineage = kNone;  ///< in Run::lineages_
 };
 
 /// What the steps of a rule, or of a block's item, work on.
 struct Work {
-  Shape shape;                  ///< the current shape
-  const Shape* base = nullptr;  ///< the previous one on the stack
-  std::uint32_t seeds = 0;      ///< children and pieces made: their seeds go by it
-  bool alive = true;            ///< false after NIL
-  bool produced = false;        ///< a child was made, or pieces were
+  Shape shape;                    ///< the current shape
+  const Shape* base = nullptr;    ///< the previous one on the stack
+  std::uint32_t seeds = 0;        ///< children and pieces made: their seeds go by it
+  bool alive = true;              ///< false after NIL
+  bool produced = false;          ///< a child was made, or pieces were
+  std::uint32_t lineage = kNone;  ///< in Run::lineages_
 };
 
 class Run;
@@ -76,6 +80,12 @@ struct BuiltInActions {
 };
 const BuiltInActions& built_in_actions();
 
+/// What the first of two derivations leaves for context queries of the second (cga.md §4.6).
+struct Surroundings {
+  std::vector<Occluder> occluders;
+  bool asked = false;  ///< a query was made that the occluders answer
+};
+
 /// What is known of a program before it runs.
 struct RuleFacts {
   Consistency consistency = Consistency::none;
@@ -86,12 +96,17 @@ class Run {
  public:
   Run(const Program& program, const std::vector<RuleFacts>& facts, const Shape& initial, const DeriveOptions& options);
   Derivation go();
+  /// Before go(): the first derivation, whose queries have default answers, records what stands there; the second
+  /// answers from it.
+  void record(Surroundings& to) { recorded_ = &to; }
+  void answer_from(const Surroundings& from) { known_ = &from; }
 
   // Functions that need the shape (evaluate_shape_functions.cpp).
   Value geometry_number(const Expression& e, Place& place);
   Value geometry_truth(const Expression& e, Place& place);
   Value geometry_words(const Expression& e, Place& place);
   Value geometry_uv(const Expression& e, Place& place);
+  Value context_query(const Expression& e, Place& place);
   Value context_default(const Expression& e, Place& place);
   Value convert_coordinates(const Expression& e, Place& place);
   Value edge_attribute(const Expression& e, Place& place);
@@ -142,6 +157,12 @@ class Run {
   double draw_choice(const Location& location, Place& place);
   /// A bare word, or the text that stands for one; empty where the argument is something else.
   std::string_view word(const ArgumentNode& argument, Place& place);
+  /// Whether DeriveOptions::without takes this name out.
+  bool without(std::uint32_t number) const { return number == without_; }
+  bool without_selector(std::string_view name) const {
+    return options_.without != nullptr && options_.without->kind == NameKind::selector &&
+           options_.without->name == name;
+  }
   const Target& target(std::uint32_t module, UseId use) const { return program_.modules[module].targets[use]; }
   FunctionContext function_context(Place& place);
   void take_warnings(const Location& location);
@@ -169,9 +190,14 @@ class Run {
   void execute_order(const Call& call, Work& work, Place& place);
   void execute_operation(const Call& call, std::uint32_t number, Work& work, Place& place);
   void run_item(NodeId successor, Shape piece, Work& parent, Place& place);
-  void leave_leaf(std::string symbol, Shape shape, const Location& location, std::uint32_t node,
+  void leave_leaf(std::string symbol, Shape shape, const Location& location, std::uint32_t node, std::uint32_t lineage,
                   std::shared_ptr<const Order> order = nullptr);
   std::uint64_t child_seed(Work& work) const;
+  /// The lineage of the next child or piece of `work`; before child_seed().
+  std::uint32_t child_lineage(const Work& work);
+  std::vector<std::uint32_t> way_of(std::uint32_t lineage) const;
+  /// Keeps the shape for context queries: only while the first of two derivations runs.
+  void keep_occluder(const Shape& shape, std::uint32_t lineage, std::string label = {});
   void evaluate_operation_arguments(const Call& call, Place& place);
   std::vector<SplitItem> split_items(Range items, Place& place, std::vector<NodeId>& successors);
   /// Chooses among components, left to right, each taken once; calls `make` with each shape.
@@ -192,6 +218,7 @@ class Run {
   const Program& program_;
   const std::vector<RuleFacts>& facts_;
   const DeriveOptions& options_;
+  std::uint32_t without_ = kNone;
   Shape initial_;
   Derivation out_;
   std::vector<Node> level_, next_;
@@ -224,6 +251,9 @@ class Run {
     bool outside = true;
   };
   AttributePhase* phase_ = nullptr;
+  Surroundings* recorded_ = nullptr;
+  const Surroundings* known_ = nullptr;
+  std::vector<Link> lineages_;  ///< of every child and piece, while somebody asks for surroundings
 };
 
 }  // namespace blockrand::grammar

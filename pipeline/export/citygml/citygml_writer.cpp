@@ -50,9 +50,11 @@ Envelope envelope(const model::Region& region, int lod) {
         for (const model::Point3& p : part.lod1.vertices) box.add(p);
       if (lod >= 2)
         for (const model::Point3& p : part.lod2.vertices) box.add(p);
-      if (lod >= 3)
-        for (const model::WallInstallation& body : part.lod3.installations)
-          for (const model::Point3& p : body.solid.vertices) box.add(p);
+      if (lod < 3) continue;
+      for (const model::WallInstallation& body : part.lod3.installations)
+        for (const model::Point3& p : body.solid.vertices) box.add(p);
+      for (const model::RoofInstallation& body : part.lod3.roof_installations)
+        for (const model::Point3& p : body.solid.vertices) box.add(p);
     }
   }
   return box;
@@ -371,13 +373,16 @@ class BuildingText {
       implicit(p);
       out_ += "</bldg:BuildingInstallation></bldg:outerBuildingInstallation>\n";
     }
-    for (const model::WallInstallation& body : lod3.installations) {
-      const std::string body_id = open_installation(id, number++, body.kind);
+    const auto body_of_its_own = [&](const model::Solid& solid, std::string_view kind) {
+      const std::string body_id = open_installation(id, number++, kind);
       out_ += "<bldg:lod3Geometry>";
-      geometry_.multi_surface(body.solid, body_id);
+      geometry_.multi_surface(solid, body_id);
       out_ += "</bldg:lod3Geometry>\n</bldg:BuildingInstallation></bldg:outerBuildingInstallation>\n";
-      looks_.add(body.solid, body_id);
-    }
+      looks_.add(solid, body_id);
+    };
+    for (const model::WallInstallation& body : lod3.installations) body_of_its_own(body.solid, body.kind);
+    for (const model::RoofInstallation& body : lod3.roof_installations)
+      body_of_its_own(body.solid, model::name(body.kind));
     geometry_.surfaces(part.lod2, lod3, id, [&](std::size_t o) {
       if (in_opening[o]) implicit(*in_opening[o]);
     });

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "pipeline/export/materials.h"
 #include "pipeline/export/text.h"
 
 namespace blockrand::export_ {
@@ -246,12 +245,11 @@ void GeometryText::multi_surface(const model::ElementMesh& mesh, std::string_vie
       const model::Point3& p = mesh.vertices[mesh.indices[face.first + (i == face.count ? 0 : i)]];
       if (i) out_ += ' ';
       // y up and z out of the wall become z up and y into it, which keeps the frame right-handed.
-      const auto tenths_of_mm = [](double metres) { return static_cast<int>(std::nearbyint(metres * 10000)); };
-      append_ten_thousandths(out_, tenths_of_mm(p.x));
+      append_four_decimals(out_, p.x);
       out_ += ' ';
-      append_ten_thousandths(out_, tenths_of_mm(0.0 - p.z));
+      append_four_decimals(out_, 0.0 - p.z);
       out_ += ' ';
-      append_ten_thousandths(out_, tenths_of_mm(p.y));
+      append_four_decimals(out_, p.y);
     }
     out_ += "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>\n";
   }

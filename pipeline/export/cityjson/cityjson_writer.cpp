@@ -122,6 +122,11 @@ Extent extent_of(const model::Region& region, const CityJsonOptions& options, co
         for (const model::Point2& p : part.plan.outer.points) extent.add(origin.steps({p.x, p.y, z}));
       if (options.lod >= 1 && part.lod >= 1) add_solid(part.lod1);
       if (options.lod >= 2 && part.lod >= 2) add_solid(part.lod2);
+      if (options.lod < 3 || part.lod < 3 || part.lod3.solid.empty()) continue;
+      add_solid(part.lod3.solid);
+      for (const model::WallInstallation& body : part.lod3.installations) add_solid(body.solid);
+      for (const model::RoofInstallation& body : part.lod3.roof_installations) add_solid(body.solid);
+      for (const model::Placement& p : part.lod3.placements) extent.add(origin.steps(p.origin));
     }
   }
   return extent;
@@ -135,13 +140,24 @@ void write_cityjson_sequence(const model::Region& region, const CityJsonOptions&
   append_transform(out, origin);
   append_member(out, "metadata");
   append_metadata(out, options, extent_of(region, options, origin), origin);
+  std::vector<std::uint8_t> class_of(region.materials.size());
+  std::iota(class_of.begin(), class_of.end(), std::uint8_t{0});
+  // Templates stand in the first line for all features, with an appearance of their own.
+  MaterialNumbers template_materials;
+  TemplateTable template_table(template_materials);
+  std::vector<std::uint32_t> templates;
+  if (options.lod >= 3) templates = template_table.add(region, class_of);
+  if (!template_table.empty()) {
+    append_member(out, "geometry-templates");
+    template_table.append(out);
+    append_member(out, "appearance");
+    append_appearance(out, template_materials, region.materials);
+  }
   out += ",\"CityObjects\":{},\"vertices\":[]}\n";
 
   VertexTable vertices;
   MaterialNumbers materials;
-  ObjectText text(region, options, origin, vertices, materials);
-  std::vector<std::uint8_t> class_of(region.materials.size());
-  std::iota(class_of.begin(), class_of.end(), std::uint8_t{0});
+  ObjectText text(region, options, origin, vertices, materials, templates);
   for (const model::Building& building : region.buildings) {
     if (!is_written(building)) continue;
     vertices.clear();
@@ -183,6 +199,7 @@ struct SingleCityJson::State {
   bool started = false, empty = true;
   VertexTable vertices;
   MaterialNumbers materials;
+  TemplateTable templates{materials};
   std::vector<model::MaterialClass> classes;  ///< of all regions, in order of first appearance
   std::string out = "{\"type\":\"CityJSON\",\"version\":\"2.0\",\"CityObjects\":{";
 
@@ -217,7 +234,9 @@ void SingleCityJson::add(const model::Region& region) {
   if (!s.started) s.origin = origin_of(region);
   s.started = true;
   const std::vector<std::uint8_t> class_of = s.classes_of(region);
-  ObjectText text(region, s.options, s.origin, s.vertices, s.materials);
+  std::vector<std::uint32_t> templates;
+  if (s.options.lod >= 3) templates = s.templates.add(region, class_of);
+  ObjectText text(region, s.options, s.origin, s.vertices, s.materials, templates);
   for (const model::Building& building : region.buildings) {
     if (!is_written(building)) continue;
     if (!s.empty) s.out += ",\n";
@@ -242,6 +261,10 @@ void SingleCityJson::finish() {
   if (!s.materials.keys().empty()) {
     s.out += ",\n\"appearance\":";
     append_appearance(s.out, s.materials, s.classes);
+  }
+  if (!s.templates.empty()) {
+    s.out += ",\n\"geometry-templates\":";
+    s.templates.append(s.out);
   }
   s.out += ",\n\"transform\":";
   append_transform(s.out, s.origin);

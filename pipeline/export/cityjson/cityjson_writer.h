@@ -27,7 +27,9 @@ struct CityJsonOptions {
 ///
 /// Ids are those of CityGML: a Building, and unless its single part has its id, a BuildingPart per part. Each level of
 /// detail that a part has reached, up to `lod`, is written: the footprint at ground height as a MultiSurface of LoD 0,
-/// Solids of LoD 1 and 2; that of LoD 2 with semantics, the highest one with materials of the theme "visual".
+/// Solids of LoD 1 to 3; those of LoD 2 and 3 with semantics, the highest block and those with materials of the theme
+/// "visual". Windows and doors of LoD 3 are children of their wall's surface; elements are instances of geometry
+/// templates in a BuildingInstallation for each kind of a part, chimneys, cornices and the like are one each.
 /// Attributes are named as in model::for_each_attribute, each with `<attribute>_source` and `<attribute>_confidence`;
 /// beside them stand those that other CityJSON files have (measuredHeight, storeysAboveGround, function, roofType …,
 /// codes as in CityGML); OSM tags are `osm.<key>`.

@@ -9,9 +9,6 @@
 namespace blockrand::export_ {
 namespace {
 
-constexpr std::string_view kSurfaceNames[model::kSurfaceKindCount] = {
-    "GroundSurface",       "WallSurface",    "RoofSurface", "OuterCeilingSurface",
-    "OuterFloorSurface",   "ClosureSurface", "Window",      "Door"};
 constexpr std::uint32_t kUnknown = 0xffffffff;
 
 void append_index(std::string& out, std::uint32_t index) {
@@ -90,13 +87,15 @@ void append_appearance(std::string& out, const MaterialNumbers& numbers,
 }
 
 ObjectText::ObjectText(const model::Region& region, const CityJsonOptions& options, const GridOrigin& origin,
-                       VertexTable& vertices, MaterialNumbers& materials)
+                       VertexTable& vertices, MaterialNumbers& materials,
+                       const std::vector<std::uint32_t>& templates)
     : region_(region),
       options_(options),
       origin_(origin),
       vertices_(vertices),
       materials_(materials),
-      tags_(region.extract) {}
+      tags_(region.extract),
+      templates_(templates) {}
 
 void ObjectText::append(std::string& out, const model::Building& building, const std::vector<std::uint8_t>& class_of) {
   out_ = &out;
@@ -107,16 +106,25 @@ void ObjectText::append(std::string& out, const model::Building& building, const
   append_json(out, id);
   out += ":{\"type\":\"Building\"";
   object(building, single ? &building.parts.front() : nullptr, true);
+  const auto children = [&](const std::vector<std::string>& ids) {
+    if (ids.empty()) return;
+    out += ",\"children\":[";
+    for (const std::string& child : ids) {
+      if (&child != &ids.front()) out += ',';
+      append_json(out, child);
+    }
+    out += ']';
+  };
   if (single) {
+    children(installation_ids(building.parts.front(), id));
     out += '}';
+    installations(building.parts.front(), id);
     return;
   }
-  out += ",\"children\":[";
-  for (const model::BuildingPart& part : building.parts) {
-    if (&part != &building.parts.front()) out += ',';
-    append_json(out, part_id(part));
-  }
-  out += "]}";
+  std::vector<std::string> part_ids;
+  for (const model::BuildingPart& part : building.parts) part_ids.push_back(part_id(part));
+  children(part_ids);
+  out += '}';
   for (const model::BuildingPart& part : building.parts) {
     out += ',';
     append_json(out, part_id(part));
@@ -124,7 +132,9 @@ void ObjectText::append(std::string& out, const model::Building& building, const
     append_json(out, id);
     out += ']';
     object(building, &part, false);
+    children(installation_ids(part, part_id(part)));
     out += '}';
+    installations(part, part_id(part));
   }
 }
 
@@ -255,6 +265,7 @@ void ObjectText::geometry(const model::BuildingPart& part) {
   if (part.plan.outer.size() >= 3) footprint(part);
   if (lod1) solid(part.lod1, 1, !lod2);
   if (lod2) solid(part.lod2, 2, true);
+  if (lod2 && has_detail(part)) detail_solid(part.lod3);
   *out_ += ']';
 }
 
@@ -285,10 +296,38 @@ void ObjectText::solid(const model::Solid& solid, int lod, bool materials) {
   std::string& out = *out_;
   if (!first_) out += ',';
   first_ = false;
-  numbers_.assign(solid.vertices.size(), kUnknown);
   out += "{\"type\":\"Solid\",\"lod\":\"";
   out += static_cast<char>('0' + lod);
-  out += "\",\"boundaries\":[[";
+  out += '"';
+  boundaries(solid);
+  if (lod >= 2) {
+    // One semantic object per kind, in order of first appearance.
+    std::uint32_t number[model::kSurfaceKindCount], count = 0;
+    std::fill(std::begin(number), std::end(number), kUnknown);
+    out += ",\"semantics\":{\"surfaces\":[";
+    for (const model::Face& face : solid.faces) {
+      std::uint32_t& n = number[static_cast<std::size_t>(face.kind)];
+      if (n != kUnknown) continue;
+      out += count ? ",{\"type\":\"" : "{\"type\":\"";
+      out += semantic_name(face.kind);
+      out += "\"}";
+      n = count++;
+    }
+    out += "],\"values\":[[";
+    for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+      if (f) out += ',';
+      append_index(out, number[static_cast<std::size_t>(solid.faces[f].kind)]);
+    }
+    out += "]]}";
+  }
+  if (materials) solid_material(solid);
+  out += '}';
+}
+
+void ObjectText::boundaries(const model::Solid& solid) {
+  std::string& out = *out_;
+  numbers_.assign(solid.vertices.size(), kUnknown);
+  out += ",\"boundaries\":[[";
   for (std::size_t f = 0; f < solid.faces.size(); ++f) {
     out += f ? ",[" : "[";
     bool first_loop = true;
@@ -307,39 +346,19 @@ void ObjectText::solid(const model::Solid& solid, int lod, bool materials) {
     out += ']';
   }
   out += "]]";
-  const auto per_face = [&](const auto& number_of) {
-    for (std::size_t f = 0; f < solid.faces.size(); ++f) {
-      if (f) out += ',';
-      append_index(out, number_of(solid.faces[f]));
-    }
-  };
-  if (lod >= 2) {
-    // One semantic object per kind, in order of first appearance.
-    std::uint32_t number[model::kSurfaceKindCount], count = 0;
-    std::fill(std::begin(number), std::end(number), kUnknown);
-    out += ",\"semantics\":{\"surfaces\":[";
-    for (const model::Face& face : solid.faces) {
-      std::uint32_t& n = number[static_cast<std::size_t>(face.kind)];
-      if (n != kUnknown) continue;
-      out += count ? ",{\"type\":\"" : "{\"type\":\"";
-      out += kSurfaceNames[static_cast<std::size_t>(face.kind)];
-      out += "\"}";
-      n = count++;
-    }
-    out += "],\"values\":[[";
-    per_face([&](const model::Face& face) { return number[static_cast<std::size_t>(face.kind)]; });
-    out += "]]}";
+}
+
+void ObjectText::solid_material(const model::Solid& solid) {
+  std::string& out = *out_;
+  out += ",\"material\":{\"";
+  out += kVisualTheme;
+  out += "\":{\"values\":[[";
+  for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+    if (f) out += ',';
+    const model::Face& face = solid.faces[f];
+    append_index(out, materials_.number(MaterialNumbers::key(class_of_->at(face.material), face.colour)));
   }
-  if (materials) {
-    out += ",\"material\":{\"";
-    out += kVisualTheme;
-    out += "\":{\"values\":[[";
-    per_face([&](const model::Face& face) {
-      return materials_.number(MaterialNumbers::key(class_of_->at(face.material), face.colour));
-    });
-    out += "]]}}";
-  }
-  out += '}';
+  out += "]]}}";
 }
 
 }  // namespace blockrand::export_

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/export/cityjson/cityjson_writer.h"
+#include "pipeline/export/cityjson/template_table.h"
 #include "pipeline/export/cityjson/vertex_table.h"
 #include "pipeline/export/materials.h"
 #include "pipeline/export/text.h"
@@ -37,12 +38,16 @@ void append_appearance(std::string& out, const MaterialNumbers& numbers,
 /// Whether the model has this building: it is owned by the tile and something of it could be built.
 inline bool is_written(const model::Building& building) { return building.owned && !building.parts.empty(); }
 
+/// "WallSurface" and so on.
+std::string_view semantic_name(model::SurfaceKind kind);
+
 /// Puts the text of city objects together by hand, as the CityGML writer does. Vertices and materials are numbered in
 /// the tables of the caller, who writes them when a feature or the file ends.
 class ObjectText {
  public:
+  /// \param templates  the number of each element's template, by element; outlives the object
   ObjectText(const model::Region& region, const CityJsonOptions& options, const GridOrigin& origin,
-             VertexTable& vertices, MaterialNumbers& materials);
+             VertexTable& vertices, MaterialNumbers& materials, const std::vector<std::uint32_t>& templates);
 
   /// Appends `"w1":{…},"w1.w2":{…}`. Material classes are numbered by `class_of[Face::material]`.
   void append(std::string& out, const model::Building& building, const std::vector<std::uint8_t>& class_of);
@@ -53,6 +58,16 @@ class ObjectText {
   void standard_attributes(const model::Attributes& a, model::Range tags, const model::BuildingPart* part);
   void address(model::Range tags);
   void geometry(const model::BuildingPart& part);
+  bool has_detail(const model::BuildingPart& part) const {
+    return options_.lod >= 3 && part.lod >= 3 && !part.lod3.solid.empty();
+  }
+  void detail_solid(const model::Detail& detail);
+  std::vector<std::string> installation_ids(const model::BuildingPart& part, const std::string& id) const;
+  void installations(const model::BuildingPart& part, const std::string& id);
+  void open_installation(const std::string& id, const std::string& parent, std::string_view kind);
+  void instance(const model::Placement& placement);
+  void boundaries(const model::Solid& solid);
+  void solid_material(const model::Solid& solid);
   void footprint(const model::BuildingPart& part);
   void solid(const model::Solid& solid, int lod, bool materials);
   void ring(const model::Ring& ring, double z);
@@ -72,6 +87,7 @@ class ObjectText {
   VertexTable& vertices_;
   MaterialNumbers& materials_;
   TagReader tags_;
+  const std::vector<std::uint32_t>& templates_;
   std::string* out_ = nullptr;
   const std::vector<std::uint8_t>* class_of_ = nullptr;
   bool first_ = true;                   // no comma before the next member of the open object

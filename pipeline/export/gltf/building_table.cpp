@@ -1,8 +1,7 @@
 #include "pipeline/export/gltf/building_table.h"
 
-#include <tiny_gltf.h>
-
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "pipeline/export/text.h"
 
@@ -165,36 +164,36 @@ class Builder {
       fallbacks_ = 0, tags_column_ = 0, building_tags_ = 0, evidence_column_ = 0;
 };
 
-tinygltf::Value enumeration(std::vector<std::string_view> names, bool with_none) {
-  tinygltf::Value::Array values;
+nlohmann::json enumeration(std::vector<std::string_view> names, bool with_none) {
+  nlohmann::json values = nlohmann::json::array();
   const auto add = [&](std::string_view name, int value) {
-    tinygltf::Value::Object entry;
-    entry.emplace("name", tinygltf::Value(std::string(name)));
-    entry.emplace("value", tinygltf::Value(value));
-    values.emplace_back(std::move(entry));
+    nlohmann::json entry;
+    entry.emplace("name", std::string(name));
+    entry.emplace("value", value);
+    values.push_back(std::move(entry));
   };
   for (std::size_t i = 0; i < names.size(); ++i) add(names[i], static_cast<int>(i));
   if (with_none) add("none", kNone);
-  tinygltf::Value::Object object;
-  object.emplace("valueType", tinygltf::Value(std::string("UINT8")));
-  object.emplace("values", tinygltf::Value(std::move(values)));
-  return tinygltf::Value(std::move(object));
+  nlohmann::json object;
+  object.emplace("valueType", std::string("UINT8"));
+  object.emplace("values", std::move(values));
+  return object;
 }
 
 }  // namespace
 
 PropertyTable building_table(const model::Region& region, bool evidence) { return Builder(region, evidence).build(); }
 
-tinygltf::Value building_enums() {
+nlohmann::json building_enums() {
   std::vector<std::string_view> sources;
   for (int i = 0; i < model::kSourceCount; ++i) sources.push_back(model::name(static_cast<model::Source>(i)));
-  tinygltf::Value::Object enums;
+  nlohmann::json enums;
   enums.emplace("Source", enumeration(std::move(sources), true));
   enums.emplace("RoofShape",
                 enumeration({std::begin(model::kRoofShapeNames), std::end(model::kRoofShapeNames)}, false));
   enums.emplace("RoofOrientation", enumeration({"along", "across"}, false));
   enums.emplace("OsmType", enumeration({"node", "way", "relation"}, false));
-  return tinygltf::Value(std::move(enums));
+  return enums;
 }
 
 }  // namespace blockrand::export_

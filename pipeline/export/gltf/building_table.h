@@ -17,6 +17,6 @@ inline constexpr const char* kBuildingClass = "building_part";
 PropertyTable building_table(const model::Region& region, bool evidence);
 
 /// The "enums" of the schema: Source, RoofShape, RoofOrientation, OsmType.
-tinygltf::Value building_enums();
+nlohmann::json building_enums();
 
 }  // namespace blockrand::export_

@@ -26,16 +26,21 @@ class PartBuilder {
     if (!(length > 0)) return;
     const auto quantise = [&](double v) { return static_cast<std::int8_t>(std::nearbyint(v / length * 127)); };
     const std::array<std::int8_t, 3> normal{quantise(nx), quantise(ny), quantise(nz)};
+    if (pieces.empty() || pieces.back().vertices.size() + corners.size() > ElementGeometry::kMostVertices) {
+      pieces.emplace_back();
+      known_.clear();
+    }
     std::vector<std::uint32_t> at;
     const Point3 exact{nx / length, ny / length, nz / length};
     for (const Point3& p : corners) at.push_back(vertex(p, normal, exact));
+    auto& indices = pieces.back().indices;
     for (std::size_t i = 2; i < at.size(); ++i) indices.insert(indices.end(), {at[0], at[i - 1], at[i]});
   }
-  std::vector<ElementVertex> vertices;
-  std::vector<std::uint32_t> indices;
+  std::vector<ElementGeometry::PartTriangles> pieces;  ///< several where one would be too large
 
  private:
   std::uint32_t vertex(const Point3& p, std::array<std::int8_t, 3> normal, const Point3& exact) {
+    auto& vertices = pieces.back().vertices;
     const auto [place, added] = known_.try_emplace({p, normal}, static_cast<std::uint32_t>(vertices.size()));
     if (added) vertices.push_back({p, normal, exact});
     return place->second;
@@ -64,13 +69,18 @@ ElementGeometry element_geometry(const model::Element& element, bool with_reveal
     }
   }
   ElementGeometry out;
-  for (std::size_t i = 0; i < builders.size(); ++i) {
-    if (builders[i].indices.empty()) continue;
-    for (const ElementVertex& v : builders[i].vertices)
-      out.reach = std::max({out.reach, std::fabs(v.position.x), std::fabs(v.position.y), std::fabs(v.position.z)});
-    out.parts.push_back(
-        {static_cast<model::ElementPart>(i), std::move(builders[i].vertices), std::move(builders[i].indices)});
-  }
+  for (std::size_t i = 0; i < builders.size(); ++i)
+    for (ElementGeometry::PartTriangles& piece : builders[i].pieces) {
+      if (piece.indices.empty()) continue;
+      piece.part = static_cast<model::ElementPart>(i);
+      for (const ElementVertex& v : piece.vertices) {
+        const Point3& p = v.position;
+        const bool first = out.parts.empty() && &v == &piece.vertices.front();
+        out.min = first ? p : Point3{std::min(out.min.x, p.x), std::min(out.min.y, p.y), std::min(out.min.z, p.z)};
+        out.max = first ? p : Point3{std::max(out.max.x, p.x), std::max(out.max.y, p.y), std::max(out.max.z, p.z)};
+      }
+      out.parts.push_back(std::move(piece));
+    }
   return out;
 }
 

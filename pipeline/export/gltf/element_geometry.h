@@ -24,8 +24,10 @@ struct ElementGeometry {
     std::vector<ElementVertex> vertices;
     std::vector<std::uint32_t> indices;  ///< counter-clockwise from outside
   };
-  std::vector<PartTriangles> parts;  ///< in the order of ElementPart; none is empty
-  double reach = 0;                  ///< m, the largest coordinate
+  /// In the order of ElementPart; none is empty, none has more than kMostVertices.
+  std::vector<PartTriangles> parts;
+  model::Point3 min, max;  ///< m
+  static constexpr std::size_t kMostVertices = 65535;
 };
 
 /// \param with_reveal  also the strip from the wall to the opening's end, as part `wall`, which solids have as faces

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pipeline/export/frame.h"
+#include "pipeline/export/gltf/compression.h"
 #include "pipeline/export/gltf/instance_writer.h"
 #include "pipeline/model/region.h"
 
@@ -18,7 +19,8 @@ struct GlbOptions {
   std::string attribution;       ///< asset.copyright: "© OpenStreetMap contributors, ODbL 1.0"
   Frame frame;
   Instancing instancing = Instancing::ext;  ///< of what stands in facades, at LoD3
-  bool evidence = false;                    ///< also why each attribute has its value
+  Compression compression = Compression::none;
+  bool evidence = false;  ///< also why each attribute has its value
 };
 
 struct Glb {
@@ -31,12 +33,13 @@ struct Glb {
 
 /// The owned buildings of `region` as one GLB.
 ///
-/// One mesh with a primitive per material class, indexed, y up. Vertices are interleaved: POSITION (float, or 16-bit
-/// integers in steps of 1/4096 m where the whole mesh is smaller than 16 m), NORMAL (8 bits), COLOR_0 (16 bits, linear
-/// light) and _FEATURE_ID_0, the row of the part in the property table. Extensions: KHR_mesh_quantization (required),
-/// EXT_mesh_features, EXT_structural_metadata. Elements of LoD3 as GlbOptions::instancing says (instance_writer.h),
-/// with EXT_mesh_gpu_instancing (required) and EXT_instance_features. `asset.extras.georeference` says where on the
-/// Earth the mesh stands.
+/// One mesh, indexed, y up: a primitive for each material class, another for each colour of many vertices
+/// (MeshPrimitive). Attributes lie in streams of their own (glb_document.h): POSITION as floats that are multiples of
+/// 1/4096 m, NORMAL (8 bits), COLOR_0 (16 bits, linear light; where the material has no colour) and _FEATURE_ID_0, the
+/// row of the part in the property table. Extensions: KHR_mesh_quantization (required), EXT_mesh_features,
+/// EXT_structural_metadata. Elements of LoD3 as GlbOptions::instancing says (instance_writer.h), with
+/// EXT_mesh_gpu_instancing (required) and EXT_instance_features; with compression EXT_meshopt_compression (required).
+/// `asset.extras.georeference` says where on the Earth the mesh stands.
 ///
 /// The same region gives the same bytes. A region without parts gives a valid file with an empty scene.
 /// \throws std::length_error when the tile has more than 2^24 parts or 4 GB of data

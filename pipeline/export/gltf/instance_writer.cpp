@@ -1,296 +1,238 @@
 #include "pipeline/export/gltf/instance_writer.h"
 
-#include <tiny_gltf.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 
-#include "pipeline/export/gltf/linear_light.h"
-#include "pipeline/export/gltf/property_table.h"
+#include "pipeline/export/gltf/glb_document.h"
+#include "pipeline/export/gltf/material.h"
+#include "pipeline/export/gltf/stored_element.h"
 #include "pipeline/export/text.h"
 
 namespace blockrand::export_ {
 namespace {
 
-using Value = tinygltf::Value;
-using Object = Value::Object;
+void number(std::string& json, std::size_t value) { append_number(json, static_cast<std::int64_t>(value)); }
 
-constexpr double kStepsPerMetre = 4096;
-constexpr double kMostSteps = 32767;
-
-/// Bytes that become one buffer view.
-class Bytes {
- public:
-  template <class T>
-  std::size_t append(const T* values, std::size_t count) {
-    while (bytes_.size() % 4 != 0) bytes_.push_back(0);
-    const std::size_t at = bytes_.size();
-    bytes_.resize(at + count * sizeof(T));
-    std::memcpy(bytes_.data() + at, values, count * sizeof(T));
-    return at;
-  }
-  const std::vector<unsigned char>& bytes() const { return bytes_; }
-
- private:
-  std::vector<unsigned char> bytes_;
+/// A place as it is written.
+struct Place {
+  const ElementInstance* instance = nullptr;
+  double stretch = 1;
 };
 
-/// The accessors of one part's triangles.
-struct PartAccessors {
-  model::ElementPart part = model::ElementPart::frame;
-  int position = 0, normal = 0, indices = 0;
+/// All places of one mesh: of stored geometry in certain colours.
+struct PlacedMesh {
+  const model::ColouredElement* element = nullptr;  ///< the first of those that share it
+  int stored = 0;
+  std::vector<Place> places;
 };
-struct StoredGeometry {
-  std::vector<PartAccessors> parts;
-  bool quantised = false;
-  std::size_t triangles = 0;
-  double reach = 0;
-};
-
-double two_decimals(float value) {
-  return std::nearbyint(std::clamp(static_cast<double>(value), 0.0, 1.0) * 100) / 100;
-}
 
 class InstanceWriter {
  public:
-  InstanceWriter(tinygltf::Model& model, const model::Region& region, const char* label)
-      : model_(model), region_(region), label_(label) {
-    // Numbers of the views are known before their bytes are.
-    const int next = static_cast<int>(model.bufferViews.size());
-    vertex_view_ = next;
-    index_view_ = next + 1;
-    place_view_ = next + 2;
-  }
+  InstanceWriter(GlbDocument& document, const model::Region& region, std::size_t rows)
+      : document_(document), region_(region), elements_(document), wide_features_(rows > 0xFFFF) {}
 
   InstanceFigures write(const std::vector<InstanceGroup>& groups, Instancing how) {
-    InstanceFigures figures;
-    if (model_.scenes.empty()) {
-      model_.scenes.emplace_back();
-      model_.defaultScene = 0;
-    }
-    for (const InstanceGroup& group : groups) {
-      const model::ColouredElement& element = region_.elements.at(group.element);
-      const StoredGeometry& geometry = stored(element);
-      if (geometry.parts.empty()) continue;
-      const int mesh = add_mesh(element, geometry);
-      ++figures.elements;
-      figures.places += group.instances.size();
-      figures.triangles += geometry.triangles * group.instances.size();
-      for (const ElementInstance& at : group.instances) widen(figures, at.origin, geometry.reach);
+    for (const InstanceGroup& group : groups) collect(group);
+    for (const PlacedMesh& placed : meshes_) {
+      const int mesh = add_mesh(placed);
+      auto& children = children_[elements_[placed.stored].steps];
       if (how == Instancing::ext)
-        add_instanced_node(mesh, group, geometry);
+        children.push_back(add_instanced_node(mesh, placed));
       else
-        for (const ElementInstance& at : group.instances) add_node(mesh, at, geometry);
+        for (const Place& place : placed.places) children.push_back(add_node(mesh, place, placed));
     }
-    if (figures.elements == 0) return figures;
-    add_buffer_view(model_, vertices_.bytes().data(), vertices_.bytes().size(), TINYGLTF_TARGET_ARRAY_BUFFER,
-                    static_cast<int>(kStride));
-    add_buffer_view(model_, indices_.bytes().data(), indices_.bytes().size(), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-    if (!places_.bytes().empty()) add_buffer_view(model_, places_.bytes().data(), places_.bytes().size());
-    return figures;
+    figures_.elements = meshes_.size();
+    for (auto step = children_.rbegin(); step != children_.rend(); ++step) add_parent(step->first, step->second);
+    return figures_;
   }
 
  private:
-  static constexpr std::size_t kStride = 16;  ///< position in 12 bytes (8 used when quantised), normal in 4
-
-  void widen(InstanceFigures& figures, const model::Point3& p, double reach) {
-    if (first_) figures.min = figures.max = p;
-    first_ = false;
-    figures.min = {std::min(figures.min.x, p.x - reach), std::min(figures.min.y, p.y - reach),
-                   std::min(figures.min.z, p.z - reach)};
-    figures.max = {std::max(figures.max.x, p.x + reach), std::max(figures.max.y, p.y + reach),
-                   std::max(figures.max.z, p.z + reach)};
+  /// Finds the mesh that the places of a group belong to.
+  void collect(const InstanceGroup& group) {
+    const model::ColouredElement& element = region_.elements.at(group.element);
+    const ElementForm form = elements_.form(*element.element);
+    if (form.stored < 0) return;
+    const StoredElement& stored = elements_[form.stored];
+    std::vector<int> key{form.stored};
+    for (const StoredElement::Part& part : stored.parts) {
+      const model::PartLook& look = element.looks[static_cast<std::size_t>(part.part)];
+      key.insert(key.end(), {look.material, look.colour.r, look.colour.g, look.colour.b});
+    }
+    const auto [place, added] = known_.try_emplace(std::move(key), meshes_.size());
+    if (added) meshes_.push_back({&element, form.stored, {}});
+    PlacedMesh& mesh = meshes_[place->second];
+    for (const ElementInstance& at : group.instances) {
+      mesh.places.push_back({&at, form.stretch});
+      widen(at, form);
+    }
+    figures_.places += group.instances.size();
+    figures_.triangles += stored.triangles * group.instances.size();
   }
 
-  int add_accessor(int view, std::size_t offset, int component, int type, std::size_t count, bool normalised = false) {
-    tinygltf::Accessor accessor;
-    accessor.bufferView = view;
-    accessor.byteOffset = offset;
-    accessor.componentType = component;
-    accessor.type = type;
-    accessor.count = count;
-    accessor.normalized = normalised;
-    model_.accessors.push_back(std::move(accessor));
-    return static_cast<int>(model_.accessors.size()) - 1;
-  }
-
-  /// The element's triangles, written when they are first asked for.
-  const StoredGeometry& stored(const model::ColouredElement& element) {
-    const auto [place, added] = geometry_.try_emplace(element.element.get());
-    if (!added) return place->second;
-    StoredGeometry& out = place->second;
-    const ElementGeometry geometry = element_geometry(*element.element, true);
-    out.quantised = geometry.reach * kStepsPerMetre <= kMostSteps;
-    out.reach = geometry.reach;
-    for (const ElementGeometry::PartTriangles& part : geometry.parts) {
-      PartAccessors a;
-      a.part = part.part;
-      std::vector<unsigned char> bytes(part.vertices.size() * kStride);
-      std::array<double, 3> low{}, high{};
-      for (std::size_t i = 0; i < part.vertices.size(); ++i) {
-        const ElementVertex& v = part.vertices[i];
-        const std::array<double, 3> xyz{v.position.x, v.position.y, v.position.z};
-        std::array<double, 3> kept{};
-        unsigned char* at = &bytes[i * kStride];
-        for (std::size_t k = 0; k < 3; ++k) {
-          if (out.quantised) {
-            const auto q = static_cast<std::int16_t>(std::nearbyint(xyz[k] * kStepsPerMetre));
-            std::memcpy(at + 2 * k, &q, sizeof(q));
-            kept[k] = q;
-          } else {
-            const float f = static_cast<float>(xyz[k]) + 0.0f;
-            std::memcpy(at + 4 * k, &f, sizeof(f));
-            kept[k] = f;
-          }
-          low[k] = i == 0 ? kept[k] : std::min(low[k], kept[k]);
-          high[k] = i == 0 ? kept[k] : std::max(high[k], kept[k]);
-        }
-        std::memcpy(at + 12, v.normal.data(), 3);
+  void widen(const ElementInstance& at, const ElementForm& form) {
+    const model::Point2 out{at.along.y, -at.along.x};
+    for (const double x : {form.min.x, form.max.x})
+      for (const double z : {form.min.z, form.max.z}) {
+        const double east = at.origin.x + at.along.x * x + out.x * z, north = at.origin.y + at.along.y * x + out.y * z;
+        const double low = at.origin.z + form.min.y, high = at.origin.z + form.max.y;
+        if (first_) figures_.min = figures_.max = {east, north, low};
+        first_ = false;
+        figures_.min = {std::min(figures_.min.x, east), std::min(figures_.min.y, north),
+                        std::min(figures_.min.z, low)};
+        figures_.max = {std::max(figures_.max.x, east), std::max(figures_.max.y, north),
+                        std::max(figures_.max.z, high)};
       }
-      const std::size_t first = vertices_.append(bytes.data(), bytes.size());
-      a.position = add_accessor(vertex_view_, first,
-                                out.quantised ? TINYGLTF_COMPONENT_TYPE_SHORT : TINYGLTF_COMPONENT_TYPE_FLOAT,
-                                TINYGLTF_TYPE_VEC3, part.vertices.size());
-      model_.accessors[static_cast<std::size_t>(a.position)].minValues.assign(low.begin(), low.end());
-      model_.accessors[static_cast<std::size_t>(a.position)].maxValues.assign(high.begin(), high.end());
-      a.normal = add_accessor(vertex_view_, first + 12, TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_TYPE_VEC3,
-                              part.vertices.size(), true);
-      if (part.vertices.size() < 65535) {
-        const std::vector<std::uint16_t> narrow(part.indices.begin(), part.indices.end());
-        a.indices = add_accessor(index_view_, indices_.append(narrow.data(), narrow.size()),
-                                 TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR, narrow.size());
-      } else {
-        a.indices = add_accessor(index_view_, indices_.append(part.indices.data(), part.indices.size()),
-                                 TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR, part.indices.size());
-      }
-      out.triangles += part.indices.size() / 3;
-      out.parts.push_back(a);
-    }
-    return out;
   }
 
-  int material(const model::PartLook& look) {
-    const std::array<int, 4> key{look.material, look.colour.r, look.colour.g, look.colour.b};
-    const auto [place, added] = materials_.try_emplace(key, static_cast<int>(model_.materials.size()));
-    if (added) {
-      const model::MaterialClass& material = region_.materials.at(look.material);
-      tinygltf::Material out;
-      append_clean(out.name, material.name);
-      const auto linear = [](std::uint8_t v) { return std::nearbyint(kLinearLight[v] / 65.535) / 1000; };
-      out.pbrMetallicRoughness.baseColorFactor = {linear(look.colour.r), linear(look.colour.g), linear(look.colour.b),
-                                                  1.0};
-      out.pbrMetallicRoughness.roughnessFactor = two_decimals(material.roughness);
-      out.pbrMetallicRoughness.metallicFactor = two_decimals(material.metallic);
-      model_.materials.push_back(std::move(out));
+  /// Neighbouring parts that look the same are one primitive.
+  int add_mesh(const PlacedMesh& placed) {
+    const StoredElement& stored = elements_[placed.stored];
+    const model::ColouredElement& element = *placed.element;
+    const auto look = [&](std::size_t i) -> const model::PartLook& {
+      return element.looks[static_cast<std::size_t>(stored.parts[i].part)];
+    };
+    std::string json = "{\"name\":";
+    append_json(json, stored.stretched ? element.element->kind : element.element->name);
+    json += ",\"primitives\":[";
+    for (std::size_t first = 0; first < stored.parts.size();) {
+      std::size_t last = first;
+      while (last + 1 < stored.parts.size() && stored.parts[last + 1].block == stored.parts[first].block &&
+             look(last + 1) == look(first))
+        ++last;
+      const StoredElement::Block& block = stored.blocks[static_cast<std::size_t>(stored.parts[first].block)];
+      if (first > 0) json += ',';
+      json += "{\"attributes\":{\"NORMAL\":";
+      append_number(json, std::int64_t{block.normal});
+      json += ",\"POSITION\":";
+      append_number(json, std::int64_t{block.position});
+      json += "},\"indices\":";
+      append_number(json, std::int64_t{elements_.indices(placed.stored, first, last)});
+      json += ",\"material\":";
+      append_number(json, std::int64_t{document_.add_material(
+                              material_json(region_.materials.at(look(first).material), look(first).colour))});
+      json += '}';
+      first = last + 1;
     }
-    return place->second;
+    return document_.add_mesh(json + "]}");
   }
 
-  int add_mesh(const model::ColouredElement& element, const StoredGeometry& geometry) {
-    tinygltf::Mesh mesh;
-    append_clean(mesh.name, element.element->name);
-    for (const PartAccessors& part : geometry.parts) {
-      tinygltf::Primitive primitive;
-      primitive.mode = TINYGLTF_MODE_TRIANGLES;
-      primitive.material = material(element.looks[static_cast<std::size_t>(part.part)]);
-      primitive.attributes["POSITION"] = part.position;
-      primitive.attributes["NORMAL"] = part.normal;
-      primitive.indices = part.indices;
-      mesh.primitives.push_back(std::move(primitive));
-    }
-    model_.meshes.push_back(std::move(mesh));
-    return static_cast<int>(model_.meshes.size()) - 1;
-  }
-
-  /// East, north, up to glTF's y up.
-  static std::array<double, 3> translation(const ElementInstance& at, const StoredGeometry& geometry) {
-    const double scale = geometry.quantised ? kStepsPerMetre : 1;
-    return {at.origin.x * scale, at.origin.z * scale, 0.0 - at.origin.y * scale};
+  /// East, north, up to glTF's y up, in whole steps.
+  static std::array<double, 3> translation(const Place& place, double steps) {
+    const model::Point3& p = place.instance->origin;
+    return {std::nearbyint(p.x * steps), std::nearbyint(p.z * steps), 0.0 - std::nearbyint(p.y * steps)};
   }
   /// A turn about the upright axis that leads east to `along`, by half angles without trigonometry.
-  static std::array<double, 4> rotation(const ElementInstance& at) {
-    const double c = std::sqrt(std::max(0.0, (1 + at.along.x) / 2)), s = std::sqrt(std::max(0.0, (1 - at.along.x) / 2));
-    return {0, at.along.y < 0 ? -s : s, 0, c};
+  static std::array<double, 4> rotation(const Place& place) {
+    const model::Point2& along = place.instance->along;
+    const double c = std::sqrt(std::max(0.0, (1 + along.x) / 2)), s = std::sqrt(std::max(0.0, (1 - along.x) / 2));
+    return {0, along.y < 0 ? -s : s, 0, c};
   }
 
-  void add_instanced_node(int mesh, const InstanceGroup& group, const StoredGeometry& geometry) {
-    const std::size_t n = group.instances.size();
-    std::vector<float> translations, features;
+  int add_instanced_node(int mesh, const PlacedMesh& placed) {
+    const StoredElement& stored = elements_[placed.stored];
+    const std::size_t n = placed.places.size();
+    std::vector<float> translations, scales, wide;
     std::vector<std::int16_t> rotations;
+    std::vector<std::uint16_t> narrow;
     std::set<std::uint32_t> rows;
-    for (const ElementInstance& at : group.instances) {
-      for (const double v : translation(at, geometry)) translations.push_back(static_cast<float>(v) + 0.0f);
-      for (const double v : rotation(at)) rotations.push_back(static_cast<std::int16_t>(std::nearbyint(v * 32767)));
-      features.push_back(static_cast<float>(at.feature));
-      rows.insert(at.feature);
+    bool far = false;
+    for (const Place& place : placed.places) {
+      for (const double v : translation(place, stored.steps)) {
+        translations.push_back(static_cast<float>(v) + 0.0f);
+        far = far || std::fabs(v) > kFinestReach * kGlbStepsPerMetre;
+      }
+      for (const double v : rotation(place)) rotations.push_back(static_cast<std::int16_t>(std::nearbyint(v * 32767)));
+      scales.insert(scales.end(), {static_cast<float>(place.stretch), 1.0f, 1.0f});
+      rows.insert(place.instance->feature);
+      if (wide_features_)
+        wide.push_back(static_cast<float>(place.instance->feature));
+      else
+        narrow.push_back(static_cast<std::uint16_t>(place.instance->feature));
     }
-    const std::size_t t = places_.append(translations.data(), translations.size());
-    const std::size_t r = places_.append(rotations.data(), rotations.size());
-    const std::size_t f = places_.append(features.data(), features.size());
-    Object attributes;
-    attributes.emplace("TRANSLATION",
-                       Value(add_accessor(place_view_, t, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, n)));
-    attributes.emplace("ROTATION",
-                       Value(add_accessor(place_view_, r, TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_TYPE_VEC4, n, true)));
-    attributes.emplace("_FEATURE_ID_0",
-                       Value(add_accessor(place_view_, f, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, n)));
-    Object instancing;
-    instancing.emplace("attributes", Value(std::move(attributes)));
-    Object id;
-    id.emplace("attribute", Value(0));
-    id.emplace("featureCount", Value(static_cast<int>(rows.size())));
-    id.emplace("label", Value(std::string(label_)));
-    id.emplace("propertyTable", Value(0));
-    Object ids;
-    ids.emplace("featureIds", Value(Value::Array{Value(std::move(id))}));
-    tinygltf::Node node;
-    node.mesh = mesh;
-    if (geometry.quantised) node.scale.assign(3, 1 / kStepsPerMetre);
-    node.extensions["EXT_mesh_gpu_instancing"] = Value(std::move(instancing));
-    node.extensions["EXT_instance_features"] = Value(std::move(ids));
-    push(std::move(node));
+    const Stream to = far ? Stream::far_translations : Stream::translations;
+    std::string json = "{\"extensions\":{\"EXT_instance_features\":{\"featureIds\":[{\"attribute\":0,\"featureCount\":";
+    number(json, rows.size());
+    json += ",\"propertyTable\":0}]},\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"ROTATION\":";
+    const std::size_t r = document_.append<std::int16_t>(Stream::rotations, rotations);
+    append_number(json, std::int64_t{document_.add_accessor({Stream::rotations, r, Component::int16, "VEC4", n, true})});
+    if (stored.stretched) {
+      json += ",\"SCALE\":";
+      const std::size_t s = document_.append<float>(Stream::scales, scales);
+      append_number(json, std::int64_t{document_.add_accessor({Stream::scales, s, Component::float32, "VEC3", n})});
+    }
+    json += ",\"TRANSLATION\":";
+    const std::size_t t = document_.append<float>(to, translations);
+    append_number(json, std::int64_t{document_.add_accessor({to, t, Component::float32, "VEC3", n})});
+    json += ",\"_FEATURE_ID_0\":";
+    const Stream ids = wide_features_ ? Stream::wide_instance_features : Stream::instance_features;
+    const std::size_t f = wide_features_ ? document_.append<float>(ids, wide) : document_.append<std::uint16_t>(ids, narrow);
+    append_number(json, std::int64_t{document_.add_accessor(
+                            {ids, f, wide_features_ ? Component::float32 : Component::uint16, "SCALAR", n})});
+    json += "}}},\"mesh\":";
+    append_number(json, std::int64_t{mesh});
+    document_.use("EXT_mesh_gpu_instancing", true);
+    document_.use("EXT_instance_features", false);
+    return document_.add_node(json + '}');
   }
 
-  void add_node(int mesh, const ElementInstance& at, const StoredGeometry& geometry) {
-    tinygltf::Node node;
-    node.mesh = mesh;
-    const double steps = geometry.quantised ? kStepsPerMetre : 1;
-    for (const double v : translation(at, geometry)) node.translation.push_back(v / steps);
-    const auto q = rotation(at);
-    node.rotation.assign(q.begin(), q.end());
-    if (geometry.quantised) node.scale.assign(3, 1 / kStepsPerMetre);
-    Object extras;
-    extras.emplace("feature", Value(static_cast<int>(at.feature)));
-    node.extras = Value(std::move(extras));
-    push(std::move(node));
+  int add_node(int mesh, const Place& place, const PlacedMesh& placed) {
+    const StoredElement& stored = elements_[placed.stored];
+    std::string json = "{\"extras\":{\"feature\":";
+    number(json, place.instance->feature);
+    json += "},\"mesh\":";
+    append_number(json, std::int64_t{mesh});
+    const auto list = [&](const char* name, const auto& values) {
+      json += name;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (i) json += ',';
+        append_number(json, values[i]);
+      }
+      json += ']';
+    };
+    auto turn = rotation(place);
+    for (double& v : turn) v = std::nearbyint(v * 1e7) / 1e7;
+    list(",\"rotation\":[", turn);
+    if (stored.stretched) list(",\"scale\":[", std::array<double, 3>{place.stretch, 1, 1});
+    list(",\"translation\":[", translation(place, stored.steps));
+    return document_.add_node(json + '}');
   }
 
-  void push(tinygltf::Node node) {
-    model_.scenes.front().nodes.push_back(static_cast<int>(model_.nodes.size()));
-    model_.nodes.push_back(std::move(node));
+  void add_parent(double steps, const std::vector<int>& children) {
+    std::string json = "{\"children\":[";
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      if (i) json += ',';
+      append_number(json, std::int64_t{children[i]});
+    }
+    json += "],\"scale\":[";
+    for (int i = 0; i < 3; ++i) {
+      if (i) json += ',';
+      append_number(json, 1 / steps);
+    }
+    document_.add_root(document_.add_node(json + "]}"));
   }
 
-  tinygltf::Model& model_;
+  GlbDocument& document_;
   const model::Region& region_;
-  const char* label_;
-  int vertex_view_ = 0, index_view_ = 0, place_view_ = 0;
-  Bytes vertices_, indices_, places_;
-  std::map<const model::Element*, StoredGeometry> geometry_;  // looked up only: its order reaches nothing
-  std::map<std::array<int, 4>, int> materials_;
+  StoredElements elements_;
+  bool wide_features_;
+  std::vector<PlacedMesh> meshes_;
+  std::map<std::vector<int>, std::size_t> known_;  ///< by stored geometry and the looks of its parts
+  std::map<double, std::vector<int>> children_;    ///< nodes by steps of a metre
+  InstanceFigures figures_;
   bool first_ = true;
 };
 
 }  // namespace
 
-InstanceFigures write_instances(tinygltf::Model& model, const model::Region& region,
-                                const std::vector<InstanceGroup>& groups, Instancing how, const char* label) {
-  return InstanceWriter(model, region, label).write(groups, how);
+InstanceFigures write_instances(GlbDocument& document, const model::Region& region,
+                                const std::vector<InstanceGroup>& groups, Instancing how, std::size_t rows) {
+  return InstanceWriter(document, region, rows).write(groups, how);
 }
 
 }  // namespace blockrand::export_

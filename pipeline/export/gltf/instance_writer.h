@@ -1,4 +1,4 @@
-// Placed elements in a glTF model: each stored once, placed many times.
+// Placed elements in a GLB: each stored once, placed many times.
 #pragma once
 
 #include <cstddef>
@@ -6,11 +6,9 @@
 
 #include "pipeline/export/gltf/element_geometry.h"
 
-namespace tinygltf {
-class Model;
-}
-
 namespace blockrand::export_ {
+
+class GlbDocument;
 
 /// How placed elements are written.
 enum class Instancing : std::uint8_t {
@@ -25,14 +23,17 @@ struct InstanceFigures {
   std::size_t elements = 0;  ///< distinct ones
   std::size_t places = 0;
   std::size_t triangles = 0;  ///< as drawn: of an element once for each place
-  model::Point3 min, max;     ///< of the places' origins, widened by the reach of their elements; zero without places
+  model::Point3 min, max;     ///< of the boxes of all placed elements, in east, north, up; zero without places
 };
 
-/// Adds meshes, materials, nodes and their bytes for `ext` or `nodes`; nodes are added to the model's first scene,
-/// which is made when there is none. Equal geometry in other colours shares its accessors. Positions are 16-bit
-/// integers in steps of 1/4096 m (the node's scale), float for elements larger than 8 m. \param label  class of the
-/// property table 0 that features are rows of
-InstanceFigures write_instances(tinygltf::Model& model, const model::Region& region,
-                                const std::vector<InstanceGroup>& groups, Instancing how, const char* label);
+/// Adds meshes, materials, nodes and their bytes for `ext` or `nodes`. The root holds a node per step, whose scale turns
+/// steps into metres, and that holds the elements: positions are 16-bit integers in steps of 1/4096 m (of 1/2048 m and
+/// so on for elements that reach farther than 8 m), places are whole steps.
+///
+/// Equal geometry in other colours shares its accessors. Elements that are a profile drawn along the wall (all corners
+/// at one of two ends) are stored once for every length: places have a scale along x.
+/// \param rows  of the property table 0, which features are rows of
+InstanceFigures write_instances(GlbDocument& document, const model::Region& region,
+                                const std::vector<InstanceGroup>& groups, Instancing how, std::size_t rows);
 
 }  // namespace blockrand::export_

@@ -4,11 +4,12 @@
 #include <cassert>
 #include <cmath>
 #include <deque>
+#include <iterator>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "pipeline/export/gltf/element_geometry.h"
-#include "pipeline/export/gltf/linear_light.h"
 #include "pipeline/geometry/solid_builder.h"
 #include "pipeline/geometry/triangulate.h"
 
@@ -96,6 +97,64 @@ std::array<std::int8_t, 3> face_normal(const model::Solid& solid, const model::F
   return {quantise(x), quantise(y), quantise(z)};
 }
 
+/// The primitives of a mesh while faces come in: one for each material and colour, another when one is full.
+class Primitives {
+ public:
+  /// The one for a face with `corners` more vertices at most.
+  MeshPrimitive& with_room(const model::PartLook& look, std::size_t corners) {
+    Bucket& bucket = buckets_[{look.material, look.colour.r, look.colour.g, look.colour.b}];
+    if (bucket.pieces.empty() || bucket.pieces.back().vertices.size() + corners > MeshPrimitive::kMostVertices) {
+      MeshPrimitive& fresh = bucket.pieces.emplace_back();
+      fresh.material = look.material;
+      fresh.colour = look.colour;
+    }
+    return bucket.pieces.back();
+  }
+
+  /// Colours of few vertices share the primitives of their material.
+  std::vector<MeshPrimitive> take() {
+    std::vector<MeshPrimitive> out, mixed;
+    std::optional<std::uint8_t> material;
+    const auto end_material = [&] {
+      std::move(mixed.begin(), mixed.end(), std::back_inserter(out));
+      mixed.clear();
+    };
+    for (auto& [look, bucket] : buckets_) {
+      if (material != look[0]) end_material();
+      material = look[0];
+      std::size_t vertices = 0;
+      for (const MeshPrimitive& piece : bucket.pieces) vertices += piece.vertices.size();
+      for (MeshPrimitive& piece : bucket.pieces)
+        if (vertices >= MeshPrimitive::kOwnColour)
+          out.push_back(std::move(piece));
+        else
+          mix(std::move(piece), mixed);
+    }
+    end_material();
+    return out;
+  }
+
+ private:
+  struct Bucket {
+    std::deque<MeshPrimitive> pieces;  // a deque keeps its elements in place
+  };
+
+  static void mix(MeshPrimitive&& piece, std::vector<MeshPrimitive>& mixed) {
+    if (mixed.empty()) return mixed.push_back(std::move(piece));
+    MeshPrimitive& to = mixed.back();
+    if (to.vertices.size() + piece.vertices.size() > MeshPrimitive::kMostVertices)
+      return mixed.push_back(std::move(piece));
+    if (to.colour) to.colours.assign(to.vertices.size(), *to.colour);
+    to.colour.reset();
+    to.colours.insert(to.colours.end(), piece.vertices.size(), *piece.colour);
+    const auto first = static_cast<std::uint16_t>(to.vertices.size());
+    to.vertices.insert(to.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+    for (const std::uint16_t i : piece.indices) to.indices.push_back(static_cast<std::uint16_t>(first + i));
+  }
+
+  std::map<std::array<std::uint8_t, 4>, Bucket> buckets_;  ///< by material and colour
+};
+
 /// Finds equal vertices of one part: open addressing, cleared by a stamp.
 class Welder {
  public:
@@ -106,7 +165,7 @@ class Welder {
     mask_ = slots_.size() - 1;
     ++stamp_;
   }
-  std::uint32_t index(MeshPrimitive& primitive, const MeshVertex& vertex) {
+  std::uint16_t index(MeshPrimitive& primitive, const MeshVertex& vertex) {
     std::uint64_t h = vertex.position * 0x9E3779B97F4A7C15u;
     h ^= (static_cast<std::uint64_t>(static_cast<std::uint8_t>(vertex.normal[0])) << 16 |
           static_cast<std::uint64_t>(static_cast<std::uint8_t>(vertex.normal[1])) << 8 |
@@ -116,7 +175,7 @@ class Welder {
     for (std::size_t i = h & mask_;; i = (i + 1) & mask_) {
       Slot& slot = slots_[i];
       if (slot.stamp != stamp_) {
-        slot = {stamp_, static_cast<std::uint32_t>(primitive.vertices.size()), &primitive};
+        slot = {stamp_, static_cast<std::uint16_t>(primitive.vertices.size()), &primitive};
         primitive.vertices.push_back(vertex);
         return slot.index;
       }
@@ -126,7 +185,8 @@ class Welder {
 
  private:
   struct Slot {
-    std::uint32_t stamp = 0, index = 0;
+    std::uint32_t stamp = 0;
+    std::uint16_t index = 0;
     const MeshPrimitive* primitive = nullptr;
   };
   std::vector<Slot> slots_;
@@ -148,8 +208,7 @@ void unify_equal_points(const std::vector<model::Point3>& points, std::uint32_t 
 }
 
 /// Puts every placed element's triangles into the mesh.
-void bake_elements(const model::Region& region, const Frame& frame, Mesh& mesh,
-                   std::vector<MeshPrimitive>& primitives) {
+void bake_elements(const model::Region& region, const Frame& frame, Mesh& mesh, Primitives& primitives) {
   for (const InstanceGroup& group : element_instances(region, frame)) {
     const model::ColouredElement& element = region.elements[group.element];
     const ElementGeometry geometry = element_geometry(*element.element, false);
@@ -160,8 +219,8 @@ void bake_elements(const model::Region& region, const Frame& frame, Mesh& mesh,
       };
       for (const ElementGeometry::PartTriangles& part : geometry.parts) {
         const model::PartLook& look = element.looks[static_cast<std::size_t>(part.part)];
-        MeshPrimitive& primitive = primitives[look.material];
-        const auto first = static_cast<std::uint32_t>(primitive.vertices.size());
+        MeshPrimitive& primitive = primitives.with_room(look, part.vertices.size());
+        const std::size_t first = primitive.vertices.size();
         for (const ElementVertex& v : part.vertices) {
           const model::Point3 d = turn(v.position.x, v.position.y, v.position.z);
           const model::Point3 n = turn(v.exact_normal.x, v.exact_normal.y, v.exact_normal.z);
@@ -171,10 +230,9 @@ void bake_elements(const model::Region& region, const Frame& frame, Mesh& mesh,
           vertex.feature = at.feature;
           const auto quantise = [](double c) { return static_cast<std::int8_t>(std::nearbyint(c * 127)); };
           vertex.normal = {quantise(n.x), quantise(n.y), quantise(n.z)};
-          vertex.colour = {kLinearLight[look.colour.r], kLinearLight[look.colour.g], kLinearLight[look.colour.b]};
           primitive.vertices.push_back(vertex);
         }
-        for (const std::uint32_t i : part.indices) primitive.indices.push_back(first + i);
+        for (const std::uint32_t i : part.indices) primitive.indices.push_back(static_cast<std::uint16_t>(first + i));
         mesh.triangles += part.indices.size() / 3;
       }
     }
@@ -203,11 +261,14 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
         solids.push_back({solid, triangles, feature, static_cast<std::uint32_t>(source.size()),
                           detailed ? hidden_faces(part.lod3, bake) : std::vector<bool>{}});
         source.insert(source.end(), solid->vertices.begin(), solid->vertices.end());
-        if (detailed)
-          for (const model::WallInstallation& body : part.lod3.installations) {
+        if (detailed) {
+          const auto add_body = [&](const auto& body) {
             solids.push_back({&body.solid, &body.triangles, feature, static_cast<std::uint32_t>(source.size()), {}});
             source.insert(source.end(), body.solid.vertices.begin(), body.solid.vertices.end());
-          }
+          };
+          for (const model::WallInstallation& body : part.lod3.installations) add_body(body);
+          for (const model::RoofInstallation& body : part.lod3.roof_installations) add_body(body);
+        }
       }
       ++feature;
     }
@@ -220,7 +281,7 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
   else
     mesh.positions = source;
 
-  std::vector<MeshPrimitive> primitives(256);
+  Primitives primitives;
   std::vector<std::uint32_t> representative(source.size()), order;
   Welder welder;
   for (const SolidRef& ref : solids) {
@@ -232,15 +293,19 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
     for (std::size_t f = 0; f < solid.faces.size(); ++f) {
       if (!ref.hidden.empty() && ref.hidden[f]) continue;
       const model::Face& face = solid.faces[f];
-      MeshPrimitive& primitive = primitives[face.material];
+      const std::uint32_t begin = ref.triangles->first[f], end = ref.triangles->first[f + 1];
+      if (begin == end) continue;
+      MeshPrimitive* primitive = nullptr;
       MeshVertex vertex;
       vertex.feature = ref.feature;
       vertex.normal = face_normal(solid, face, mesh.positions.data() + ref.first_position);
-      vertex.colour = {kLinearLight[face.colour.r], kLinearLight[face.colour.g], kLinearLight[face.colour.b]};
-      for (std::uint32_t t = ref.triangles->first[f]; t < ref.triangles->first[f + 1]; ++t) {
+      const model::PartLook look{face.material, face.colour};
+      for (std::uint32_t t = begin; t < end; ++t) {
+        if (!primitive || primitive->vertices.size() + 3 > MeshPrimitive::kMostVertices)
+          primitive = &primitives.with_room(look, 3);
         for (const std::uint32_t corner : ref.triangles->triangles[t]) {
           vertex.position = representative[ref.first_position + corner];
-          primitive.indices.push_back(welder.index(primitive, vertex));
+          primitive->indices.push_back(welder.index(*primitive, vertex));
         }
         ++mesh.triangles;
       }
@@ -249,11 +314,7 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
 
   if (bake && lod >= 3) bake_elements(region, frame, mesh, primitives);
 
-  for (std::size_t m = 0; m < primitives.size(); ++m) {
-    if (primitives[m].indices.empty()) continue;
-    primitives[m].material = static_cast<std::uint8_t>(m);
-    mesh.primitives.push_back(std::move(primitives[m]));
-  }
+  mesh.primitives = primitives.take();
   bool first = true;
   for (const MeshPrimitive& primitive : mesh.primitives) {
     for (const MeshVertex& v : primitive.vertices) {

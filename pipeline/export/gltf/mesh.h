@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "pipeline/export/frame.h"
@@ -12,23 +13,30 @@ namespace blockrand::export_ {
 
 /// A corner of the mesh. Positions are kept as indices until the mesh's extent decides how they are stored.
 struct MeshVertex {
-  std::uint32_t position = 0;             ///< into Mesh::positions
-  std::uint32_t feature = 0;              ///< row of the property table
-  std::array<std::int8_t, 3> normal{};    ///< east, north, up in 1/127
-  std::array<std::uint16_t, 3> colour{};  ///< linear light in 1/65535
+  std::uint32_t position = 0;           ///< into Mesh::positions
+  std::uint32_t feature = 0;            ///< row of the property table
+  std::array<std::int8_t, 3> normal{};  ///< east, north, up in 1/127
   friend bool operator==(const MeshVertex&, const MeshVertex&) = default;
 };
 
-/// All faces of one material class.
+/// Faces of one material class, in one colour or with a colour for each vertex.
 struct MeshPrimitive {
-  std::uint8_t material = 0;  ///< into Region::materials
-  std::vector<MeshVertex> vertices;
-  std::vector<std::uint32_t> indices;  ///< counter-clockwise triangles seen from outside
+  /// 65535 as an index would restart a primitive.
+  static constexpr std::size_t kMostVertices = 65535;
+  /// From so many vertices on, a colour has a primitive and a material of its own: it saves 8 bytes a vertex and costs
+  /// about 400 and a draw call.
+  static constexpr std::size_t kOwnColour = 1024;
+
+  std::uint8_t material = 0;             ///< into Region::materials
+  std::optional<model::Colour> colour;   ///< of all faces
+  std::vector<MeshVertex> vertices;      ///< at most kMostVertices
+  std::vector<model::Colour> colours;    ///< by vertex, where not all have one
+  std::vector<std::uint16_t> indices;    ///< counter-clockwise triangles seen from outside
 };
 
 struct Mesh {
   std::vector<model::Point3> positions;   ///< east, north, up in metres
-  std::vector<MeshPrimitive> primitives;  ///< by ascending material; none is empty
+  std::vector<MeshPrimitive> primitives;  ///< by ascending material, its own colours first; none is empty
   model::Point3 min, max;                 ///< of the positions
   std::size_t triangles = 0;
   bool empty() const { return primitives.empty(); }
@@ -42,7 +50,8 @@ struct Mesh {
 /// unless `bake` is set, which puts the elements themselves into this mesh. Bodies on walls are always part of it.
 ///
 /// Shading is flat: a face's vertices share the normal of its plane (Newell's method in the local frame). Corners of a
-/// part with equal position, normal, colour and material become one vertex.
+/// part with equal position, normal, colour and material become one vertex. Faces are in the order of the parts within a
+/// colour.
 Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake = false);
 
 }  // namespace blockrand::export_

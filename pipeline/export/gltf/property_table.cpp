@@ -1,13 +1,13 @@
 #include "pipeline/export/gltf/property_table.h"
 
-#include <tiny_gltf.h>
-
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
+#include "pipeline/export/gltf/glb_document.h"
 #include "pipeline/export/text.h"
 
 namespace blockrand::export_ {
@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little, "buffers are copied as
 namespace {
 
 using Kind = PropertyTable::Kind;
-using Object = tinygltf::Value::Object;
+using Object = nlohmann::json;
 
 std::size_t element_size(Kind kind) {
   switch (kind) {
@@ -28,8 +28,6 @@ std::size_t element_size(Kind kind) {
       return 1;
   }
 }
-
-tinygltf::Value text_value(std::string_view text) { return tinygltf::Value(std::string(text)); }
 
 }  // namespace
 
@@ -107,85 +105,71 @@ void PropertyTable::end_row() {
   }
 }
 
-tinygltf::Value PropertyTable::class_properties() const {
-  Object properties;
+nlohmann::json PropertyTable::class_properties() const {
+  Object properties = Object::object();
   for (const Data& data : columns_) {
     const Column& column = data.column;
     Object property;
     switch (column.kind) {
       case Kind::text:
-        property.emplace("type", text_value("STRING"));
+        property.emplace("type", "STRING");
         break;
       case Kind::enumeration:
-        property.emplace("type", text_value("ENUM"));
-        property.emplace("enumType", text_value(column.enum_type));
+        property.emplace("type", "ENUM");
+        property.emplace("enumType", column.enum_type);
         break;
       default:
-        property.emplace("type", text_value("SCALAR"));
-        property.emplace("componentType", text_value(column.kind == Kind::int8      ? "INT8"
+        property.emplace("type", "SCALAR");
+        property.emplace("componentType", column.kind == Kind::int8      ? "INT8"
                                                      : column.kind == Kind::int64   ? "INT64"
                                                      : column.kind == Kind::float64 ? "FLOAT64"
-                                                                                    : "UINT8"));
-        if (column.kind == Kind::unit_interval) property.emplace("normalized", tinygltf::Value(true));
+                                                                                    : "UINT8");
+        if (column.kind == Kind::unit_interval) property.emplace("normalized", true);
     }
-    if (!column.description.empty()) property.emplace("description", text_value(column.description));
+    if (!column.description.empty()) property.emplace("description", column.description);
     // The specification forbids noData together with required.
     if (column.required) {
-      property.emplace("required", tinygltf::Value(true));
+      property.emplace("required", true);
     } else if (column.kind == Kind::text) {
-      property.emplace("noData", text_value(""));
+      property.emplace("noData", "");
     } else if (column.kind == Kind::enumeration) {
-      if (!column.no_data_name.empty()) property.emplace("noData", text_value(column.no_data_name));
+      if (!column.no_data_name.empty()) property.emplace("noData", column.no_data_name);
     } else if (column.no_data) {
-      property.emplace("noData", tinygltf::Value(static_cast<int>(*column.no_data)));
+      property.emplace("noData", static_cast<int>(*column.no_data));
     }
-    properties.emplace(column.name, tinygltf::Value(std::move(property)));
+    properties.emplace(column.name, std::move(property));
   }
-  return tinygltf::Value(std::move(properties));
+  return properties;
 }
 
-tinygltf::Value PropertyTable::write(tinygltf::Model& model, const std::string& class_name) const {
-  Object properties;
+nlohmann::json PropertyTable::write(GlbDocument& document, const std::string& class_name) const {
+  Object properties = Object::object();
   for (const Data& data : columns_) {
     if (!data.any) continue;
     assert(!data.bytes.empty());
     Object property;
-    property.emplace("values", tinygltf::Value(add_buffer_view(model, data.bytes.data(), data.bytes.size())));
+    property.emplace("values", document.add_view(data.bytes));
     if (data.column.kind == Kind::text) {
       // The smallest type that holds the last offset: most texts of a tile are short.
       const std::uint32_t last = data.offsets.back();
-      int view = 0;
-      if (last <= 0xFFFF) {
-        const std::vector<std::uint16_t> narrow(data.offsets.begin(), data.offsets.end());
-        view = add_buffer_view(model, narrow.data(), narrow.size() * sizeof(narrow[0]));
-      } else {
-        view = add_buffer_view(model, data.offsets.data(), data.offsets.size() * sizeof(data.offsets[0]));
-      }
-      property.emplace("stringOffsets", tinygltf::Value(view));
-      if (last <= 0xFFFF) property.emplace("stringOffsetType", text_value("UINT16"));
+      std::string offsets;
+      const auto append = [&](const auto& numbers) {
+        offsets.assign(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(numbers[0]));
+      };
+      if (last <= 0xFFFF)
+        append(std::vector<std::uint16_t>(data.offsets.begin(), data.offsets.end()));
+      else
+        append(data.offsets);
+      property.emplace("stringOffsets", document.add_view(std::move(offsets)));
+      if (last <= 0xFFFF) property.emplace("stringOffsetType", "UINT16");
     }
-    properties.emplace(data.column.name, tinygltf::Value(std::move(property)));
+    properties.emplace(data.column.name, std::move(property));
   }
   Object table;
-  table.emplace("class", text_value(class_name));
-  table.emplace("count", tinygltf::Value(static_cast<int>(rows_)));
-  table.emplace("properties", tinygltf::Value(std::move(properties)));
-  return tinygltf::Value(std::move(table));
-}
-
-int add_buffer_view(tinygltf::Model& model, const void* bytes, std::size_t size, int target, int stride) {
-  std::vector<unsigned char>& buffer = model.buffers.front().data;
-  buffer.resize((buffer.size() + 7) / 8 * 8);
-  tinygltf::BufferView view;
-  view.buffer = 0;
-  view.byteOffset = buffer.size();
-  view.byteLength = size;
-  view.byteStride = static_cast<std::size_t>(stride);
-  view.target = target;
-  const auto* first = static_cast<const unsigned char*>(bytes);
-  buffer.insert(buffer.end(), first, first + size);
-  model.bufferViews.push_back(std::move(view));
-  return static_cast<int>(model.bufferViews.size()) - 1;
+  table.emplace("class", class_name);
+  table.emplace("count", static_cast<int>(rows_));
+  table.emplace("properties", std::move(properties));
+  return table;
 }
 
 }  // namespace blockrand::export_

@@ -2,17 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace tinygltf {
-class Value;
-class Model;
-}  // namespace tinygltf
-
 namespace blockrand::export_ {
+
+class GlbDocument;
 
 /// Columns of one class of features. Add the columns first, then for each row set what is known and call end_row();
 /// what was not set in a row holds the column's noData value. Columns without any value are left out of the table
@@ -47,9 +45,9 @@ class PropertyTable {
   std::uint32_t rows() const { return rows_; }
 
   /// The "properties" of the class.
-  tinygltf::Value class_properties() const;
-  /// The table, its columns appended to the first buffer of `model` as buffer views aligned to 8 bytes.
-  tinygltf::Value write(tinygltf::Model& model, const std::string& class_name) const;
+  nlohmann::json class_properties() const;
+  /// The table, its columns added to `document` as buffer views.
+  nlohmann::json write(GlbDocument& document, const std::string& class_name) const;
 
  private:
   struct Data {
@@ -64,9 +62,5 @@ class PropertyTable {
   std::vector<Data> columns_;
   std::uint32_t rows_ = 0;
 };
-
-/// Appends `size` bytes to the model's first buffer at the next multiple of 8 and adds a buffer view for them.
-/// \return the buffer view's index
-int add_buffer_view(tinygltf::Model& model, const void* bytes, std::size_t size, int target = 0, int stride = 0);
 
 }  // namespace blockrand::export_

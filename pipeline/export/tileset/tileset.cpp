@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
 constexpr double kEarthRadius = 6335000;  // m; the smallest radius of curvature of the ellipsoid
-constexpr double kBoxMargin = 0.002;      // m; positions are stored as floats or in steps of 1 mm
+// m; positions and places count in 1/4096 m, and a long element turns by up to 3e-5 with the rounding of its rotation
+constexpr double kBoxMargin = 0.005;
 
 /// Degrees and metres.
 struct Bounds {
@@ -145,9 +146,27 @@ class Writer {
     out_ += "]}";
   }
 
+  /// The tile's levels, one inside the other in the same box; the outermost has the transform.
   void leaf(const TileEntry& tile) {
     assert(tile.id.level == leaves_.front().tile->id.level);
-    out_ += "{\"boundingVolume\":{\"box\":[";
+    for (std::size_t i = 0; i <= tile.coarser.size(); ++i) {
+      const bool finest = i == tile.coarser.size();
+      out_ += '{';
+      box(tile);
+      if (i == 0) transform(tile);
+      out_ += ',';
+      geometric_error(finest ? 0 : tile.coarser[i].geometric_error);
+      if (!finest) out_ += ",\"refine\":\"REPLACE\"";
+      out_ += ",\"content\":{\"uri\":";
+      append_json(out_, finest ? tile.uri : tile.coarser[i].uri);
+      out_ += finest ? "}" : "},\"children\":[";
+    }
+    for (std::size_t i = 0; i < tile.coarser.size(); ++i) out_ += "}]";
+    out_ += '}';
+  }
+
+  void box(const TileEntry& tile) {
+    out_ += "\"boundingVolume\":{\"box\":[";
     const double centre[3] = {(tile.min.x + tile.max.x) / 2, (tile.min.y + tile.max.y) / 2,
                               (tile.min.z + tile.max.z) / 2};
     const double half[3] = {(tile.max.x - tile.min.x) / 2 + kBoxMargin, (tile.max.y - tile.min.y) / 2 + kBoxMargin,
@@ -161,14 +180,16 @@ class Writer {
         append_number(out_, i == axis ? half[axis] : 0.0);
         if (axis != 2 || i != 2) out_ += ',';
       }
-    out_ += "]},\"transform\":[";
+    out_ += "]}";
+  }
+
+  void transform(const TileEntry& tile) {
+    out_ += ",\"transform\":[";
     for (int i = 0; i < 16; ++i) {
       if (i) out_ += ',';
       append_number(out_, tile.enu_to_ecef[static_cast<std::size_t>(i)]);
     }
-    out_ += "],\"geometricError\":0,\"content\":{\"uri\":";
-    append_json(out_, tile.uri);
-    out_ += "}}";
+    out_ += ']';
   }
 
   const TilesetOptions& options_;

@@ -1,6 +1,4 @@
 // grammar run and grammar test as the program calls them.
-#include "pipeline/cli/grammar_run.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -76,14 +74,43 @@ TEST_F(GrammarRun, TellsWhatIsWrong) {
   EXPECT_THAT(errors, HasSubstr(":1:9"));
   run({"run", (folder_ / "nothing.cga").string()});
   EXPECT_EQ(code, kInvalidInput);
-  EXPECT_THROW(run_grammar_run({file, "--lot", "3"}), base::UsageError);
-  EXPECT_THROW(run_grammar_run({file, "--seed", "x"}), base::UsageError);
-  EXPECT_THROW(run_grammar_run({file, "--attr", "x"}), base::UsageError);
-  EXPECT_THROW(run_grammar_run({file, "--colour"}), base::UsageError);
-  EXPECT_THROW(run_grammar_run({file, "--lot"}), base::UsageError);
-  EXPECT_THROW(run_grammar_run({}), base::UsageError);
-  EXPECT_THROW(run_grammar_test({}), base::UsageError);
-  EXPECT_THROW(run_grammar_run({file, "-o", (folder_ / "none" / "a.glb").string()}), base::OutputError);
+  EXPECT_THROW(run_grammar({"run", file, "--lot", "3"}), base::UsageError);
+  EXPECT_THROW(run_grammar({"run", file, "--seed", "x"}), base::UsageError);
+  EXPECT_THROW(run_grammar({"run", file, "--attr", "x"}), base::UsageError);
+  EXPECT_THROW(run_grammar({"run", file, "--colour"}), base::UsageError);
+  EXPECT_THROW(run_grammar({"run", file, "--lot"}), base::UsageError);
+  EXPECT_THROW(run_grammar({"run"}), base::UsageError);
+  EXPECT_THROW(run_grammar({"test"}), base::UsageError);
+  EXPECT_THROW(run_grammar({"run", file, "-o", (folder_ / "none" / "a.glb").string()}), base::OutputError);
+}
+
+TEST_F(GrammarRun, ReadsFilesBesideTheRules) {
+  write("heights.csv", "3,4\n5,6\n");
+  std::filesystem::create_directories(folder_ / "assets");
+  write("assets/brick.jpg", "");
+  write("assets/stone.jpg", "");
+  const std::string file =
+      write("files.cga",
+            "Lot --> print(readFloatTable(\"heights.csv\")[1, 0]) print(fileExists(\"brick.jpg\"))\n"
+            "print(fileSearch(\"*.jpg\")) print(fileExists(\"../files.cga\")) X.");
+  EXPECT_THAT(run({"run", file}), HasSubstr("5\ntrue\nbrick.jpg;stone.jpg;\nfalse\n"));
+  EXPECT_EQ(code, kSuccess) << errors;
+}
+
+TEST_F(GrammarRun, SeveralAttributesAndTheirOrder) {
+  const std::string file = write("a.cga", "attr a = 1\nattr b = 2\nLot --> print(a + b) X.");
+  EXPECT_THAT(run({"run", "--attr", "a=10", "--attr", "b=20", file}), HasSubstr("30\n"));
+  EXPECT_THAT(run({"run", file, "--attr", "a=10"}), HasSubstr("12\n"));
+}
+
+TEST_F(GrammarRun, ChecksNamesThatTheProgramGives) {
+  run({"check", write("context.cga", "Lot --> case building.storys > 3 && edge.kind == \"street\" : A. else : B.")});
+  EXPECT_EQ(code, kInvalidInput);
+  EXPECT_THAT(errors, HasSubstr("'building.storys'; did you mean 'building.storeys'? [unknown_context]"));
+  EXPECT_THAT(errors, testing::Not(HasSubstr("edge.kind'")));
+  run({"check", write("own.cga", "Lot --> blockrand.window(\"caesment\")")});
+  EXPECT_EQ(code, kInvalidInput);
+  EXPECT_THAT(errors, HasSubstr("unknown_kind"));
 }
 
 TEST_F(GrammarRun, TestsExpectations) {

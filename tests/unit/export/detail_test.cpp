@@ -50,7 +50,14 @@ class Scene {
     std::memcpy(&length, &bytes[12], 4);
     document = json::parse(bytes.substr(20, length));
     binary_ = bytes.substr(20 + length + 8);
-    for (const int n : document["scenes"][0]["nodes"]) add_node(document["nodes"][n]);
+    for (const int n : document["scenes"][0]["nodes"]) {
+      const json& node = document["nodes"][n];
+      add_node(node, 1);
+      if (!node.contains("children")) continue;
+      const auto scale = node["scale"].get<std::vector<double>>();
+      EXPECT_EQ(scale, std::vector<double>(3, scale[0]));
+      for (const int child : node["children"]) add_node(document["nodes"][child], scale[0]);
+    }
   }
 
   json document;
@@ -115,12 +122,14 @@ class Scene {
     return {v.x + w * t.x + y * t.z - z * t.y, v.y + w * t.y + z * t.x - x * t.z, v.z + w * t.z + x * t.y - y * t.x};
   }
 
-  void add_node(const json& node) {
+  /// \param size  of a step, m
+  void add_node(const json& node, double size) {
+    if (!node.contains("mesh")) return;
     const auto list = [&](const char* key, std::vector<double> usual) {
       return node.contains(key) ? node[key].get<std::vector<double>>() : usual;
     };
     const auto t = list("translation", {0, 0, 0}), r = list("rotation", {0, 0, 0, 1}), s = list("scale", {1, 1, 1});
-    std::vector<double> ts{0, 0, 0}, rs{0, 0, 0, 1}, fs{-1};
+    std::vector<double> ts{0, 0, 0}, rs{0, 0, 0, 1}, ss{1, 1, 1}, fs{-1};
     std::size_t n = 1;
     const bool instanced = node.contains("extensions") && node["extensions"].contains("EXT_mesh_gpu_instancing");
     if (instanced) {
@@ -129,6 +138,10 @@ class Scene {
       rs = accessor(a["ROTATION"]);
       fs = accessor(a["_FEATURE_ID_0"]);
       n = fs.size();
+      ss = a.contains("SCALE") ? accessor(a["SCALE"]) : std::vector<double>(3 * n, 1);
+      EXPECT_EQ(ts.size(), 3 * n);
+      EXPECT_EQ(rs.size(), 4 * n);
+      EXPECT_EQ(ss.size(), 3 * n);
       const json& id = node["extensions"]["EXT_instance_features"]["featureIds"][0];
       EXPECT_EQ(id["attribute"], 0);
       EXPECT_EQ(id["propertyTable"], 0);
@@ -157,11 +170,12 @@ class Scene {
           for (std::size_t c = 0; c < 3; ++c) {
             const auto v = static_cast<std::size_t>(index[i + c]);
             const Vector local = turned({rs[4 * k], rs[4 * k + 1], rs[4 * k + 2], rs[4 * k + 3]},
-                                        {position[3 * v], position[3 * v + 1], position[3 * v + 2]});
+                                        {position[3 * v] * ss[3 * k], position[3 * v + 1] * ss[3 * k + 1],
+                                         position[3 * v + 2] * ss[3 * k + 2]});
             const Vector in_node{(local.x + ts[3 * k]) * s[0], (local.y + ts[3 * k + 1]) * s[1],
                                  (local.z + ts[3 * k + 2]) * s[2]};
             const Vector world = turned(r, in_node);
-            out.corner[c] = {world.x + t[0], world.y + t[1], world.z + t[2]};
+            out.corner[c] = {(world.x + t[0]) * size, (world.y + t[1]) * size, (world.z + t[2]) * size};
             for (std::size_t d = 0; d < 3; ++d)
               out.colour[d] = colour.empty() ? material.value("baseColorFactor", std::vector<double>{1, 1, 1, 1})[d]
                                              : colour[4 * v + d];
@@ -205,12 +219,12 @@ TEST(DetailGlb, ElementsAreStoredOnceAndLeadToTheirBuilding) {
   const Scene scene(glb.bytes);
   EXPECT_EQ(scene.places, wanted);
   EXPECT_EQ(scene.triangles.size(), glb.triangles);
-  EXPECT_EQ(scene.document["meshes"].size(), 7u);
+  ASSERT_EQ(scene.document["meshes"].size(), 7u);
   std::set<int> positions;  // accessors: other colours share them
   for (std::size_t m = 1; m < 7; ++m)
     for (const auto& p : scene.document["meshes"][m]["primitives"])
       positions.insert(p["attributes"]["POSITION"].get<int>());
-  EXPECT_EQ(positions.size(), 3u * 3 + 2) << "three parts each, and the reveals of window and door";
+  EXPECT_EQ(positions.size(), 3u) << "parts share their element's vertices";
   for (const char* extension : {"EXT_mesh_gpu_instancing", "KHR_mesh_quantization"}) {
     const auto& required = scene.document["extensionsRequired"];
     EXPECT_NE(std::find(required.begin(), required.end(), extension), required.end()) << extension;
@@ -269,6 +283,73 @@ TEST(DetailGlb, BakedNodesAndInstancesShowTheSame) {
     away += near.count({std::lround(m[0] * 250), std::lround(m[1] * 250), std::lround(m[2] * 250)}) == 0;
   }
   EXPECT_LT(away, baked.triangles.size() / 20) << "of reveals that are cut along the other diagonal";
+}
+
+/// What fits sixteen bits is written so, and nothing leaves its bounds.
+TEST(DetailGlb, BoundsHoldEveryTriangle) {
+  const SampleRegion s = facade_region();
+  for (const Instancing how : {Instancing::ext, Instancing::nodes, Instancing::baked}) {
+    const Glb glb = write_glb(s.region(), options(how));
+    const Scene scene(glb.bytes);
+    for (const json& p : scene.document["accessors"])
+      EXPECT_NE(p["componentType"], 5125) << "no index needs 32 bits";
+    double out = 0;
+    for (const auto& t : scene.triangles)
+      for (const Vector& v : t.corner)
+        out = std::max({out, glb.min.x - v.x, v.x - glb.max.x, glb.min.y + v.z, -v.z - glb.max.y, glb.min.z - v.y,
+                        v.y - glb.max.z});
+    EXPECT_LT(out, 0.001);
+  }
+}
+
+/// A profile along a wall is stored once for all lengths.
+TEST(DetailGlb, ProfilesOfDifferentLengthsShareTheirGeometry) {
+  SampleRegion s = facade_region();
+  model::Region& region = s.region();
+  const auto profile = [&](double length, double slant) {
+    model::Element e;
+    e.name = "band " + std::to_string(length);
+    e.kind = "band";
+    const double x = length / 2;
+    e.mesh.vertices = {{-x, 0, 0.1}, {x, 0, 0.1}, {x - slant, 0.2, 0}, {-x, 0.2, 0}};
+    e.mesh.indices = {0, 1, 2, 3};
+    e.mesh.faces = {{0, 4, model::ElementPart::surround}};
+    model::ColouredElement coloured;
+    coloured.element = std::make_shared<const model::Element>(std::move(e));
+    region.elements.push_back(coloured);
+    return static_cast<std::uint32_t>(region.elements.size() - 1);
+  };
+  const Glb before = write_glb(region, options(Instancing::ext));
+  model::BuildingPart* part = nullptr;
+  for (auto& b : region.buildings)
+    for (auto& p : b.parts)
+      if (p.lod >= 3 && !part) part = &p;
+  ASSERT_NE(part, nullptr);
+  const model::Placement like = part->lod3.placements.front();
+  for (const double length : {1.5, 2.25, 31.0}) {
+    model::Placement p = like;
+    p.element = profile(length, 0);
+    p.opening = model::kNoOpening;
+    part->lod3.placements.push_back(p);
+  }
+  const Glb after = write_glb(region, options(Instancing::ext));
+  EXPECT_EQ(after.elements, before.elements + 1);
+  EXPECT_EQ(after.placements, before.placements + 3);
+  const auto lengths = [](const Glb& glb) {
+    const Scene scene(glb.bytes);
+    std::multiset<long> out;  // mm
+    for (std::size_t i = scene.triangles.size() - 6; i < scene.triangles.size(); i += 2) {
+      const Vector &a = scene.triangles[i].corner[0], &b = scene.triangles[i].corner[1];
+      out.insert(std::lround(std::sqrt((a.x - b.x) * (a.x - b.x) + (a.z - b.z) * (a.z - b.z)) * 1000));
+    }
+    return out;
+  };
+  EXPECT_EQ(lengths(after), (std::multiset<long>{1500, 2250, 31000}));
+  EXPECT_EQ(lengths(write_glb(region, options(Instancing::nodes))), (std::multiset<long>{1500, 2250, 31000}));
+  model::Placement slanted = like;
+  slanted.element = profile(1.5, 0.3);
+  part->lod3.placements.push_back(slanted);
+  EXPECT_EQ(write_glb(region, options(Instancing::ext)).elements, before.elements + 2) << "its ends are not plane";
 }
 
 TEST(DetailGlb, WithoutLod3NothingChanges) {

@@ -61,9 +61,9 @@ inline SampleRegion row_sample() {
   face(add_stretch(a, 0, EdgeKind::street));
   a.edges.back().corner_start = true;
   a.edges.back().entrances = 1;
-  a.edges.back().points = {{{model::OsmType::node, 71}, {kRowX + 2, kRowY + 8}, true, "7"},
-                           {{model::OsmType::node, 72}, {kRowX + 4, kRowY + 9}, false, "7a"},
-                           {{model::OsmType::node, 73}, {kRowX + 5, kRowY + 9}, false, "7"}};
+  a.edges.back().points = {{{model::OsmType::node, 71}, {kRowX + 2, kRowY + 8}, true, "7", {}},
+                           {{model::OsmType::node, 72}, {kRowX + 4, kRowY + 9}, false, "7a", {}},
+                           {{model::OsmType::node, 73}, {kRowX + 5, kRowY + 9}, false, "7", {}}};
   add_stretch(a, 1, EdgeKind::party_wall).neighbour = {model::OsmType::way, 2};
   a.edges.back().covered_height = 16.5f;
   add_stretch(a, 2, EdgeKind::courtyard);

@@ -25,6 +25,21 @@ double parsed(const std::string& text) {
   return value;
 }
 
+TEST(AppendFourDecimals, TakesLengthsOfEverySignAndSize) {
+  const auto text = [](double v) {
+    std::string out;
+    append_four_decimals(out, v);
+    return out;
+  };
+  EXPECT_EQ(text(0), "0");
+  EXPECT_EQ(text(-0.55), "-0.55");
+  EXPECT_EQ(text(2.2), "2.2");
+  EXPECT_EQ(text(-12.03456), "-12.0346");
+  EXPECT_EQ(text(0.00004), "0");
+  EXPECT_EQ(text(-0.00004), "0");
+  EXPECT_EQ(text(1.0001), "1.0001");
+}
+
 TEST(AppendGrid, WritesShortDecimals) {
   EXPECT_EQ(grid(0), "0");
   EXPECT_EQ(grid(-0.0), "0");

@@ -109,9 +109,19 @@ TEST(Check, RecursionWithoutCondition) {
   EXPECT_THAT(told("f(n) = case n > 0 : f(n-1) else : 0"), IsEmpty());
 }
 
+TEST(Check, ValuesThatTheProgramGives) {
+  CheckOptions options;
+  options.context = {"building.height", "building.storeys", "edge.kind"};
+  EXPECT_THAT(told("A --> extrude(building.storys) X.", {}, options),
+              ElementsAre("1:15 unknown_context → building.storeys"));
+  EXPECT_THAT(told("A --> extrude(building.storeys) X.", {}, options), IsEmpty());
+  EXPECT_THAT(told("f = storey.use\nA --> print(f) X.", {}, options), ElementsAre("1:5 unknown_context"));
+  EXPECT_THAT(told("A --> extrude(building.storys) X."), IsEmpty()) << "nobody says what there is";
+}
+
 TEST(Check, WhatDoesNotRun) {
   EXPECT_THAT(told("A --> insertAlongUV(0, \"a.obj\", 1)"), ElementsAre("1:7 not_yet"));
-  EXPECT_THAT(told("A --> case touches(inter) : X. else : Y."), ElementsAre("1:12 default_answer"));
+  EXPECT_THAT(told("A --> case getGeoCoord(lon) > 3 : X. else : Y."), ElementsAre("1:12 default_answer"));
   EXPECT_THAT(told("A --> inline B\nB --> NIL"), ElementsAre("1:7 not_yet"));
   CheckOptions quiet;
   quiet.tell_status = false;

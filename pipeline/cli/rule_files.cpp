@@ -1,0 +1,160 @@
+#include "pipeline/cli/rule_files.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <regex>
+
+#include "pipeline/generate/facade_context.h"
+#include "pipeline/generate/grammar_book.h"
+
+namespace blockrand::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Most files that a search looks at: a project's assets, not a whole disk.
+constexpr std::size_t kMostFiles = 100000;
+
+std::optional<std::string> read_file(const std::string& path) {
+  std::error_code none;
+  if (!fs::is_regular_file(path, none)) return std::nullopt;
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (!in) return std::nullopt;
+  return bytes;
+}
+
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end; !error && entry != end;
+       entry.increment(error))
+    names.push_back(entry->path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The folder above `rules` that the file lies in; its own folder where there is none.
+fs::path project_of(const std::string& file) {
+  std::error_code none;
+  const fs::path path = fs::absolute(file, none).lexically_normal();
+  for (fs::path folder = path.parent_path(); folder != folder.root_path(); folder = folder.parent_path())
+    if (folder.filename() == "rules") return folder.parent_path();
+  return path.parent_path();
+}
+
+/// Where a path of a rule file may be: the folders, first come first.
+std::vector<fs::path> folders_of(const settings::Settings& settings, const std::string& file) {
+  std::vector<fs::path> out;
+  const fs::path project = project_of(file);
+  for (const char* below : {"assets", "images", "data"}) out.push_back(project / below);
+  out.push_back(project);
+  for (const std::string& root : settings.rule_roots)
+    if (!root.starts_with('/') || root.find('=') == std::string::npos) out.emplace_back(root);
+  return out;
+}
+
+/// A path that does not leave its folder.
+bool stays_below(const fs::path& path) {
+  const fs::path normal = path.lexically_normal();
+  return normal.is_relative() && !normal.empty() && *normal.begin() != "..";
+}
+
+/// The file in the first of the folders that has it.
+std::optional<fs::path> find_file(const std::vector<fs::path>& folders, const std::string& path) {
+  fs::path relative(path);
+  if (relative.is_absolute()) relative = relative.relative_path();
+  if (!stays_below(relative)) return std::nullopt;
+  std::error_code none;
+  for (const fs::path& folder : folders)
+    if (fs::is_regular_file(folder / relative, none)) return folder / relative;
+  return std::nullopt;
+}
+
+/// `*` any letters, `?` one letter; "$…" is a regular expression (cga.md §3.2). Nothing where it is none.
+std::optional<std::regex> pattern_of(const std::string& query) {
+  try {
+    if (query.starts_with('$')) return std::regex(query.substr(1), std::regex::icase);
+    std::string text;
+    for (const char c : query) {
+      if (c == '*')
+        text += ".*";
+      else if (c == '?')
+        text += '.';
+      else if (std::string_view("\\^$.|+()[]{}").find(c) != std::string_view::npos)
+        text += std::string("\\") + c;
+      else
+        text += c;
+    }
+    return std::regex(text, std::regex::icase);
+  } catch (const std::regex_error&) {
+    return std::nullopt;
+  }
+}
+
+std::vector<std::string> search(const std::vector<fs::path>& folders, const std::string& query) {
+  const auto pattern = pattern_of(query);
+  std::vector<std::string> out;
+  if (!pattern) return out;
+  std::size_t seen = 0;
+  for (const fs::path& folder : folders) {
+    std::error_code error;
+    std::vector<std::string> found;
+    for (fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error), end;
+         !error && entry != end && ++seen < kMostFiles; entry.increment(error)) {
+      if (!entry->is_regular_file(error)) continue;
+      const std::string name = entry->path().lexically_relative(folder).generic_string();
+      // A query without folders is a file's name, wherever it lies.
+      if (std::regex_match(name, *pattern) || std::regex_match(entry->path().filename().string(), *pattern))
+        found.push_back(name);
+    }
+    std::sort(found.begin(), found.end());
+    for (std::string& name : found)
+      if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(std::move(name));
+    if (!out.empty()) break;
+  }
+  return out;
+}
+
+}  // namespace
+
+grammar::LoadOptions rule_load_options(const settings::Settings& settings, const std::string& file) {
+  grammar::LoadOptions options;
+  for (const std::string& root : settings.rule_roots) {
+    const std::size_t equals = root.starts_with('/') ? root.find('=') : std::string::npos;
+    if (equals == std::string::npos)
+      options.roots.push_back(root);
+    else
+      options.mounts.emplace_back(root.substr(0, equals), root.substr(equals + 1));
+  }
+  options.roots.push_back(project_of(file).string());
+  options.read = read_file;
+  options.list = names_in;
+  return options;
+}
+
+grammar::FileAccess rule_file_access(const settings::Settings& settings, const std::string& file) {
+  const std::vector<fs::path> folders = folders_of(settings, file);
+  grammar::FileAccess access;
+  access.exists = [folders](const std::string& path) { return find_file(folders, path).has_value(); };
+  access.read = [folders](const std::string& path) -> std::optional<std::string> {
+    const auto found = find_file(folders, path);
+    return found ? read_file(found->string()) : std::nullopt;
+  };
+  access.search = [folders](const std::string& query) { return search(folders, query); };
+  return access;
+}
+
+grammar::CheckOptions rule_check_options() {
+  grammar::CheckOptions out;
+  out.extensions = generate::extension_operations();
+  for (const generate::ContextAttribute& attribute : generate::context_attributes())
+    out.context.emplace_back(attribute.name);
+  return out;
+}
+
+}  // namespace blockrand::cli

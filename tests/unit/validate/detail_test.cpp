@@ -1,0 +1,166 @@
+// LoD3 read back: what is written is sound, and what is planted into it is found.
+#include "pipeline/validate/detail.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "pipeline/export/citygml/citygml_writer.h"
+#include "pipeline/validate/citygml.h"
+#include "pipeline/validate/solids.h"
+#include "tests/unit/export/facade_region.h"
+
+namespace blockrand::validate {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+export_::test::SampleRegion region_with_chimney() {
+  auto s = export_::test::facade_region();
+  auto& part = s.region().buildings.front().parts.front();
+  const auto at = [](double x, double y) { return model::Point2{x, y}; };
+  model::Polygon plan;
+  plan.outer.points = {at(391005, 5819004), at(391006, 5819004), at(391006, 5819005), at(391005, 5819005)};
+  plan.outer.nodes.assign(4, 0);
+  auto [solid, triangles] = export_::test::prism(plan, 46, 49);
+  part.lod3.roof_installations.push_back({model::RoofElementKind::chimney, std::move(solid), std::move(triangles)});
+  return s;
+}
+
+const std::string& sound() {
+  static const std::string text = [] {
+    export_::CityGmlOptions o;
+    o.lod = 3;
+    o.srs_name = "urn:ogc:def:crs:EPSG::25833";
+    return export_::write_citygml(region_with_chimney().region(), o);
+  }();
+  return text;
+}
+
+std::vector<std::string> found(const std::string& text) {
+  const CityGml gml = read_citygml(text, "a.gml");
+  EXPECT_TRUE(gml.readable);
+  std::vector<std::string> out;
+  for (const Finding& f : gml.contents.findings) out.push_back(f.object + ": " + f.detail);
+  return out;
+}
+
+/// The text between two marks, the first after `after`.
+struct Piece {
+  std::size_t start = 0, length = 0;
+};
+Piece piece(const std::string& text, const std::string& first, const std::string& last, const std::string& after = "") {
+  const std::size_t from = text.find(first, after.empty() ? 0 : text.find(after)), to = text.find(last, from);
+  EXPECT_NE(to, std::string::npos) << first;
+  return {from, to + last.size() - from};
+}
+
+/// Changes the numbers of the first list after `after`.
+template <class Change>
+std::string with_numbers(std::string text, const std::string& element, const std::string& after, const Change& change) {
+  const Piece p = piece(text, "<" + element + ">", "</" + element + ">", after);
+  const std::size_t start = p.start + element.size() + 2;
+  std::istringstream in(text.substr(start, p.length - 2 * element.size() - 5));
+  std::vector<double> numbers;
+  for (double v = 0; in >> v;) numbers.push_back(v);
+  change(numbers);
+  std::string list;
+  for (const double v : numbers) list += (list.empty() ? "" : " ") + std::to_string(v);
+  return text.replace(start, p.length - 2 * element.size() - 5, list);
+}
+
+TEST(Detail, WhatIsWrittenIsSoundAndComplete) {
+  EXPECT_THAT(found(sound()), IsEmpty());
+  const CityGml gml = read_citygml(sound(), "a.gml");
+  const auto s = region_with_chimney();
+  std::size_t body = 0;
+  for (const auto& building : s.region().buildings) {
+    const auto& part = building.parts.front();
+    const ReadBody& read = gml.contents.bodies.at(body++);
+    EXPECT_EQ(read.attributes.at("use"), part.attributes.use.value) << "not the function of an installation";
+    if (part.lod < 3) continue;
+    ASSERT_EQ(read.solids.size(), 3u);
+    EXPECT_EQ(read.solids[2].lod, 3);
+    EXPECT_EQ(read.solids[2].polygons.size(), part.lod3.solid.faces.size());
+    for (std::size_t f = 0; f < read.solids[2].polygons.size(); ++f)
+      EXPECT_EQ(read.solids[2].polygons[f].colour, model::text(part.lod3.solid.faces[f].colour));
+    EXPECT_EQ(read.detail.openings.size(), part.lod3.openings.size());
+    EXPECT_EQ(read.detail.placements.size(), part.lod3.placements.size());
+    EXPECT_EQ(read.detail.installations.size(), part.lod3.roof_installations.size());
+    for (const ReadSolid& solid : read.solids) EXPECT_TRUE(judge(solid).valid()) << judge(solid).text();
+  }
+  ASSERT_EQ(gml.contents.bodies[0].detail.installations.size(), 1u);
+  EXPECT_EQ(gml.contents.bodies[0].detail.installations[0].kind, "chimney");
+  EXPECT_TRUE(judge({3, gml.contents.bodies[0].detail.installations[0].polygons}).valid());
+  // Two colours of one window are two elements; equal ones are one.
+  EXPECT_NE(gml.contents.bodies[0].detail.placements[3].element, gml.contents.bodies[1].detail.placements[3].element);
+  EXPECT_EQ(gml.contents.bodies[0].detail.placements[3].element, gml.contents.bodies[2].detail.placements[3].element);
+}
+
+TEST(Detail, ADeletedWindow) {
+  std::string text = sound();
+  const Piece p = piece(text, "<bldg:opening><bldg:Window", "</bldg:opening>");
+  const std::string window = text.substr(p.start, p.length);
+  text.erase(p.start, p.length);
+  EXPECT_THAT(found(text), Contains(HasSubstr("which is no polygon of LoD3")));
+  // Its reference with it: the solid has a hole.
+  std::smatch id;
+  ASSERT_TRUE(std::regex_search(window, id, std::regex("gml:Polygon gml:id=\"([^\"]*)\"")));
+  const std::string reference = "<gml:surfaceMember xlink:href=\"#" + id[1].str() + "\"/>";
+  const std::size_t at = text.find(reference);
+  ASSERT_NE(at, std::string::npos);
+  text.erase(at, reference.size());
+  const CityGml gml = read_citygml(text, "a.gml");
+  EXPECT_EQ(judge(gml.contents.bodies[0].solids[2]).number, 302);
+  EXPECT_EQ(gml.contents.bodies[0].detail.openings.size() + 1,
+            read_citygml(sound(), "a.gml").contents.bodies[0].detail.openings.size());
+}
+
+TEST(Detail, AMovedVertexOfAWindow) {
+  EXPECT_THAT(found(with_numbers(sound(), "gml:posList", "<bldg:Window",
+                                 [](auto& n) {
+                                   n[5] += 0.25;  // the second corner, upwards
+                                 })),
+              Contains(HasSubstr("an edge of it is none of its reveal")));
+}
+
+TEST(Detail, AWindowBeforeItsWall) {
+  const auto text = with_numbers(sound(), "gml:posList", "<bldg:Window", [](auto& n) {
+    for (std::size_t i = 1; i < n.size(); i += 3) n[i] -= 0.5;  // the first wall looks south
+  });
+  EXPECT_THAT(found(text), Contains(HasSubstr("behind its wall")));
+}
+
+TEST(Detail, AnElementBesideItsOpening) {
+  const auto aside = with_numbers(sound(), "gml:pos", "<bldg:Window", [](auto& n) { n[0] += 2; });
+  EXPECT_THAT(found(aside), Contains(HasSubstr("its element stands outside of the opening")));
+  const auto before = with_numbers(sound(), "gml:pos", "<bldg:Window", [](auto& n) { n[1] -= 0.5; });
+  EXPECT_THAT(found(before), Contains(HasSubstr("its element does not stand in the plane of the wall")));
+  const auto off = with_numbers(sound(), "gml:pos", "<bldg:Window", [](auto& n) { n[0] += 0.0004; });
+  EXPECT_THAT(found(off), Contains(HasSubstr("off the 1/1024 m grid")));
+}
+
+TEST(Detail, AMirroredElement) {
+  EXPECT_THAT(found(with_numbers(sound(), "transformationMatrix", "<bldg:Window", [](auto& n) { n[0] = -n[0]; })),
+              Contains(HasSubstr("no rotation about the vertical")));
+}
+
+TEST(Detail, ReferencesToNowhere) {
+  const auto replaced = [](const std::string& before, const std::string& after) {
+    std::string text = sound();
+    const std::size_t at = text.find(before);
+    EXPECT_NE(at, std::string::npos) << before;
+    return text.replace(at, before.size(), after);
+  };
+  EXPECT_THAT(found(replaced("<relativeGMLGeometry xlink:href=\"#element", "<relativeGMLGeometry xlink:href=\"#none")),
+              Contains(HasSubstr("which is no element")));
+  EXPECT_THAT(found(replaced("<bldg:lod3MultiSurface><gml:MultiSurface><gml:surfaceMember xlink:href=\"#",
+                             "<bldg:lod3MultiSurface><gml:MultiSurface><gml:surfaceMember xlink:href=\"#x")),
+              Contains(HasSubstr("is not in the solid of LoD3")));
+}
+
+}  // namespace
+}  // namespace blockrand::validate
