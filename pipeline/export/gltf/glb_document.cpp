@@ -13,7 +13,7 @@ static_assert(std::endian::native == std::endian::little, "buffers are copied as
 
 namespace {
 
-constexpr std::size_t kAlignment = 8;  // what property tables need; of all views, for simplicity
+constexpr std::size_t kAlignment = 8;              // what property tables need; of all views, for simplicity
 constexpr std::uint64_t kMostBytes = 0xFFFF0000u;  // sizes are 32-bit numbers
 
 struct StreamInfo {
