@@ -102,12 +102,6 @@ class Facades(BuildTest):
         # A build without facades does not ask for them.
         self.build(SAMPLE, 'lod2', '--configs', configs, '--formats', 'gltf')
 
-    def test_validate_says_that_it_cannot(self):
-        out = self.build(SAMPLE, 'unread', *LOD3, '--formats', 'gltf')
-        run = blockrand('validate', out, '--progress', 'none')
-        self.assertEqual(run.code, 2, run)
-        self.assertIn('LoD 3', run.err)
-
     def test_shipped_rules_pass_their_check(self):
         folder = os.path.join(SOURCE, 'configs', 'grammars')
         run = blockrand('grammar', 'check', *[os.path.join(folder, f) for f in sorted(os.listdir(folder))])
