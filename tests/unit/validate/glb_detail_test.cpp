@@ -216,7 +216,9 @@ TEST_F(GlbDetail, BrokenCompressedStreams) {
   };
   check([&](json& j, std::string& b) { b[view_of(j).value("byteOffset", std::size_t{0})] = 0; },
         "cannot be decompressed");
-  check([&](json& j, std::string&) { view_of(j)["byteLength"] = 5; }, "cannot");
+  check([&](json& j, std::string&) {
+    view_of(j)["byteLength"] = view_of(j)["byteLength"].get<int>() - 4;
+  }, "cannot be decompressed");
   check([&](json& j, std::string&) { view_of(j)["count"] = 1u << 30; }, "more elements than its bytes can hold");
   check([&](json& j, std::string&) { view_of(j)["mode"] = "INDICES"; }, "mode");
   check([&](json& j, std::string&) { j["buffers"].erase(1); }, "leaves the buffer");
