@@ -45,8 +45,8 @@ TEST(ExplainDetail, TellsRulesOpeningsElementsAndBodies) {
 
   const auto records = explained(s.region(), "gruenderzeit.cga");
   const std::string text = stage(records[0], "facades");
-  EXPECT_NE(text.find("rule file gruenderzeit.cga of preset gz: " + std::to_string(windows) + " windows, 1 door; placed " +
-                      std::to_string(windows) + " casement, 1 house_door, 1 lamp"),
+  EXPECT_NE(text.find("rule file gruenderzeit.cga of preset gz: " + std::to_string(windows) +
+                      " windows, 1 door; placed " + std::to_string(windows) + " casement, 1 house_door, 1 lamp"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("bodies on walls and roofs: 1 chimney"), std::string::npos) << text;
