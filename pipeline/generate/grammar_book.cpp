@@ -105,6 +105,7 @@ GrammarBook::GrammarBook(const std::string& folder, std::span<const PresetGramma
     }
     Entry entry;
     entry.preset = preset.preset;
+    entry.file = preset.file;
     entry.deriver = &*(*file)->deriver;
     for (const auto& [name, value] : preset.attributes) entry.attributes.emplace_back(name, value);
     entries_.push_back(std::move(entry));

@@ -32,6 +32,7 @@ class GrammarBook {
  public:
   struct Entry {
     std::string preset;
+    std::string file;  ///< below the folder of grammars
     const grammar::Deriver* deriver = nullptr;
     std::vector<std::pair<std::string, grammar::Value>> attributes;
   };

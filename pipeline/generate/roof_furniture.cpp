@@ -86,9 +86,8 @@ class Furnisher {
   /// Houses of people, and old houses of shops and offices; no churches, halls and sheds.
   bool has_hearths(const model::Attributes& a) const {
     const std::string& group = defaults_.groups[defaults_.use(a.use.value).group];
-    return group == "residential" ||
-           ((group == "commercial" || group == "public" || group == "other") && is_old(a) &&
-            a.style.value != model::name(model::StyleClass::other));
+    return group == "residential" || ((group == "commercial" || group == "public" || group == "other") && is_old(a) &&
+                                      a.style.value != model::name(model::StyleClass::other));
   }
 
   /// The largest body, where it has LoD3 and reaches the ground; null for canopies and the like.

@@ -323,6 +323,11 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     export_::ExplainOptions explain;
     explain.lod = options.lod;
     explain.earlier = earlier;
+    if (grammars)
+      explain.rule_file = [&grammars](std::string_view preset) -> std::string {
+        const generate::GrammarBook::Entry* entry = grammars->find(preset);
+        return entry ? entry->file : std::string();
+      };
     explain.courtyard = [&context](std::string_view id) -> std::optional<export_::CourtyardFacts> {
       const auto found = std::lower_bound(context.courtyards.begin(), context.courtyards.end(), id,
                                           [](const ExtractCourtyard& y, std::string_view i) { return y.courtyard.id < i; });

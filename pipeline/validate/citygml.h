@@ -16,9 +16,10 @@ struct CityGml {
   std::string srs_name;   ///< of the envelope; empty without one
 };
 
-/// Reads CityGML 2.0 as Blockrand writes it (LoD 0 to 2) and checks: known elements in their places, gml:ids given
+/// Reads CityGML 2.0 as Blockrand writes it (LoD 0 to 3) and checks: known elements in their places, gml:ids given
 /// once, references that resolve, an envelope that holds every point, rings closed with at least four points, boundary
-/// surfaces that are the shell of their LoD2 solid, each used once, attributes of their type, colours that exist.
+/// surfaces that are the shells of their LoD2 and LoD3 solids, each used once, what check_detail() says of windows and
+/// doors, attributes of their type, colours that exist.
 /// Attributes without a `_source` come from tags: the bodies say so. Never throws on account of the bytes.
 /// \param name  of the file, for findings
 CityGml read_citygml(std::string_view xml, const std::string& name);

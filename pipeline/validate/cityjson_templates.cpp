@@ -77,8 +77,7 @@ class TemplateReader {
     std::vector<std::uint64_t> indices;
     for (const Json& v : r) {
       const auto i = whole(&v);
-      if (!i || *i >= points_.size())
-        return rule("names a vertex that does not exist: " + v.dump().substr(0, 20));
+      if (!i || *i >= points_.size()) return rule("names a vertex that does not exist: " + v.dump().substr(0, 20));
       indices.push_back(*i);
       used_[*i] = true;
       points.push_back(points_[*i]);

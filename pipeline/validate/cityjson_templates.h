@@ -18,13 +18,12 @@ struct CityJsonTemplates {
   std::vector<bool> used;              ///< by template: placed somewhere in the file
 };
 
-/// Reads "geometry-templates" and checks: MultiSurfaces of LoD 3, every index one of a vertex, every vertex used, rings of
-/// three different points.
-/// \param colours  "#rrggbb" by material of the appearance beside them
+/// Reads "geometry-templates" and checks: MultiSurfaces of LoD 3, every index one of a vertex, every vertex used, rings
+/// of three different points. \param colours  "#rrggbb" by material of the appearance beside them
 CityJsonTemplates read_templates(const Json& root, const std::vector<std::string>& colours, CityJsonFindings& findings);
 
-/// A GeometryInstance: its place, with the digest of its template. Nothing where it breaks a rule, which `complain` is told.
-/// \param vertices  of the object or feature
+/// A GeometryInstance: its place, with the digest of its template. Nothing where it breaks a rule, which `complain` is
+/// told. \param vertices  of the object or feature
 template <class Complain>
 std::optional<ReadPlacement> read_instance(const Json& g, CityJsonScope& scope, CityJsonTemplates& templates,
                                            const Complain& complain) {

@@ -55,8 +55,8 @@ void check_placement(const ReadPlacement& placement, const std::vector<Point3>& 
   const auto way = [&](const Point3& p) { return p.x * along.x + p.y * along.y; };
   const auto [left, right] = std::minmax_element(outline.begin(), outline.end(),
                                                  [&](const Point3& a, const Point3& b) { return way(a) < way(b); });
-  const auto [low, high] = std::minmax_element(outline.begin(), outline.end(),
-                                               [](const Point3& a, const Point3& b) { return a.z < b.z; });
+  const auto [low, high] =
+      std::minmax_element(outline.begin(), outline.end(), [](const Point3& a, const Point3& b) { return a.z < b.z; });
   const Point3& o = placement.origin;
   if (std::fabs(wall.above(o)) > kWallTolerance ||
       std::fabs(along.x * wall.normal.x + along.y * wall.normal.y) > kWallTolerance)
@@ -89,8 +89,7 @@ void check_detail(const ReadBody& body, const Complain& complain) {
       nearest = std::min(nearest, -wall.above(p));
       deepest = std::max(deepest, -wall.above(p));
     }
-    const double cosine =
-        wall.normal.x * own.normal.x + wall.normal.y * own.normal.y + wall.normal.z * own.normal.z;
+    const double cosine = wall.normal.x * own.normal.x + wall.normal.y * own.normal.y + wall.normal.z * own.normal.z;
     if (nearest < -kWallTolerance || deepest > kDeepestReveal || deepest - nearest > kWallTolerance)
       complain(fmt::format("lies {:.3f} to {:.3f} m behind its wall", nearest, deepest), opening.id);
     else if (cosine < 0.99)

@@ -15,15 +15,16 @@ using Complain = std::function<void(std::string what, const std::string& id)>;
 
 /// The openings and placements of a body against its LoD3 solid.
 ///
-/// An opening's polygon lies parallel to its wall and at most kDeepestReveal behind it, looks the way the wall looks, and
-/// each of its edges is one of a reveal or of the wall: it closes the end of its own reveal. The element in an opening
-/// stands upright in the plane of the wall, within the opening's outline.
+/// An opening's polygon lies parallel to its wall and at most kDeepestReveal behind it, looks the way the wall looks,
+/// and each of its edges is one of a reveal or of the wall: it closes the end of its own reveal. The element in an
+/// opening stands upright in the plane of the wall, within the opening's outline.
 void check_detail(const ReadBody& body, const Complain& complain);
 
 /// The same for equal elements, whichever format they come from: their polygons in order to 0.1 mm, with colours.
 std::uint64_t element_digest(std::span<const ReadPolygon> polygons);
 
-/// Whether a matrix (row by row) turns about the vertical and does nothing else: elements stand upright and keep their size.
+/// Whether a matrix (row by row) turns about the vertical and does nothing else: elements stand upright and keep their
+/// size.
 bool turns_about_the_vertical(std::span<const double> matrix);
 
 /// What two formats say differently of a body's LoD3 beside its solid: how many openings, which elements where, which

@@ -96,10 +96,35 @@ class TileRecords {
       }
       differs(*found->second, "lod", value_text(member(body, "lod")));
       differs(*found->second, "built_roof", text(member(body, "built_roof")));
+      compare_detail(*found->second, member(body, "detail"));
       const Json* attributes = member(body, "attributes");
       if (!attributes && count == 1) attributes = member(json, "attributes");
       if (attributes && attributes->is_array()) compare_attributes(*found->second, *attributes);
     }
+  }
+
+  /// What is said of LoD3 against what stands there; of formats that tell no solids, nothing is known.
+  void compare_detail(const ReadBody& body, const Json* said) {
+    const auto solid = std::find_if(body.solids.begin(), body.solids.end(), [](const ReadSolid& s) { return s.lod == 3; });
+    if (solid == body.solids.end()) return;
+    if (!said || !said->is_object()) return wrong(body.id, "its facades are not explained");
+    const auto polygons = [&](const char* kind) {
+      return static_cast<std::uint64_t>(std::count_if(solid->polygons.begin(), solid->polygons.end(),
+                                                      [&](const ReadPolygon& p) { return p.kind == kind; }));
+    };
+    const auto sum = [&](const char* name) {
+      std::uint64_t n = 0;
+      if (const Json* kinds = member(*said, name); kinds && kinds->is_object())
+        for (const auto& [kind, count] : kinds->items()) n += whole(&count).value_or(0);
+      return n;
+    };
+    const auto expect = [&](const char* what, std::uint64_t is, std::uint64_t told) {
+      if (is != told) wrong(body.id, fmt::format("is said to have {} {}, the model has {}", told, what, is));
+    };
+    expect("windows", polygons("window"), whole(member(*said, "windows")).value_or(0));
+    expect("doors", polygons("door"), whole(member(*said, "doors")).value_or(0));
+    expect("placed elements", body.detail.placements.size(), sum("elements"));
+    expect("installations", body.detail.installations.size(), sum("installations"));
   }
 
   void compare_attributes(const ReadBody& body, const Json& attributes) {

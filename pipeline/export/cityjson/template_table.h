@@ -21,8 +21,8 @@ class TemplateTable {
   /// \param materials  of the file's appearance, to which templates refer
   explicit TemplateTable(MaterialNumbers& materials) : materials_(materials) {}
 
-  /// The numbers of the templates of a region's elements, by element; kNoTemplate for those that no written part of LoD3
-  /// places. Material classes are numbered by `class_of`.
+  /// The numbers of the templates of a region's elements, by element; kNoTemplate for those that no written part of
+  /// LoD3 places. Material classes are numbered by `class_of`.
   std::vector<std::uint32_t> add(const model::Region& region, const std::vector<std::uint8_t>& class_of);
 
   bool empty() const { return numbers_.empty(); }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "pipeline/export/explain/detail.h"
 #include "pipeline/export/explain/json_text.h"
 #include "pipeline/export/explain/situation.h"
 #include "pipeline/export/explain/style.h"
@@ -160,6 +161,7 @@ class Writer {
       if (const std::string text = assign_text(building); !text.empty()) stage("assign", text);
     }
     stage("build", build_text(building, fate));
+    if (const std::string text = facade_text(building); !text.empty()) stage("facades", text);
     if (!building.parts.empty()) stage("check", check_text(building));
     json_.close(']');
     append_repair(json_, building);
@@ -306,10 +308,32 @@ class Writer {
     return text;
   }
 
+  /// Which rules made the fronts, what stands in and on them, and what was left out. Empty below LoD3.
+  std::string facade_text(const Building& building) {
+    if (options_.lod < 3 || building.parts.empty()) return {};
+    const std::string& preset = building.attributes.preset.value;
+    const std::string file = options_.rule_file ? options_.rule_file(preset) : std::string();
+    if (file.empty())
+      return preset.empty() ? "no preset, so no rules: walls stay plain"
+                            : fmt::format("preset {} has no rule file: walls stay plain", preset);
+    DetailCounts sum;
+    bool any = false;
+    for (const BuildingPart& part : building.parts) {
+      if (part.lod < 3) continue;
+      any = true;
+      add_detail(region_, part.lod3, sum);
+    }
+    std::string text = fmt::format("rule file {} of preset {}", file, preset);
+    text += any ? ": " + detail_text(sum) : ": no body has facades";
+    const std::string noted =
+        said(building, {model::IssueCode::opening_left_out, model::IssueCode::facade_failed, model::IssueCode::grammar_error});
+    return noted.empty() ? text : text + ". " + noted;
+  }
+
   std::string check_text(const Building& building) const {
     std::size_t solids = 0, faces = 0;
     for (const BuildingPart& part : building.parts)
-      for (const model::Solid* solid : {&part.lod1, &part.lod2}) {
+      for (const model::Solid* solid : {&part.lod1, &part.lod2, &part.lod3.solid}) {
         solids += !solid->empty();
         faces += solid->faces.size();
       }
@@ -380,6 +404,7 @@ class Writer {
       json_.open('[');
       for (const model::IssueCode code : part.fallbacks) json_.element(model::info(code).text);
       json_.close(']');
+      if (part.lod >= 3) append_detail(json_, region_, part.lod3);
       // A single body has the building's attributes: said once.
       if (building.has_mapped_parts || building.parts.size() > 1) attributes(part.attributes);
       json_.close('}');

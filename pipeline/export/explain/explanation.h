@@ -20,7 +20,9 @@
 //             "changes":[…]},       where it was classified: model/style.h; weights are log-odds, open bins have no low, high
 //    "attributes":[{"name":"storeys","value":5,"unit":"","source":"neighbours","confidence":0.6,"why":…,
 //                   "lost":[{"value":"4","source":"preset","confidence":0.3,"why":…}]},…],
-//    "bodies":[{"id":"w1","lod":2,"asked_roof":"gabled","built_roof":"hipped","fallbacks":["ROOF_SHAPE_ADAPTED"],…}],
+//    "bodies":[{"id":"w1","lod":2,"asked_roof":"gabled","built_roof":"hipped","fallbacks":["ROOF_SHAPE_ADAPTED"],
+//               "detail":{"windows":24,"doors":1,"passages":1,"elements":{"casement":24,…},"installations":{"chimney":3,…}},
+//               …}],                  detail: of LoD3
 //    "notes":[{"code":"SPIKE_REMOVED","class":"notice","meaning":…,"detail":"1 points"}],
 //    "files":["tiles/15/1/2.glb",…]}
 #pragma once
@@ -62,6 +64,8 @@ struct ExplainOptions {
   std::span<const model::ReportRow> earlier;
   /// Of BuildingSituation::courtyards; may be empty.
   CourtyardLookup courtyard;
+  /// The rule file of a preset; empty for one without, or where facades were not asked for. May be empty.
+  std::function<std::string(std::string_view preset)> rule_file;
 };
 
 struct Explanations {

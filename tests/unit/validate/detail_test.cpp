@@ -223,7 +223,8 @@ std::vector<std::string> found_in_json(const Change& change) {
   auto feature = nlohmann::ordered_json::parse(text.substr(first, second - first));
   change(header, feature);
   std::vector<std::string> out;
-  for (const Finding& f : read_cityjson(header.dump() + "\n" + feature.dump() + text.substr(second), "a.city.jsonl").findings)
+  for (const Finding& f :
+       read_cityjson(header.dump() + "\n" + feature.dump() + text.substr(second), "a.city.jsonl").findings)
     out.push_back(f.object + ": " + f.detail);
   return out;
 }
@@ -241,16 +242,15 @@ TEST(DetailCityJson, DamageIsFound) {
               Contains(HasSubstr("has a window that is in no wall")));
   EXPECT_THAT(found_in_json([&](auto&, auto& f) { solid(f)["semantics"]["surfaces"][0]["children"].erase(0); }),
               Contains(HasSubstr("does not name it as a child")));
-  EXPECT_THAT(found_in_json([](auto&, auto& f) {
-                f["CityObjects"]["w100_casement"]["geometry"][0]["template"] = 99;
-              }),
+  EXPECT_THAT(found_in_json([](auto&, auto& f) { f["CityObjects"]["w100_casement"]["geometry"][0]["template"] = 99; }),
               Contains(HasSubstr("a template that does not exist")));
   EXPECT_THAT(found_in_json([](auto&, auto& f) {
                 f["CityObjects"]["w100_casement"]["geometry"][0]["transformationMatrix"][0] = 2;
               }),
               Contains(HasSubstr("no rotation about the vertical")));
-  EXPECT_THAT(found_in_json([](auto& h, auto&) { h["geometry-templates"]["templates"][0]["boundaries"][0][0][0] = 9999; }),
-              Contains(HasSubstr("names a vertex that does not exist")));
+  EXPECT_THAT(
+      found_in_json([](auto& h, auto&) { h["geometry-templates"]["templates"][0]["boundaries"][0][0][0] = 9999; }),
+      Contains(HasSubstr("names a vertex that does not exist")));
   EXPECT_THAT(found_in_json([](auto&, auto& f) { f["CityObjects"].erase("w100_i1"); }),
               Contains(HasSubstr("its child w100_i1 is not in the file")));
 }

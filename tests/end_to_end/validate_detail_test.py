@@ -1,0 +1,94 @@
+"""validate on a build of LoD3: what was built is sound, and what is planted into windows, elements and counts is found."""
+import json
+import re
+import shutil
+
+from blockrand_run import SAMPLE, BuildTest, blockrand, main
+from damage import Damaged
+
+
+class ValidateDetail(BuildTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.out = cls().build(SAMPLE, 'out', '--lod', '3', '--formats', 'citygml,cityjson,gpkg', '--no-report',
+                              '--single-cityjson')
+        cls.number = 0
+
+    def validate(self, folder):
+        run = blockrand('validate', folder, '--json', '--progress', 'none', timeout=3600)
+        self.assertIn(run.code, (0, 2), run)
+        return json.loads(run.out)
+
+    def damaged(self):
+        type(self).number += 1
+        return Damaged(self.out, self.path(f'damaged{self.number}'))
+
+    def found(self, damage, codes, *words):
+        """At least these codes, and for each word a finding that has it in file, object or detail."""
+        damage.seal()
+        result = self.validate(damage.folder)
+        said = [f"{f['code']} {f['file']} {f['object']}: {f['detail']}" for f in result['findings']]
+        shown = '\n'.join(said[:30])
+        self.assertLessEqual(set(codes.split()), {f['code'] for f in result['findings']}, shown)
+        for word in words:
+            self.assertTrue(any(word in line for line in said), f'{word} is named by none of\n{shown}')
+        shutil.rmtree(damage.folder)
+
+    def test_what_was_built_is_sound(self):
+        result = self.validate(self.out)
+        self.assertEqual(result['findings'], [])
+        self.assertTrue(result['sound'])
+
+    def test_a_wrong_count(self):
+        for key in ('windows', 'doors', 'placements', 'installations', 'solids_lod3'):
+            d = self.damaged()
+            d.json('build.json', lambda b, key=key: b['counts'].update({key: b['counts'][key] + 1}))
+            self.found(d, 'COUNTS_DIFFER', f'counts.{key}')
+
+    def test_a_deleted_window(self):
+        d = self.damaged()
+
+        def delete(text):
+            opening = re.search(r'<bldg:opening><bldg:Window.*?</bldg:opening>', text, re.S).group()
+            polygon = re.search(r'gml:Polygon gml:id="([^"]*)"', opening).group(1)
+            text = text.replace(opening, '', 1)
+            return text.replace(f'<gml:surfaceMember xlink:href="#{polygon}"/>', '', 1)
+        d.building(delete, lambda text: '<bldg:Window' in text)
+        self.found(d, 'SOLID_INVALID COUNTS_DIFFER EXPLANATION_WRONG GEOMETRY_DIFFERS', 'counts.windows',
+                   'shell not closed')
+
+    def test_a_moved_vertex(self):
+        d = self.damaged()
+
+        def up(points):
+            points[1][2] += 0.25
+            return points
+        d.ring(up, 'Window')
+        self.found(d, 'CITYGML_RULE SOLID_INVALID GEOMETRY_DIFFERS', 'an edge of it is none of its reveal')
+
+    def test_a_moved_element(self):
+        d = self.damaged()
+        d.building(lambda text: re.sub(r'(<bldg:Window.*?<gml:pos>)([\d.]+)',
+                                       lambda m: m.group(1) + f'{float(m.group(2)) + 8:.4f}', text, count=1, flags=re.S),
+                   lambda text: '<bldg:Window' in text)
+        self.found(d, 'CITYGML_RULE GEOMETRY_DIFFERS', 'another element, or one at another place')
+
+    def test_a_dangling_link(self):
+        d = self.damaged()
+        d.replace(d.gml, '<relativeGMLGeometry xlink:href="#element', '<relativeGMLGeometry xlink:href="#nothing')
+        self.found(d, 'CITYGML_RULE', 'which is no element')
+
+    def test_a_template_that_is_missing(self):
+        d = self.damaged()
+        d.change(d.cityjson, lambda data: re.sub(rb'"template":\d+', b'"template":99999', data, count=1))
+        self.found(d, 'CITYJSON_RULE GEOMETRY_DIFFERS', 'a template that does not exist')
+
+    def test_an_installation_of_another_kind(self):
+        d = self.damaged()
+        d.change(d.cityjson, lambda data: data.replace(b'"function":"chimney"', b'"function":"plinth"', 1))
+        self.found(d, 'GEOMETRY_DIFFERS', 'is a chimney against a plinth')
+
+
+if __name__ == '__main__':
+    main()
