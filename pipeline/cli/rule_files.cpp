@@ -9,6 +9,7 @@
 
 #include "pipeline/generate/facade_context.h"
 #include "pipeline/generate/grammar_book.h"
+#include "styles/grammar/asset_files.h"
 
 namespace blockrand::cli {
 
@@ -145,6 +146,9 @@ grammar::FileAccess rule_file_access(const settings::Settings& settings, const s
     const auto found = find_file(folders, path);
     return found ? read_file(found->string()) : std::nullopt;
   };
+  const auto bytes_of = [read = access.read](const std::string& path) { return read(path).value_or(std::string()); };
+  access.asset = [bytes_of](const std::string& path) { return grammar::obj_box(bytes_of(path)); };
+  access.image = [bytes_of](const std::string& path) { return grammar::picture_size(bytes_of(path)); };
   access.search = [folders](const std::string& query) { return search(folders, query); };
   return access;
 }

@@ -119,8 +119,8 @@ std::vector<std::string> by_bay(const C& c, std::string_view key) {
   return out;
 }
 
-/// Gross heights by storey, m: as ordered, the rest shared out evenly. What is ordered beyond the wall's height is taken
-/// in proportion.
+/// Gross heights by storey, m: as ordered, the rest shared out evenly. What is ordered beyond the wall's height is
+/// taken in proportion.
 std::vector<double> storey_heights(const C& c) {
   const auto orders = by_storey(c, "height");
   const model::Attributes& a = c.part.attributes;
@@ -164,7 +164,9 @@ double eaves(const C& c) {
 
 const std::vector<ContextAttribute> kAttributes = {
     {"bay.uses", "", "ordered by bay of the main front, from its left end: door, shop, balcony …; empty: nothing",
-     [](const C& c) -> Value { return texts(is_main_front(c) ? by_bay(c, "parameters.use") : std::vector<std::string>{}); }},
+     [](const C& c) -> Value {
+       return texts(is_main_front(c) ? by_bay(c, "parameters.use") : std::vector<std::string>{});
+     }},
     {"bay.windows", "", "the same: none, or a kind of window",
      [](const C& c) -> Value {
        return texts(is_main_front(c) ? by_bay(c, "parameters.window") : std::vector<std::string>{});

@@ -337,6 +337,7 @@ class SlotOrder {
     bool slot = true;
     std::uint32_t id = 0;
     std::vector<std::pair<bool, std::uint32_t>> needs;  ///< (slot?, id)
+    bool chooses = false;  ///< its value depends on a condition or a draw: not all needs are met every time
     std::size_t next = 0;
   };
 
@@ -345,6 +346,9 @@ class SlotOrder {
   void needs_of(std::uint32_t module, Range expressions, Step& step) const {
     const Unit& unit = program_.unit(module);
     for (const Expression& e : Unit::slice(unit.expressions, expressions)) {
+      step.chooses =
+          step.chooses || e.kind == ExpressionKind::cases || e.kind == ExpressionKind::chances ||
+          (e.kind == ExpressionKind::binary && (e.op == Operator::logical_and || e.op == Operator::logical_or));
       if (e.kind != ExpressionKind::name) continue;
       const Target& target = program_.modules[module].targets[e.use];
       if (target.kind == TargetKind::attribute) step.needs.emplace_back(true, target.index);
@@ -410,12 +414,19 @@ class SlotOrder {
       s.reads_itself = true;
       return;
     }
-    program_.diagnostics.push_back({Severity::error,
-                                    "attribute_cycle",
-                                    program_.declaration(d).location,
-                                    "the value of this attribute depends on itself",
-                                    s.name,
-                                    {}});
+    // Where a choice lies on the way round, published files count on the other branch: it is told when it happens.
+    bool chooses = false;
+    for (auto step = path.rbegin(); step != path.rend() && !chooses; ++step) {
+      chooses = step->chooses;
+      if (step->slot && step->id == slot) break;
+    }
+    program_.diagnostics.push_back(
+        {chooses ? Severity::warning : Severity::error,
+         "attribute_cycle",
+         program_.declaration(d).location,
+         chooses ? "the value of this attribute can depend on itself" : "the value of this attribute depends on itself",
+         s.name,
+         {}});
   }
 
   Program& program_;

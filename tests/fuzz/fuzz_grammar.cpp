@@ -1,4 +1,4 @@
-// libFuzzer target: whatever a rule file holds, reading, resolving and checking it ends, without a crash.
+// libFuzzer target: whatever a rule file holds, reading, resolving, checking and deriving it ends, without a crash.
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
@@ -6,6 +6,8 @@
 #include <string_view>
 
 #include "styles/grammar/check.h"
+#include "styles/grammar/derive.h"
+#include "styles/grammar/initial_shape.h"
 #include "styles/grammar/program.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -24,5 +26,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (d.location.file >= program.files.size() || d.message.empty()) std::abort();
   for (const Diagnostic& d : check(program, {}))
     if (format(d, program.files).empty()) std::abort();
+  // Few shapes, so that inputs stay fast; the limits themselves are tried, too.
+  DeriveOptions run;
+  run.limits = {200, 40, 40, 2000, 20000, 50};
+  derive(program, initial_shape({{0, 0, 0}, {12, 0, 0}, {12, 0, -9}, {7, 0, -9}, {7, 0, -5}, {0, 0, -5}}), run);
   return 0;
 }

@@ -292,6 +292,15 @@ TEST(Telling, ReportsByKeyAndType) {
   EXPECT_EQ(d.report("nothing"), nullptr);
 }
 
+TEST(Telling, CyclesThatNoRunTakesHaveValues) {
+  const std::string rules =
+      "attr on = false\nattr a = case on : b else : 1\nattr b = case on : 2 else : a\nLot --> print(a) print(b) X.";
+  EXPECT_EQ(prints(rules), "1 1");
+  DeriveOptions options;
+  options.attributes = {{"on", true}};
+  EXPECT_EQ(prints_text(derive_text(rules, rectangle(10, 20), options)), "2 2");
+}
+
 TEST(Telling, ContextAnswersAsIfNothingWereNear) {
   EXPECT_EQ(prints("Lot --> label(\"a\") print(touches) print(inside(intra)) print(overlaps) "
                    "print(minimumDistance(intra, \"a\"))\n"

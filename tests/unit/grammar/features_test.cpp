@@ -15,6 +15,7 @@
 #include <span>
 #include <sstream>
 
+#include "styles/grammar/asset_files.h"
 #include "styles/grammar/names.h"
 #include "styles/grammar/rule_tests.h"
 #include "tests/unit/grammar/counted_features.h"
@@ -119,7 +120,14 @@ const std::vector<Case>& cases() {
 /// A folder with a few files.
 const FileAccess& some_files() {
   static const std::map<std::string, std::string> kFiles = {
-      {"walls/brick.jpg", ""}, {"walls/stone.jpg", ""}, {"table.csv", "1,2\n3,4\n"}, {"note.txt", "hello"}};
+      {"walls/brick.jpg", ""},
+      {"walls/stone.jpg", ""},
+      {"table.csv", "1,2\n3,4\n"},
+      {"note.txt", "hello"},
+      {"column.obj", "# a column\no c\nv 1 1 1\nvn 9 9 9\nv 4 7 3 0.5\nf 1 2 1\n"},
+      {"tile.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x02\x80\0\0\x01\xe0", 24)},
+      // A comment and a frame header.
+      {"photo.jpg", std::string("\xff\xd8\xff\xfe\0\x04ab\xff\xc0\0\x0b\x08\x01\xe0\x02\x80\x01", 18)}};
   static const FileAccess kAccess = [] {
     FileAccess out;
     out.exists = [](const std::string& path) { return kFiles.contains(path); };
@@ -127,6 +135,8 @@ const FileAccess& some_files() {
       const auto found = kFiles.find(path);
       return found == kFiles.end() ? std::nullopt : std::optional<std::string>(found->second);
     };
+    out.asset = [](const std::string& path) { return obj_box(kFiles.contains(path) ? kFiles.at(path) : ""); };
+    out.image = [](const std::string& path) { return picture_size(kFiles.contains(path) ? kFiles.at(path) : ""); };
     out.search = [](const std::string& query) {
       std::vector<std::string> found;
       const std::string folder = query.substr(0, query.find('*'));
