@@ -63,7 +63,7 @@ class FacadeBuilder {
         base::random_bits(options_.seed, base::hash_text(building.situation.block), "row of facades");
     std::vector<FacadeStretch> stretches = facade_stretches(building, walls);
     link_corners(stretches, walls, eaves_level(part));
-    mouths_ = take_mouths(building, part, walls, stretches);
+    mouths_ = take_mouths(part, walls, stretches);
     if (!mouths_.empty()) {
       try_passages(part, walls);
       close_mouths(part);
@@ -293,7 +293,7 @@ class FacadeBuilder {
       if (part.fallbacks.empty() || part.fallbacks.back() != IssueCode::opening_left_out)
         part.fallbacks.push_back(IssueCode::opening_left_out);
       region_.report.add(part.osm, IssueCode::opening_left_out,
-                         fmt::format("{}: passage of {}: {}", part.id, m.way.text(), name(m.state)));
+                         fmt::format("{}: a passage in a {} front: {}", part.id, model::name(m.front), name(m.state)));
     }
     for (const std::string& what : told_) region_.report.add(part.osm, IssueCode::grammar_error, part.id + ": " + what);
   }
