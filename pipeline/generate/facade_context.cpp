@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/generate/wall_corners.h"
+
 namespace blockrand::generate {
 namespace {
 
@@ -22,6 +24,8 @@ const model::FacadeEdge* edge_of(const C& c) {
 
 Value text(std::string_view t) { return std::string(t); }
 Value colour(model::Colour c) { return model::text(c); }
+
+Value kind_text(const std::optional<model::EdgeKind>& kind) { return text(kind ? model::name(*kind) : ""); }
 
 template <class Visit>
 bool any_edge(const C& c, Visit&& visit) {
@@ -115,8 +119,8 @@ std::vector<std::string> by_bay(const C& c, std::string_view key) {
   return out;
 }
 
-/// Gross heights by storey, m: as ordered, the rest shared out evenly. What is ordered beyond the wall's height is taken
-/// in proportion.
+/// Gross heights by storey, m: as ordered, the rest shared out evenly. What is ordered beyond the wall's height is
+/// taken in proportion.
 std::vector<double> storey_heights(const C& c) {
   const auto orders = by_storey(c, "height");
   const model::Attributes& a = c.part.attributes;
@@ -155,15 +159,14 @@ int mapped_entrances(const model::Building& b) {
 
 /// m above the wall's base of the eaves of its part, at most the wall's own height.
 double eaves(const C& c) {
-  const model::Attributes& a = c.part.attributes;
-  const double top =
-      a.ground_height.value + a.height.value - (a.roof_shape.value == model::RoofShape::flat ? 0 : a.roof_height.value);
-  return std::clamp(top - c.wall.base, 0.0, c.wall.height);
+  return std::clamp(eaves_level(c.part) - c.wall.base, 0.0, c.wall.height);
 }
 
 const std::vector<ContextAttribute> kAttributes = {
     {"bay.uses", "", "ordered by bay of the main front, from its left end: door, shop, balcony …; empty: nothing",
-     [](const C& c) -> Value { return texts(is_main_front(c) ? by_bay(c, "parameters.use") : std::vector<std::string>{}); }},
+     [](const C& c) -> Value {
+       return texts(is_main_front(c) ? by_bay(c, "parameters.use") : std::vector<std::string>{});
+     }},
     {"bay.windows", "", "the same: none, or a kind of window",
      [](const C& c) -> Value {
        return texts(is_main_front(c) ? by_bay(c, "parameters.window") : std::vector<std::string>{});
@@ -225,6 +228,11 @@ const std::vector<ContextAttribute> kAttributes = {
        const std::string order = ordered_edge(c, "kind");
        return order.empty() ? text(model::name(c.stretch.kind)) : text(order);
      }},
+    {"edge.kind_left", "",
+     "kind of the stretch beyond the left end, round the corner too; empty: none with the same base and eaves",
+     [](const C& c) -> Value { return kind_text(c.stretch.kind_left); }},
+    {"edge.kind_right", "", "the same of the right end",
+     [](const C& c) -> Value { return kind_text(c.stretch.kind_right); }},
     {"edge.length", "m", "of the stretch", [](const C& c) -> Value { return c.stretch.length(); }},
     {"edge.main_front", "", "the longest stretch of the main front",
      [](const C& c) -> Value { return is_main_front(c); }},
@@ -247,6 +255,11 @@ const std::vector<ContextAttribute> kAttributes = {
        const auto* e = edge_of(c);
        return e ? e->street_name : std::string();
      }},
+    {"edge.turn_left", "degrees",
+     "turn of the walls at the left end, positive at corners that stand out; 0: the wall goes on, or edge.kind_left is empty",
+     [](const C& c) -> Value { return c.stretch.turn_left; }},
+    {"edge.turn_right", "degrees", "the same of the right end",
+     [](const C& c) -> Value { return c.stretch.turn_right; }},
     {"roof.height", "m", "eaves to the top", [](const C& c) -> Value { return c.part.attributes.roof_height.value; }},
     {"roof.pitch", "degrees", "of the main slope",
      [](const C& c) -> Value { return c.part.attributes.roof_pitch.value; }},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,10 @@ struct FacadeStretch {
   model::EdgeKind kind = model::EdgeKind::unknown;
   std::vector<std::uint32_t> edges;  ///< indices into Building::edges, from left to right; none for `unknown`
   bool starts_wall = false, ends_wall = false;  ///< its ends are corners of the building
+  /// Degrees that the walls of the body turn at its ends, positive at corners that stand out; 0 where the wall goes on,
+  /// where no wall follows, or one with another base or other eaves.
+  double turn_left = 0, turn_right = 0;
+  std::optional<model::EdgeKind> kind_left, kind_right;  ///< of the stretches beyond; none where no wall follows
   double length() const { return to - from; }
 };
 

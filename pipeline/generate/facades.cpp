@@ -5,23 +5,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "pipeline/base/random.h"
+#include "pipeline/generate/element_stock.h"
 #include "pipeline/generate/facade_context.h"
 #include "pipeline/generate/opening_proof.h"
 #include "pipeline/generate/openings.h"
+#include "pipeline/generate/passages.h"
+#include "pipeline/generate/wall_corners.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/triangulate.h"
 #include "styles/elements/make_element.h"
-#include "styles/grammar/colour_text.h"
 #include "styles/grammar/scope.h"
 #include "styles/grammar/split.h"
 
@@ -29,25 +29,11 @@ namespace blockrand::generate {
 namespace {
 
 using model::BuildingPart;
-using model::ElementPart;
 using model::IssueCode;
 using model::Point2;
 
-/// Elements are made in whole centimetres, so that equal ones are one.
-constexpr double kElementGrid = 100;
-/// Their parameters in millimetres, for the same reason.
-constexpr double kParameterGrid = 1000;
-/// Colours of parts that neither rule nor building says.
-constexpr model::Colour kFrame{0xF6, 0xF6, 0xF6}, kGlass{0x51, 0x62, 0x6E}, kLeaf{0x5A, 0x3A, 0x29},
-    kMetal{0x37, 0x3F, 0x43}, kTrim{0xFD, 0xF4, 0xE3}, kSill{0xE9, 0xE5, 0xCE};
-
-/// "#rrggbb", as rule files write colours.
-std::optional<model::Colour> colour_of_text(std::string_view text) {
-  const auto parsed = grammar::parse_colour(text);
-  if (!parsed) return std::nullopt;
-  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(std::nearbyint((*parsed)[i] * 255)); };
-  return model::Colour{byte(0), byte(1), byte(2)};
-}
+/// m that openings of rules keep from the mouth of a passage.
+constexpr double kBesideMouth = 0.1;
 
 /// An element as a rule asked for it, in the coordinates of a wall.
 struct Asked {
@@ -60,15 +46,7 @@ class FacadeBuilder {
  public:
   FacadeBuilder(model::Region& region, const GrammarBook& grammars, const Defaults& defaults,
                 const FacadeOptions& options)
-      : region_(region), grammars_(grammars), options_(options) {
-    const auto material = [&](const char* name) {
-      return static_cast<std::uint8_t>(std::max(defaults.material(name), 0));
-    };
-    plaster_ = material("plaster");
-    wood_ = material("wood");
-    glass_ = material("glass");
-    metal_ = material("metal");
-  }
+      : region_(region), grammars_(grammars), options_(options), stock_(region, defaults) {}
 
   void build(model::Building& building, BuildingPart& part) {
     if (part.lod < 2 || part.lod2.empty() || part.canopy) return;
@@ -79,11 +57,18 @@ class FacadeBuilder {
       if (auto wall = wall_frame(part.lod2, f)) walls.push_back(std::move(*wall));
     asked_.clear();
     told_.clear();
-    usual_looks_ = usual_looks(part);
+    usual_looks_ = stock_.usual_looks(part);
     const std::uint64_t seed = base::random_bits(options_.seed, building.osm.key(), "facades");
     const std::uint64_t row =
         base::random_bits(options_.seed, base::hash_text(building.situation.block), "row of facades");
-    for (const FacadeStretch& stretch : facade_stretches(building, walls)) {
+    std::vector<FacadeStretch> stretches = facade_stretches(building, walls);
+    link_corners(stretches, walls, eaves_level(part));
+    mouths_ = take_mouths(building, part, walls, stretches);
+    if (!mouths_.empty()) {
+      try_passages(part, walls);
+      close_mouths(part);
+    }
+    for (const FacadeStretch& stretch : stretches) {
       if (stretch.kind == model::EdgeKind::party_wall || stretch.kind == model::EdgeKind::unknown) continue;
       derive_stretch(*grammar, {building, part, walls[stretch.wall], stretch}, seed, row);
     }
@@ -137,140 +122,125 @@ class FacadeBuilder {
     return shape;
   }
 
-  /// An order of a leaf: an element where its scope is.
+  /// An order of a leaf: an element where its scope is. What would stand in the mouth of a passage yields: runs along
+  /// the wall are interrupted, the rest is left out.
   void take(const FacadeContext& context, const grammar::Leaf& leaf) {
     const grammar::Order& order = *leaf.order;
-    const grammar::Frame frame = grammar::scope_in_object(leaf.shape);
-    const double width = std::floor(leaf.shape.size.x * kElementGrid + 0.001) / kElementGrid;
-    const double height = std::floor(leaf.shape.size.y * kElementGrid + 0.001) / kElementGrid;
-    if (!(width > 0 && height > 0)) return;
-    const std::uint32_t element = element_of(context, order, width, height);
-    if (element == kNone) return;
-    const double storey_height = context.part.attributes.storey_height.value;
-    const double above = frame.origin.y + context.wall.base - context.part.attributes.ground_height.value -
-                         context.part.attributes.plinth_height.value;
-    const auto storey = storey_height > 0 ? static_cast<std::int32_t>(std::floor(above / storey_height + 0.25)) : 0;
-    asked_.push_back({static_cast<std::uint32_t>(wall_number(context)),
-                      element,
-                      {frame.origin.x + leaf.shape.size.x / 2, frame.origin.y},
-                      std::max(storey, 0)});
-  }
-  static std::size_t wall_number(const FacadeContext& context) { return context.stretch.wall; }
-
-  static constexpr std::uint32_t kNone = 0xffffffff;
-
-  std::uint32_t element_of(const FacadeContext& context, const grammar::Order& order, double width, double height) {
     if (order.arguments.empty() || !std::holds_alternative<std::string>(order.arguments[0])) {
       tell(context.part, "blockrand." + order.name + " wants the name of an element first");
-      return kNone;
+      return;
     }
-    const std::string& kind = std::get<std::string>(order.arguments[0]);
-    std::array<model::PartLook, model::kElementPartCount> looks = usual_looks_;
-    key_.clear();
-    add_text(kind);
-    add_number(width, kElementGrid);
-    add_number(height, kElementGrid);
-    parameters_.clear();
-    for (std::size_t i = 1; i + 1 < order.arguments.size(); i += 2) {
-      if (!std::holds_alternative<std::string>(order.arguments[i])) continue;
-      const std::string& name = std::get<std::string>(order.arguments[i]);
-      const grammar::Value& value = order.arguments[i + 1];
-      if (name.ends_with("_colour") && std::holds_alternative<std::string>(value)) {
-        const std::string_view part = std::string_view(name).substr(0, name.size() - 7);
-        const auto at = std::find(std::begin(model::kElementPartNames), std::end(model::kElementPartNames), part);
-        const auto colour = colour_of_text(std::get<std::string>(value));
-        if (at != std::end(model::kElementPartNames) && colour)
-          looks[static_cast<std::size_t>(at - std::begin(model::kElementPartNames))].colour = *colour;
-        else if (!std::get<std::string>(value).empty())
-          tell(context.part, fmt::format("{} = {} is no colour of a part", name, std::get<std::string>(value)));
-        continue;
+    const grammar::Frame frame = grammar::scope_in_object(leaf.shape);
+    const double left = frame.origin.x, low = frame.origin.y, width = leaf.shape.size.x, height = leaf.shape.size.y;
+    if (!(ElementStock::size(width) > 0 && ElementStock::size(height) > 0)) return;
+    const elements::ElementKind* kind = elements::find_element_kind(std::get<std::string>(order.arguments[0]));
+    const bool run = kind && kind->width_is == "run";
+    std::vector<std::pair<double, double>>& pieces = pieces_;
+    pieces.assign({{left, left + width}});
+    for (const PassageMouth& m : mouths_) {
+      if (m.wall != context.stretch.wall || low >= m.high + kBesideMouth || low + height <= m.low) continue;
+      const double from = m.left - kBesideMouth, to = m.right + kBesideMouth;
+      if (left >= to || left + width <= from) continue;
+      if (!run) return;
+      // Pieces are in order from left to right, and so are what a mouth leaves of one.
+      for (std::size_t i = 0; i < pieces.size();) {
+        const auto [a, b] = pieces[i];
+        if (a >= to || b <= from) {
+          ++i;
+          continue;
+        }
+        const auto at = pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(i));
+        std::size_t kept = 0;
+        if (b - to >= kind->least_width) pieces.insert(at, {to, b}), ++kept;
+        if (from - a >= kind->least_width)
+          pieces.insert(pieces.begin() + static_cast<std::ptrdiff_t>(i), {a, from}), ++kept;
+        i += kept;
       }
-      elements::Parameter parameter;
-      parameter.name = name;
-      if (const auto* text = std::get_if<std::string>(&value)) {
-        parameter.value = *text;
-        add_text(name);
-        add_text(*text);
-      } else if (const auto* number = std::get_if<double>(&value)) {
-        parameter.value = std::nearbyint(*number * kParameterGrid) / kParameterGrid;
-        add_text(name);
-        add_number(*number, kParameterGrid);
-      } else if (const auto* truth = std::get_if<bool>(&value)) {
-        parameter.value = std::string(*truth ? "yes" : "no");
-        add_text(name);
-        add_text(*truth ? "yes" : "no");
-      }
-      parameters_.push_back(std::move(parameter));
     }
-    auto made = made_.find(key_);
-    if (made == made_.end()) {
-      auto element = elements::make_element(kind, width, height, parameters_);
-      Made entry;
-      if (element)
-        entry.element = std::make_shared<const model::Element>(std::move(*element));
-      else
-        entry.error = element.error();
-      made = made_.emplace(key_, std::move(entry)).first;
+    const double storey_height = context.part.attributes.storey_height.value;
+    const double above = low + context.wall.base - context.part.attributes.ground_height.value -
+                         context.part.attributes.plinth_height.value;
+    const auto storey = storey_height > 0 ? static_cast<std::int32_t>(std::floor(above / storey_height + 0.25)) : 0;
+    for (const auto& [from, to] : pieces) {
+      stock_.ask(std::get<std::string>(order.arguments[0]), ElementStock::size(to - from), ElementStock::size(height),
+                 usual_looks_);
+      complaints_.clear();
+      stock_.add_order(order, from == left, to == left + width, complaints_);
+      for (const std::string& what : complaints_) tell(context.part, what);
+      place(context.part, context.stretch.wall, {(from + to) / 2, low}, std::max(storey, 0));
     }
-    if (!made->second.element) {
-      tell(context.part, made->second.error);
-      return kNone;
-    }
-    for (const auto& [known, number] : made->second.coloured)
-      if (known == looks) return number;
-    const auto number = static_cast<std::uint32_t>(region_.elements.size());
-    made->second.coloured.emplace_back(looks, number);
-    region_.elements.push_back({made->second.element, looks});
-    return number;
   }
 
-  /// The key of an element is what was asked for, byte by byte: texts with their lengths, numbers in steps.
-  void add_text(std::string_view text) {
-    add_bytes(text.size());
-    key_.append(text);
-  }
-  void add_number(double value, double steps) { add_bytes(std::llrint(value * steps)); }
-  template <class T>
-  void add_bytes(T value) {
-    std::array<char, sizeof(T)> bytes;
-    std::memcpy(bytes.data(), &value, sizeof(T));
-    key_.append(bytes.data(), bytes.size());
+  /// Takes what the stock was asked for.
+  void place(const BuildingPart& part, std::uint32_t wall, Point2 at, std::int32_t storey) {
+    std::string error;
+    const std::uint32_t element = stock_.take(error);
+    if (element == ElementStock::kNone)
+      tell(part, error);
+    else
+      asked_.push_back({wall, element, at, storey});
   }
 
-  std::array<model::PartLook, model::kElementPartCount> usual_looks(const BuildingPart& part) const {
-    std::array<model::PartLook, model::kElementPartCount> out;
-    const auto set = [&](ElementPart p, std::uint8_t material, model::Colour colour) {
-      out[static_cast<std::size_t>(p)] = {material, colour};
-    };
-    model::PartLook wall{plaster_, part.attributes.wall_colour.value};
-    for (const model::Face& face : part.lod2.faces)
-      if (face.kind == model::SurfaceKind::wall) {
-        wall = {face.material, face.colour};
-        break;
-      }
-    set(ElementPart::frame, wood_, kFrame);
-    set(ElementPart::glass, glass_, kGlass);
-    set(ElementPart::leaf, wood_, kLeaf);
-    set(ElementPart::surround, plaster_, kTrim);
-    set(ElementPart::sill, plaster_, kSill);
-    set(ElementPart::wall, wall.material, wall.colour);
-    set(ElementPart::metal, metal_, kMetal);
-    set(ElementPart::panel, wood_, kLeaf);
+  /// Cuts the passages alone: mouths of those that the solid does not take are blocked.
+  void try_passages(const BuildingPart& part, const std::vector<WallFrame>& walls) {
+    const std::vector<WallOpening> openings = passage_openings();
+    if (openings.empty()) return;
+    const OpenedSolid opened = cut_openings(part.lod2, walls, openings);
+    const auto triangles = geometry::triangulate(opened.solid, part.lod2, part.lod2_triangles);
+    const bool valid = triangles && geometry::check_solid(opened.solid, *triangles).valid();
+    std::size_t i = 0;
+    for (PassageMouth& m : mouths_) {
+      if (m.state != MouthState::open) continue;
+      if (!valid || opened.refusals[i] != OpeningRefusal::none) m.state = MouthState::blocked;
+      ++i;
+    }
+  }
+
+  /// Of all open mouths, in their order.
+  std::vector<WallOpening> passage_openings() const {
+    std::vector<std::uint32_t> number(mouths_.size(), model::kNoOpening);
+    std::uint32_t count = 0;
+    for (std::size_t m = 0; m < mouths_.size(); ++m)
+      if (mouths_[m].state == MouthState::open) number[m] = count++;
+    std::vector<WallOpening> out;
+    for (const PassageMouth& m : mouths_)
+      if (m.state == MouthState::open)
+        out.push_back({m.wall, model::OpeningKind::passage, m.outline(), 0, 0, number[m.other]});
     return out;
   }
 
+  /// Gates in mouths that lead nowhere, a band round those of passages in street fronts.
+  void close_mouths(const BuildingPart& part) {
+    for (const PassageMouth& m : mouths_) {
+      const bool open = m.state == MouthState::open;
+      if (open && m.front != model::EdgeKind::street) continue;
+      const bool cart = m.right - m.left >= kLeastGate;
+      const std::string_view name = open ? "surround" : cart ? "carriage_gateway" : "house_door";
+      const elements::ElementKind& kind = *elements::find_element_kind(name);
+      const double width = std::min(ElementStock::size(m.right - m.left), kind.most_width);
+      const double height = std::min(ElementStock::size(m.high - m.low), kind.most_height);
+      if (width < kind.least_width || height < kind.least_height) continue;
+      stock_.ask(name, width, height, usual_looks_);
+      stock_.add("head", std::string_view("straight"));
+      stock_.add("surround", std::string_view(open ? "plain" : "none"));
+      if (!open) stock_.add("reveal", 0.3);
+      place(part, m.wall, {(m.left + m.right) / 2, m.low}, 0);
+    }
+  }
+
   void cut(model::Building& building, BuildingPart& part, const std::vector<WallFrame>& walls) {
-    if (asked_.empty()) {  // walls without openings are a facade, too
+    std::vector<WallOpening> openings = passage_openings();
+    const std::size_t passages = openings.size();
+    if (asked_.empty() && passages == 0) {  // walls without openings are a facade, too
       part.lod3.solid = part.lod2;
       part.lod3.triangles = part.lod2_triangles;
       part.lod = 3;
       finish_told(building, part, 0);
       return;
     }
-    std::vector<WallOpening> openings;
-    std::vector<std::size_t> of_asked;
+    std::vector<std::size_t> of_asked(passages, kNoAsked);
     for (std::size_t i = 0; i < asked_.size(); ++i) {
-      const model::Element& element = *region_.elements[asked_[i].element].element;
+      const model::Element& element = stock_.element(asked_[i].element);
       if (element.opening.outline.empty()) continue;
       WallOpening o;
       o.wall = asked_[i].wall;
@@ -291,8 +261,10 @@ class FacadeBuilder {
     model::Detail& detail = part.lod3;
     std::vector<std::uint32_t> opening_of(asked_.size(), model::kNoOpening);
     std::vector<bool> refused(asked_.size(), false);
-    for (std::size_t i = 0; i < openings.size(); ++i) refused[of_asked[i]] = opened.refusals[i] != OpeningRefusal::none;
-    for (std::uint32_t i = 0; i < opened.given.size(); ++i) opening_of[of_asked[opened.given[i]]] = i;
+    for (std::size_t i = passages; i < openings.size(); ++i)
+      refused[of_asked[i]] = opened.refusals[i] != OpeningRefusal::none;
+    for (std::uint32_t i = 0; i < opened.given.size(); ++i)
+      if (of_asked[opened.given[i]] != kNoAsked) opening_of[of_asked[opened.given[i]]] = i;
     detail.solid = std::move(opened.solid);
     detail.triangles = std::move(*triangles);
     detail.openings = std::move(opened.openings);
@@ -316,28 +288,33 @@ class FacadeBuilder {
       region_.report.add(part.osm, IssueCode::opening_left_out,
                          fmt::format("{}: {} of {}", part.id, left_out, asked_.size()));
     }
+    for (const PassageMouth& m : mouths_) {
+      if (m.state == MouthState::open) continue;
+      if (part.fallbacks.empty() || part.fallbacks.back() != IssueCode::opening_left_out)
+        part.fallbacks.push_back(IssueCode::opening_left_out);
+      region_.report.add(part.osm, IssueCode::opening_left_out,
+                         fmt::format("{}: passage of {}: {}", part.id, m.way.text(), name(m.state)));
+    }
     for (const std::string& what : told_) region_.report.add(part.osm, IssueCode::grammar_error, part.id + ": " + what);
   }
 
   /// Each complaint once a part.
   void tell(const BuildingPart&, const std::string& what) { told_.insert(what); }
 
-  struct Made {
-    std::shared_ptr<const model::Element> element;
-    std::string error;
-    std::vector<std::pair<std::array<model::PartLook, model::kElementPartCount>, std::uint32_t>> coloured;
-  };
+  static constexpr std::size_t kNoAsked = ~std::size_t{0};
+  /// m; narrower mouths get a house door.
+  static constexpr double kLeastGate = 1.8;
 
   model::Region& region_;
   const GrammarBook& grammars_;
   const FacadeOptions& options_;
-  std::uint8_t plaster_ = 0, wood_ = 0, glass_ = 0, metal_ = 0;
+  ElementStock stock_;
   std::vector<Asked> asked_;
+  std::vector<PassageMouth> mouths_;
   std::set<std::string> told_;
-  std::array<model::PartLook, model::kElementPartCount> usual_looks_;  ///< of the part at work
-  std::string key_;
-  std::vector<elements::Parameter> parameters_;
-  std::unordered_map<std::string, Made> made_;
+  PartLooks usual_looks_;  ///< of the part at work
+  std::vector<std::string> complaints_;
+  std::vector<std::pair<double, double>> pieces_;
 };
 
 }  // namespace

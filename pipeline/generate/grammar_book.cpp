@@ -59,7 +59,8 @@ std::vector<grammar::ExtensionOperation> extension_operations() {
                               : kind.semantic == model::ElementClass::door ? 1
                                                                            : 2;
     for (std::size_t i = 0; i < named.size(); ++i) {
-      if (i != which && std::find(named[i].kinds.begin(), named[i].kinds.end(), kind.name) == named[i].kinds.end()) continue;
+      if (i != which && std::find(named[i].kinds.begin(), named[i].kinds.end(), kind.name) == named[i].kinds.end())
+        continue;
       out[i].kinds.push_back(kind.name);
       for (const elements::ParameterInfo& p : kind.parameters) parameters[i].insert(p.name);
       for (const std::string_view part : model::kElementPartNames) parameters[i].insert(std::string(part) + "_colour");

@@ -29,6 +29,9 @@ nlohmann::ordered_json configuration(const BuildOptions& options) {
   c["explain"] = options.explain;
   c["evidence"] = options.evidence;
   c["gzip"] = options.gzip;
+  constexpr const char* kInstancings[] = {"ext", "nodes", "baked"};
+  c["instancing"] = kInstancings[static_cast<int>(options.instancing)];
+  c["compress"] = options.compression == export_::Compression::meshopt ? "meshopt" : "none";
   c["single_glb"] = options.single_glb;
   c["single_cityjson"] = options.single_cityjson;
   c["seed"] = options.seed;

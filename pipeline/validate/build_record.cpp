@@ -70,6 +70,7 @@ class Reader {
           wrong("configuration.formats", "unknown format " + name);
         r_.formats.insert(name);
       }
+    r_.baked = text(member(c, "instancing")) == "baked";
     r_.gzip = is_true(member(c, "gzip"));
     r_.single_glb = is_true(member(c, "single_glb"));
     r_.single_cityjson = is_true(member(c, "single_cityjson"));

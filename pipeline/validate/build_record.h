@@ -23,6 +23,7 @@ struct BuildRecord {
   Json json;
   int lod = 2;
   std::set<std::string> formats;  ///< "gltf", "citygml" …
+  bool baked = false;  ///< elements are triangles of their buildings' meshes
   bool gzip = false, single_glb = false, single_cityjson = false, report = false, explain = false;
   std::string crs, pipeline, vertical_crs, height_reference;
   std::string raised_from;  ///< vertical CRS from which heights were raised to the ellipsoid in 3D Tiles; empty: none, or unknown

@@ -40,10 +40,12 @@ void compare_polygons(const Side& a, const Side& b, std::vector<Finding>& findin
 using ToLocal = std::function<void(std::span<const model::Point3> in, std::span<model::Point3> out)>;
 
 /// A mesh has the corners, the area, the volume and the colours of the body's best solid (or, without one, its
-/// footprint). Where every body of a tile is off by much the same, that is one finding.
-/// \param tolerance  m, that a vertex may be off
+/// footprint). Of LoD3 it has what no placed element stands for, and the bodies on walls and roofs. Where every body of a
+/// tile is off by much the same, that is one finding.
+/// \param tolerance       m, that a vertex may be off
+/// \param elements_baked  elements are part of the mesh: LoD3 bodies are not compared
 void compare_meshes(const Side& reference, const Glb& glb, const std::string& glb_file, const ToLocal& to_local,
-                    double tolerance, std::vector<Finding>& findings);
+                    double tolerance, bool elements_baked, std::vector<Finding>& findings);
 
 /// A body in few bytes, to be compared with the same body in a file of the whole build.
 struct BodyDigest {

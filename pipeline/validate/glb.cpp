@@ -17,7 +17,10 @@ namespace {
 using model::Point3;
 using Accessor = GlbContainer::Accessor;
 
+constexpr double kUnitQuaternion = 2e-4;    // of 16-bit components each is off by half a step at most
 constexpr double kLargestCoordinate = 1e7;  // m; nothing of a tile is that far from its origin
+constexpr double kElementSliver = 20;       // steps of an element: thinner triangles may be turned by rounding
+constexpr int kDeepest = 16;                // levels of nodes
 constexpr std::size_t kNoted = 20;          // breaches of one rule in one primitive: a damaged file could have millions
 
 /// sRGB byte of a linear intensity: the transfer function of IEC 61966-2-1.
@@ -101,15 +104,23 @@ class Reader {
     for (const Json& root : *roots) read_node(whole(&root).value_or(~0ull), kIdentity, seen);
   }
 
-  void read_node(std::uint64_t index, const Matrix& parent, std::set<std::uint64_t>& seen) {
+  void read_node(std::uint64_t index, const Matrix& parent, std::set<std::uint64_t>& seen, int depth = 0) {
     const Json* node = element(member(glb_.json(), "nodes"), index);
     if (!node) return rule(fmt::format("node {} does not exist", index));
     if (!seen.insert(index).second) return rule(fmt::format("node {} has two parents", index));
-    if (seen.size() > 1000) return;  // Blockrand writes one
+    if (depth > kDeepest) return rule(fmt::format("node {} is nested deeper than any of ours", index));
     const auto matrix = node_matrix(*node);
     if (!matrix) return rule(fmt::format("node {} has a transform that is none", index));
     const Matrix own = parent * *matrix;
-    if (member(node, "mesh")) {
+    const Json* instancing = member(member(node, "extensions"), "EXT_mesh_gpu_instancing");
+    const Json* feature = member(member(node, "extras"), "feature");
+    if (instancing || feature) {
+      const auto placed = placed_mesh(*node, index);
+      if (placed && instancing)
+        read_instances(*node, *instancing, own, *placed, fmt::format("node {}", index));
+      else if (placed)
+        add_place(*placed, number(feature).value_or(-1), own, fmt::format("node {}", index));
+    } else if (member(node, "mesh")) {
       const Json* mesh = element(member(glb_.json(), "meshes"), whole(member(node, "mesh")).value_or(~0ull));
       const Json* primitives = member(mesh, "primitives");
       if (!primitives || !primitives->is_array() || primitives->empty()) return rule("a mesh without primitives");
@@ -117,7 +128,7 @@ class Reader {
         read_primitive((*primitives)[p], own, fmt::format("primitive {}", p));
     }
     if (const Json* children = member(node, "children"); children && children->is_array())
-      for (const Json& child : *children) read_node(whole(&child).value_or(~0ull), own, seen);
+      for (const Json& child : *children) read_node(whole(&child).value_or(~0ull), own, seen, depth + 1);
   }
 
   static std::optional<Matrix> node_matrix(const Json& node) {
@@ -134,24 +145,114 @@ class Reader {
     };
     const auto t = part("translation", {0, 0, 0}), s = part("scale", {1, 1, 1}), r = part("rotation", {0, 0, 0, 1});
     if (!t || !s || !r) return std::nullopt;
-    const double x = (*r)[0], y = (*r)[1], z = (*r)[2], w = (*r)[3];
-    if (std::fabs(x * x + y * y + z * z + w * w - 1) > 1e-6) return std::nullopt;
-    return Matrix{(1 - 2 * (y * y + z * z)) * (*s)[0],
-                  2 * (x * y + z * w) * (*s)[0],
-                  2 * (x * z - y * w) * (*s)[0],
-                  0,
-                  2 * (x * y - z * w) * (*s)[1],
-                  (1 - 2 * (x * x + z * z)) * (*s)[1],
-                  2 * (y * z + x * w) * (*s)[1],
-                  0,
-                  2 * (x * z + y * w) * (*s)[2],
-                  2 * (y * z - x * w) * (*s)[2],
-                  (1 - 2 * (x * x + y * y)) * (*s)[2],
-                  0,
-                  (*t)[0],
-                  (*t)[1],
-                  (*t)[2],
-                  1};
+    const auto &q = *r;
+    if (std::fabs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) > 1e-6) return std::nullopt;
+    return transform({(*t)[0], (*t)[1], (*t)[2]}, {q[0], q[1], q[2], q[3]}, {(*s)[0], (*s)[1], (*s)[2]});
+  }
+
+  static Matrix transform(const Point3& t, const std::array<double, 4>& q, const std::array<double, 3>& s) {
+    const double x = q[0], y = q[1], z = q[2], w = q[3];
+    return {(1 - 2 * (y * y + z * z)) * s[0],
+            2 * (x * y + z * w) * s[0],
+            2 * (x * z - y * w) * s[0],
+            0,
+            2 * (x * y - z * w) * s[1],
+            (1 - 2 * (x * x + z * z)) * s[1],
+            2 * (y * z + x * w) * s[1],
+            0,
+            2 * (x * z + y * w) * s[2],
+            2 * (y * z - x * w) * s[2],
+            (1 - 2 * (x * x + y * y)) * s[2],
+            0,
+            t.x,
+            t.y,
+            t.z,
+            1};
+  }
+
+  // ---- placed elements
+
+  /// The element of a node, read when it is first placed.
+  std::optional<std::size_t> placed_mesh(const Json& node, std::uint64_t index) {
+    const auto mesh = whole(member(node, "mesh"));
+    const Json* json = mesh ? element(member(glb_.json(), "meshes"), *mesh) : nullptr;
+    const Json* primitives = member(json, "primitives");
+    if (!primitives || !primitives->is_array() || primitives->empty()) {
+      rule(fmt::format("node {} places a mesh that has no primitives", index));
+      return std::nullopt;
+    }
+    const auto [known, added] = element_of_mesh_.try_emplace(*mesh, out_.elements.size());
+    if (!added) return known->second;
+    GlbElement& out = out_.elements.emplace_back();
+    out.name = text(member(json, "name"));
+    for (std::size_t p = 0; p < primitives->size(); ++p)
+      read_primitive((*primitives)[p], kIdentity, fmt::format("mesh {} primitive {}", *mesh, p), &out);
+    bool first = true;
+    for (const GlbTriangle& t : out.triangles)
+      for (const Point3& c : t.corners) {
+        if (first) out.min = out.max = c;
+        first = false;
+        out.min = {std::min(out.min.x, c.x), std::min(out.min.y, c.y), std::min(out.min.z, c.z)};
+        out.max = {std::max(out.max.x, c.x), std::max(out.max.y, c.y), std::max(out.max.z, c.z)};
+      }
+    return known->second;
+  }
+
+  void add_place(std::size_t element, double row, const Matrix& matrix, const std::string& where) {
+    if (!(row >= 0) || row != std::floor(row) || row >= static_cast<double>(out_.contents.bodies.size()))
+      return metadata(fmt::format("{}: feature id {} in a table of {} rows", where, row, out_.contents.bodies.size()));
+    for (const double v : matrix)
+      if (!(std::fabs(v) < kLargestCoordinate)) return rule(where + ": an element lies nowhere");
+    out_.places.push_back({element, static_cast<std::size_t>(row), matrix});
+  }
+
+  void read_instances(const Json& node, const Json& instancing, const Matrix& own, std::size_t element_index,
+                      const std::string& where) {
+    if (!required("EXT_mesh_gpu_instancing")) rule(where + ": EXT_mesh_gpu_instancing is not required by the file");
+    const Json* attributes = member(instancing, "attributes");
+    const auto read = [&](const char* name, const char* type) -> const Accessor* {
+      if (!member(attributes, name)) return nullptr;
+      const Accessor* a = glb_.accessor(member(attributes, name));
+      if (a && a->type == type) return a;
+      rule(fmt::format("{}: {} of its instances cannot be read", where, name));
+      return nullptr;
+    };
+    const Accessor *t = read("TRANSLATION", "VEC3"), *r = read("ROTATION", "VEC4"), *s = read("SCALE", "VEC3"),
+                   *f = read("_FEATURE_ID_0", "SCALAR");
+    if (!t || !r || !f) return rule(where + ": its instances lack TRANSLATION, ROTATION or _FEATURE_ID_0");
+    for (const Accessor* a : {r, s, f})
+      if (a && a->count != t->count)
+        return rule(fmt::format("{}: {} places, but {} values of another attribute", where, t->count, a->count));
+    if (!t->is_float() || (s && !s->is_float())) rule(where + ": TRANSLATION and SCALE must be floats");
+    if (!r->is_float() && !(r->normalised && (r->component_type == 5120 || r->component_type == 5122)))
+      rule(where + ": ROTATION is no quaternion");
+    if (f->normalised) metadata(where + ": feature ids are no plain numbers");
+    const Json* set =
+        element(member(member(member(node, "extensions"), "EXT_instance_features"), "featureIds"), 0);
+    if (!set) return metadata(where + ": no EXT_instance_features");
+    if (whole(member(set, "attribute")) != 0u) metadata(where + ": its feature ids are not those of _FEATURE_ID_0");
+    const Json* tables = member(member(member(glb_.json(), "extensions"), "EXT_structural_metadata"), "propertyTables");
+    if (!element(tables, whole(member(set, "propertyTable")).value_or(~0ull)))
+      metadata(where + ": its property table does not exist");
+    std::set<double> different;
+    std::size_t turned = 0;
+    for (std::size_t i = 0; i < t->count; ++i) {
+      const double x = glb_.value(*r, i, 0), y = glb_.value(*r, i, 1), z = glb_.value(*r, i, 2),
+                   w = glb_.value(*r, i, 3);
+      if (!(std::fabs(x * x + y * y + z * z + w * w - 1) < kUnitQuaternion) && ++turned == 1)
+        rule(fmt::format("{}: the rotation of instance {} is no unit quaternion", where, i));
+      const auto scale = [&](std::size_t c) { return s ? glb_.value(*s, i, c) : 1.0; };
+      if (!(scale(0) > 0 && scale(1) > 0 && scale(2) > 0))
+        rule(fmt::format("{}: instance {} is mirrored or flat", where, i));
+      const Matrix place =
+          transform({glb_.value(*t, i, 0), glb_.value(*t, i, 1), glb_.value(*t, i, 2)}, {x, y, z, w},
+                    {scale(0), scale(1), scale(2)});
+      different.insert(glb_.value(*f, i));
+      add_place(element_index, glb_.value(*f, i), own * place, fmt::format("{} instance {}", where, i));
+    }
+    if (const auto said = whole(member(set, "featureCount")); said != different.size())
+      metadata(
+          fmt::format("{}: featureCount {}, but {} different features", where, said.value_or(0), different.size()));
   }
 
   const Accessor* attribute(const Json& primitive, const char* name, std::size_t count, const std::string& where) {
@@ -166,7 +267,9 @@ class Reader {
     return a;
   }
 
-  void read_primitive(const Json& primitive, const Matrix& matrix, const std::string& where) {
+  /// \param placed  the element that the triangles are of; null for those of bodies
+  void read_primitive(const Json& primitive, const Matrix& matrix, const std::string& where,
+                      GlbElement* placed = nullptr) {
     if (const Json* mode = member(primitive, "mode"); mode && whole(mode) != 4u)
       return rule(where + " is no list of triangles");
     const Accessor* position = attribute(primitive, "POSITION", 0, where);
@@ -179,16 +282,24 @@ class Reader {
       rule(where + ": POSITION needs KHR_mesh_quantization");
     const std::size_t count = position->count;
     const Accessor* normal = attribute(primitive, "NORMAL", count, where);
-    const Accessor* colour = attribute(primitive, "COLOR_0", count, where);
-    const Accessor* feature = attribute(primitive, "_FEATURE_ID_0", count, where);
+    // Colours are those of vertices, or of the material.
+    const Json* material =
+        element(member(glb_.json(), "materials"), whole(member(primitive, "material")).value_or(~0ull));
+    if (!material) rule(where + ": its material does not exist");
+    const auto factor = numbers(member(member(material, "pbrMetallicRoughness"), "baseColorFactor"), 4);
+    const Accessor* colour =
+        factor ? nullptr : attribute(primitive, "COLOR_0", count, where);
+    if (factor && member(member(primitive, "attributes"), "COLOR_0"))
+      rule(where + ": its material and its vertices both have colours");
+    const Accessor* feature = placed ? nullptr : attribute(primitive, "_FEATURE_ID_0", count, where);
+    if (placed && member(member(primitive, "attributes"), "_FEATURE_ID_0"))
+      metadata(where + ": a placed mesh with feature ids of its own");
     if (normal && normal->type != "VEC3") rule(where + ": NORMAL is no VEC3"), normal = nullptr;
     if (colour && colour->type != "VEC3" && colour->type != "VEC4")
       rule(where + ": COLOR_0 is no colour"), colour = nullptr;
     if (colour && !colour->is_float() && !colour->normalised) rule(where + ": COLOR_0 is not normalised");
     if (feature && (feature->type != "SCALAR" || feature->normalised))
       metadata(where + ": feature ids are no plain numbers"), feature = nullptr;
-    if (!element(member(glb_.json(), "materials"), whole(member(primitive, "material")).value_or(~0ull)))
-      rule(where + ": its material does not exist");
     if (feature) check_features(primitive, *feature, where);
     if (normal) check_normals(*normal, where);
     const Accessor* indices = glb_.accessor(member(primitive, "indices"));
@@ -197,7 +308,9 @@ class Reader {
         indices->component_type == 5122)
       return rule(where + ": its indices are no unsigned numbers");
     if (indices->count % 3 != 0) rule(fmt::format("{}: {} indices make no triangles", where, indices->count));
-    read_triangles({*position, normal, colour, feature, *indices}, matrix, where);
+    std::array<std::uint8_t, 3> one{};
+    for (std::size_t i = 0; factor && i < 3; ++i) one[i] = srgb((*factor)[i]);
+    read_triangles({*position, normal, colour, feature, *indices, one}, matrix, where, placed);
   }
 
   bool required(const char* extension) const {
@@ -244,14 +357,15 @@ class Reader {
     const Accessor& position;
     const Accessor *normal, *colour, *feature;
     const Accessor& indices;
+    std::array<std::uint8_t, 3> one_colour;  ///< where vertices have none
   };
 
-  void read_triangles(const Streams& s, const Matrix& matrix, const std::string& where) {
+  void read_triangles(const Streams& s, const Matrix& matrix, const std::string& where, GlbElement* placed) {
     std::size_t bad_index = 0, two_features = 0, flat = 0, turned = 0, far = 0;
     const auto first = [&](std::size_t& counter, const std::string& what) {
       if (++counter <= kNoted) rule(where + ": " + what);
     };
-    if (!s.position.is_float()) {
+    if (!s.position.is_float() && !placed) {
       const double steps = !s.position.normalised ? 1 : s.position.size == 1 ? 255 : 65535;
       out_.position_step = std::max(out_.position_step, length({matrix[0], matrix[1], matrix[2]}) / steps);
     }
@@ -261,7 +375,7 @@ class Reader {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Point3 p =
           apply(matrix, {glb_.value(s.position, i, 0), glb_.value(s.position, i, 1), glb_.value(s.position, i, 2)});
-      points[i] = {p.x, 0.0 - p.z, p.y};  // y up becomes z up
+      points[i] = placed ? p : Point3{p.x, 0.0 - p.z, p.y};  // y up becomes z up
       if (!(std::fabs(p.x) < kLargestCoordinate && std::fabs(p.y) < kLargestCoordinate &&
             std::fabs(p.z) < kLargestCoordinate)) {
         usable[i] = false;
@@ -293,14 +407,16 @@ class Reader {
       }
       if (s.normal) {
         // A sliver's own normal is rounding; others must look where their vertices say.
-        const Point3 said{glb_.value(*s.normal, corner[0], 0), 0.0 - glb_.value(*s.normal, corner[0], 2),
-                          glb_.value(*s.normal, corner[0], 1)};
+        const double nx = glb_.value(*s.normal, corner[0], 0), ny = glb_.value(*s.normal, corner[0], 1),
+                     nz = glb_.value(*s.normal, corner[0], 2);
+        const Point3 said = placed ? Point3{nx, ny, nz} : Point3{nx, 0.0 - nz, ny};
         const double longest = std::max({length({c[1].x - c[0].x, c[1].y - c[0].y, c[1].z - c[0].z}),
                                          length({c[2].x - c[1].x, c[2].y - c[1].y, c[2].z - c[1].z}),
                                          length({c[0].x - c[2].x, c[0].y - c[2].y, c[0].z - c[2].z})});
-        if (area / longest > 0.1 && n.x * said.x + n.y * said.y + n.z * said.z <= 0.5 * area)
+        if (area / longest > (placed ? kElementSliver : 0.1) && n.x * said.x + n.y * said.y + n.z * said.z <= 0.5 * area)
           first(turned, fmt::format("triangle {} does not look where its normal points", t / 3));
       }
+      triangle.colour = s.one_colour;
       if (s.colour) {
         const std::array<double, 3> linear{glb_.value(*s.colour, corner[0], 0), glb_.value(*s.colour, corner[0], 1),
                                            glb_.value(*s.colour, corner[0], 2)};
@@ -308,6 +424,10 @@ class Reader {
         if (found == known_colours.end())
           found = known_colours.emplace(linear, std::array{srgb(linear[0]), srgb(linear[1]), srgb(linear[2])}).first;
         triangle.colour = found->second;
+      }
+      if (placed) {
+        placed->triangles.push_back(triangle);
+        continue;
       }
       out_.vertices.insert(out_.vertices.end(), c.begin(), c.end());
       if (!s.feature) continue;
@@ -323,6 +443,7 @@ class Reader {
 
   const GlbContainer& glb_;
   Glb& out_;
+  std::map<std::uint64_t, std::size_t> element_of_mesh_;
 };
 
 }  // namespace

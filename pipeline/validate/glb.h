@@ -17,6 +17,26 @@ struct GlbTriangle {
   std::array<std::uint8_t, 3> colour{};  ///< sRGB
 };
 
+/// A mesh that is placed, in its own axes and units.
+struct GlbElement {
+  std::string name;
+  std::vector<GlbTriangle> triangles;  ///< y up, as stored
+  model::Point3 min, max;              ///< of the triangles
+};
+
+/// Where an element stands.
+struct GlbPlace {
+  std::size_t element = 0;      ///< into Glb::elements
+  std::size_t row = 0;          ///< of the property table
+  Matrix matrix = kIdentity;    ///< from the element's axes to the tile's frame with y up
+};
+
+/// m in the tile's frame, z up, of a point in the axes of the placed element.
+inline model::Point3 placed(const GlbPlace& place, const model::Point3& p) {
+  const model::Point3 q = apply(place.matrix, p);
+  return {q.x, 0.0 - q.z, q.y};
+}
+
 /// asset.extras.georeference.
 struct GlbGeoreference {
   bool present = false;
@@ -31,13 +51,15 @@ struct Glb {
   /// building has "<id>.1" as its id, as in CityGML. Findings: GLB_RULE, METADATA_RULE, GEOREFERENCE.
   Contents contents;
   std::vector<std::vector<GlbTriangle>> triangles;  ///< parallel to contents.bodies
+  std::vector<GlbElement> elements;
+  std::vector<GlbPlace> places;  ///< of elements: by EXT_mesh_gpu_instancing, or nodes with extras.feature
   GlbGeoreference georeference;
   double position_step = 0;             ///< m: positions are multiples of it; 0 where they are floats
-  std::vector<model::Point3> vertices;  ///< of all triangles, z up, repeated ones included; empty when nothing is drawn
+  std::vector<model::Point3> vertices;  ///< of all triangles of bodies, z up, repeated ones included
 };
 
 /// Reads a GLB and checks what it can without other files: glTF 2.0, EXT_mesh_features, EXT_structural_metadata,
-/// KHR_mesh_quantization, and that the georeference is the frame of its origin. Never throws on account of the bytes.
+/// EXT_mesh_gpu_instancing, EXT_instance_features, KHR_mesh_quantization, EXT_meshopt_compression, and that the georeference is the frame of its origin. Never throws on account of the bytes.
 /// \param name  of the file, for findings
 Glb read_glb(std::string_view bytes, const std::string& name);
 

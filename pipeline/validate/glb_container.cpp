@@ -8,6 +8,8 @@
 #include <limits>
 #include <set>
 
+#include "pipeline/validate/meshopt_view.h"
+
 namespace blockrand::validate {
 namespace {
 
@@ -132,10 +134,16 @@ void GlbContainer::check_views() {
   const Json* buffers = member(json_, "buffers");
   const std::size_t buffer_count = buffers && buffers->is_array() ? buffers->size() : 0;
   std::size_t length = 0;
+  // The buffer that has bytes only for those who decompress.
+  std::optional<std::uint64_t> unpacked_length;
+  if (const Json* fallback = element(buffers, 1);
+      fallback && !member(fallback, "uri") &&
+      is_true(member(member(member(fallback, "extensions"), "EXT_meshopt_compression"), "fallback")))
+    unpacked_length = whole(member(fallback, "byteLength"));
   if (buffer_count > 0) {
     const Json& buffer = (*buffers)[0];
     const auto said = whole(member(buffer, "byteLength"));
-    if (buffer_count > 1 || member(buffer, "uri")) found(Check::glb_rule, "data outside of the file");
+    if (buffer_count > (unpacked_length ? 2 : 1) || member(buffer, "uri")) found(Check::glb_rule, "data outside of the file");
     if (!said || *said < 1 || *said > bin_.size() || bin_.size() - *said > 3)
       found(Check::glb_rule, fmt::format("buffer of {} bytes, binary chunk of {}", said.value_or(0), bin_.size()));
     length = std::min<std::size_t>(said.value_or(0), bin_.size());
@@ -150,7 +158,9 @@ void GlbContainer::check_views() {
     const Json* offset_json = member(view, "byteOffset");
     const auto offset = offset_json ? whole(offset_json) : std::optional<std::uint64_t>(0);
     views_.emplace_back();
-    if (buffer != 0u || !size || *size < 1 || !offset || *offset > length || *size > length - *offset) {
+    const Json* packed = member(member(view, "extensions"), "EXT_meshopt_compression");
+    const std::uint64_t room = packed ? unpacked_length.value_or(0) : length;
+    if (buffer != (packed ? 1u : 0u) || !size || *size < 1 || !offset || *offset > room || *size > room - *offset) {
       found(Check::glb_rule, fmt::format("buffer view {} leaves the buffer", i));
       continue;
     }
@@ -164,6 +174,14 @@ void GlbContainer::check_views() {
     if (const Json* target = member(view, "target"))
       if (const auto t = whole(target); t != 34962u && t != 34963u)
         found(Check::glb_rule, fmt::format("buffer view {} has an unknown target", i));
+    if (packed) {
+      std::string why;
+      if (auto bytes = unpack_view(view, *packed, bin_.substr(0, length), why))
+        views_.back() = unpacked_.emplace_back(std::move(*bytes));
+      else
+        found(Check::glb_rule, fmt::format("buffer view {} {}", i, why));
+      continue;
+    }
     views_.back() = bin_.substr(*offset, *size);
   }
 }
@@ -209,8 +227,11 @@ void GlbContainer::check_accessors() {
       wrong("leaves its buffer view");
       continue;
     }
-    a.start = static_cast<std::size_t>(bytes->data() - bin_.data()) + *offset;
-    if (a.start % a.size != 0 || *offset % a.size != 0 || a.stride % a.size != 0) wrong("is not aligned");
+    a.first = bytes->data() + *offset;
+    const std::size_t view_start =
+        whole(member(element(views, *whole(member(json, "bufferView"))), "byteOffset")).value_or(0);
+    if ((view_start + *offset) % a.size != 0 || *offset % a.size != 0 || a.stride % a.size != 0)
+      wrong("is not aligned");
     check_bounds(a, json, i);
     accessors_.back() = std::move(a);
   }
@@ -242,7 +263,7 @@ const GlbContainer::Accessor* GlbContainer::accessor(const Json* index) const {
 }
 
 double GlbContainer::value(const Accessor& a, std::size_t i, std::size_t c) const {
-  const char* at = bin_.data() + a.start + i * a.stride + c * a.size;
+  const char* at = a.first + i * a.stride + c * a.size;
   double v = 0, scale = 1;
   switch (a.component_type) {
     case 5120:
@@ -275,8 +296,8 @@ std::optional<std::string_view> GlbContainer::view(const Json* index) const {
 }
 
 std::size_t GlbContainer::view_offset(const Json* index) const {
-  const auto bytes = view(index);
-  return bytes ? static_cast<std::size_t>(bytes->data() - bin_.data()) : 0;
+  const auto i = whole(index);
+  return i ? whole(member(element(member(json_, "bufferViews"), *i), "byteOffset")).value_or(0) : 0;
 }
 
 }  // namespace blockrand::validate

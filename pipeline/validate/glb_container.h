@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,7 +13,8 @@
 
 namespace blockrand::validate {
 
-/// Reads through a GLB in memory and notes breaches of glTF 2.0's rules on the way. `bytes` must outlive it.
+/// Reads through a GLB in memory and notes breaches of glTF 2.0's rules on the way; buffer views that
+/// EXT_meshopt_compression packed are unpacked. `bytes` must outlive it.
 class GlbContainer {
  public:
   /// An accessor that lies inside of its buffer view, which lies inside of the buffer.
@@ -21,7 +23,8 @@ class GlbContainer {
     std::string type;        ///< "SCALAR", "VEC3" …
     bool normalised = false;
     std::size_t width = 1, size = 1;  ///< components of an element, bytes of a component
-    std::size_t count = 0, start = 0, stride = 0;
+    std::size_t count = 0, stride = 0;
+    const char* first = nullptr;  ///< the first element
     bool is_float() const { return component_type == 5126; }
   };
 
@@ -60,6 +63,7 @@ class GlbContainer {
   std::string_view bin_;
   bool readable_ = false;
   std::vector<std::optional<std::string_view>> views_;
+  std::deque<std::string> unpacked_;  ///< what views that were compressed look at
   std::vector<std::optional<Accessor>> accessors_;
 };
 

@@ -19,6 +19,7 @@
 #include "pipeline/validate/glb.h"
 #include "pipeline/validate/ids.h"
 #include "pipeline/validate/overlaps.h"
+#include "pipeline/validate/placed_elements.h"
 #include "pipeline/validate/places.h"
 #include "pipeline/validate/solids.h"
 
@@ -32,7 +33,8 @@ constexpr auto kGltf = static_cast<std::size_t>(Format::gltf), kCityGml = static
                kCityJson = static_cast<std::size_t>(Format::cityjson);
 constexpr double kPositionTolerance = 1e-3;  // m; the promise
 // Corners of meshes: the millimetre, and the tenth that the polynomial of a tile's frame may cost.
-constexpr double kMeshTolerance = 1.1e-3;
+// And steps of 1/4096 m that vertices and places are stored in.
+constexpr double kMeshTolerance = 1.35e-3;
 // The geoid over a tile is a plane for the writer and a grid here.
 constexpr double kGeoidTolerance = 5e-3;
 
@@ -55,6 +57,7 @@ class Checker {
     judge_solids();
     check_overlaps();
     compare();
+    check_levels();
     check_geopackage();
     check_explained();
     check_positions();
@@ -188,28 +191,87 @@ class Checker {
   // ---- one format by itself
 
   void check_bounds() {
-    if (!entry_) return;
-    const Overhang over = overhang(*entry_, glb_->vertices);
+    if (entry_) check_bounds(*glb_, *entry_, files_.path[kGltf]);
+  }
+
+  void check_bounds(const Glb& glb, const TilesetEntry& entry, const std::string& path) {
+    std::vector<Point3> points = glb.vertices;
+    const std::vector<Point3> corners = place_corners(glb);
+    points.insert(points.end(), corners.begin(), corners.end());
+    const Overhang over = overhang(entry, points);
     if (over.own > kVolumeTolerance)
-      found(Check::tile_bounds, files_.path[kGltf], "",
+      found(Check::tile_bounds, path, "",
             fmt::format("its mesh lies up to {:.3f} m outside of the tile's bounding volume", over.own));
     if (over.ancestor > kVolumeTolerance)
-      found(Check::tile_bounds, files_.path[kGltf], "",
+      found(Check::tile_bounds, path, "",
             fmt::format("its mesh lies up to {:.3f} m outside of an ancestor's bounding volume", over.ancestor));
   }
 
+  /// The same buildings in less detail: the same rows, in the same place, and meshes like the solids of their level.
+  void check_levels() {
+    if (!glb_) return;
+    const Side finest{glb_->contents, files_.path[kGltf]};
+    if (context_.record.lod == 3 && !glb_->triangles.empty() && files_.levels.empty())
+      found(Check::tile_missing, files_.path[kGltf], "", "no coarser level of the tile");
+    for (const auto& [lod, path] : files_.levels) {
+      FormatCounts ignored;
+      const auto bytes = load(path, ignored);
+      if (!bytes) continue;
+      Glb glb = read_glb(*bytes, path);
+      take(glb.contents.findings);
+      if (!glb.readable) continue;
+      if (glb.georeference.local_to_ecef != glb_->georeference.local_to_ecef)
+        found(Check::georeference, path, "", "its frame is not that of " + files_.path[kGltf]);
+      if (context_.tileset && context_.tileset->readable) {
+        const auto entry = context_.tileset->entries.find(path);
+        if (entry == context_.tileset->entries.end())
+          found(Check::tile_missing, path, "", "the tileset does not name it");
+        else
+          check_bounds(glb, entry->second, path);
+      }
+      if (!glb.places.empty()) found(Check::glb_rule, path, "", "places elements, which no coarser level has");
+      const Side level{glb.contents, path};
+      compare_objects(finest, level, out_.findings);
+      compare_attributes(finest, level, true, out_.findings);
+      judge_meshes(glb, path, lod);
+      compare_level(glb, path, lod);
+    }
+  }
+
+  void compare_level(const Glb& glb, const std::string& path, int lod) {
+    const std::size_t f = contents_[kCityGml] ? kCityGml : kCityJson;
+    if (!contents_[f] || !context_.witness) return;
+    Contents coarse;
+    for (const ReadBody& body : contents_[f]->bodies) {
+      ReadBody& copy = coarse.bodies.emplace_back();
+      copy.id = body.id;
+      copy.footprint = body.footprint;
+      for (const ReadSolid& solid : body.solids)
+        if (solid.lod <= lod) copy.solids.push_back(solid);
+    }
+    compare_in_frame(glb, [&](const ToLocal& to_local, double tolerance) {
+      compare_meshes({coarse, files_.path[f]}, glb, path, to_local, tolerance, false, out_.findings);
+    });
+  }
+
   void judge_meshes() {
-    for (std::size_t i = 0; i < glb_->triangles.size(); ++i) {
-      const ReadBody& body = glb_->contents.bodies[i];
+    judge_meshes(*glb_, files_.path[kGltf], context_.record.lod);
+    if (context_.record.lod == 3 && !context_.record.baked) check_openings(*glb_, files_.path[kGltf], out_.findings);
+  }
+
+  /// \param level  of detail that the file shows; a mesh of LoD3 is several bodies with holes in their walls
+  void judge_meshes(const Glb& glb, const std::string& path, int level) {
+    for (std::size_t i = 0; i < glb.triangles.size(); ++i) {
+      const ReadBody& body = glb.contents.bodies[i];
       const auto lod = body.attributes.find("lod");
+      const bool detailed = level == 3 && lod != body.attributes.end() && lod->second == "3";
       // A footprint laid on the ground is no solid.
-      if (glb_->triangles[i].empty() || context_.record.lod == 0 ||
-          (lod != body.attributes.end() && lod->second == "0"))
+      if (glb.triangles[i].empty() || level == 0 || detailed || (lod != body.attributes.end() && lod->second == "0"))
         continue;
       ++out_.judged;
-      const Verdict verdict = judge(glb_->triangles[i]);
+      const Verdict verdict = judge(glb.triangles[i]);
       if (!verdict.valid()) unsound_.insert(body.id);
-      note(verdict, files_.path[kGltf], body.id, "mesh", out_.findings);
+      note(verdict, path, body.id, "mesh", out_.findings);
     }
   }
 
@@ -339,7 +401,17 @@ class Checker {
 
   void compare_with_mesh(const Side& reference) {
     if (!context_.witness) return;
-    const bool raised = glb_->georeference.height_reference.find("raised to the ellipsoid") != std::string::npos;
+    compare_in_frame(*glb_, [&](const ToLocal& to_local, double tolerance) {
+      compare_meshes(reference, *glb_, files_.path[kGltf], to_local, tolerance, context_.record.baked, out_.findings);
+      if (!context_.record.baked)
+        compare_places(reference, *glb_, files_.path[kGltf], to_local, tolerance, out_.findings);
+    });
+  }
+
+  /// Calls `compare` with the way to the frame of the tile's GLBs, and with what a vertex may be off.
+  template <class Compare>
+  void compare_in_frame(const Glb& glb, const Compare& compare) {
+    const bool raised = glb.georeference.height_reference.find("raised to the ellipsoid") != std::string::npos;
     context_.witness->with([&](georef::Witness& witness) {
       const ToLocal to_local = [&](std::span<const Point3> in, std::span<Point3> out) {
         for (std::size_t i = 0; i < in.size(); ++i) {
@@ -348,8 +420,7 @@ class Checker {
           out[i] = apply_inverse(transform_, witness.to_ecef({at.lon, at.lat, in[i].z + undulation}));
         }
       };
-      const double tolerance = kMeshTolerance + glb_->position_step * 0.87 + (raised ? kGeoidTolerance : 0);
-      compare_meshes(reference, *glb_, files_.path[kGltf], to_local, tolerance, out_.findings);
+      compare(to_local, kMeshTolerance + glb.position_step * 0.87 + (raised ? kGeoidTolerance : 0));
     });
   }
 

@@ -30,6 +30,7 @@ inline constexpr const char* kFormatNames[kTileFormats] = {"GLB tiles", "CityGML
 struct TileFiles {
   std::string name;  ///< "15_17600_12900"
   std::string path[kTileFormats];
+  std::map<int, std::string> levels;  ///< GLBs of the same buildings in less detail, by LoD
   std::string explanations;  ///< "explain/15_17600_12900.jsonl.gz"
 };
 

@@ -88,6 +88,13 @@ class Reader {
     const Json* content = member(tile, "content");
     if (child_count == 0 && error && *error != 0) wrong(where, "a leaf has geometricError 0");
     if (parent && child_count == 0 && !content) wrong(where, "a leaf without content");
+    // Content that its children replace must differ from theirs by what a viewer can measure.
+    const bool replaced = content && child_count > 0 && refine && text(refine) == "REPLACE";
+    if (content && child_count > 0 && !replaced) wrong(where, "content that its children do not replace");
+    if (replaced && error)
+      for (std::size_t i = 0; i < child_count; ++i)
+        if (number(member((*children)[i], "geometricError")).value_or(0) >= *error)
+          wrong(where, "the level that replaces its content is not finer");
     if (content) read_content(*content, own, next, where);
     for (std::size_t i = 0; i < child_count; ++i)
       this->tile((*children)[i], &tile, own, next, fmt::format("{}/{}", where, i), depth + 1);

@@ -30,6 +30,7 @@ namespace fs = std::filesystem;
 struct TilePath {
   std::string tile;
   Format format = Format::gltf;
+  int coarser = -1;  ///< level of detail of a GLB beside the tile's finest
 };
 
 TilePath tile_path(std::string_view path) {
@@ -42,6 +43,10 @@ TilePath tile_path(std::string_view path) {
   };
   if (std::string name = between("tiles/", {".glb"}); !name.empty()) {
     std::replace(name.begin(), name.end(), '/', '_');
+    constexpr std::string_view kLevel = "_lod";
+    if (name.size() > kLevel.size() + 1 && name.substr(name.size() - kLevel.size() - 1, kLevel.size()) == kLevel &&
+        name.back() >= '0' && name.back() <= '2')
+      return {name.substr(0, name.size() - kLevel.size() - 1), Format::gltf, name.back() - '0'};
     return {name, Format::gltf};
   }
   if (const std::string name = between("citygml/", {".gml", ".gml.gz"}); !name.empty()) return {name, Format::citygml};
@@ -249,7 +254,10 @@ class Run {
       if (const TilePath t = tile_path(path); !t.tile.empty()) {
         TileFiles& files = tiles[t.tile];
         files.name = t.tile;
-        files.path[static_cast<std::size_t>(t.format)] = path;
+        if (t.coarser >= 0)
+          files.levels[t.coarser] = path;
+        else
+          files.path[static_cast<std::size_t>(t.format)] = path;
       } else if (std::string tile = explained_tile(path); !tile.empty()) {
         TileFiles& files = tiles[tile];
         files.name = tile;

@@ -8,7 +8,8 @@
 namespace blockrand::elements {
 namespace {
 
-/// m. Posts at the corners, from the slab's edge to their middle; rails are narrower, so that no two faces are in one plane.
+/// m. Posts at the corners, from the slab's edge to their middle; rails are narrower, so that no two faces are in one
+/// plane.
 constexpr double kPost = 0.05, kEdge = 0.07, kRail = 0.035;
 /// m. Upright bars, and how far they reach into the rails.
 constexpr double kBar = 0.016, kGrip = 0.01;
@@ -80,9 +81,8 @@ Made make_balcony(const Request& r, Element& element) {
                 stone ? Part::surround : Part::metal);
   // Rails end within the posts, where they do not overlap, and within the wall.
   const double rail = stone ? 0.09 : kRail / 2;
-  const std::array<Side, 3> sides{{{true, z, -x + rail, x - rail},
-                                   {false, -x, -kApart, z - kGrip},
-                                   {false, x, -kApart, z - kGrip}}};
+  const std::array<Side, 3> sides{
+      {{true, z, -x + rail, x - rail}, {false, -x, -kApart, z - kGrip}, {false, x, -kApart, z - kGrip}}};
   for (const Side& s : sides) {
     if (v.is("railing", "bars")) add_bars(builder, s, r.height, spacing, detail);
     if (stone) add_balustrade(builder, s, r.height, spacing, detail);

@@ -113,7 +113,8 @@ std::vector<Outline> lights_of(const Outline& hole, int detail) {
 /// The wall of a panel with its windows, as part of the bay's one closed body.
 Made add_panel(MeshBuilder& builder, const Panel& panel, double height, const std::vector<Outline>& holes, int detail) {
   const double front = -kBayReveal, back = front - (detail == 0 ? 0 : kGlassBack);
-  if (!plate(builder, panel, rectangle(0, 0, panel.length(), height), holes, 0, Part::wall)) return no_room("its windows");
+  if (!plate(builder, panel, rectangle(0, 0, panel.length(), height), holes, 0, Part::wall))
+    return no_room("its windows");
   for (const Outline& hole : holes) {
     recess(builder, panel, hole, 0, front, Part::wall);
     const auto lights = lights_of(hole, detail);

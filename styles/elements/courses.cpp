@@ -13,7 +13,11 @@ namespace {
 Made run(const Request& r, Element& element, Part part, const ConsoleRow& consoles, const Profile& profile) {
   SweepOptions options;
   options.part = part;
-  options.ends = r.values.is("ends", "returned") ? RunEnd::returned : RunEnd::cut;
+  const std::string& ends = r.values.word("ends");
+  options.start_end = ends == "returned" || ends == "left_returned" ? RunEnd::returned : RunEnd::cut;
+  options.last_end = ends == "returned" || ends == "right_returned" ? RunEnd::returned : RunEnd::cut;
+  options.start_turn = r.values.number("left_turn");
+  options.last_turn = r.values.number("right_turn");
   options.consoles = consoles;
   auto made = sweep(profile, std::vector<model::Point2>{{-r.width / 2, 0}, {r.width / 2, 0}}, false, options);
   if (!made) return tl::unexpected(made.error());

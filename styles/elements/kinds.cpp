@@ -336,8 +336,12 @@ Parameters course(const char* preset, double projection) {
   return {profile("profile", preset, "section"),
           number("projection", "m", projection, 0.02, 1.50,
                  "at most this far out of the wall; higher profiles are squeezed"),
-          word("ends", {"cut", "returned"}, "cut",
-               "cut: at right angles; returned: it turns round the end and dies into the wall")};
+          word("ends", {"cut", "returned", "left_returned", "right_returned"}, "cut",
+               "cut: at right angles; returned: it turns round the end and dies into the wall, at both or one of them"),
+          number("left_turn", "degrees", 0, -170, 170,
+                 "the wall turns there, positive at corners that stand out: the end lies on the bisector, for the same "
+                 "course on the next wall; 0: as ends says"),
+          number("right_turn", "degrees", 0, -170, 170, "the same of the right end")};
 }
 
 ElementKind string_course() {
@@ -442,18 +446,19 @@ ElementKind balcony() {
 }
 
 ElementKind bay() {
-  ElementKind k{"bay",
-                ElementClass::installation,
-                "bay (Erker) over one or more storeys with windows of its own; y = 0 is its underside, without the base",
-                "bay at the wall",
-                "bay without base and roof",
-                1.20,
-                2.80,
-                5.00,
-                2.20,
-                7.00,
-                24.0,
-                {}};
+  ElementKind k{
+      "bay",
+      ElementClass::installation,
+      "bay (Erker) over one or more storeys with windows of its own; y = 0 is its underside, without the base",
+      "bay at the wall",
+      "bay without base and roof",
+      1.20,
+      2.80,
+      5.00,
+      2.20,
+      7.00,
+      24.0,
+      {}};
   k.parameters = {word("plan", {"rectangular", "polygonal"}, "rectangular", "plan; polygonal: slanting cheeks"),
                   number("depth", "m", 0.90, 0.30, 1.50, "how far it stands out of the wall"),
                   whole("storeys", 2, 1, 6, "storeys, all as high"),
@@ -484,12 +489,13 @@ ElementKind quoin() {
                 3.00,
                 40.0,
                 {}};
-  k.parameters = {word("corner", {"left", "right", "middle"}, "left", "the straight side; middle: toothed on both sides"),
-                  number("short", "of the width", 0.66, 0.40, 0.95, "width of the short stones"),
-                  number("stone_height", "m", 0.36, 0.20, 0.80, "height of a stone, joint included"),
-                  number("joint", "m", 0.02, 0.01, 0.05, "height of the joints"),
-                  number("projection", "m", 0.04, 0.02, 0.12, "how far the stones stand out of the wall"),
-                  detail()};
+  k.parameters = {
+      word("corner", {"left", "right", "middle"}, "left", "the straight side; middle: toothed on both sides"),
+      number("short", "of the width", 0.66, 0.40, 0.95, "width of the short stones"),
+      number("stone_height", "m", 0.36, 0.20, 0.80, "height of a stone, joint included"),
+      number("joint", "m", 0.02, 0.01, 0.05, "height of the joints"),
+      number("projection", "m", 0.04, 0.02, 0.12, "how far the stones stand out of the wall"),
+      detail()};
   return k;
 }
 
@@ -509,8 +515,7 @@ ElementKind pilaster() {
   k.parameters = {word("order", {"tuscan", "lesene"}, "tuscan", "with base and capital, or without"),
                   number("projection", "m", 0.10, 0.03, 0.30, "how far the shaft stands out of the wall"),
                   number("base_height", "m", 0.30, 0.10, 0.80, "height of the base"),
-                  number("capital_height", "m", 0.35, 0.10, 0.90, "height of the capital"),
-                  detail()};
+                  number("capital_height", "m", 0.35, 0.10, 0.90, "height of the capital"), detail()};
   return k;
 }
 

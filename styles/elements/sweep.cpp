@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "pipeline/base/portable_math.h"
+
 namespace blockrand::elements {
 namespace {
 
@@ -17,6 +19,7 @@ Point2 times(Point2 a, double s) { return {a.x * s, a.y * s}; }
 double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
 double length(Point2 a) { return std::sqrt(dot(a, a)); }
+Point2 unit(Point2 a) { return times(a, 1 / length(a)); }
 Point2 right_of(Point2 d) { return {d.y, -d.x}; }
 
 /// m. Corners nearer than this to one another or to the straight line are none.
@@ -25,6 +28,8 @@ constexpr double kNoCorner = 0.001;
 constexpr double kLeastRun = 0.004;
 /// Sine of half the angle below which two walls nearly fold back on one another: no mitre.
 constexpr double kFold = 0.05;
+/// Degrees that a wall may turn beyond the end of a run: more would be a spike of twice the projection and beyond.
+constexpr double kMostTurn = 130;
 
 /// Points of a path that are corners, with their indices in it.
 struct Corner {
@@ -238,6 +243,43 @@ std::vector<Stretch> stretches_of(std::span<const Point2> chain, bool closed,
   return out;
 }
 
+/// How the ends of a stretch are, from its first point to its last with the wall on the left.
+struct Ends {
+  RunEnd first = RunEnd::cut, last = RunEnd::cut;
+  /// Tangent of half the angle that the wall turns beyond an end; 0: square.
+  double first_slope = 0, last_slope = 0;
+};
+
+Ends ends_of(const SweepOptions& options, const Stretch& s, const std::vector<Corner>& corners, double out_of_wall) {
+  Ends out{options.ends, options.ends};
+  const bool turned = options.wall == WallSide::right;
+  const auto& first = turned ? options.last_end : options.start_end;
+  const auto& last = turned ? options.start_end : options.last_end;
+  const double first_turn = turned ? options.last_turn : options.start_turn;
+  const double last_turn = turned ? options.start_turn : options.last_turn;
+  if (!s.gap_before) {
+    out.first = first.value_or(options.ends);
+    out.first_slope = base::tan(std::clamp(first_turn, -kMostTurn, kMostTurn) / 2 / base::kDegreesPerRadian);
+  }
+  if (!s.gap_after) {
+    out.last = last.value_or(options.ends);
+    out.last_slope = base::tan(std::clamp(last_turn, -kMostTurn, kMostTurn) / 2 / base::kDegreesPerRadian);
+  }
+  // What re-entrant corners take of the first and the last piece of the run must be there.
+  const auto room = [&](double slope, std::size_t from, double taken) {
+    return slope >= 0 || length(minus(corners[from + 1].at, corners[from].at)) - taken >= kLeastRun;
+  };
+  const std::size_t pieces = corners.size() - 1;
+  const double first_taken = std::max(0.0, -out.first_slope) * out_of_wall,
+               last_taken = std::max(0.0, -out.last_slope) * out_of_wall;
+  if (!room(out.first_slope, 0, first_taken + (pieces == 1 ? last_taken : 0))) out.first_slope = 0;
+  if (!room(out.last_slope, pieces - 1, last_taken + (pieces == 1 && out.first_slope < 0 ? first_taken : 0)))
+    out.last_slope = 0;
+  if (out.first_slope != 0) out.first = RunEnd::cut;
+  if (out.last_slope != 0) out.last = RunEnd::cut;
+  return out;
+}
+
 }  // namespace
 
 std::optional<std::vector<std::size_t>> add_sweep(MeshBuilder& builder, const PathSweep& s) {
@@ -315,25 +357,42 @@ tl::expected<Sweep, std::string> sweep(const Profile& profile, std::span<const P
     const double base = options.base;
     path.place = [base](double x, double y, double up) { return Point3{x, base + up, -y}; };
     std::size_t added = 0;
-    if (options.ends == RunEnd::returned && !s.closed) {
-      // Two steps into the wall at either end: the corner's mitre makes the return. It stands out beyond the end as far
-      // as the moulding does; beside an interruption the end steps back by that, where the wall is long enough.
+    std::vector<Point2> bracketed = s.points;
+    if (!s.closed) {
       std::vector<Corner> corners = corners_of(s.points, false);
       if (corners.size() < 2) continue;
       const double out_of_wall = bounds_of(*section).most.x;
+      const Ends ends = ends_of(options, s, corners, out_of_wall);
+      // Two steps into the wall at a returned end: the corner's mitre makes the return. It stands out beyond the end as
+      // far as the moulding does; beside an interruption the end steps back by that, where the wall is long enough.
       const auto step_back = [&](Point2 end, Point2 next) {
         const Point2 d = minus(next, end);
         const double l = length(d);
         return l > 2.5 * out_of_wall ? plus(end, times(d, out_of_wall / l)) : end;
       };
       const std::size_t n = corners.size();
-      if (s.gap_before) s.points.front() = corners[0].at = step_back(corners[0].at, corners[1].at);
-      if (s.gap_after) s.points.back() = corners[n - 1].at = step_back(corners[n - 1].at, corners[n - 2].at);
+      if (ends.first == RunEnd::returned && s.gap_before) s.points.front() = corners[0].at = step_back(corners[0].at, corners[1].at);
+      if (ends.last == RunEnd::returned && s.gap_after) s.points.back() = corners[n - 1].at = step_back(corners[n - 1].at, corners[n - 2].at);
       path.path = s.points;
       const auto into = [](Point2 d) { return times(right_of(d), -2 * kApart / length(d)); };
-      path.path.insert(path.path.begin(), plus(corners[0].at, into(minus(corners[1].at, corners[0].at))));
-      path.path.push_back(plus(corners[n - 1].at, into(minus(corners[n - 1].at, corners[n - 2].at))));
-      added = 1;
+      if (ends.first == RunEnd::returned) {
+        path.path.insert(path.path.begin(), plus(corners[0].at, into(minus(corners[1].at, corners[0].at))));
+        added = 1;
+      }
+      if (ends.last == RunEnd::returned)
+        path.path.push_back(plus(corners[n - 1].at, into(minus(corners[n - 1].at, corners[n - 2].at))));
+      bracketed = s.points;
+      // On the bisector the section goes along the wall as well; in re-entrant corners back along it.
+      const Point2 first_way = unit(minus(corners[1].at, corners[0].at)),
+                   last_way = unit(minus(corners[n - 1].at, corners[n - 2].at));
+      if (ends.first_slope != 0) {
+        path.start = plus(right_of(first_way), times(first_way, -ends.first_slope));
+        bracketed.front() = plus(bracketed.front(), times(first_way, std::max(0.0, -ends.first_slope) * out_of_wall));
+      }
+      if (ends.last_slope != 0) {
+        path.end = plus(right_of(last_way), times(last_way, ends.last_slope));
+        bracketed.back() = plus(bracketed.back(), times(last_way, std::min(0.0, ends.last_slope) * out_of_wall));
+      }
     }
     const auto unmitred = add_sweep(builder, path);
     if (!unmitred) continue;
@@ -346,7 +405,7 @@ tl::expected<Sweep, std::string> sweep(const Profile& profile, std::span<const P
       add_console(one, 0, options.base + row.top, row.width, row.height, row.projection, 1);
       const ElementMesh bracket = one.take();
       for (const ConsolePlace& p :
-           console_places(s.points, s.closed, WallSide::left, row.spacing, row.width, row.projection)) {
+           console_places(bracketed, s.closed, WallSide::left, row.spacing, row.width, row.projection)) {
         ElementMesh placed = bracket;
         // Along the wall, seen from outside from left to right: outwards turned left.
         const Point2 along{-p.outwards.y, p.outwards.x};

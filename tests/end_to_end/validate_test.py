@@ -289,12 +289,19 @@ class Damages(Validated):
 
     def test_a_colour_of_one_format(self):
         def change(j, b):
-            a, start, stride = accessor(j, primitive_of(j), 'COLOR_0')
-            feature, at, step = accessor(j, primitive_of(j), '_FEATURE_ID_0')
+            coloured = next(p for p in j['meshes'][0]['primitives'] if 'COLOR_0' in p['attributes'])
+            a, start, stride = accessor(j, coloured, 'COLOR_0')
+            feature, at, step = accessor(j, coloured, '_FEATURE_ID_0')
             first = struct.unpack_from('<H', b, at)[0]
             for i in range(a['count']):
                 if struct.unpack_from('<H', b, at + i * step)[0] == first:
                     struct.pack_into('<HHH', b, start + i * stride, 65535, 0, 0)
+        self.found_in_glb(change, 'COLOUR_DIFFERS', 'm2')
+
+    def test_a_colour_of_a_material(self):
+        def change(j, _):
+            plain = next(p for p in j['meshes'][0]['primitives'] if 'COLOR_0' not in p['attributes'])
+            j['materials'][plain['material']]['pbrMetallicRoughness']['baseColorFactor'] = [1, 0, 0, 1]
         self.found_in_glb(change, 'COLOUR_DIFFERS', 'm2')
 
     def test_a_property_table_of_wrong_length(self):

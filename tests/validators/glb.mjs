@@ -101,10 +101,40 @@ export function each_primitive(glb, visit) {
   for (const index of json.scenes?.[json.scene ?? 0]?.nodes ?? []) walk(index, IDENTITY);
 }
 
-/** Every vertex of the default scene in the tile's frame (glTF's y up turned to z up, as 3D Tiles does). */
+/** The matrices of a node's instances (EXT_mesh_gpu_instancing), or null where it has none. */
+export function instance_matrices(glb, node) {
+  const attributes = node.extensions?.EXT_mesh_gpu_instancing?.attributes;
+  if (!attributes) return null;
+  const read = (name) => (attributes[name] === undefined ? null : read_accessor(glb, attributes[name]));
+  const t = read('TRANSLATION'), r = read('ROTATION'), s = read('SCALE');
+  const count = glb.json.accessors[Object.values(attributes)[0]].count;
+  return Array.from({ length: count }, (_, i) =>
+    node_matrix({
+      translation: t ? t.subarray(3 * i, 3 * i + 3) : undefined,
+      rotation: r ? r.subarray(4 * i, 4 * i + 4) : undefined,
+      scale: s ? s.subarray(3 * i, 3 * i + 3) : undefined,
+    }));
+}
+
+/**
+ * Every vertex of the default scene in the tile's frame (glTF's y up turned to z up, as 3D Tiles does); of what is
+ * instanced the corners of its box.
+ */
 export function positions_z_up(glb) {
   const out = [];
-  each_primitive(glb, (primitive, matrix) => {
+  const instances = new Map();
+  each_primitive(glb, (primitive, matrix, node) => {
+    if (!instances.has(node)) instances.set(node, instance_matrices(glb, node));
+    const places = instances.get(node);
+    if (places) {
+      const { min, max } = glb.json.accessors[primitive.attributes.POSITION];
+      for (const place of places)
+        for (let corner = 0; corner < 8; ++corner) {
+          const [x, y, z] = transform(multiply(matrix, place), min.map((low, k) => ((corner >> k) & 1 ? max[k] : low)));
+          out.push([x, -z, y]);
+        }
+      return;
+    }
     const p = read_accessor(glb, primitive.attributes.POSITION);
     for (let i = 0; i < p.length; i += 3) {
       const [x, y, z] = transform(matrix, [p[i], p[i + 1], p[i + 2]]);

@@ -150,7 +150,15 @@ void read_mesh(const Glb& glb, GlbFile& file) {
       const json& attributes = primitive.at("attributes");
       const auto position = glb.accessor(attributes.at("POSITION"));
       const auto normal = glb.accessor(attributes.at("NORMAL"));
-      const auto colour = glb.accessor(attributes.at("COLOR_0"));
+      std::vector<std::array<double, 4>> colour;  // of the vertices, else of the material
+      if (attributes.contains("COLOR_0"))
+        colour = glb.accessor(attributes["COLOR_0"]);
+      else
+        colour.assign(position.size(), document.at("materials")
+                                           .at(primitive.at("material").get<std::size_t>())
+                                           .at("pbrMetallicRoughness")
+                                           .at("baseColorFactor")
+                                           .get<std::array<double, 4>>());
       const auto feature = glb.accessor(attributes.at("_FEATURE_ID_0"));
       const auto index = glb.accessor(primitive.at("indices"));
       const std::string material =

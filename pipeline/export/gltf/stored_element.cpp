@@ -41,6 +41,23 @@ struct Vertex {
   std::array<std::int8_t, 4> normal{};
 };
 
+/// Leaves out triangles that have no area once their corners are whole steps.
+void drop_flat(std::vector<std::uint32_t>& indices, const std::vector<Vertex>& vertices) {
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
+    const auto &a = vertices[indices[t]].position, &b = vertices[indices[t + 1]].position,
+               &c = vertices[indices[t + 2]].position;
+    const auto cross = [&](std::size_t i, std::size_t k) {
+      return std::int64_t{b[i] - a[i]} * (c[k] - a[k]) - std::int64_t{b[k] - a[k]} * (c[i] - a[i]);
+    };
+    if (cross(0, 1) == 0 && cross(1, 2) == 0 && cross(2, 0) == 0) continue;
+    std::copy_n(indices.begin() + static_cast<std::ptrdiff_t>(t), 3,
+                indices.begin() + static_cast<std::ptrdiff_t>(kept));
+    kept += 3;
+  }
+  indices.resize(kept);
+}
+
 }  // namespace
 
 ElementForm StoredElements::form(const model::Element& element) {
@@ -59,16 +76,17 @@ ElementForm StoredElements::form(const model::Element& element) {
     geometry.min.x = -1;
     geometry.max.x = 1;
   }
-  form.stored = store(geometry, steps_for(geometry), half > 0);
+  const double steps = steps_for(geometry);
+  form.stored = store(std::move(geometry), steps, half > 0);
   return form;
 }
 
-int StoredElements::store(const ElementGeometry& geometry, double steps, bool stretched) {
+int StoredElements::store(ElementGeometry geometry, double steps, bool stretched) {
   std::vector<std::vector<Vertex>> vertices;
   std::string key;
   append(key, &steps, sizeof(steps));
   key += stretched ? 's' : ' ';
-  for (const ElementGeometry::PartTriangles& part : geometry.parts) {
+  for (ElementGeometry::PartTriangles& part : geometry.parts) {
     auto& list = vertices.emplace_back();
     for (const ElementVertex& v : part.vertices) {
       Vertex& out = list.emplace_back();
@@ -78,11 +96,19 @@ int StoredElements::store(const ElementGeometry& geometry, double steps, bool st
         out.normal[i] = v.normal[i];
       }
     }
+    drop_flat(part.indices, list);
     const std::size_t sizes[] = {static_cast<std::size_t>(part.part), list.size(), part.indices.size()};
     append(key, sizes, sizeof(sizes));
     append(key, list.data(), list.size() * sizeof(list[0]));
     append(key, part.indices.data(), part.indices.size() * sizeof(part.indices[0]));
   }
+  // A part of slivers alone has nothing left to show.
+  for (std::size_t i = geometry.parts.size(); i-- > 0;)
+    if (geometry.parts[i].indices.empty()) {
+      geometry.parts.erase(geometry.parts.begin() + static_cast<std::ptrdiff_t>(i));
+      vertices.erase(vertices.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  if (geometry.parts.empty()) return -1;
   const auto [place, added] = known_.try_emplace(std::move(key), static_cast<int>(stored_.size()));
   if (!added) return place->second;
 

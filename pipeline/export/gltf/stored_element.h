@@ -47,7 +47,7 @@ class StoredElements {
   int indices(int stored, std::size_t first, std::size_t last);
 
  private:
-  int store(const ElementGeometry& geometry, double steps, bool stretched);
+  int store(ElementGeometry geometry, double steps, bool stretched);
 
   GlbDocument& document_;
   std::vector<StoredElement> stored_;

@@ -367,6 +367,27 @@ std::vector<std::string> holders(const SmallTown& t, std::int64_t point) {
   return out;
 }
 
+/// Shops are mapped in the middle of their rooms: they open to the street of their house, or of their address.
+TEST(EdgePoints, ShopsGoToTheWallAtTheirStreet) {
+  SmallTown t = perimeter_block();
+  t.point(700, SitePointKind::shop, 44, 19, "", "", "shop");                   // nearer to the yard
+  t.point(701, SitePointKind::shop, 44, 21.5, "", "", "craft");                // at the wall to the yard
+  t.point(702, SitePointKind::address, 44, 15, "South Street", "5", "office");  // with an address
+  t.point(703, SitePointKind::shop, 44, 8, "", "", "shop");                    // on the pavement: nobody's
+  t.point(704, SitePointKind::shop, 16, 13, "West Street", "", "gastronomy");
+  t.label();
+  EXPECT_THAT(holders(t, 700), ElementsAre("w12 street South Street"));
+  EXPECT_THAT(holders(t, 701), ElementsAre("w12 courtyard "));
+  EXPECT_THAT(holders(t, 702), ElementsAre("w12 street South Street"));
+  EXPECT_THAT(holders(t, 703), IsEmpty());
+  EXPECT_THAT(holders(t, 704), ElementsAre("w1 street West Street"));
+  const std::vector<model::EdgePoint>& points = t.edge(12, 44, 10).points;
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_EQ(points[0].use, "shop");
+  EXPECT_EQ(points[1].use, "office");
+  EXPECT_EQ(t.edge(12, 44, 10).entrances, 0);
+}
+
 TEST(EdgePoints, AddressesInAHouseGoToTheWallAtTheirStreet) {
   SmallTown t = perimeter_block();
   t.point(700, SitePointKind::address, 44, 16, "South Street", "5");  // in the middle
@@ -652,6 +673,13 @@ TEST(SitePoints, AreEntrancesAddressesAndTrees) {
   EXPECT_EQ(found[0].place, (Point2{5, 6}));
   EXPECT_EQ(found[1].kind, SitePointKind::address);
   EXPECT_EQ(found[2].kind, SitePointKind::tree);
+  const std::vector<SitePoint> used = site_points(e, plain, [](const auto& tag) {
+    return tag("shop").empty() ? std::string_view() : std::string_view("shop");
+  });
+  ASSERT_EQ(used.size(), 4u);
+  EXPECT_EQ(used[0].use, "");
+  EXPECT_EQ(used[3].kind, SitePointKind::shop);
+  EXPECT_EQ(used[3].use, "shop");
 }
 
 }  // namespace

@@ -57,8 +57,8 @@ class SmallTown {
   }
 
   void point(std::int64_t id, SitePointKind kind, double x, double y, const std::string& street_name = "",
-             const std::string& house_number = "") {
-    points.push_back({{model::OsmType::node, id}, kind, at(x, y), street_name, house_number});
+             const std::string& house_number = "", const std::string& use = "") {
+    points.push_back({{model::OsmType::node, id}, kind, at(x, y), street_name, house_number, use});
   }
   /// Of a house; strings must outlive the town.
   void address(std::int64_t id, std::string_view street_name, std::string_view house_number) {

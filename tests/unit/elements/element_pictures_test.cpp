@@ -209,8 +209,7 @@ std::vector<Shown> shown_of(const ElementKind& kind) {
             {3.2,
              h,
              {full, {"plan", "polygonal"}, {"base", "consoles"}, {"roof", "flat"}, {"depth", 1.2}, {"storeys", 2.0}}}};
-  if (n == "quoin")
-    return {{w, h, {full}}, {w, h, {full, {"corner", "middle"}}}, {w, h, {full, {"corner", "right"}}}};
+  if (n == "quoin") return {{w, h, {full}}, {w, h, {full, {"corner", "middle"}}}, {w, h, {full, {"corner", "right"}}}};
   if (n == "pilaster") return {{w, h, {full}}, {w, h, {full, {"order", "lesene"}}}};
   return {{w, h, {full}}};
 }

@@ -1,6 +1,8 @@
 // LoD3 in the files: elements stored once and placed, the same picture however they are written, CityGML with openings.
 #include <gtest/gtest.h>
 
+#include <meshoptimizer.h>
+
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -14,6 +16,8 @@
 #include "pipeline/export/gltf/glb_writer.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/second_judge.h"
+#include "pipeline/picture/camera.h"
+#include "pipeline/picture/render.h"
 #include "tests/unit/export/facade_region.h"
 #include "tests/validators/citygml_reader.h"
 
@@ -50,6 +54,7 @@ class Scene {
     std::memcpy(&length, &bytes[12], 4);
     document = json::parse(bytes.substr(20, length));
     binary_ = bytes.substr(20 + length + 8);
+    for (const json& view : document["bufferViews"]) views_.push_back(bytes_of(view));
     for (const int n : document["scenes"][0]["nodes"]) {
       const json& node = document["nodes"][n];
       add_node(node, 1);
@@ -70,9 +75,30 @@ class Scene {
   std::size_t places = 0;
 
  private:
+  /// A view's bytes; compressed ones through meshoptimizer's decoder, as viewers do.
+  std::string bytes_of(const json& view) const {
+    const std::size_t length = view["byteLength"];
+    if (!view.contains("extensions")) return binary_.substr(view.value("byteOffset", std::size_t{0}), length);
+    const json& packed = view["extensions"]["EXT_meshopt_compression"];
+    EXPECT_EQ(view["buffer"], 1);
+    EXPECT_EQ(packed["buffer"], 0);
+    const std::size_t count = packed["count"], stride = packed["byteStride"], size = packed["byteLength"];
+    EXPECT_EQ(length, count * stride);
+    std::string out(length, '\0');
+    const auto* from = reinterpret_cast<const unsigned char*>(&binary_.at(packed.value("byteOffset", std::size_t{0})));
+    if (packed["mode"] == "TRIANGLES") {
+      EXPECT_EQ(meshopt_decodeIndexBuffer(out.data(), count, stride, from, size), 0);
+    } else {
+      EXPECT_EQ(meshopt_decodeVertexBuffer(out.data(), count, stride, from, size), 0);
+      if (packed.value("filter", "NONE") == "EXPONENTIAL") meshopt_decodeFilterExp(out.data(), count, stride);
+    }
+    return out;
+  }
+
   std::vector<double> accessor(int number) const {
     const json& a = document["accessors"][number];
     const json& view = document["bufferViews"][a["bufferView"].get<int>()];
+    const std::string& bytes = views_.at(a["bufferView"].get<std::size_t>());
     const int component = a["componentType"];
     const std::size_t size = component == 5126 || component == 5125   ? 4
                              : component == 5122 || component == 5123 ? 2
@@ -80,15 +106,14 @@ class Scene {
     const std::map<std::string, std::size_t> widths{{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
     const std::size_t width = widths.at(a["type"]), count = a["count"];
     const std::size_t stride = view.value("byteStride", size * width);
-    const std::size_t start = view.value("byteOffset", std::size_t{0}) + a.value("byteOffset", std::size_t{0});
+    const std::size_t start = a.value("byteOffset", std::size_t{0});
     EXPECT_EQ(a.value("byteOffset", std::size_t{0}) % size, 0u) << "accessors are aligned to their components";
     const bool normalised = a.value("normalized", false);
     std::vector<double> out;
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t k = 0; k < width; ++k) {
-        const char* at = &binary_.at(start + i * stride + k * size);
-        EXPECT_LE(start + i * stride + k * size + size,
-                  view.value("byteOffset", std::size_t{0}) + view["byteLength"].get<std::size_t>());
+        const char* at = &bytes.at(start + i * stride + k * size);
+        EXPECT_LE(start + i * stride + k * size + size, bytes.size());
         const auto read = [&](auto zero, double most) {
           std::memcpy(&zero, at, sizeof(zero));
           out.push_back(normalised ? static_cast<double>(zero) / most : static_cast<double>(zero));
@@ -187,6 +212,7 @@ class Scene {
   }
 
   std::string binary_;
+  std::vector<std::string> views_;
 };
 
 std::array<double, 3> middle(const Scene::Triangle& t) {
@@ -299,6 +325,96 @@ TEST(DetailGlb, BoundsHoldEveryTriangle) {
         out = std::max({out, glb.min.x - v.x, v.x - glb.max.x, glb.min.y + v.z, -v.z - glb.max.y, glb.min.z - v.y,
                         v.y - glb.max.z});
     EXPECT_LT(out, 0.001);
+  }
+}
+
+picture::Image picture_of(const Scene& scene, picture::Direction from) {
+  picture::Scene drawn;
+  const auto srgb = [](double v) {
+    return static_cast<std::uint8_t>(
+        std::lround(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055)));
+  };
+  for (const Scene::Triangle& t : scene.triangles) {
+    std::array<model::Point3, 3> c{};
+    for (std::size_t i = 0; i < 3; ++i) c[i] = {t.corner[i].x, -t.corner[i].z, t.corner[i].y};
+    drawn.add_triangle(c, {srgb(t.colour[0]), srgb(t.colour[1]), srgb(t.colour[2])},
+                       static_cast<std::uint32_t>(t.feature));
+  }
+  picture::RenderOptions options;
+  options.width = 900;
+  options.height = 600;
+  options.shadows = options.sky_occlusion = false;
+  const std::vector<model::Point3> points = drawn.points();
+  return picture::render(drawn, picture::fit_perspective(points, from, 1.5), options);
+}
+
+/// However elements are written, they are seen as the same: pixels differ only along edges.
+TEST(DetailGlb, EveryWayOfWritingGivesTheSamePicture) {
+  SampleRegion s = facade_region();
+  // Reveals have the wall's looks, as grammars give them: baked ones are the wall's own faces.
+  const model::Solid& house = s.region().buildings[0].parts[0].lod3.solid;
+  const auto wall = std::find_if(house.faces.begin(), house.faces.end(),
+                                 [](const model::Face& f) { return f.kind == model::SurfaceKind::wall; });
+  for (model::ColouredElement& e : s.region().elements)
+    e.looks[static_cast<std::size_t>(model::ElementPart::wall)] = {wall->material, wall->colour};
+  GlbOptions packed = options(Instancing::ext);
+  packed.compression = Compression::meshopt;
+  for (const picture::Direction from : {picture::Direction{215, 25}, picture::Direction{40, 8}}) {
+    const picture::Image baked =
+        picture_of(Scene(write_glb(s.region(), options(Instancing::baked)).bytes), from);
+    GlbOptions bare = options(Instancing::ext);
+    bare.lod = 2;
+    const auto unlike = [&](const GlbOptions& o) {
+      const picture::Image other = picture_of(Scene(write_glb(s.region(), o).bytes), from);
+      EXPECT_EQ(other.rgb.size(), baked.rgb.size());
+      if (const char* folder = std::getenv("BLOCKRAND_PICTURES")) {
+        const std::string name = std::string(folder) + "/ways_" + std::to_string(static_cast<int>(from.azimuth));
+        std::ofstream(name + "_baked.png", std::ios::binary) << picture::png(baked);
+        if (o.lod == 3) std::ofstream(name + "_other.png", std::ios::binary) << picture::png(other);
+      }
+      std::size_t off = 0;
+      for (std::size_t i = 0; i < baked.rgb.size(); i += 3) {
+        int worst = 0;
+        for (std::size_t k = i; k < i + 3; ++k) worst = std::max(worst, std::abs(baked.rgb[k] - other.rgb[k]));
+        off += worst > 24;
+      }
+      return static_cast<double>(off) / (900 * 600);
+    };
+    EXPECT_LT(unlike(options(Instancing::ext)), 0.002);
+    EXPECT_LT(unlike(options(Instancing::nodes)), 0.002);
+    EXPECT_LT(unlike(packed), 0.002);
+    EXPECT_GT(unlike(bare), 0.02) << "the pictures would not show missing elements";
+  }
+}
+
+/// Corners, features and colours are the same to the last bit; triangles may begin at another corner.
+TEST(DetailGlb, CompressedFilesShowTheSame) {
+  const SampleRegion s = facade_region();
+  for (const Instancing how : {Instancing::ext, Instancing::baked}) {
+    GlbOptions o = options(how);
+    const std::string plain = write_glb(s.region(), o).bytes;
+    o.compression = Compression::meshopt;
+    const std::string packed = write_glb(s.region(), o).bytes;
+    EXPECT_EQ(packed, write_glb(s.region(), o).bytes);
+    EXPECT_LT(packed.size(), plain.size() * 3 / 4);
+    const Scene a(plain), b(packed);
+    EXPECT_EQ(b.document["buffers"].size(), 2u);
+    EXPECT_FALSE(b.document["buffers"][1].contains("uri"));
+    const auto& required = b.document["extensionsRequired"];
+    EXPECT_NE(std::find(required.begin(), required.end(), "EXT_meshopt_compression"), required.end());
+    ASSERT_EQ(a.triangles.size(), b.triangles.size());
+    EXPECT_EQ(a.places, b.places);
+    const auto turned = [](const Scene::Triangle& t) {
+      std::array<std::array<double, 3>, 3> c{};
+      for (std::size_t i = 0; i < 3; ++i) c[i] = {t.corner[i].x, t.corner[i].y, t.corner[i].z};
+      std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
+      return c;
+    };
+    for (std::size_t i = 0; i < a.triangles.size(); ++i) {
+      ASSERT_EQ(turned(a.triangles[i]), turned(b.triangles[i])) << i;
+      ASSERT_EQ(a.triangles[i].feature, b.triangles[i].feature) << i;
+      for (std::size_t k = 0; k < 3; ++k) ASSERT_EQ(a.triangles[i].colour[k], b.triangles[i].colour[k]) << i;
+    }
   }
 }
 

@@ -56,6 +56,33 @@ struct Walk {
   }
 };
 
+TEST(Tileset, CoarserLevelsAreReplacedByFinerOnes) {
+  TileEntry t = tile(17604, 12942);
+  t.coarser = {{"tiles/15/17604/12942_lod1.glb", kBlockError}, {"tiles/15/17604/12942_lod2.glb", kRoofError}};
+  const json document = json::parse(write_tileset(std::vector{t, tile(17605, 12942)}, {}));
+  const json* level = nullptr;
+  for (const json& child : document["root"]["children"])
+    if (child.contains("children")) level = &child;
+  ASSERT_NE(level, nullptr);
+  const json volume = (*level)["boundingVolume"];
+  EXPECT_TRUE(level->contains("transform"));
+  std::vector<std::string> uris;
+  double error = document["root"]["geometricError"];
+  for (;;) {
+    uris.push_back((*level)["content"]["uri"]);
+    EXPECT_LT((*level)["geometricError"].get<double>(), error);
+    error = (*level)["geometricError"];
+    EXPECT_EQ((*level)["boundingVolume"], volume) << "of all levels";
+    if (!level->contains("children")) break;
+    EXPECT_EQ((*level)["refine"], "REPLACE");
+    ASSERT_EQ((*level)["children"].size(), 1u);
+    level = &(*level)["children"][0];
+    EXPECT_FALSE(level->contains("transform"));
+  }
+  EXPECT_EQ(error, 0);
+  EXPECT_EQ(uris, (std::vector<std::string>{t.coarser[0].uri, t.coarser[1].uri, t.uri}));
+}
+
 TEST(Tileset, QuadtreeWithCollapsedChains) {
   std::vector<TileEntry> tiles;
   for (std::uint32_t x = 17600; x < 17610; ++x)

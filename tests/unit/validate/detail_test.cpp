@@ -4,10 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "pipeline/export/citygml/citygml_writer.h"
+#include "pipeline/export/cityjson/cityjson_writer.h"
 #include "pipeline/validate/citygml.h"
+#include "pipeline/validate/cityjson.h"
 #include "pipeline/validate/solids.h"
 #include "tests/unit/export/facade_region.h"
 
@@ -160,6 +163,96 @@ TEST(Detail, ReferencesToNowhere) {
   EXPECT_THAT(found(replaced("<bldg:lod3MultiSurface><gml:MultiSurface><gml:surfaceMember xlink:href=\"#",
                              "<bldg:lod3MultiSurface><gml:MultiSurface><gml:surfaceMember xlink:href=\"#x")),
               Contains(HasSubstr("is not in the solid of LoD3")));
+}
+
+export_::CityJsonOptions json_options() {
+  export_::CityJsonOptions o;
+  o.lod = 3;
+  o.crs_code = "EPSG:25833";
+  return o;
+}
+
+TEST(DetailCityJson, SaysTheSameAsCityGml) {
+  const auto s = region_with_chimney();
+  const CityGml gml = read_citygml(sound(), "a.gml");
+  std::string whole;
+  export_::SingleCityJson single(json_options(), [&](std::string_view bytes) { whole += bytes; });
+  single.add(s.region());
+  single.finish();
+  for (const bool sequence : {true, false}) {
+    const Contents read =
+        sequence ? read_cityjson(export_::write_cityjson_sequence(s.region(), json_options()), "a.city.jsonl")
+                 : read_cityjson(whole, "a.city.json");
+    for (const Finding& f : read.findings) ADD_FAILURE() << f.object << ": " << f.detail;
+    ASSERT_EQ(read.bodies.size(), gml.contents.bodies.size());
+    for (std::size_t i = 0; i < read.bodies.size(); ++i) {
+      EXPECT_EQ(detail_difference(gml.contents.bodies[i], read.bodies[i]), "");
+      ASSERT_EQ(read.bodies[i].solids.size(), gml.contents.bodies[i].solids.size());
+      for (std::size_t k = 0; k < read.bodies[i].solids.size(); ++k) {
+        const auto &a = read.bodies[i].solids[k].polygons, &b = gml.contents.bodies[i].solids[k].polygons;
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t f = 0; f < a.size(); ++f) {
+          EXPECT_EQ(a[f].rings, b[f].rings);
+          if (read.bodies[i].solids[k].lod >= 2) {
+            EXPECT_EQ(a[f].kind, b[f].kind);
+            EXPECT_EQ(a[f].colour, b[f].colour);
+          }
+        }
+      }
+    }
+  }
+  const auto header = nlohmann::json::parse(whole);
+  EXPECT_EQ(header["geometry-templates"]["templates"].size(), 4u) << "once each: lamp and window look alike";
+}
+
+TEST(DetailCityJson, LowerLevelsHaveNoneOfIt) {
+  auto o = json_options();
+  o.lod = 2;
+  const std::string text = export_::write_cityjson_sequence(region_with_chimney().region(), o);
+  EXPECT_EQ(text.find("template"), std::string::npos);
+  EXPECT_EQ(text.find("BuildingInstallation"), std::string::npos);
+  EXPECT_EQ(text.find("\"lod\":\"3\""), std::string::npos);
+}
+
+/// The file with one change to its first feature.
+template <class Change>
+std::vector<std::string> found_in_json(const Change& change) {
+  const std::string text = export_::write_cityjson_sequence(region_with_chimney().region(), json_options());
+  const std::size_t first = text.find('\n') + 1, second = text.find('\n', first);
+  auto header = nlohmann::ordered_json::parse(text.substr(0, first));
+  auto feature = nlohmann::ordered_json::parse(text.substr(first, second - first));
+  change(header, feature);
+  std::vector<std::string> out;
+  for (const Finding& f : read_cityjson(header.dump() + "\n" + feature.dump() + text.substr(second), "a.city.jsonl").findings)
+    out.push_back(f.object + ": " + f.detail);
+  return out;
+}
+
+TEST(DetailCityJson, DamageIsFound) {
+  const auto solid = [](auto& feature) -> auto& { return feature["CityObjects"]["w100"]["geometry"][3]; };
+  EXPECT_THAT(found_in_json([](auto&, auto&) {}), IsEmpty());
+  EXPECT_THAT(found_in_json([&](auto&, auto& f) {
+                for (auto& surface : solid(f)["semantics"]["surfaces"])
+                  if (surface["type"] == "Window") {
+                    surface.erase("parent");
+                    break;
+                  }
+              }),
+              Contains(HasSubstr("has a window that is in no wall")));
+  EXPECT_THAT(found_in_json([&](auto&, auto& f) { solid(f)["semantics"]["surfaces"][0]["children"].erase(0); }),
+              Contains(HasSubstr("does not name it as a child")));
+  EXPECT_THAT(found_in_json([](auto&, auto& f) {
+                f["CityObjects"]["w100_casement"]["geometry"][0]["template"] = 99;
+              }),
+              Contains(HasSubstr("a template that does not exist")));
+  EXPECT_THAT(found_in_json([](auto&, auto& f) {
+                f["CityObjects"]["w100_casement"]["geometry"][0]["transformationMatrix"][0] = 2;
+              }),
+              Contains(HasSubstr("no rotation about the vertical")));
+  EXPECT_THAT(found_in_json([](auto& h, auto&) { h["geometry-templates"]["templates"][0]["boundaries"][0][0][0] = 9999; }),
+              Contains(HasSubstr("names a vertex that does not exist")));
+  EXPECT_THAT(found_in_json([](auto&, auto& f) { f["CityObjects"].erase("w100_i1"); }),
+              Contains(HasSubstr("its child w100_i1 is not in the file")));
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+// Elements that a GLB places: whether they fill the holes of walls, and whether another format has them there as well.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/validate/compare.h"
+#include "pipeline/validate/glb.h"
+
+namespace blockrand::validate {
+
+/// m in the tile's frame, z up: the corners of the boxes of all placed elements. What holds them holds the elements.
+std::vector<model::Point3> place_corners(const Glb& glb);
+
+/// GLB_RULE where the mesh of a LoD3 body is open at an edge that no element of the body stands around: a hole one can
+/// look through. Not for elements that are baked into the mesh, which leave the ends of reveals open.
+void check_openings(const Glb& glb, const std::string& file, std::vector<Finding>& findings);
+
+/// GEOMETRY_DIFFERS where a body has other places of elements than in `reference`.
+/// \param tolerance  m, that an origin may be off
+void compare_places(const Side& reference, const Glb& glb, const std::string& glb_file, const ToLocal& to_local,
+                    double tolerance, std::vector<Finding>& findings);
+
+}  // namespace blockrand::validate
