@@ -212,7 +212,7 @@ TEST(Mutations, DerivationsEndWhateverTheRules) {
   ASSERT_GT(samples.size(), 300u);
   const Shape lot = initial_shape({{0, 0, 0}, {12, 0, 0}, {12, 0, -9}, {7, 0, -9}, {7, 0, -5}, {0, 0, -5}});
   DeriveOptions run;
-  run.limits = {300, 40, 40, 2000, 20000, 50};
+  run.limits = {300, 40, 40, 2000, 20000, 50, 2000};
   std::size_t leaves = 0, derived = 0;
   for (std::uint64_t seed = 0; seed < texts; ++seed) {
     Random random(seed ^ 0x9e3779b97f4a7c15ULL);
