@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/generate/wall_corners.h"
@@ -158,9 +159,7 @@ int mapped_entrances(const model::Building& b) {
 }
 
 /// m above the wall's base of the eaves of its part, at most the wall's own height.
-double eaves(const C& c) {
-  return std::clamp(eaves_level(c.part) - c.wall.base, 0.0, c.wall.height);
-}
+double eaves(const C& c) { return std::clamp(eaves_level(c.part) - c.wall.base, 0.0, c.wall.height); }
 
 const std::vector<ContextAttribute> kAttributes = {
     {"bay.uses", "", "ordered by bay of the main front, from its left end: door, shop, balcony …; empty: nothing",
@@ -256,7 +255,8 @@ const std::vector<ContextAttribute> kAttributes = {
        return e ? e->street_name : std::string();
      }},
     {"edge.turn_left", "degrees",
-     "turn of the walls at the left end, positive at corners that stand out; 0: the wall goes on, or edge.kind_left is empty",
+     "turn of the walls at the left end, positive at corners that stand out; 0: the wall goes on, or edge.kind_left is "
+     "empty",
      [](const C& c) -> Value { return c.stretch.turn_left; }},
     {"edge.turn_right", "degrees", "the same of the right end",
      [](const C& c) -> Value { return c.stretch.turn_right; }},
@@ -302,6 +302,21 @@ std::optional<Value> context_value(const FacadeContext& context, std::string_vie
                                       [](const ContextAttribute& a, std::string_view n) { return a.name < n; });
   if (place == kAttributes.end() || place->name != name) return std::nullopt;
   return place->read(context);
+}
+
+std::vector<std::string> unheard_orders(const model::Building& building) {
+  using model::DetailKind;
+  // What storey.windows, bay.windows and bay.uses read.
+  constexpr std::pair<DetailKind, std::string_view> kHeard[] = {{DetailKind::storey, "parameters.window"},
+                                                                {DetailKind::bay, "parameters.window"},
+                                                                {DetailKind::bay, "parameters.use"}};
+  std::vector<std::string> out;
+  for (const model::DetailOverride& d : building.detail_overrides)
+    for (const auto& [key, value] : d.values)
+      if (key.starts_with("parameters.") &&
+          std::find(std::begin(kHeard), std::end(kHeard), std::pair(d.kind, std::string_view(key))) == std::end(kHeard))
+        out.push_back(d.from + ": rules ask for no " + key + " of a " + std::string(model::name(d.kind)));
+  return out;
 }
 
 }  // namespace blockrand::generate

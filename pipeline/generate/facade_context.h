@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,5 +29,9 @@ struct ContextAttribute {
 /// All of them, by name.
 const std::vector<ContextAttribute>& context_attributes();
 std::optional<grammar::Value> context_value(const FacadeContext& context, std::string_view name);
+
+/// Orders of storeys, edges and bays that no rule file can ask for: parameters without a name in the list above. One
+/// sentence each, with the place of the order.
+std::vector<std::string> unheard_orders(const model::Building& building);
 
 }  // namespace blockrand::generate

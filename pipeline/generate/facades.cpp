@@ -324,6 +324,8 @@ void build_facades(model::Region& region, const GrammarBook& grammars, const Def
   FacadeBuilder builder(region, grammars, defaults, options);
   for (model::Building& building : region.buildings) {
     if (!building.owned) continue;
+    for (const std::string& order : unheard_orders(building))
+      region.report.add(building.osm, IssueCode::override_unmatched, order);
     for (BuildingPart& part : building.parts) builder.build(building, part);
   }
 }

@@ -145,7 +145,7 @@ class Reader {
     };
     const auto t = part("translation", {0, 0, 0}), s = part("scale", {1, 1, 1}), r = part("rotation", {0, 0, 0, 1});
     if (!t || !s || !r) return std::nullopt;
-    const auto &q = *r;
+    const auto& q = *r;
     if (std::fabs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) > 1e-6) return std::nullopt;
     return transform({(*t)[0], (*t)[1], (*t)[2]}, {q[0], q[1], q[2], q[3]}, {(*s)[0], (*s)[1], (*s)[2]});
   }
@@ -227,8 +227,7 @@ class Reader {
     if (!r->is_float() && !(r->normalised && (r->component_type == 5120 || r->component_type == 5122)))
       rule(where + ": ROTATION is no quaternion");
     if (f->normalised) metadata(where + ": feature ids are no plain numbers");
-    const Json* set =
-        element(member(member(member(node, "extensions"), "EXT_instance_features"), "featureIds"), 0);
+    const Json* set = element(member(member(member(node, "extensions"), "EXT_instance_features"), "featureIds"), 0);
     if (!set) return metadata(where + ": no EXT_instance_features");
     if (whole(member(set, "attribute")) != 0u) metadata(where + ": its feature ids are not those of _FEATURE_ID_0");
     const Json* tables = member(member(member(glb_.json(), "extensions"), "EXT_structural_metadata"), "propertyTables");
@@ -244,9 +243,8 @@ class Reader {
       const auto scale = [&](std::size_t c) { return s ? glb_.value(*s, i, c) : 1.0; };
       if (!(scale(0) > 0 && scale(1) > 0 && scale(2) > 0))
         rule(fmt::format("{}: instance {} is mirrored or flat", where, i));
-      const Matrix place =
-          transform({glb_.value(*t, i, 0), glb_.value(*t, i, 1), glb_.value(*t, i, 2)}, {x, y, z, w},
-                    {scale(0), scale(1), scale(2)});
+      const Matrix place = transform({glb_.value(*t, i, 0), glb_.value(*t, i, 1), glb_.value(*t, i, 2)}, {x, y, z, w},
+                                     {scale(0), scale(1), scale(2)});
       different.insert(glb_.value(*f, i));
       add_place(element_index, glb_.value(*f, i), own * place, fmt::format("{} instance {}", where, i));
     }
@@ -287,8 +285,7 @@ class Reader {
         element(member(glb_.json(), "materials"), whole(member(primitive, "material")).value_or(~0ull));
     if (!material) rule(where + ": its material does not exist");
     const auto factor = numbers(member(member(material, "pbrMetallicRoughness"), "baseColorFactor"), 4);
-    const Accessor* colour =
-        factor ? nullptr : attribute(primitive, "COLOR_0", count, where);
+    const Accessor* colour = factor ? nullptr : attribute(primitive, "COLOR_0", count, where);
     if (factor && member(member(primitive, "attributes"), "COLOR_0"))
       rule(where + ": its material and its vertices both have colours");
     const Accessor* feature = placed ? nullptr : attribute(primitive, "_FEATURE_ID_0", count, where);
@@ -413,7 +410,8 @@ class Reader {
         const double longest = std::max({length({c[1].x - c[0].x, c[1].y - c[0].y, c[1].z - c[0].z}),
                                          length({c[2].x - c[1].x, c[2].y - c[1].y, c[2].z - c[1].z}),
                                          length({c[0].x - c[2].x, c[0].y - c[2].y, c[0].z - c[2].z})});
-        if (area / longest > (placed ? kElementSliver : 0.1) && n.x * said.x + n.y * said.y + n.z * said.z <= 0.5 * area)
+        if (area / longest > (placed ? kElementSliver : 0.1) &&
+            n.x * said.x + n.y * said.y + n.z * said.z <= 0.5 * area)
           first(turned, fmt::format("triangle {} does not look where its normal points", t / 3));
       }
       triangle.colour = s.one_colour;

@@ -26,9 +26,9 @@ struct GlbElement {
 
 /// Where an element stands.
 struct GlbPlace {
-  std::size_t element = 0;      ///< into Glb::elements
-  std::size_t row = 0;          ///< of the property table
-  Matrix matrix = kIdentity;    ///< from the element's axes to the tile's frame with y up
+  std::size_t element = 0;    ///< into Glb::elements
+  std::size_t row = 0;        ///< of the property table
+  Matrix matrix = kIdentity;  ///< from the element's axes to the tile's frame with y up
 };
 
 /// m in the tile's frame, z up, of a point in the axes of the placed element.
@@ -59,8 +59,9 @@ struct Glb {
 };
 
 /// Reads a GLB and checks what it can without other files: glTF 2.0, EXT_mesh_features, EXT_structural_metadata,
-/// EXT_mesh_gpu_instancing, EXT_instance_features, KHR_mesh_quantization, EXT_meshopt_compression, and that the georeference is the frame of its origin. Never throws on account of the bytes.
-/// \param name  of the file, for findings
+/// EXT_mesh_gpu_instancing, EXT_instance_features, KHR_mesh_quantization, EXT_meshopt_compression, and that the
+/// georeference is the frame of its origin. Never throws on account of the bytes. \param name  of the file, for
+/// findings
 Glb read_glb(std::string_view bytes, const std::string& name);
 
 }  // namespace blockrand::validate

@@ -143,7 +143,8 @@ void GlbContainer::check_views() {
   if (buffer_count > 0) {
     const Json& buffer = (*buffers)[0];
     const auto said = whole(member(buffer, "byteLength"));
-    if (buffer_count > (unpacked_length ? 2 : 1) || member(buffer, "uri")) found(Check::glb_rule, "data outside of the file");
+    if (buffer_count > (unpacked_length ? 2 : 1) || member(buffer, "uri"))
+      found(Check::glb_rule, "data outside of the file");
     if (!said || *said < 1 || *said > bin_.size() || bin_.size() - *said > 3)
       found(Check::glb_rule, fmt::format("buffer of {} bytes, binary chunk of {}", said.value_or(0), bin_.size()));
     length = std::min<std::size_t>(said.value_or(0), bin_.size());

@@ -43,8 +43,7 @@ std::optional<std::string> unpack_view(const Json& view, const Json& extension, 
   } else if (mode == "TRIANGLES") {
     if ((*stride != 2 && *stride != 4) || *count % 3 != 0) return fail("is no list of triangles");
     if (!filter.empty() && filter != "NONE") return fail("filters indices");
-    if (meshopt_decodeIndexBuffer(out.data(), *count, *stride, from, *size) != 0)
-      return fail("cannot be decompressed");
+    if (meshopt_decodeIndexBuffer(out.data(), *count, *stride, from, *size) != 0) return fail("cannot be decompressed");
   } else {
     return fail("has a mode that Blockrand does not write");
   }

@@ -92,8 +92,7 @@ std::vector<Point3> place_corners(const Glb& glb) {
     const GlbElement& e = glb.elements[place.element];
     if (e.triangles.empty()) continue;
     for (int i = 0; i < 8; ++i)
-      out.push_back(placed(
-          place, {i & 1 ? e.max.x : e.min.x, i & 2 ? e.max.y : e.min.y, i & 4 ? e.max.z : e.min.z}));
+      out.push_back(placed(place, {i & 1 ? e.max.x : e.min.x, i & 2 ? e.max.y : e.min.y, i & 4 ? e.max.z : e.min.z}));
   }
   return out;
 }
@@ -155,8 +154,7 @@ void compare_places(const Side& reference, const Glb& glb, const std::string& gl
       worst = std::max(worst, best);
       if (best <= tolerance) left.erase(left.begin() + static_cast<std::ptrdiff_t>(nearest));
     }
-    if (worst > tolerance)
-      differs(fmt::format("an element stands where {} has none", reference.file));
+    if (worst > tolerance) differs(fmt::format("an element stands where {} has none", reference.file));
   }
 }
 

@@ -31,7 +31,7 @@ struct TileFiles {
   std::string name;  ///< "15_17600_12900"
   std::string path[kTileFormats];
   std::map<int, std::string> levels;  ///< GLBs of the same buildings in less detail, by LoD
-  std::string explanations;  ///< "explain/15_17600_12900.jsonl.gz"
+  std::string explanations;           ///< "explain/15_17600_12900.jsonl.gz"
 };
 
 /// What one format holds of one or of all tiles.
@@ -39,8 +39,8 @@ struct FormatCounts {
   std::uint64_t files = 0, buildings = 0, bodies = 0;
   std::uint64_t solids[4] = {0, 0, 0, 0};  ///< by LoD; of GLB, meshes in [0], whichever LoD they show
   std::uint64_t windows = 0, doors = 0, placements = 0, installations = 0;  ///< of LoD3; not of GLB
-  std::uint64_t models = 0;             ///< objects of the map that own a solid, or at LoD 0 a footprint
-  bool incomplete = false;              ///< a file is missing or unreadable: the counts mean nothing
+  std::uint64_t models = 0;  ///< objects of the map that own a solid, or at LoD 0 a footprint
+  bool incomplete = false;   ///< a file is missing or unreadable: the counts mean nothing
   void add(const FormatCounts& other);
 };
 
@@ -86,7 +86,7 @@ struct TileContext {
   georef::WitnessPool* positions = nullptr;  ///< PROJ with the operation that the positions are compared by
   const georef::Geoid& geoid;
   const std::set<std::string>* overlapping = nullptr;  ///< objects of which the report tells an overlap
-  GeoPackageReader* geopackage = nullptr;  ///< null: not there, or unreadable
+  GeoPackageReader* geopackage = nullptr;              ///< null: not there, or unreadable
   const ExplanationIndex* explanations = nullptr;
 };
 

@@ -3,10 +3,12 @@ import json
 import os
 import re
 import shutil
+import struct
 import unittest
 
 import judges
 from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, files_of, main, read_json
+from damage import Damaged
 from glb_files import glb_json, places
 
 LOD3 = ('--lod', '3', '--no-report', '--no-explain')
@@ -102,17 +104,97 @@ class Facades(BuildTest):
         # A build without facades does not ask for them.
         self.build(SAMPLE, 'lod2', '--configs', configs, '--formats', 'gltf')
 
-    def test_validate_says_that_it_cannot(self):
-        out = self.build(SAMPLE, 'unread', *LOD3, '--formats', 'gltf')
-        run = blockrand('validate', out, '--progress', 'none')
-        self.assertEqual(run.code, 2, run)
-        self.assertIn('LoD 3', run.err)
+    def test_validate_reads_every_way_of_writing(self):
+        for number, how in enumerate((['ext'], ['nodes'], ['baked'], ['ext', '--compress', 'meshopt'])):
+            out = self.build(SAMPLE, f'way{number}', '--lod', '3', '--formats', 'gltf,citygml', '--no-report', '--instancing', *how)
+            self.assertEqual(judges.validate(out), '')
+            self.assertEqual(judges.khronos(out), '')
+
+    def test_levels_of_detail(self):
+        out = self.build(SAMPLE, 'levels', *LOD3, '--formats', 'gltf')
+        self.assertEqual(judges.tileset(out), '')
+        self.assertEqual(judges.metadata(out), '')
+        for name in files_of(out, '.glb'):
+            if '_lod' not in name:
+                for level in ('_lod1', '_lod2'):
+                    self.assertTrue(os.path.exists(os.path.join(out, name.replace('.glb', f'{level}.glb'))))
+
+    def test_compressed_files_are_small(self):
+        def size(out):
+            return sum(os.path.getsize(os.path.join(out, f)) for f in files_of(out, '.glb'))
+        plain = self.build(SAMPLE, 'plain_size', *LOD3, '--formats', 'gltf')
+        packed = self.build(SAMPLE, 'packed_size', *LOD3, '--formats', 'gltf', '--compress', 'meshopt')
+        self.assertLess(size(packed), 0.5 * size(plain))
 
     def test_shipped_rules_pass_their_check(self):
         folder = os.path.join(SOURCE, 'configs', 'grammars')
         run = blockrand('grammar', 'check', *[os.path.join(folder, f) for f in sorted(os.listdir(folder))])
         self.assertEqual(run.code, 0, run)
         self.assertIn('0 errors, 0 warnings', run.out + run.err)
+
+
+class DamagedFacades(BuildTest):
+    """What is planted into the GLBs of a sound build is found."""
+
+    def found(self, change, codes, *words):
+        source = self.path('sound')
+        if not os.path.exists(source):
+            self.build(SAMPLE, 'sound', *LOD3, '--formats', 'gltf,gpkg')
+        d = Damaged(source, self.path(self.id().split('.')[-1]))
+        change(d)
+        d.seal()
+        run = blockrand('validate', d.folder, '--json', '--progress', 'none')
+        findings = json.loads(run.out)['findings']
+        self.assertTrue({f['code'] for f in findings} & set(codes.split()), findings[:5])
+        for word in words:
+            self.assertTrue(any(word in f['detail'] for f in findings), findings[:5])
+
+    @staticmethod
+    def instances(document):
+        return next(n['extensions'] for n in document['nodes'] if 'EXT_mesh_gpu_instancing' in n.get('extensions', {}))
+
+    def attribute(self, document, name):
+        a = document['accessors'][self.instances(document)['EXT_mesh_gpu_instancing']['attributes'][name]]
+        view = document['bufferViews'][a['bufferView']]
+        return a, view.get('byteOffset', 0) + a.get('byteOffset', 0)
+
+    def test_a_broken_instance_buffer(self):
+        def change(j, b):
+            _, at = self.attribute(j, 'TRANSLATION')
+            b[at:at + 12] = struct.pack('<fff', 9e8, 0, 0)
+        self.found(lambda d: d.change_glb(change), 'TILE_BOUNDS GLB_RULE')
+
+    def test_a_wrong_feature_id(self):
+        def change(j, b):
+            _, at = self.attribute(j, '_FEATURE_ID_0')
+            b[at:at + 2] = struct.pack('<H', 65000)
+        self.found(lambda d: d.change_glb(change), 'METADATA_RULE', '65000')
+
+    def test_a_wrong_count(self):
+        def change(j, _):
+            self.attribute(j, 'ROTATION')[0]['count'] -= 1
+        self.found(lambda d: d.change_glb(change), 'GLB_RULE', 'values of another attribute')
+
+    def test_a_level_that_the_tileset_forgot(self):
+        def change(document):
+            def walk(tile):
+                children = tile.get('children', [])
+                for i, child in enumerate(children):
+                    if child.get('content', {}).get('uri', '').endswith('_lod2.glb'):
+                        children[i] = child['children'][0]
+                    walk(children[i])
+            walk(document['root'])
+        self.found(lambda d: d.json('tileset.json', change), 'TILE_MISSING', 'does not name it')
+
+    def test_a_level_that_is_not_finer(self):
+        def change(document):
+            def walk(tile):
+                for child in tile.get('children', []):
+                    if child.get('content', {}).get('uri', '').endswith('_lod2.glb'):
+                        child['geometricError'] = tile['geometricError']
+                    walk(child)
+            walk(document['root'])
+        self.found(lambda d: d.json('tileset.json', change), 'TILESET_RULE', 'not finer')
 
 
 if __name__ == '__main__':

@@ -13,7 +13,7 @@ static_assert(std::endian::native == std::endian::little, "buffers are copied as
 
 namespace {
 
-constexpr std::size_t kTableAlignment = 8, kStreamAlignment = 4;
+constexpr std::size_t kAlignment = 8;              // what property tables need; of all views, for simplicity
 constexpr std::uint64_t kMostBytes = 0xFFFF0000u;  // sizes are 32-bit numbers
 
 struct StreamInfo {
@@ -163,7 +163,7 @@ std::string GlbDocument::write(Compression compression) {
   for (View& view : views_) {
     std::string json = "{";
     if (!view.stream) {
-      pad(binary, kTableAlignment);
+      pad(binary, kAlignment);
       field(json, "buffer", 0);
       field(json, "byteLength", view.bytes.size());
       if (!binary.empty()) field(json, "byteOffset", binary.size());
@@ -172,12 +172,12 @@ std::string GlbDocument::write(Compression compression) {
       const StreamInfo info = info_of(*view.stream);
       if (info.coding != MeshoptCoding::triangles) pad(view.bytes, coded_size(*view.stream));
       const std::size_t length = view.bytes.size();
-      const std::uint64_t offset = compress ? unpacked : (binary.size() + kStreamAlignment - 1) / kStreamAlignment * kStreamAlignment;
+      const std::uint64_t offset = compress ? unpacked : (binary.size() + kAlignment - 1) / kAlignment * kAlignment;
       field(json, "buffer", compress ? 1 : 0);
       field(json, "byteLength", length);
       if (offset > 0) field(json, "byteOffset", offset);
       if (info.vertices) field(json, "byteStride", info.size);
-      pad(binary, kStreamAlignment);
+      pad(binary, kAlignment);
       if (compress) {
         const std::size_t size = coded_size(*view.stream);
         const std::size_t count = length / size;
@@ -191,7 +191,7 @@ std::string GlbDocument::write(Compression compression) {
         json += info.coding == MeshoptCoding::triangles ? ",\"mode\":\"TRIANGLES\"" : ",\"mode\":\"ATTRIBUTES\"";
         if (has_filter(info.coding)) json += ",\"filter\":\"EXPONENTIAL\"";
         json += "}}";
-        unpacked += (length + kStreamAlignment - 1) / kStreamAlignment * kStreamAlignment;
+        unpacked += (length + kAlignment - 1) / kAlignment * kAlignment;
         binary += coded;
       } else {
         binary += view.bytes;

@@ -21,19 +21,19 @@ namespace blockrand::export_ {
 
 /// Bytes of one kind, which share a buffer view.
 enum class Stream : std::uint8_t {
-  positions,          ///< 3 floats, multiples of 1/4096
-  far_positions,      ///< 3 floats of a mesh that is too wide for that
-  normals,            ///< 3 signed bytes and an empty one
-  colours,            ///< 4 words
-  features,           ///< a word and an empty one
-  wide_features,      ///< a float
-  indices,            ///< a word
-  element_positions,  ///< 3 signed words and an empty one
-  translations,       ///< of instances: 3 floats, whole numbers
-  far_translations,   ///< the same, where they are too large to be compressed as such
-  rotations,          ///< 4 signed words
-  scales,             ///< 3 floats
-  instance_features,  ///< a word
+  positions,               ///< 3 floats, multiples of 1/4096
+  far_positions,           ///< 3 floats of a mesh that is too wide for that
+  normals,                 ///< 3 signed bytes and an empty one
+  colours,                 ///< 4 words
+  features,                ///< a word and an empty one
+  wide_features,           ///< a float
+  indices,                 ///< a word
+  element_positions,       ///< 3 signed words and an empty one
+  translations,            ///< of instances: 3 floats, whole numbers
+  far_translations,        ///< the same, where they are too large to be compressed as such
+  rotations,               ///< 4 signed words
+  scales,                  ///< 3 floats
+  instance_features,       ///< a word
   wide_instance_features,  ///< a float
 };
 

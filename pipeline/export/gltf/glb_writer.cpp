@@ -46,7 +46,8 @@ class MeshWriter {
       json += "},\"extensions\":{\"EXT_mesh_features\":" + feature_ids(p) + "},\"indices\":";
       append_number(json, std::int64_t{add_indices(p)});
       json += ",\"material\":";
-      append_number(json, std::int64_t{document_.add_material(material_json(region.materials.at(p.material), p.colour))});
+      append_number(json,
+                    std::int64_t{document_.add_material(material_json(region.materials.at(p.material), p.colour))});
       json += '}';
     }
     const int mesh = document_.add_mesh(json + "]}");

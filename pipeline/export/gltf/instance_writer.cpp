@@ -83,8 +83,7 @@ class InstanceWriter {
         const double low = at.origin.z + form.min.y, high = at.origin.z + form.max.y;
         if (first_) figures_.min = figures_.max = {east, north, low};
         first_ = false;
-        figures_.min = {std::min(figures_.min.x, east), std::min(figures_.min.y, north),
-                        std::min(figures_.min.z, low)};
+        figures_.min = {std::min(figures_.min.x, east), std::min(figures_.min.y, north), std::min(figures_.min.z, low)};
         figures_.max = {std::max(figures_.max.x, east), std::max(figures_.max.y, north),
                         std::max(figures_.max.z, high)};
       }
@@ -160,7 +159,8 @@ class InstanceWriter {
     number(json, rows.size());
     json += ",\"propertyTable\":0}]},\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"ROTATION\":";
     const std::size_t r = document_.append<std::int16_t>(Stream::rotations, rotations);
-    append_number(json, std::int64_t{document_.add_accessor({Stream::rotations, r, Component::int16, "VEC4", n, true})});
+    append_number(json,
+                  std::int64_t{document_.add_accessor({Stream::rotations, r, Component::int16, "VEC4", n, true})});
     if (stored.stretched) {
       json += ",\"SCALE\":";
       const std::size_t s = document_.append<float>(Stream::scales, scales);
@@ -171,7 +171,8 @@ class InstanceWriter {
     append_number(json, std::int64_t{document_.add_accessor({to, t, Component::float32, "VEC3", n})});
     json += ",\"_FEATURE_ID_0\":";
     const Stream ids = wide_features_ ? Stream::wide_instance_features : Stream::instance_features;
-    const std::size_t f = wide_features_ ? document_.append<float>(ids, wide) : document_.append<std::uint16_t>(ids, narrow);
+    const std::size_t f =
+        wide_features_ ? document_.append<float>(ids, wide) : document_.append<std::uint16_t>(ids, narrow);
     append_number(json, std::int64_t{document_.add_accessor(
                             {ids, f, wide_features_ ? Component::float32 : Component::uint16, "SCALAR", n})});
     json += "}}},\"mesh\":";

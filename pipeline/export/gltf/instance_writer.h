@@ -26,9 +26,9 @@ struct InstanceFigures {
   model::Point3 min, max;     ///< of the boxes of all placed elements, in east, north, up; zero without places
 };
 
-/// Adds meshes, materials, nodes and their bytes for `ext` or `nodes`. The root holds a node per step, whose scale turns
-/// steps into metres, and that holds the elements: positions are 16-bit integers in steps of 1/4096 m (of 1/2048 m and
-/// so on for elements that reach farther than 8 m), places are whole steps.
+/// Adds meshes, materials, nodes and their bytes for `ext` or `nodes`. The root holds a node per step, whose scale
+/// turns steps into metres, and that holds the elements: positions are 16-bit integers in steps of 1/4096 m (of 1/2048
+/// m and so on for elements that reach farther than 8 m), places are whole steps.
 ///
 /// Equal geometry in other colours shares its accessors. Elements that are a profile drawn along the wall (all corners
 /// at one of two ends) are stored once for every length: places have a scale along x.

@@ -27,11 +27,11 @@ struct MeshPrimitive {
   /// about 400 and a draw call.
   static constexpr std::size_t kOwnColour = 1024;
 
-  std::uint8_t material = 0;             ///< into Region::materials
-  std::optional<model::Colour> colour;   ///< of all faces
-  std::vector<MeshVertex> vertices;      ///< at most kMostVertices
-  std::vector<model::Colour> colours;    ///< by vertex, where not all have one
-  std::vector<std::uint16_t> indices;    ///< counter-clockwise triangles seen from outside
+  std::uint8_t material = 0;            ///< into Region::materials
+  std::optional<model::Colour> colour;  ///< of all faces
+  std::vector<MeshVertex> vertices;     ///< at most kMostVertices
+  std::vector<model::Colour> colours;   ///< by vertex, where not all have one
+  std::vector<std::uint16_t> indices;   ///< counter-clockwise triangles seen from outside
 };
 
 struct Mesh {
@@ -50,8 +50,8 @@ struct Mesh {
 /// unless `bake` is set, which puts the elements themselves into this mesh. Bodies on walls are always part of it.
 ///
 /// Shading is flat: a face's vertices share the normal of its plane (Newell's method in the local frame). Corners of a
-/// part with equal position, normal, colour and material become one vertex. Faces are in the order of the parts within a
-/// colour.
+/// part with equal position, normal, colour and material become one vertex. Faces are in the order of the parts within
+/// a colour.
 Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake = false);
 
 }  // namespace blockrand::export_

@@ -121,9 +121,9 @@ nlohmann::json PropertyTable::class_properties() const {
       default:
         property.emplace("type", "SCALAR");
         property.emplace("componentType", column.kind == Kind::int8      ? "INT8"
-                                                     : column.kind == Kind::int64   ? "INT64"
-                                                     : column.kind == Kind::float64 ? "FLOAT64"
-                                                                                    : "UINT8");
+                                          : column.kind == Kind::int64   ? "INT64"
+                                          : column.kind == Kind::float64 ? "FLOAT64"
+                                                                         : "UINT8");
         if (column.kind == Kind::unit_interval) property.emplace("normalized", true);
     }
     if (!column.description.empty()) property.emplace("description", column.description);

@@ -124,7 +124,8 @@ int StoredElements::store(ElementGeometry geometry, double steps, bool stretched
     std::size_t last = first;
     for (; last < geometry.parts.size() && count + vertices[last].size() <= ElementGeometry::kMostVertices; ++last) {
       std::vector<std::uint16_t> indices;
-      for (const std::uint32_t i : geometry.parts[last].indices) indices.push_back(static_cast<std::uint16_t>(count + i));
+      for (const std::uint32_t i : geometry.parts[last].indices)
+        indices.push_back(static_cast<std::uint16_t>(count + i));
       const std::size_t at = document_.append<std::uint16_t>(Stream::indices, indices);
       out.parts.push_back({geometry.parts[last].part, static_cast<int>(out.blocks.size()), at, indices.size()});
       out.triangles += indices.size() / 3;

@@ -15,8 +15,8 @@ namespace blockrand::export_ {
 struct StoredElement {
   struct Part {
     model::ElementPart part = model::ElementPart::frame;
-    int block = 0;                               ///< into `blocks`
-    std::size_t first_index = 0, indices = 0;    ///< bytes into the stream, number
+    int block = 0;                             ///< into `blocks`
+    std::size_t first_index = 0, indices = 0;  ///< bytes into the stream, number
   };
   struct Block {
     int position = 0, normal = 0;  ///< accessors
@@ -31,8 +31,8 @@ struct StoredElement {
 
 /// An element's use of stored geometry.
 struct ElementForm {
-  int stored = -1;       ///< index; -1: it has no triangles
-  double stretch = 1;    ///< of stretched geometry: the scale along x
+  int stored = -1;         ///< index; -1: it has no triangles
+  double stretch = 1;      ///< of stretched geometry: the scale along x
   model::Point3 min, max;  ///< m, of the element itself
 };
 

@@ -24,8 +24,8 @@ struct CoarserLevel {
 /// A tile with content.
 struct TileEntry {
   model::TileId id;
-  std::string uri;                    ///< relative to the tileset: "tiles/15/x/y.glb"
-  std::vector<CoarserLevel> coarser;  ///< the coarsest first; errors fall
+  std::string uri;                                  ///< relative to the tileset: "tiles/15/x/y.glb"
+  std::vector<CoarserLevel> coarser;                ///< the coarsest first; errors fall
   std::array<double, 16> enu_to_ecef{};             ///< column-major
   model::Point3 min, max;                           ///< of all levels: m east, north, up of the tile's origin
   double west = 0, south = 0, east = 0, north = 0;  ///< degrees; west > east where the mesh crosses 180°

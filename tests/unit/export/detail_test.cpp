@@ -1,6 +1,5 @@
 // LoD3 in the files: elements stored once and placed, the same picture however they are written, CityGML with openings.
 #include <gtest/gtest.h>
-
 #include <meshoptimizer.h>
 
 #include <cmath>
@@ -317,8 +316,7 @@ TEST(DetailGlb, BoundsHoldEveryTriangle) {
   for (const Instancing how : {Instancing::ext, Instancing::nodes, Instancing::baked}) {
     const Glb glb = write_glb(s.region(), options(how));
     const Scene scene(glb.bytes);
-    for (const json& p : scene.document["accessors"])
-      EXPECT_NE(p["componentType"], 5125) << "no index needs 32 bits";
+    for (const json& p : scene.document["accessors"]) EXPECT_NE(p["componentType"], 5125) << "no index needs 32 bits";
     double out = 0;
     for (const auto& t : scene.triangles)
       for (const Vector& v : t.corner)
@@ -360,8 +358,7 @@ TEST(DetailGlb, EveryWayOfWritingGivesTheSamePicture) {
   GlbOptions packed = options(Instancing::ext);
   packed.compression = Compression::meshopt;
   for (const picture::Direction from : {picture::Direction{215, 25}, picture::Direction{40, 8}}) {
-    const picture::Image baked =
-        picture_of(Scene(write_glb(s.region(), options(Instancing::baked)).bytes), from);
+    const picture::Image baked = picture_of(Scene(write_glb(s.region(), options(Instancing::baked)).bytes), from);
     GlbOptions bare = options(Instancing::ext);
     bare.lod = 2;
     const auto unlike = [&](const GlbOptions& o) {

@@ -365,6 +365,19 @@ TEST(Facades, ShopsAndOrdersAreKept) {
     EXPECT_EQ(windows(after, 2), 0) << preset;
     EXPECT_EQ(windows(after, 1), windows(before, 1)) << preset;
   }
+  // What no rule can ask for is told with its place.
+  model::Region unheard = region_of(house, "plain", 80);
+  unheard.buildings[0].detail_overrides = {
+      {unheard.buildings[0].id(),
+       model::DetailKind::bay,
+       "3",
+       {{"parameters.widnow", "triple"}, {"width", "2.6"}},
+       "o.toml:7"},
+      {unheard.buildings[0].id(), model::DetailKind::storey, "1", {{"parameters.window", "none"}}, "o.toml:9"}};
+  build_facades(unheard, shipped(), Defaults{}, {42});
+  ASSERT_EQ(unheard.report.rows.size(), 1u);
+  EXPECT_EQ(unheard.report.rows[0].code, model::IssueCode::override_unmatched);
+  EXPECT_EQ(unheard.report.rows[0].detail, "o.toml:7: rules ask for no parameters.widnow of a bay");
   // A high ground floor moves the windows above it up; a window kind of one bay changes its column.
   model::Region before = region_of(house, "gruenderzeit", 79), after = region_of(house, "gruenderzeit", 79);
   after.buildings[0].detail_overrides.push_back(

@@ -43,9 +43,8 @@ struct Read {
   Glb glb;
   std::vector<Finding> findings;
   bool found(Check check, const std::string& word) const {
-    return std::any_of(findings.begin(), findings.end(), [&](const Finding& f) {
-      return f.check == check && f.detail.find(word) != std::string::npos;
-    });
+    return std::any_of(findings.begin(), findings.end(),
+                       [&](const Finding& f) { return f.check == check && f.detail.find(word) != std::string::npos; });
   }
   std::string text() const {
     std::string out;
@@ -137,8 +136,8 @@ TEST_F(GlbDetail, WhatIsWrittenIsSound) {
 
 TEST_F(GlbDetail, CompressedBytesAreReadAsTheyWere) {
   const Glb plain = read_glb(ext_, "a.glb"),
-            packed = read_glb(export_::write_glb(sample_.region(), options(Instancing::ext, Compression::meshopt)).bytes,
-                              "b.glb");
+            packed = read_glb(
+                export_::write_glb(sample_.region(), options(Instancing::ext, Compression::meshopt)).bytes, "b.glb");
   ASSERT_EQ(plain.triangles.size(), packed.triangles.size());
   for (std::size_t i = 0; i < plain.triangles.size(); ++i) {
     ASSERT_EQ(plain.triangles[i].size(), packed.triangles[i].size());
@@ -157,54 +156,70 @@ TEST_F(GlbDetail, CompressedBytesAreReadAsTheyWere) {
 }
 
 TEST_F(GlbDetail, ElementsThatAreNotThereLeaveHoles) {
-  finds([](json& j, std::string&) {
-    for (json& node : j["nodes"])
-      if (node.contains("children")) node["children"].erase(0);
-  }, Check::glb_rule, "is open at");
+  finds(
+      [](json& j, std::string&) {
+        for (json& node : j["nodes"])
+          if (node.contains("children")) node["children"].erase(0);
+      },
+      Check::glb_rule, "is open at");
 }
 
 TEST_F(GlbDetail, AnElementThatStandsElsewhereLeavesAHole) {
-  finds([](json& j, std::string& b) {
-    const float far = 0;
-    std::memcpy(&b[place_of(j, instancing_of(j)["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"])], &far, 4);
-  }, Check::glb_rule, "is open at");
+  finds(
+      [](json& j, std::string& b) {
+        const float far = 0;
+        std::memcpy(&b[place_of(j, instancing_of(j)["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"])], &far, 4);
+      },
+      Check::glb_rule, "is open at");
 }
 
 TEST_F(GlbDetail, WrongFeatureIds) {
-  finds([](json& j, std::string& b) {
-    const std::uint16_t far = 60000;
-    std::memcpy(&b[place_of(j, instancing_of(j)["EXT_mesh_gpu_instancing"]["attributes"]["_FEATURE_ID_0"])], &far, 2);
-  }, Check::metadata_rule, "60000");
-  finds([](json& j, std::string&) {
-    json& id = instancing_of(j)["EXT_instance_features"]["featureIds"][0];
-    id["featureCount"] = id["featureCount"].get<int>() + 1;
-  }, Check::metadata_rule, "featureCount");
+  finds(
+      [](json& j, std::string& b) {
+        const std::uint16_t far = 60000;
+        std::memcpy(&b[place_of(j, instancing_of(j)["EXT_mesh_gpu_instancing"]["attributes"]["_FEATURE_ID_0"])], &far,
+                    2);
+      },
+      Check::metadata_rule, "60000");
+  finds(
+      [](json& j, std::string&) {
+        json& id = instancing_of(j)["EXT_instance_features"]["featureIds"][0];
+        id["featureCount"] = id["featureCount"].get<int>() + 1;
+      },
+      Check::metadata_rule, "featureCount");
   finds([](json& j, std::string&) { instancing_of(j).erase("EXT_instance_features"); }, Check::metadata_rule,
         "EXT_instance_features");
 }
 
 TEST_F(GlbDetail, WrongCounts) {
-  finds([](json& j, std::string&) {
-    json& a = j["accessors"][instancing_of(j)["EXT_mesh_gpu_instancing"]["attributes"]["ROTATION"].get<std::size_t>()];
-    a["count"] = a["count"].get<int>() - 1;
-  }, Check::glb_rule, "values of another attribute");
-  finds([](json& j, std::string&) {
-    json& a = j["accessors"][instancing_of(j)["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"].get<std::size_t>()];
-    a["count"] = 1000000;
-  }, Check::glb_rule, "leaves its buffer view");
+  finds(
+      [](json& j, std::string&) {
+        json& a =
+            j["accessors"][instancing_of(j)["EXT_mesh_gpu_instancing"]["attributes"]["ROTATION"].get<std::size_t>()];
+        a["count"] = a["count"].get<int>() - 1;
+      },
+      Check::glb_rule, "values of another attribute");
+  finds(
+      [](json& j, std::string&) {
+        json& a =
+            j["accessors"][instancing_of(j)["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"].get<std::size_t>()];
+        a["count"] = 1000000;
+      },
+      Check::glb_rule, "leaves its buffer view");
 }
 
 TEST_F(GlbDetail, ATurnThatIsNone) {
-  finds([](json& j, std::string& b) {
-    const std::int16_t half = 20000;
-    const std::size_t at = place_of(j, instancing_of(j)["EXT_mesh_gpu_instancing"]["attributes"]["ROTATION"]);
-    for (const std::size_t k : {2u, 6u}) std::memcpy(&b[at + k], &half, 2);
-  }, Check::glb_rule, "no unit quaternion");
+  finds(
+      [](json& j, std::string& b) {
+        const std::int16_t half = 20000;
+        const std::size_t at = place_of(j, instancing_of(j)["EXT_mesh_gpu_instancing"]["attributes"]["ROTATION"]);
+        for (const std::size_t k : {2u, 6u}) std::memcpy(&b[at + k], &half, 2);
+      },
+      Check::glb_rule, "no unit quaternion");
 }
 
 TEST_F(GlbDetail, BrokenCompressedStreams) {
-  const std::string packed =
-      export_::write_glb(sample_.region(), options(Instancing::ext, Compression::meshopt)).bytes;
+  const std::string packed = export_::write_glb(sample_.region(), options(Instancing::ext, Compression::meshopt)).bytes;
   const auto view_of = [](json& j) -> json& {
     for (json& view : j["bufferViews"])
       if (view.contains("extensions")) return view["extensions"]["EXT_meshopt_compression"];
@@ -216,9 +231,8 @@ TEST_F(GlbDetail, BrokenCompressedStreams) {
   };
   check([&](json& j, std::string& b) { b[view_of(j).value("byteOffset", std::size_t{0})] = 0; },
         "cannot be decompressed");
-  check([&](json& j, std::string&) {
-    view_of(j)["byteLength"] = view_of(j)["byteLength"].get<int>() - 4;
-  }, "cannot be decompressed");
+  check([&](json& j, std::string&) { view_of(j)["byteLength"] = view_of(j)["byteLength"].get<int>() - 4; },
+        "cannot be decompressed");
   check([&](json& j, std::string&) { view_of(j)["count"] = 1u << 30; }, "more elements than its bytes can hold");
   check([&](json& j, std::string&) { view_of(j)["mode"] = "INDICES"; }, "mode");
   check([&](json& j, std::string&) { j["buffers"].erase(1); }, "leaves the buffer");

@@ -278,7 +278,7 @@ TEST(Compare, MeshesByCornersVolumeAndColour) {
   };
   const auto found = [&](const Glb& glb) {
     std::vector<Finding> findings;
-    compare_meshes({x, a}, glb, "b", same, 1e-3, findings);
+    compare_meshes({x, a}, glb, "b", same, 1e-3, false, findings);
     return codes(findings);
   };
   using testing::ElementsAre;
