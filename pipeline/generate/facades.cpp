@@ -162,8 +162,8 @@ class FacadeBuilder {
                          context.part.attributes.plinth_height.value;
     const auto storey = storey_height > 0 ? static_cast<std::int32_t>(std::floor(above / storey_height + 0.25)) : 0;
     for (const auto& [from, to] : pieces) {
-      stock_.ask(std::get<std::string>(order.arguments[0]), ElementStock::size(to - from), ElementStock::size(height),
-                 usual_looks_);
+      const auto [made_width, made_height] = ElementStock::size(kind, to - from, height);
+      stock_.ask(std::get<std::string>(order.arguments[0]), made_width, made_height, usual_looks_);
       complaints_.clear();
       stock_.add_order(order, from == left, to == left + width, complaints_);
       for (const std::string& what : complaints_) tell(context.part, what);
