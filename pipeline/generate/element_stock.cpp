@@ -18,6 +18,10 @@ using model::ElementPart;
 
 /// Steps a metre of sizes and of parameters: equal elements are one.
 constexpr double kSizeSteps = 100, kParameterSteps = 1000;
+/// Steps a metre of what stands in openings: 5 cm. Windows come in few sizes, as joiners make them; stored once each, they
+/// are most of a town's forms (own choice: coarser steps show where windows stand between neighbours).
+constexpr double kOpeningSteps = 20;
+constexpr double kRounding = 0.001;  ///< of a step: what floats may lack of a whole one
 /// Colours of parts that neither rule nor building says.
 constexpr model::Colour kFrame{0xF6, 0xF6, 0xF6}, kGlass{0x51, 0x62, 0x6E}, kLeaf{0x5A, 0x3A, 0x29},
     kMetal{0x37, 0x3F, 0x43}, kTrim{0xFD, 0xF4, 0xE3}, kSill{0xE9, 0xE5, 0xCE};
@@ -49,7 +53,16 @@ ElementStock::ElementStock(model::Region& region, const Defaults& defaults) : re
   metal_ = material("metal");
 }
 
-double ElementStock::size(double metres) { return std::floor(metres * kSizeSteps + 0.001) / kSizeSteps; }
+double ElementStock::size(double metres) { return std::floor(metres * kSizeSteps + kRounding) / kSizeSteps; }
+
+std::pair<double, double> ElementStock::size(const elements::ElementKind* kind, double width, double height) {
+  if (!kind || kind->semantic == model::ElementClass::installation) return {size(width), size(height)};
+  const auto opening = [](double metres, double least) {
+    const double coarse = std::floor(metres * kOpeningSteps + kRounding) / kOpeningSteps;
+    return coarse >= least ? coarse : size(metres);
+  };
+  return {opening(width, kind->least_width), opening(height, kind->least_height)};
+}
 
 PartLooks ElementStock::usual_looks(const model::BuildingPart& part) const {
   PartLooks out;

@@ -28,6 +28,8 @@ class ElementStock {
   static constexpr std::uint32_t kNone = 0xffffffff;
   /// Sizes are whole centimetres, rounded down, so that equal elements are one.
   static double size(double metres);
+  /// Width and height that an element gets in a room: those of openings are multiples of 5 cm, rounded down.
+  static std::pair<double, double> size(const elements::ElementKind* kind, double width, double height);
 
   /// What parts look like that no rule says: wall and its trim as the building, the rest as usual.
   PartLooks usual_looks(const model::BuildingPart& part) const;

@@ -63,7 +63,7 @@ class FacadeBuilder {
         base::random_bits(options_.seed, base::hash_text(building.situation.block), "row of facades");
     std::vector<FacadeStretch> stretches = facade_stretches(building, walls);
     link_corners(stretches, walls, eaves_level(part));
-    mouths_ = take_mouths(building, part, walls, stretches);
+    mouths_ = take_mouths(part, walls, stretches);
     if (!mouths_.empty()) {
       try_passages(part, walls);
       close_mouths(part);
@@ -162,8 +162,8 @@ class FacadeBuilder {
                          context.part.attributes.plinth_height.value;
     const auto storey = storey_height > 0 ? static_cast<std::int32_t>(std::floor(above / storey_height + 0.25)) : 0;
     for (const auto& [from, to] : pieces) {
-      stock_.ask(std::get<std::string>(order.arguments[0]), ElementStock::size(to - from), ElementStock::size(height),
-                 usual_looks_);
+      const auto [made_width, made_height] = ElementStock::size(kind, to - from, height);
+      stock_.ask(std::get<std::string>(order.arguments[0]), made_width, made_height, usual_looks_);
       complaints_.clear();
       stock_.add_order(order, from == left, to == left + width, complaints_);
       for (const std::string& what : complaints_) tell(context.part, what);
@@ -293,7 +293,7 @@ class FacadeBuilder {
       if (part.fallbacks.empty() || part.fallbacks.back() != IssueCode::opening_left_out)
         part.fallbacks.push_back(IssueCode::opening_left_out);
       region_.report.add(part.osm, IssueCode::opening_left_out,
-                         fmt::format("{}: passage of {}: {}", part.id, m.way.text(), name(m.state)));
+                         fmt::format("{}: a passage in a {} front: {}", part.id, model::name(m.front), name(m.state)));
     }
     for (const std::string& what : told_) region_.report.add(part.osm, IssueCode::grammar_error, part.id + ": " + what);
   }

@@ -51,8 +51,11 @@ Point2 middle(const WallFrame& wall, const PassageMouth& mouth) {
 double distance_through(std::span<const WallFrame> walls, const PassageMouth& a, const PassageMouth& b) {
   const Point2 p = middle(walls[a.wall], a), q = middle(walls[b.wall], b);
   const Point2 out_a = walls[a.wall].outward(), out_b = walls[b.wall].outward(), d{q.x - p.x, q.y - p.y};
-  if (d.x * out_a.x + d.y * out_a.y >= 0 || d.x * out_b.x + d.y * out_b.y <= 0) return -1;
-  return std::sqrt(d.x * d.x + d.y * d.y);
+  const double length = std::sqrt(d.x * d.x + d.y * d.y);
+  if (!(-(d.x * out_a.x + d.y * out_a.y) > kStraightThrough * length) ||
+      !(d.x * out_b.x + d.y * out_b.y > kStraightThrough * length))
+    return -1;
+  return length;
 }
 
 void pair_up(std::span<const WallFrame> walls, std::vector<PassageMouth>& mouths) {
@@ -63,7 +66,7 @@ void pair_up(std::span<const WallFrame> walls, std::vector<PassageMouth>& mouths
   std::vector<Pair> pairs;
   for (std::uint32_t a = 0; a < mouths.size(); ++a)
     for (std::uint32_t b = a + 1; b < mouths.size(); ++b) {
-      if (mouths[a].way != mouths[b].way || mouths[a].wall == mouths[b].wall) continue;
+      if (mouths[a].wall == mouths[b].wall) continue;
       const double d = distance_through(walls, mouths[a], mouths[b]);
       if (d >= 0) pairs.push_back({d, a, b});
     }
@@ -88,8 +91,8 @@ void pair_up(std::span<const WallFrame> walls, std::vector<PassageMouth>& mouths
 
 }  // namespace
 
-std::vector<PassageMouth> take_mouths(const model::Building& building, const model::BuildingPart& part,
-                                      std::span<const WallFrame> walls, std::vector<FacadeStretch>& stretches) {
+std::vector<PassageMouth> take_mouths(const model::BuildingPart& part, std::span<const WallFrame> walls,
+                                      std::vector<FacadeStretch>& stretches) {
   std::vector<PassageMouth> mouths;
   std::vector<FacadeStretch> out;
   const double ground = part.attributes.ground_height.value;
@@ -116,7 +119,6 @@ std::vector<PassageMouth> take_mouths(const model::Building& building, const mod
     mouth.right = std::min(mine.to, wall.length - kMouthJamb);
     mouth.low = std::max(0.0, ground - wall.base) + kMouthThreshold;
     mouth.high = std::max(0.0, ground - wall.base) + height_of(part, mouth.right - mouth.left);
-    mouth.way = mine.edges.empty() ? model::OsmId{} : building.edges[mine.edges.front()].street;
     mouth.front = rank(front) > 0 ? front : EdgeKind::passage;
     const bool raised = wall.base > ground + kLintel;
     if (!raised && mouth.high - mouth.low >= kLeastHeadroom && mouth.right > mouth.left) mouths.push_back(mouth);

@@ -16,7 +16,7 @@ namespace blockrand::generate {
 /// Why a mouth leads nowhere.
 enum class MouthState : std::uint8_t {
   open,        ///< a passage leads to `other`, unless the solid does not take it
-  no_partner,  ///< no second mouth of the way in this body
+  no_partner,  ///< no second mouth behind it in this body
   blocked,     ///< its tunnel would meet a wall, the roof or another opening: a bent way, a court between
 };
 constexpr std::string_view name(MouthState state) {
@@ -28,7 +28,6 @@ constexpr std::string_view name(MouthState state) {
 struct PassageMouth {
   std::uint32_t wall = 0;  ///< index into the walls given
   double left = 0, right = 0, low = 0, high = 0;
-  model::OsmId way;
   model::EdgeKind front = model::EdgeKind::passage;  ///< kind of the front that it lies in
   MouthState state = MouthState::no_partner;
   std::uint32_t other = model::kNoOpening;  ///< index of the second mouth
@@ -41,13 +40,15 @@ struct PassageMouth {
 /// Mouths are as wide as their stretch. Carts need 2.80 m of height and have the ground floor's less 0.6 m, at most
 /// 3.6 m (references/styles.md, gateway); passages narrower than kCartWidth have 2.5 m; none reaches nearer to the
 /// ceiling of the ground floor than kLintel. Mouths that would be lower than kLeastHeadroom are left out.
-/// Two mouths of one way belong together when each lies behind the other's wall; the nearest pair first.
-std::vector<PassageMouth> take_mouths(const model::Building& building, const model::BuildingPart& part,
-                                      std::span<const WallFrame> walls, std::vector<FacadeStretch>& stretches);
+/// Two mouths belong together when each lies straight behind the other's wall (kStraightThrough), the nearest pair
+/// first: labels do not tell which way they come from.
+std::vector<PassageMouth> take_mouths(const model::BuildingPart& part, std::span<const WallFrame> walls,
+                                      std::vector<FacadeStretch>& stretches);
 
-inline constexpr double kCartWidth = 2.3;      ///< m
-inline constexpr double kLintel = 0.3;         ///< m between a passage and the floor above
-inline constexpr double kLeastHeadroom = 2.0;  ///< m
+inline constexpr double kCartWidth = 2.3;        ///< m
+inline constexpr double kStraightThrough = 0.7;  ///< cosine between a passage and the normals of its walls: 45 degrees
+inline constexpr double kLintel = 0.3;           ///< m between a passage and the floor above
+inline constexpr double kLeastHeadroom = 2.0;    ///< m
 inline constexpr double kMouthThreshold =
     0.03;                                   ///< m of wall that stays under a mouth: openings do not touch the ground
 inline constexpr double kMouthJamb = 0.05;  ///< m of wall that stays beside a mouth at a corner of the building

@@ -371,8 +371,10 @@ tl::expected<Sweep, std::string> sweep(const Profile& profile, std::span<const P
         return l > 2.5 * out_of_wall ? plus(end, times(d, out_of_wall / l)) : end;
       };
       const std::size_t n = corners.size();
-      if (ends.first == RunEnd::returned && s.gap_before) s.points.front() = corners[0].at = step_back(corners[0].at, corners[1].at);
-      if (ends.last == RunEnd::returned && s.gap_after) s.points.back() = corners[n - 1].at = step_back(corners[n - 1].at, corners[n - 2].at);
+      if (ends.first == RunEnd::returned && s.gap_before)
+        s.points.front() = corners[0].at = step_back(corners[0].at, corners[1].at);
+      if (ends.last == RunEnd::returned && s.gap_after)
+        s.points.back() = corners[n - 1].at = step_back(corners[n - 1].at, corners[n - 2].at);
       path.path = s.points;
       const auto into = [](Point2 d) { return times(right_of(d), -2 * kApart / length(d)); };
       if (ends.first == RunEnd::returned) {

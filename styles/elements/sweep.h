@@ -39,9 +39,9 @@ struct SweepOptions {
   RunEnd ends = RunEnd::cut;
   /// How the chain's own first and last end differ from `ends`, seen along the chain with the wall on the left.
   std::optional<RunEnd> start_end, last_end;
-  /// Degrees that the wall turns beyond the chain's first and last point, positive away from the moulding: there the run
-  /// ends in the bisector's plane, for a moulding of the same section on the wall round the corner, instead of as above.
-  /// 0: no such wall. A re-entrant corner for which the run is too short is not mitred.
+  /// Degrees that the wall turns beyond the chain's first and last point, positive away from the moulding: there the
+  /// run ends in the bisector's plane, for a moulding of the same section on the wall round the corner, instead of as
+  /// above. 0: no such wall. A re-entrant corner for which the run is too short is not mitred.
   double start_turn = 0, last_turn = 0;
   Part part = Part::surround;
   /// Stretches without moulding, metres along the chain from its first point; they may overlap and come in any order.

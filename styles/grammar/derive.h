@@ -26,6 +26,7 @@ struct DeriveLimits {
   std::size_t pieces = 1000000;         ///< of blocks, with symbols or without
   std::size_t calls = 10000000;         ///< of the file's own functions, so that none runs for hours
   std::size_t diagnostics = 1000;       ///< told; further ones are counted only
+  std::size_t faces = 100000;           ///< of one shape: operations on more are left out
 };
 
 /// Read-only values about the building that the shape belongs to, by name: "building.storeys", "edge.kind",

@@ -186,6 +186,11 @@ std::vector<std::size_t> Run::choose_components(NodeId id, const ComponentSplit&
     if (selector) {
       take = selector->kind == Selector::Kind::all || selected(split, i, *selector);
     } else {
+      // An expression on each of many faces is as much work as a function called as often.
+      if (++calls_ > options_.limits.calls) {
+        tell_too_many_calls(e.location, text);
+        break;
+      }
       Shape shape = component_shape(split, i);
       const ComponentTest test{&split, i};
       Place there = place;
@@ -210,7 +215,7 @@ void Run::run_selectors(const Block& block, const ComponentSplit& split, Work& w
     const auto chosen = choose_components(item.value, split, taken, text, place);
     if (chosen.empty()) continue;
     if (item.op == ItemOperator::each) {
-      for (std::size_t i = 0; i < chosen.size(); ++i) {
+      for (std::size_t i = 0; i < chosen.size() && !pieces_full(); ++i) {
         Shape shape = component_shape(split, chosen[i]);
         shape.component = {text, static_cast<std::int32_t>(i), static_cast<std::int32_t>(chosen.size())};
         run_item(item.successor, std::move(shape), work, place);
@@ -236,6 +241,8 @@ void Run::step_components(const Call& call, Work& work, Place& place) {
   evaluate_operation_arguments(call, place);
   const auto kind = operands_.empty() ? std::nullopt : component_kind(operands_[0].word);
   if (!kind) return tell(Severity::error, "arguments", call.location, "comp takes f, e, fe, v, fv, g, m or h", "comp");
+  work.produced = true;
+  if (pieces_full()) return;
   const bool keep = operands_.size() > 1 && operands_[1].word == "noAlign";
   keep_occluder(work.shape, work.lineage);
   const ComponentSplit split =

@@ -183,6 +183,11 @@ void Run::execute_operation(const Call& call, std::uint32_t number, Work& work, 
   if (built_ins()[number].status == Status::not_yet)
     tell(Severity::warning, "not_yet", call.location,
          "this operation is not there in full: something simple stands in for it", std::string(entry.name));
+  // Extruding each face of what was extruded makes six times as many again and again.
+  if (mesh_of(work.shape).faces.size() > options_.limits.faces)
+    return tell(Severity::error, "too_many_faces", call.location,
+                "the shape has more than " + std::to_string(options_.limits.faces) + " faces; it stays as it is",
+                std::string(entry.name));
   evaluate_operation_arguments(call, place);
   // offset(d, inside) takes a part: what was there before stays for context queries (cga.md §4.6).
   if (recorded_ != nullptr && entry.name == "offset" && operands_.size() > 1) keep_occluder(work.shape, work.lineage);

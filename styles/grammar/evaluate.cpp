@@ -341,12 +341,16 @@ Value Run::call_function(const Expression& e, const Target& found, Place& place)
   return out;
 }
 
+void Run::tell_too_many_calls(const Location& location, const std::string& name) {
+  tell(Severity::error, "too_many_calls", {location.file, 0, 0},
+       "functions were called more than " + std::to_string(options_.limits.calls) + " times; 0 is taken from here on",
+       name);
+}
+
 Value Run::call_own(const Expression& e, const Target& found, Place& place) {
   if (too_deep(e.location)) return 0.0;
   if (++calls_ > options_.limits.calls) {
-    tell(Severity::error, "too_many_calls", {e.location.file, 0, 0},
-         "functions were called more than " + std::to_string(options_.limits.calls) + " times; 0 is taken from here on",
-         program_.unit(place.module).name(e.name));
+    tell_too_many_calls(e.location, program_.unit(place.module).name(e.name));
     return 0.0;
   }
   const std::size_t first = push_arguments(e.arguments, place);

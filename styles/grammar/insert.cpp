@@ -229,7 +229,8 @@ Result primitive(Shape& shape, Mesh mesh, bool sized, Vector3 size) {
 }
 
 int count_of(Arguments arguments, std::size_t i, int otherwise, int least) {
-  constexpr double kMost = 512;
+  // Rounder than eyes can tell; a sphere then has 16,384 faces, which comp() and extrude can bear.
+  constexpr double kMost = 128;
   return static_cast<int>(std::clamp(std::floor(number(arguments, i, otherwise)), static_cast<double>(least), kMost));
 }
 

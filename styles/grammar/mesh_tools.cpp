@@ -1,6 +1,7 @@
 #include "styles/grammar/mesh_tools.h"
 
 #include <algorithm>
+#include <unordered_map>
 #include <cmath>
 #include <numeric>
 #include <tuple>
@@ -177,13 +178,22 @@ Mesh extract_faces(const Mesh& mesh, std::span<const std::uint32_t> faces) {
   Mesh out;
   out.tag_sets = mesh.tag_sets;
   constexpr std::uint32_t kNone = 0xffffffff;
-  std::vector<std::uint32_t> moved(mesh.vertices.size(), kNone);
+  // A face of a large mesh: what is done for each must not take time for all vertices.
+  std::size_t corners = 0;
+  for (const std::uint32_t f : faces)
+    for (const Loop& loop : mesh.faces[f].loops) corners += loop.size();
+  const bool few = corners < mesh.vertices.size() / 4;
+  std::vector<std::uint32_t> all(few ? 0 : mesh.vertices.size(), kNone);
+  std::unordered_map<std::uint32_t, std::uint32_t> some;
+  const auto place_of = [&](std::uint32_t vertex) -> std::uint32_t& {
+    return few ? some.emplace(vertex, kNone).first->second : all[vertex];
+  };
   out.faces.reserve(faces.size());
   for (const std::uint32_t f : faces) {
     out.faces.push_back(mesh.faces[f]);
     for (Loop& loop : out.faces.back().loops)
       for (Corner& c : loop) {
-        std::uint32_t& to = moved[c.vertex];
+        std::uint32_t& to = place_of(c.vertex);
         if (to == kNone) {
           to = static_cast<std::uint32_t>(out.vertices.size());
           out.vertices.push_back(mesh.vertices[c.vertex]);

@@ -173,6 +173,9 @@ class Run {
   std::size_t push_arguments(Range range, Place& place);
   void push_bindings(const Declaration& declaration, Place& place);
   bool too_deep(const Location& location);
+  void tell_too_many_calls(const Location& location, const std::string& name);
+  /// Further pieces are left out (run_item tells): nothing needs to be made for them.
+  bool pieces_full() const { return pieces_ > options_.limits.pieces; }
 
   // Attributes (derive_attributes.cpp).
   void evaluate_attributes();

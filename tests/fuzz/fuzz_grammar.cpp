@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (format(d, program.files).empty()) std::abort();
   // Few shapes, so that inputs stay fast; the limits themselves are tried, too.
   DeriveOptions run;
-  run.limits = {200, 40, 40, 2000, 20000, 50};
+  run.limits = {200, 40, 40, 2000, 20000, 50, 2000};
   derive(program, initial_shape({{0, 0, 0}, {12, 0, 0}, {12, 0, -9}, {7, 0, -9}, {7, 0, -5}, {0, 0, -5}}), run);
   return 0;
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/base/portable_math.h"
@@ -175,6 +176,43 @@ TEST(Sweep, ReturnedEndsDieIntoTheWall) {
   for (const Point3& p : interrupted->mesh.vertices) EXPECT_TRUE(p.x <= -0.2 + 1e-9 || p.x >= 0.2 - 1e-9) << p.x;
 }
 
+/// Four runs with mitred ends are the ring that one sweep round the corners makes, outside and in a court.
+TEST(Sweep, EndsOnTheBisectorMeetTheNextWall) {
+  const std::vector<Point2> side{{-2, 0}, {2, 0}};
+  for (const double turn : {90.0, -90.0}) {
+    SweepOptions options;
+    options.start_turn = options.last_turn = turn;
+    options.ends = RunEnd::returned;  // the turns are stronger
+    const auto run = sweep(band(), side, false, options);
+    ASSERT_TRUE(run.has_value());
+    std::vector<Point2> chain{{0, 0}, {4, 0}, {4, 4}, {0, 4}};
+    if (turn < 0) std::reverse(chain.begin(), chain.end());
+    const auto ring = sweep(band(), chain, true);
+    ASSERT_TRUE(ring.has_value());
+    EXPECT_NEAR(4 * volume(run->mesh), volume(ring->mesh), 1e-9);
+    const double reach = turn > 0 ? 0.1 : -0.1;
+    for (const Point3& p : run->mesh.vertices)
+      if (std::fabs(p.z - 0.1) < 1e-9) {
+        EXPECT_NEAR(std::fabs(p.x), 2 + reach, 1e-9);
+      }
+    // At one end only.
+    options.last_turn = 0;
+    options.ends = RunEnd::cut;
+    const auto one = sweep(band(), side, false, options);
+    ASSERT_TRUE(one.has_value());
+    EXPECT_NEAR(volume(one->mesh), 0.5 * (volume(run->mesh) + 4 * kWide * 0.2), 1e-9);
+    EXPECT_NEAR(bounds_of(one->mesh).most.x, 2, 1e-9);
+    EXPECT_NEAR(bounds_of(one->mesh).least.x, turn > 0 ? -2.1 : -2 - kApart, 1e-9);
+  }
+  // No room between two re-entrant corners: cut square.
+  const std::vector<Point2> narrow{{0, 0}, {0.15, 0}};
+  SweepOptions options;
+  options.start_turn = options.last_turn = -90;
+  const auto made = sweep(band(), narrow, false, options);
+  ASSERT_TRUE(made.has_value());
+  EXPECT_GT(volume(made->mesh), 0);
+}
+
 TEST(Sweep, RandomChainsGiveSoundBodies) {
   int sound = 0, all = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
@@ -191,6 +229,8 @@ TEST(Sweep, RandomChainsGiveSoundBodies) {
     SweepOptions options;
     options.ends = seed % 2 == 0 ? RunEnd::cut : RunEnd::returned;
     options.wall = seed % 3 == 0 ? WallSide::right : WallSide::left;
+    if (seed % 5 == 0) options.start_turn = (draw("start") - 0.5) * 300;
+    if (seed % 7 == 0) options.last_turn = (draw("last") - 0.5) * 300;
     const auto made = sweep(band(), chain, false, options);
     ASSERT_TRUE(made.has_value()) << seed;
     ASSERT_EQ(checks::faces_wrong(made->mesh), "") << seed;

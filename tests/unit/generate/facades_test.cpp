@@ -18,6 +18,8 @@
 #include "pipeline/base/text.h"
 #include "pipeline/generate/envelope.h"
 #include "pipeline/generate/facade_context.h"
+#include "pipeline/generate/passages.h"
+#include "pipeline/generate/wall_corners.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/triangulate.h"
 #include "styles/roofs/roof.h"
@@ -478,6 +480,125 @@ TEST(FacadeStretches, PartyWallsAndFreePiecesAreTold) {
     EXPECT_TRUE(s.ends_wall);
   }
   EXPECT_EQ(found, 1);
+}
+
+/// Edges of a house in a row with a way through it: mouths in the middle of front and back.
+struct HouseWithPassage {
+  model::Region region;
+  std::vector<WallFrame> walls;
+  explicit HouseWithPassage(bool both) {
+    region = region_of(House{}, "gruenderzeit", 5);
+    model::Building& b = region.buildings[0];
+    std::vector<model::FacadeEdge> edges;
+    for (const model::FacadeEdge& e : b.edges) {
+      if (e.kind != EdgeKind::street && !(both && e.kind == EdgeKind::courtyard)) {
+        edges.push_back(e);
+        continue;
+      }
+      const double middle = (e.start + e.end) / 2;
+      for (int piece = 0; piece < 3; ++piece) {
+        model::FacadeEdge part = e;
+        part.start = piece == 0 ? e.start : piece == 1 ? middle - 1.5 : middle + 1.5;
+        part.end = piece == 0 ? middle - 1.5 : piece == 1 ? middle + 1.5 : e.end;
+        if (piece == 1) part.kind = EdgeKind::passage;
+        edges.push_back(part);
+      }
+    }
+    b.edges = edges;
+    for (std::uint32_t f = 0; f < b.parts[0].lod2.faces.size(); ++f)
+      if (auto wall = wall_frame(b.parts[0].lod2, f)) walls.push_back(*wall);
+  }
+};
+
+TEST(Passages, MouthsLieInTheirFront) {
+  HouseWithPassage house(true);
+  const model::Building& b = house.region.buildings[0];
+  auto stretches = facade_stretches(b, house.walls);
+  const std::size_t pieces = stretches.size();
+  const auto mouths = take_mouths(b.parts[0], house.walls, stretches);
+  EXPECT_EQ(stretches.size(), pieces - 4) << "three pieces each of front and back are one";
+  ASSERT_EQ(mouths.size(), 2u);
+  for (const PassageMouth& m : mouths) {
+    EXPECT_EQ(m.state, MouthState::open);
+    EXPECT_NEAR(m.right - m.left, 3, 0.01);
+    EXPECT_GE(m.high - m.low, 2.7);
+    EXPECT_LE(m.high,
+              b.parts[0].attributes.plinth_height.value + b.parts[0].attributes.storey_height.value - kLintel + 1e-9);
+  }
+  EXPECT_NE(mouths[0].front, mouths[1].front);
+  for (const FacadeStretch& s : stretches) EXPECT_NE(s.kind, EdgeKind::passage);
+}
+
+TEST(Passages, AreCutAndNothingStandsInThem) {
+  HouseWithPassage house(true);
+  build_facades(house.region, shipped(), Defaults{}, {42});
+  const model::BuildingPart& part = house.region.buildings[0].parts[0];
+  ASSERT_EQ(part.lod, 3);
+  int mouths = 0, above = 0;
+  for (const model::Opening& o : part.lod3.openings) mouths += o.kind == model::OpeningKind::passage;
+  EXPECT_EQ(mouths, 2);
+  EXPECT_EQ(geometry::check_solid(part.lod3.solid, part.lod3.triangles).text(), "none");
+  EXPECT_TRUE(part.fallbacks.empty()) << "windows that yield to a mouth are no failure";
+  auto stretches = facade_stretches(house.region.buildings[0], house.walls);
+  for (const PassageMouth& m : take_mouths(part, house.walls, stretches)) {
+    const WallFrame& wall = house.walls[m.wall];
+    for (const model::Placement& p : part.lod3.placements) {
+      if (p.wall != wall.face) continue;
+      const double u = (p.origin.x - wall.start.x) * wall.along.x + (p.origin.y - wall.start.y) * wall.along.y,
+                   v = p.origin.z - wall.base;
+      const model::Element& e = *house.region.elements[p.element].element;
+      if (e.kind == "surround") continue;  // the mouth's own
+      double least = 1e9, most = -1e9;
+      for (const model::Point3& x : e.mesh.vertices) {
+        least = std::min(least, u + x.x);
+        most = std::max(most, u + x.x);
+      }
+      if (v < m.high) {
+        EXPECT_TRUE(most < m.left + 0.05 || least > m.right - 0.05) << e.name;
+      }
+      if (v > m.high && u > m.left && u < m.right) ++above;
+    }
+  }
+  EXPECT_GT(above, 4) << "windows go on over the mouths";
+}
+
+TEST(Passages, WithoutASecondMouthAreGates) {
+  HouseWithPassage house(false);
+  build_facades(house.region, shipped(), Defaults{}, {42});
+  const model::BuildingPart& part = house.region.buildings[0].parts[0];
+  int gates = 0;
+  for (const model::Placement& p : part.lod3.placements)
+    gates += house.region.elements[p.element].element->kind == "carriage_gateway" && p.opening != model::kNoOpening;
+  EXPECT_GE(gates, 1);
+  EXPECT_EQ(part.fallbacks, std::vector{model::IssueCode::opening_left_out});
+}
+
+/// Walls of one height meet at corners; courses know what goes on beyond.
+TEST(WallCorners, StretchesKnowTheirNeighbours) {
+  const model::Region region = region_of(House{}, "gruenderzeit", 5);
+  const model::Building& b = region.buildings[0];
+  std::vector<WallFrame> walls;
+  for (std::uint32_t f = 0; f < b.parts[0].lod2.faces.size(); ++f)
+    if (auto wall = wall_frame(b.parts[0].lod2, f)) walls.push_back(*wall);
+  auto stretches = facade_stretches(b, walls);
+  link_corners(stretches, walls, eaves_level(b.parts[0]));
+  ASSERT_EQ(stretches.size(), 4u);
+  for (const FacadeStretch& s : stretches) {
+    EXPECT_NEAR(s.turn_left, 90, 0.1);
+    EXPECT_NEAR(s.turn_right, 90, 0.1);
+    const auto after = std::find_if(stretches.begin(), stretches.end(), [&](const FacadeStretch& t) {
+      return model::snap(walls[t.wall].start) == model::snap(walls[s.wall].at({walls[s.wall].length, 0}).xy());
+    });
+    ASSERT_NE(after, stretches.end());
+    EXPECT_EQ(s.kind_right, after->kind);
+    EXPECT_EQ(after->kind_left, s.kind);
+  }
+  // One wall stands higher: its courses lie elsewhere.
+  walls[stretches[0].wall].base += 1;
+  for (FacadeStretch& s : stretches) s.turn_left = s.turn_right = 0, s.kind_left = s.kind_right = {};
+  link_corners(stretches, walls, eaves_level(b.parts[0]));
+  EXPECT_EQ(stretches[0].turn_left, 0);
+  EXPECT_FALSE(stretches[0].kind_right);
 }
 
 TEST(GrammarBooks, MistakesAreLocated) {

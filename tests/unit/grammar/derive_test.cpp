@@ -292,6 +292,13 @@ TEST(Telling, ReportsByKeyAndType) {
   EXPECT_EQ(d.report("nothing"), nullptr);
 }
 
+TEST(Limits, ShapesDoNotGrowWithoutEnd) {
+  DeriveOptions options;
+  options.limits.faces = 1000;
+  const auto d = derive_text("Lot --> extrude(1) Lot", rectangle(10, 20), options);
+  EXPECT_THAT(places(d, "too_many_faces"), ElementsAre("1:9"));
+}
+
 TEST(Telling, CyclesThatNoRunTakesHaveValues) {
   const std::string rules =
       "attr on = false\nattr a = case on : b else : 1\nattr b = case on : 2 else : a\nLot --> print(a) print(b) X.";

@@ -1,7 +1,8 @@
-// Ten thousand broken rule texts: reading, resolving and checking them never crashes and never takes long.
+// Ten thousand broken rule texts: reading, resolving, checking and deriving them never crashes and never takes long.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -10,6 +11,8 @@
 
 #include "pipeline/base/random.h"
 #include "styles/grammar/check.h"
+#include "styles/grammar/derive.h"
+#include "styles/grammar/initial_shape.h"
 #include "styles/grammar/lexer.h"
 #include "styles/grammar/parser.h"
 #include "styles/grammar/program.h"
@@ -174,6 +177,67 @@ TEST(Mutations, NeverCrashOrHang) {
   const std::string text{std::istreambuf_iterator<char>(page), std::istreambuf_iterator<char>()};
   for (const std::string& code : codes) EXPECT_NE(text.find("`" + code + "`"), std::string::npos) << code;
   EXPECT_GT(codes.size(), 40U);
+}
+
+/// The rule texts of features/*.cases: small, and together they use every name of the language.
+std::vector<std::string> texts_of_cases() {
+  std::vector<std::string> out;
+  for (const char* name : {"operations", "functions", "attributes", "syntax"}) {
+    std::ifstream in(std::string(BLOCKRAND_SOURCE_DIR "/tests/unit/grammar/features/") + name + ".cases");
+    bool open = false;
+    for (std::string line; std::getline(in, line);) {
+      const std::size_t colon = line.find(": "), arrow = line.rfind(" => "), question = line.find(" ? ");
+      if (line.starts_with("== ") || line.starts_with("-- ")) {
+        out.emplace_back();
+        open = true;
+      } else if (colon != std::string::npos && arrow != std::string::npos) {
+        const bool steps = question != std::string::npos && question < arrow;
+        const std::size_t from = steps ? question + 3 : colon + 2;
+        out.push_back("Lot --> " + (steps ? line.substr(colon + 2, question - colon - 2) : std::string()) + " print(" +
+                      line.substr(from, arrow - from) + ") X.\n");
+        open = false;
+      } else if (open) {
+        out.back() += line + "\n";
+      }
+    }
+  }
+  return out;
+}
+
+/// GRAMMAR_MUTATIONS=1000000 tries more.
+TEST(Mutations, DerivationsEndWhateverTheRules) {
+  const char* more = std::getenv("GRAMMAR_MUTATIONS");
+  const std::uint64_t texts = more != nullptr ? std::strtoull(more, nullptr, 10) : 10000;
+  const std::vector<std::string> samples = texts_of_cases();
+  ASSERT_GT(samples.size(), 300u);
+  const Shape lot = initial_shape({{0, 0, 0}, {12, 0, 0}, {12, 0, -9}, {7, 0, -9}, {7, 0, -5}, {0, 0, -5}});
+  DeriveOptions run;
+  run.limits = {300, 40, 40, 2000, 20000, 50, 2000};
+  std::size_t leaves = 0, derived = 0;
+  for (std::uint64_t seed = 0; seed < texts; ++seed) {
+    Random random(seed ^ 0x9e3779b97f4a7c15ULL);
+    const std::string& text = samples[random.below(samples.size())];
+    const std::string& other = samples[random.below(samples.size())];
+    const std::string broken = seed % 4 == 0 ? mutate_bytes(text, random) : mutate_tokens(text, other, random);
+    LoadOptions options;
+    options.read = [&](const std::string& path) -> std::optional<std::string> {
+      return path == "main.cga" ? std::optional(broken) : path.ends_with(".cga") ? std::optional(other) : std::nullopt;
+    };
+    const Program program = load("main.cga", options);
+    const Derivation result = derive(program, lot, run);
+    expect_sound(result.diagnostics, program);
+    ++derived;
+    leaves += result.leaves.size();
+    for (const Leaf& leaf : result.leaves) {
+      if (leaf.shape.mesh == nullptr) continue;
+      for (const MeshFace& face : leaf.shape.mesh->faces)
+        for (const auto& loop : face.loops)
+          for (const Corner& corner : loop) ASSERT_LT(corner.vertex, leaf.shape.mesh->vertices.size()) << broken;
+    }
+    if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed << "\n" << broken;
+  }
+  // Many still make something: else nothing was tried.
+  EXPECT_GT(leaves, derived / 5);
 }
 
 }  // namespace
