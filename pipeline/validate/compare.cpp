@@ -347,8 +347,12 @@ void compare_polygons(const Side& a, const Side& b, std::vector<Finding>& findin
 /// What a mesh has of a LoD3 body: what elements stand for is left to them.
 static std::vector<ReadPolygon> seen_polygons(const ReadBody& body, const ReadSolid& solid) {
   std::vector<bool> hidden(solid.polygons.size(), false);
-  for (const ReadOpening& opening : body.detail.openings) {
-    if (!opening.placement) continue;
+  // CityJSON does not say which element stands in which opening: then every opening has one.
+  const auto& openings = body.detail.openings;
+  const bool told =
+      std::any_of(openings.begin(), openings.end(), [](const ReadOpening& o) { return o.placement.has_value(); });
+  for (const ReadOpening& opening : openings) {
+    if (told ? !opening.placement : body.detail.placements.empty()) continue;
     hidden[opening.polygon] = true;
     for (const std::size_t reveal : opening.reveals) hidden[reveal] = true;
   }

@@ -105,8 +105,9 @@ class Facades(BuildTest):
         self.build(SAMPLE, 'lod2', '--configs', configs, '--formats', 'gltf')
 
     def test_validate_reads_every_way_of_writing(self):
-        for number, how in enumerate((['ext'], ['nodes'], ['baked'], ['ext', '--compress', 'meshopt'])):
-            out = self.build(SAMPLE, f'way{number}', '--lod', '3', '--formats', 'gltf,citygml', '--no-report', '--instancing', *how)
+        ways = (['citygml', 'ext'], ['cityjson', 'nodes'], ['citygml', 'baked'], ['cityjson', 'ext', '--compress', 'meshopt'])
+        for number, (form, *how) in enumerate(ways):
+            out = self.build(SAMPLE, f'way{number}', '--lod', '3', '--formats', f'gltf,{form}', '--no-report', '--instancing', *how)
             self.assertEqual(judges.validate(out), '')
             self.assertEqual(judges.khronos(out), '')
 
