@@ -18,9 +18,9 @@ using model::ElementPart;
 
 /// Steps a metre of sizes and of parameters: equal elements are one.
 constexpr double kSizeSteps = 100, kParameterSteps = 1000;
-/// Steps a metre of what stands in openings: 5 cm. Windows come in few sizes, as joiners make them; stored once each, they
-/// are most of a town's forms (own choice: coarser steps show where windows stand between neighbours).
-constexpr double kOpeningSteps = 20;
+/// Steps a metre of what stands in openings: 5 cm across, 10 cm up. Windows come in few sizes, as joiners make them; each
+/// stored once, they are most of a town's forms (own choice: coarser steps show in the piers between windows).
+constexpr double kOpeningWidthSteps = 20, kOpeningHeightSteps = 10;
 constexpr double kRounding = 0.001;  ///< of a step: what floats may lack of a whole one
 /// Colours of parts that neither rule nor building says.
 constexpr model::Colour kFrame{0xF6, 0xF6, 0xF6}, kGlass{0x51, 0x62, 0x6E}, kLeaf{0x5A, 0x3A, 0x29},
@@ -57,11 +57,12 @@ double ElementStock::size(double metres) { return std::floor(metres * kSizeSteps
 
 std::pair<double, double> ElementStock::size(const elements::ElementKind* kind, double width, double height) {
   if (!kind || kind->semantic == model::ElementClass::installation) return {size(width), size(height)};
-  const auto opening = [](double metres, double least) {
-    const double coarse = std::floor(metres * kOpeningSteps + kRounding) / kOpeningSteps;
+  const auto opening = [](double metres, double steps, double least) {
+    const double coarse = std::floor(metres * steps + kRounding) / steps;
     return coarse >= least ? coarse : size(metres);
   };
-  return {opening(width, kind->least_width), opening(height, kind->least_height)};
+  return {opening(width, kOpeningWidthSteps, kind->least_width),
+          opening(height, kOpeningHeightSteps, kind->least_height)};
 }
 
 PartLooks ElementStock::usual_looks(const model::BuildingPart& part) const {
@@ -159,16 +160,21 @@ std::uint32_t ElementStock::take(std::string& error) {
   if (made == made_.end()) {
     auto element = elements::make_element(kind_, width_, height_, parameters_);
     Made entry;
-    if (element)
+    if (element) {
+      for (const model::ElementFace& face : element->mesh.faces) entry.parts[static_cast<std::size_t>(face.part)] = true;
       entry.element = std::make_shared<const model::Element>(std::move(*element));
-    else
+    } else {
       entry.error = element.error();
+    }
     made = made_.emplace(key_, std::move(entry)).first;
   }
   if (!made->second.element) {
     error = made->second.error;
     return kNone;
   }
+  // A part that the form lacks has no look: windows without trim are the same on walls of all colours.
+  for (std::size_t p = 0; p < looks_.size(); ++p)
+    if (!made->second.parts[p]) looks_[p] = {};
   for (const auto& [known, number] : made->second.coloured)
     if (known == looks_) return number;
   const auto number = static_cast<std::uint32_t>(region_.elements.size());

@@ -28,7 +28,7 @@ class ElementStock {
   static constexpr std::uint32_t kNone = 0xffffffff;
   /// Sizes are whole centimetres, rounded down, so that equal elements are one.
   static double size(double metres);
-  /// Width and height that an element gets in a room: those of openings are multiples of 5 cm, rounded down.
+  /// Width and height that an element gets in a room: those of openings are multiples of 5 and 10 cm, rounded down.
   static std::pair<double, double> size(const elements::ElementKind* kind, double width, double height);
 
   /// What parts look like that no rule says: wall and its trim as the building, the rest as usual.
@@ -52,6 +52,7 @@ class ElementStock {
   struct Made {
     std::shared_ptr<const model::Element> element;
     std::string error;
+    std::array<bool, model::kElementPartCount> parts{};  ///< has faces of it
     std::vector<std::pair<PartLooks, std::uint32_t>> coloured;
   };
   void add_key(char type, std::string_view text);
