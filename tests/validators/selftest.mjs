@@ -50,6 +50,11 @@ const metadata = (json) => json.extensions.EXT_structural_metadata;
 const table = (json) => metadata(json).propertyTables[0];
 const properties = (json) => metadata(json).schema.classes[table(json).class].properties;
 const view = (json, index) => json.bufferViews[index];
+/** Where the indices of the first primitive begin in the binary chunk. */
+const indices = (json) => {
+  const accessor = json.accessors[primitive(json).indices];
+  return view(json, accessor.bufferView).byteOffset + (accessor.byteOffset ?? 0);
+};
 const primitive = (json) => json.meshes[0].primitives[0];
 
 const T = 'check_tileset.mjs';
@@ -80,7 +85,7 @@ const cases = [
   [M, 'a missing feature attribute', /does not exist/, glb((j) => delete primitive(j).attributes._FEATURE_ID_0)],
   [M, 'a missing property table', /property table 3/, glb((j) => (primitive(j).extensions.EXT_mesh_features.featureIds[0].propertyTable = 3))],
   [M, 'a too small featureCount', /different features/, glb((j) => (primitive(j).extensions.EXT_mesh_features.featureIds[0].featureCount = 1))],
-  [M, 'a triangle across two features', /belongs to two features/, glb((j, b) => { const v = view(j, 1); b.writeUInt16LE(j.accessors[primitive(j).attributes.POSITION].count - 1, v.byteOffset); })],
+  [M, 'a triangle across two features', /belongs to two features/, glb((j, b) => b.writeUInt16LE(j.accessors[primitive(j).attributes.POSITION].count - 1, indices(j)))],
   [M, 'a column that is too short', /bytes for/, glb((j) => (view(j, table(j).properties.height.values).byteLength -= 8))],
   [M, 'misaligned doubles', /multiple of 8/, glb((j) => (view(j, table(j).properties.height.values).byteOffset += 4))],
   [M, 'a NaN', /NaN/, glb((j, b) => b.writeDoubleLE(NaN, view(j, table(j).properties.height.values).byteOffset))],
@@ -98,7 +103,7 @@ const cases = [
   [M, 'an origin elsewhere', /not the frame of the origin/, glb((j) => (j.asset.extras.georeference.origin.longitude += 0.001))],
   [M, 'a matrix other than the transform', /not the tileset's transform/, glb((j) => (j.asset.extras.georeference.local_to_ecef[12] += 1e-5))],
   [M, 'an extension that is not declared', /not in extensionsUsed/, glb((j) => (j.extensionsUsed = ['KHR_mesh_quantization']))],
-  [V, 'an index beyond the vertices', /ACCESSOR_INDEX_OOB/, glb((j, b) => b.writeUInt16LE(65000, view(j, 1).byteOffset))],
+  [V, 'an index beyond the vertices', /ACCESSOR_INDEX_OOB/, glb((j, b) => b.writeUInt16LE(65000, indices(j)))],
   [V, 'wrong bounds', /ACCESSOR_MAX_MISMATCH/, glb((j) => (j.accessors[primitive(j).attributes.POSITION].max[0] += 1))],
   [V, 'a version that does not exist', /VERSION/i, glb((j) => (j.asset.version = '9.0'))],
 ];

@@ -84,6 +84,8 @@ TEST(Options, EveryOneSetsAFieldOfItsOwn) {
       value = "1,2,3";
     else if (o.name == "fail-if-worse")
       value = "5%";
+    else if (o.argument == "NAME=VALUE")
+      value = "height=12";
     else if (o.choices.size() > 1)
       value = o.choices.back() == o.show(s) ? o.choices.front() : o.choices.back();
     else if (o.type == OptionType::flag)
