@@ -162,6 +162,8 @@ std::uint32_t ElementStock::take(std::string& error) {
     Made entry;
     if (element) {
       for (const model::ElementFace& face : element->mesh.faces) entry.parts[static_cast<std::size_t>(face.part)] = true;
+      // Outputs add the reveal, which looks like the wall.
+      if (element->opening.reveal > 0) entry.parts[static_cast<std::size_t>(ElementPart::wall)] = true;
       entry.element = std::make_shared<const model::Element>(std::move(*element));
     } else {
       entry.error = element.error();

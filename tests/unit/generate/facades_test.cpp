@@ -448,6 +448,23 @@ TEST(Facades, DistrictRulesAreStrongerThanThePreset) {
   EXPECT_EQ(ornaments("0"), ornaments(nullptr));
 }
 
+TEST(Facades, RevealsLookLikeTheirWall) {
+  // Outputs draw the reveal of an opening in the look of the element's wall, whatever faces its mesh has.
+  for (const char* preset : {"gruenderzeit", "tenement", "slab", "plain"}) {
+    model::Region region = region_of({}, preset, 4711);
+    build_facades(region, shipped(), Defaults{}, {42});
+    int reveals = 0;
+    for (const model::Placement& p : region.buildings[0].parts[0].lod3.placements) {
+      const model::ColouredElement& element = region.elements[p.element];
+      if (!(element.element->opening.reveal > 0)) continue;
+      ++reveals;
+      EXPECT_EQ(element.looks[static_cast<std::size_t>(model::ElementPart::wall)].colour, (model::Colour{220, 210, 180}))
+          << preset << ": " << element.element->name;
+    }
+    EXPECT_GT(reveals, 10) << preset;
+  }
+}
+
 TEST(Facades, WithoutGrammarWallsStayAsTheyAre) {
   model::Region region = region_of({}, "no such preset", 5);
   build_facades(region, shipped(), Defaults{}, {42});
