@@ -84,6 +84,7 @@ model::Region region_of(const House& house, const std::string& preset, std::int6
   looks.wall.kind = model::SurfaceKind::wall;
   looks.wall.colour = a.wall_colour.value;
   looks.roof.kind = model::SurfaceKind::roof;
+  looks.under.kind = model::SurfaceKind::ground;
   part.lod2 = envelope(plan, 30, roofs::flat_roof(plan, 30 + a.height.value), looks);
   part.lod2_triangles = *geometry::triangulate(part.lod2);
   part.lod = 2;
