@@ -133,6 +133,9 @@ class Real(CompareTest):
             for measure, summary in first['summary'].items():
                 if summary['scope'] == 'surface' and not measure.startswith('semantic'):
                     unit = {'m': 0.02, 'deg': 0.1, '1': SAMPLED_SHARES}[summary['unit']]
+                    # Walls that stand back to back are equally near: which of them is found depends on the file's order.
+                    if (format, measure) == ('gltf', 'normal_deviation'):
+                        unit = 1
                     with self.subTest(f'{format}: {measure}'):
                         self.same(first, result, measure, unit)
         for measure in ('distance_mean', 'distance_rms', 'to_reference_mean', 'to_model_mean'):
