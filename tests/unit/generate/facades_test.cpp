@@ -435,6 +435,34 @@ TEST(Facades, NarrowHousesDegradeInOrder) {
   EXPECT_GT(before, 15u);
 }
 
+TEST(Facades, LowStoreysKeepTheirWindows) {
+  for (const char* preset : {"gruenderzeit", "early", "tenement", "slab", "plain"})
+    for (const double height : {2.0, 2.2, 2.5}) {
+      SCOPED_TRACE(std::string(preset) + ", storeys of " + std::to_string(height));
+      House house;
+      house.width = 20;
+      house.storeys = 6;
+      house.storey_height = height;
+      house.plinth = 0.4;
+      model::Region region = region_of(house, preset, 5);
+      build_facades(region, shipped(), Defaults{}, {42});
+      int windows = 0, balconies = 0, french = 0;
+      for (const std::uint32_t edge : {0u, 2u})
+        for (const Placed& p : on_wall(region, region.buildings[0].parts[0], edge)) {
+          balconies += p.kind == "balcony";
+          if (!(p.width > 0)) continue;
+          if (p.kind == "house_door" || p.kind == "carriage_gateway") {
+            EXPECT_GE(p.height, 1.9);
+          } else {
+            ++windows;
+            french += p.height >= 1.8;
+          }
+        }
+      EXPECT_GE(windows, 2 * 5 * 4) << "four axes in five storeys on both sides";
+      EXPECT_LE(balconies, french) << "no balcony without a door to it";
+    }
+}
+
 TEST(Facades, DistrictRulesAreStrongerThanThePreset) {
   const auto ornaments = [](const char* stripped) {
     model::Region region = region_of({}, "gruenderzeit", 5);  // the preset says stripped = 0
