@@ -8,8 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/generate/wall_corners.h"
-
 namespace blockrand::generate {
 namespace {
 
@@ -56,7 +54,6 @@ std::vector<double> places(const C& c, bool (*wanted)(const model::EdgePoint&)) 
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
-std::vector<double> entrances(const C& c) { return places(c, is_entrance); }
 
 Value numbers(std::vector<double> items) {
   grammar::NumberArray out;
@@ -159,7 +156,7 @@ int mapped_entrances(const model::Building& b) {
 }
 
 /// m above the wall's base of the eaves of its part, at most the wall's own height.
-double eaves(const C& c) { return std::clamp(eaves_level(c.part) - c.wall.base, 0.0, c.wall.height); }
+double eaves(const C& c) { return std::clamp(c.eaves - c.wall.base, 0.0, c.wall.height); }
 
 const std::vector<ContextAttribute> kAttributes = {
     {"bay.uses", "", "ordered by bay of the main front, from its left end: door, shop, balcony …; empty: nothing",
@@ -215,13 +212,13 @@ const std::vector<ContextAttribute> kAttributes = {
     {"edge.eaves", "m", "the wall's base to the eaves", [](const C& c) -> Value { return eaves(c); }},
     {"edge.entrance", "m", "left end to the first mapped entrance; -1: none",
      [](const C& c) -> Value {
-       const auto at = entrances(c);
+       const auto at = entrance_places(c);
        return at.empty() ? -1.0 : at.front();
      }},
     {"edge.entrance_places", "m", "left end to each mapped entrance of this stretch",
-     [](const C& c) -> Value { return numbers(entrances(c)); }},
+     [](const C& c) -> Value { return numbers(entrance_places(c)); }},
     {"edge.entrances", "", "mapped entrances of this stretch",
-     [](const C& c) -> Value { return static_cast<double>(entrances(c).size()); }},
+     [](const C& c) -> Value { return static_cast<double>(entrance_places(c).size()); }},
     {"edge.kind", "", "street, courtyard, side, passage; as ordered, if it is",
      [](const C& c) -> Value {
        const std::string order = ordered_edge(c, "kind");
@@ -294,6 +291,8 @@ const std::vector<ContextAttribute> kAttributes = {
 };
 
 }  // namespace
+
+std::vector<double> entrance_places(const FacadeContext& context) { return places(context, is_entrance); }
 
 const std::vector<ContextAttribute>& context_attributes() { return kAttributes; }
 

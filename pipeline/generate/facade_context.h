@@ -18,6 +18,7 @@ struct FacadeContext {
   const model::BuildingPart& part;
   const WallFrame& wall;
   const FacadeStretch& stretch;
+  double eaves = 0;  ///< m above the height reference, of the part: eaves_level()
 };
 
 /// One value that rules may read: "building.storeys". docs/grammar_attributes.md is printed from the list.
@@ -29,6 +30,9 @@ struct ContextAttribute {
 /// All of them, by name.
 const std::vector<ContextAttribute>& context_attributes();
 std::optional<grammar::Value> context_value(const FacadeContext& context, std::string_view name);
+
+/// m from the left end of the stretch to each mapped entrance, in order, each place once.
+std::vector<double> entrance_places(const FacadeContext& context);
 
 /// Orders of storeys, edges and bays that no rule file can ask for: parameters without a name in the list above. One
 /// sentence each, with the place of the order.

@@ -34,6 +34,9 @@ using model::Point2;
 
 /// m that openings of rules keep from the mouth of a passage.
 constexpr double kBesideMouth = 0.1;
+/// m between a mapped entrance and the door that stands for it: rules put doors on the nearest axis, and axes are up to
+/// 3.4 m apart.
+constexpr double kDoorOfEntrance = 1.7;
 
 /// An element as a rule asked for it, in the coordinates of a wall.
 struct Asked {
@@ -62,17 +65,19 @@ class FacadeBuilder {
     const std::uint64_t row =
         base::random_bits(options_.seed, base::hash_text(building.situation.block), "row of facades");
     std::vector<FacadeStretch> stretches = facade_stretches(building, walls);
-    link_corners(stretches, walls, eaves_level(part));
     mouths_ = take_mouths(part, walls, stretches);
+    const double eaves = eaves_level(part);
+    link_corners(stretches, walls, eaves);
+    mouth_elements_ = yielding_ = missed_doors_ = 0;
     if (!mouths_.empty()) {
       try_passages(part, walls);
-      close_mouths(part);
+      close_mouths();
     }
     for (const FacadeStretch& stretch : stretches) {
       if (stretch.kind == model::EdgeKind::party_wall || stretch.kind == model::EdgeKind::unknown) continue;
-      derive_stretch(*grammar, {building, part, walls[stretch.wall], stretch}, seed, row);
+      derive_stretch(*grammar, {building, part, walls[stretch.wall], stretch, eaves}, seed, row);
     }
-    cut(building, part, walls);
+    cut(part, walls);
   }
 
  private:
@@ -95,7 +100,7 @@ class FacadeBuilder {
     options.limits.shapes = options_.most_shapes;
     const grammar::Derivation derivation = grammar.deriver->run(shape, options);
     for (const grammar::Diagnostic& d : derivation.diagnostics)
-      if (d.severity == grammar::Severity::error) tell(context.part, d.message);
+      if (d.severity == grammar::Severity::error) tell(d.message);
     for (const grammar::Leaf& leaf : derivation.leaves)
       if (leaf.order) take(context, leaf);
   }
@@ -127,7 +132,7 @@ class FacadeBuilder {
   void take(const FacadeContext& context, const grammar::Leaf& leaf) {
     const grammar::Order& order = *leaf.order;
     if (order.arguments.empty() || !std::holds_alternative<std::string>(order.arguments[0])) {
-      tell(context.part, "blockrand." + order.name + " wants the name of an element first");
+      tell("blockrand." + order.name + " wants the name of an element first");
       return;
     }
     const grammar::Frame frame = grammar::scope_in_object(leaf.shape);
@@ -141,7 +146,12 @@ class FacadeBuilder {
       if (m.wall != context.stretch.wall || low >= m.high + kBesideMouth || low + height <= m.low) continue;
       const double from = m.left - kBesideMouth, to = m.right + kBesideMouth;
       if (left >= to || left + width <= from) continue;
-      if (!run) return;
+      if (!run) {
+        ++yielding_;
+        if (kind && kind->semantic == model::ElementClass::door && at_entrance(context, left, left + width))
+          ++missed_doors_;
+        return;
+      }
       // Pieces are in order from left to right, and so are what a mouth leaves of one.
       for (std::size_t i = 0; i < pieces.size();) {
         const auto [a, b] = pieces[i];
@@ -166,34 +176,61 @@ class FacadeBuilder {
       stock_.ask(std::get<std::string>(order.arguments[0]), made_width, made_height, usual_looks_);
       complaints_.clear();
       stock_.add_order(order, from == left, to == left + width, complaints_);
-      for (const std::string& what : complaints_) tell(context.part, what);
-      place(context.part, context.stretch.wall, {(from + to) / 2, low}, std::max(storey, 0));
+      for (const std::string& what : complaints_) tell(what);
+      place(context.stretch.wall, {(from + to) / 2, low}, std::max(storey, 0));
     }
   }
 
+  /// Whether a mapped entrance lies at that piece of the wall.
+  static bool at_entrance(const FacadeContext& context, double left, double right) {
+    const std::vector<double> places = entrance_places(context);
+    return std::any_of(places.begin(), places.end(), [&](double from_stretch) {
+      const double u = context.stretch.from + from_stretch;
+      return u >= left - kDoorOfEntrance && u <= right + kDoorOfEntrance;
+    });
+  }
+
   /// Takes what the stock was asked for.
-  void place(const BuildingPart& part, std::uint32_t wall, Point2 at, std::int32_t storey) {
+  void place(std::uint32_t wall, Point2 at, std::int32_t storey) {
     std::string error;
     const std::uint32_t element = stock_.take(error);
     if (element == ElementStock::kNone)
-      tell(part, error);
+      tell(error);
     else
       asked_.push_back({wall, element, at, storey});
   }
 
-  /// Cuts the passages alone: mouths of those that the solid does not take are blocked.
-  void try_passages(const BuildingPart& part, const std::vector<WallFrame>& walls) {
+  /// Cuts all open passages alone; mouths of those that cannot be cut are blocked.
+  /// \return false where the solid is not valid then
+  bool takes_passages(const BuildingPart& part, const std::vector<WallFrame>& walls) {
     const std::vector<WallOpening> openings = passage_openings();
-    if (openings.empty()) return;
+    if (openings.empty()) return true;
     const OpenedSolid opened = cut_openings(part.lod2, walls, openings);
-    const auto triangles = geometry::triangulate(opened.solid, part.lod2, part.lod2_triangles);
-    const bool valid = triangles && geometry::check_solid(opened.solid, *triangles).valid();
     std::size_t i = 0;
-    for (PassageMouth& m : mouths_) {
-      if (m.state != MouthState::open) continue;
-      if (!valid || opened.refusals[i] != OpeningRefusal::none) m.state = MouthState::blocked;
-      ++i;
+    for (PassageMouth& m : mouths_)
+      if (m.state == MouthState::open && opened.refusals[i++] != OpeningRefusal::none) m.state = MouthState::blocked;
+    const auto triangles = geometry::triangulate(opened.solid, part.lod2, part.lod2_triangles);
+    return triangles && geometry::check_solid(opened.solid, *triangles).valid();
+  }
+
+  /// Leaves open what the solid takes: all passages together, else one after another.
+  void try_passages(const BuildingPart& part, const std::vector<WallFrame>& walls) {
+    if (takes_passages(part, walls)) return;
+    std::vector<PassageMouth*> tried;
+    for (PassageMouth& m : mouths_)
+      if (m.state == MouthState::open && &mouths_[m.other] > &m) tried.push_back(&m);
+    close_open(MouthState::not_valid);
+    for (PassageMouth* m : tried) {
+      PassageMouth& other = mouths_[m->other];
+      if (m->state != MouthState::not_valid || other.state != MouthState::not_valid) continue;
+      m->state = other.state = MouthState::open;
+      if (!takes_passages(part, walls)) m->state = other.state = MouthState::not_valid;
     }
+  }
+
+  void close_open(MouthState why) {
+    for (PassageMouth& m : mouths_)
+      if (m.state == MouthState::open) m.state = why;
   }
 
   /// Of all open mouths, in their order.
@@ -209,8 +246,8 @@ class FacadeBuilder {
     return out;
   }
 
-  /// Gates in mouths that lead nowhere, a band round those of passages in street fronts.
-  void close_mouths(const BuildingPart& part) {
+  /// Before all other elements: gates in mouths that lead nowhere, a band round those of passages in street fronts.
+  void close_mouths() {
     for (const PassageMouth& m : mouths_) {
       const bool open = m.state == MouthState::open;
       if (open && m.front != model::EdgeKind::street) continue;
@@ -224,21 +261,23 @@ class FacadeBuilder {
       stock_.add("head", std::string_view("straight"));
       stock_.add("surround", std::string_view(open ? "plain" : "none"));
       if (!open) stock_.add("reveal", 0.3);
-      place(part, m.wall, {(m.left + m.right) / 2, m.low}, 0);
+      place(m.wall, {(m.left + m.right) / 2, m.low}, 0);
     }
+    mouth_elements_ = asked_.size();
   }
 
-  void cut(model::Building& building, BuildingPart& part, const std::vector<WallFrame>& walls) {
+  /// A solid with openings.
+  struct Cut {
+    OpenedSolid opened;
+    model::SolidTriangles triangles;
+    std::vector<std::size_t> of_asked;  ///< by opening given: of which element; kNoAsked for mouths of passages
+  };
+
+  /// Cuts passages and what elements need; none when the solid is not valid then.
+  std::optional<Cut> cut_all(const BuildingPart& part, const std::vector<WallFrame>& walls) const {
+    Cut out;
     std::vector<WallOpening> openings = passage_openings();
-    const std::size_t passages = openings.size();
-    if (asked_.empty() && passages == 0) {  // walls without openings are a facade, too
-      part.lod3.solid = part.lod2;
-      part.lod3.triangles = part.lod2_triangles;
-      part.lod = 3;
-      finish_told(building, part, 0);
-      return;
-    }
-    std::vector<std::size_t> of_asked(passages, kNoAsked);
+    out.of_asked.assign(openings.size(), kNoAsked);
     for (std::size_t i = 0; i < asked_.size(); ++i) {
       const model::Element& element = stock_.element(asked_[i].element);
       if (element.opening.outline.empty()) continue;
@@ -249,26 +288,57 @@ class FacadeBuilder {
       o.storey = asked_[i].storey;
       for (const Point2& p : element.opening.outline) o.outline.push_back({p.x + asked_[i].at.x, p.y + asked_[i].at.y});
       openings.push_back(std::move(o));
-      of_asked.push_back(i);
+      out.of_asked.push_back(i);
     }
-    OpenedSolid opened = cut_openings(part.lod2, walls, openings);
-    auto triangles = geometry::triangulate(opened.solid, part.lod2, part.lod2_triangles);
-    if (!triangles || !(proved_valid(opened, *triangles) || geometry::check_solid(opened.solid, *triangles).valid())) {
-      part.fallbacks.push_back(IssueCode::facade_failed);
-      region_.report.add(part.osm, IssueCode::facade_failed, part.id);
+    out.opened = cut_openings(part.lod2, walls, openings);
+    auto triangles = geometry::triangulate(out.opened.solid, part.lod2, part.lod2_triangles);
+    if (!triangles ||
+        !(proved_valid(out.opened, *triangles) || geometry::check_solid(out.opened.solid, *triangles).valid()))
+      return std::nullopt;
+    out.triangles = std::move(*triangles);
+    return out;
+  }
+
+  void cut(BuildingPart& part, const std::vector<WallFrame>& walls) {
+    model::Detail& detail = part.lod3;
+    part.lod = 3;
+    const auto is_open = [](const PassageMouth& m) { return m.state == MouthState::open; };
+    const bool passages = std::any_of(mouths_.begin(), mouths_.end(), is_open);
+    if (asked_.empty() && !passages) {  // walls without openings are a facade, too
+      detail.solid = part.lod2;
+      detail.triangles = part.lod2_triangles;
+      finish_told(part, 0);
       return;
     }
-    model::Detail& detail = part.lod3;
+    std::optional<Cut> made = cut_all(part, walls);
+    if (!made && passages) {
+      const std::vector<Asked> rest(asked_.begin() + static_cast<std::ptrdiff_t>(mouth_elements_), asked_.end());
+      asked_.clear();
+      close_open(MouthState::not_valid);
+      close_mouths();
+      asked_.insert(asked_.end(), rest.begin(), rest.end());
+      made = cut_all(part, walls);
+    }
     std::vector<std::uint32_t> opening_of(asked_.size(), model::kNoOpening);
     std::vector<bool> refused(asked_.size(), false);
-    for (std::size_t i = passages; i < openings.size(); ++i)
-      refused[of_asked[i]] = opened.refusals[i] != OpeningRefusal::none;
-    for (std::uint32_t i = 0; i < opened.given.size(); ++i)
-      if (of_asked[opened.given[i]] != kNoAsked) opening_of[of_asked[opened.given[i]]] = i;
-    detail.solid = std::move(opened.solid);
-    detail.triangles = std::move(*triangles);
-    detail.openings = std::move(opened.openings);
-    int left_out = 0;
+    if (made) {
+      for (std::size_t i = 0; i < made->of_asked.size(); ++i)
+        if (made->of_asked[i] != kNoAsked)
+          refused[made->of_asked[i]] = made->opened.refusals[i] != OpeningRefusal::none;
+      for (std::uint32_t i = 0; i < made->opened.given.size(); ++i)
+        if (const std::size_t of = made->of_asked[made->opened.given[i]]; of != kNoAsked) opening_of[of] = i;
+      detail.solid = std::move(made->opened.solid);
+      detail.triangles = std::move(made->triangles);
+      detail.openings = std::move(made->opened.openings);
+    } else {
+      part.fallbacks.push_back(IssueCode::facade_failed);
+      region_.report.add(part.osm, IssueCode::facade_failed, part.id);
+      for (std::size_t i = 0; i < asked_.size(); ++i)
+        refused[i] = !stock_.element(asked_[i].element).opening.outline.empty();
+      detail.solid = part.lod2;
+      detail.triangles = part.lod2_triangles;
+    }
+    std::size_t left_out = 0;
     for (std::size_t i = 0; i < asked_.size(); ++i) {
       if (refused[i]) {
         ++left_out;
@@ -278,15 +348,18 @@ class FacadeBuilder {
       detail.placements.push_back({asked_[i].element, model::snap(wall.at(asked_[i].at)), wall.along, opening_of[i],
                                    wall.face, asked_[i].storey});
     }
-    part.lod = 3;
-    finish_told(building, part, left_out);
+    finish_told(part, left_out);
   }
 
-  void finish_told(const model::Building&, BuildingPart& part, int left_out) {
+  /// Windows that yield to a passage are no failure; doors at mapped entrances are.
+  /// \param left_out  of what was asked for
+  void finish_told(BuildingPart& part, std::size_t left_out) {
+    left_out += missed_doors_;
     if (left_out > 0) {
       part.fallbacks.push_back(IssueCode::opening_left_out);
-      region_.report.add(part.osm, IssueCode::opening_left_out,
-                         fmt::format("{}: {} of {}", part.id, left_out, asked_.size()));
+      std::string what = fmt::format("{}: {} of {}", part.id, left_out, asked_.size() + missed_doors_);
+      if (yielding_ > 0) what += fmt::format(", {} yield to a passage", yielding_);
+      region_.report.add(part.osm, IssueCode::opening_left_out, std::move(what));
     }
     for (const PassageMouth& m : mouths_) {
       if (m.state == MouthState::open) continue;
@@ -299,7 +372,7 @@ class FacadeBuilder {
   }
 
   /// Each complaint once a part.
-  void tell(const BuildingPart&, const std::string& what) { told_.insert(what); }
+  void tell(const std::string& what) { told_.insert(what); }
 
   static constexpr std::size_t kNoAsked = ~std::size_t{0};
   /// m; narrower mouths get a house door.
@@ -311,6 +384,9 @@ class FacadeBuilder {
   ElementStock stock_;
   std::vector<Asked> asked_;
   std::vector<PassageMouth> mouths_;
+  std::size_t mouth_elements_ = 0;  ///< the first of asked_: what close_mouths() put there
+  std::size_t yielding_ = 0;        ///< elements that would stand in a mouth
+  std::size_t missed_doors_ = 0;    ///< those of them that are doors at mapped entrances
   std::set<std::string> told_;
   PartLooks usual_looks_;  ///< of the part at work
   std::vector<std::string> complaints_;

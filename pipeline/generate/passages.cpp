@@ -31,8 +31,6 @@ bool beside(const FacadeStretch& left, const FacadeStretch& right) {
 void append(FacadeStretch& to, const FacadeStretch& more) {
   to.to = more.to;
   to.ends_wall = more.ends_wall;
-  to.turn_right = more.turn_right;
-  to.kind_right = more.kind_right;
   for (const std::uint32_t e : more.edges)
     if (to.edges.empty() || to.edges.back() != e) to.edges.push_back(e);
 }
@@ -76,12 +74,13 @@ void pair_up(std::span<const WallFrame> walls, std::vector<PassageMouth>& mouths
   for (const Pair& pair : pairs) {
     PassageMouth &a = mouths[pair.a], &b = mouths[pair.b];
     if (a.other != model::kNoOpening || b.other != model::kNoOpening) continue;
+    // One level from end to end.
+    const double low = std::max(walls[a.wall].base + a.low, walls[b.wall].base + b.low);
+    const double high = std::min(walls[a.wall].base + a.high, walls[b.wall].base + b.high);
+    if (!(high - low >= kLeastHeadroom)) continue;
     a.other = pair.b;
     b.other = pair.a;
     a.state = b.state = MouthState::open;
-    // One level from end to end.
-    const double low = std::max(walls[a.wall].base + a.low, walls[b.wall].base + b.low);
-    const double high = std::max(low, std::min(walls[a.wall].base + a.high, walls[b.wall].base + b.high));
     for (PassageMouth* m : {&a, &b}) {
       m->low = low - walls[m->wall].base;
       m->high = high - walls[m->wall].base;
@@ -131,8 +130,6 @@ std::vector<PassageMouth> take_mouths(const model::BuildingPart& part, std::span
       FacadeStretch& next = stretches[i + 1];
       next.from = mine.from;
       next.starts_wall = mine.starts_wall;
-      next.turn_left = mine.turn_left;
-      next.kind_left = mine.kind_left;
       next.edges.insert(next.edges.begin(), mine.edges.begin(), mine.edges.end());
     }
   }

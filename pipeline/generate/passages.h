@@ -18,9 +18,11 @@ enum class MouthState : std::uint8_t {
   open,        ///< a passage leads to `other`, unless the solid does not take it
   no_partner,  ///< no second mouth behind it in this body
   blocked,     ///< its tunnel would meet a wall, the roof or another opening: a bent way, a court between
+  not_valid,   ///< the solid with its tunnel fails its check
 };
 constexpr std::string_view name(MouthState state) {
-  constexpr std::string_view names[] = {"open", "no second mouth", "no straight way through"};
+  constexpr std::string_view names[] = {"open", "no second mouth", "no straight way through",
+                                        "the solid with it is not valid"};
   return names[static_cast<int>(state)];
 }
 
@@ -41,7 +43,8 @@ struct PassageMouth {
 /// 3.6 m (references/styles.md, gateway); passages narrower than kCartWidth have 2.5 m; none reaches nearer to the
 /// ceiling of the ground floor than kLintel. Mouths that would be lower than kLeastHeadroom are left out.
 /// Two mouths belong together when each lies straight behind the other's wall (kStraightThrough), the nearest pair
-/// first: labels do not tell which way they come from.
+/// first: labels do not tell which way they come from. Pairs whose common height is below kLeastHeadroom are none.
+/// What stretches know of their neighbours is not kept up: link_corners() comes after.
 std::vector<PassageMouth> take_mouths(const model::BuildingPart& part, std::span<const WallFrame> walls,
                                       std::vector<FacadeStretch>& stretches);
 

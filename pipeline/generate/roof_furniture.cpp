@@ -9,6 +9,7 @@
 #include "pipeline/base/random.h"
 #include "pipeline/generate/roof_edges.h"
 #include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/plan_shape.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/triangulate.h"
 #include "styles/roofs/chimneys.h"
@@ -25,6 +26,8 @@ using model::Point3;
 
 /// m². Smaller bodies are sheds, porches and stair heads.
 constexpr double kLeastPlan = 30;
+/// Share of a body's plan under higher bodies from which on its roof is theirs to stand on (own choice).
+constexpr double kCovered = 0.5;
 /// m of frontage for each chimney: with a stove in every room; with one for each flat; with one for each house.
 constexpr double kStoves = 6, kStovesOfFlats = 12, kBoilers = 18;
 /// Share of detached houses of after 1945 that have a chimney (references/styles.md §6).
@@ -73,7 +76,8 @@ class Furnisher {
     const auto standing = standing_roof(body->lod2);
     if (!standing) return;
     const std::vector<model::RoofEdge> edges = edges_of(building, *body, standing->plan);
-    const double frontage = building.situation.width.value_or(std::sqrt(area));
+    const double width = building.situation.width.value_or(0);
+    const double frontage = width > 0 ? width : std::sqrt(area);
     const std::vector<Point2> stacks = put_chimneys(building, *body, *standing, edges, frontage);
     put_roof_windows(building, *body, *standing, edges, stacks, is_old(building.attributes));
   }
@@ -90,14 +94,44 @@ class Furnisher {
                                       a.style.value != model::name(model::StyleClass::other));
   }
 
-  /// The largest body, where it has LoD3 and reaches the ground; null for canopies and the like.
+  /// m above the height reference.
+  struct Extent {
+    double low = 0, high = 0;
+  };
+  static Extent extent_of(const model::Solid& solid) {
+    Extent out{1e300, -1e300};
+    for (const Point3& p : solid.vertices) out = {std::min(out.low, p.z), std::max(out.high, p.z)};
+    return out;
+  }
+  /// Of what was built; as its tags say where nothing was.
+  static Extent extent_of(const BuildingPart& part) {
+    if (!part.lod2.empty()) return extent_of(part.lod2);
+    if (!part.lod1.empty()) return extent_of(part.lod1);
+    const model::Attributes& a = part.attributes;
+    return {a.ground_height.value + a.min_height.value, a.ground_height.value + a.height.value};
+  }
+
+  /// Whether higher bodies of the building cover half of it: a podium under a tower.
+  static bool covered(const model::Building& building, const BuildingPart& part, double area) {
+    if (building.parts.size() < 2) return false;
+    const double top = extent_of(part).high;
+    std::vector<model::Polygon> higher;
+    for (const BuildingPart& other : building.parts)
+      if (&other != &part && !other.canopy && !other.lod2.empty() && extent_of(other).high > top)
+        higher.push_back(other.plan);
+    if (higher.empty()) return false;
+    const double common = geometry::PlanShape({part.plan}).common_area(geometry::PlanShape(higher));
+    return common >= kCovered * area;
+  }
+
+  /// The largest body that is not covered from above, where it has LoD3; null for canopies and the like.
   static BuildingPart* main_body(model::Building& building) {
     BuildingPart* best = nullptr;
     double largest = 0;
     for (BuildingPart& part : building.parts) {
       if (part.lod2.empty() || part.canopy) continue;
       const double area = geometry::area(part.plan);
-      if (area > largest) best = &part, largest = area;
+      if (area > largest && !covered(building, part, area)) best = &part, largest = area;
     }
     return best && best->lod >= 3 && !best->lod3.solid.empty() ? best : nullptr;
   }
@@ -114,8 +148,11 @@ class Furnisher {
 
   /// Whether another body of the building is where it would stand.
   static bool in_another(const model::Building& building, const BuildingPart& body, const model::Solid& solid) {
+    const Extent mine = extent_of(solid);
     for (const BuildingPart& other : building.parts) {
       if (&other == &body || other.plan.outer.size() < 3) continue;
+      const Extent its = extent_of(other);
+      if (its.high <= mine.low || its.low >= mine.high) continue;
       for (const Point3& p : solid.vertices)
         if (geometry::contains(other.plan, p.xy())) return true;
     }

@@ -37,11 +37,11 @@ int wanted_chimneys(const model::Attributes& attributes, model::BuildingPosition
 
 /// Fills `lod3.roof_installations` of every part of the region's owned buildings that has LoD3.
 ///
-/// Residential houses and old houses of shops and offices get chimneys, on the largest of their bodies; roof windows go
-/// into slopes above an attic storey (roof_storeys), and into rear slopes of one old house in three, whose loft was
-/// converted (own choice). Measures are drawn per building within references/styles.md §2.7, keyed by its id and the
-/// seed. Every body is checked; one that fails its check, or stands where another body of the building is, is left out.
-/// LoD2 and the LoD3 envelope are not touched.
+/// Residential houses and old houses of shops and offices get chimneys, on the largest of their bodies that is not half
+/// covered by higher ones; roof windows go into slopes above an attic storey (roof_storeys), and into rear slopes of
+/// one old house in three, whose loft was converted (own choice). Measures are drawn per building within
+/// references/styles.md §2.7, keyed by its id and the seed. Every body is checked; one that fails its check, or stands
+/// where another body of the building is, is left out. LoD2 and the LoD3 envelope are not touched.
 void furnish_roofs(model::Region& region, const Defaults& defaults, const RoofFurnitureOptions& options);
 
 }  // namespace blockrand::generate

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -21,7 +22,28 @@ double top_of(const WallFrame& wall, double eaves) {
 double eaves_level(const model::BuildingPart& part) {
   const model::Attributes& a = part.attributes;
   const double roof = a.roof_shape.value == model::RoofShape::flat ? 0 : a.roof_height.value;
-  return a.ground_height.value + a.height.value - roof;
+  const double asked = a.ground_height.value + a.height.value - roof;
+  const model::Solid& solid = part.lod2;
+  std::vector<bool> of_wall(solid.vertices.size(), false);
+  const auto visit = [&](const model::Face& face, auto&& take) {
+    for (const model::Solid::Loop& loop : solid.loops_of(face))
+      for (const std::uint32_t v : solid.indices_of(loop)) take(v);
+  };
+  // Upright faces within the roof have no edge.
+  for (const model::Face& face : solid.faces)
+    if (face.kind == model::SurfaceKind::wall && face.edge >= 0)
+      visit(face, [&](std::uint32_t v) { of_wall[v] = true; });
+  double lowest = std::numeric_limits<double>::infinity();
+  bool as_asked = false;
+  for (const model::Face& face : solid.faces)
+    if (face.kind == model::SurfaceKind::roof)
+      visit(face, [&](std::uint32_t v) {
+        if (!of_wall[v]) return;
+        const double z = solid.vertices[v].z;
+        lowest = std::min(lowest, z);
+        as_asked = as_asked || std::fabs(z - asked) < kSameEaves;
+      });
+  return as_asked || !std::isfinite(lowest) ? asked : lowest;
 }
 
 void link_corners(std::span<FacadeStretch> stretches, std::span<const WallFrame> walls, double eaves) {

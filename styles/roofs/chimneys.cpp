@@ -75,6 +75,7 @@ struct Crossing {
 }  // namespace
 
 int chimney_count(double frontage, const ChimneyParameters& parameters) {
+  if (!(frontage > 0) || !(parameters.frontage > 0)) return 1;
   return std::max(1, static_cast<int>(std::lround(frontage / parameters.frontage)));
 }
 

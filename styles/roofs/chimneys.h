@@ -40,7 +40,8 @@ struct ChimneyLooks {
   model::Face stack, top;
 };
 
-/// Chimneys of a house with that frontage in metres: frontage / parameters.frontage, rounded, at least 1.
+/// Chimneys of a house with that frontage in metres: frontage / parameters.frontage, rounded, at least 1; 1 where
+/// either is not above 0.
 int chimney_count(double frontage, const ChimneyParameters& parameters = {});
 
 /// A stack over one surface, or over two that meet in one line across it (ridge, hip, valley, break): its underside

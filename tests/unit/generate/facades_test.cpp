@@ -487,7 +487,8 @@ TEST(Facades, RevealsLookLikeTheirWall) {
       const model::ColouredElement& element = region.elements[p.element];
       if (!(element.element->opening.reveal > 0)) continue;
       ++reveals;
-      EXPECT_EQ(element.looks[static_cast<std::size_t>(model::ElementPart::wall)].colour, (model::Colour{220, 210, 180}))
+      EXPECT_EQ(element.looks[static_cast<std::size_t>(model::ElementPart::wall)].colour,
+                (model::Colour{220, 210, 180}))
           << preset << ": " << element.element->name;
     }
     EXPECT_GT(reveals, 10) << preset;
@@ -645,6 +646,164 @@ TEST(WallCorners, StretchesKnowTheirNeighbours) {
   link_corners(stretches, walls, eaves_level(b.parts[0]));
   EXPECT_EQ(stretches[0].turn_left, 0);
   EXPECT_FALSE(stretches[0].kind_right);
+}
+
+/// A book with one preset "own" that runs `rules`.
+GrammarBook own_book(const std::string& rules) {
+  const auto folder = std::filesystem::temp_directory_path() /
+                      ("blockrand_own_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "own.cga") << "version \"2025.1\"\n@StartRule\n" << rules;
+  const std::vector<PresetGrammar> presets{{"own", "own.cga", {}}};
+  GrammarBook book(folder.string(), presets);
+  std::filesystem::remove_all(folder);
+  return book;
+}
+
+const std::string kOneWindow =
+    "Marked --> split(y){ 5 : Wall. | 1.5 : split(x){ 1 : Wall. | 1 : Pane | ~1 : Wall. } | ~1 : Wall. }\n"
+    "Pane --> blockrand.window(\"casement_window\")\n";
+
+TEST(Passages, StretchesBeyondKnowTheFrontThatTookTheMouthIn) {
+  House house;
+  house.edges = {EdgeKind::street, EdgeKind::side, EdgeKind::courtyard, EdgeKind::party_wall};
+  model::Region region = region_of(house, "own", 5);
+  model::Building& b = region.buildings[0];
+  model::FacadeEdge mouth = b.edges[0];
+  mouth.kind = EdgeKind::passage;
+  mouth.start = b.edges[0].end = 15;
+  b.edges.insert(b.edges.begin() + 1, mouth);
+  build_facades(region, own_book("Facade --> case edge.kind_left == \"street\" : Marked else : Wall.\n" + kOneWindow),
+                Defaults{}, {42});
+  EXPECT_EQ(on_wall(region, b.parts[0], 1).size(), 1u) << "the side follows the street front, not its passage";
+}
+
+TEST(Passages, AreNoLowerThanAPersonBetweenWallsOfTwoLevels) {
+  HouseWithPassage house(true);
+  model::BuildingPart& part = house.region.buildings[0].parts[0];
+  part.attributes.storey_height.value = 2.5;
+  part.attributes.plinth_height.value = 0;
+  auto stretches = facade_stretches(house.region.buildings[0], house.walls);
+  auto level = stretches;
+  for (const PassageMouth& m : take_mouths(part, house.walls, level)) EXPECT_EQ(m.state, MouthState::open);
+  for (const FacadeStretch& s : stretches)
+    if (s.kind == EdgeKind::courtyard) house.walls[s.wall].base = part.attributes.ground_height.value + 0.3;
+  const auto mouths = take_mouths(part, house.walls, stretches);
+  ASSERT_EQ(mouths.size(), 2u);
+  for (const PassageMouth& m : mouths) {
+    EXPECT_EQ(m.state, MouthState::no_partner);
+    EXPECT_GE(m.high - m.low, kLeastHeadroom);
+  }
+}
+
+/// The house's solid with a roof face that lies half way up its walls: every check of it fails.
+void break_solid(model::BuildingPart& part) {
+  roofs::Roof roof = roofs::flat_roof(part.plan, 30 + part.attributes.height.value);
+  for (auto& surface : roof.surfaces)
+    for (auto& loop : surface.loops)
+      for (model::Point3& p : loop) p.z = 40;
+  EnvelopeLooks looks;
+  looks.wall = part.lod2.faces[1];
+  looks.roof.kind = model::SurfaceKind::roof;
+  looks.under.kind = model::SurfaceKind::ground;
+  part.lod2 = envelope(part.plan, 30, roof, looks);
+  part.lod2_triangles = *geometry::triangulate(part.lod2);
+}
+
+TEST(Facades, WallsOfASolidThatTakesNoOpeningsStayClosedAndEverythingIsTold) {
+  HouseWithPassage house(true);
+  house.region.buildings[0].attributes.preset.value = "own";
+  model::BuildingPart& part = house.region.buildings[0].parts[0];
+  break_solid(part);
+  const GrammarBook book =
+      own_book("Facade --> split(x){ ~1 : Marked | ~1 : Odd }\n" + kOneWindow +
+               "Odd --> split(y){ 8.75 : Wall. | 2.5 : split(x){ 2 : Wall. | 1 : Pane | ~1 : Odder } | ~1 : "
+               "Wall. }\nOdder --> blockrand.element(\"no\" + building.preset)\n");
+  build_facades(house.region, book, Defaults{}, {42});
+  EXPECT_EQ(part.lod, 3);
+  EXPECT_TRUE(part.lod3.openings.empty());
+  EXPECT_EQ(part.lod3.solid.faces.size(), part.lod2.faces.size());
+  for (const model::Placement& p : part.lod3.placements) EXPECT_EQ(p.opening, model::kNoOpening);
+  EXPECT_EQ(std::count(part.fallbacks.begin(), part.fallbacks.end(), model::IssueCode::facade_failed), 1);
+  int complaints = 0, passages = 0;
+  for (const model::ReportRow& row : house.region.report.rows) {
+    complaints += row.code == model::IssueCode::grammar_error;
+    passages += row.detail.find("passage") != std::string::npos && row.detail.find("not valid") != std::string::npos;
+  }
+  EXPECT_GE(complaints, 1);
+  EXPECT_EQ(passages, 2) << "the way is straight, the solid does not take it";
+}
+
+TEST(Passages, DoorsAtMappedEntrancesThatYieldAreTold) {
+  for (const bool mapped : {true, false}) {
+    HouseWithPassage house(true);
+    model::Building& b = house.region.buildings[0];
+    for (model::FacadeEdge& e : b.edges)
+      if (mapped && e.kind == EdgeKind::passage && e.edge == 0) {
+        model::EdgePoint p;
+        p.entrance = true;
+        p.place = {391000 + (e.start + e.end) / 2, 5819000};
+        e.points = {p};
+        e.entrances = 1;
+      }
+    build_facades(house.region, shipped(), Defaults{}, {42});
+    EXPECT_EQ(b.parts[0].fallbacks,
+              mapped ? std::vector{model::IssueCode::opening_left_out} : std::vector<model::IssueCode>{});
+    bool told = false;
+    for (const model::ReportRow& row : house.region.report.rows)
+      told = told || row.detail.find("yield to a passage") != std::string::npos;
+    EXPECT_EQ(told, mapped);
+  }
+}
+
+roofs::Roof roof_of(const model::Polygon& plan, model::RoofShape shape, double eaves, double height) {
+  if (shape == model::RoofShape::flat) return roofs::flat_roof(plan, eaves);
+  roofs::RoofRequest request;
+  request.shape = shape;
+  request.measures = {eaves, height};
+  return roofs::build_roof(plan, request)->roof;
+}
+
+TEST(WallCorners, EavesAreThoseThatWereBuilt) {
+  using model::RoofShape;
+  const auto part_with = [](RoofShape asked, const roofs::Roof& roof, double height, double roof_height) {
+    model::BuildingPart part = region_of(House{}, "gruenderzeit", 5).buildings[0].parts[0];
+    part.attributes.roof_shape.value = asked;
+    part.attributes.height.value = height;
+    part.attributes.roof_height.value = roof_height;
+    EnvelopeLooks looks;
+    looks.wall.kind = model::SurfaceKind::wall;
+    looks.roof.kind = model::SurfaceKind::roof;
+    looks.under.kind = model::SurfaceKind::ground;
+    part.lod2 = envelope(part.plan, 30, roof, looks);
+    return part;
+  };
+  const model::Polygon plan = region_of(House{}, "gruenderzeit", 5).buildings[0].parts[0].plan;
+  // What stands as it was asked for: to the last bit what the attributes say, though solids are on the grid.
+  for (const RoofShape shape : {RoofShape::flat, RoofShape::gabled, RoofShape::hipped, RoofShape::half_hipped,
+                                RoofShape::mansard, RoofShape::skillion, RoofShape::saltbox, RoofShape::gambrel}) {
+    const double rise = shape == RoofShape::flat ? 0 : 5;
+    const auto part = part_with(shape, roof_of(plan, shape, model::snap(30 + 18.3 - rise), rise), 18.3, rise);
+    EXPECT_EQ(eaves_level(part), 30 + 18.3 - rise) << model::name(shape);
+  }
+  const roofs::Roof full = roofs::flat_roof(plan, 48), half = roofs::flat_roof(plan, 45.5);
+  EXPECT_EQ(eaves_level(part_with(RoofShape::many, full, 18, 5)), 48) << "flat at full height";
+  EXPECT_EQ(eaves_level(part_with(RoofShape::gabled, half, 18, 5)), 45.5) << "failed: flat at half the roof's height";
+  EXPECT_EQ(eaves_level(part_with(RoofShape::gabled, full, 18, 0.1)), 48) << "too low for a slope";
+  EXPECT_EQ(eaves_level(part_with(RoofShape::gabled, roof_of(plan, RoofShape::gabled, 32, 16), 18, 17)), 32)
+      << "clamped: gables' tops are no eaves";
+}
+
+TEST(Facades, CornicesLieUnderTheEavesThatWereBuilt) {
+  model::Region region = region_of(House{}, "gruenderzeit", 5);
+  model::BuildingPart& part = region.buildings[0].parts[0];
+  part.attributes.roof_shape.value = model::RoofShape::many;
+  part.attributes.roof_height.value = 5;
+  build_facades(region, shipped(), Defaults{}, {42});
+  double highest = 0;
+  for (const Placed& p : on_wall(region, part, 0))
+    if (p.width == 0) highest = std::max(highest, p.v);
+  EXPECT_GT(highest, part.attributes.height.value - 1.5);
 }
 
 TEST(GrammarBooks, MistakesAreLocated) {

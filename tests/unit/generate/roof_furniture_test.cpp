@@ -216,5 +216,46 @@ TEST(RoofFurniture, NothingStandsWhereAnotherBodyOfTheHouseDoes) {
   EXPECT_TRUE(region.buildings[0].parts[1].lod3.roof_installations.empty()) << "the largest body has them";
 }
 
+model::BuildingPart body(const model::Polygon& plan, double bottom, double top, const std::string& id) {
+  House h;
+  h.plan = plan;
+  h.shape = RoofShape::flat;
+  model::BuildingPart part = region_of(h).buildings[0].parts[0];
+  part.id = id;
+  EnvelopeLooks looks;
+  looks.wall.kind = model::SurfaceKind::wall;
+  looks.roof.kind = model::SurfaceKind::roof;
+  looks.under.kind = model::SurfaceKind::ground;
+  part.lod2 = part.lod3.solid = envelope(plan, bottom, roofs::flat_roof(plan, top), looks);
+  part.lod2_triangles = part.lod3.triangles = *geometry::triangulate(part.lod2);
+  return part;
+}
+
+TEST(RoofFurniture, TowersOverAPodiumHaveTheChimneys) {
+  const model::Polygon plan = polygon({{0, 0}, {18, 0}, {18, 12}, {0, 12}}),
+                       wide = polygon({{-2, -2}, {20, -2}, {20, 14}, {-2, 14}});
+  for (const bool wider : {false, true}) {
+    model::Region region = region_of({});
+    region.buildings[0].parts = {body(wider ? wide : plan, 0, 6, "w1.podium"), body(plan, 6, 24, "w1.tower")};
+    furnish_roofs(region, defaults(), {});
+    EXPECT_TRUE(region.buildings[0].parts[0].lod3.roof_installations.empty()) << "the podium is covered";
+    EXPECT_EQ(region.buildings[0].parts[1].lod3.roof_installations.size(), 3u) << "what is below is not in the way";
+  }
+  // A lantern does not cover the house under it.
+  model::Region region = region_of({});
+  region.buildings[0].parts = {body(plan, 0, 24, "w1.house"),
+                               body(polygon({{8, 4}, {14, 4}, {14, 10}, {8, 10}}), 24, 27, "w1.lantern")};
+  furnish_roofs(region, defaults(), {});
+  EXPECT_FALSE(region.buildings[0].parts[0].lod3.roof_installations.empty());
+  EXPECT_TRUE(region.buildings[0].parts[1].lod3.roof_installations.empty());
+}
+
+TEST(RoofFurniture, WithoutAFrontageThePlanTellsIt) {
+  model::Region region = region_of({});
+  region.buildings[0].situation.width = 0;
+  furnish_roofs(region, defaults(), {});
+  EXPECT_EQ(count(region, model::RoofElementKind::chimney), 2) << "sqrt(18 m * 12 m) / 6 m";
+}
+
 }  // namespace
 }  // namespace blockrand::generate

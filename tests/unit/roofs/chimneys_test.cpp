@@ -128,6 +128,11 @@ TEST(ChimneyCount, IsOneForEachSixMetresOfFrontage) {
   EXPECT_EQ(chimney_count(8.9), 1);
   EXPECT_EQ(chimney_count(9.1), 2);
   EXPECT_EQ(chimney_count(18), 3);
+  EXPECT_EQ(chimney_count(0), 1);
+  ChimneyParameters none;
+  none.frontage = 0;
+  EXPECT_EQ(chimney_count(0, none), 1);
+  EXPECT_EQ(chimney_count(18, none), 1);
 }
 
 TEST(ChimneyPlaces, AreEverySixMetresOfRidge) {
