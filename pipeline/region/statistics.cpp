@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "pipeline/export/placed_element.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon.h"
@@ -71,13 +72,16 @@ TileStatistics count_statistics(const model::Region& region) {
           s.windows += opening.kind == model::OpeningKind::window;
           s.doors += opening.kind == model::OpeningKind::door;
         }
-        s.placements += part.lod3.placements.size();
+        for (const model::Placement& p : part.lod3.placements)
+          s.placements += export_::has_shape(*region.elements.at(p.element).element);
         s.installations += part.lod3.installations.size() + part.lod3.roof_installations.size();
       }
       ++s.roofs[std::string(model::name(part.built_roof))];
       model::for_each_attribute(
           part.attributes,
-          [&](const char* name, const char*, const auto& value) { ++s.sources[name][std::string(model::name(value.source))]; },
+          [&](const char* name, const char*, const auto& value) {
+            ++s.sources[name][std::string(model::name(value.source))];
+          },
           [](const char*, const char*) {});
     }
   }

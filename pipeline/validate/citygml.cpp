@@ -8,6 +8,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
@@ -143,7 +144,8 @@ class Parser {
 
   void found(Check check, std::string what, std::string object, int number = 0) {
     if (++found_ > 1000) return;  // of one file
-    out_.contents.findings.push_back({check, name_, std::move(object), fmt::format("line {}: {}", line_, what), number});
+    out_.contents.findings.push_back(
+        {check, name_, std::move(object), fmt::format("line {}: {}", line_, what), number});
   }
   void rule(std::string what, std::string object) { found(Check::citygml_rule, std::move(what), std::move(object)); }
   void defect(SolidDefect what) {
@@ -262,6 +264,10 @@ class Parser {
         rule(fmt::format("{} does not belong to {}", id, body.building), id);
       if (!open_.empty()) open_.front().has_parts = true;
       if (!part) out_.contents.buildings.push_back(id);
+      // What the building before it, or a damaged one around it, was at is not its own.
+      opening_.clear();
+      surface_.clear();
+      target_ = Target::footprint;
       open_.emplace_back();
       open_.back().body = out_.contents.bodies.size();
       out_.contents.bodies.push_back(std::move(body));
@@ -379,7 +385,9 @@ class Parser {
         open_.back().surfaces.emplace_back(polygon_id_, std::move(polygon_));
         break;
       case Target::detail_surface:
-        if (!opening_.empty()) {
+        if (!opening_.empty() && open_.back().openings.empty()) {
+          rule("a polygon of an opening that is nobody's", polygon_id_);
+        } else if (!opening_.empty()) {
           OpenedWall& opening = open_.back().openings.back();
           if (!opening.polygon.empty()) rule("has two polygons", opening.id);
           opening.polygon = polygon_id_;
@@ -388,14 +396,15 @@ class Parser {
         break;
       case Target::installation: {
         auto& installations = body()->detail.installations;
-        note_place(polygon_id_, {open_.back().body, kInstallation, installations.back().polygons.size(),
-                                 installations.size() - 1});
+        if (installations.empty()) return rule("a polygon of an installation that is nobody's", polygon_id_);
+        note_place(polygon_id_,
+                   {open_.back().body, kInstallation, installations.back().polygons.size(), installations.size() - 1});
         installations.back().polygons.push_back(std::move(polygon_));
         break;
       }
       case Target::element:
-        note_place(polygon_id_,
-                   {open_.back().body, kElement, elements_.back().polygons.size(), elements_.size() - 1});
+        if (elements_.empty()) return rule("a polygon of an element that is nobody's", polygon_id_);
+        note_place(polygon_id_, {open_.back().body, kElement, elements_.back().polygons.size(), elements_.size() - 1});
         elements_.back().polygons.push_back(std::move(polygon_));
         break;
       case Target::footprint:
@@ -422,7 +431,10 @@ class Parser {
     if (!reference_point_) return rule("an implicit geometry without a reference point", object());
     if (element_.empty()) return rule("an implicit geometry without geometry", object());
     auto& placements = body()->detail.placements;
-    if (!opening_.empty()) open_.back().openings.back().placement = placements.size();
+    if (!opening_.empty() && open_.back().openings.empty())
+      rule("an element in an opening that is nobody's", object());
+    else if (!opening_.empty())
+      open_.back().openings.back().placement = placements.size();
     placed_.push_back({open_.back().body, placements.size(), element_});
     placements.push_back({0, *reference_point_, {matrix_[0], matrix_[4]}});
   }
@@ -446,7 +458,8 @@ class Parser {
     for (std::size_t i = 0; i < open.members.size(); ++i)
       if (!members.emplace(open.members[i].id, i).second)
         rule("polygon " + open.members[i].id + " is twice in the surfaces of LoD3", body.id);
-    std::vector<std::size_t> polygon_of(open.members.size(), open.members.size());
+    const std::size_t nowhere = open.members.size();  // of polygons that are not in the solid
+    std::vector<std::size_t> polygon_of(open.members.size(), nowhere);
     for (const std::string& id : open.references[3]) {
       const auto place = members.find(id);
       if (place == members.end()) {
@@ -454,12 +467,12 @@ class Parser {
         continue;
       }
       const Member& member = open.members[place->second];
-      if (polygon_of[place->second] < open.members.size()) {
+      if (polygon_of[place->second] != nowhere) {
         rule("polygon " + id + " is twice in the solid", body.id);
         continue;
       }
-      polygon_of[place->second] = solid->polygons.size();
       if (!member.link) {
+        polygon_of[place->second] = solid->polygons.size();
         note_place(id, {open.body, number, solid->polygons.size()});
         solid->polygons.push_back(member.polygon);
         continue;
@@ -469,16 +482,16 @@ class Parser {
         rule("a reference to #" + id + ", which is no polygon of the building", body.id);
         continue;
       }
+      polygon_of[place->second] = solid->polygons.size();
       shared_.push_back({id, {open.body, number, solid->polygons.size()}});
       solid->polygons.push_back(open.surfaces[shared->second].second);
     }
     for (std::size_t i = 0; i < polygon_of.size(); ++i)
-      if (polygon_of[i] == open.members.size())
+      if (polygon_of[i] == nowhere)
         rule(fmt::format("surface polygon {} is not in the solid of LoD3", open.members[i].id), body.id);
     // The first polygon of a surface is the wall, what follows are its reveals; openings come after them.
     std::vector<std::vector<std::size_t>> by_surface(open.boundary_surfaces + 1);
-    for (std::size_t i = 0; i < open.members.size(); ++i)
-      by_surface[open.members[i].surface].push_back(polygon_of[i]);
+    for (std::size_t i = 0; i < open.members.size(); ++i) by_surface[open.members[i].surface].push_back(polygon_of[i]);
     for (const OpenedWall& o : open.openings) {
       const auto polygon = members.find(o.polygon);
       if (o.polygon.empty() || polygon == members.end()) {
@@ -489,8 +502,14 @@ class Parser {
       ReadOpening opening;
       opening.id = o.id;
       opening.polygon = polygon_of[polygon->second];
+      if (opening.polygon == nowhere) continue;  // was said of its polygon
+      if (wall.empty() || wall.front() == nowhere) {
+        rule("has no wall in the solid of LoD3", o.id);
+        continue;
+      }
       opening.wall = wall.front();
-      opening.reveals.assign(wall.begin() + 1, wall.end());
+      std::copy_if(wall.begin() + 1, wall.end(), std::back_inserter(opening.reveals),
+                   [&](std::size_t p) { return p != nowhere; });
       opening.placement = o.placement;
       body.detail.openings.push_back(std::move(opening));
     }
@@ -631,6 +650,14 @@ class Parser {
                        std::lround((*values)[2] * 255));
   }
 
+  void place_element(const ReadBody& body, ReadPlacement& placement, std::uint64_t element) {
+    placement.element = element;
+    if (lower_ && upper_ && reaches_beyond(placement, out_.contents.elements.at(element), *lower_, *upper_))
+      rule(fmt::format("an element reaches out of the envelope, at {:.3f} {:.3f} {:.3f}", placement.origin.x,
+                       placement.origin.y, placement.origin.z),
+           body.id);
+  }
+
   ReadPolygon& polygon_at(const Place& place) {
     if (place.solid == kElement) return elements_[place.item].polygons[place.polygon];
     ReadBody& body = out_.contents.bodies[place.body];
@@ -655,14 +682,18 @@ class Parser {
       if (const auto original = places_.find(id); original != places_.end())
         polygon_at(place).colour = polygon_at(original->second).colour;
     std::vector<std::uint64_t> digests;
-    for (const Element& element : elements_) digests.push_back(element_digest(element.polygons));
+    for (const Element& element : elements_) {
+      digests.push_back(element_digest(element.polygons));
+      if (element.polygons.empty()) rule("an element without polygons", element.id);
+      out_.contents.elements.try_emplace(digests.back(), element_of(element.polygons));
+    }
     for (const Placed& p : placed_) {
       ReadBody& body = out_.contents.bodies[p.body];
       const auto element = element_at_.find(p.element);
       if (element == element_at_.end())
         rule("a reference to #" + p.element + ", which is no element", body.id);
       else
-        body.detail.placements[p.placement].element = digests[element->second];
+        place_element(body, body.detail.placements[p.placement], digests[element->second]);
     }
     if (!out_.contents.buildings.empty() && (!lower_ || !upper_ || out_.srs_name.empty()))
       rule("no envelope with a reference system", "");

@@ -9,6 +9,7 @@
 
 #include "pipeline/validate/cityjson_objects.h"
 #include "pipeline/validate/cityjson_templates.h"
+#include "pipeline/validate/detail.h"
 
 namespace blockrand::validate {
 namespace {
@@ -128,7 +129,24 @@ class FileReader {
     templates_ = read_templates(root, scope.colours, findings_);
   }
 
+  /// Placed elements are no vertices, but lie in the extent as well.
+  void check_elements() {
+    for (std::size_t i = 0; i < templates_.digests.size(); ++i)
+      out_.elements.try_emplace(templates_.digests[i], templates_.elements[i]);
+    if (extent_.empty()) return;
+    const model::Point3 lower{extent_[0], extent_[1], extent_[2]}, upper{extent_[3], extent_[4], extent_[5]};
+    for (const ReadBody& body : out_.bodies)
+      for (const ReadPlacement& p : body.detail.placements)
+        if (const auto element = out_.elements.find(p.element);
+            element != out_.elements.end() && reaches_beyond(p, element->second, lower, upper)) {
+          findings_.rule(body.id, fmt::format("an element reaches out of geographicalExtent, at {:.3f} {:.3f} {:.3f}",
+                                              p.origin.x, p.origin.y, p.origin.z));
+          break;  // one finding a body
+        }
+  }
+
   void tell_unused() {
+    check_elements();
     if (const auto unused = std::count(templates_.used.begin(), templates_.used.end(), false); unused > 0)
       findings_.rule("", fmt::format("{} geometry templates are used by nothing", unused));
   }

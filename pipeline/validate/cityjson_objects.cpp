@@ -180,8 +180,8 @@ class ObjectReader {
   /// Elements where they stand, or a body of its own: of the body that its parent is.
   void installation(const Json& object, const Json* geometry) {
     const std::string parent = text(element(member(object, "parents"), 0));
-    const auto body = std::find_if(out_.bodies.rbegin(), out_.bodies.rend(),
-                                   [&](const ReadBody& b) { return b.id == parent; });
+    const auto body =
+        std::find_if(out_.bodies.rbegin(), out_.bodies.rend(), [&](const ReadBody& b) { return b.id == parent; });
     if (body == out_.bodies.rend()) return rule("its parent " + parent + " is no body that stands before it");
     const std::string kind = text(member(member(object, "attributes"), "function"));
     if (kind.empty()) rule("has no function");
@@ -270,7 +270,11 @@ class ObjectReader {
       for (ReadPolygon& p : polygons_) body.footprint.push_back(std::move(p));
     } else {
       if (polygons_.size() < 4) rule(fmt::format("{} has {} faces", where_, polygons_.size()));
-      if (lod[0] == '3') openings(body);
+      // A second solid of LoD 3, which is found, leaves it open which one has the openings.
+      const bool another =
+          std::any_of(body.solids.begin(), body.solids.end(), [](const ReadSolid& s) { return s.lod == 3; });
+      if (lod[0] == '3' && another) body.detail.openings.clear();
+      if (lod[0] == '3' && !another) openings(body);
       body.solids.push_back({lod[0] - '0', std::move(polygons_)});
     }
     polygons_.clear();
@@ -422,7 +426,7 @@ class ObjectReader {
   Contents& out_;
   CityJsonFindings& findings_;
   std::string id_, where_;
-  std::vector<std::string> kinds_;     // of the semantic surfaces of the geometry at hand
+  std::vector<std::string> kinds_;        // of the semantic surfaces of the geometry at hand
   std::vector<std::size_t> parents_;      // of the same: their parents
   std::vector<ReadPolygon> polygons_;     // of the geometry at hand
   std::vector<std::size_t> semantic_of_;  // of the same: their semantic surfaces

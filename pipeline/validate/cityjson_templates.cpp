@@ -31,7 +31,9 @@ class TemplateReader {
     used_.assign(points_.size(), false);
     for (const Json& t : *templates) {
       where_ = fmt::format("template {}", out.digests.size());
-      out.digests.push_back(element_digest(polygons(t)));
+      const std::vector<ReadPolygon> read = polygons(t);
+      out.digests.push_back(element_digest(read));
+      out.elements.push_back(element_of(read));
     }
     out.used.assign(out.digests.size(), false);
     if (const auto unused = std::count(used_.begin(), used_.end(), false); unused > 0)

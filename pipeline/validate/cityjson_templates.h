@@ -15,6 +15,7 @@ namespace blockrand::validate {
 
 struct CityJsonTemplates {
   std::vector<std::uint64_t> digests;  ///< element_digest(), by template; 0 for those that cannot be read
+  std::vector<ReadElement> elements;   ///< by template
   std::vector<bool> used;              ///< by template: placed somewhere in the file
 };
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "pipeline/validate/attribute_names.h"
 
@@ -353,8 +354,18 @@ static std::vector<ReadPolygon> seen_polygons(const ReadBody& body, const ReadSo
       std::any_of(openings.begin(), openings.end(), [](const ReadOpening& o) { return o.placement.has_value(); });
   for (const ReadOpening& opening : openings) {
     if (told ? !opening.placement : body.detail.placements.empty()) continue;
-    hidden[opening.polygon] = true;
-    for (const std::size_t reveal : opening.reveals) hidden[reveal] = true;
+    if (opening.polygon < hidden.size()) hidden[opening.polygon] = true;
+    // Its own reveals: other openings of the wall may have no element.
+    if (opening.polygon >= hidden.size()) continue;
+    std::set<std::pair<Point3, Point3>> outline;
+    for (const auto& ring : solid.polygons[opening.polygon].rings)
+      for (std::size_t i = 0; i < ring.size(); ++i) outline.emplace(ring[(i + 1) % ring.size()], ring[i]);
+    for (const std::size_t reveal : opening.reveals) {
+      if (reveal >= hidden.size() || hidden[reveal]) continue;
+      for (const auto& ring : solid.polygons[reveal].rings)
+        for (std::size_t i = 0; i < ring.size(); ++i)
+          if (outline.count({ring[i], ring[(i + 1) % ring.size()]})) hidden[reveal] = true;
+    }
   }
   std::vector<ReadPolygon> out;
   for (std::size_t i = 0; i < solid.polygons.size(); ++i)
@@ -421,8 +432,9 @@ void compare_meshes(const Side& reference, const Glb& glb, const std::string& gl
       least_off = std::min(least_off, worst);
       off.push_back({Check::geometry_differs, glb_file, body.id,
                      fmt::format("a corner is {:.4f} m from where {} has it", worst, reference.file)});
-    } else if (best && !detailed && std::fabs(is.volume - should.volume) >
-                           tolerance * should.area + 1e-4 * std::fabs(should.volume) + 0.001) {
+    } else if (best && !detailed &&
+               std::fabs(is.volume - should.volume) >
+                   tolerance * should.area + 1e-4 * std::fabs(should.volume) + 0.001) {
       findings.push_back({Check::geometry_differs, glb_file, body.id,
                           fmt::format("{:.3f} m3 against {:.3f} in {}", is.volume, should.volume, reference.file)});
     } else if (std::fabs(is.area - should.area) > slack) {

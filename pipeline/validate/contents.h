@@ -15,8 +15,8 @@ namespace blockrand::validate {
 /// One planar polygon with holes; rings without a repeated last point, outer counter-clockwise from outside.
 struct ReadPolygon {
   std::vector<std::vector<model::Point3>> rings;
-  std::string kind;  ///< "ground", "wall", "roof", "outer_ceiling", "outer_floor", "closure", "window", "door"; empty
-                     ///< where not said
+  std::string kind;    ///< "ground", "wall", "roof", "outer_ceiling", "outer_floor", "closure", "window", "door"; empty
+                       ///< where not said
   std::string colour;  ///< "#rrggbb" in sRGB; empty where not said
 };
 
@@ -31,7 +31,7 @@ struct ReadOpening {
   std::string id;
   std::size_t polygon = 0;  ///< into the LoD3 solid's polygons: what closes the opening, its kind is "window" or "door"
   std::size_t wall = 0;     ///< the polygon that it opens
-  std::vector<std::size_t> reveals;       ///< the other polygons of the wall's surface: of all its openings
+  std::vector<std::size_t> reveals;      ///< the other polygons of the wall's surface: of all its openings
   std::optional<std::size_t> placement;  ///< into ReadDetail::placements: the element that stands in it
 };
 
@@ -41,6 +41,12 @@ struct ReadPlacement {
   model::Point3 origin;       ///< build CRS
   model::Point2 along;        ///< its x axis
   friend auto operator<=>(const ReadPlacement&, const ReadPlacement&) = default;
+};
+
+/// What is known of an element wherever it stands.
+struct ReadElement {
+  std::vector<std::string> colours;  ///< of its polygons, sorted, each once
+  model::Point3 min, max;            ///< m, in its own frame: x right, y into the wall, z up
 };
 
 /// A closed body of its own on a wall or roof.
@@ -71,7 +77,8 @@ struct ReadBody {
 struct Contents {
   std::vector<std::string> buildings;  ///< ids in file order, doubles included
   std::vector<ReadBody> bodies;
-  std::vector<Finding> findings;  ///< breaches of the format's own rules
+  std::map<std::uint64_t, ReadElement> elements;  ///< those placed, by ReadPlacement::element
+  std::vector<Finding> findings;                  ///< breaches of the format's own rules
 };
 
 }  // namespace blockrand::validate

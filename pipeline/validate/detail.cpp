@@ -145,6 +145,37 @@ std::string detail_difference(const ReadBody& a, const ReadBody& b) {
   return {};
 }
 
+ReadElement element_of(std::span<const ReadPolygon> polygons) {
+  ReadElement out;
+  bool first = true;
+  for (const ReadPolygon& polygon : polygons) {
+    out.colours.push_back(polygon.colour);
+    for (const auto& ring : polygon.rings)
+      for (const Point3& p : ring) {
+        if (first) out.min = out.max = p;
+        first = false;
+        out.min = {std::min(out.min.x, p.x), std::min(out.min.y, p.y), std::min(out.min.z, p.z)};
+        out.max = {std::max(out.max.x, p.x), std::max(out.max.y, p.y), std::max(out.max.z, p.z)};
+      }
+  }
+  std::sort(out.colours.begin(), out.colours.end());
+  out.colours.erase(std::unique(out.colours.begin(), out.colours.end()), out.colours.end());
+  return out;
+}
+
+bool reaches_beyond(const ReadPlacement& placement, const ReadElement& e, const Point3& lower, const Point3& upper) {
+  const model::Point2 along = placement.along;
+  const Point3& o = placement.origin;
+  for (const double x : {e.min.x, e.max.x})
+    for (const double y : {e.min.y, e.max.y}) {
+      const double east = o.x + along.x * x - along.y * y, north = o.y + along.y * x + along.x * y;
+      if (!(east >= lower.x - kRoomTolerance && east <= upper.x + kRoomTolerance && north >= lower.y - kRoomTolerance &&
+            north <= upper.y + kRoomTolerance))
+        return true;
+    }
+  return !(o.z + e.min.z >= lower.z - kRoomTolerance && o.z + e.max.z <= upper.z + kRoomTolerance);
+}
+
 std::uint64_t element_digest(std::span<const ReadPolygon> polygons) {
   std::uint64_t h = polygons.size();
   const auto mix = [&](std::uint64_t v) { h = base::mix64(h ^ v) + 0x9e3779b97f4a7c15ULL; };

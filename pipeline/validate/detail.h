@@ -23,6 +23,13 @@ void check_detail(const ReadBody& body, const Complain& complain);
 /// The same for equal elements, whichever format they come from: their polygons in order to 0.1 mm, with colours.
 std::uint64_t element_digest(std::span<const ReadPolygon> polygons);
 
+/// The element that has these polygons.
+ReadElement element_of(std::span<const ReadPolygon> polygons);
+
+/// Whether a corner of the placed element's box lies outside of [lower, upper] by more than kRoomTolerance.
+bool reaches_beyond(const ReadPlacement& placement, const ReadElement& element, const model::Point3& lower,
+                    const model::Point3& upper);
+
 /// Whether a matrix (row by row) turns about the vertical and does nothing else: elements stand upright and keep their
 /// size.
 bool turns_about_the_vertical(std::span<const double> matrix);
@@ -33,6 +40,8 @@ std::string detail_difference(const ReadBody& a, const ReadBody& b);
 
 /// m. Walls are plane to 1 cm (ISO 19107's 203), on both sides of which corners may lie.
 inline constexpr double kWallTolerance = 0.02;
+/// m. What rounding corners to 0.1 mm and directions to nine decimals does to an element's corners, with room.
+inline constexpr double kRoomTolerance = 0.002;
 /// m. No wall is thicker; Finkenzeller's deepest reveals have half of it.
 inline constexpr double kDeepestReveal = 1.0;
 

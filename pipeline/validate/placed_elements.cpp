@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <set>
+#include <string>
+#include <tuple>
 #include <unordered_map>
 
 namespace blockrand::validate {
@@ -14,6 +17,9 @@ using model::Point3;
 
 /// m. An opening's outline and its element are rounded apart: to the grid, to steps, and by the element's rotation.
 constexpr double kAround = 0.01;
+
+/// Of unit vectors. Rotations have 16 bits, and a metre in the build CRS is measured on a grid.
+constexpr double kTurn = 0.005;
 
 double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
@@ -78,6 +84,55 @@ std::vector<std::vector<const GlbPlace*>> places_by_row(const Glb& glb) {
   return out;
 }
 
+using model::Point2;
+
+struct Placed {
+  Point3 origin;
+  Point2 along;  ///< east and north
+  std::size_t element = 0;
+};
+
+Point2 direction(const Point3& from, const Point3& to) {
+  const double x = to.x - from.x, y = to.y - from.y, length = std::hypot(x, y);
+  return length > 0 ? Point2{x / length, y / length} : Point2{};
+}
+
+Placed placed_at(const GlbPlace& place) {
+  const Point3 origin = placed(place, {0, 0, 0});
+  const Matrix& m = place.matrix;  // its first column, y up
+  return {origin, direction({0, 0, 0}, {m[0], 0.0 - m[2], 0}), place.element};
+}
+
+/// How an element fits where another format has one; the least is the best.
+struct Fit {
+  bool turned = false;
+  std::string strange;      ///< a colour that it must not have; empty: none
+  std::size_t missing = 0;  ///< colours of the other that it has not: faces that rounding made flat
+  double off = 0;           ///< m
+
+  void compare(const std::set<std::string>& has, const std::vector<std::string>& wanted,
+               const std::set<std::string>& walls) {
+    for (const std::string& colour : has)
+      if (strange.empty() && !walls.count(colour) && !std::binary_search(wanted.begin(), wanted.end(), colour))
+        strange = colour;
+    for (const std::string& colour : wanted) missing += !has.count(colour);
+  }
+  bool operator<(const Fit& b) const {
+    const auto key = [](const Fit& f) { return std::tuple(f.turned, !f.strange.empty(), f.missing, f.off); };
+    return key(*this) < key(b);
+  }
+};
+
+/// What reveals may look like, which the GLB has with the element and other formats with the wall.
+std::set<std::string> wall_colours(const ReadBody& body) {
+  std::set<std::string> out;
+  for (const ReadSolid& solid : body.solids)
+    if (solid.lod == 3)
+      for (const ReadPolygon& polygon : solid.polygons)
+        if (polygon.kind == "wall") out.insert(polygon.colour);
+  return out;
+}
+
 bool is_detailed(const ReadBody& body) {
   const auto lod = body.attributes.find("lod");
   return lod != body.attributes.end() && lod->second == "3";
@@ -122,6 +177,12 @@ void compare_places(const Side& reference, const Glb& glb, const std::string& gl
   std::unordered_map<std::string_view, std::size_t> rows;
   for (std::size_t i = 0; i < glb.contents.bodies.size(); ++i) rows.emplace(glb.contents.bodies[i].id, i);
   const auto places = places_by_row(glb);
+  std::vector<std::set<std::string>> colours;  // of the GLB's elements
+  for (const GlbElement& element : glb.elements) {
+    auto& set = colours.emplace_back();
+    for (const GlbTriangle& t : element.triangles)
+      set.insert(fmt::format("#{:02x}{:02x}{:02x}", t.colour[0], t.colour[1], t.colour[2]));
+  }
   for (const ReadBody& body : reference.contents.bodies) {
     const auto row = rows.find(body.id);
     if (row == rows.end()) continue;
@@ -134,26 +195,52 @@ void compare_places(const Side& reference, const Glb& glb, const std::string& gl
       differs(fmt::format("{} placed elements, {} in {}", is.size(), should.size(), reference.file));
       continue;
     }
-    std::vector<Point3> from, expected(should.size());
-    for (const ReadPlacement& p : should) from.push_back(p.origin);
-    to_local(from, expected);
-    // Each expected place takes the nearest that is left.
-    std::vector<Point3> left;
-    for (const GlbPlace* place : is) left.push_back(placed(*place, {0, 0, 0}));
-    std::sort(left.begin(), left.end());
-    double worst = 0;
-    for (const Point3& p : expected) {
-      double best = 1e300;
-      std::size_t nearest = 0;
-      const auto begin = std::lower_bound(left.begin(), left.end(), Point3{p.x - tolerance, -1e300, -1e300});
-      for (auto i = begin; i != left.end() && i->x <= p.x + tolerance; ++i) {
-        const Point3 d{i->x - p.x, i->y - p.y, i->z - p.z};
-        if (const double off = std::sqrt(dot(d, d)); off < best)
-          best = off, nearest = static_cast<std::size_t>(i - left.begin());
-      }
-      worst = std::max(worst, best);
-      if (best <= tolerance) left.erase(left.begin() + static_cast<std::ptrdiff_t>(nearest));
+    // Where each stands, and a metre to its right.
+    std::vector<Point3> from, expected(2 * should.size());
+    for (const ReadPlacement& p : should) {
+      from.push_back(p.origin);
+      from.push_back({p.origin.x + p.along.x, p.origin.y + p.along.y, p.origin.z});
     }
+    to_local(from, expected);
+    std::vector<Placed> left;
+    for (const GlbPlace* place : is) left.push_back(placed_at(*place));
+    std::sort(left.begin(), left.end(), [](const Placed& a, const Placed& b) { return a.origin < b.origin; });
+    const std::set<std::string> walls = wall_colours(body);
+    // Each expected place takes the one that fits best of those that are left there.
+    double worst = 0;
+    bool turned = false;
+    std::string strange;
+    for (std::size_t n = 0; n < should.size(); ++n) {
+      const Point3& p = expected[2 * n];
+      const Point2 along = direction(p, expected[2 * n + 1]);
+      const auto element = reference.contents.elements.find(should[n].element);
+      const ReadElement* wanted = element == reference.contents.elements.end() ? nullptr : &element->second;
+      double nearest = 1e300;
+      auto best = left.end();
+      Fit best_fit;
+      for (auto i = std::lower_bound(left.begin(), left.end(), p.x - tolerance,
+                                     [](const Placed&q, double x) { return q.origin.x < x; });
+           i != left.end() && i->origin.x <= p.x + tolerance; ++i) {
+        const Point3 d{i->origin.x - p.x, i->origin.y - p.y, i->origin.z - p.z};
+        const double off = std::sqrt(dot(d, d));
+        nearest = std::min(nearest, off);
+        if (off > tolerance) continue;
+        Fit fit;
+        fit.turned = std::hypot(i->along.x - along.x, i->along.y - along.y) > kTurn;
+        if (wanted && i->element < colours.size()) fit.compare(colours[i->element], wanted->colours, walls);
+        fit.off = off;
+        if (best == left.end() || fit < best_fit) best = i, best_fit = fit;
+      }
+      worst = std::max(worst, nearest);
+      if (best == left.end()) continue;
+      turned = turned || best_fit.turned;
+      if (strange.empty()) strange = best_fit.strange;
+      left.erase(best);
+    }
+    if (turned) differs(fmt::format("an element is turned otherwise than in {}", reference.file));
+    if (!strange.empty())
+      findings.push_back({Check::colour_differs, glb_file, body.id,
+                          fmt::format("an element with faces in {}, which it has not in {}", strange, reference.file)});
     if (worst > tolerance) differs(fmt::format("an element stands where {} has none", reference.file));
   }
 }

@@ -16,7 +16,8 @@ std::vector<model::Point3> place_corners(const Glb& glb);
 /// look through. Not for elements that are baked into the mesh, which leave the ends of reveals open.
 void check_openings(const Glb& glb, const std::string& file, std::vector<Finding>& findings);
 
-/// GEOMETRY_DIFFERS where a body has other places of elements than in `reference`.
+/// GEOMETRY_DIFFERS where a body has other places of elements than in `reference`, or one that is turned otherwise;
+/// COLOUR_DIFFERS where an element has a colour that neither it nor a wall of its body has there.
 /// \param tolerance  m, that an origin may be off
 void compare_places(const Side& reference, const Glb& glb, const std::string& glb_file, const ToLocal& to_local,
                     double tolerance, std::vector<Finding>& findings);

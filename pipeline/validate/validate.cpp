@@ -293,6 +293,8 @@ class Run {
                                                          "structure, references, attributes, colours"};
       if (totals_[f].files == 0) continue;
       std::string how = kHow[f];
+      if (f == static_cast<std::size_t>(Format::gltf) && record_.lod == 3 && record_.baked)
+        how += ", LoD3 not compared: elements are baked in";
       if (f == static_cast<std::size_t>(Format::citygml) && schema_) how += ", OGC schemas";
       checked(kFormatNames[f], std::move(how), totals_[f].bodies, fmt::format("bodies in {} files", totals_[f].files));
     }
@@ -304,8 +306,9 @@ class Run {
     if (pairs_ > 0) checked("parts", "no two of a building overlap", pairs_, "pairs whose boxes meet");
     if (!told_overlaps_.empty()) {
       constexpr std::size_t kShown = 10;
-      std::string note = fmt::format("{} of parts overlap, and the report says so (PARTS_OVERLAP, OVERLAP_KEPT): ",
-                                     told_overlaps_.size() == 1 ? "1 pair" : fmt::format("{} pairs", told_overlaps_.size()));
+      std::string note =
+          fmt::format("{} of parts overlap, and the report says so (PARTS_OVERLAP, OVERLAP_KEPT): ",
+                      told_overlaps_.size() == 1 ? "1 pair" : fmt::format("{} pairs", told_overlaps_.size()));
       for (std::size_t i = 0; i < std::min(kShown, told_overlaps_.size()); ++i)
         note += (i > 0 ? "; " : "") + told_overlaps_[i];
       if (told_overlaps_.size() > kShown) note += "; …";
@@ -504,15 +507,16 @@ class Run {
       last = p.rank;
       for (std::size_t f = 0; f < kTileFormats; ++f) {
         if (p.off[f] < 0) continue;
-        double& worst = p.moved ? v_.worst_moved
+        double& worst = p.moved                                       ? v_.worst_moved
                         : f == static_cast<std::size_t>(Format::gltf) ? v_.worst_glb
                                                                       : v_.worst_crs;
         worst = std::max(worst, p.off[f]);
         if (p.off[f] > p.tolerance[f])
-          log().add(Check::position, p.file[f], p.object,
-                    fmt::format("the nearest corner is {:.4f} m from where OpenStreetMap has one{}", p.off[f],
-                                p.moved ? fmt::format(", and repair says {:.3f} m at most", p.tolerance[f] - kMillimetre)
-                                        : std::string()));
+          log().add(
+              Check::position, p.file[f], p.object,
+              fmt::format("the nearest corner is {:.4f} m from where OpenStreetMap has one{}", p.off[f],
+                          p.moved ? fmt::format(", and repair says {:.3f} m at most", p.tolerance[f] - kMillimetre)
+                                  : std::string()));
         offsets[f].emplace_back(p.object, p.offset[f]);
       }
       v_.positions_moved += p.moved;
@@ -533,10 +537,11 @@ class Run {
     if (shift.buildings < kLeastBuildings) return;
     constexpr const char* kNames[] = {"GLB", "CityGML", "CityJSON"};
     if (off > kCommonShift + shift.uncertainty)
-      log().add(Check::position, kNames[static_cast<int>(format)], "",
-                fmt::format("the corners of {} buildings lie {:.3f} m east and {:.3f} m north of where OpenStreetMap has "
-                            "them, in the median: the whole model was moved",
-                            shift.buildings, shift.median.x, shift.median.y));
+      log().add(
+          Check::position, kNames[static_cast<int>(format)], "",
+          fmt::format("the corners of {} buildings lie {:.3f} m east and {:.3f} m north of where OpenStreetMap has "
+                      "them, in the median: the whole model was moved",
+                      shift.buildings, shift.median.x, shift.median.y));
   }
 
   const ValidateOptions& o_;

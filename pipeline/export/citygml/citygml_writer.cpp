@@ -12,6 +12,7 @@
 #include "pipeline/export/citygml/codes.h"
 #include "pipeline/export/citygml/geometry_text.h"
 #include "pipeline/export/materials.h"
+#include "pipeline/export/placed_element.h"
 #include "pipeline/export/text.h"
 
 namespace blockrand::export_ {
@@ -37,8 +38,18 @@ double footprint_height(const model::Attributes& attributes) {
   return std::isfinite(z) ? model::snap(z) : 0;
 }
 
+/// The next point of the grid, outwards: elements are turned off it.
+model::Point3 on_grid(const model::Point3& p, bool down) {
+  const auto step = [&](double v) {
+    const double steps = v * model::kGridStepsPerMetre;
+    return (down ? std::floor(steps) : std::ceil(steps)) / model::kGridStepsPerMetre;
+  };
+  return {step(p.x), step(p.y), step(p.z)};
+}
+
 Envelope envelope(const model::Region& region, int lod) {
   Envelope box;
+  PlacedBoxes placed(region);
   const auto add_plan = [&](const model::Polygon& plan, double z) {
     for (const model::Point2& p : plan.outer.points) box.add({p.x, p.y, z});
   };
@@ -51,6 +62,9 @@ Envelope envelope(const model::Region& region, int lod) {
       if (lod >= 2)
         for (const model::Point3& p : part.lod2.vertices) box.add(p);
       if (lod < 3) continue;
+      for (const model::Placement& p : part.lod3.placements)
+        if (const auto* corners = placed.corners(p))
+          for (const model::Point3& c : *corners) box.add(on_grid(c, true)), box.add(on_grid(c, false));
       for (const model::WallInstallation& body : part.lod3.installations)
         for (const model::Point3& p : body.solid.vertices) box.add(p);
       for (const model::RoofInstallation& body : part.lod3.roof_installations)
@@ -365,6 +379,7 @@ class BuildingText {
     std::vector<const model::Placement*> in_opening(lod3.openings.size(), nullptr);
     std::size_t number = 0;
     for (const model::Placement& p : lod3.placements) {
+      if (!has_shape(*region_.elements.at(p.element).element)) continue;
       if (p.opening != model::kNoOpening) {
         in_opening[p.opening] = &p;
         continue;

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "pipeline/export/cityjson/object_text.h"
+#include "pipeline/export/placed_element.h"
 
 namespace blockrand::export_ {
 namespace {
@@ -107,9 +108,26 @@ void append_metadata(std::string& out, const CityJsonOptions& options, const Ext
   out += '}';
 }
 
+/// The room of placed elements, which are turned off the grid: outwards to its next points.
+void add_placed(PlacedBoxes& boxes, const model::Detail& detail, const GridOrigin& origin, Extent& extent) {
+  for (const model::Placement& p : detail.placements) {
+    const auto* corners = boxes.corners(p);
+    if (!corners) continue;
+    extent.add(origin.steps(p.origin));
+    for (const model::Point3& c : *corners) {
+      const auto step = [&](double v, double from) { return (v - from) * model::kGridStepsPerMetre; };
+      const double steps[] = {step(c.x, origin.x), step(c.y, origin.y), step(c.z, origin.z)};
+      const auto whole = [](double v) { return static_cast<std::int64_t>(v); };
+      extent.add({whole(std::floor(steps[0])), whole(std::floor(steps[1])), whole(std::floor(steps[2]))});
+      extent.add({whole(std::ceil(steps[0])), whole(std::ceil(steps[1])), whole(std::ceil(steps[2]))});
+    }
+  }
+}
+
 /// Every vertex that write_cityjson_sequence is about to write; the first line tells where they lie.
 Extent extent_of(const model::Region& region, const CityJsonOptions& options, const GridOrigin& origin) {
   Extent extent;
+  PlacedBoxes placed(region);
   const auto add_solid = [&](const model::Solid& solid) {
     for (const std::uint32_t v : solid.indices) extent.add(origin.steps(solid.vertices[v]));
   };
@@ -126,7 +144,7 @@ Extent extent_of(const model::Region& region, const CityJsonOptions& options, co
       add_solid(part.lod3.solid);
       for (const model::WallInstallation& body : part.lod3.installations) add_solid(body.solid);
       for (const model::RoofInstallation& body : part.lod3.roof_installations) add_solid(body.solid);
-      for (const model::Placement& p : part.lod3.placements) extent.add(origin.steps(p.origin));
+      add_placed(placed, part.lod3, origin, extent);
     }
   }
   return extent;
@@ -198,6 +216,7 @@ struct SingleCityJson::State {
   GridOrigin origin;
   bool started = false, empty = true;
   VertexTable vertices;
+  Extent extent;  ///< of placed elements; vertices come at the end
   MaterialNumbers materials;
   TemplateTable templates{materials};
   std::vector<model::MaterialClass> classes;  ///< of all regions, in order of first appearance
@@ -236,12 +255,16 @@ void SingleCityJson::add(const model::Region& region) {
   const std::vector<std::uint8_t> class_of = s.classes_of(region);
   std::vector<std::uint32_t> templates;
   if (s.options.lod >= 3) templates = s.templates.add(region, class_of);
+  PlacedBoxes placed(region);
   ObjectText text(region, s.options, s.origin, s.vertices, s.materials, templates);
   for (const model::Building& building : region.buildings) {
     if (!is_written(building)) continue;
     if (!s.empty) s.out += ",\n";
     s.empty = false;
     text.append(s.out, building, class_of);
+    for (const model::BuildingPart& part : building.parts)
+      if (s.options.lod >= 3 && part.lod >= 3 && !part.lod3.solid.empty())
+        add_placed(placed, part.lod3, s.origin, s.extent);
     s.flush(kPiece);
   }
 }
@@ -249,7 +272,7 @@ void SingleCityJson::add(const model::Region& region) {
 void SingleCityJson::finish() {
   State& s = *state_;
   s.out += "},\n\"vertices\":[";
-  Extent extent;
+  Extent extent = s.extent;
   for (std::uint32_t i = 0; i < s.vertices.size(); ++i) {
     const GridPoint p = s.vertices[i];
     extent.add(p);

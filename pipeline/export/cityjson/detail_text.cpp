@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "pipeline/export/cityjson/object_text.h"
+#include "pipeline/export/placed_element.h"
 
 namespace blockrand::export_ {
 namespace {
@@ -18,6 +19,7 @@ struct Kind {
 std::vector<Kind> kinds_of(const model::Region& region, const model::Detail& detail) {
   std::vector<Kind> out;
   for (const model::Placement& p : detail.placements) {
+    if (!has_shape(*region.elements.at(p.element).element)) continue;
     const std::string_view name = region.elements.at(p.element).element->kind;
     auto kind = std::find_if(out.begin(), out.end(), [&](const Kind& k) { return k.name == name; });
     if (kind == out.end()) kind = out.insert(out.end(), {name, {}});
@@ -27,10 +29,11 @@ std::vector<Kind> kinds_of(const model::Region& region, const model::Detail& det
 }
 
 /// As in CityGML, where elements on walls are counted before them.
-std::size_t first_body_number(const model::Detail& detail) {
+std::size_t first_body_number(const model::Region& region, const model::Detail& detail) {
   return static_cast<std::size_t>(
-      std::count_if(detail.placements.begin(), detail.placements.end(),
-                    [](const model::Placement& p) { return p.opening == model::kNoOpening; }));
+      std::count_if(detail.placements.begin(), detail.placements.end(), [&](const model::Placement& p) {
+        return p.opening == model::kNoOpening && has_shape(*region.elements.at(p.element).element);
+      }));
 }
 
 std::string body_id(const std::string& id, std::size_t number) {
@@ -122,7 +125,7 @@ std::vector<std::string> ObjectText::installation_ids(const model::BuildingPart&
   std::vector<std::string> out;
   if (!has_detail(part)) return out;
   for (const Kind& kind : kinds_of(region_, part.lod3)) out.push_back(id + "_" + std::string(kind.name));
-  const std::size_t first = first_body_number(part.lod3),
+  const std::size_t first = first_body_number(region_, part.lod3),
                     count = part.lod3.installations.size() + part.lod3.roof_installations.size();
   for (std::size_t i = 0; i < count; ++i) out.push_back(body_id(id, first + i));
   return out;
@@ -139,7 +142,7 @@ void ObjectText::installations(const model::BuildingPart& part, const std::strin
     }
     out += "]}";
   }
-  std::size_t number = first_body_number(part.lod3);
+  std::size_t number = first_body_number(region_, part.lod3);
   const auto body = [&](const model::Solid& solid, std::string_view kind) {
     open_installation(body_id(id, number++), id, kind);
     out += "{\"type\":\"Solid\",\"lod\":\"3\"";

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "pipeline/export/placed_element.h"
 #include "pipeline/export/text.h"
 
 namespace blockrand::export_ {
@@ -18,7 +19,8 @@ std::vector<std::uint32_t> TemplateTable::add(const model::Region& region, const
     for (const model::BuildingPart& part : building.parts) {
       if (part.lod < 3 || part.lod3.solid.empty()) continue;
       for (const model::Placement& p : part.lod3.placements)
-        if (std::uint32_t& n = out[p.element]; n == kNoTemplate) n = number(region.elements[p.element], class_of);
+        if (std::uint32_t& n = out[p.element]; n == kNoTemplate && has_shape(*region.elements.at(p.element).element))
+          n = number(region.elements[p.element], class_of);
     }
   }
   return out;

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "pipeline/export/placed_element.h"
+
 namespace blockrand::export_ {
 namespace {
 
@@ -25,7 +27,8 @@ void add_detail(const model::Region& region, const model::Detail& detail, Detail
     mouths += o.kind == model::OpeningKind::passage;
   }
   counts.passages += mouths / 2;
-  for (const model::Placement& p : detail.placements) ++counts.elements[region.elements.at(p.element).element->kind];
+  for (const model::Placement& p : detail.placements)
+    if (const model::Element& e = *region.elements.at(p.element).element; has_shape(e)) ++counts.elements[e.kind];
   for (const model::WallInstallation& i : detail.installations) ++counts.installations[i.kind];
   for (const model::RoofInstallation& i : detail.roof_installations) ++counts.installations[model::name(i.kind)];
 }

@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "pipeline/export/placed_element.h"
+
 namespace blockrand::export_ {
 namespace {
 
@@ -96,6 +98,7 @@ std::vector<InstanceGroup> element_instances(const model::Region& region, const 
     for (const model::BuildingPart& part : building.parts) {
       if (part.lod >= 3)
         for (const model::Placement& p : part.lod3.placements) {
+          if (!has_shape(*region.elements.at(p.element).element)) continue;
           source.push_back(p.origin);
           source.push_back({p.origin.x + p.along.x, p.origin.y + p.along.y, p.origin.z});
           element_and_feature.emplace_back(p.element, feature);

@@ -46,7 +46,8 @@ struct InstanceGroup {
   std::vector<ElementInstance> instances;
 };
 
-/// The placements of parts that were built at LoD3, by element; features as build_mesh() counts them.
+/// The placements of elements with a shape, of parts that were built at LoD3, by element; features as build_mesh()
+/// counts them.
 std::vector<InstanceGroup> element_instances(const model::Region& region, const Frame& frame);
 
 }  // namespace blockrand::export_

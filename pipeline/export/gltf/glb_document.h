@@ -82,7 +82,6 @@ class GlbDocument {
   int add_node(std::string json);
   /// A node that the scene holds. Without any there is no scene: an empty one is not allowed.
   void add_root(int node) { roots_.push_back(node); }
-  int node_count() const { return static_cast<int>(nodes_.size()); }
 
   void use(const std::string& extension, bool required);
   nlohmann::json& asset() { return *asset_; }

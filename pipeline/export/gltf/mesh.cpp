@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "pipeline/export/gltf/element_geometry.h"
+#include "pipeline/export/placed_element.h"
 #include "pipeline/geometry/solid_builder.h"
 #include "pipeline/geometry/triangulate.h"
 
@@ -25,12 +26,13 @@ struct SolidRef {
 };
 
 /// Faces of a LoD3 solid that are left to elements.
-std::vector<bool> hidden_faces(const model::Detail& detail, bool bake) {
+std::vector<bool> hidden_faces(const model::Region& region, const model::Detail& detail, bool bake) {
   std::vector<bool> hidden(detail.solid.faces.size(), false);
   for (const model::Placement& p : detail.placements) {
     if (p.opening == model::kNoOpening) continue;
     const model::Opening& o = detail.openings[p.opening];
     if (o.kind == model::OpeningKind::passage) continue;
+    if (!has_shape(*region.elements.at(p.element).element)) continue;  // nothing would close the wall
     hidden[o.polygon] = true;
     for (std::uint32_t i = 0; i < o.reveal_count && !bake; ++i) hidden[o.first_reveal + i] = true;
   }
@@ -259,7 +261,7 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
       if (solid) {
         const bool detailed = solid == &part.lod3.solid;
         solids.push_back({solid, triangles, feature, static_cast<std::uint32_t>(source.size()),
-                          detailed ? hidden_faces(part.lod3, bake) : std::vector<bool>{}});
+                          detailed ? hidden_faces(region, part.lod3, bake) : std::vector<bool>{}});
         source.insert(source.end(), solid->vertices.begin(), solid->vertices.end());
         if (detailed) {
           const auto add_body = [&](const auto& body) {

@@ -10,10 +10,13 @@ namespace {
 
 constexpr double kMostSteps = 32767;
 
-/// The finest steps in which the geometry fits 16 bits.
+/// The finest steps in which the geometry fits 16 bits; 0 where it fits none.
 double steps_for(const ElementGeometry& g) {
   const double reach = std::max({std::fabs(g.min.x), std::fabs(g.min.y), std::fabs(g.min.z), std::fabs(g.max.x),
                                  std::fabs(g.max.y), std::fabs(g.max.z)});
+  for (const model::Point3& p : {g.min, g.max})  // max() passes over what is no number
+    for (const double v : {p.x, p.y, p.z})
+      if (!std::isfinite(v)) return 0;
   double steps = kGlbStepsPerMetre;
   while (reach * steps > kMostSteps) steps /= 2;
   return steps;
@@ -77,6 +80,10 @@ ElementForm StoredElements::form(const model::Element& element) {
     geometry.max.x = 1;
   }
   const double steps = steps_for(geometry);
+  if (!(steps > 0) || std::any_of(geometry.parts.begin(), geometry.parts.end(), [](const auto& part) {
+        return part.vertices.size() > ElementGeometry::kMostVertices;
+      }))
+    return form;
   form.stored = store(std::move(geometry), steps, half > 0);
   return form;
 }

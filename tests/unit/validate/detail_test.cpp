@@ -165,6 +165,52 @@ TEST(Detail, ReferencesToNowhere) {
               Contains(HasSubstr("is not in the solid of LoD3")));
 }
 
+TEST(Detail, ReferencesOfTheSolidLeftOut) {
+  std::string text = sound();
+  const std::size_t solid = text.find("<bldg:lod3Solid>");
+  std::size_t at = solid;
+  for (int i = 0; i < 8; ++i) at = text.find("<gml:surfaceMember xlink:href", at + 1);
+  for (;;) {
+    const std::size_t next = text.find("<gml:surfaceMember xlink:href", at);
+    if (next > text.find("</bldg:lod3Solid>", solid)) break;
+    text.erase(next, text.find("/>", next) + 2 - next);
+  }
+  EXPECT_THAT(found(text), Contains(HasSubstr("is not in the solid of LoD3")));
+  const CityGml gml = read_citygml(text, "a.gml");
+  const ReadBody& body = gml.contents.bodies.at(0);
+  for (const ReadOpening& o : body.detail.openings) {
+    EXPECT_LT(o.polygon, body.solids.at(2).polygons.size());
+    for (const std::size_t r : o.reveals) EXPECT_LT(r, body.solids.at(2).polygons.size());
+  }
+}
+
+TEST(Detail, APartWithinAWindow) {
+  std::string text = sound();
+  const std::size_t window = text.find("<bldg:Window"), inside = text.find("<bldg:lod3MultiSurface>", window);
+  text.insert(inside, "<bldg:BuildingPart gml:id=\"w100.w9\">");
+  const std::size_t end = text.find("</bldg:Window>", inside);
+  text.insert(end, "</bldg:BuildingPart>");
+  EXPECT_THAT(found(text), testing::Not(IsEmpty()));
+}
+
+TEST(Detail, AnElementOutsideOfTheEnvelope) {
+  for (const char* corner : {"gml:lowerCorner", "gml:upperCorner"}) {
+    const double inwards = std::string(corner) == "gml:lowerCorner" ? 0.02 : -0.02;
+    EXPECT_THAT(found(with_numbers(sound(), corner, "", [&](auto& n) { n[1] += inwards; })),
+                Contains(HasSubstr("an element reaches out of the envelope")));
+  }
+}
+
+/// The first windows are holes: their element has no face.
+export_::test::SampleRegion region_with_holes() {
+  auto s = region_with_chimney();
+  auto hole = std::make_shared<model::Element>(*s.region().elements[0].element);
+  hole->kind = "reveal";
+  hole->mesh = {};
+  s.region().elements[0].element = hole;
+  return s;
+}
+
 export_::CityJsonOptions json_options() {
   export_::CityJsonOptions o;
   o.lod = 3;
@@ -203,6 +249,19 @@ TEST(DetailCityJson, SaysTheSameAsCityGml) {
   }
   const auto header = nlohmann::json::parse(whole);
   EXPECT_EQ(header["geometry-templates"]["templates"].size(), 4u) << "once each: lamp and window look alike";
+}
+
+TEST(DetailCityJson, ElementsWithoutFacesAreNotWritten) {
+  const auto s = region_with_holes();
+  export_::CityGmlOptions o;
+  o.lod = 3;
+  o.srs_name = "urn:ogc:def:crs:EPSG::25833";
+  const CityGml gml = read_citygml(export_::write_citygml(s.region(), o), "a.gml");
+  for (const Finding& f : gml.contents.findings) ADD_FAILURE() << f.object << ": " << f.detail;
+  const Contents json = read_cityjson(export_::write_cityjson_sequence(s.region(), json_options()), "a.city.jsonl");
+  for (const Finding& f : json.findings) ADD_FAILURE() << f.object << ": " << f.detail;
+  EXPECT_EQ(detail_difference(gml.contents.bodies.at(0), json.bodies.at(0)), "");
+  EXPECT_EQ(json.bodies.at(0).detail.placements.size(), 2u) << "door and lamp";
 }
 
 TEST(DetailCityJson, LowerLevelsHaveNoneOfIt) {
@@ -251,8 +310,23 @@ TEST(DetailCityJson, DamageIsFound) {
   EXPECT_THAT(
       found_in_json([](auto& h, auto&) { h["geometry-templates"]["templates"][0]["boundaries"][0][0][0] = 9999; }),
       Contains(HasSubstr("names a vertex that does not exist")));
+  EXPECT_THAT(found_in_json([](auto& h, auto&) {
+                auto& south = h["metadata"]["geographicalExtent"][1];
+                south = south.template get<double>() + 0.02;
+              }),
+              Contains(HasSubstr("an element reaches out of geographicalExtent")));
   EXPECT_THAT(found_in_json([](auto&, auto& f) { f["CityObjects"].erase("w100_i1"); }),
               Contains(HasSubstr("its child w100_i1 is not in the file")));
+}
+
+TEST(DetailCityJson, TwoSolidsLeaveNoOpenings) {
+  const auto twice = [](auto&, auto& f) {
+    auto& geometry = f["CityObjects"]["w100"]["geometry"];
+    auto first = geometry[1];
+    first["lod"] = "3";
+    geometry.insert(geometry.begin() + 3, first);
+  };
+  EXPECT_THAT(found_in_json(twice), Contains(HasSubstr("out of the order of their LoD")));
 }
 
 }  // namespace

@@ -2,9 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "pipeline/export/gltf/glb_writer.h"
 #include "pipeline/validate/glb.h"
@@ -171,6 +175,66 @@ TEST_F(GlbDetail, AnElementThatStandsElsewhereLeavesAHole) {
         std::memcpy(&b[place_of(j, instancing_of(j)["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"])], &far, 4);
       },
       Check::glb_rule, "is open at");
+}
+
+TEST_F(GlbDetail, ElementsWithoutAShapeLeaveTheirOpeningsClosed) {
+  for (const bool endless : {false, true}) {
+    export_::test::SampleRegion s = export_::test::facade_region();
+    auto hole = std::make_shared<model::Element>(*s.region().elements[0].element);
+    if (endless)
+      for (model::Point3& p : hole->mesh.vertices) p.x = std::numeric_limits<double>::infinity();
+    else
+      hole->mesh = {};
+    s.region().elements[0].element = hole;
+    for (const Instancing how : {Instancing::ext, Instancing::nodes})
+      EXPECT_EQ(read(export_::write_glb(s.region(), options(how)).bytes).text(), "");
+  }
+}
+
+TEST_F(GlbDetail, ElementsAreComparedByPlaceTurnAndColour) {
+  // The file's own places stand for another format's.
+  const Glb glb = read_glb(ext_, "a.glb");
+  Contents contents;
+  for (std::size_t row = 0; row < glb.contents.bodies.size(); ++row) {
+    ReadBody body;
+    body.id = glb.contents.bodies[row].id;
+    for (const GlbPlace& place : glb.places) {
+      if (place.row != row) continue;
+      const double length = std::hypot(place.matrix[0], place.matrix[2]);
+      body.detail.placements.push_back(
+          {place.element, placed(place, {0, 0, 0}), {place.matrix[0] / length, -place.matrix[2] / length}});
+    }
+    contents.bodies.push_back(std::move(body));
+  }
+  for (std::size_t e = 0; e < glb.elements.size(); ++e) {
+    ReadElement& element = contents.elements[e];
+    std::set<std::string> colours;
+    for (const GlbTriangle& t : glb.elements[e].triangles) {
+      char text[8];
+      std::snprintf(text, sizeof(text), "#%02x%02x%02x", t.colour[0], t.colour[1], t.colour[2]);
+      colours.insert(text);
+    }
+    element.colours.assign(colours.begin(), colours.end());
+  }
+  const std::string name = "a.gml";
+  const auto compared = [&](const Contents& other) {
+    Read out;
+    compare_places(
+        {other, name}, glb, "a.glb",
+        [](std::span<const model::Point3> in, std::span<model::Point3> to) {
+          std::copy(in.begin(), in.end(), to.begin());
+        },
+        0.01, out.findings);
+    return out;
+  };
+  EXPECT_EQ(compared(contents).text(), "");
+  Contents turned = contents;
+  model::Point2& along = turned.bodies[0].detail.placements[0].along;
+  along = {-along.x, -along.y};
+  EXPECT_TRUE(compared(turned).found(Check::geometry_differs, "turned otherwise")) << compared(turned).text();
+  Contents other = contents;
+  for (auto& [number, element] : other.elements) element.colours = {"#123456"};
+  EXPECT_TRUE(compared(other).found(Check::colour_differs, "which it has not")) << compared(other).text();
 }
 
 TEST_F(GlbDetail, WrongFeatureIds) {
