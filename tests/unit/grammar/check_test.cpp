@@ -129,12 +129,12 @@ TEST(Check, Styles) {
               ElementsAre("4:1 unknown_style → Green"));
   EXPECT_THAT(told("Lot --> X.\nstyle Green extends Default\nLot --> Y.\nstyle Blue extends Green\nLot --> Z."),
               IsEmpty());
-  EXPECT_THAT(told("attr h = 3\nLot --> X.\nstyle Green\nattr h = \"high\""), ElementsAre("4:1 style_type"));
+  EXPECT_THAT(told("attr h = 3\nLot --> X.\nstyle Green\nattr h = \"high\""), ElementsAre("4:6 style_type"));
   EXPECT_THAT(told("attr h = 3\nLot --> X.\nstyle A\nattr w = true\nstyle B extends A\nattr h = 4\nattr w = 1"),
-              ElementsAre("7:1 style_type"));
+              ElementsAre("7:6 style_type"));
   EXPECT_THAT(told("attr h = 3\nLot --> X.\nstyle A\nattr w = true\nstyle B\nattr w = 1\nattr h = rand(3)"), IsEmpty())
       << "styles side by side";
-  EXPECT_THAT(told("Lot --> X.\nstyle Green\nstart Lot --> Y."), ElementsAre("3:1 style_section"));
+  EXPECT_THAT(told("Lot --> X.\nstyle Green\nstart Lot --> Y."), ElementsAre("3:7 style_section"));
   EXPECT_THAT(told("Lot --> X.\nstyle Green\n@StartRule\nLot --> Y."), ElementsAre("3:1 style_section"));
   EXPECT_THAT(told("attr h = 3\nLot --> X.\nstyle A extends B\nattr h = 1\nstyle B extends A"), IsEmpty());
 }
