@@ -98,7 +98,7 @@ int run_grammar_run(const settings::Settings& s) {
   std::size_t errors = print_diagnostics(program.diagnostics, program, false);
   if (program.modules.empty()) return kInvalidInput;
   grammar::DeriveOptions options;
-  options.seed = s.build.seed;
+  options.seed = options.building_seed = options.row_seed = s.build.seed;
   options.start_rule = s.start_rule;
   options.keep_tree = s.rule_tree;
   const grammar::FileAccess files = rule_file_access(s, file);

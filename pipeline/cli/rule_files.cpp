@@ -10,6 +10,7 @@
 #include "pipeline/generate/facade_context.h"
 #include "pipeline/generate/grammar_book.h"
 #include "styles/grammar/asset_files.h"
+#include "styles/grammar/pattern.h"
 
 namespace blockrand::cli {
 
@@ -76,31 +77,20 @@ std::optional<fs::path> find_file(const std::vector<fs::path>& folders, const st
   return std::nullopt;
 }
 
-/// `*` any letters, `?` one letter; "$…" is a regular expression (cga.md §3.2). Nothing where it is none.
-std::optional<std::regex> pattern_of(const std::string& query) {
-  try {
-    if (query.starts_with('$')) return std::regex(query.substr(1), std::regex::icase);
-    std::string text;
-    for (const char c : query) {
-      if (c == '*')
-        text += ".*";
-      else if (c == '?')
-        text += '.';
-      else if (std::string_view("\\^$.|+()[]{}").find(c) != std::string_view::npos)
-        text += std::string("\\") + c;
-      else
-        text += c;
-    }
-    return std::regex(text, std::regex::icase);
-  } catch (const std::regex_error&) {
-    return std::nullopt;
+/// The files that a query names: `*` any letters, `?` one letter; "$…" is a regular expression (cga.md §3.2).
+tl::expected<std::vector<std::string>, std::string> search(const std::vector<fs::path>& folders,
+                                                           const std::string& query) {
+  std::optional<std::regex> pattern;
+  if (query.starts_with('$')) {
+    auto read = grammar::read_pattern(query.substr(1), /*ignore_case=*/true);
+    if (!read) return tl::unexpected(read.error());
+    pattern = std::move(*read);
   }
-}
-
-std::vector<std::string> search(const std::vector<fs::path>& folders, const std::string& query) {
-  const auto pattern = pattern_of(query);
+  const auto fits = [&](const std::string& name) {
+    if (!pattern) return grammar::matches_wildcards(name, query);
+    return name.size() <= grammar::kLongestForPattern && std::regex_match(name, *pattern);
+  };
   std::vector<std::string> out;
-  if (!pattern) return out;
   std::size_t seen = 0;
   for (const fs::path& folder : folders) {
     std::error_code error;
@@ -110,8 +100,7 @@ std::vector<std::string> search(const std::vector<fs::path>& folders, const std:
       if (!entry->is_regular_file(error)) continue;
       const std::string name = entry->path().lexically_relative(folder).generic_string();
       // A query without folders is a file's name, wherever it lies.
-      if (std::regex_match(name, *pattern) || std::regex_match(entry->path().filename().string(), *pattern))
-        found.push_back(name);
+      if (fits(name) || fits(entry->path().filename().string())) found.push_back(name);
     }
     std::sort(found.begin(), found.end());
     for (std::string& name : found)

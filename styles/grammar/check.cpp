@@ -50,16 +50,36 @@ void check_extension(const Checked& c, const Call& call, std::string_view name, 
 }
 
 /// `building.storys`: a value that the program does not give.
+void tell_not_given(const Checked& c, Location location, std::string_view name, const CheckOptions& options) {
+  const std::vector<std::string_view> known(options.context.begin(), options.context.end());
+  c.tell(Severity::error, "unknown_context", location,
+         "the program gives no value of this name (docs/grammar_attributes.md)", name, nearest_name(name, known));
+}
+bool is_given(std::string_view name, const CheckOptions& options) {
+  return std::find(options.context.begin(), options.context.end(), name) != options.context.end();
+}
+bool has_engine_prefix(std::string_view name) {
+  const std::size_t dot = name.find('.');
+  return dot != std::string_view::npos && is_engine_prefix(name.substr(0, dot));
+}
+
 void check_context(const Checked& c, const Expression& e, const CheckOptions& options) {
   const std::string_view name = c.unit.name(e.name);
-  const std::size_t dot = name.find('.');
-  if (c.module.targets[e.use].kind != TargetKind::unknown || dot == std::string_view::npos ||
-      !is_engine_prefix(name.substr(0, dot)))
+  if (c.module.targets[e.use].kind != TargetKind::unknown || !has_engine_prefix(name) || is_given(name, options))
     return;
-  if (std::find(options.context.begin(), options.context.end(), name) != options.context.end()) return;
-  const std::vector<std::string_view> known(options.context.begin(), options.context.end());
-  c.tell(Severity::error, "unknown_context", e.location,
-         "the program gives no value of this name (docs/grammar_attributes.md)", name, nearest_name(name, known));
+  tell_not_given(c, e.location, name, options);
+}
+
+/// The same where a rule is called: it makes a leaf, whether the program gives such a value or not.
+void check_context(const Checked& c, const Call& call, const CheckOptions& options) {
+  const std::string_view name = c.unit.name(call.name);
+  if (call.terminal || c.module.targets[call.use].kind != TargetKind::leaf || !has_engine_prefix(name)) return;
+  for (const auto& [import, module] : c.module.imports)
+    if (import == name.substr(0, name.find('.'))) return;
+  if (options.context.empty() || is_given(name, options))
+    c.tell(Severity::warning, "no_rule", call.location, "this is a value, no rule: the shape is a leaf", name);
+  else
+    tell_not_given(c, call.location, name, options);
 }
 
 constexpr std::string_view kConsistencies[] = {"building", "row"};
@@ -81,6 +101,7 @@ void check_calls(const Checked& c, const CheckOptions& options) {
     const Target& target = c.module.targets[call.use];
     const std::string_view name = c.unit.name(call.name);
     if (target.kind == TargetKind::extension && !options.extensions.empty()) check_extension(c, call, name, options);
+    check_context(c, call, options);
     if (target.kind != TargetKind::operation) continue;
     status(target.index, call.location);
     const BuiltIn& operation = built_ins()[target.index];
@@ -133,6 +154,7 @@ std::vector<Diagnostic> check(const Program& program, const CheckOptions& option
     detail::check_sizes(c);
     detail::check_types(c);
     detail::check_calls(c, options);
+    detail::check_styles(c);
   }
   detail::check_overrides(program, told);
   detail::check_rules(program, told);

@@ -138,6 +138,21 @@ void Run::keep_occluder(const Shape& shape, std::uint32_t lineage, std::string l
   recorded_->occluders.push_back(std::move(made));
 }
 
+namespace {
+
+/// Whether a rule of the start file is missing since it could not be read.
+bool rule_unread(const Program& program) {
+  const Unit& unit = program.unit(0);
+  for (const Declaration& declaration : unit.declarations)
+    if (declaration.broken && declaration.kind == DeclarationKind::rule) return true;
+  // Not even its head: "Lot -> X".
+  for (const Diagnostic& d : program.diagnostics)
+    if (d.code == "syntax" && d.severity == Severity::error && d.location.file == unit.file) return true;
+  return false;
+}
+
+}  // namespace
+
 Derivation Run::go() {
   const char here = 0;
   stack_start_ = &here;
@@ -150,6 +165,8 @@ Derivation Run::go() {
   if (start != kNone) start_name_ = program_.qualified_name(program_.definitions[start]);
   evaluate_attributes();
   if (start == kNone) {
+    // Where a rule could not be read, loading has told why there is none.
+    if (options_.start_rule.empty() && rule_unread(program_)) return std::move(out_);
     tell(Severity::error, "no_start_rule", {},
          options_.start_rule.empty() ? "there is no rule to begin with"
                                      : "there is no rule of this name without parameters",

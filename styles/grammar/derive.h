@@ -24,9 +24,11 @@ struct DeriveLimits {
   std::uint32_t depth = 1024;           ///< from the start rule down
   std::uint32_t function_depth = 1024;  ///< of functions that call functions
   std::size_t pieces = 1000000;         ///< of blocks, with symbols or without
-  std::size_t calls = 10000000;         ///< of the file's own functions, so that none runs for hours
-  std::size_t diagnostics = 1000;       ///< told; further ones are counted only
-  std::size_t faces = 100000;           ///< of one shape: operations on more are left out
+  /// Calls of the file's own functions, and tests of a surface against another for context queries: so that none runs
+  /// for hours.
+  std::size_t calls = 10000000;
+  std::size_t diagnostics = 1000;  ///< told; further ones are counted only
+  std::size_t faces = 100000;      ///< of one shape: operations on more are left out
 };
 
 /// Read-only values about the building that the shape belongs to, by name: "building.storeys", "edge.kind",

@@ -101,8 +101,11 @@ void Run::execute_symbol(const Call& call, const Target& found, Work& work, Plac
                              std::make_move_iterator(locals_.end()));
     locals_.resize(first);
   } else if (!call.terminal && told_leaves_.insert((std::uint64_t{place.module} << 32) | call.use).second) {
-    tell(Severity::warning, "no_rule", call.location, "there is no rule of this name; the shape is a leaf",
-         child.symbol, std::string(nearest_built_in(NameKind::operation, child.symbol)));
+    // Loading has told of these, but not of values that the program gives: it does not know which there are.
+    const bool value = is_engine_prefix(std::string_view(child.symbol).substr(0, child.symbol.find('.')));
+    tell(Severity::warning, value ? "undefined_symbol" : "no_rule", call.location,
+         "there is no rule of this name; the shape is a leaf", child.symbol,
+         std::string(nearest_built_in(NameKind::operation, child.symbol)));
   }
   if (child.definition != kNone && child.depth > options_.limits.depth) {
     tell(Severity::error, "depth", call.location,

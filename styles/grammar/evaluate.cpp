@@ -1,6 +1,7 @@
 // Expressions: names, operators, cases, chances, arrays (cga.md §1.2, §1.4).
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "pipeline/base/random.h"
 #include "styles/grammar/arrays.h"
@@ -342,8 +343,10 @@ Value Run::call_function(const Expression& e, const Target& found, Place& place)
 }
 
 void Run::tell_too_many_calls(const Location& location, const std::string& name) {
-  tell(Severity::error, "too_many_calls", {location.file, 0, 0},
-       "functions were called more than " + std::to_string(options_.limits.calls) + " times; 0 is taken from here on",
+  if (std::exchange(told_calls_, true)) return;
+  tell(Severity::error, "too_many_calls", location,
+       "functions were called, or shapes compared, more than " + std::to_string(options_.limits.calls) +
+           " times; 0 is taken from here on",
        name);
 }
 

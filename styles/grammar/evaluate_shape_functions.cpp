@@ -1,4 +1,5 @@
 // Functions that ask about the current shape, its components, its surroundings and its place in the tree (cga.md §3.2).
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -131,22 +132,34 @@ Value Run::context_query(const Expression& e, Place& place) {
     return std::equal(way.begin(), way.begin() + static_cast<std::ptrdiff_t>(shared), other.lineage.begin());
   };
   const bool by_distance = name == "minimumDistance", by_count = name == "contextCount";
-  const Mesh mesh = by_distance || by_count ? Mesh() : mesh_in_world(*place.shape);
+  const Box box = by_distance || by_count ? Box() : box_in_world(*place.shape);
+  std::optional<Mesh> mesh;  // made for the first shape that comes near
   const auto corners = scope_corners(*place.shape);
   double nearest = std::numeric_limits<double>::infinity();
   double count = 0;
+  bool found = false;
+  Effort effort{options_.limits.calls - std::min(calls_, options_.limits.calls)};
   for (const Occluder& other : known_->occluders) {
+    if (found || !effort.take(1)) break;
     if ((!label.empty() && other.label != label) || related(other)) continue;
-    if (by_count)
+    if (by_count) {
       ++count;
-    else if (by_distance)
+    } else if (by_distance) {
       nearest = std::min(nearest, box_distance(corners, other.scope_corners));
-    else if (name == "inside"     ? is_inside(mesh, other)
-             : name == "overlaps" ? overlaps(mesh, other)
-                                  : touches(mesh, other))
-      return true;
+    } else if (boxes_meet(box, other.box)) {
+      if (!mesh) mesh = mesh_in_world(*place.shape);
+      found = name == "inside"     ? is_inside(*mesh, other, effort)
+              : name == "overlaps" ? overlaps(*mesh, other, effort)
+                                   : touches(*mesh, other, effort);
+    }
   }
-  return by_count ? Value(count) : by_distance ? Value(nearest) : Value(false);
+  calls_ = options_.limits.calls - effort.left;
+  if (effort.spent) {
+    calls_ = options_.limits.calls + 1;
+    tell_too_many_calls(e.location, std::string(name));
+    return context_default(e, place);
+  }
+  return by_count ? Value(count) : by_distance ? Value(nearest) : Value(found);
 }
 
 /// As if nothing stood near (cga.md §4.6, first pass).

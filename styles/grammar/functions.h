@@ -31,7 +31,8 @@ struct AssetBox {
 /// cga.md §2.2 holds.
 struct FileAccess {
   std::function<bool(const std::string& path)> exists;
-  std::function<std::vector<std::string>(const std::string& query)> search;
+  /// The error says why the query is none.
+  std::function<tl::expected<std::vector<std::string>, std::string>(const std::string& query)> search;
   std::function<std::optional<std::string>(const std::string& path)> read;
   std::function<std::optional<AssetBox>(const std::string& path)> asset;
   std::function<std::optional<Vector2>(const std::string& path)> image;  ///< pixels

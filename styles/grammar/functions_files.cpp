@@ -11,10 +11,10 @@ namespace {
 constexpr std::string_view kPlaceholder = "placeholder";
 
 /// What a query finds; without a finding the one placeholder.
-std::vector<std::string> search(const std::string& query, const FunctionContext& context) {
-  std::vector<std::string> found;
+tl::expected<std::vector<std::string>, std::string> search(const std::string& query, const FunctionContext& context) {
+  tl::expected<std::vector<std::string>, std::string> found;
   if (context.files != nullptr && context.files->search) found = context.files->search(query);
-  if (found.empty()) found.emplace_back(kPlaceholder);
+  if (found && found->empty()) found->emplace_back(kPlaceholder);
   return found;
 }
 /// The first argument that is a text: the query of asset functions, wherever it stands.
@@ -49,21 +49,27 @@ FunctionResult exists(Arguments a, FunctionContext& context) {
   return Value(context.files != nullptr && context.files->exists && context.files->exists(text(a[0])));
 }
 FunctionResult found_list(Arguments a, FunctionContext& context) {
+  const auto found = search(query_of(a), context);
+  if (!found) return failure(found.error());
   std::string out;
-  for (const std::string& path : search(query_of(a), context)) out.append(path).push_back(';');
+  for (const std::string& path : *found) out.append(path).push_back(';');
   return Value(std::move(out));
 }
 FunctionResult found_array(Arguments a, FunctionContext& context) {
   auto found = search(query_of(a), context);
-  const std::size_t count = found.size();
-  return Value(TextArray{std::move(found), count});
+  if (!found) return failure(found.error());
+  const std::size_t count = found->size();
+  return Value(TextArray{std::move(*found), count});
 }
 FunctionResult found_any(Arguments a, FunctionContext& context) {
   const auto found = search(query_of(a), context);
-  return Value(found[static_cast<std::size_t>(context.draw() * static_cast<double>(found.size()))]);
+  if (!found) return failure(found.error());
+  return Value((*found)[static_cast<std::size_t>(context.draw() * static_cast<double>(found->size()))]);
 }
 FunctionResult found_first(Arguments a, FunctionContext& context) {
-  return Value(search(query_of(a), context).front());
+  const auto found = search(query_of(a), context);
+  if (!found) return failure(found.error());
+  return Value(found->front());
 }
 
 std::string contents(const std::string& path, FunctionContext& context) {

@@ -3,14 +3,11 @@
 #include <regex>
 
 #include "styles/grammar/function_groups.h"
+#include "styles/grammar/pattern.h"
 #include "styles/grammar/value_text.h"
 
 namespace blockrand::grammar {
 namespace {
-
-/// Longest text that a regular expression is tried on: a search that finds nothing takes its square, some seconds here.
-constexpr std::size_t kLongestForPattern = 10000;
-constexpr std::size_t kLongestPattern = 200;
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 bool plain(std::string_view s) {
@@ -96,15 +93,11 @@ FunctionResult replace(Arguments a, FunctionContext&) {
 }
 
 tl::expected<std::vector<std::string>, std::string> split_by_pattern(const std::string& s, const std::string& pattern) {
-  if (pattern.size() > kLongestPattern || s.size() > kLongestForPattern)
-    return failure("text or pattern is too long for a split by a pattern");
-  auto flags = std::regex_constants::ECMAScript;
-#ifdef __GLIBCXX__
-  // The matcher that needs no stack and no exponential time.
-  flags |= std::regex_constants::__polynomial;
-#endif
+  if (s.size() > kLongestForPattern) return failure("the text is too long for a split by a pattern");
+  const auto read = read_pattern(pattern);
+  if (!read) return failure(read.error());
+  const std::regex& by = *read;
   try {
-    const std::regex by(pattern, flags);
     std::vector<std::string> out;
     std::size_t done = 0, look = 0;
     std::cmatch found;

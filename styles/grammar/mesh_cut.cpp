@@ -105,6 +105,9 @@ class Cutter {
         const std::int32_t e = (*loop)[i].edge, best = (*loop)[first].edge;
         if (e >= 0 && (best < 0 || e < best)) first = i;
       }
+      // Where the first edge is cut away, the edge of the cut stands for it: upper pieces of walls begin below.
+      const std::size_t before = (first + loop->size() - 1) % loop->size();
+      if ((*loop)[first].edge > 0 && (*loop)[before].edge < 0) first = before;
       Loop corners;
       corners.reserve(loop->size());
       for (std::size_t i = 0; i < loop->size(); ++i) {

@@ -151,6 +151,7 @@ class Resolver {
     }
     const std::size_t dot = name.find('.');
     if (dot != std::string_view::npos && scope_.imports.find(name.substr(0, dot)) == scope_.imports.end()) {
+      if (is_engine_prefix(name.substr(0, dot))) return;  // check() knows what the program gives
       tell(Severity::warning, "unknown_import", call.location, "there is no import of this name: the shape is a leaf",
            name, nearest_of(scope_.imports, name.substr(0, dot)));
       return;

@@ -58,7 +58,8 @@ void read_clause(std::string_view text, RuleTest& test) {
   const bool single = clause.size() == 2;
   if (kind == "lot" && single && read_lot(clause[1], test.width, test.depth)) return;
   if (kind == "seed" && single && read_number(clause[1], number)) {
-    test.options.seed = static_cast<std::uint64_t>(std::abs(number));
+    const auto seed = static_cast<std::uint64_t>(std::abs(number));
+    test.options.seed = test.options.building_seed = test.options.row_seed = seed;
   } else if (kind == "rule" && single) {
     test.options.start_rule = clause[1];
   } else if (kind == "attr" && clause.size() >= 2 && text.find('=') != std::string_view::npos) {

@@ -234,7 +234,8 @@ class Run {
   std::vector<std::string> warnings_;
   std::uint32_t function_depth_ = 0;
   const char* stack_start_ = nullptr;
-  bool full_ = false;  ///< the limit of shapes was told
+  bool full_ = false;        ///< the limit of shapes was told
+  bool told_calls_ = false;  ///< the limit of calls was told: where it was reached, no other place
   std::size_t pieces_ = 0, calls_ = 0;
   std::string start_name_;  ///< `initialShape.startRule`
   RuleContext rule_;

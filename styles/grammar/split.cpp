@@ -74,6 +74,9 @@ Mesh mesh_of_small(const SmallLoop& loop, const Mesh& parent) {
   std::size_t first = 0;
   for (std::size_t i = 1; i < loop.size; ++i)
     if (loop.edges[i] >= 0 && (loop.edges[first] < 0 || loop.edges[i] < loop.edges[first])) first = i;
+  // As Cutter::emit: the cut stands for a first edge that it took away.
+  const std::size_t before = (first + loop.size - 1) % loop.size;
+  if (loop.edges[first] > 0 && loop.edges[before] < 0) first = before;
   out.vertices.reserve(loop.size);
   out.faces.resize(1);
   MeshFace& face = out.faces[0];

@@ -16,14 +16,6 @@ constexpr double kLeastArea = 1e-6;
 /// Most pieces that one piece of geometry is cut into: bounds the work against something like a sphere.
 constexpr std::size_t kMostPieces = 20000;
 
-bool meet(const Box& a, const Box& b) {
-  if (a.empty || b.empty) return false;
-  for (int i = 0; i < 3; ++i)
-    if (component(a.low, i) > component(b.high, i) + kContact || component(b.low, i) > component(a.high, i) + kContact)
-      return false;
-  return true;
-}
-
 using Polygon = std::vector<Vector3>;
 
 Box box_of_polygon(const Polygon& polygon) { return box_of(std::span<const Vector3>(polygon)); }
@@ -107,12 +99,6 @@ Mesh triangulated(const Mesh& mesh) {
   return out;
 }
 
-Polygon polygon_of(const Mesh& mesh, const MeshFace& face) {
-  Polygon out;
-  for (const Corner& corner : face.loops.front()) out.push_back(mesh.vertices[corner.vertex]);
-  return out;
-}
-
 /// The nearest point of a box (a corner and three edges that are at right angles) to a point.
 Vector3 nearest_in_box(const std::array<Vector3, 8>& box, Vector3 p) {
   Vector3 out = box[0];
@@ -126,10 +112,28 @@ Vector3 nearest_in_box(const std::array<Vector3, 8>& box, Vector3 p) {
 
 }  // namespace
 
+bool boxes_meet(const Box& a, const Box& b) {
+  if (a.empty || b.empty) return false;
+  for (int i = 0; i < 3; ++i)
+    if (component(a.low, i) > component(b.high, i) + kContact || component(b.low, i) > component(a.high, i) + kContact)
+      return false;
+  return true;
+}
+
 Mesh mesh_in_world(const Shape& shape) {
   Mesh out = mesh_of(shape);
   const Frame frame = scope_in_world(shape);
   for (Vector3& p : out.vertices) p = place(frame, p);
+  return out;
+}
+
+Box box_in_world(const Shape& shape) {
+  const Mesh& own = mesh_of(shape);
+  const Frame frame = scope_in_world(shape);
+  Box out;
+  for (const MeshFace& face : own.faces)
+    for (const Loop& loop : face.loops)
+      for (const Corner& corner : loop) out.add(place(frame, own.vertices[corner.vertex]));
   return out;
 }
 
@@ -152,9 +156,12 @@ Occluder occluder_of(const Shape& shape) {
   return out;
 }
 
-Contact contact(const Mesh& mesh, const Occluder& other) {
+Contact contact(const Mesh& mesh, const Occluder& other, Effort& effort) {
   Contact out;
   if (other.mesh.empty()) return {false, true, false};
+  const Box own = box_of(mesh);
+  if (!boxes_meet(own, other.box)) return {false, !own.empty, false};
+  if (!effort.take(other.mesh.faces.size())) return out;
   struct Side_ {
     Vector3 normal;
     double offset;
@@ -162,23 +169,26 @@ Contact contact(const Mesh& mesh, const Occluder& other) {
   };
   std::vector<Side_> planes;
   for (const MeshFace& face : other.mesh.faces) {
+    Box box;
+    for (const Corner& corner : face.loops.front()) box.add(other.mesh.vertices[corner.vertex]);
+    if (!boxes_meet(own, box)) continue;
     const Vector3 normal = face_normal(other.mesh, face);
-    const Polygon polygon = polygon_of(other.mesh, face);
-    planes.push_back({normal, dot(normal, polygon[0]), box_of_polygon(polygon)});
+    planes.push_back({normal, dot(normal, other.mesh.vertices[face.loops.front()[0].vertex]), box});
   }
   std::size_t count = 0;
   for (const MeshTriangle& triangle : triangles_of(mesh)) {
     std::vector<Polygon> pieces(1);
     for (const std::uint32_t vertex : triangle.vertices) pieces[0].push_back(mesh.vertices[vertex]);
-    if (!meet(box_of_polygon(pieces[0]), other.box)) {
+    if (!boxes_meet(box_of_polygon(pieces[0]), other.box)) {
       out.beyond = true;
       continue;
     }
     for (const Side_& plane : planes) {
       const std::size_t now = pieces.size();
       for (std::size_t i = 0; i < now && count + pieces.size() < kMostPieces; ++i) {
+        if (!effort.take(1)) return out;
+        if (!boxes_meet(box_of_polygon(pieces[i]), plane.box)) continue;
         Polygon front, behind;
-        if (!meet(box_of_polygon(pieces[i]), plane.box)) continue;
         if (!cut_polygon(pieces[i], plane.normal, plane.offset, front, behind)) continue;
         pieces[i] = std::move(front);
         pieces.push_back(std::move(behind));
@@ -187,6 +197,7 @@ Contact contact(const Mesh& mesh, const Occluder& other) {
     count += pieces.size();
     for (const Polygon& piece : pieces) {
       if (area_of(piece) < kLeastArea) continue;
+      if (!effort.take(other.mesh.faces.size())) return out;
       Vector3 middle;
       for (const Vector3 p : piece) middle = middle + p;
       switch (side_of(middle * (1.0 / static_cast<double>(piece.size())), other.mesh)) {
@@ -205,28 +216,30 @@ Contact contact(const Mesh& mesh, const Occluder& other) {
   return out;
 }
 
-bool is_inside(const Mesh& mesh, const Occluder& other) {
-  if (other.mesh.empty() || mesh.empty() || !meet(box_of(mesh), other.box)) return false;
-  const Contact found = contact(mesh, other);
-  return !found.beyond && (found.within || found.on_surface);
+bool is_inside(const Mesh& mesh, const Occluder& other, Effort& effort) {
+  if (other.mesh.empty() || mesh.empty() || !boxes_meet(box_of(mesh), other.box)) return false;
+  const Contact found = contact(mesh, other, effort);
+  return !effort.spent && !found.beyond && (found.within || found.on_surface);
 }
 
-bool overlaps(const Mesh& mesh, const Occluder& other) {
-  if (other.mesh.empty() || mesh.empty() || !meet(box_of(mesh), other.box)) return false;
-  const Contact found = contact(mesh, other);
+bool overlaps(const Mesh& mesh, const Occluder& other, Effort& effort) {
+  if (other.mesh.empty() || mesh.empty() || !boxes_meet(box_of(mesh), other.box)) return false;
+  const Contact found = contact(mesh, other, effort);
+  if (effort.spent) return false;
   if (found.within) return found.beyond;
   if (!is_closed(mesh)) return false;
   // The other one may lie in this one, wholly or in part, or both may be the same.
   Occluder self;
   self.mesh = triangulated(mesh);
   self.box = box_of(mesh);
-  const Contact back = contact(other.mesh, self);
-  return back.within;
+  const Contact back = contact(other.mesh, self, effort);
+  return !effort.spent && back.within;
 }
 
-bool touches(const Mesh& mesh, const Occluder& other) {
-  if (other.mesh.empty() || mesh.empty() || !meet(box_of(mesh), other.box)) return false;
-  return contact(mesh, other).on_surface || overlaps(mesh, other);
+bool touches(const Mesh& mesh, const Occluder& other, Effort& effort) {
+  if (other.mesh.empty() || mesh.empty() || !boxes_meet(box_of(mesh), other.box)) return false;
+  const bool against = contact(mesh, other, effort).on_surface;
+  return !effort.spent && (against || overlaps(mesh, other, effort));
 }
 
 double box_distance(const std::array<Vector3, 8>& a, const std::array<Vector3, 8>& b) {

@@ -1,8 +1,11 @@
 // What stands around a shape: answers to inside(), overlaps(), touches(), minimumDistance() (references/cga.md §4.6).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,6 +29,18 @@ struct Occluder {
 /// The shape as an occluder: its geometry where that is closed, its scope always.
 Occluder occluder_of(const Shape& shape);
 
+/// What comparing shapes may cost: tests of a piece against a plane, of a point against a triangle, of boxes.
+struct Effort {
+  std::size_t left = std::numeric_limits<std::size_t>::max();
+  bool spent = false;  ///< more was needed than was left: the answer is not known
+
+  bool take(std::size_t tests) {
+    spent = spent || tests > left;
+    left -= std::min(tests, left);
+    return !spent;
+  }
+};
+
 /// How geometry lies to a closed one.
 struct Contact {
   bool within = false;      ///< some of it lies inside
@@ -33,15 +48,18 @@ struct Contact {
   bool on_surface = false;  ///< some of it lies in the surface
 };
 /// \param mesh  in the world; open or closed
-Contact contact(const Mesh& mesh, const Occluder& other);
+Contact contact(const Mesh& mesh, const Occluder& other, Effort& effort);
 
-/// The shape's geometry in the world.
+/// The shape's geometry in the world, and the box of it without a copy.
 Mesh mesh_in_world(const Shape& shape);
+Box box_in_world(const Shape& shape);
+/// Whether two boxes overlap or touch; empty ones do not.
+bool boxes_meet(const Box& a, const Box& b);
 
-/// Completely in or on; partly in; overlapping or lying against one another.
-bool is_inside(const Mesh& mesh, const Occluder& other);
-bool overlaps(const Mesh& mesh, const Occluder& other);
-bool touches(const Mesh& mesh, const Occluder& other);
+/// Completely in or on; partly in; overlapping or lying against one another. False where the effort is spent.
+bool is_inside(const Mesh& mesh, const Occluder& other, Effort& effort);
+bool overlaps(const Mesh& mesh, const Occluder& other, Effort& effort);
+bool touches(const Mesh& mesh, const Occluder& other, Effort& effort);
 
 /// m, between two boxes given by their corners (as Occluder::scope_corners has them); 0 when they meet.
 double box_distance(const std::array<Vector3, 8>& a, const std::array<Vector3, 8>& b);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -97,10 +98,38 @@ TEST_F(GrammarRun, ReadsFilesBesideTheRules) {
   EXPECT_EQ(code, kSuccess) << errors;
 }
 
+TEST_F(GrammarRun, SearchesForFilesEndAndTellWhatTheyDoNotUnderstand) {
+  std::filesystem::create_directories(folder_ / "assets");
+  write("assets/" + std::string(60, 'a') + ".jpg", "");
+  write("assets/stone(1).JPG", "");
+  // A matcher that goes back would try each way to share the letters.
+  const std::string rules =
+      "Lot --> print(fileSearch(\"$(a+)+b\")) print(fileRandom(\"$(a|aa)+$b\"))\n"
+      "print(len(filesSearch(\"*a*a*a*a*a*a*a*a*a*a*a*a*a*a*a*b\")[0]))\n"
+      "print(fileSearch(\"STONE(?).jpg\")) print(fileSearch(\"$sto.*[(]1[)].jpg\")) X.";
+  EXPECT_THAT(run({"run", write("ends.cga", rules)}),
+              HasSubstr("placeholder;\nplaceholder\n11\nstone(1).JPG;\nstone(1).JPG;\n"));
+  EXPECT_EQ(code, kSuccess) << errors;
+  for (const std::string name : {"fileSearch", "filesSearch", "fileRandom"}) {
+    run({"run", write("wrong.cga", "Lot -->\n  print(" + name + "(\"$(a\")) X.")});
+    EXPECT_EQ(code, kInvalidInput) << name;
+    EXPECT_THAT(errors, HasSubstr("wrong.cga:2:9: error: '(a' is no pattern that is understood here")) << name;
+  }
+}
+
 TEST_F(GrammarRun, SeveralAttributesAndTheirOrder) {
   const std::string file = write("a.cga", "attr a = 1\nattr b = 2\nLot --> print(a + b) X.");
   EXPECT_THAT(run({"run", "--attr", "a=10", "--attr", "b=20", file}), HasSubstr("30\n"));
   EXPECT_THAT(run({"run", file, "--attr", "a=10"}), HasSubstr("12\n"));
+}
+
+TEST_F(GrammarRun, TheSeedReachesConsistentChoices) {
+  for (const std::string kind : {"building", "row"}) {
+    const std::string file = write("tiles.cga", "@Consistent(\"" + kind + "\")\nLot --> 50% : A. else : B.");
+    std::set<std::string> seen;
+    for (int seed = 0; seed < 40; ++seed) seen.insert(run({"run", file, "--seed", std::to_string(seed)}));
+    EXPECT_EQ(seen.size(), 2u) << kind;
+  }
 }
 
 TEST_F(GrammarRun, ChecksNamesThatTheProgramGives) {

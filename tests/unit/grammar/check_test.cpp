@@ -116,7 +116,27 @@ TEST(Check, ValuesThatTheProgramGives) {
               ElementsAre("1:15 unknown_context → building.storeys"));
   EXPECT_THAT(told("A --> extrude(building.storeys) X.", {}, options), IsEmpty());
   EXPECT_THAT(told("f = storey.use\nA --> print(f) X.", {}, options), ElementsAre("1:5 unknown_context"));
+  EXPECT_THAT(told("A --> building.storys X.", {}, options), ElementsAre("1:7 unknown_context → building.storeys"))
+      << "the same where a rule is meant to be";
+  EXPECT_THAT(told("A --> building.storeys X.", {}, options), ElementsAre("1:7 no_rule"));
+  EXPECT_THAT(told("A --> building.storeys. X.", {}, options), IsEmpty());
+  EXPECT_THAT(told("import building : \"b.cga\"\nA --> building.B", {{"b.cga", "B --> NIL"}}, options), IsEmpty());
   EXPECT_THAT(told("A --> extrude(building.storys) X."), IsEmpty()) << "nobody says what there is";
+}
+
+TEST(Check, Styles) {
+  EXPECT_THAT(told("Lot --> X.\nstyle Green\nLot --> Y.\nstyle Blue extends Grren\nLot --> Z."),
+              ElementsAre("4:1 unknown_style → Green"));
+  EXPECT_THAT(told("Lot --> X.\nstyle Green extends Default\nLot --> Y.\nstyle Blue extends Green\nLot --> Z."),
+              IsEmpty());
+  EXPECT_THAT(told("attr h = 3\nLot --> X.\nstyle Green\nattr h = \"high\""), ElementsAre("4:6 style_type"));
+  EXPECT_THAT(told("attr h = 3\nLot --> X.\nstyle A\nattr w = true\nstyle B extends A\nattr h = 4\nattr w = 1"),
+              ElementsAre("7:6 style_type"));
+  EXPECT_THAT(told("attr h = 3\nLot --> X.\nstyle A\nattr w = true\nstyle B\nattr w = 1\nattr h = rand(3)"), IsEmpty())
+      << "styles side by side";
+  EXPECT_THAT(told("Lot --> X.\nstyle Green\nstart Lot --> Y."), ElementsAre("3:7 style_section"));
+  EXPECT_THAT(told("Lot --> X.\nstyle Green\n@StartRule\nLot --> Y."), ElementsAre("3:1 style_section"));
+  EXPECT_THAT(told("attr h = 3\nLot --> X.\nstyle A extends B\nattr h = 1\nstyle B extends A"), IsEmpty());
 }
 
 TEST(Check, WhatDoesNotRun) {

@@ -409,6 +409,8 @@ TEST(Errors, NothingTakesForeverOrAllMemory) {
   options.limits.pieces = 1000;
   const auto calls = derive_text("f(n) = f(n - 1) + f(n - 1)\nLot --> print(f(1)) B.", rectangle(10, 20), options);
   EXPECT_EQ(places(calls, "too_many_calls").size(), 1u);
+  for (const Diagnostic& d : calls.diagnostics)
+    EXPECT_TRUE(d.code != "too_many_calls" || d.location.line == 1u) << "where the call stands";
   EXPECT_EQ(lengths(calls), "B 10");
   const auto pieces =
       derive_text("Lot --> split(x){ ~0.1 : split(z){ ~0.1 : s('1,1,'1) }* }* B.", rectangle(10, 20), options);
@@ -441,6 +443,37 @@ TEST(Errors, WhatIsNotThereYetIsToldByName) {
   EXPECT_EQ(places(d, "not_yet").size(), 2u);
   EXPECT_THAT(all_diagnostics(d.diagnostics), HasSubstr("'setMaterial'"));
   EXPECT_EQ(lengths(d), "B 10");
+}
+
+TEST(Errors, ComparingShapesIsBounded) {
+  DeriveOptions options;
+  const std::string rules =
+      "Lot --> [ extrude(3) Box. ] split(x){ ~0.5 : split(z){ ~0.5 : extrude(2) Ask }* }*\n"
+      "Ask --> case overlaps(intra) : Over. else : Free.";
+  const auto all = derive_text(rules, rectangle(4, 4), options);
+  EXPECT_EQ(places(all, "too_many_calls").size(), 0u);
+  options.limits.calls = 2000;
+  const auto few = derive_text(rules, rectangle(4, 4), options);
+  ASSERT_EQ(places(few, "too_many_calls"), std::vector<std::string>{"2:14"});
+  EXPECT_EQ(few.leaves.size(), all.leaves.size()) << "the rest is kept";
+  options.limits.calls = 100;
+  for (const char* query : {"contextCount(intra, \"\")", "minimumDistance(intra)"}) {
+    const auto d = derive_text("Lot --> split(x){ ~0.2 : extrude(1) A }*\nA --> print(" + std::string(query) + ") B.",
+                               rectangle(10, 4), options);
+    EXPECT_EQ(places(d, "too_many_calls"), std::vector<std::string>{"2:13"}) << query;
+  }
+}
+
+TEST(Errors, RulesThatCouldNotBeReadAreToldOnce) {
+  for (const char* rules : {"Lot --> extrude(5 X.", "Lot -> extrude(5) X.", "attr h = 1\nLot --> split(x){ 1 : X."}) {
+    const Program program = load_text(rules);
+    EXPECT_TRUE(has_errors(program.diagnostics)) << rules;
+    EXPECT_EQ(all_diagnostics(derive(program, rectangle(1, 1)).diagnostics), "") << rules;
+  }
+  EXPECT_EQ(places(derive(load_text("attr h = 1"), rectangle(1, 1)), "no_start_rule").size(), 1u);
+  DeriveOptions named;
+  named.start_rule = "Other";
+  EXPECT_EQ(places(derive(load_text("Lot --> s(1 X."), rectangle(1, 1), named), "no_start_rule").size(), 1u);
 }
 
 TEST(Errors, SymbolsWithoutRuleAreLeavesWithAWarning) {

@@ -38,6 +38,17 @@ TEST(RuleTests, Hold) {
   EXPECT_THAT(failures("error operation; leaves 1", "Lot --> color(\"red\") X."), IsEmpty());
 }
 
+TEST(RuleTests, TheSeedReachesConsistentChoices) {
+  for (const std::string kind : {"building", "row"}) {
+    const std::string rules = "@Consistent(\"" + kind + "\")\nLot --> 50% : A. else : B.";
+    int a = 0;
+    for (int seed = 0; seed < 40; ++seed)
+      a += failures("seed " + std::to_string(seed) + "; leaves A. 1", rules).empty() ? 1 : 0;
+    EXPECT_GT(a, 5) << kind;
+    EXPECT_LT(a, 35) << kind;
+  }
+}
+
 TEST(RuleTests, Fail) {
   EXPECT_THAT(failures("leaves 3", kWalls), ElementsAre("the number of leaves is 4, not 3"));
   EXPECT_THAT(failures("leaves X 3", kWalls), ElementsAre("the number of leaves of X is 0, not 3"));

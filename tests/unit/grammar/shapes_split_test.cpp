@@ -130,8 +130,8 @@ TEST(Split, AdjustRefitsNoAdjustTiles) {  // 18
 }
 
 TEST(Split, KeepsTheFirstEdge) {
-  // Along x the first edge is cut; the piece of it leads. Along z the front piece keeps it, the other has the next
-  // edge.
+  // Along x the first edge is cut; the piece of it leads. Along z the front piece keeps it; in the other the
+  // edge of the cut takes its place.
   for (const Shape& piece : split(rectangle(10, 20), 0, {item('A', 1, floating), item('B', 1, floating)})) {
     const Mesh& mesh = mesh_of(piece);
     const Loop& loop = mesh.faces[0].loops[0];
@@ -144,7 +144,7 @@ TEST(Split, KeepsTheFirstEdge) {
     const Loop& loop = mesh_of(s).faces[0].loops[0];
     return mesh_of(s).vertices[loop[1].vertex] - mesh_of(s).vertices[loop[0].vertex];
   };
-  EXPECT_EQ(first(pieces[0]), (Vector3{0, 0, -10}));  // the back: the edge after the first along the outline
+  EXPECT_EQ(first(pieces[0]), (Vector3{10, 0, 0}));  // the back
   EXPECT_EQ(first(pieces[1]), (Vector3{10, 0, 0}));
 }
 

@@ -23,7 +23,8 @@ struct Answer {
 Answer answer(const Shape& shape, const Shape& other) {
   const Occluder occluder = occluder_of(other);
   const Mesh mesh = mesh_in_world(shape);
-  return {is_inside(mesh, occluder), overlaps(mesh, occluder), touches(mesh, occluder)};
+  Effort effort;
+  return {is_inside(mesh, occluder, effort), overlaps(mesh, occluder, effort), touches(mesh, occluder, effort)};
 }
 void PrintTo(const Answer& a, std::ostream* out) { *out << a.inside << a.overlaps << a.touches; }
 
