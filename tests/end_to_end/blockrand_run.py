@@ -169,7 +169,7 @@ class BuildTest(unittest.TestCase):
         build, report = read_json(folder, 'build.json'), read_json(folder, 'report.json')
         c = build['counts']
         self.assertEqual(c['buildings_in'] + c['parts_in'], c['models'] + c['represented'] + c['reported'], c)
-        self.assertEqual(c['models'], c['models_lod0'] + c['models_lod1'] + c['models_lod2'], c)
+        self.assertEqual(c['models'], sum(c[f'models_lod{level}'] for level in range(4)), c)
         states = {'reported': 0, 'represented': 0, 'duplicate': 0}
         for row in report['objects']:
             states[row['state']] += 1

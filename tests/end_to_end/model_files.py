@@ -76,6 +76,14 @@ class Glb:
         values = [struct.unpack_from(f'<{width}{code}', self.bin, start + i * stride) for i in range(a['count'])]
         return [tuple(v / scale for v in value) for value in values] if a.get('normalized') else values
 
+    def colours(self, primitive):
+        """Linear (r, g, b) of its vertices: one for all where the material alone has a colour."""
+        material = self.json['materials'][primitive['material']]
+        factor = material.get('pbrMetallicRoughness', {}).get('baseColorFactor', (1, 1, 1, 1))
+        own = primitive['attributes'].get('COLOR_0')
+        values = self.accessor(own) if own is not None else [(1, 1, 1, 1)]
+        return [tuple(a * b for a, b in zip(value[:3], factor)) for value in values]
+
     def texts(self, name):
         """A STRING column of the property table."""
         table = self.json['extensions']['EXT_structural_metadata']['propertyTables'][0]

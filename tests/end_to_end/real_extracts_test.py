@@ -1,6 +1,6 @@
 """Real extracts as people download them: everything is counted, nearly everything stands, every solid is valid.
 
-    real_extracts_test.py [--lod 3] --extracts small|towns|berlin|all|NAME-PART
+    real_extracts_test.py [--lod 3] --extracts quarters|small|towns|berlin|all|NAME-PART
 
 With --lod 3 builds have facades, as GLB and CityGML (Berlin: GLB alone, for its size).
 """
@@ -20,7 +20,7 @@ TOWNS = ['berlin-luisenstadt-2021.osm', 'berlin-mitte-2014.osm.pbf', 'berlin-par
          'berlin-unter-den-linden-clipped.osm.gz', 'berlin_karl_marx_allee.osm.pbf', 'dortmund-innenstadt.osm.gz',
          'helsinki-centre-2019.osm.pbf', 'husum_altstadt.osm.pbf', 'ingolstadt-altstadt.osm',
          'liechtenstein-2013-08-03.osm.pbf', 'liechtenstein-2022-12.osm.pbf', 'monaco-2021.osm.pbf']
-SETS = {'small': SMALL, 'towns': TOWNS, 'berlin': BERLIN, 'all': SMALL + TOWNS + BERLIN}
+SETS = {'quarters': SMALL[:2], 'small': SMALL, 'towns': TOWNS, 'berlin': BERLIN, 'all': SMALL + TOWNS + BERLIN}
 KHRONOS_FILES = 60  # of a build at most
 
 
@@ -139,7 +139,7 @@ class RealExtract:
 
 class RealFacades(RealExtract):
     """The same at LoD3; what LoD2 alone can show is left to the class above."""
-    test_nothing_is_lost = test_whole_geometry_is_built = test_metadata = None
+    test_nothing_is_lost = test_whole_geometry_is_built = test_metadata = test_lod2 = None
 
     def test_counts_add_up(self):
         build, _ = self.counts_add_up(self.out)
@@ -155,7 +155,7 @@ class RealFacades(RealExtract):
         """Every body with walls has a facade, but for those whose preset has no grammar."""
         build = read_json(self.out, 'build.json')
         c, issues = build['counts'], build['issues']
-        self.assertGreater(c['models_lod3'], 0.95 * c['models_lod2'], c)
+        self.assertGreater(c['models_lod3'], 0.94 * c['models'], c)  # canopies have no walls
         self.assertLess(issues.get('FACADE_FAILED', 0), 0.001 * c['models'] + 1)
         self.assertLess(issues.get('GRAMMAR_ERROR', 0), 0.002 * c['models'] + 1)
         self.assertLess(issues.get('OPENING_LEFT_OUT', 0), 0.02 * c['models'] + 2)
