@@ -18,8 +18,8 @@ using model::ElementPart;
 
 /// Steps a metre of sizes and of parameters: equal elements are one.
 constexpr double kSizeSteps = 100, kParameterSteps = 1000;
-/// Steps a metre of what stands in openings: 5 cm across, 10 cm up. Windows come in few sizes, as joiners make them; each
-/// stored once, they are most of a town's forms (own choice: coarser steps show in the piers between windows).
+/// Steps a metre of what stands in openings: 5 cm across, 10 cm up. Windows come in few sizes, as joiners make them;
+/// each stored once, they are most of a town's forms (own choice: coarser steps show in the piers between windows).
 constexpr double kOpeningWidthSteps = 20, kOpeningHeightSteps = 10;
 constexpr double kRounding = 0.001;  ///< of a step: what floats may lack of a whole one
 /// Colours of parts that neither rule nor building says.
@@ -161,7 +161,8 @@ std::uint32_t ElementStock::take(std::string& error) {
     auto element = elements::make_element(kind_, width_, height_, parameters_);
     Made entry;
     if (element) {
-      for (const model::ElementFace& face : element->mesh.faces) entry.parts[static_cast<std::size_t>(face.part)] = true;
+      for (const model::ElementFace& face : element->mesh.faces)
+        entry.parts[static_cast<std::size_t>(face.part)] = true;
       // Outputs add the reveal, which looks like the wall.
       if (element->opening.reveal > 0) entry.parts[static_cast<std::size_t>(ElementPart::wall)] = true;
       entry.element = std::make_shared<const model::Element>(std::move(*element));

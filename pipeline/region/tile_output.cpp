@@ -142,8 +142,8 @@ export_::CityGmlOptions citygml_options(const model::Region& region, const Outpu
   return o;
 }
 
-void write_text_file(const std::string& path, const std::string& bytes, const OutputContext& context, base::StagedFolder& folder,
-                     std::vector<base::PublishedFile>& files) {
+void write_text_file(const std::string& path, const std::string& bytes, const OutputContext& context,
+                     base::StagedFolder& folder, std::vector<base::PublishedFile>& files) {
   if (context.options.gzip)
     files.push_back(folder.write(path + ".gz", export_::gzip(bytes)));
   else
@@ -153,10 +153,12 @@ void write_text_file(const std::string& path, const std::string& bytes, const Ou
 void write_city_models(const model::Region& region, const std::string& name, const OutputContext& context,
                        base::StagedFolder& folder, std::vector<base::PublishedFile>& files) {
   if (context.options.citygml)
-    write_text_file("citygml/" + name + ".gml", export_::write_citygml(region, citygml_options(region, context)), context, folder, files);
+    write_text_file("citygml/" + name + ".gml", export_::write_citygml(region, citygml_options(region, context)),
+                    context, folder, files);
   if (context.options.cityjson)
     write_text_file("cityjson/" + name + ".city.jsonl",
-                    export_::write_cityjson_sequence(region, cityjson_options(context, model_name(region.tile))), context, folder, files);
+                    export_::write_cityjson_sequence(region, cityjson_options(context, model_name(region.tile))),
+                    context, folder, files);
 }
 
 }  // namespace
@@ -234,7 +236,8 @@ TileOutput write_tile(const model::Region& region, const OutputContext& context,
     explain.tile = name;
     for (const base::PublishedFile& file : out.files) explain.files.push_back(file.path);
     export_::Explanations explanations = export_::explain(region, explain);
-    out.files.push_back(folder.write("explain/" + name + ".jsonl.gz", export_::gzip(explanations.lines, kExplainGzipLevel)));
+    out.files.push_back(
+        folder.write("explain/" + name + ".jsonl.gz", export_::gzip(explanations.lines, kExplainGzipLevel)));
     out.explained = std::move(explanations.objects);
   }
   return out;

@@ -105,7 +105,8 @@ class TileRecords {
 
   /// What is said of LoD3 against what stands there; of formats that tell no solids, nothing is known.
   void compare_detail(const ReadBody& body, const Json* said) {
-    const auto solid = std::find_if(body.solids.begin(), body.solids.end(), [](const ReadSolid& s) { return s.lod == 3; });
+    const auto solid =
+        std::find_if(body.solids.begin(), body.solids.end(), [](const ReadSolid& s) { return s.lod == 3; });
     if (solid == body.solids.end()) return;
     if (!said || !said->is_object()) return wrong(body.id, "its facades are not explained");
     const auto polygons = [&](const char* kind) {

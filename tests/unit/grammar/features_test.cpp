@@ -127,7 +127,9 @@ const FileAccess& some_files() {
       {"column.obj", "# a column\no c\nv 1 1 1\nvn 9 9 9\nv 4 7 3 0.5\nf 1 2 1\n"},
       {"tile.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x02\x80\0\0\x01\xe0", 24)},
       // A comment and a frame header.
-      {"photo.jpg", std::string("\xff\xd8\xff\xfe\0\x04" "ab\xff\xc0\0\x0b\x08\x01\xe0\x02\x80\x01", 18)}};
+      {"photo.jpg", std::string("\xff\xd8\xff\xfe\0\x04"
+                                "ab\xff\xc0\0\x0b\x08\x01\xe0\x02\x80\x01",
+                                18)}};
   static const FileAccess kAccess = [] {
     FileAccess out;
     out.exists = [](const std::string& path) { return kFiles.contains(path); };
