@@ -11,7 +11,7 @@
 #include "pipeline/cli/errors.h"
 #include "pipeline/cli/exit_codes.h"
 #include "pipeline/cli/signals.h"
-#include "pipeline/region/build.h"
+#include "pipeline/run/build.h"
 #include "pipeline/settings/command_line.h"
 
 namespace blockrand::cli {
@@ -51,7 +51,7 @@ int run_build(const std::vector<std::string>& arguments) {
   s.build.configs = configs_folder(s.build.configs, program_file());
   clean_up_on_signals(s.log_format);
   base::Progress progress(s.progress, s.log_format, s.quiet);
-  const region::BuildSummary summary = region::build(s.build, progress);
+  const run::BuildSummary summary = run::build(s.build, progress);
   progress.end();
   if (s.log_format == base::LogFormat::json)
     std::fputs(build_report_json(s.build, summary).c_str(), stdout);

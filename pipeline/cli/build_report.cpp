@@ -30,7 +30,7 @@ std::string row(const std::string& name, std::uint64_t count, const std::string&
 }
 
 /// Rows of one class of codes, most frequent first.
-std::string code_rows(const region::BuildSummary& summary, IssueClass wanted, const std::string& title) {
+std::string code_rows(const run::BuildSummary& summary, IssueClass wanted, const std::string& title) {
   std::vector<std::pair<std::string, std::uint64_t>> codes;
   for (const auto& [code, count] : summary.issues) {
     const model::IssueInfo* info = find_code(code);
@@ -47,7 +47,7 @@ std::string code_rows(const region::BuildSummary& summary, IssueClass wanted, co
 }
 
 /// How sloped roofs stand in their rows; nothing where there are no rows.
-std::string roofscape_rows(const generate::Roofscape& r) {
+std::string roofscape_rows(const masses::Roofscape& r) {
   if (r.mid_row + r.corner_houses + r.meetings + r.party_eaves == 0) return {};
   std::string text = "\nSloped roofs in rows\n";
   const auto share = [](std::uint64_t part, std::uint64_t whole) {
@@ -61,18 +61,18 @@ std::string roofscape_rows(const generate::Roofscape& r) {
   return text;
 }
 
-double rate(const region::BuildSummary& s) {
+double rate(const run::BuildSummary& s) {
   return s.seconds > 0 ? static_cast<double>(s.buildings_in + s.parts_in) / s.seconds : 0;
 }
 
 }  // namespace
 
-std::int64_t unaccounted(const region::BuildSummary& s) {
+std::int64_t unaccounted(const run::BuildSummary& s) {
   return static_cast<std::int64_t>(s.buildings_in + s.parts_in) -
          static_cast<std::int64_t>(s.models + s.represented + s.duplicates + s.reported);
 }
 
-std::string build_report(const region::BuildOptions& options, const region::BuildSummary& s) {
+std::string build_report(const run::BuildOptions& options, const run::BuildSummary& s) {
   std::string text = "Objects\n";
   text += row("in", s.buildings_in + s.parts_in,
               fmt::format("{} buildings, {} parts", with_thousands(s.buildings_in), with_thousands(s.parts_in)));
@@ -116,7 +116,7 @@ std::string build_report(const region::BuildOptions& options, const region::Buil
   return text + text_of_explain;
 }
 
-std::string build_report_json(const region::BuildOptions& options, const region::BuildSummary& s) {
+std::string build_report_json(const run::BuildOptions& options, const run::BuildSummary& s) {
   nlohmann::ordered_json j;
   j["output"] = options.output;
   j["buildings_in"] = s.buildings_in;

@@ -19,8 +19,8 @@
 #include "pipeline/cli/exit_codes.h"
 #include "pipeline/cli/signals.h"
 #include "pipeline/cli/staged_file.h"
-#include "pipeline/region/district_survey.h"
-#include "pipeline/region/rule_book.h"
+#include "pipeline/run/district_survey.h"
+#include "pipeline/attributes/rule_book.h"
 #include "pipeline/settings/command_line.h"
 #include "styles/classify/catalogue.h"
 #include "styles/districts/presets.h"
@@ -31,7 +31,7 @@ namespace blockrand::cli {
 namespace {
 
 using settings::Settings;
-namespace rules = styles::districts;
+namespace rules = districts;
 
 std::string summary(const rules::RuleBook& book) {
   std::string text;
@@ -72,7 +72,7 @@ int check(const Settings& s) {
   std::string text;
   const auto try_read = [&](const std::string& name) {
     try {
-      text += summary(region::read_rule_book(s.build.configs, name).book);
+      text += summary(attributes::read_rule_book(s.build.configs, name).book);
       return true;
     } catch (const base::InputError& error) {
       errors.emplace_back(error.what());
@@ -96,11 +96,11 @@ int check(const Settings& s) {
   return kSuccess;
 }
 
-std::string table(const region::DistrictView& view) {
+std::string table(const run::DistrictView& view) {
   std::string text = fmt::format("{} buildings, {} without a preset\n\n{:<24}{:<36}{:<22}{:>10}\n",
                                  base::with_thousands(view.buildings), base::with_thousands(view.without), "rule set",
                                  "rule", "preset", "buildings");
-  for (const region::DistrictCount& c : view.counts)
+  for (const run::DistrictCount& c : view.counts)
     text += fmt::format("{:<24}{:<36}{:<22}{:>10}\n", c.set,
                         c.rule.empty() ? c.preset.empty() ? "(none)" : "(tag)" : c.rule,
                         c.preset.empty() ? "(none)" : c.preset, base::with_thousands(c.buildings));
@@ -123,9 +123,9 @@ int show(Settings& s) {
   clean_up_on_signals(s.log_format);
   base::StagedFolder folder(s.build.output, s.build.force, base::FolderKind{"map of districts", "districts.json"});
   base::Progress progress(s.progress, s.log_format, s.quiet);
-  const region::ReadRuleBook book = region::read_rule_book(s.build.configs, s.build.districts);
-  const auto survey = region::survey_districts(s.build, book, progress);
-  const region::DistrictView view = region::show_districts(*survey, book.book, s.map_by == "rule", folder,
+  const attributes::ReadRuleBook book = attributes::read_rule_book(s.build.configs, s.build.districts);
+  const auto survey = run::survey_districts(s.build, book, progress);
+  const run::DistrictView view = run::show_districts(*survey, book.book, s.map_by == "rule", folder,
                                                            base::worker_count(s.build.jobs), progress);
   for (const std::string& what : view.unanswered) progress.warn(what);
   if (const std::string left = folder.publish(); !left.empty())
@@ -156,17 +156,17 @@ int diff(Settings& s) {
   if (!csv.empty()) staged.emplace(csv);
   s.build.input = s.files[2];
   base::Progress progress(s.progress, s.log_format, s.quiet);
-  const region::ReadRuleBook a = region::read_rule_book(s.build.configs, s.files[0]),
-                             b = region::read_rule_book(s.build.configs, s.files[1]);
-  const auto survey = region::survey_districts(s.build, a, progress);
-  const std::vector<region::DistrictChange> changes =
-      region::diff_districts(*survey, a.book, b.book, base::worker_count(s.build.jobs), progress);
+  const attributes::ReadRuleBook a = attributes::read_rule_book(s.build.configs, s.files[0]),
+                             b = attributes::read_rule_book(s.build.configs, s.files[1]);
+  const auto survey = run::survey_districts(s.build, a, progress);
+  const std::vector<run::DistrictChange> changes =
+      run::diff_districts(*survey, a.book, b.book, base::worker_count(s.build.jobs), progress);
   progress.end();
 
   std::map<std::pair<std::string, std::string>, std::uint64_t> presets;
   std::uint64_t parameters = 0;
   std::string rows = "id,preset_a,preset_b,rule_a,rule_b,parameters_a,parameters_b\n";
-  for (const region::DistrictChange& c : changes) {
+  for (const run::DistrictChange& c : changes) {
     if (c.preset_a != c.preset_b)
       ++presets[{c.preset_a, c.preset_b}];
     else
@@ -185,7 +185,7 @@ int diff(Settings& s) {
                change.second.empty() ? "(none)" : change.second, base::with_thousands(n));
   constexpr std::size_t kListed = 20;
   for (std::size_t i = 0; i < std::min(kListed, changes.size()); ++i) {
-    const region::DistrictChange& c = changes[i];
+    const run::DistrictChange& c = changes[i];
     if (c.preset_a != c.preset_b)
       fmt::print("{:<14}{} -> {}\n", c.id.text(), c.preset_a, c.preset_b);
     else

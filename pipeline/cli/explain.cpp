@@ -166,7 +166,7 @@ std::string tag_rows(const Json& tags) {
   return text.empty() ? "  no tags\n" : text;
 }
 
-std::string not_modelled(const Json& j, const region::FoundExplanation& found) {
+std::string not_modelled(const Json& j, const outputs::FoundExplanation& found) {
   const std::string id = found.asked.text();
   std::string text = fmt::format("{}: a {}\n  {}\n\n", id, j.value("kind", "") == "building" ? "building" : "building part", link(id));
   const std::string state = j.value("state", "");
@@ -255,7 +255,7 @@ std::string edge_rows(const Json& j) {
 
 namespace {
 
-std::string text_of(const Json& j, const region::FoundExplanation& found, const std::string& asked_body, bool edges, bool style) {
+std::string text_of(const Json& j, const outputs::FoundExplanation& found, const std::string& asked_body, bool edges, bool style) {
   if (!found.in_model) return not_modelled(j, found);
 
   const std::string id = j.at("id"), asked = found.asked.text();
@@ -308,7 +308,7 @@ std::string text_of(const Json& j, const region::FoundExplanation& found, const 
 
 }  // namespace
 
-std::string explanation_text(const region::FoundExplanation& found, const std::string& body, bool edges, bool style) {
+std::string explanation_text(const outputs::FoundExplanation& found, const std::string& body, bool edges, bool style) {
   try {
     Json j = Json::parse(found.json);
     make_printable(j);
@@ -346,13 +346,13 @@ int run_explain(const std::vector<std::string>& arguments) {
     return kSuccess;
   }
   const settings::Settings& s = line.settings;
-  const auto id = region::parse_object_id(s.id);
+  const auto id = outputs::parse_object_id(s.id);
   if (!id) {
     const bool number = s.id.find_first_not_of("0123456789") == std::string::npos;
     throw base::UsageError(fmt::format("{} is no id of an OpenStreetMap object. Write {} for a way, {} for a relation.", s.id,
                                        number ? "w" + s.id : "w123", number ? "r" + s.id : "r45"));
   }
-  const auto found = region::find_explanation(s.folder, *id);
+  const auto found = outputs::find_explanation(s.folder, *id);
   if (!found)
     throw base::InputError(s.folder, "", "knows no building or building part " + id->text(),
                            "It is tagged otherwise, or lies outside of the extract or the --bbox");

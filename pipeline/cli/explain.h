@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/region/find_explanation.h"
+#include "pipeline/outputs/explain/find_explanation.h"
 #include "pipeline/settings/command_text.h"
 
 namespace blockrand::cli {
@@ -14,7 +14,7 @@ namespace blockrand::cli {
 /// \param edges  also lists the stretches of the outline: what each faces, how long it is, where it looks
 /// \param style  lists all evidence for its style, not the weightiest alone
 /// \throws base::InputError  `found` lacks something that every explanation has
-std::string explanation_text(const region::FoundExplanation& found, const std::string& body = {},
+std::string explanation_text(const outputs::FoundExplanation& found, const std::string& body = {},
                              bool edges = false, bool style = false);
 
 settings::CommandText explain_text();

@@ -16,7 +16,7 @@ std::string era_in_words(std::string_view era);
 std::string value_in_words(std::string_view feature, std::string_view unit, std::string_view meaning, double value);
 
 /// The section "Its style, and why" of `blockrand explain`; empty where nothing was classified.
-/// \param style  the object "style" of an explanation (pipeline/export/explain/explanation.h)
+/// \param style  the object "style" of an explanation (pipeline/outputs/explain/explanation.h)
 /// \param all    every term and every change; else the six weightiest
 std::string style_text(const nlohmann::ordered_json& style, bool all);
 

@@ -9,7 +9,7 @@
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/text.h"
-#include "pipeline/region/shard.h"
+#include "pipeline/footprints/shard.h"
 
 namespace blockrand::cli {
 namespace {
@@ -88,7 +88,7 @@ void locate(const model::Extract& extract, ExtractSummary& summary) {
   std::vector<std::int64_t> lons, lats;
   for (const model::MappedBuilding& b : extract.buildings) {
     if (b.rings.count == 0 || b.state != ObjectState::pending) continue;
-    const model::Location centre = region::box_centre(extract, b);
+    const model::Location centre = footprints::box_centre(extract, b);
     std::int64_t lon = centre.lon;
     // Extracts across 180 degrees: everything on one side of the first building.
     if (!lons.empty() && lon - lons.front() > kTurn / 2) lon -= kTurn;
@@ -178,11 +178,11 @@ ExtractSummary summarise(const model::Extract& extract) {
 
   locate(extract, s);
   model::Report unused;
-  s.tiles = region::make_shards(extract, unused).size();
+  s.tiles = footprints::make_shards(extract, unused).size();
   return s;
 }
 
-BuildEstimate estimate(const ExtractSummary& summary, const region::BuildOptions& options, double read_seconds,
+BuildEstimate estimate(const ExtractSummary& summary, const run::BuildOptions& options, double read_seconds,
                        std::uint64_t store_bytes) {
   // Measured on Monaco, Helsinki, Liechtenstein and Berlin; right within a factor of two on other machines and towns.
   constexpr double kObjectsPerSecondAndCore[3] = {20'000, 8'000, 2'500};

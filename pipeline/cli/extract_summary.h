@@ -10,7 +10,7 @@
 
 #include "pipeline/georef/lon_lat.h"
 #include "pipeline/model/extract.h"
-#include "pipeline/region/build.h"
+#include "pipeline/run/build.h"
 
 namespace blockrand::cli {
 
@@ -49,7 +49,7 @@ struct BuildEstimate {
 
 /// \param read_seconds  what reading the extract took here
 /// \param store_bytes   memory of this process after reading it
-BuildEstimate estimate(const ExtractSummary& summary, const region::BuildOptions& options, double read_seconds,
+BuildEstimate estimate(const ExtractSummary& summary, const run::BuildOptions& options, double read_seconds,
                        std::uint64_t store_bytes);
 
 /// The coordinate system that a build would have.

@@ -11,7 +11,7 @@
 #include <optional>
 #include <tuple>
 
-#include "importers/rules/read_facade_rules.h"
+#include "importers/facade_rules/read_facade_rules.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/text.h"
 #include "pipeline/cli/exit_codes.h"
@@ -19,9 +19,9 @@
 #include "pipeline/cli/rule_files.h"
 #include "pipeline/cli/staged_file.h"
 #include "pipeline/settings/command_line.h"
-#include "styles/grammar/bilke_import.h"
-#include "styles/grammar/check.h"
-#include "styles/grammar/program.h"
+#include "styles/grammar/language/bilke_import.h"
+#include "styles/grammar/language/check.h"
+#include "styles/grammar/language/program.h"
 
 namespace blockrand::cli {
 
@@ -118,7 +118,7 @@ int import(const Settings& s) {
   std::error_code none;
   if (!target.empty() && fs::exists(target, none) && !s.build.force)
     throw base::UsageError(target + " exists already. Choose another file with -o, or --force");
-  const grammar::ImportedRules rules = grammar::rule_text_of(importers::rules::read_facade_rules(s.rule_files.front()));
+  const grammar::ImportedRules rules = grammar::rule_text_of(importers::facade_rules::read_facade_rules(s.rule_files.front()));
   for (const std::string& note : rules.notes) fmt::print(stderr, "{}\n", note);
   if (target.empty())
     std::fputs(rules.text.c_str(), stdout);

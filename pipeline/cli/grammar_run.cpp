@@ -13,14 +13,14 @@
 #include "pipeline/base/version.h"
 #include "pipeline/cli/exit_codes.h"
 #include "pipeline/cli/rule_files.h"
-#include "pipeline/export/gltf/triangle_glb.h"
-#include "styles/grammar/colour_text.h"
-#include "styles/grammar/derive.h"
-#include "styles/grammar/initial_shape.h"
-#include "styles/grammar/mesh_triangles.h"
-#include "styles/grammar/rule_tests.h"
-#include "styles/grammar/surroundings.h"
-#include "styles/grammar/value_text.h"
+#include "pipeline/outputs/gltf/triangle_glb.h"
+#include "styles/grammar/evaluation/colour_text.h"
+#include "styles/grammar/evaluation/derive.h"
+#include "styles/grammar/shapes/initial_shape.h"
+#include "styles/grammar/shapes/mesh_triangles.h"
+#include "styles/grammar/evaluation/rule_tests.h"
+#include "styles/grammar/shapes/surroundings.h"
+#include "styles/grammar/language/value_text.h"
 
 namespace blockrand::cli {
 namespace {
@@ -49,20 +49,20 @@ void append_triangles(const grammar::Shape& shape, std::vector<model::Point3>& o
 }
 
 std::string glb_of(const grammar::Derivation& result) {
-  std::map<std::string, export_::ColouredTriangles> groups;
+  std::map<std::string, outputs::ColouredTriangles> groups;
   for (const grammar::Leaf& leaf : result.leaves) {
     const grammar::Material material = leaf.shape.material != nullptr ? *leaf.shape.material : grammar::Material();
     const std::string name = grammar::colour_text(material.colour, true);
-    export_::ColouredTriangles& group = groups[name];
+    outputs::ColouredTriangles& group = groups[name];
     group.name = name;
     group.colour = material.colour;
     group.roughness = material.roughness;
     group.metallic = material.metallic;
     append_triangles(leaf.shape, group.corners);
   }
-  std::vector<export_::ColouredTriangles> all;
+  std::vector<outputs::ColouredTriangles> all;
   for (auto& [name, group] : groups) all.push_back(std::move(group));
-  return export_::write_triangle_glb(all, "blockrand " BLOCKRAND_VERSION, /*y_up=*/true);
+  return outputs::write_triangle_glb(all, "blockrand " BLOCKRAND_VERSION, /*y_up=*/true);
 }
 
 void print_result(const grammar::Derivation& result, bool tree) {

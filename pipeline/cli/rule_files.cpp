@@ -7,10 +7,10 @@
 #include <optional>
 #include <regex>
 
-#include "pipeline/generate/facade_context.h"
-#include "pipeline/generate/grammar_book.h"
-#include "styles/grammar/asset_files.h"
-#include "styles/grammar/pattern.h"
+#include "pipeline/facades/facade_context.h"
+#include "pipeline/facades/grammar_book.h"
+#include "styles/grammar/evaluation/asset_files.h"
+#include "styles/grammar/evaluation/pattern.h"
 
 namespace blockrand::cli {
 
@@ -144,8 +144,8 @@ grammar::FileAccess rule_file_access(const settings::Settings& settings, const s
 
 grammar::CheckOptions rule_check_options() {
   grammar::CheckOptions out;
-  out.extensions = generate::extension_operations();
-  for (const generate::ContextAttribute& attribute : generate::context_attributes())
+  out.extensions = facades::extension_operations();
+  for (const facades::ContextAttribute& attribute : facades::context_attributes())
     out.context.emplace_back(attribute.name);
   return out;
 }

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "pipeline/settings/options.h"
-#include "styles/grammar/check.h"
-#include "styles/grammar/functions.h"
-#include "styles/grammar/program.h"
+#include "styles/grammar/language/check.h"
+#include "styles/grammar/evaluation/functions.h"
+#include "styles/grammar/language/program.h"
 
 namespace blockrand::cli {
 

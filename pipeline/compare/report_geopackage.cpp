@@ -5,17 +5,17 @@
 #include "pipeline/compare/report.h"
 #include "pipeline/compare/report_numbers.h"
 #include "pipeline/compare/report_places.h"
-#include "pipeline/geopackage/layer_file.h"
-#include "pipeline/geopackage/well_known_binary.h"
+#include "pipeline/layer_file/layer_file.h"
+#include "pipeline/layer_file/well_known_binary.h"
 
 namespace blockrand::compare {
 namespace {
 
-using geopackage::CellTable;
-using geopackage::Column;
-using geopackage::ColumnKind;
-using geopackage::GeometryKind;
-using geopackage::RowWriter;
+using layer_file::CellTable;
+using layer_file::Column;
+using layer_file::ColumnKind;
+using layer_file::GeometryKind;
+using layer_file::RowWriter;
 
 std::vector<Column> match_columns() {
   std::vector<Column> columns{
@@ -57,7 +57,7 @@ void append_footprints(std::string& out, const City& city, std::span<const std::
       for (model::Ring& hole : polygon.holes) place(hole);
       polygons.push_back(std::move(polygon));
     }
-  if (!polygons.empty()) geopackage::append_multi_polygon(out, polygons);
+  if (!polygons.empty()) layer_file::append_multi_polygon(out, polygons);
 }
 
 CellTable match_rows(const Comparison& c, std::size_t width) {
@@ -110,7 +110,7 @@ CellTable building_rows(const Comparison& c, bool model, const std::vector<std::
 void write_geopackage(const Comparison& c, const std::string& path) {
   const std::vector<Column> match = match_columns(), building = building_columns();
   const std::string heights = ". Heights compared " + std::string(heights_text(c));
-  geopackage::LayerFile file(
+  layer_file::LayerFile file(
       path, {c.reference.crs.empty() ? c.model.crs : c.reference.crs, ""},
       {{"matches", GeometryKind::multi_polygon, match,
         "Buildings that stand for each other: the reference's footprints with every measure" + heights},

@@ -98,23 +98,23 @@ std::string show_bbox(const std::optional<std::array<double, 4>>& box) {
 /// The formats in the order of all listings, by their names and other names people use.
 struct Format {
   const char* name;
-  bool region::BuildOptions::*field;
+  bool run::BuildOptions::*field;
 };
-constexpr Format kFormats[] = {{"gltf", &region::BuildOptions::gltf},         {"citygml", &region::BuildOptions::citygml},
-                               {"cityjson", &region::BuildOptions::cityjson}, {"gpkg", &region::BuildOptions::geopackage}};
+constexpr Format kFormats[] = {{"gltf", &run::BuildOptions::gltf},         {"citygml", &run::BuildOptions::citygml},
+                               {"cityjson", &run::BuildOptions::cityjson}, {"gpkg", &run::BuildOptions::geopackage}};
 
-const std::vector<std::pair<std::string, export_::Instancing>> kInstancings = {
-    {"ext", export_::Instancing::ext}, {"nodes", export_::Instancing::nodes}, {"baked", export_::Instancing::baked}};
+const std::vector<std::pair<std::string, outputs::Instancing>> kInstancings = {
+    {"ext", outputs::Instancing::ext}, {"nodes", outputs::Instancing::nodes}, {"baked", outputs::Instancing::baked}};
 
-const std::vector<std::pair<std::string, export_::Compression>> kCompressions = {{"none", export_::Compression::none},
-                                                                                  {"meshopt", export_::Compression::meshopt}};
+const std::vector<std::pair<std::string, outputs::Compression>> kCompressions = {{"none", outputs::Compression::none},
+                                                                                  {"meshopt", outputs::Compression::meshopt}};
 
 void set_formats(Settings& s, const std::string& text) {
-  std::vector<std::pair<std::string, bool region::BuildOptions::*>> names;
+  std::vector<std::pair<std::string, bool run::BuildOptions::*>> names;
   for (const Format& f : kFormats) names.emplace_back(f.name, f.field);
-  for (const char* other : {"tileset", "3dtiles"}) names.emplace_back(other, &region::BuildOptions::gltf);
-  names.emplace_back("geopackage", &region::BuildOptions::geopackage);
-  std::vector<bool region::BuildOptions::*> wanted;
+  for (const char* other : {"tileset", "3dtiles"}) names.emplace_back(other, &run::BuildOptions::gltf);
+  names.emplace_back("geopackage", &run::BuildOptions::geopackage);
+  std::vector<bool run::BuildOptions::*> wanted;
   for (const std::string& part : split(text, ',')) wanted.push_back(choose(part, names));
   for (const Format& f : kFormats) s.build.*f.field = false;
   for (const auto field : wanted) s.build.*field = true;

@@ -10,14 +10,14 @@
 
 #include "pipeline/base/progress.h"
 #include "pipeline/compare/compare.h"
-#include "pipeline/region/build.h"
+#include "pipeline/run/build.h"
 #include "pipeline/validate/options.h"
 
 namespace blockrand::settings {
 
 /// Everything that a user can set.
 struct Settings {
-  region::BuildOptions build;
+  run::BuildOptions build;
   std::string config;  ///< the config file, for the record; its values are in the other fields
   std::string folder;  ///< a finished build, for the commands that read one
   blockrand::validate::ValidateOptions validation;  ///< but for its folder and jobs, which other commands have too

@@ -8,7 +8,7 @@
 
 #include "pipeline/base/random.h"
 
-namespace blockrand::styles::districts {
+namespace blockrand::districts {
 
 namespace {
 
@@ -318,4 +318,4 @@ Assignment assign(const RuleBook& book, std::uint32_t set_index, const Subject& 
   return a;
 }
 
-}  // namespace blockrand::styles::districts
+}  // namespace blockrand::districts

@@ -10,7 +10,7 @@
 #include "pipeline/model/sourced.h"
 #include "styles/districts/rule_set.h"
 
-namespace blockrand::styles::districts {
+namespace blockrand::districts {
 
 /// Everything that predicates may ask about a building. Texts and pointers must outlive the call; the functions are
 /// asked only where a rule needs them. Empty functions answer nothing.
@@ -74,4 +74,4 @@ Decision decide(const RuleBook& book, std::uint32_t set, const Subject& subject,
 /// \returns what decide() does as `decision`
 Assignment assign(const RuleBook& book, std::uint32_t set, const Subject& subject, std::uint64_t seed);
 
-}  // namespace blockrand::styles::districts
+}  // namespace blockrand::districts

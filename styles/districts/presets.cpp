@@ -4,7 +4,7 @@
 
 #include "pipeline/base/toml_file.h"
 
-namespace blockrand::styles::districts {
+namespace blockrand::districts {
 
 Preset read_preset(const std::string& name, base::TomlTable table) {
   Preset preset;
@@ -40,4 +40,4 @@ std::size_t find_preset(const std::vector<Preset>& presets, std::string_view nam
   return found != presets.end() ? static_cast<std::size_t>(found - presets.begin()) : kNoPreset;
 }
 
-}  // namespace blockrand::styles::districts
+}  // namespace blockrand::districts

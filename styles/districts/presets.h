@@ -11,7 +11,7 @@ namespace blockrand::base {
 class TomlTable;
 }
 
-namespace blockrand::styles::districts {
+namespace blockrand::districts {
 
 struct Preset {
   std::string name;
@@ -33,4 +33,4 @@ Preset read_preset(const std::string& name, base::TomlTable table);
 inline constexpr std::size_t kNoPreset = static_cast<std::size_t>(-1);
 std::size_t find_preset(const std::vector<Preset>& presets, std::string_view name);
 
-}  // namespace blockrand::styles::districts
+}  // namespace blockrand::districts

@@ -11,7 +11,7 @@
 #include "pipeline/base/toml_file.h"
 #include "styles/districts/rule_checks.h"
 
-namespace blockrand::styles::districts {
+namespace blockrand::districts {
 
 namespace {
 
@@ -389,4 +389,4 @@ void parse_rule_set(std::string_view text, const std::string& name, RuleBook& bo
   book.sets.push_back(Reader(name, book).read(std::move(root)));
 }
 
-}  // namespace blockrand::styles::districts
+}  // namespace blockrand::districts

@@ -5,7 +5,7 @@
 
 #include "styles/districts/rule_set.h"
 
-namespace blockrand::styles::districts {
+namespace blockrand::districts {
 
 /// m. A tile that is built alone reads 3 km around it: a feature farther away could not be seen.
 inline constexpr double kMaxNear = 2000;
@@ -24,4 +24,4 @@ void read_rule_set(const std::string& path, RuleBook& book);
 /// The same from text; files that it names are relative to the folder of `name`.
 void parse_rule_set(std::string_view text, const std::string& name, RuleBook& book);
 
-}  // namespace blockrand::styles::districts
+}  // namespace blockrand::districts

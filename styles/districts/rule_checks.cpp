@@ -7,7 +7,7 @@
 
 #include "pipeline/base/error.h"
 
-namespace blockrand::styles::districts {
+namespace blockrand::districts {
 
 namespace {
 
@@ -51,4 +51,4 @@ void check_rules(RuleSet& set) {
   }
 }
 
-}  // namespace blockrand::styles::districts
+}  // namespace blockrand::districts

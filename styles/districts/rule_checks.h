@@ -3,10 +3,10 @@
 
 #include "styles/districts/rule_set.h"
 
-namespace blockrand::styles::districts {
+namespace blockrand::districts {
 
 /// Brings the rules into the order of their strength.
 /// \throws base::InputError  two rules of one name; a rule without effect
 void check_rules(RuleSet& set);
 
-}  // namespace blockrand::styles::districts
+}  // namespace blockrand::districts

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace blockrand::styles::districts {
+namespace blockrand::districts {
 
 std::string PlaceQuery::text() const {
   switch (kind) {
@@ -80,4 +80,4 @@ std::uint32_t RuleBook::choose(model::Location place) const {
   return best;
 }
 
-}  // namespace blockrand::styles::districts
+}  // namespace blockrand::districts

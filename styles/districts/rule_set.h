@@ -16,7 +16,7 @@
 #include "pipeline/model/style.h"
 #include "styles/districts/presets.h"
 
-namespace blockrand::styles::districts {
+namespace blockrand::districts {
 
 /// Finer levels override coarser ones; of the same level the rule of higher priority, then the earlier one.
 enum class Level : std::uint8_t { city, district, block, building };
@@ -141,4 +141,4 @@ bool holds(std::span<const model::Location> ring, model::Location place);
 __extension__ typedef unsigned __int128 RingArea;
 RingArea double_area(std::span<const model::Location> ring);
 
-}  // namespace blockrand::styles::districts
+}  // namespace blockrand::districts

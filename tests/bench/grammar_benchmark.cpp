@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "styles/grammar/derive.h"
-#include "styles/grammar/initial_shape.h"
-#include "styles/grammar/program.h"
+#include "styles/grammar/evaluation/derive.h"
+#include "styles/grammar/shapes/initial_shape.h"
+#include "styles/grammar/language/program.h"
 
 namespace {
 

@@ -1,11 +1,11 @@
 // How long splits take: a facade is some hundred pieces, and hundreds of buildings are derived a second.
 #include <benchmark/benchmark.h>
 
-#include "styles/grammar/components.h"
-#include "styles/grammar/initial_shape.h"
-#include "styles/grammar/mesh_tools.h"
-#include "styles/grammar/operations.h"
-#include "styles/grammar/split.h"
+#include "styles/grammar/shapes/components.h"
+#include "styles/grammar/shapes/initial_shape.h"
+#include "styles/grammar/shapes/mesh_tools.h"
+#include "styles/grammar/shapes/operations.h"
+#include "styles/grammar/shapes/split.h"
 
 namespace blockrand::grammar {
 namespace {

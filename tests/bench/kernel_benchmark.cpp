@@ -1,7 +1,7 @@
 // Kernels of a build on typical plans: skeletons, roofs, triangulation, the solid check.
 #include <benchmark/benchmark.h>
 
-#include "pipeline/generate/envelope.h"
+#include "pipeline/masses/envelope.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/straight_skeleton.h"
 #include "pipeline/geometry/triangulate.h"
@@ -51,16 +51,16 @@ void hipped_roof(benchmark::State& state) {
 void envelope_of_hips(benchmark::State& state) {
   const auto p = plan(static_cast<int>(state.range(0)));
   const auto roof = hips(p);
-  for (auto _ : state) benchmark::DoNotOptimize(generate::envelope(p, 30, roof, {}));
+  for (auto _ : state) benchmark::DoNotOptimize(masses::envelope(p, 30, roof, {}));
 }
 void triangulate(benchmark::State& state) {
   const auto p = plan(static_cast<int>(state.range(0)));
-  const auto solid = generate::envelope(p, 30, hips(p), {});
+  const auto solid = masses::envelope(p, 30, hips(p), {});
   for (auto _ : state) benchmark::DoNotOptimize(geometry::triangulate(solid));
 }
 void check(benchmark::State& state) {
   const auto p = plan(static_cast<int>(state.range(0)));
-  const auto solid = generate::envelope(p, 30, hips(p), {});
+  const auto solid = masses::envelope(p, 30, hips(p), {});
   const auto triangles = geometry::triangulate(solid);
   for (auto _ : state) benchmark::DoNotOptimize(geometry::check_solid(solid, *triangles));
 }

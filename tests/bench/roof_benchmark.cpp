@@ -10,7 +10,7 @@
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/base/parallel.h"
-#include "pipeline/generate/envelope.h"
+#include "pipeline/masses/envelope.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/straight_skeleton.h"
@@ -18,8 +18,8 @@
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/projection.h"
-#include "pipeline/region/area.h"
-#include "pipeline/region/repair_extract.h"
+#include "pipeline/footprints/area.h"
+#include "pipeline/footprints/repair_extract.h"
 #include "styles/roofs/roof.h"
 
 using namespace blockrand;
@@ -28,15 +28,15 @@ namespace {
 
 std::vector<model::Polygon> repaired_plans(const std::string& path) {
   const model::Extract extract = importers::osm::read_extract(path);
-  const auto area = region::area_of(extract);
+  const auto area = footprints::area_of(extract);
   if (!area) return {};
   const georef::Crs crs = georef::open_crs(georef::choose_crs(area->centre.lon, area->centre.lat), area->box);
   const georef::Projection projection(crs, area->box);
   model::Report report;
-  const auto shards = region::make_shards(extract, report);
+  const auto shards = footprints::make_shards(extract, report);
   base::Progress progress;
   const repair::KeptNodes kept(extract);
-  const auto repaired = region::repair_extract(extract, shards, projection, kept, {}, base::worker_count(0), progress);
+  const auto repaired = footprints::repair_extract(extract, shards, projection, kept, {}, base::worker_count(0), progress);
   std::vector<model::Polygon> plans;
   for (std::uint32_t b = 0; b < repaired.footprints.size(); ++b)
     for (model::Polygon plan : repaired.footprints.polygons(b)) {
@@ -63,7 +63,7 @@ roofs::RoofRequest request_for(const model::Polygon& plan, model::RoofShape shap
 }
 
 bool sound(const model::Polygon& plan, const roofs::Roof& roof) {
-  const model::Solid solid = generate::envelope(plan, 0, roof, {});
+  const model::Solid solid = masses::envelope(plan, 0, roof, {});
   const auto triangles = geometry::triangulate(solid);
   return triangles && geometry::check_solid(solid, *triangles).valid();
 }

@@ -18,16 +18,16 @@
 #include "pipeline/base/random.h"
 #include "pipeline/context/blocks.h"
 #include "pipeline/georef/projection.h"
-#include "pipeline/region/area.h"
-#include "pipeline/region/building_facts.h"
-#include "pipeline/region/classify_extract.h"
-#include "pipeline/region/context_extract.h"
-#include "pipeline/region/load.h"
-#include "pipeline/region/prepare_extract.h"
-#include "pipeline/region/repair_extract.h"
-#include "pipeline/region/rule_book.h"
-#include "pipeline/region/shard.h"
-#include "pipeline/repair/kept_nodes.h"
+#include "pipeline/footprints/area.h"
+#include "pipeline/evidence/building_facts.h"
+#include "pipeline/evidence/classify_extract.h"
+#include "pipeline/context/context_extract.h"
+#include "pipeline/footprints/load.h"
+#include "pipeline/run/prepare_extract.h"
+#include "pipeline/footprints/repair_extract.h"
+#include "pipeline/attributes/rule_book.h"
+#include "pipeline/footprints/shard.h"
+#include "pipeline/footprints/repair/kept_nodes.h"
 
 using namespace blockrand;
 
@@ -48,12 +48,12 @@ int part_of(model::OsmId id) {
 std::string number(float v) { return v == v ? fmt::format("{:.5g}", v) : std::string(); }
 
 struct Answers {
-  region::StyleExtract tagged, untagged, no_region, no_smooth, permuted, era, storeys, storeys_alone, roof, roof_alone;
+  evidence::StyleExtract tagged, untagged, no_region, no_smooth, permuted, era, storeys, storeys_alone, roof, roof_alone;
 };
 
 /// Gives each building the geometry of another: what classification is worth without it.
-region::FactsExtract permuted(const region::FactsExtract& facts) {
-  region::FactsExtract out = facts;
+evidence::FactsExtract permuted(const evidence::FactsExtract& facts) {
+  evidence::FactsExtract out = facts;
   std::vector<std::uint32_t> known;
   for (std::uint32_t b = 0; b < facts.features.size(); ++b)
     if (facts.features[b].has(Feature::area)) known.push_back(b);
@@ -71,17 +71,17 @@ region::FactsExtract permuted(const region::FactsExtract& facts) {
 /// Classifies with one tenth hidden after the other and keeps the answers of those hidden.
 template <class Hide, class Keep>
 void in_tenths(
-    const region::FactsExtract& facts, const region::TagFacts& tags, const region::FootprintStore& store, Hide hide,
+    const evidence::FactsExtract& facts, const evidence::TagFacts& tags, const footprints::FootprintStore& store, Hide hide,
     Keep keep,
-    const std::function<region::StyleExtract(const region::FactsExtract&, const region::TagFacts&)>& classify) {
+    const std::function<evidence::StyleExtract(const evidence::FactsExtract&, const evidence::TagFacts&)>& classify) {
   for (int part = 0; part < kParts; ++part) {
-    region::FactsExtract f = facts;
-    region::TagFacts t = tags;
+    evidence::FactsExtract f = facts;
+    evidence::TagFacts t = tags;
     bool any = false;
     for (std::uint32_t b = 0; b < store.size(); ++b)
       if (part_of(store[b].id) == part) any = hide(f, t, b) || any;
     if (!any) continue;
-    const region::StyleExtract answer = classify(f, t);
+    const evidence::StyleExtract answer = classify(f, t);
     for (std::uint32_t b = 0; b < store.size(); ++b)
       if (part_of(store[b].id) == part) keep(answer, b);
   }
@@ -90,39 +90,39 @@ void in_tenths(
 void run(const std::string& input, const std::string& configs, const std::string& table, bool answers, bool quick) {
   base::Progress progress;
   const model::Extract extract = importers::osm::read_extract(input, {});
-  const auto area = region::area_of(extract);
+  const auto area = footprints::area_of(extract);
   if (!area) throw std::runtime_error("no buildings in " + input);
   const auto crs = georef::open_crs(georef::choose_crs(area->centre.lon, area->centre.lat), area->box);
   const georef::Projection projection(crs, area->box);
   model::Report report;
-  const auto shards = region::make_shards(extract, report);
-  const auto coverage = context::coverage_of(region::building_places(extract, projection));
+  const auto shards = footprints::make_shards(extract, report);
+  const auto coverage = context::coverage_of(footprints::building_places(extract, projection));
   const repair::KeptNodes kept(extract);
-  const auto repaired = region::repair_extract(extract, shards, projection, kept, {}, kWorkers, progress);
+  const auto repaired = footprints::repair_extract(extract, shards, projection, kept, {}, kWorkers, progress);
   const auto& store = repaired.footprints;
-  const auto context = region::context_extract(extract, store, coverage, projection, kWorkers, progress);
-  const region::SurroundingsFinder surroundings(extract, store, context);
-  region::FactsExtract facts = region::facts_extract(extract, store, context, surroundings, kWorkers, progress);
+  const auto context = context::context_extract(extract, store, coverage, projection, kWorkers, progress);
+  const context::SurroundingsFinder surroundings(extract, store, context);
+  evidence::FactsExtract facts = evidence::facts_extract(extract, store, context, surroundings, kWorkers, progress);
   classify::Tables tables = answers ? classify::Tables::read(configs) : classify::Tables::read_without_weights(configs);
-  const region::TagFacts tags = region::tag_facts(extract, store, context, tables, projection, facts);
+  const evidence::TagFacts tags = evidence::tag_facts(extract, store, context, tables, projection, facts);
 
   Answers a;
   if (answers) {
-    const auto rules = region::read_rule_book(configs, "");
-    const std::vector<classify::RegionPrior> priors = region::region_priors(rules.book, tables);
-    const region::PriorOf prior = [&](std::uint32_t b) -> const classify::RegionPrior* {
-      const std::uint32_t set = rules.book.choose(region::box_centre(extract, extract.buildings[store[b].lead]));
-      return set == styles::districts::RuleBook::kNoSet ? nullptr : &priors[set];
+    const auto rules = attributes::read_rule_book(configs, "");
+    const std::vector<classify::RegionPrior> priors = run::region_priors(rules.book, tables);
+    const evidence::PriorOf prior = [&](std::uint32_t b) -> const classify::RegionPrior* {
+      const std::uint32_t set = rules.book.choose(footprints::box_centre(extract, extract.buildings[store[b].lead]));
+      return set == districts::RuleBook::kNoSet ? nullptr : &priors[set];
     };
-    constexpr region::ClassifyOptions kUntagged{.tags = false, .dates = false, .smooth = true},
+    constexpr evidence::ClassifyOptions kUntagged{.tags = false, .dates = false, .smooth = true},
         kAlone{.tags = false, .dates = false, .smooth = false};
-    a.tagged = region::classify_extract(facts, tags, tables, prior, {}, kWorkers, progress);
-    a.untagged = region::classify_extract(facts, tags, tables, prior, kUntagged, kWorkers, progress);
-    a.no_region = region::classify_extract(facts, tags, tables, {}, kUntagged, kWorkers, progress);
-    a.no_smooth = region::classify_extract(facts, tags, tables, prior, kAlone, kWorkers, progress);
-    a.permuted = region::classify_extract(permuted(facts), tags, tables, prior, kUntagged, kWorkers, progress);
-    const auto again = [&](const region::FactsExtract& f, const region::TagFacts& t) {
-      return region::classify_extract(f, t, tables, prior, {}, kWorkers, progress);
+    a.tagged = evidence::classify_extract(facts, tags, tables, prior, {}, kWorkers, progress);
+    a.untagged = evidence::classify_extract(facts, tags, tables, prior, kUntagged, kWorkers, progress);
+    a.no_region = evidence::classify_extract(facts, tags, tables, {}, kUntagged, kWorkers, progress);
+    a.no_smooth = evidence::classify_extract(facts, tags, tables, prior, kAlone, kWorkers, progress);
+    a.permuted = evidence::classify_extract(permuted(facts), tags, tables, prior, kUntagged, kWorkers, progress);
+    const auto again = [&](const evidence::FactsExtract& f, const evidence::TagFacts& t) {
+      return evidence::classify_extract(f, t, tables, prior, {}, kWorkers, progress);
     };
     const std::size_t n = store.size();
     a.storeys.storeys.resize(n);
@@ -131,18 +131,18 @@ void run(const std::string& input, const std::string& configs, const std::string
     a.storeys_alone.storeys.resize(n);
     a.roof_alone.roofs.resize(n);
     constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-    const auto hide_storeys = [&](region::FactsExtract& f, region::TagFacts&, std::uint32_t b) {
+    const auto hide_storeys = [&](evidence::FactsExtract& f, evidence::TagFacts&, std::uint32_t b) {
       const bool any = f.features[b].has(Feature::tag_storeys);
       f.features[b][Feature::tag_storeys] = kUnknown;
       return any;
     };
-    const auto hide_roof = [&](region::FactsExtract& f, region::TagFacts& t, std::uint32_t b) {
+    const auto hide_roof = [&](evidence::FactsExtract& f, evidence::TagFacts& t, std::uint32_t b) {
       const bool any = f.features[b].has(Feature::tag_roof);
       f.features[b][Feature::tag_roof] = f.features[b][Feature::tag_roof_storeys] = kUnknown;
       t.roofs[b].reset();
       return any;
     };
-    const auto hide_date = [&](region::FactsExtract& f, region::TagFacts& t, std::uint32_t b) {
+    const auto hide_date = [&](evidence::FactsExtract& f, evidence::TagFacts& t, std::uint32_t b) {
       const bool any = f.features[b].has(Feature::tag_year) || f.features[b].has(Feature::tag_heritage);
       f.features[b][Feature::tag_year] = f.features[b][Feature::tag_heritage] = kUnknown;
       t.dates[b] = {};
@@ -157,8 +157,8 @@ void run(const std::string& input, const std::string& configs, const std::string
           facts, tags, store, hide_roof, [&](const auto& r, std::uint32_t b) { a.roof.roofs[b] = r.roofs[b]; }, again);
       in_tenths(
           facts, tags, store, hide_date, [&](const auto& r, std::uint32_t b) { a.era.styles[b] = r.styles[b]; }, again);
-      region::FactsExtract f = facts;
-      region::TagFacts t = tags;
+      evidence::FactsExtract f = facts;
+      evidence::TagFacts t = tags;
       for (std::uint32_t b = 0; b < n; ++b) hide_storeys(f, t, b);
       a.storeys_alone = again(f, t);
       f = facts;
@@ -192,15 +192,15 @@ void run(const std::string& input, const std::string& configs, const std::string
     return c;
   };
   std::uint32_t n = 0;
-  for (const region::Shard& shard : shards)
-    for (const region::Seed& seed : shard.seeds) {
+  for (const footprints::Shard& shard : shards)
+    for (const footprints::Seed& seed : shard.seeds) {
       const std::uint32_t b = n++;
       if (!facts.features[b].has(Feature::area)) continue;
       const model::MappedBuilding& m = extract.buildings[seed.lead()];
-      const region::BuildingPlace& p = facts.places[b];
-      const model::Location l = region::box_centre(extract, m);
+      const evidence::BuildingPlace& p = facts.places[b];
+      const model::Location l = footprints::box_centre(extract, m);
       std::string touching;
-      for (const region::Contact& c : facts.contacts_of(b))
+      for (const evidence::Contact& c : facts.contacts_of(b))
         touching += (touching.empty() ? "" : " ") + store[c.other].id.text() + ":" + fmt::format("{:.1f}", c.length);
       const auto optional = [](const auto& v) { return v ? fmt::format("{:g}", *v) : std::string(); };
       std::string row = fmt::format(
@@ -215,7 +215,7 @@ void run(const std::string& input, const std::string& configs, const std::string
       for (const auto t : kTags) row += "," + clean(extract.tag(m.tags, t));
       for (std::size_t f = 0; f < classify::kFeatureCount; ++f) row += "," + number(facts.features[b].at(f));
       if (answers) {
-        for (const region::StyleExtract* set :
+        for (const evidence::StyleExtract* set :
              {&a.tagged, &a.untagged, &a.no_region, &a.no_smooth, &a.permuted, &a.era}) {
           const model::BuildingStyle& s = set->styles[b];
           for (const float v : s.style) row += "," + number(v);

@@ -12,8 +12,8 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
-region::BuildSummary summary() {
-  region::BuildSummary s;
+run::BuildSummary summary() {
+  run::BuildSummary s;
   s.buildings_in = 12345;
   s.parts_in = 678;
   s.models = 12800;
@@ -29,15 +29,15 @@ region::BuildSummary summary() {
   return s;
 }
 
-region::BuildOptions options() {
-  region::BuildOptions o;
+run::BuildOptions options() {
+  run::BuildOptions o;
   o.output = "out/leipzig";
   return o;
 }
 
 TEST(BuildReport, AccountsForEveryObject) {
   EXPECT_EQ(unaccounted(summary()), 0);
-  region::BuildSummary lost = summary();
+  run::BuildSummary lost = summary();
   lost.models -= 2;
   EXPECT_EQ(unaccounted(lost), 2);
   lost.models += 3;
@@ -62,13 +62,13 @@ TEST(BuildReport, GroupsCodesByWhatTheyMean) {
       << "most frequent first";
   EXPECT_THAT(text, ContainsRegex("Simpler than asked\n  ROOF_SHAPE_ADAPTED +7 "));
   EXPECT_THAT(text, ContainsRegex("Notices\n  VALUE_UNREADABLE +1,234 "));
-  region::BuildSummary clean = summary();
+  run::BuildSummary clean = summary();
   clean.issues.clear();
   EXPECT_THAT(build_report(options(), clean), Not(HasSubstr("because\n")));
 }
 
 TEST(BuildReport, NamesTheFilesThatWereAskedFor) {
-  region::BuildOptions o = options();
+  run::BuildOptions o = options();
   o.citygml = false;
   o.single_glb = true;
   const std::string text = build_report(o, summary());
@@ -78,9 +78,9 @@ TEST(BuildReport, NamesTheFilesThatWereAskedFor) {
 }
 
 TEST(BuildReport, ALowerLevelHidesTheRowsAboveIt) {
-  region::BuildOptions o = options();
+  run::BuildOptions o = options();
   o.lod = 1;
-  region::BuildSummary s = summary();
+  run::BuildSummary s = summary();
   s.models_by_lod = {2, 12798, 0};
   EXPECT_THAT(build_report(o, s), Not(HasSubstr("LoD 2")));
 }

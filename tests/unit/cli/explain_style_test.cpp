@@ -191,7 +191,7 @@ TEST(ExplainStyle, SharesArePercents) {
 
 // ---- the whole text
 
-region::FoundExplanation found(const Json& style) {
+outputs::FoundExplanation found(const Json& style) {
   Json line = {
       {"id", "w7"},
       {"state", "modelled"},
@@ -204,7 +204,7 @@ region::FoundExplanation found(const Json& style) {
       {"bodies", Json::array({{{"id", "w7"}, {"built_roof", "gabled"}}})},
       {"notes", Json::array()}};
   if (!style.is_null()) line["style"] = style;
-  region::FoundExplanation f;
+  outputs::FoundExplanation f;
   f.asked = f.explained = {model::OsmType::way, 7};
   f.json = line.dump();
   f.in_model = true;

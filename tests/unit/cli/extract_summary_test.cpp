@@ -187,7 +187,7 @@ TEST(ExtractSummary, BytesThatAreNoUtf8DoNotStopJson) {
 TEST(BuildEstimate, GrowsWithObjectsAndShrinksWithJobs) {
   ExtractSummary s;
   s.to_build = 100'000;
-  region::BuildOptions one, two;
+  run::BuildOptions one, two;
   one.jobs = 1;
   two.jobs = 2;
   const BuildEstimate a = estimate(s, one, 1, 100'000'000), b = estimate(s, two, 1, 100'000'000);

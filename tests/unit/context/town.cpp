@@ -4,24 +4,24 @@
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/georef/crs.h"
-#include "pipeline/region/area.h"
-#include "pipeline/region/load.h"
-#include "pipeline/region/shard.h"
-#include "tests/unit/repair/repair_alone.h"
+#include "pipeline/footprints/area.h"
+#include "pipeline/footprints/load.h"
+#include "pipeline/footprints/shard.h"
+#include "tests/unit/footprints/repair/repair_alone.h"
 
 namespace blockrand::context {
 
 Town read_town(const std::string& path) {
   Town town;
   town.extract = importers::osm::read_extract(path);
-  const region::Area area = region::area_of(town.extract).value();
+  const footprints::Area area = footprints::area_of(town.extract).value();
   town.projection = std::make_unique<georef::Projection>(
       georef::open_crs(georef::choose_crs(area.centre.lon, area.centre.lat), area.box), area.box);
   const auto project = [&](model::Location l) { return town.projection->forward(l); };
 
   model::Report report;
-  for (const region::Shard& shard : region::make_shards(town.extract, report)) {
-    model::Region tile = region::load_region(town.extract, shard, *town.projection);
+  for (const footprints::Shard& shard : footprints::make_shards(town.extract, report)) {
+    model::Region tile = footprints::load_region(town.extract, shard, *town.projection);
     repair::test::repair_alone(tile);
     for (model::Building& b : tile.buildings)
       if (!b.outline.empty()) town.buildings.push_back(std::move(b));

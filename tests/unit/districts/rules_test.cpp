@@ -11,7 +11,7 @@
 #include "styles/districts/assign.h"
 #include "styles/districts/read_rule_set.h"
 
-namespace blockrand::styles::districts {
+namespace blockrand::districts {
 namespace {
 
 using testing::AllOf;
@@ -456,4 +456,4 @@ TEST(Shipped, EveryRuleSetIsReadAndGivesEveryBuildingAPreset) {
 }
 
 }  // namespace
-}  // namespace blockrand::styles::districts
+}  // namespace blockrand::districts

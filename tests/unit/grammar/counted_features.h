@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "styles/grammar/names.h"
+#include "styles/grammar/language/names.h"
 
 namespace blockrand::grammar {
 

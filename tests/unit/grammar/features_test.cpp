@@ -15,11 +15,11 @@
 #include <span>
 #include <sstream>
 
-#include "styles/grammar/asset_files.h"
-#include "styles/grammar/names.h"
-#include "styles/grammar/rule_tests.h"
+#include "styles/grammar/evaluation/asset_files.h"
+#include "styles/grammar/language/names.h"
+#include "styles/grammar/evaluation/rule_tests.h"
 #include "tests/unit/grammar/counted_features.h"
-#include "tests/unit/grammar/derive_support.h"
+#include "tests/unit/grammar/evaluation/derive_support.h"
 
 namespace blockrand::grammar {
 namespace {

@@ -10,13 +10,13 @@
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/model/edge_colours.h"
 #include "pipeline/picture/building_plan.h"
-#include "tests/unit/export/row_sample.h"
+#include "tests/unit/outputs/row_sample.h"
 
 namespace blockrand::picture {
 namespace {
 
-using export_::test::kRowX;
-using export_::test::kRowY;
+using outputs::test::kRowX;
+using outputs::test::kRowY;
 using model::Colour;
 using model::EdgeKind;
 using model::Point2;
@@ -121,7 +121,7 @@ TEST(Plan, SizesAreChecked) {
 // ---------------------------------------------------------------------------------------------------
 
 Plan row_plan() {
-  const auto sample = export_::test::row_sample();
+  const auto sample = outputs::test::row_sample();
   PlanTile tile = plan_tile(sample.region());
   tile.streets.push_back({{{kRowX - 20, kRowY}, {kRowX + 70, kRowY}}, 7});
   tile.streets.push_back({{{kRowX - 10, kRowY - 10}, {kRowX - 10, kRowY + 60}}, 7});
@@ -160,7 +160,7 @@ TEST(BuildingPlan, TheSameBytesEachTime) {
 }
 
 TEST(BuildingPlan, WithoutContextOutlinesAreShown) {
-  const auto zoo = export_::test::SampleRegion::zoo();
+  const auto zoo = outputs::test::SampleRegion::zoo();
   const PlanTile tile = plan_tile(zoo.region());
   EXPECT_EQ(tile.buildings.size(), 9u) << "of parts, since the zoo has no outlines; none of the halo";
   EXPECT_TRUE(tile.edges.empty());

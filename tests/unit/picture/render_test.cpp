@@ -8,7 +8,7 @@
 #include "pipeline/base/random.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/picture/palette.h"
-#include "tests/unit/export/sample_region.h"
+#include "tests/unit/outputs/sample_region.h"
 #include "tests/unit/picture/scenes.h"
 
 namespace blockrand::picture {
@@ -290,7 +290,7 @@ TEST(Render, SceneLinesAreHiddenByWhatIsBeforeThem) {
 
 /// A village of the exporters' sample with everything switched on.
 Image village(int size) {
-  const auto region = export_::test::SampleRegion::settlement(60, false);
+  const auto region = outputs::test::SampleRegion::settlement(60, false);
   Scene scene({391000, 5819000, 34});
   std::uint32_t object = 0;
   for (const model::Building& b : region.region().buildings)

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "pipeline/export/gltf/glb_writer.h"
+#include "pipeline/outputs/gltf/glb_writer.h"
 #include "tests/unit/roofs/dressed_roof.h"
 #include "tests/unit/roofs/element_checks.h"
 #include "tests/unit/roofs/roof_checks.h"
@@ -65,7 +65,7 @@ TEST_P(DressedRoofs, BodiesAreValidAndTouchOnly) {
         const Polygon place = moved(plan, angle, angle == 0 ? Point2{} : kPlaces[1]);
         const auto roof = roof_on(place, GetParam());
         ASSERT_TRUE(roof) << name;
-        const model::Solid house = generate::envelope(place, 0, *roof, {});
+        const model::Solid house = masses::envelope(place, 0, *roof, {});
         if (verdict(house) != "none") continue;
         const auto around = around_of(place, *roof, row);
         std::optional<std::pair<std::uint32_t, roofs::GableOptions>> gable;
@@ -120,7 +120,7 @@ TEST(DressedRoofsOnRandomPlans, BodiesAreValidAndTouchOnly) {
     const RoofShape shape = kShapes[random.next(std::size(kShapes))];
     const auto roof = roof_on(plan, shape, 2 + 4 * random.unit());
     if (!roof) continue;
-    const model::Solid house = generate::envelope(plan, 0, *roof, {});
+    const model::Solid house = masses::envelope(plan, 0, *roof, {});
     if (verdict(house) != "none") continue;
     const auto around = around_of(plan, *roof, static_cast<Row>(random.next(3)));
     std::optional<std::pair<std::uint32_t, roofs::GableOptions>> gable;
@@ -147,7 +147,7 @@ TEST(DressedRoofsOnRings, SixHundredCorners) {
   for (const RoofShape shape : {RoofShape::flat, RoofShape::hipped}) {
     const auto roof = roof_on(plan, shape);
     ASSERT_TRUE(roof);
-    const model::Solid house = generate::envelope(plan, 0, *roof, {});
+    const model::Solid house = masses::envelope(plan, 0, *roof, {});
     if (verdict(house) != "none") continue;
     const DressedRoof dressed = dress(plan, *roof, {}, std::nullopt);
     EXPECT_EQ(fault(house, dressed.bodies), "") << model::name(shape);
@@ -160,7 +160,7 @@ TEST(ElementChecks, SeeWhatReachesIntoTheHouse) {
   // The judge itself: eaves moved 3 cm into the wall, and a body twice.
   const Polygon plan = testing_shapes::polygon({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
   const auto roof = roof_on(plan, RoofShape::hipped);
-  const model::Solid house = generate::envelope(plan, 0, *roof, {});
+  const model::Solid house = masses::envelope(plan, 0, *roof, {});
   Bodies bodies = roofs::overhangs(plan, *roof, {}).elements.bodies;
   ASSERT_EQ(fault(house, bodies), "");
   Bodies twice = bodies;
@@ -222,7 +222,7 @@ struct Sheet {
     top.kind = SurfaceKind::roof;
     top.colour = {168, 80, 60};
     under.kind = SurfaceKind::ground;
-    add(generate::envelope(plan, 0, roof, {wall, top, under}), by);
+    add(masses::envelope(plan, 0, roof, {wall, top, under}), by);
     for (model::RoofInstallation body : dressed.bodies) {
       for (model::Face& f : body.solid.faces) f.colour = colour_of(body.kind, f.kind);
       add(std::move(body.solid), by);
@@ -230,7 +230,7 @@ struct Sheet {
   }
 
   void write(const std::string& path) {
-    std::ofstream(path, std::ios::binary) << export_::write_glb(region, {}).bytes;
+    std::ofstream(path, std::ios::binary) << outputs::write_glb(region, {}).bytes;
     EXPECT_GT(std::ifstream(path, std::ios::binary | std::ios::ate).tellg(), 10000) << path;
   }
 };

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/generate/envelope.h"
+#include "pipeline/masses/envelope.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/solid_overlap.h"
 #include "pipeline/geometry/triangulate.h"

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "pipeline/export/gltf/glb_writer.h"
-#include "pipeline/generate/defaults.h"
+#include "pipeline/outputs/gltf/glb_writer.h"
+#include "pipeline/attributes/defaults.h"
 #include "tests/unit/roofs/furnished_roof.h"
 
 namespace blockrand::roofs {
@@ -20,20 +20,20 @@ constexpr RoofShape kShapes[] = {RoofShape::gabled,  RoofShape::hipped,      Roo
 /// Houses side by side.
 class Street {
  public:
-  Street() : defaults_(generate::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs")) {
+  Street() : defaults_(attributes::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs")) {
     region_.extract = &no_tags_;
-    for (const generate::Material& m : defaults_.materials) region_.materials.push_back(m.looks);
+    for (const attributes::Material& m : defaults_.materials) region_.materials.push_back(m.looks);
   }
 
   void add(const Polygon& plan, const Roof& roof, const std::vector<model::RoofInstallation>& installations) {
-    generate::EnvelopeLooks looks;
+    masses::EnvelopeLooks looks;
     looks.wall = face(model::SurfaceKind::wall, "plaster", {222, 214, 196});
     looks.roof = face(model::SurfaceKind::roof, "roof_tiles", {168, 80, 60});
     looks.under = face(model::SurfaceKind::ground, "plaster", {120, 120, 120});
     model::Building building;
     building.osm = {model::OsmType::way, static_cast<std::int64_t>(region_.buildings.size()) + 1};
     building.outline = {plan};
-    add_part(building, plan, generate::envelope(plan, 0, roof, looks));
+    add_part(building, plan, masses::envelope(plan, 0, roof, looks));
     for (const model::RoofInstallation& installation : installations) {
       model::Solid solid = installation.solid;
       for (model::Face& f : solid.faces) {
@@ -54,7 +54,7 @@ class Street {
   }
 
   void write(const std::string& path) {
-    std::ofstream(path, std::ios::binary) << export_::write_glb(region_, {}).bytes;
+    std::ofstream(path, std::ios::binary) << outputs::write_glb(region_, {}).bytes;
     EXPECT_GT(std::ifstream(path, std::ios::binary | std::ios::ate).tellg(), 10000) << path;
   }
 
@@ -79,7 +79,7 @@ class Street {
     building.parts.push_back(std::move(part));
   }
 
-  generate::Defaults defaults_;
+  attributes::Defaults defaults_;
   model::Extract no_tags_;
   model::Region region_;
 };

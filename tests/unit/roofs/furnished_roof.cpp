@@ -374,7 +374,7 @@ ElementMeasures measures_of(const Roof& roof, std::int32_t element) {
 }
 
 double volume_under(const model::Polygon& plan, const Roof& roof) {
-  const model::Solid solid = generate::envelope(plan, 30, roof, {});
+  const model::Solid solid = masses::envelope(plan, 30, roof, {});
   const auto triangles = geometry::triangulate(solid);
   return triangles ? geometry::volume(solid, *triangles) : 0;
 }

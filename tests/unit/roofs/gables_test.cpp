@@ -194,7 +194,7 @@ TEST(Gables, SteppedWallOnAPlainGable) {
   const auto built = ornamental_gable(kHouse, roof, 0, {.steps = 4, .thickness = 0.3});
   ASSERT_TRUE(built.body);
   EXPECT_EQ(built.body->kind, RoofElementKind::gable);
-  EXPECT_EQ(fault(generate::envelope(kHouse, 0, roof, {}), {*built.body}), "");
+  EXPECT_EQ(fault(masses::envelope(kHouse, 0, roof, {}), {*built.body}), "");
   // The outline's area above the eaves without the roof's triangle.
   const double area = 2 * (1.3 + 2.3 + 3.3) + 2 * 4.3 - 16;
   EXPECT_NEAR(roof_checks::volume(built.body->solid), area * 0.3, 0.01);
@@ -206,12 +206,12 @@ TEST(Gables, AtticsAreLevelWithOrWithoutAPediment) {
   GableOptions options{.form = GableForm::attic, .attic_height = 1};
   const auto level = ornamental_gable(kHouse, roof, 0, options);
   ASSERT_TRUE(level.body);
-  EXPECT_EQ(fault(generate::envelope(kHouse, 0, roof, {}), {*level.body}), "");
+  EXPECT_EQ(fault(masses::envelope(kHouse, 0, roof, {}), {*level.body}), "");
   EXPECT_EQ(level.outline, (std::vector<OutlinePoint>{{0, 11}, {8, 11}}));
   options.pediment = 0.5;
   const auto crowned = ornamental_gable(kHouse, roof, 0, options);
   ASSERT_TRUE(crowned.body);
-  EXPECT_EQ(fault(generate::envelope(kHouse, 0, roof, {}), {*crowned.body}), "");
+  EXPECT_EQ(fault(masses::envelope(kHouse, 0, roof, {}), {*crowned.body}), "");
   EXPECT_NEAR(roof_checks::volume(crowned.body->solid) - roof_checks::volume(level.body->solid), 4 * 0.8 / 2 * 0.3,
               0.01);
 }
@@ -229,7 +229,7 @@ TEST(Gables, OnSharpCornersTheBackIsShorter) {
   for (const GableForm form : {GableForm::stepped, GableForm::curved}) {
     const auto built = ornamental_gable(plan, roof, 0, {.form = form});
     ASSERT_TRUE(built.body) << name(form);
-    EXPECT_EQ(fault(generate::envelope(plan, 0, roof, {}), {*built.body}), "") << name(form);
+    EXPECT_EQ(fault(masses::envelope(plan, 0, roof, {}), {*built.body}), "") << name(form);
   }
 }
 
@@ -378,7 +378,7 @@ TEST(GableRules, HoldOnGeneratedHouses) {
     ++forms[drawn.gable.form];
     ASSERT_EQ(drawn.roof == RoofShape::hipped, drawn.gable.form == GableForm::attic);
     const Roof roof = roof_on(plan, drawn.roof, width / 2 * std::tan(pitch));
-    const model::Solid house = generate::envelope(plan, 0, roof, {});
+    const model::Solid house = masses::envelope(plan, 0, roof, {});
     const auto built = ornamental_gable(plan, roof, 0, drawn.gable);
     if (!built.body) {
       if (std::getenv("BLOCKRAND_ROOF_CASES"))
@@ -440,7 +440,7 @@ TEST_P(GablesOn, EveryEdgeOfEveryPlanIsValidOrRefused) {
     for (const double angle : {0.0, 33.0}) {
       const Polygon place = roof_checks::moved(plan, angle, angle == 0 ? Point2{} : Point2{395000.123, 5818000.456});
       const Roof roof = roof_on(place, GetParam(), 4);
-      const model::Solid house = generate::envelope(place, 0, roof, {});
+      const model::Solid house = masses::envelope(place, 0, roof, {});
       if (roof_checks::verdict(house) != "none" || roof.wall_tops.size() > 30) continue;
       for (std::uint32_t edge = 0; edge < roof.wall_tops.size(); ++edge)
         for (const GableForm form : {GableForm::stepped, GableForm::curved, GableForm::attic}) {

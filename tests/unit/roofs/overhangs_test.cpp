@@ -54,7 +54,7 @@ TEST(Overhangs, HipRoofHasOneRingOfEaves) {
   EXPECT_EQ(built.elements.asked, 4);
   EXPECT_EQ(built.elements.refused + built.elements.shortened, 0);
   const model::Solid& ring = built.elements.bodies[0].solid;
-  EXPECT_EQ(fault(generate::envelope(kRectangle, 0, roof, {}), built.elements.bodies), "");
+  EXPECT_EQ(fault(masses::envelope(kRectangle, 0, roof, {}), built.elements.bodies), "");
   EXPECT_EQ(ring.faces.size(), 16u);  // upper, lower, outer and wall side of four edges
   const double plan_area = 21 * 11 - 20 * 10;
   EXPECT_NEAR(roof_checks::volume(ring), plan_area * 0.2, 0.01);
@@ -75,7 +75,7 @@ TEST(Overhangs, HipRoofHasOneRingOfEaves) {
 TEST(Overhangs, GableHasVergesUpToTheRidge) {
   const Roof roof = roof_on(kRectangle, RoofShape::gabled, 5);
   const auto built = overhangs(kRectangle, roof, {}, {.eaves = 0.4, .verge = 0.25, .thickness = 0.2, .most_drop = 1});
-  EXPECT_EQ(fault(generate::envelope(kRectangle, 0, roof, {}), built.elements.bodies), "");
+  EXPECT_EQ(fault(masses::envelope(kRectangle, 0, roof, {}), built.elements.bodies), "");
   EXPECT_EQ(count(built.elements, RoofElementKind::eaves), 2);
   EXPECT_EQ(count(built.elements, RoofElementKind::verge), 2);
   // All of the offset's area is covered once: 20.5 by 10.8 without 20 by 10.
@@ -92,7 +92,7 @@ TEST(Overhangs, GableHasVergesUpToTheRidge) {
 TEST(Overhangs, VergeRunsThroughWhereADeckEndsInAGable) {
   const Roof roof = roof_on(kRectangle, RoofShape::double_saltbox, 3);
   const auto built = overhangs(kRectangle, roof, {}, {.verge = 0.25, .most_drop = 1});
-  EXPECT_EQ(fault(generate::envelope(kRectangle, 0, roof, {}), built.elements.bodies), "");
+  EXPECT_EQ(fault(masses::envelope(kRectangle, 0, roof, {}), built.elements.bodies), "");
   EXPECT_EQ(count(built.elements, RoofElementKind::verge), 2);  // slope, deck and slope are one body
   for (const auto& body : built.elements.bodies)
     for (const Point3& p : body.solid.vertices) EXPECT_GE(p.x, -0.251);
@@ -135,7 +135,7 @@ TEST(Overhangs, EdgesOnOneLineHaveOneBoardAndOneFace) {
   ASSERT_EQ(built.elements.bodies.size(), 1u);
   EXPECT_EQ(built.elements.asked, 6);
   EXPECT_EQ(built.elements.bodies[0].solid.faces.size(), 16u);
-  EXPECT_EQ(fault(generate::envelope(plan, 0, roof, {}), built.elements.bodies), "");
+  EXPECT_EQ(fault(masses::envelope(plan, 0, roof, {}), built.elements.bodies), "");
 }
 
 TEST(Overhangs, RoundingMakesNoSteps) {
@@ -171,7 +171,7 @@ TEST(Overhangs, SharpCornersAreCutSquare) {
   const Polygon plan = polygon({{0, 0}, {20, 0}, {20, 5}});
   const Roof roof = roof_on(plan, RoofShape::hipped, 1);
   const auto built = overhangs(plan, roof, {});
-  EXPECT_EQ(fault(generate::envelope(plan, 0, roof, {}), built.elements.bodies), "");
+  EXPECT_EQ(fault(masses::envelope(plan, 0, roof, {}), built.elements.bodies), "");
   for (const auto& body : built.elements.bodies)
     for (const Point3& p : body.solid.vertices) EXPECT_GE(p.x, -0.41);
 }
@@ -181,7 +181,7 @@ TEST(Overhangs, NarrowCourtsGetLess) {
   plan.holes.push_back(testing_shapes::ring({{9.7, 6}, {9.7, 14}, {10.3, 14}, {10.3, 6}}));
   const Roof roof = roof_on(plan, RoofShape::hipped, 3);
   const auto built = overhangs(plan, roof, {});
-  EXPECT_EQ(fault(generate::envelope(plan, 0, roof, {}), built.elements.bodies), "");
+  EXPECT_EQ(fault(masses::envelope(plan, 0, roof, {}), built.elements.bodies), "");
   EXPECT_EQ(built.elements.asked, 8);
   EXPECT_GE(built.elements.shortened, 2);
 }
@@ -193,7 +193,7 @@ TEST(Overhangs, DoNotReachTheOtherSideOfASlot) {
   std::vector<OverhangRoom> rooms(8);
   rooms[3].room = rooms[4].room = 0;
   const auto built = overhangs(plan, roof, rooms);
-  EXPECT_EQ(fault(generate::envelope(plan, 0, roof, {}), built.elements.bodies), "");
+  EXPECT_EQ(fault(masses::envelope(plan, 0, roof, {}), built.elements.bodies), "");
   EXPECT_GE(built.elements.shortened, 1);
   EXPECT_EQ(built.elements.refused, 0);
   for (const auto& body : built.elements.bodies)
@@ -216,7 +216,7 @@ TEST(Caps, OneRidgeOnAGable) {
   const auto built = ridge_and_hip_caps(roof, {}, {}, {.profile = CapProfile::triangular, .width = 0.3, .height = 0.1});
   ASSERT_EQ(built.bodies.size(), 1u);
   EXPECT_EQ(built.bodies[0].kind, RoofElementKind::ridge_cap);
-  EXPECT_EQ(fault(generate::envelope(kRectangle, 0, roof, {}), built.bodies), "");
+  EXPECT_EQ(fault(masses::envelope(kRectangle, 0, roof, {}), built.bodies), "");
   EXPECT_NEAR(roof_checks::volume(built.bodies[0].solid), 20 * 0.3 * 0.1 / 2, 0.005);
 }
 
@@ -228,7 +228,7 @@ TEST(Caps, HipRoofHasARidgeAndFourHips) {
   EXPECT_EQ(count(built, RoofElementKind::hip_cap), 4);
   auto all = eaves.elements.bodies;
   all.insert(all.end(), built.bodies.begin(), built.bodies.end());
-  EXPECT_EQ(fault(generate::envelope(kRectangle, 0, roof, {}), all), "");
+  EXPECT_EQ(fault(masses::envelope(kRectangle, 0, roof, {}), all), "");
   // The hips go on to the corners of the eaves, 0.4 m out.
   double least = 0;
   for (const auto& body : built.bodies)
@@ -268,7 +268,7 @@ TEST_P(OverhangsAndCaps, AreValidAndTouchOnly) {
       request.measures = {kEaves, 4};
       const auto built = build_roof(place, request);
       ASSERT_TRUE(built) << name;
-      const model::Solid house = generate::envelope(place, 0, built->roof, {});
+      const model::Solid house = masses::envelope(place, 0, built->roof, {});
       if (roof_checks::verdict(house) != "none") continue;
       const auto eaves = overhangs(place, built->roof, {});
       const auto caps = ridge_and_hip_caps(built->roof, eaves.corners, {});

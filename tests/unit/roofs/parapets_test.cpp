@@ -29,7 +29,7 @@ constexpr double kTop = 12;  // m
 const Polygon kRectangle = polygon({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
 
 std::string fault_on(const Polygon& plan, const Roof& roof, const BuiltElements& built) {
-  return fault(generate::envelope(plan, 0, roof, {}), built.bodies);
+  return fault(masses::envelope(plan, 0, roof, {}), built.bodies);
 }
 
 double volume(const BuiltElements& built) {
@@ -255,7 +255,7 @@ TEST_P(FirewallsAndParapets, AreValidAndTouchOnly) {
       request.measures = {10, 4};
       const auto built = build_roof(place, request);
       ASSERT_TRUE(built) << name;
-      const model::Solid house = generate::envelope(place, 0, built->roof, {});
+      const model::Solid house = masses::envelope(place, 0, built->roof, {});
       if (roof_checks::verdict(house) != "none") continue;
       const std::size_t count = built->roof.wall_tops.size();
       std::vector<FirewallSide> party(count);

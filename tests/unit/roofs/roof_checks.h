@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/generate/envelope.h"
+#include "pipeline/masses/envelope.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/triangulate.h"
@@ -28,7 +28,7 @@ using testing_shapes::ring;
 
 /// What the checker says of the solid from z = 30 to the roof; "none" for valid ones.
 inline std::string verdict(const Polygon& plan, const roofs::Roof& roof) {
-  const model::Solid solid = generate::envelope(plan, 30, roof, {});
+  const model::Solid solid = masses::envelope(plan, 30, roof, {});
   const auto triangles = geometry::triangulate(solid);
   if (!triangles) return "a face is no simple polygon";
   return geometry::check_solid(solid, *triangles).text();

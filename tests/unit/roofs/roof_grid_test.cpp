@@ -11,9 +11,9 @@
 #include <optional>
 #include <sstream>
 
-#include "pipeline/export/gltf/glb_writer.h"
-#include "pipeline/generate/defaults.h"
-#include "pipeline/generate/mass.h"
+#include "pipeline/outputs/gltf/glb_writer.h"
+#include "pipeline/attributes/defaults.h"
+#include "pipeline/masses/mass.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon.h"
 #include "tests/unit/geometry/shapes.h"
@@ -127,8 +127,8 @@ Polygon mirrored(Polygon p) {
   return p;
 }
 
-const generate::Defaults& defaults() {
-  static const generate::Defaults read = generate::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
+const attributes::Defaults& defaults() {
+  static const attributes::Defaults read = attributes::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
   return read;
 }
 
@@ -137,7 +137,7 @@ model::Region built(const std::vector<Polygon>& plans, RoofShape shape) {
   static const model::Extract no_tags;
   model::Region region;
   region.extract = &no_tags;
-  for (const generate::Material& m : defaults().materials) region.materials.push_back(m.looks);
+  for (const attributes::Material& m : defaults().materials) region.materials.push_back(m.looks);
   for (const Polygon& plan : plans) {
     model::Building b;
     b.osm = {model::OsmType::way, static_cast<std::int64_t>(region.buildings.size()) + 1};
@@ -157,7 +157,7 @@ model::Region built(const std::vector<Polygon>& plans, RoofShape shape) {
     b.parts.push_back(std::move(p));
     region.buildings.push_back(std::move(b));
   }
-  generate::build_masses(region, defaults(), {}, 2);
+  masses::build_masses(region, defaults(), {}, 2);
   return region;
 }
 
@@ -407,7 +407,7 @@ TEST(RoofGridPictures, WritesAModelPerShape) {
   }
   for (const RoofShape shape : shapes()) {
     const std::string path = std::string(folder) + "/" + std::string(model::name(shape)) + ".glb";
-    std::ofstream(path, std::ios::binary) << export_::write_glb(built(plans, shape), {}).bytes;
+    std::ofstream(path, std::ios::binary) << outputs::write_glb(built(plans, shape), {}).bytes;
     EXPECT_GT(std::ifstream(path, std::ios::binary | std::ios::ate).tellg(), 10000) << path;
   }
 }

@@ -108,7 +108,7 @@ TEST(Options, NoTuningFieldIsForgotten) {
   // A new field stops this from compiling: give it a row in the table.
   const auto [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o_, p, q, r, s, bb, cc, dd, ee] = repair::RepairOptions{};
   (void)std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o_, p, q, r, s, bb, cc, dd, ee);
-  const auto [t, u, v, w, x, y, z, aa, ab] = generate::GenerateOptions{};
+  const auto [t, u, v, w, x, y, z, aa, ab] = attributes::GenerateOptions{};
   (void)std::tie(t, u, v, w, x, y, z, aa, ab);
   std::size_t repair = 0, generate = 0;
   for (const Option& o : options()) {

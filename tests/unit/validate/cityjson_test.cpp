@@ -8,28 +8,28 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "pipeline/export/cityjson/cityjson_writer.h"
-#include "tests/unit/export/sample_region.h"
+#include "pipeline/outputs/cityjson/cityjson_writer.h"
+#include "tests/unit/outputs/sample_region.h"
 
 namespace blockrand::validate {
 namespace {
 
-using export_::test::SampleRegion;
+using outputs::test::SampleRegion;
 using nlohmann::json;
 
-export_::CityJsonOptions options() {
-  export_::CityJsonOptions o;
+outputs::CityJsonOptions options() {
+  outputs::CityJsonOptions o;
   o.crs_code = "EPSG:25833";
   o.name = "sample";
   o.data_time = "2020-03-04T05:06:07Z";
   return o;
 }
 
-std::string sequence() { return export_::write_cityjson_sequence(SampleRegion::zoo().region(), options()); }
+std::string sequence() { return outputs::write_cityjson_sequence(SampleRegion::zoo().region(), options()); }
 
 std::string object() {
   std::string out;
-  export_::SingleCityJson writer(options(), [&](std::string_view bytes) { out += bytes; });
+  outputs::SingleCityJson writer(options(), [&](std::string_view bytes) { out += bytes; });
   writer.add(SampleRegion::zoo().region());
   writer.finish();
   return out;
@@ -94,7 +94,7 @@ TEST(ReadCityJson, SoundFilesComeBackWhole) {
 
 TEST(ReadCityJson, EmptyBuildsAreSound) {
   const SampleRegion nothing;
-  const Contents c = read_cityjson(export_::write_cityjson_sequence(nothing.region(), {}), "a.city.jsonl");
+  const Contents c = read_cityjson(outputs::write_cityjson_sequence(nothing.region(), {}), "a.city.jsonl");
   EXPECT_TRUE(c.findings.empty()) << listed(c.findings);
   EXPECT_TRUE(c.buildings.empty());
 }

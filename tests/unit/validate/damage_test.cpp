@@ -7,7 +7,7 @@
 #include <random>
 
 #include "pipeline/base/error.h"
-#include "pipeline/region/build.h"
+#include "pipeline/run/build.h"
 #include "pipeline/validate/validate.h"
 
 namespace blockrand::validate {
@@ -44,14 +44,14 @@ class Damage : public testing::Test {
     folder_ = fs::temp_directory_path() / ("blockrand-damage-" + std::to_string(::getpid()));
     fs::create_directories(folder_);
     write(folder_ / "town.osm", kTown);
-    region::BuildOptions options;
+    run::BuildOptions options;
     options.input = (folder_ / "town.osm").string();
     options.output = out().string();
     options.configs = BLOCKRAND_SOURCE_DIR "/configs";
     options.single_glb = options.single_cityjson = true;
     options.jobs = 1;
     base::Progress quiet;
-    region::build(options, quiet);
+    run::build(options, quiet);
     for (const auto& entry : fs::recursive_directory_iterator(out()))
       if (entry.is_regular_file() && entry.path().filename() != "run.json") files_.push_back(entry.path());
     std::sort(files_.begin(), files_.end());

@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "pipeline/export/citygml/citygml_writer.h"
-#include "pipeline/export/cityjson/cityjson_writer.h"
+#include "pipeline/outputs/citygml/citygml_writer.h"
+#include "pipeline/outputs/cityjson/cityjson_writer.h"
 #include "pipeline/validate/citygml.h"
 #include "pipeline/validate/cityjson.h"
 #include "pipeline/validate/solids.h"
-#include "tests/unit/export/facade_region.h"
+#include "tests/unit/outputs/facade_region.h"
 
 namespace blockrand::validate {
 namespace {
@@ -21,24 +21,24 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-export_::test::SampleRegion region_with_chimney() {
-  auto s = export_::test::facade_region();
+outputs::test::SampleRegion region_with_chimney() {
+  auto s = outputs::test::facade_region();
   auto& part = s.region().buildings.front().parts.front();
   const auto at = [](double x, double y) { return model::Point2{x, y}; };
   model::Polygon plan;
   plan.outer.points = {at(391005, 5819004), at(391006, 5819004), at(391006, 5819005), at(391005, 5819005)};
   plan.outer.nodes.assign(4, 0);
-  auto [solid, triangles] = export_::test::prism(plan, 46, 49);
+  auto [solid, triangles] = outputs::test::prism(plan, 46, 49);
   part.lod3.roof_installations.push_back({model::RoofElementKind::chimney, std::move(solid), std::move(triangles)});
   return s;
 }
 
 const std::string& sound() {
   static const std::string text = [] {
-    export_::CityGmlOptions o;
+    outputs::CityGmlOptions o;
     o.lod = 3;
     o.srs_name = "urn:ogc:def:crs:EPSG::25833";
-    return export_::write_citygml(region_with_chimney().region(), o);
+    return outputs::write_citygml(region_with_chimney().region(), o);
   }();
   return text;
 }
@@ -202,7 +202,7 @@ TEST(Detail, AnElementOutsideOfTheEnvelope) {
 }
 
 /// The first windows are holes: their element has no face.
-export_::test::SampleRegion region_with_holes() {
+outputs::test::SampleRegion region_with_holes() {
   auto s = region_with_chimney();
   auto hole = std::make_shared<model::Element>(*s.region().elements[0].element);
   hole->kind = "reveal";
@@ -211,8 +211,8 @@ export_::test::SampleRegion region_with_holes() {
   return s;
 }
 
-export_::CityJsonOptions json_options() {
-  export_::CityJsonOptions o;
+outputs::CityJsonOptions json_options() {
+  outputs::CityJsonOptions o;
   o.lod = 3;
   o.crs_code = "EPSG:25833";
   return o;
@@ -222,12 +222,12 @@ TEST(DetailCityJson, SaysTheSameAsCityGml) {
   const auto s = region_with_chimney();
   const CityGml gml = read_citygml(sound(), "a.gml");
   std::string whole;
-  export_::SingleCityJson single(json_options(), [&](std::string_view bytes) { whole += bytes; });
+  outputs::SingleCityJson single(json_options(), [&](std::string_view bytes) { whole += bytes; });
   single.add(s.region());
   single.finish();
   for (const bool sequence : {true, false}) {
     const Contents read =
-        sequence ? read_cityjson(export_::write_cityjson_sequence(s.region(), json_options()), "a.city.jsonl")
+        sequence ? read_cityjson(outputs::write_cityjson_sequence(s.region(), json_options()), "a.city.jsonl")
                  : read_cityjson(whole, "a.city.json");
     for (const Finding& f : read.findings) ADD_FAILURE() << f.object << ": " << f.detail;
     ASSERT_EQ(read.bodies.size(), gml.contents.bodies.size());
@@ -253,12 +253,12 @@ TEST(DetailCityJson, SaysTheSameAsCityGml) {
 
 TEST(DetailCityJson, ElementsWithoutFacesAreNotWritten) {
   const auto s = region_with_holes();
-  export_::CityGmlOptions o;
+  outputs::CityGmlOptions o;
   o.lod = 3;
   o.srs_name = "urn:ogc:def:crs:EPSG::25833";
-  const CityGml gml = read_citygml(export_::write_citygml(s.region(), o), "a.gml");
+  const CityGml gml = read_citygml(outputs::write_citygml(s.region(), o), "a.gml");
   for (const Finding& f : gml.contents.findings) ADD_FAILURE() << f.object << ": " << f.detail;
-  const Contents json = read_cityjson(export_::write_cityjson_sequence(s.region(), json_options()), "a.city.jsonl");
+  const Contents json = read_cityjson(outputs::write_cityjson_sequence(s.region(), json_options()), "a.city.jsonl");
   for (const Finding& f : json.findings) ADD_FAILURE() << f.object << ": " << f.detail;
   EXPECT_EQ(detail_difference(gml.contents.bodies.at(0), json.bodies.at(0)), "");
   EXPECT_EQ(json.bodies.at(0).detail.placements.size(), 2u) << "door and lamp";
@@ -267,7 +267,7 @@ TEST(DetailCityJson, ElementsWithoutFacesAreNotWritten) {
 TEST(DetailCityJson, LowerLevelsHaveNoneOfIt) {
   auto o = json_options();
   o.lod = 2;
-  const std::string text = export_::write_cityjson_sequence(region_with_chimney().region(), o);
+  const std::string text = outputs::write_cityjson_sequence(region_with_chimney().region(), o);
   EXPECT_EQ(text.find("template"), std::string::npos);
   EXPECT_EQ(text.find("BuildingInstallation"), std::string::npos);
   EXPECT_EQ(text.find("\"lod\":\"3\""), std::string::npos);
@@ -276,7 +276,7 @@ TEST(DetailCityJson, LowerLevelsHaveNoneOfIt) {
 /// The file with one change to its first feature.
 template <class Change>
 std::vector<std::string> found_in_json(const Change& change) {
-  const std::string text = export_::write_cityjson_sequence(region_with_chimney().region(), json_options());
+  const std::string text = outputs::write_cityjson_sequence(region_with_chimney().region(), json_options());
   const std::size_t first = text.find('\n') + 1, second = text.find('\n', first);
   auto header = nlohmann::ordered_json::parse(text.substr(0, first));
   auto feature = nlohmann::ordered_json::parse(text.substr(first, second - first));

@@ -5,17 +5,17 @@
 
 #include <filesystem>
 
-#include "pipeline/export/geopackage/geopackage_writer.h"
+#include "pipeline/outputs/geopackage/geopackage_writer.h"
 #include "pipeline/validate/geopackage.h"
-#include "tests/unit/export/row_sample.h"
+#include "tests/unit/outputs/row_sample.h"
 
 namespace blockrand::validate {
 namespace {
 
 namespace fs = std::filesystem;
-using export_::test::kRowX;
-using export_::test::kRowY;
-using export_::test::row_sample;
+using outputs::test::kRowX;
+using outputs::test::kRowY;
+using outputs::test::row_sample;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -45,10 +45,10 @@ void write_sound(const std::string& path) {
   model::BuildingStyle& style = sample.region().buildings.at(1).style;  // w2, the others were not classified
   style.style = {0.8f, 0.1f, 0.05f, 0.05f};
   style.morphology = {1, 0, 0, 0, 0};
-  export_::GeoPackageWriter writer(path, {"EPSG:25833", "2024-05-01T00:00:00Z", "", ""});
-  const export_::GeoPackageRows rows = export_::geopackage_rows(sample.region(), 2);
+  outputs::GeoPackageWriter writer(path, {"EPSG:25833", "2024-05-01T00:00:00Z", "", ""});
+  const outputs::GeoPackageRows rows = outputs::geopackage_rows(sample.region(), 2);
   writer.add(rows);
-  export_::BlockRow block;
+  outputs::BlockRow block;
   block.id = "w900.n5.l";
   block.polygon = rectangle(kRowX - 10, kRowY, 70, 60);
   block.area = 4200;
@@ -62,7 +62,7 @@ void write_sound(const std::string& path) {
   writer.add_block(block);
   writer.add_courtyard({"w1.y7_8", block.id, rectangle(kRowX, kRowY + 22, 25, 20), 500, false, 3.5,
                         {{model::OsmType::way, 1}, {model::OsmType::way, 2}}});
-  export_::CellRow cell;
+  outputs::CellRow cell;
   cell.id = "c1564_23276";
   cell.corner = {391000, 5819000};
   cell.buildings = 4;

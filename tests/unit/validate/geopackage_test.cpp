@@ -10,16 +10,16 @@
 #include <fstream>
 #include <functional>
 
-#include "pipeline/export/geopackage/geopackage_writer.h"
+#include "pipeline/outputs/geopackage/geopackage_writer.h"
 #include "pipeline/validate/geopackage_blob.h"
-#include "tests/unit/export/row_sample.h"
-#include "tests/unit/export/sample_region.h"
+#include "tests/unit/outputs/row_sample.h"
+#include "tests/unit/outputs/sample_region.h"
 
 namespace blockrand::validate {
 namespace {
 
 namespace fs = std::filesystem;
-using export_::test::SampleRegion;
+using outputs::test::SampleRegion;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
@@ -49,10 +49,10 @@ void complete(model::Region& region) {
 void write_sound(const std::string& path) {
   SampleRegion zoo = SampleRegion::zoo(), houses = SampleRegion::settlement(40, true);
   houses.region().tile.x += 1;
-  export_::GeoPackageWriter writer(path, {"EPSG:25833", "2024-05-01T00:00:00Z", "", ""});
+  outputs::GeoPackageWriter writer(path, {"EPSG:25833", "2024-05-01T00:00:00Z", "", ""});
   for (SampleRegion* sample : {&zoo, &houses}) {
     complete(sample->region());
-    const export_::GeoPackageRows rows = export_::geopackage_rows(sample->region(), 2);
+    const outputs::GeoPackageRows rows = outputs::geopackage_rows(sample->region(), 2);
     writer.add(rows);
     const double x = 391000 + (sample == &zoo ? 0 : 1000);
     writer.add_tile({sample->region().tile,

@@ -10,21 +10,21 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "pipeline/export/gltf/glb_writer.h"
+#include "pipeline/outputs/gltf/glb_writer.h"
 #include "pipeline/validate/glb.h"
 #include "pipeline/validate/placed_elements.h"
-#include "tests/unit/export/facade_region.h"
+#include "tests/unit/outputs/facade_region.h"
 
 namespace blockrand::validate {
 namespace {
 
-using export_::Compression;
-using export_::Instancing;
+using outputs::Compression;
+using outputs::Instancing;
 using nlohmann::json;
 
 /// A frame that stands on the Earth: its matrix is that of its origin.
-export_::GlbOptions options(Instancing how, Compression compression = Compression::none) {
-  export_::GlbOptions o;
+outputs::GlbOptions options(Instancing how, Compression compression = Compression::none) {
+  outputs::GlbOptions o;
   o.lod = 3;
   o.instancing = how;
   o.compression = compression;
@@ -104,8 +104,8 @@ std::size_t place_of(const json& document, const json& accessor) {
 
 class GlbDetail : public testing::Test {
  protected:
-  const export_::test::SampleRegion sample_ = export_::test::facade_region();
-  const std::string ext_ = export_::write_glb(sample_.region(), options(Instancing::ext)).bytes;
+  const outputs::test::SampleRegion sample_ = outputs::test::facade_region();
+  const std::string ext_ = outputs::write_glb(sample_.region(), options(Instancing::ext)).bytes;
 
   void finds(const std::function<void(json&, std::string&)>& change, Check check, const std::string& word) {
     const Read damaged = read(changed(ext_, change));
@@ -116,7 +116,7 @@ class GlbDetail : public testing::Test {
 TEST_F(GlbDetail, WhatIsWrittenIsSound) {
   for (const Instancing how : {Instancing::ext, Instancing::nodes})
     for (const Compression compression : {Compression::none, Compression::meshopt}) {
-      const export_::Glb written = export_::write_glb(sample_.region(), options(how, compression));
+      const outputs::Glb written = outputs::write_glb(sample_.region(), options(how, compression));
       const Read r = read(written.bytes);
       EXPECT_EQ(r.text(), "");
       EXPECT_EQ(r.glb.places.size(), wanted_places(sample_.region()));
@@ -133,7 +133,7 @@ TEST_F(GlbDetail, WhatIsWrittenIsSound) {
         EXPECT_LT(p.z, written.max.z + 0.002);
       }
     }
-  const Glb baked = read_glb(export_::write_glb(sample_.region(), options(Instancing::baked)).bytes, "a.glb");
+  const Glb baked = read_glb(outputs::write_glb(sample_.region(), options(Instancing::baked)).bytes, "a.glb");
   EXPECT_TRUE(baked.contents.findings.empty());
   EXPECT_TRUE(baked.places.empty());
 }
@@ -141,7 +141,7 @@ TEST_F(GlbDetail, WhatIsWrittenIsSound) {
 TEST_F(GlbDetail, CompressedBytesAreReadAsTheyWere) {
   const Glb plain = read_glb(ext_, "a.glb"),
             packed = read_glb(
-                export_::write_glb(sample_.region(), options(Instancing::ext, Compression::meshopt)).bytes, "b.glb");
+                outputs::write_glb(sample_.region(), options(Instancing::ext, Compression::meshopt)).bytes, "b.glb");
   ASSERT_EQ(plain.triangles.size(), packed.triangles.size());
   for (std::size_t i = 0; i < plain.triangles.size(); ++i) {
     ASSERT_EQ(plain.triangles[i].size(), packed.triangles[i].size());
@@ -179,7 +179,7 @@ TEST_F(GlbDetail, AnElementThatStandsElsewhereLeavesAHole) {
 
 TEST_F(GlbDetail, ElementsWithoutAShapeLeaveTheirOpeningsClosed) {
   for (const bool endless : {false, true}) {
-    export_::test::SampleRegion s = export_::test::facade_region();
+    outputs::test::SampleRegion s = outputs::test::facade_region();
     auto hole = std::make_shared<model::Element>(*s.region().elements[0].element);
     if (endless)
       for (model::Point3& p : hole->mesh.vertices) p.x = std::numeric_limits<double>::infinity();
@@ -187,7 +187,7 @@ TEST_F(GlbDetail, ElementsWithoutAShapeLeaveTheirOpeningsClosed) {
       hole->mesh = {};
     s.region().elements[0].element = hole;
     for (const Instancing how : {Instancing::ext, Instancing::nodes})
-      EXPECT_EQ(read(export_::write_glb(s.region(), options(how)).bytes).text(), "");
+      EXPECT_EQ(read(outputs::write_glb(s.region(), options(how)).bytes).text(), "");
   }
 }
 
@@ -283,7 +283,7 @@ TEST_F(GlbDetail, ATurnThatIsNone) {
 }
 
 TEST_F(GlbDetail, BrokenCompressedStreams) {
-  const std::string packed = export_::write_glb(sample_.region(), options(Instancing::ext, Compression::meshopt)).bytes;
+  const std::string packed = outputs::write_glb(sample_.region(), options(Instancing::ext, Compression::meshopt)).bytes;
   const auto view_of = [](json& j) -> json& {
     for (json& view : j["bufferViews"])
       if (view.contains("extensions")) return view["extensions"]["EXT_meshopt_compression"];

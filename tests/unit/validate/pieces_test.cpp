@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "pipeline/base/error.h"
-#include "pipeline/export/gzip.h"
+#include "pipeline/outputs/gzip.h"
 #include "pipeline/geometry/solid_defect.h"
 #include "pipeline/georef/frames.h"
 #include "pipeline/georef/projection.h"
@@ -51,7 +51,7 @@ TEST(Ids, OfBodies) {
 }
 
 TEST(Gunzip, MembersAndDamage) {
-  const std::string a = export_::gzip("hello "), b = export_::gzip(std::string(100000, 'x'));
+  const std::string a = outputs::gzip("hello "), b = outputs::gzip(std::string(100000, 'x'));
   EXPECT_EQ(gunzip(a + b), "hello " + std::string(100000, 'x'));
   EXPECT_FALSE(gunzip(b.substr(0, b.size() - 1)));
   EXPECT_FALSE(gunzip(a + "rest"));

@@ -12,7 +12,7 @@
 #include "importers/reference/footprints.h"
 #include "importers/reference/read_model.h"
 #include "pipeline/base/progress.h"
-#include "pipeline/region/build.h"
+#include "pipeline/run/build.h"
 
 namespace blockrand::importers::reference::test {
 namespace {
@@ -126,7 +126,7 @@ void expect_same_in_all_formats(const fs::path& input, std::size_t least, bool g
     fs::path path;
     ~Gone() { fs::remove_all(path); }
   } gone{folder};
-  region::BuildOptions options;
+  run::BuildOptions options;
   options.input = input.string();
   options.output = folder.string();
   options.configs = BLOCKRAND_SOURCE_DIR "/configs";
@@ -137,7 +137,7 @@ void expect_same_in_all_formats(const fs::path& input, std::size_t least, bool g
   options.jobs = 2;
   options.force = true;
   base::Progress quiet;
-  region::build(options, quiet);
+  run::build(options, quiet);
   const auto in = [&](const char* name) { return (folder / name).string(); };
 
   const Town gml = read_town(folder.string(), "CityGML 2.0");

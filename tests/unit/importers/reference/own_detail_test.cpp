@@ -7,9 +7,9 @@
 #include <map>
 
 #include "importers/reference/read_model.h"
-#include "pipeline/export/citygml/citygml_writer.h"
-#include "pipeline/export/cityjson/cityjson_writer.h"
-#include "tests/unit/export/facade_region.h"
+#include "pipeline/outputs/citygml/citygml_writer.h"
+#include "pipeline/outputs/cityjson/cityjson_writer.h"
+#include "tests/unit/outputs/facade_region.h"
 
 namespace blockrand::importers::reference {
 namespace {
@@ -42,17 +42,17 @@ std::map<std::string, Counted> counted(const std::string& path) {
 }
 
 TEST(OwnDetail, CityJsonHasTheOpeningsOfCityGml) {
-  const auto s = export_::test::facade_region();
+  const auto s = outputs::test::facade_region();
   const fs::path folder = fs::temp_directory_path() / ("blockrand_own_detail_" + std::to_string(getpid()));
   fs::create_directories(folder);
-  export_::CityGmlOptions gml;
+  outputs::CityGmlOptions gml;
   gml.lod = 3;
   gml.srs_name = "urn:ogc:def:crs:EPSG::25833";
-  export_::CityJsonOptions json;
+  outputs::CityJsonOptions json;
   json.lod = 3;
   json.crs_code = "EPSG:25833";
-  std::ofstream(folder / "a.gml", std::ios::binary) << export_::write_citygml(s.region(), gml);
-  std::ofstream(folder / "a.city.jsonl", std::ios::binary) << export_::write_cityjson_sequence(s.region(), json);
+  std::ofstream(folder / "a.gml", std::ios::binary) << outputs::write_citygml(s.region(), gml);
+  std::ofstream(folder / "a.city.jsonl", std::ios::binary) << outputs::write_cityjson_sequence(s.region(), json);
   const auto a = counted((folder / "a.gml").string()), b = counted((folder / "a.city.jsonl").string());
   fs::remove_all(folder);
   EXPECT_EQ(a.size(), s.region().buildings.size());

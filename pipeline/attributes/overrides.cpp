@@ -1,0 +1,835 @@
+#include "pipeline/attributes/overrides.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/toml_file.h"
+#include "pipeline/attributes/resolve.h"
+#include "pipeline/attributes/tag_conflicts.h"
+
+namespace blockrand::attributes {
+
+namespace {
+
+using base::TomlTable;
+using model::MappedAttributes;
+using model::OsmId;
+using model::Sourced;
+
+/// Least and most of a number.
+struct Range {
+  std::string_view attribute;
+  double least, most;
+};
+constexpr Range kRanges[] = {{"storeys", 0, 200},         {"storey_height", 1.5, 20},    {"height", 0.1, 2000},
+                             {"min_height", 0, 2000},     {"roof_storeys", 0, 20},       {"roof_height", 0, 500},
+                             {"roof_direction", 0, 360},  {"ground_height", -500, 9000}, {"plinth_height", 0, 50},
+                             {"eaves_height", 0.1, 2000}, {"roof_pitch", 0, 89},         {"ridge_direction", 0, 180}};
+
+/// m: what a storey may measure.
+constexpr double kLowStorey = 1.5, kHighStorey = 20;
+
+/// What storeys share of a height: all of it where the roof reaches down to the floor (as in resolve.cpp).
+double inhabited(double height, double roof) {
+  const double walls = std::max(height - roof, 0.0);
+  return walls < kLowestStorey ? height : walls;
+}
+
+std::optional<OsmId> parse_id(std::string_view text) {
+  if (text.size() < 2) return std::nullopt;
+  OsmId id;
+  switch (text.front()) {
+    case 'n':
+      id.type = model::OsmType::node;
+      break;
+    case 'w':
+      id.type = model::OsmType::way;
+      break;
+    case 'r':
+      id.type = model::OsmType::relation;
+      break;
+    default:
+      return std::nullopt;
+  }
+  const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), id.number);
+  if (error != std::errc() || end != text.data() + text.size() || id.number == 0) return std::nullopt;
+  return id;
+}
+
+std::optional<model::Colour> parse_colour(std::string_view text) {
+  if (text.size() != 7 || text.front() != '#') return std::nullopt;
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data() + 1, text.data() + 7, value, 16);
+  if (error != std::errc() || end != text.data() + 7) return std::nullopt;
+  return model::Colour{static_cast<std::uint8_t>(value >> 16), static_cast<std::uint8_t>(value >> 8),
+                       static_cast<std::uint8_t>(value)};
+}
+
+/// "1895" or "1895..1902".
+std::optional<model::YearRange> parse_years(std::string_view text) {
+  model::YearRange years;
+  auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), years.from);
+  if (error != std::errc()) return std::nullopt;
+  years.to = years.from;
+  const std::string_view rest(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  if (rest.starts_with("..")) {
+    const auto [last, wrong] = std::from_chars(rest.data() + 2, rest.data() + rest.size(), years.to);
+    if (wrong != std::errc() || last != rest.data() + rest.size()) return std::nullopt;
+  } else if (!rest.empty()) {
+    return std::nullopt;
+  }
+  if (years.from < 500 || years.to > 2100 || years.from > years.to) return std::nullopt;
+  return years;
+}
+
+[[noreturn]] void unknown(const TomlTable& table, std::string_view key, const std::string& value,
+                          const std::vector<std::string>& known) {
+  const std::string near = base::nearest(value, known);
+  std::string remedy = "Known: " + fmt::format("{}", fmt::join(known, ", ")) + ".";
+  if (known.size() > 40) remedy.clear();
+  if (!near.empty()) remedy = "Did you mean " + near + "?";
+  table.fail(key, "is unknown: '" + value + "'", remedy);
+}
+
+template <class Names>
+void check_name(const TomlTable& table, std::string_view key, const std::string& value, const Names& names) {
+  const std::vector<std::string> known(names.begin(), names.end());
+  if (!known.empty() && std::find(known.begin(), known.end(), value) == known.end()) unknown(table, key, value, known);
+}
+
+void check_word(const TomlTable& table, std::string_view key, const std::string& value) {
+  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  if (value.empty() || value.find_first_not_of(kLetters) != std::string::npos)
+    table.fail(key, "is no value of that tag: '" + value + "'", "Write lower-case letters, digits and _.");
+}
+
+class Reader {
+ public:
+  Reader(std::string file, const Defaults& defaults, const OverrideNames& names) : defaults_(defaults), names_(names) {
+    out_.file = std::move(file);
+    out_.name = out_.file.substr(out_.file.find_last_of('/') + 1);
+    for (const Material& m : defaults.materials) materials_.push_back(m.looks.name);
+  }
+
+  Overrides read(TomlTable root) {
+    for (const std::string& key : root.keys()) {
+      const auto id = parse_id(key);
+      if (!id)
+        root.fail(key, "is no id of an OpenStreetMap object",
+                  "Write for example [w123] for way 123, [r45] for relation 45.");
+      entry(*root.table(key), key, *id, *id);
+    }
+    root.finish();
+    std::sort(out_.entries.begin(), out_.entries.end(),
+              [](const auto& a, const auto& b) { return a.object < b.object; });
+    for (std::size_t i = 1; i < out_.entries.size(); ++i)
+      if (out_.entries[i].object == out_.entries[i - 1].object)
+        throw base::InputError(out_.file, std::to_string(std::max(out_.entries[i].line, out_.entries[i - 1].line)),
+                               out_.entries[i].object.text() + " stands twice", "Keep one of its entries");
+    return std::move(out_);
+  }
+
+ private:
+  void entry(TomlTable table, const std::string& body, OsmId object, OsmId building) {
+    OverrideEntry entry;
+    entry.object = object;
+    entry.building = building;
+    entry.line = table.line();
+    model::Attributes attributes;
+    attributes.roof_direction.emplace();
+    attributes.ridge_direction.emplace();
+    model::for_each_attribute(
+        attributes,
+        [&](std::string_view attribute, std::string_view, const auto& sourced) {
+          if (auto v = value(table, attribute, sourced.value)) {
+            v->line = table.line(attribute);
+            entry.values.emplace(attribute, std::move(*v));
+          }
+        },
+        [](std::string_view, std::string_view) {});
+    contradictions(table, entry);
+    details(table, body, entry);
+    bool holds_parts = false;
+    if (object == building)
+      for (const std::string& key : table.keys())
+        if (const auto part = parse_id(key); part && table.holds_table(key)) {
+          holds_parts = true;
+          this->entry(*table.table(key), body + "." + key, *part, building);
+        }
+    table.finish();
+    if (entry.values.empty() && entry.details.empty() && !holds_parts)
+      table.fail("", "[" + body + "] orders nothing", "Leave it out.");
+    if (!entry.values.empty() || !entry.details.empty()) out_.entries.push_back(std::move(entry));
+  }
+
+  std::optional<OverrideValue> value(TomlTable& table, std::string_view key, double) {
+    const auto range =
+        std::find_if(std::begin(kRanges), std::end(kRanges), [&](const Range& r) { return r.attribute == key; });
+    const bool known = range != std::end(kRanges);
+    const auto v = table.number(key, known ? range->least : -1e6, known ? range->most : 1e6);
+    return v ? std::optional(OverrideValue{*v}) : std::nullopt;
+  }
+  std::optional<OverrideValue> value(TomlTable& table, std::string_view key, model::RoofShape) {
+    const auto v = table.text(key);
+    if (!v) return std::nullopt;
+    check_name(table, key, *v,
+               std::vector<std::string>(std::begin(model::kRoofShapeNames), std::end(model::kRoofShapeNames)));
+    return OverrideValue{*model::roof_shape(*v)};
+  }
+  std::optional<OverrideValue> value(TomlTable& table, std::string_view key, model::RoofOrientation) {
+    const auto v = table.text(key);
+    if (!v) return std::nullopt;
+    check_name(table, key, *v, std::vector<std::string>{"along", "across"});
+    return OverrideValue{*v == "across" ? model::RoofOrientation::across : model::RoofOrientation::along};
+  }
+  std::optional<OverrideValue> value(TomlTable& table, std::string_view key, model::Colour) {
+    const auto v = table.text(key);
+    if (!v) return std::nullopt;
+    const auto colour = parse_colour(*v);
+    if (!colour) table.fail(key, "is no colour: '" + *v + "'", "Write it as \"#rrggbb\".");
+    return OverrideValue{*colour};
+  }
+  std::optional<OverrideValue> value(TomlTable& table, std::string_view key, const std::string&) {
+    auto v = table.text(key);
+    if (!v) return std::nullopt;
+    if (key == "wall_material" || key == "roof_material") {
+      const int index = defaults_.material(*v);
+      if (index < 0) unknown(table, key, *v, materials_);
+      v = defaults_.materials[static_cast<std::size_t>(index)].looks.name;
+    } else if (key == "era") {
+      check_name(table, key, *v, model::kEraNames);
+    } else if (key == "style") {
+      check_name(table, key, *v, model::kStyleClassNames);
+    } else if (key == "substyle") {
+      check_name(table, key, *v, names_.substyles);
+    } else if (key == "preset") {
+      check_name(table, key, *v, names_.presets);
+    } else if (key == "construction_date") {
+      if (!parse_years(*v)) table.fail(key, "is no year: '" + *v + "'", "Write \"1895\" or \"1895..1902\".");
+    } else {
+      check_word(table, key, *v);
+    }
+    return OverrideValue{*v};
+  }
+
+  /// Orders that cannot all be met.
+  static void contradictions(const TomlTable& table, const OverrideEntry& e) {
+    const auto has = [&](const char* key) { return e.values.contains(key); };
+    const auto clash = [&](const char* a, const char* b, const char* remedy) {
+      if (has(a) && has(b)) table.fail(b, std::string("contradicts ") + a + ": one follows from the other", remedy);
+    };
+    clash("height", "storey_height", "Order height and storeys; the storey height follows.");
+    clash("roof_height", "roof_pitch", "Order one of them.");
+    clash("roof_orientation", "ridge_direction", "Order one of them.");
+    clash("roof_direction", "ridge_direction", "Order one of them.");
+    clash("roof_direction", "roof_orientation", "Order one of them.");
+    if (const double* eaves = e.number("eaves_height")) {
+      const double *height = e.number("height"), *roof = e.number("roof_height");
+      if (!height == !roof)
+        table.fail("eaves_height", "needs either height or roof_height beside it",
+                   "The height is that of the eaves and the roof together.");
+      if (height && *height < *eaves)
+        table.fail("eaves_height", "is above the height", "The height is that of the eaves and the roof together.");
+      if (const double* lowest = e.number("min_height"); lowest && *lowest > *eaves)
+        table.fail("min_height", "is above the eaves", "Both are measured from the ground.");
+      if (has("storey_height"))
+        table.fail("storey_height", "contradicts eaves_height: one follows from the other",
+                   "Order eaves_height and storeys.");
+    }
+    const double *height = e.number("height"), *roof = e.number("roof_height"), *under = e.number("min_height");
+    if (height && roof && *roof > *height)
+      table.fail("roof_height", "is above the height", "The height includes the roof.");
+    if (height && under && *under >= *height)
+      table.fail("min_height", "is not below the height", "The height is measured from the ground.");
+    const auto shape = e.values.find("roof_shape");
+    const bool flat =
+        shape != e.values.end() && std::get<model::RoofShape>(shape->second.value) == model::RoofShape::flat;
+    const double* pitch = e.number("roof_pitch");
+    if (flat && roof && *roof > 0)
+      table.fail("roof_height", "contradicts roof_shape: a flat roof has none", "Leave it out.");
+    if (flat && pitch && *pitch > 0)
+      table.fail("roof_pitch", "contradicts roof_shape: a flat roof has none", "Leave it out.");
+    const double *eaves = e.number("eaves_height"), *storeys = e.number("storeys");
+    if (flat && eaves && height && std::fabs(*eaves - *height) > 0.01)
+      table.fail("eaves_height", "contradicts roof_shape: the eaves of a flat roof lie at the height", "Leave it out.");
+    if (height && roof && under && *roof > *height - *under)
+      table.fail("roof_height", "is more than height less min_height",
+                 "The roof lies between the underside and the top.");
+    if (!storeys || *storeys <= 0 || (!height && !eaves)) return;
+    // Above the walls a roof of unknown height only makes storeys lower.
+    const double top = height ? *height : *eaves + *roof;
+    const double roof_part = eaves ? top - *eaves : roof ? *roof : 0;
+    const double each = inhabited(top, roof_part) / *storeys;
+    if (each < kLowStorey || (each > kHighStorey && (flat || roof || eaves)))
+      table.fail(
+          "storeys",
+          fmt::format("contradicts {}: storeys would be {:.2f} m high", height ? "height" : "eaves_height", each),
+          fmt::format("Storeys are {:g} to {:g} m high.", kLowStorey, kHighStorey));
+  }
+
+  void details(TomlTable& table, const std::string& body, OverrideEntry& entry) {
+    for (const model::DetailKind kind : {model::DetailKind::storey, model::DetailKind::edge, model::DetailKind::bay}) {
+      auto all = table.table(model::name(kind));
+      if (!all) continue;
+      for (const std::string& key : all->keys()) {
+        if (kind == model::DetailKind::edge
+                ? !key.starts_with('e') || key.find('_') == std::string::npos
+                : key.empty() || key.size() > 3 || key.find_first_not_of("0123456789") != std::string::npos)
+          all->fail(key, kind == model::DetailKind::edge ? "is no id of an edge" : "is no number",
+                    kind == model::DetailKind::edge ? "Write it as 'blockrand explain --edges' does: edge.\"e11_12\"."
+                                                    : "Storey 0 is the ground floor.");
+        entry.details.push_back(detail(*all->table(key), body, kind, key));
+      }
+      all->finish();
+    }
+  }
+
+  model::DetailOverride detail(TomlTable table, const std::string& body, model::DetailKind kind,
+                               const std::string& key) {
+    model::DetailOverride d{body, kind, key, {}, out_.name + ":" + std::to_string(table.line())};
+    const auto number = [&](const char* name, double least, double most) {
+      if (const auto v = table.number(name, least, most)) d.values.emplace_back(name, *table.plain(name));
+    };
+    const auto text = [&](const char* name, auto check) {
+      if (const auto v = table.text(name)) {
+        check(*v);
+        d.values.emplace_back(name, *v);
+      }
+    };
+    const auto material = [&](const std::string& v) {
+      if (defaults_.material(v) < 0) unknown(table, "material", v, materials_);
+    };
+    const auto colour = [&](const std::string& v) {
+      if (!parse_colour(v)) table.fail("colour", "is no colour: '" + v + "'", "Write it as \"#rrggbb\".");
+    };
+    text("colour", colour);
+    text("material", material);
+    if (kind == model::DetailKind::storey) {
+      number("height", 1.5, 20);
+      text("use", [&](const std::string& v) { check_word(table, "use", v); });
+    } else if (kind == model::DetailKind::edge) {
+      text("kind", [&](const std::string& v) {
+        std::vector<std::string> kinds;
+        for (int i = 1; i < model::kEdgeKindCount; ++i)
+          kinds.emplace_back(model::name(static_cast<model::EdgeKind>(i)));
+        check_name(table, "kind", v, kinds);
+      });
+      number("wall_thickness", 0.05, 3);
+    } else {
+      number("width", 0.3, 50);
+    }
+    // What a preset's grammar calls its own stays unchecked here: it is checked where the grammar is known.
+    if (auto parameters = table.table("parameters"))
+      for (const std::string& name : parameters->keys())
+        d.values.emplace_back("parameters." + name, *parameters->plain(name));
+    table.finish();
+    if (d.values.empty()) table.fail("", "orders nothing", "Leave it out.");
+    std::sort(d.values.begin(), d.values.end());
+    return d;
+  }
+
+  const Defaults& defaults_;
+  const OverrideNames& names_;
+  std::vector<std::string> materials_;
+  Overrides out_;
+};
+
+// ---- as tags
+
+/// The orders in the place of the tags.
+void give(const OverrideEntry& e, MappedAttributes& m, base::StringPool& strings) {
+  const auto number = [&](const char* key, std::optional<float>& to) {
+    const double* v = e.number(key);
+    if (v) to = static_cast<float>(*v);
+    return v != nullptr;
+  };
+  const auto word = [&](const char* key, base::StringId& to) {
+    if (const std::string* v = e.text(key)) to = strings.intern(*v);
+  };
+  const auto take = [&]<class T>(const char* key, std::optional<T>& to) {
+    const auto found = e.values.find(key);
+    if (found == e.values.end()) return false;
+    to = std::get<T>(found->second.value);
+    return true;
+  };
+  number("storeys", m.storeys);
+  number("roof_storeys", m.roof_storeys);
+  const bool height = number("height", m.height);
+  if (number("min_height", m.min_height)) m.min_storey.reset();
+  if (e.number("storey_height") && !height) m.height.reset();
+  // Of measures and directions of the roof the ordered one alone is left.
+  const bool sloped = (e.number("roof_height") && *e.number("roof_height") > 0) ||
+                      (e.number("roof_pitch") && *e.number("roof_pitch") > 0);
+  if (sloped && m.roof_shape == model::RoofShape::flat) m.roof_shape.reset();
+  if (number("roof_height", m.roof_height)) m.roof_angle.reset();
+  if (number("roof_pitch", m.roof_angle)) {
+    m.roof_height.reset();
+    if (!e.number("roof_storeys")) m.roof_storeys.reset();
+  }
+  if (take("roof_shape", m.roof_shape) && *m.roof_shape == model::RoofShape::flat) {
+    m.roof_height.reset();
+    m.roof_angle.reset();
+    if (!e.number("roof_storeys")) m.roof_storeys.reset();
+  }
+  if (take("roof_orientation", m.roof_orientation)) m.roof_direction.reset();
+  if (number("roof_direction", m.roof_direction)) m.roof_orientation.reset();
+  if (const double* ridge = e.number("ridge_direction")) {
+    m.roof_direction = static_cast<float>(std::fmod(*ridge + 90, 360));
+    m.roof_orientation.reset();
+  }
+  if (const double* eaves = e.number("eaves_height")) {
+    if (height) {
+      m.roof_height = static_cast<float>(*e.number("height") - *eaves);
+      m.roof_angle.reset();
+    } else {
+      m.height = static_cast<float>(*eaves + *e.number("roof_height"));
+    }
+  }
+  take("wall_colour", m.wall_colour);
+  take("roof_colour", m.roof_colour);
+  word("wall_material", m.wall_material);
+  word("roof_material", m.roof_material);
+  word("use", m.use);
+  if (const std::string* date = e.text("construction_date")) m.built = model::ConstructionDate{*parse_years(*date), 1};
+}
+
+/// Takes away the tags that leave no sound heights beside what is ordered. \return  one sentence for each
+std::vector<std::string> drop_contradicted(const OverrideEntry& e, MappedAttributes& m) {
+  std::vector<std::string> told;
+  const auto ordered = [&](const char* key) { return e.number(key) != nullptr; };
+  const bool height = ordered("height") || ordered("eaves_height"), under = ordered("min_height"),
+             storeys = ordered("storeys");
+  const bool roof =
+      ordered("roof_height") || ordered("roof_pitch") || ordered("eaves_height") || e.values.contains("roof_shape");
+  const auto drop = [&](std::optional<float>& value, const char* tag, const std::string& why) {
+    told.push_back(fmt::format("{}={:g} is left aside: {}", tag, *value, why));
+    value.reset();
+  };
+  const auto drop_height = [&](const std::string& why) { drop(m.height, "height", why); };
+  if (m.height && m.min_height && *m.min_height >= *m.height && height != under) {
+    if (under)
+      drop_height(fmt::format("the ordered underside lies at {:g} m", *m.min_height));
+    else
+      drop(m.min_height, "min_height", fmt::format("the ordered height is {:g} m", *m.height));
+  }
+  if (m.height && m.roof_height && !(height && roof)) {
+    const double under_roof = static_cast<double>(*m.height) - m.min_height.value_or(0) - *m.roof_height;
+    const MappedAttributes& before = e.tagged;
+    const bool was_all_roof =
+        before.height && before.roof_height &&
+        static_cast<double>(*before.height) - before.min_height.value_or(0) - *before.roof_height < kLowStorey;
+    if (height || under ? under_roof < (was_all_roof ? 0 : kLowStorey) : roof && under_roof < 0) {
+      const std::string why = fmt::format("it leaves {:.2f} m below a roof of {:g} m", under_roof, *m.roof_height);
+      if (!roof)
+        drop(m.roof_height, "roof:height", why);
+      else if (!height)
+        drop_height(why);
+    }
+  }
+  if (m.height && m.storeys && *m.storeys > 0 && (height || storeys || roof)) {
+    const auto each = [&] { return inhabited(*m.height, m.roof_height.value_or(0)) / static_cast<double>(*m.storeys); };
+    const auto sound = [&] {
+      const bool known = m.roof_height || m.roof_shape == model::RoofShape::flat;
+      return each() >= kLowStorey && (each() <= kHighStorey || !known);
+    };
+    if (!sound() && m.roof_height && !roof)
+      if (const float tagged = *m.roof_height; inhabited(*m.height, 0) / static_cast<double>(*m.storeys) >= kLowStorey)
+        drop(m.roof_height, "roof:height",
+             fmt::format("{:g} storeys under a roof of {:g} m would be {:.2f} m high", *m.storeys, tagged, each()));
+    if (!sound()) {
+      const std::string why = fmt::format("storeys would be {:.2f} m high", each());
+      if (!height)
+        drop_height(why);
+      else if (!storeys)
+        drop(m.storeys, "building:levels", why);
+    }
+  }
+  return told;
+}
+
+// ---- afterwards
+
+std::string text_of(double v) { return fmt::format("{:g}", v); }
+std::string text_of(const std::string& v) { return v; }
+std::string text_of(model::RoofShape v) { return std::string(model::name(v)); }
+std::string text_of(model::RoofOrientation v) { return v == model::RoofOrientation::across ? "across" : "along"; }
+std::string text_of(model::Colour v) { return model::text(v); }
+
+/// What the tags said of an attribute.
+std::optional<std::string> tagged_text(const MappedAttributes& m, std::string_view attribute,
+                                       const base::StringPool& strings) {
+  const auto as_text = []<class T>(const std::optional<T>& v) -> std::optional<std::string> {
+    if (!v) return std::nullopt;
+    if constexpr (std::is_same_v<T, float>)
+      return text_of(static_cast<double>(*v));
+    else
+      return text_of(*v);
+  };
+  const auto word = [&](base::StringId id) {
+    return id == 0 ? std::nullopt : std::optional(std::string(strings.view(id)));
+  };
+  if (attribute == "storeys") return as_text(m.storeys);
+  if (attribute == "height") return as_text(m.height);
+  if (attribute == "min_height") return as_text(m.min_height);
+  if (attribute == "roof_storeys") return as_text(m.roof_storeys);
+  if (attribute == "roof_height") return as_text(m.roof_height);
+  if (attribute == "roof_pitch") return as_text(m.roof_angle);
+  if (attribute == "roof_direction") return as_text(m.roof_direction);
+  if (attribute == "roof_shape") return as_text(m.roof_shape);
+  if (attribute == "roof_orientation") return as_text(m.roof_orientation);
+  if (attribute == "wall_colour") return as_text(m.wall_colour);
+  if (attribute == "roof_colour") return as_text(m.roof_colour);
+  if (attribute == "wall_material") return word(m.wall_material);
+  if (attribute == "roof_material") return word(m.roof_material);
+  if (attribute == "use") return word(m.use);
+  if (attribute == "construction_date" && m.built)
+    return m.built->years.from == m.built->years.to ? std::to_string(m.built->years.from)
+                                                    : fmt::format("{}..{}", m.built->years.from, m.built->years.to);
+  return std::nullopt;
+}
+
+/// Attributes that nothing of this stage is computed from: they become what is ordered, whatever was found.
+bool stands_alone(std::string_view attribute) {
+  constexpr std::string_view kAlone[] = {"ground_floor_use", "construction_date", "era", "style", "substyle",
+                                         "preset",           "ridge_direction"};
+  return std::find(std::begin(kAlone), std::end(kAlone), attribute) != std::end(kAlone);
+}
+
+/// Attributes that a building's parts have from the building, not for themselves.
+bool is_shared(std::string_view attribute) {
+  constexpr std::string_view kShared[] = {"preset",           "style", "substyle", "era", "ground_floor_use",
+                                          "construction_date"};
+  return std::find(std::begin(kShared), std::end(kShared), attribute) != std::end(kShared);
+}
+
+bool same(double a, double b) { return std::fabs(a - b) < 1e-3; }
+template <class T>
+bool same(const T& a, const T& b) {
+  return a == b;
+}
+
+/// Puts what is ordered into one body's attributes.
+class Marker {
+ public:
+  Marker(model::Region& region, const Overrides& all, const classify::Catalogue* catalogue)
+      : region_(region), all_(all), catalogue_(catalogue) {}
+
+  /// \param mapped  the body's tags as they are now, orders among them
+  void own(const OverrideEntry& entry, const MappedAttributes& mapped, model::Attributes& attributes) {
+    if (entry.values.contains("ridge_direction") && !attributes.ridge_direction) attributes.ridge_direction.emplace();
+    if (entry.values.contains("roof_direction") && !attributes.roof_direction) attributes.roof_direction.emplace();
+    for (const std::string& why : entry.conflicts) tell(entry.object, entry.line, why);
+    each(attributes, [&](std::string_view attribute, auto& sourced) {
+      if (const auto order = entry.values.find(std::string(attribute)); order != entry.values.end())
+        put(entry, attribute, order->second, sourced);
+      else if (sourced.source == model::Source::tag && !is_tagged(entry.tagged, mapped, attribute))
+        not_tagged(sourced);
+    });
+    style({&entry}, entry.object, attributes);
+    constexpr const char* kHeights[] = {"height",     "storeys",      "min_height",    "roof_height",
+                                        "roof_pitch", "eaves_height", "storey_height", "roof_shape"};
+    const double storey = attributes.storey_height.value;
+    if ((storey < kLowStorey || storey > kHighStorey) && attributes.storeys.value > 0 &&
+        std::any_of(std::begin(kHeights), std::end(kHeights),
+                    [&](const char* key) { return entry.values.contains(key); }))
+      tell(entry.object, entry.line, fmt::format("storeys become {:.2f} m high", storey));
+  }
+
+  /// What is ordered for the building holds for a part, where nothing is ordered for the part itself.
+  void from_building(const OverrideEntry& building, const OverrideEntry* part, model::Attributes& attributes) {
+    const auto by_part = [&](std::string_view key) { return part && part->values.contains(std::string(key)); };
+    std::vector<const OverrideEntry*> orders = {part};
+    each(attributes, [&](std::string_view attribute, auto& sourced) {
+      if (!is_shared(attribute) || by_part(attribute)) return;
+      // A part with a style of its own has no sub-style of the building's.
+      if ((attribute == "style" || attribute == "substyle" || attribute == "era") &&
+          (by_part("style") || by_part("substyle")))
+        return;
+      if (const auto order = building.values.find(std::string(attribute)); order != building.values.end())
+        put(building, attribute, order->second, sourced);
+    });
+    if (!by_part("style") && !by_part("substyle")) orders.push_back(&building);
+    std::erase(orders, nullptr);
+    style(orders, building.object, attributes);
+  }
+
+  void tell(OsmId object, int line, const std::string& why, model::IssueCode code = model::IssueCode::values_conflict) {
+    model::ReportRow row{object, code, fmt::format("{}:{}: {}", all_.name, line, why)};
+    if (std::find(told_.begin(), told_.end(), row) != told_.end()) return;
+    told_.push_back(row);
+    region_.report.add(row.object, row.code, row.detail);
+  }
+
+ private:
+  template <class Visit>
+  void each(model::Attributes& attributes, Visit&& visit) {
+    model::for_each_attribute(
+        attributes, [&](std::string_view attribute, std::string_view, auto& sourced) { visit(attribute, sourced); },
+        [](std::string_view, std::string_view) {});
+  }
+
+  template <class T>
+  void put(const OverrideEntry& entry, std::string_view attribute, const OverrideValue& order, Sourced<T>& sourced) {
+    const T& wanted = std::get<T>(order.value);
+    const model::Evidence found = region_.evidence[sourced.evidence];
+    const std::string place = fmt::format("{}:{}", all_.name, order.line);
+    model::Evidence evidence{place, {}};
+    if (const auto tagged = tagged_text(entry.tagged, attribute, region_.extract->strings);
+        tagged && *tagged != text_of(wanted))
+      evidence.lost.push_back({model::Source::tag, 0.95f, *tagged, "tagged"});
+    const bool met = same(sourced.value, wanted);
+    if (!met && !stands_alone(attribute)) {
+      // It could not be met: the value is that of what was stronger.
+      evidence.text = found.text;
+      evidence.lost.insert(evidence.lost.begin(), {model::Source::override_, 1, text_of(wanted), place});
+      evidence.lost.insert(evidence.lost.end(), found.lost.begin(), found.lost.end());
+      if (sourced.source == model::Source::tag) sourced.source = model::Source::implied;
+      sourced.evidence = region_.evidence.add(std::move(evidence));
+      tell(entry.object, order.line,
+           fmt::format("{} = {} cannot be met: it becomes {} ({})", attribute, text_of(wanted), text_of(sourced.value),
+                       found.text));
+      return;
+    }
+    if (!met) {
+      const std::string was = text_of(sourced.value);
+      if (!was.empty() && sourced.evidence != 0)
+        evidence.lost.push_back({sourced.source, sourced.confidence, was, found.text});
+      sourced.value = wanted;
+    }
+    // Where it acted as a tag, what else was considered lost against it.
+    evidence.lost.insert(evidence.lost.end(), found.lost.begin(), found.lost.end());
+    sourced.source = model::Source::override_;
+    sourced.confidence = 1;
+    sourced.evidence = region_.evidence.add(std::move(evidence));
+  }
+
+  /// Whether a value that says it was tagged was, before the orders took the place of tags.
+  bool is_tagged(const MappedAttributes& before, const MappedAttributes& now, std::string_view attribute) const {
+    const auto kept = [&](std::string_view key) {
+      return tagged_text(before, key, region_.extract->strings) == tagged_text(now, key, region_.extract->strings);
+    };
+    if (tagged_text(before, attribute, region_.extract->strings) && kept(attribute)) return true;
+    const auto all_kept = [&](std::initializer_list<std::string_view> keys) {
+      return std::all_of(keys.begin(), keys.end(), kept);
+    };
+    if (attribute == "ridge_direction" || attribute == "roof_orientation" || attribute == "roof_direction")
+      return all_kept({"roof_orientation", "roof_direction"});
+    if (attribute == "roof_pitch" || attribute == "roof_height" || attribute == "roof_shape")
+      return all_kept({"roof_height", "roof_pitch", "roof_shape", "roof_storeys"});
+    if (attribute == "eaves_height" || attribute == "height" || attribute == "storey_height" || attribute == "storeys")
+      return all_kept({"height", "storeys", "roof_height", "roof_pitch", "roof_shape", "roof_storeys"});
+    return kept(attribute);
+  }
+
+  template <class T>
+  void not_tagged(Sourced<T>& sourced) {
+    model::Evidence evidence = region_.evidence[sourced.evidence];
+    evidence.text = evidence.text.empty() || evidence.text == "tagged" ? "follows from what is ordered in " + all_.name
+                                                                       : evidence.text + ", as ordered in " + all_.name;
+    sourced.source = model::Source::implied;
+    sourced.evidence = region_.evidence.add(std::move(evidence));
+  }
+
+  static model::Era era_at(std::string_view name) {
+    const auto found = std::find(model::kEraNames.begin(), model::kEraNames.end(), name);
+    return found == model::kEraNames.end() ? model::Era{} : static_cast<model::Era>(found - model::kEraNames.begin());
+  }
+
+  /// What follows from an ordered sub-style or class: the other one, and the era. \param orders  strongest first
+  void style(const std::vector<const OverrideEntry*>& orders, OsmId object, model::Attributes& a) {
+    if (!catalogue_) return;
+    const auto order = [&](const char* key) -> const OverrideValue* {
+      for (const OverrideEntry* e : orders)
+        if (const auto found = e->values.find(key); found != e->values.end()) return &found->second;
+      return nullptr;
+    };
+    const auto follow = [&](Sourced<std::string>& to, std::string value, model::Source source, float confidence,
+                            std::string why) {
+      if (to.value == value) return;
+      model::Evidence evidence{std::move(why), {}};
+      if (to.evidence != 0)
+        evidence.lost.push_back({to.source, to.confidence, to.value, region_.evidence[to.evidence].text});
+      to = {std::move(value), source, confidence, region_.evidence.add(std::move(evidence))};
+    };
+    const OverrideValue *by_substyle = order("substyle"), *by_style = order("style"), *by_era = order("era");
+    if (by_substyle) {
+      const classify::Style* s = catalogue_->find(a.substyle.value);
+      if (!s) return;
+      const std::string why = fmt::format("{}:{}: of the ordered sub-style {}", all_.name, by_substyle->line, s->id);
+      const std::string of_class(model::name(s->style_class));
+      if (!by_style)
+        follow(a.style, of_class, model::Source::implied, 0.95f, why);
+      else if (a.style.value != of_class)
+        tell(object, by_style->line,
+             fmt::format("style = {}, but the ordered sub-style {} is {}", a.style.value, s->id, of_class));
+      const model::Era first = model::era_of(s->years.from), last = model::era_of(s->years.to),
+                       now = era_at(a.era.value);
+      if (by_era) {
+        if (now < first || now > last)
+          tell(object, by_era->line,
+               fmt::format("era = {}, when the ordered sub-style {} was not built", a.era.value, s->id));
+      } else if (a.era.value == "unknown" || now < first || now > last) {
+        follow(a.era, std::string(model::name(now > last ? last : first)), model::Source::implied, 0.95f, why);
+      }
+      if (!order("construction_date") && a.construction_date.source != model::Source::tag)
+        follow(a.construction_date, fmt::format("{}..{}", s->years.from, std::min<int>(s->years.to, 2030)),
+               model::Source::implied, 0.8f, why);
+    } else if (by_style) {
+      const classify::Style* s = catalogue_->find(a.substyle.value);
+      if (s && model::name(s->style_class) == a.style.value) return;
+      const model::Era era = era_at(a.era.value);
+      const classify::Style* fits = nullptr;
+      for (const classify::Style& c : catalogue_->styles()) {
+        if (model::name(c.style_class) != a.style.value) continue;
+        const bool in_era = model::era_of(c.years.from) <= era && era <= model::era_of(c.years.to);
+        if (!fits || in_era) fits = &c;
+        if (in_era) break;
+      }
+      if (fits)
+        follow(a.substyle, fits->id, model::Source::override_, 0.5f,
+               fmt::format("{}:{}: the first of the ordered class {} that fits the era", all_.name, by_style->line,
+                           a.style.value));
+    }
+  }
+
+  model::Region& region_;
+  const Overrides& all_;
+  const classify::Catalogue* catalogue_;
+  std::vector<model::ReportRow> told_;
+};
+
+/// Whether a building has the storey or the edge that an order is for.
+bool is_there(const model::DetailOverride& d, const model::Building& building, const model::Attributes& attributes) {
+  if (d.kind == model::DetailKind::storey)
+    return std::stoi(d.name) < std::ceil(attributes.storeys.value + attributes.roof_storeys.value);
+  if (d.kind != model::DetailKind::edge) return true;
+  return std::any_of(building.edges.begin(), building.edges.end(), [&](const model::FacadeEdge& e) {
+    // Ends that repair made have no node to go by; their names are the exporter's.
+    if (e.from_node == 0 || e.to_node == 0) return true;
+    const std::string id = fmt::format("e{}_{}", e.from_node, e.to_node);
+    return d.name == id || d.name.starts_with(id + "~");
+  });
+}
+
+}  // namespace
+
+const double* OverrideEntry::number(const std::string& attribute) const {
+  const auto found = values.find(attribute);
+  return found == values.end() ? nullptr : std::get_if<double>(&found->second.value);
+}
+
+const std::string* OverrideEntry::text(const std::string& attribute) const {
+  const auto found = values.find(attribute);
+  return found == values.end() ? nullptr : std::get_if<std::string>(&found->second.value);
+}
+
+const OverrideEntry* Overrides::find(OsmId object) const {
+  const auto found = std::lower_bound(entries.begin(), entries.end(), object,
+                                      [](const OverrideEntry& e, OsmId id) { return e.object < id; });
+  return found != entries.end() && found->object == object ? &*found : nullptr;
+}
+
+Overrides read_overrides(const std::string& path, const Defaults& defaults, const OverrideNames& names) {
+  TomlTable root = TomlTable::read(path);
+  return Reader(path, defaults, names).read(std::move(root));
+}
+
+Overrides parse_overrides(std::string_view text, const std::string& name, const Defaults& defaults,
+                          const OverrideNames& names) {
+  TomlTable root = TomlTable::parse(text, name);
+  return Reader(name, defaults, names).read(std::move(root));
+}
+
+void apply_overrides(Overrides& overrides, model::Extract& extract, model::Report& report) {
+  for (OverrideEntry& entry : overrides.entries) {
+    const auto tell = [&](const std::string& why) {
+      report.add(entry.object, model::IssueCode::override_unmatched,
+                 fmt::format("{}:{}: {}", overrides.name, entry.line, why));
+    };
+    const auto found = std::lower_bound(extract.buildings.begin(), extract.buildings.end(), entry.object,
+                                        [](const model::MappedBuilding& b, OsmId id) { return b.id < id; });
+    if (found == extract.buildings.end() || found->id != entry.object) {
+      tell("no building or part with this id");
+    } else if (found->state == model::ObjectState::duplicate) {
+      tell("it is a duplicate of " + found->related.text());
+    } else if (found->state == model::ObjectState::reported) {
+      tell("it is not built: " + std::string(model::info(found->code).text));
+    } else if (entry.is_part() && found->kind != model::ObjectKind::building_part) {
+      tell("it is a building, no part of one");
+    } else {
+      entry.tagged = found->attributes;
+      give(entry, found->attributes, extract.strings);
+      entry.conflicts = drop_contradicted(entry, found->attributes);
+    }
+  }
+}
+
+const UseDefaults& with_overrides(const OverrideEntry* entry, const UseDefaults& usual, UseDefaults& storage) {
+  const double* height = entry ? entry->number("storey_height") : nullptr;
+  const double* plinth = entry ? entry->number("plinth_height") : nullptr;
+  if (!height && !plinth) return usual;
+  storage = usual;
+  if (height) storage.storey_height = *height;
+  if (plinth) storage.plinth = 0;  // the ordered one is the ground floor's level (override_ground)
+  return storage;
+}
+
+void override_ground(const OverrideEntry* entry, context::BuildingGround& ground) {
+  if (!entry) return;
+  if (const double* lowest = entry->number("ground_height")) ground.lowest = {*lowest, model::Source::override_, 1, 0};
+  if (const double* plinth = entry->number("plinth_height")) {
+    ground.entrance = *plinth;
+    ground.entrance_reason = "as ordered";
+  }
+}
+
+void mark_overrides(model::Region& region, const Overrides& overrides, const classify::Catalogue* catalogue) {
+  if (overrides.entries.empty()) return;
+  Marker marker(region, overrides, catalogue);
+  const auto misplaced = [&](const OverrideEntry& entry, const std::string& what) {
+    marker.tell(entry.object, entry.line, what + "; the order holds all the same",
+                model::IssueCode::override_unmatched);
+  };
+  for (model::Building& building : region.buildings) {
+    const auto take = [&](const OverrideEntry& entry, const model::Attributes& attributes) {
+      for (const model::DetailOverride& d : entry.details) {
+        building.detail_overrides.push_back(d);
+        if (!is_there(d, building, attributes))
+          region.report.add(entry.object, model::IssueCode::override_unmatched,
+                            fmt::format("{}: there is no {} {}", d.from, model::name(d.kind), d.name));
+      }
+    };
+    const OverrideEntry* whole = overrides.find(building.osm);
+    if (whole) {
+      marker.own(*whole, building.mapped, building.attributes);
+      take(*whole, building.attributes);
+      if (whole->is_part())
+        misplaced(*whole, fmt::format("it is no part of {}: write [{}]", whole->building.text(), whole->object.text()));
+    }
+    for (model::BuildingPart& part : building.parts) {
+      if (part.osm == building.osm) {
+        // What the parts leave of the outline, or the building itself.
+        if (whole) marker.own(*whole, part.mapped, part.attributes);
+        continue;
+      }
+      const OverrideEntry* own = overrides.find(part.osm);
+      if (own) {
+        const bool first = &part == &*std::find_if(building.parts.begin(), building.parts.end(),
+                                                   [&](const model::BuildingPart& p) { return p.osm == part.osm; });
+        marker.own(*own, part.mapped, part.attributes);
+        if (first) take(*own, part.attributes);
+        if (own->building != building.osm)
+          misplaced(*own, fmt::format("it is a part of {}: write [{}.{}]", building.osm.text(), building.osm.text(),
+                                      part.osm.text()));
+      }
+      if (whole) marker.from_building(*whole, own, part.attributes);
+    }
+  }
+}
+
+}  // namespace blockrand::attributes

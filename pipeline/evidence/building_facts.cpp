@@ -1,0 +1,601 @@
+#include "pipeline/evidence/building_facts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "pipeline/base/parallel.h"
+#include "pipeline/base/portable_math.h"
+#include "pipeline/geometry/polygon.h"
+
+namespace blockrand::evidence {
+
+namespace {
+
+using classify::Feature;
+using classify::FeatureVector;
+using classify::kHouseArea;
+using classify::kNearReach;
+using model::Building;
+using model::BuildingPosition;
+using model::EdgeKind;
+using model::FacadeEdge;
+using model::Point2;
+
+constexpr double kCornerSine = 0.342;   ///< of 20 degrees: what turns less is a bend in a wall
+constexpr double kSectionStep = 1;      ///< m between sections across a house: half a window axis
+constexpr double kFrontCosine = 0.94;   ///< of 20 degrees: stretches of one front
+constexpr double kRunDepth = 0.35;      ///< quantile of the first runs behind the front: its depth (styles.md 2.2)
+constexpr double kWingRatio = 1.5;      ///< depth ratio from which a house has wings (styles.md 2.2)
+constexpr double kMinContact = 1.5;     ///< m. Shorter common walls tie no row together
+constexpr double kSameWidth = 0.75;     ///< m, and
+constexpr double kSameArea = 0.10;      ///< of the area: houses that repeat each other
+constexpr std::int32_t kTownCells = 2;  ///< cells to each side of a building's own that make its town
+constexpr int kCircleCorners = 24;
+
+double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
+double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
+Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
+
+float as_float(double v) { return static_cast<float>(v); }
+
+/// FNV-1a: the same in every run and every tile.
+std::uint64_t hash_of(std::string_view text) {
+  std::uint64_t h = 1469598103934665603ull;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  return h == 0 ? 1 : h;
+}
+
+/// Of the values, which must not be empty: the one with `share` of the others below it. Sorts them.
+double quantile(std::vector<double>& values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+// ---- the building alone ---------------------------------------------------------------------------------------------
+
+int corners_of(const model::Ring& ring) {
+  int corners = 0;
+  const std::size_t n = ring.points.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point2 a = minus(ring.points[i], ring.points[(i + n - 1) % n]),
+                 b = minus(ring.points[(i + 1) % n], ring.points[i]);
+    const double lengths = std::sqrt(dot(a, a) * dot(b, b));
+    if (lengths > 0 && (std::fabs(cross(a, b)) > kCornerSine * lengths || dot(a, b) < 0)) ++corners;
+  }
+  return corners;
+}
+
+struct Depths {
+  double front = 0, greatest = 0;  ///< m
+};
+
+/// Sections through the building across its front: how deep it is behind the front and at its deepest.
+/// \param inward  unit vector; \param from, to  m along the front
+std::optional<Depths> depths_of(const Building& building, Point2 inward, double from, double to) {
+  const Point2 along{inward.y, -inward.x};
+  std::vector<double> first_runs, longest_runs, crossings;
+  for (double at = from + kSectionStep / 2; at < to; at += kSectionStep) {
+    crossings.clear();
+    for (const model::Polygon& polygon : building.outline) {
+      const auto cut = [&](const model::Ring& ring) {
+        const std::size_t n = ring.points.size();
+        for (std::size_t i = 0; i < n; ++i) {
+          const Point2 a = ring.points[i], b = ring.points[(i + 1) % n];
+          const double ua = dot(a, along) - at, ub = dot(b, along) - at;
+          if ((ua < 0) == (ub < 0)) continue;
+          const double t = ua / (ua - ub);
+          crossings.push_back(dot(a, inward) * (1 - t) + dot(b, inward) * t);
+        }
+      };
+      cut(polygon.outer);
+      for (const model::Ring& hole : polygon.holes) cut(hole);
+    }
+    if (crossings.size() < 2) continue;
+    std::sort(crossings.begin(), crossings.end());
+    first_runs.push_back(crossings[1] - crossings[0]);
+    double longest = 0;
+    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
+      longest = std::max(longest, crossings[i + 1] - crossings[i]);
+    longest_runs.push_back(longest);
+  }
+  if (first_runs.empty()) return std::nullopt;
+  return Depths{quantile(first_runs, kRunDepth), quantile(longest_runs, 1)};
+}
+
+/// What is kept of a building while neighbours are not known yet.
+struct Own {
+  FeatureVector features;
+  BuildingPlace place;
+  std::vector<std::pair<model::OsmId, float>> contacts;
+};
+
+void measure_plan(const Building& building, FeatureVector& f) {
+  double area = 0, walls = 0;
+  int corners = 0;
+  std::size_t yards = 0;
+  const model::Polygon* largest = nullptr;
+  for (const model::Polygon& polygon : building.outline) {
+    area += geometry::area(polygon);
+    walls += geometry::perimeter(polygon.outer.points);
+    corners += corners_of(polygon.outer);
+    yards += polygon.holes.size();
+    if (largest == nullptr || geometry::area(polygon) > geometry::area(*largest)) largest = &polygon;
+  }
+  if (largest == nullptr || area <= 0) return;
+  const Point2 axis = geometry::long_axis(largest->outer.points);
+  const auto along = geometry::extent_along(largest->outer.points, axis);
+  const auto across = geometry::extent_along(largest->outer.points, {-axis.y, axis.x});
+  const double length = along.maximum - along.minimum, breadth = across.maximum - across.minimum;
+  f[Feature::area] = as_float(area);
+  f[Feature::length] = as_float(length);
+  f[Feature::breadth] = as_float(breadth);
+  if (breadth > 0) {
+    f[Feature::elongation] = as_float(length / breadth);
+    f[Feature::rectangularity] = as_float(geometry::area(*largest) / (length * breadth));
+  }
+  f[Feature::compactness] = as_float(4 * base::kPi * area / (walls * walls));
+  f[Feature::corners] = as_float(corners);
+  f[Feature::yards] = as_float(static_cast<double>(yards));
+}
+
+float position_number(BuildingPosition p) { return static_cast<float>(static_cast<int>(p)); }
+
+float street_rank(std::string_view street_class) {
+  static constexpr std::string_view kNames[] = {"motorway", "trunk",       "primary",       "secondary",
+                                                "tertiary", "residential", "living_street", "pedestrian"};
+  for (std::size_t i = 0; i < std::size(kNames); ++i)
+    if (kNames[i] == street_class) return static_cast<float>(i + 1);
+  return std::numeric_limits<float>::quiet_NaN();
+}
+
+void measure_situation(const Building& building, Own& own) {
+  FeatureVector& f = own.features;
+  double party = 0, front = 0, court = 0, all = 0;
+  std::map<model::OsmId, double> contacts;
+  for (const FacadeEdge& e : building.edges) {
+    all += e.length();
+    if (e.kind == EdgeKind::party_wall) {
+      party += e.length();
+      if (e.neighbour.number != 0 && !e.outbuilding) contacts[e.neighbour] += e.length();
+    } else if (e.kind == EdgeKind::street) {
+      front += e.length();
+    } else if (e.kind == EdgeKind::courtyard) {
+      court += e.length();
+    }
+  }
+  if (all <= 0) return;
+  for (const auto& [id, length] : contacts)
+    if (length >= kMinContact) own.contacts.emplace_back(id, as_float(length));
+  f[Feature::party_share] = as_float(party / all);
+  f[Feature::front_share] = as_float(front / all);
+  f[Feature::court_share] = as_float(court / all);
+  own.place.position = building.situation.position;
+  if (building.situation.position != BuildingPosition::unknown)
+    f[Feature::position] = position_number(building.situation.position);
+  if (building.situation.setback) f[Feature::setback] = as_float(*building.situation.setback);
+
+  const std::vector<std::uint32_t>& fronts = building.situation.fronts;
+  if (fronts.empty() || !building.situation.orientation) return;
+  const FacadeEdge& main = building.edges[fronts.front()];
+  own.place.street =
+      main.street_name.empty() ? static_cast<std::uint64_t>(main.street.number) : hash_of(main.street_name);
+  f[Feature::street_distance] = main.street_distance;
+  f[Feature::street_angle] = main.street_angle;
+  f[Feature::street_class] = street_rank(main.street_class);
+
+  const double turned = *building.situation.orientation * base::kRadiansPerDegree;
+  const Point2 outward{base::sin(turned), base::cos(turned)}, inward{-outward.x, -outward.y},
+      along{inward.y, -inward.x};
+  double from = std::numeric_limits<double>::infinity(), to = -from;
+  for (const std::uint32_t i : fronts) {
+    const FacadeEdge& e = building.edges[i];
+    if (e.street != main.street && e.street_name != main.street_name) continue;
+    const model::Polygon& polygon = building.outline[e.polygon];
+    const auto& ring = (e.ring == 0 ? polygon.outer : polygon.holes[e.ring - 1]).points;
+    const Point2 a = ring[e.edge], b = ring[(e.edge + 1) % ring.size()], d = minus(b, a);
+    const double length = std::sqrt(dot(d, d));
+    if (length <= 0 || std::fabs(dot(d, along)) < kFrontCosine * length) continue;
+    for (const double t : {e.start / length, e.end / length}) {
+      const double u = dot({a.x + t * d.x, a.y + t * d.y}, along);
+      from = std::min(from, u);
+      to = std::max(to, u);
+    }
+  }
+  if (to - from < kSectionStep) return;
+  f[Feature::frontage] = as_float(to - from);
+  if (const auto depths = depths_of(building, inward, from, to); depths && depths->front > 0) {
+    f[Feature::front_depth] = as_float(depths->front);
+    f[Feature::depth_ratio] = as_float(depths->greatest / depths->front);
+  }
+}
+
+// ---- neighbours -----------------------------------------------------------------------------------------------------
+
+/// m² of a circle that lie within a convex counter-clockwise ring; the whole circle where there is no ring.
+double covered_circle(Point2 centre, double radius, std::span<const Point2> ring) {
+  const double whole = 0.5 * kCircleCorners * radius * radius * base::sin(2 * base::kPi / kCircleCorners);
+  if (ring.size() < 3) return whole;
+  bool inside = true;
+  for (std::size_t i = 0; i < ring.size() && inside; ++i) {
+    const Point2 a = ring[i], d = minus(ring[(i + 1) % ring.size()], a);
+    inside = cross(d, minus(centre, a)) >= radius * std::sqrt(dot(d, d));
+  }
+  if (inside) return whole;
+  std::vector<Point2> shape, next;
+  for (int k = 0; k < kCircleCorners; ++k) {
+    const double turn = 2 * base::kPi * k / kCircleCorners;
+    shape.push_back({centre.x + radius * base::cos(turn), centre.y + radius * base::sin(turn)});
+  }
+  for (std::size_t i = 0; i < ring.size() && !shape.empty(); ++i) {
+    const Point2 a = ring[i], d = minus(ring[(i + 1) % ring.size()], a);
+    next.clear();
+    for (std::size_t k = 0; k < shape.size(); ++k) {
+      const Point2 p = shape[k], q = shape[(k + 1) % shape.size()];
+      const double sp = cross(d, minus(p, a)), sq = cross(d, minus(q, a));
+      if (sp >= 0) next.push_back(p);
+      if ((sp >= 0) != (sq >= 0))
+        next.push_back({p.x + (q.x - p.x) * sp / (sp - sq), p.y + (q.y - p.y) * sp / (sp - sq)});
+    }
+    shape.swap(next);
+  }
+  return shape.size() < 3 ? 0 : geometry::signed_area(shape);
+}
+
+/// m² from which the part of a circle within the data says anything: a tenth of it.
+constexpr double kMinCircle = 0.1;
+
+class Around {
+ public:
+  Around(const FactsExtract& facts, const footprints::FootprintStore& store, const context::ContextExtract& context,
+         const PlaceIndex& houses, const PlaceIndex& small)
+      : facts_(facts), store_(store), context_(context), houses_(houses), small_(small) {}
+
+  /// What the buildings around say; the building's own features are known.
+  void measure(std::uint32_t building, FeatureVector& f) {
+    const BuildingPlace& own = facts_.places[building];
+    houses_.near(own.place, kNearReach, near_);
+    measure_near(building, f);
+    measure_row(building, f);
+    measure_street(own, f);
+    if (facts_.places[building].street == 0) measure_gap(building, f);
+  }
+
+ private:
+  float feature(std::uint32_t b, Feature f) const { return facts_.features[b][f]; }
+
+  void median(Feature from, Feature to, std::uint32_t building, FeatureVector& f) {
+    values_.clear();
+    for (const std::uint32_t b : near_)
+      if (b != building && facts_.features[b].has(from)) values_.push_back(static_cast<double>(feature(b, from)));
+    if (!values_.empty()) f[to] = as_float(quantile(values_, 0.5));
+  }
+
+  void measure_near(std::uint32_t building, FeatureVector& f) {
+    const Point2 place = facts_.places[building].place;
+    const double circle = base::kPi * kNearReach * kNearReach;
+    const double covered = covered_circle(place, kNearReach, context_.coverage) / circle;
+    double n = 0, area = 0, squares = 0, party = 0, corners = 0, rear = 0, wings = 0, fronts = 0;
+    for (const std::uint32_t b : near_) {
+      if (b == building) continue;
+      const FeatureVector& o = facts_.features[b];
+      const double a = static_cast<double>(o[Feature::area]);
+      ++n;
+      area += a;
+      squares += a * a;
+      if (o.has(Feature::party_share)) party += static_cast<double>(o[Feature::party_share]);
+      corners += static_cast<double>(o[Feature::corners]);
+      const BuildingPosition p = facts_.places[b].position;
+      if (p == BuildingPosition::rear_building || p == BuildingPosition::side_wing) ++rear;
+      if (o.has(Feature::depth_ratio)) {
+        ++fronts;
+        if (static_cast<double>(o[Feature::depth_ratio]) >= kWingRatio) ++wings;
+      }
+    }
+    if (covered >= kMinCircle) {
+      const double own = facts_.places[building].house ? static_cast<double>(f[Feature::area]) : 0;
+      f[Feature::around_count] = as_float(n / covered);
+      f[Feature::around_built] = as_float((area + own) / circle / covered);
+    }
+    small_.near(place, kNearReach, others_);
+    if (n > 0) {
+      const double mean = area / n;
+      f[Feature::around_spread] = as_float(std::sqrt(std::max(0.0, squares / n - mean * mean)) / mean);
+      f[Feature::around_party_share] = as_float(party / n);
+      f[Feature::around_corners] = as_float(corners / n);
+      f[Feature::around_rear] = as_float(rear / n);
+      f[Feature::around_small] = as_float(static_cast<double>(others_.size()) / n);
+    }
+    if (fronts > 0) f[Feature::around_depth_ratio] = as_float(wings / fronts);
+    median(Feature::area, Feature::around_area, building, f);
+    median(Feature::frontage, Feature::around_frontage, building, f);
+    median(Feature::front_depth, Feature::around_depth, building, f);
+    median(Feature::elongation, Feature::around_elongation, building, f);
+  }
+
+  /// Houses that touch within the reach, one through the other.
+  void measure_row(std::uint32_t building, FeatureVector& f) {
+    std::vector<std::uint32_t>& row = others_;
+    row.assign(1, building);
+    for (std::size_t i = 0; i < row.size(); ++i)
+      for (const Contact& c : facts_.contacts_of(row[i]))
+        if (std::binary_search(near_.begin(), near_.end(), c.other) &&
+            std::find(row.begin(), row.end(), c.other) == row.end())
+          row.push_back(c.other);
+    std::sort(row.begin(), row.end());
+    double area = 0;
+    points_.clear();
+    for (const std::uint32_t b : row) {
+      area += static_cast<double>(feature(b, Feature::area));
+      store_.for_each_ring(b, [&](std::span<const Point2> ring, bool hole) {
+        if (!hole) points_.insert(points_.end(), ring.begin(), ring.end());
+      });
+    }
+    f[Feature::row_count] = as_float(static_cast<double>(row.size()));
+    f[Feature::row_area] = as_float(area);
+    const std::vector<Point2> hull = context::coverage_of(points_);
+    if (hull.size() >= 3) {
+      const Point2 axis = geometry::long_axis(hull);
+      const auto along = geometry::extent_along(hull, axis), across = geometry::extent_along(hull, {-axis.y, axis.x});
+      const double length = along.maximum - along.minimum, breadth = across.maximum - across.minimum;
+      f[Feature::row_length] = as_float(length);
+      f[Feature::row_breadth] = as_float(breadth);
+      if (length * breadth > 0) f[Feature::row_fill] = as_float(area / (length * breadth));
+    }
+    double alike = 0, touching = 0;
+    for (const Contact& c : facts_.contacts_of(building)) {
+      const FeatureVector& o = facts_.features[c.other];
+      ++touching;
+      const double a = static_cast<double>(f[Feature::area]), b = static_cast<double>(o[Feature::area]);
+      const bool widths = f.has(Feature::frontage) && o.has(Feature::frontage);
+      const double apart =
+          widths ? std::fabs(static_cast<double>(f[Feature::frontage] - o[Feature::frontage])) : kSameWidth + 1;
+      if (apart <= kSameWidth && std::fabs(a - b) <= kSameArea * std::max(a, b)) ++alike;
+    }
+    f[Feature::neighbours] = as_float(touching);
+    if (touching > 0) f[Feature::row_alike] = as_float(alike / touching);
+  }
+
+  void measure_street(const BuildingPlace& own, FeatureVector& f) {
+    if (own.street == 0) return;
+    values_.clear();
+    for (const std::uint32_t b : near_)
+      if (facts_.places[b].street == own.street && facts_.features[b].has(Feature::street_distance))
+        values_.push_back(static_cast<double>(feature(b, Feature::street_distance)));
+    if (!values_.empty()) f[Feature::street_width] = as_float(2 * quantile(values_, 0.5));
+  }
+
+  void measure_gap(std::uint32_t building, FeatureVector& f) {
+    std::vector<Point2>& own = points_;
+    own.clear();
+    store_.for_each_ring(building,
+                         [&](std::span<const Point2> ring, bool) { own.insert(own.end(), ring.begin(), ring.end()); });
+    double best = kNearReach;
+    for (const std::uint32_t b : near_) {
+      if (b == building || facts_.places[b].street == 0 || !store_[b].box.near(store_[building].box, best)) continue;
+      store_.for_each_ring(b, [&](std::span<const Point2> ring, bool) {
+        for (std::size_t i = 0; i < ring.size(); ++i)
+          for (const Point2 p : own)
+            best = std::min(best, geometry::distance_to_segment(p, ring[i], ring[(i + 1) % ring.size()]));
+      });
+    }
+    if (best < kNearReach) f[Feature::front_gap] = as_float(best);
+  }
+
+  const FactsExtract& facts_;
+  const footprints::FootprintStore& store_;
+  const context::ContextExtract& context_;
+  const PlaceIndex& houses_;
+  const PlaceIndex& small_;
+  std::vector<std::uint32_t> near_, others_;
+  std::vector<double> values_;
+  std::vector<Point2> points_;
+};
+
+// ---- blocks and town ------------------------------------------------------------------------------------------------
+
+void measure_blocks(const context::ContextExtract& context, FactsExtract& facts) {
+  std::vector<double> houses(context.blocks.size()), rear(context.blocks.size()), yards(context.blocks.size());
+  for (const BuildingPlace& p : facts.places) {
+    if (p.block == model::kNoIndex || !p.house) continue;
+    ++houses[p.block];
+    if (p.position == BuildingPosition::rear_building || p.position == BuildingPosition::side_wing) ++rear[p.block];
+  }
+  for (const context::ExtractCourtyard& yard : context.courtyards)
+    if (yard.block != model::kNoIndex && yard.courtyard.closed) yards[yard.block] += yard.courtyard.area;
+  for (std::size_t b = 0; b < facts.places.size(); ++b) {
+    const std::uint32_t block = facts.places[b].block;
+    if (block == model::kNoIndex || !context.blocks[block].gives_ratios()) continue;
+    const context::BlockFigures& figures = context.figures[block];
+    FeatureVector& f = facts.features[b];
+    f[Feature::block_area] = as_float(context.blocks[block].area / 10000);
+    if (figures.built_share) f[Feature::block_built] = as_float(*figures.built_share);
+    if (figures.closure) f[Feature::block_closure] = as_float(*figures.closure);
+    f[Feature::block_court] = as_float(yards[block] / context.blocks[block].area);
+    if (houses[block] > 0) f[Feature::block_rear] = as_float(rear[block] / houses[block]);
+  }
+}
+
+void measure_town(const context::ContextExtract& context, FactsExtract& facts) {
+  struct Town {
+    double buildings = 0, area = 0, walls = 0, party = 0, covered = 0;
+  };
+  std::map<context::CellIndex, double> covered;
+  const auto covered_share = [&](context::CellIndex c) {
+    const auto [place, fresh] = covered.try_emplace(c, 0);
+    if (fresh) place->second = context::covered_share(c, context.coverage);
+    return place->second;
+  };
+  std::map<context::CellIndex, Town> towns;
+  for (std::size_t b = 0; b < facts.places.size(); ++b) {
+    if (!facts.features[b].has(Feature::area)) continue;
+    const context::CellIndex cell = context::cell_of(facts.places[b].place);
+    const auto [place, fresh] = towns.try_emplace(cell);
+    Town& town = place->second;
+    if (fresh)
+      for (std::int32_t x = cell.x - kTownCells; x <= cell.x + kTownCells; ++x)
+        for (std::int32_t y = cell.y - kTownCells; y <= cell.y + kTownCells; ++y) {
+          town.covered += covered_share({x, y});
+          const auto sums = context.cells.find({x, y});
+          if (sums == context.cells.end()) continue;
+          town.buildings += static_cast<double>(sums->second.buildings);
+          town.area += static_cast<double>(sums->second.area) / 1024;
+          town.walls += static_cast<double>(sums->second.walls) / 1024;
+          town.party += static_cast<double>(sums->second.party_walls) / 1024;
+        }
+    if (town.covered < 0.5) continue;
+    FeatureVector& f = facts.features[b];
+    const double land = town.covered * context::kCellSize * context::kCellSize;
+    f[Feature::town_built] = as_float(town.area / land);
+    f[Feature::town_density] = as_float(town.buildings / land * 10000);
+    if (town.walls > 0) f[Feature::town_party_share] = as_float(town.party / town.walls);
+  }
+}
+
+/// The buildings of one tile with their outlines and nothing else, labelled.
+model::Region labelled(const model::Extract& extract, const footprints::FootprintStore& store,
+                       const context::SurroundingsFinder& surroundings, std::span<const std::uint32_t> numbers) {
+  model::Region region;
+  region.extract = &extract;
+  for (const std::uint32_t n : numbers) {
+    Building building;
+    building.osm = store[n].id;
+    building.tags = extract.buildings[store[n].lead].tags;
+    building.outline = store.polygons(n);
+    building.arcs = store.arcs(n);
+    region.buildings.push_back(std::move(building));
+  }
+  surroundings.label_edges(region, numbers);
+  return region;
+}
+
+/// Buildings are looked at in runs of this many.
+constexpr std::size_t kRun = 256;
+/// m. Those of a run are no farther from its first: what is seen from walls is filed in one grid over the run.
+constexpr double kRunExtent = 2000;
+
+/// Where runs begin, and the end. Results do not depend on it.
+std::vector<std::size_t> runs_of(const footprints::FootprintStore& store) {
+  std::vector<std::size_t> starts;
+  Point2 first{};
+  for (std::uint32_t b = 0; b < store.size(); ++b) {
+    const bool known = !store[b].box.empty();
+    const Point2 d = known ? minus(store[b].box.centre(), first) : Point2{};
+    if (starts.empty() || b - starts.back() == kRun || dot(d, d) > kRunExtent * kRunExtent) {
+      starts.push_back(b);
+      if (known) first = store[b].box.centre();
+    }
+  }
+  starts.push_back(store.size());
+  return starts;
+}
+
+}  // namespace
+
+PlaceIndex::PlaceIndex(const FactsExtract& facts, std::span<const std::uint32_t> chosen, double size)
+    : facts_(facts), size_(size) {
+  entries_.reserve(chosen.size());
+  for (const std::uint32_t b : chosen) {
+    const Point2 p = facts.places[b].place;
+    entries_.push_back(
+        {static_cast<std::int32_t>(std::floor(p.x / size_)), static_cast<std::int32_t>(std::floor(p.y / size_)), b});
+  }
+  std::sort(entries_.begin(), entries_.end());
+}
+
+void PlaceIndex::near(Point2 place, double distance, std::vector<std::uint32_t>& out) const {
+  out.clear();
+  const auto cell = [&](double v) { return static_cast<std::int32_t>(std::floor(v / size_)); };
+  for (std::int32_t x = cell(place.x - distance); x <= cell(place.x + distance); ++x) {
+    const Entry first{x, cell(place.y - distance), 0};
+    for (auto e = std::lower_bound(entries_.begin(), entries_.end(), first);
+         e != entries_.end() && e->x == x && e->y <= cell(place.y + distance); ++e) {
+      const Point2 d = minus(facts_.places[e->building].place, place);
+      if (dot(d, d) <= distance * distance) out.push_back(e->building);
+    }
+  }
+  std::sort(out.begin(), out.end());
+}
+
+FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& store, const context::ContextExtract& context,
+                           const context::SurroundingsFinder& surroundings, int workers, base::Progress& progress) {
+  progress.begin("measure");
+  const std::size_t count = store.size();
+  FactsExtract facts;
+  facts.features.resize(count);
+  facts.places.resize(count);
+  const footprints::BuildingNumbers numbers(store);
+
+  // Each building alone, with what its walls look at.
+  const std::vector<std::size_t> starts = runs_of(store);
+  const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2, runs = starts.size() - 1;
+  std::vector<std::vector<Own>> slots(in_flight);
+  const auto look = [&](std::size_t i) {
+    std::vector<std::uint32_t> mine;
+    for (std::size_t b = starts[i]; b < starts[i + 1]; ++b) mine.push_back(static_cast<std::uint32_t>(b));
+    const model::Region region = labelled(extract, store, surroundings, mine);
+    std::vector<Own> run;
+    for (std::size_t k = 0; k < mine.size(); ++k) {
+      const footprints::StoredFootprint& stored = store[mine[k]];
+      Own& own = run.emplace_back();
+      if (stored.box.empty() || stored.settled != model::ObjectState::pending) continue;
+      own.place.place = context::place_of(store, mine[k]);
+      own.place.block = context.block_of[mine[k]];
+      measure_plan(region.buildings[k], own.features);
+      measure_situation(region.buildings[k], own);
+      own.place.house = !stored.level.canopy && stored.level.low <= 0 && own.features.has(Feature::area) &&
+                        static_cast<double>(own.features[Feature::area]) >= kHouseArea;
+    }
+    slots[i % in_flight] = std::move(run);
+  };
+  const auto keep = [&](std::size_t i) {
+    for (std::size_t k = 0; k < slots[i % in_flight].size(); ++k) {
+      Own& own = slots[i % in_flight][k];
+      const std::size_t b = starts[i] + k;
+      own.place.contacts.first = static_cast<std::uint32_t>(facts.contacts.size());
+      for (const auto& [id, length] : own.contacts)
+        if (const std::uint32_t other = numbers.find(id); other != model::kNoIndex)
+          facts.contacts.push_back({other, length});
+      own.place.contacts.count = static_cast<std::uint32_t>(facts.contacts.size()) - own.place.contacts.first;
+      std::sort(facts.contacts.end() - own.place.contacts.count, facts.contacts.end(),
+                [](const Contact& a, const Contact& c) {
+                  return a.length > c.length || (a.length == c.length && a.other < c.other);
+                });
+      facts.places[b] = own.place;
+      facts.features[b] = own.features;
+    }
+    slots[i % in_flight].clear();
+  };
+  base::ordered_parallel(runs, workers, in_flight, look, keep);
+
+  // What stands around.
+  std::vector<std::uint32_t> houses, small;
+  for (std::uint32_t b = 0; b < count; ++b) {
+    if (facts.places[b].house)
+      houses.push_back(b);
+    else if (facts.features[b].has(Feature::area) && !store[b].level.canopy)
+      small.push_back(b);
+  }
+  const PlaceIndex house_index(facts, houses, kNearReach), small_index(facts, small, kNearReach);
+  // Into a copy: neighbours read what was measured alone, and nothing that this loop writes.
+  std::vector<FeatureVector> out = facts.features;
+  const auto around = [&](std::size_t i) {
+    Around finder(facts, store, context, house_index, small_index);
+    for (std::size_t b = starts[i]; b < starts[i + 1]; ++b)
+      if (out[b].has(Feature::area)) finder.measure(static_cast<std::uint32_t>(b), out[b]);
+  };
+  base::ordered_parallel(runs, workers, in_flight, around, [](std::size_t) {});
+  facts.features = std::move(out);
+  measure_blocks(context, facts);
+  measure_town(context, facts);
+  // Thresholds are compared with what is left after rounding, never with the last bit of a ray.
+  for (FeatureVector& f : facts.features)
+    for (std::size_t i = 0; i < classify::kFeatureCount; ++i) {
+      float& v = f[static_cast<Feature>(i)];
+      if (v == v) v = std::floor(v * classify::kFeatureSteps + 0.5f) / classify::kFeatureSteps;
+    }
+  return facts;
+}
+
+}  // namespace blockrand::evidence

@@ -1,0 +1,70 @@
+// What can be measured of every building of an extract, its neighbours and its block: the input of classification.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pipeline/base/progress.h"
+#include "pipeline/model/building.h"
+#include "pipeline/context/context_extract.h"
+#include "pipeline/footprints/footprint_store.h"
+#include "pipeline/context/surroundings_finder.h"
+#include "styles/classify/features.h"
+
+namespace blockrand::evidence {
+
+/// A common wall.
+struct Contact {
+  std::uint32_t other = 0;  ///< number of the building beyond it
+  float length = 0;         ///< m
+};
+
+/// Of one building, what is not a feature.
+struct BuildingPlace {
+  model::Point2 place;                    ///< m, middle of its largest polygon
+  std::uint64_t street = 0;               ///< of the main front: the same number for the same street, 0 for none
+  std::uint32_t block = model::kNoIndex;  ///< into ContextExtract::blocks
+  model::Range contacts;                  ///< into FactsExtract::contacts
+  model::BuildingPosition position = model::BuildingPosition::unknown;
+  bool house = false;  ///< kHouseArea and more on the ground, no canopy
+};
+
+/// Read-only once made, safe to share between threads. Numbers of buildings are those of the FootprintStore.
+struct FactsExtract {
+  std::vector<classify::FeatureVector> features;
+  std::vector<BuildingPlace> places;
+  std::vector<Contact> contacts;  ///< of houses with houses, by building, the longest first
+  std::span<const Contact> contacts_of(std::uint32_t building) const {
+    const model::Range r = places[building].contacts;
+    return std::span(contacts).subspan(r.first, r.count);
+  }
+};
+
+/// Buildings whose middle lies within a distance of a place. Cells of a fixed grid; read-only after construction.
+class PlaceIndex {
+ public:
+  /// \param chosen  the buildings to file, ascending
+  /// \param size    m, of the cells; near() is meant for distances of about that
+  PlaceIndex(const FactsExtract& facts, std::span<const std::uint32_t> chosen, double size);
+  /// Ascending.
+  void near(model::Point2 place, double distance, std::vector<std::uint32_t>& out) const;
+
+ private:
+  struct Entry {
+    std::int32_t x = 0, y = 0;
+    std::uint32_t building = 0;
+    friend auto operator<=>(const Entry&, const Entry&) = default;
+  };
+  const FactsExtract& facts_;
+  double size_;
+  std::vector<Entry> entries_;  ///< sorted
+};
+
+/// Measures all buildings. Deterministic for any number of workers. What a building gets depends on data within
+/// BlockOptions::max_extent + kNearReach + kEdgeReach of it.
+FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& footprints,
+                           const context::ContextExtract& context, const context::SurroundingsFinder& surroundings, int workers,
+                           base::Progress& progress);
+
+}  // namespace blockrand::evidence

@@ -1,0 +1,321 @@
+#include "pipeline/facades/facade_context.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace blockrand::facades {
+namespace {
+
+using grammar::Value;
+using C = FacadeContext;
+
+const model::FacadeEdge* edge_of(const C& c) {
+  const model::FacadeEdge* best = nullptr;
+  for (const std::uint32_t i : c.stretch.edges)
+    if (!best || c.building.edges[i].length() > best->length()) best = &c.building.edges[i];
+  return best;
+}
+
+Value text(std::string_view t) { return std::string(t); }
+Value colour(model::Colour c) { return model::text(c); }
+
+Value kind_text(const std::optional<model::EdgeKind>& kind) { return text(kind ? model::name(*kind) : ""); }
+
+template <class Visit>
+bool any_edge(const C& c, Visit&& visit) {
+  return std::any_of(c.stretch.edges.begin(), c.stretch.edges.end(),
+                     [&](std::uint32_t i) { return visit(c.building.edges[i]); });
+}
+
+/// Uses that show a window to the street: categories of configs/styles/ground_floor.toml.
+constexpr std::string_view kShopUses[] = {"shop", "gastronomy", "service", "craft"};
+
+bool is_shop(const model::EdgePoint& p) {
+  return std::find(std::begin(kShopUses), std::end(kShopUses), p.use) != std::end(kShopUses);
+}
+bool is_entrance(const model::EdgePoint& p) { return p.entrance; }
+
+/// Points along the stretch that are `wanted`, m from its left end, in order, each place once.
+std::vector<double> places(const C& c, bool (*wanted)(const model::EdgePoint&)) {
+  std::vector<double> out;
+  for (const std::uint32_t i : c.stretch.edges)
+    for (const model::EdgePoint& p : c.building.edges[i].points) {
+      if (!wanted(p)) continue;
+      const double u = (p.place.x - c.wall.start.x) * c.wall.along.x + (p.place.y - c.wall.start.y) * c.wall.along.y -
+                       c.stretch.from;
+      if (u >= 0 && u <= c.stretch.length()) out.push_back(std::floor(u * 64 + 0.5) / 64);
+    }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+Value numbers(std::vector<double> items) {
+  grammar::NumberArray out;
+  out.columns = items.size();
+  out.items = std::move(items);
+  return out;
+}
+Value texts(std::vector<std::string> items) {
+  grammar::TextArray out;
+  out.columns = items.size();
+  out.items = std::move(items);
+  return out;
+}
+
+/// What is ordered for one storey, edge or bay of the part, of its whole building else; empty: nothing.
+std::string ordered(const C& c, model::DetailKind kind, std::string_view name, std::string_view key) {
+  std::string out;
+  for (const model::DetailOverride& d : c.building.detail_overrides) {
+    if (d.kind != kind || d.name != name || (d.body != c.part.id && d.body != c.building.id())) continue;
+    for (const auto& [known, value] : d.values)
+      if (known == key && (out.empty() || d.body == c.part.id)) out = value;
+  }
+  return out;
+}
+
+/// What is ordered for the edges that the stretch runs along; the first one counts.
+std::string ordered_edge(const C& c, std::string_view key) {
+  for (const std::uint32_t i : c.stretch.edges) {
+    const model::FacadeEdge& e = c.building.edges[i];
+    if (e.from_node == 0 || e.to_node == 0) continue;
+    const std::string id = "e" + std::to_string(e.from_node) + "_" + std::to_string(e.to_node);
+    for (const model::DetailOverride& d : c.building.detail_overrides)
+      if (d.kind == model::DetailKind::edge && (d.name == id || d.name.starts_with(id + "~")))
+        for (const auto& [known, value] : d.values)
+          if (known == key) return value;
+  }
+  return {};
+}
+
+std::size_t storey_count(const C& c) {
+  // More storeys than any building has are a slip of a tag; arrays stay small.
+  return static_cast<std::size_t>(std::clamp(std::ceil(c.part.attributes.storeys.value), 0.0, 200.0));
+}
+
+/// What is ordered for each storey from the ground floor up; empty texts where nothing is.
+std::vector<std::string> by_storey(const C& c, std::string_view key) {
+  std::vector<std::string> out(storey_count(c));
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = ordered(c, model::DetailKind::storey, std::to_string(i), key);
+  return out;
+}
+
+/// The same for the bays of the main front, counted from its left end; as many as the highest number that is ordered.
+std::vector<std::string> by_bay(const C& c, std::string_view key) {
+  std::size_t most = 0;
+  constexpr int kMostBays = 1000;
+  for (const model::DetailOverride& d : c.building.detail_overrides)
+    if (d.kind == model::DetailKind::bay)
+      most = std::max(most, static_cast<std::size_t>(std::clamp(std::atoi(d.name.c_str()), 0, kMostBays)) + 1);
+  std::vector<std::string> out(most);
+  for (std::size_t i = 0; i < most; ++i) out[i] = ordered(c, model::DetailKind::bay, std::to_string(i), key);
+  return out;
+}
+
+/// Gross heights by storey, m: as ordered, the rest shared out evenly. What is ordered beyond the wall's height is
+/// taken in proportion.
+std::vector<double> storey_heights(const C& c) {
+  const auto orders = by_storey(c, "height");
+  const model::Attributes& a = c.part.attributes;
+  std::vector<double> out(orders.size(), 0);
+  double sum = 0;
+  std::size_t open = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = orders[i].empty() ? 0 : std::atof(orders[i].c_str());
+    sum += out[i];
+    open += orders[i].empty() ? 1 : 0;
+  }
+  const double all = a.storey_height.value * static_cast<double>(out.size());
+  // The others keep 1.5 m, the least that overrides may order.
+  const double rest = open > 0 ? std::max(1.5, (all - sum) / static_cast<double>(open)) : 0;
+  const double total = sum + rest * static_cast<double>(open);
+  for (double& h : out) {
+    if (h == 0) h = rest;
+    if (total > 0) h *= all / total;
+  }
+  return out;
+}
+
+bool is_main_front(const C& c) {
+  const auto& fronts = c.building.situation.fronts;
+  return any_edge(c, [&](const model::FacadeEdge& e) {
+    const auto number = static_cast<std::uint32_t>(&e - c.building.edges.data());
+    return !fronts.empty() && fronts.front() == number;
+  });
+}
+
+int mapped_entrances(const model::Building& b) {
+  int n = 0;
+  for (const model::FacadeEdge& e : b.edges) n += e.entrances;
+  return n;
+}
+
+/// m above the wall's base of the eaves of its part, at most the wall's own height.
+double eaves(const C& c) { return std::clamp(c.eaves - c.wall.base, 0.0, c.wall.height); }
+
+const std::vector<ContextAttribute> kAttributes = {
+    {"bay.uses", "", "ordered by bay of the main front, from its left end: door, shop, balcony …; empty: nothing",
+     [](const C& c) -> Value {
+       return texts(is_main_front(c) ? by_bay(c, "parameters.use") : std::vector<std::string>{});
+     }},
+    {"bay.windows", "", "the same: none, or a kind of window",
+     [](const C& c) -> Value {
+       return texts(is_main_front(c) ? by_bay(c, "parameters.window") : std::vector<std::string>{});
+     }},
+    {"building.class", "", "class of appearance: gruenderzeit, tenement, modern, other",
+     [](const C& c) -> Value { return c.building.attributes.style.value; }},
+    {"building.depth", "m", "across the main front; 0: not known",
+     [](const C& c) -> Value { return c.building.situation.depth.value_or(0); }},
+    {"building.entrances", "", "entrances that are mapped anywhere on the building",
+     [](const C& c) -> Value { return static_cast<double>(mapped_entrances(c.building)); }},
+    {"building.era", "", "pre1840, 1840_1918, 1919_1945, post1945",
+     [](const C& c) -> Value { return c.building.attributes.era.value; }},
+    {"building.ground_floor_use", "", "shop, gastronomy, office … or the building's use",
+     [](const C& c) -> Value { return c.building.attributes.ground_floor_use.value; }},
+    {"building.height", "m", "ground to the top of the roof, of this part",
+     [](const C& c) -> Value { return c.part.attributes.height.value; }},
+    {"building.min_height", "m", "ground to the underside of this part",
+     [](const C& c) -> Value { return c.part.attributes.min_height.value; }},
+    {"building.plinth", "m", "ground to the level of the ground floor",
+     [](const C& c) -> Value { return c.part.attributes.plinth_height.value; }},
+    {"building.position", "", "free_standing, end_of_row, mid_row, corner_house, rear_building, side_wing, unknown",
+     [](const C& c) -> Value { return text(model::name(c.building.situation.position)); }},
+    {"building.preset", "", "name of the preset",
+     [](const C& c) -> Value { return c.building.attributes.preset.value; }},
+    {"building.roof_colour", "", "#rrggbb",
+     [](const C& c) -> Value { return colour(c.part.attributes.roof_colour.value); }},
+    {"building.storey_height", "m", "mean, floor to floor",
+     [](const C& c) -> Value { return c.part.attributes.storey_height.value; }},
+    {"building.storeys", "", "full storeys above ground",
+     [](const C& c) -> Value { return c.part.attributes.storeys.value; }},
+    {"building.substyle", "", "id in configs/styles/catalogue.toml",
+     [](const C& c) -> Value { return c.building.attributes.substyle.value; }},
+    {"building.use", "", "apartments, house, office …",
+     [](const C& c) -> Value { return c.part.attributes.use.value; }},
+    {"building.wall_colour", "", "#rrggbb",
+     [](const C& c) -> Value { return colour(c.part.attributes.wall_colour.value); }},
+    {"building.wall_material", "", "plaster, brick, stone …",
+     [](const C& c) -> Value { return c.part.attributes.wall_material.value; }},
+    {"building.width", "m", "along the main front; 0: not known",
+     [](const C& c) -> Value { return c.building.situation.width.value_or(0); }},
+    {"edge.chamfer", "", "cuts off a street corner",
+     [](const C& c) -> Value { return any_edge(c, [](const model::FacadeEdge& e) { return e.chamfer; }); }},
+    {"edge.corner_left", "", "the left end is a corner of the building",
+     [](const C& c) -> Value { return c.stretch.starts_wall; }},
+    {"edge.corner_right", "", "the right end is a corner of the building",
+     [](const C& c) -> Value { return c.stretch.ends_wall; }},
+    {"edge.eaves", "m", "the wall's base to the eaves", [](const C& c) -> Value { return eaves(c); }},
+    {"edge.entrance", "m", "left end to the first mapped entrance; -1: none",
+     [](const C& c) -> Value {
+       const auto at = entrance_places(c);
+       return at.empty() ? -1.0 : at.front();
+     }},
+    {"edge.entrance_places", "m", "left end to each mapped entrance of this stretch",
+     [](const C& c) -> Value { return numbers(entrance_places(c)); }},
+    {"edge.entrances", "", "mapped entrances of this stretch",
+     [](const C& c) -> Value { return static_cast<double>(entrance_places(c).size()); }},
+    {"edge.kind", "", "street, courtyard, side, passage; as ordered, if it is",
+     [](const C& c) -> Value {
+       const std::string order = ordered_edge(c, "kind");
+       return order.empty() ? text(model::name(c.stretch.kind)) : text(order);
+     }},
+    {"edge.kind_left", "",
+     "kind of the stretch beyond the left end, round the corner too; empty: none with the same base and eaves",
+     [](const C& c) -> Value { return kind_text(c.stretch.kind_left); }},
+    {"edge.kind_right", "", "the same of the right end",
+     [](const C& c) -> Value { return kind_text(c.stretch.kind_right); }},
+    {"edge.length", "m", "of the stretch", [](const C& c) -> Value { return c.stretch.length(); }},
+    {"edge.main_front", "", "the longest stretch of the main front",
+     [](const C& c) -> Value { return is_main_front(c); }},
+    {"edge.raised", "m", "the ground to the base of the wall: more than 0 above passages and lower parts",
+     [](const C& c) -> Value { return std::max(0.0, c.wall.base - c.part.attributes.ground_height.value); }},
+    {"edge.shops", "m", "left end to each mapped shop, restaurant, bank or workshop behind this stretch",
+     [](const C& c) -> Value { return numbers(places(c, is_shop)); }},
+    {"edge.street_class", "", "of the street it faces: primary, residential …; empty: none",
+     [](const C& c) -> Value {
+       const auto* e = edge_of(c);
+       return e ? e->street_class : std::string();
+     }},
+    {"edge.street_distance", "m", "its middle to the street's line; 0: none",
+     [](const C& c) -> Value {
+       const auto* e = edge_of(c);
+       return e && e->street.number != 0 ? static_cast<double>(e->street_distance) : 0.0;
+     }},
+    {"edge.street_name", "", "of the street it faces",
+     [](const C& c) -> Value {
+       const auto* e = edge_of(c);
+       return e ? e->street_name : std::string();
+     }},
+    {"edge.turn_left", "degrees",
+     "turn of the walls at the left end, positive at corners that stand out; 0: the wall goes on, or edge.kind_left is "
+     "empty",
+     [](const C& c) -> Value { return c.stretch.turn_left; }},
+    {"edge.turn_right", "degrees", "the same of the right end",
+     [](const C& c) -> Value { return c.stretch.turn_right; }},
+    {"roof.height", "m", "eaves to the top", [](const C& c) -> Value { return c.part.attributes.roof_height.value; }},
+    {"roof.pitch", "degrees", "of the main slope",
+     [](const C& c) -> Value { return c.part.attributes.roof_pitch.value; }},
+    {"roof.shape", "", "as it was built: flat, gabled, hipped …",
+     [](const C& c) -> Value { return text(model::name(c.part.built_roof)); }},
+    {"storey.bases", "m", "by storey: the ground floor's level to its floor",
+     [](const C& c) -> Value {
+       std::vector<double> out;
+       double at = 0;
+       for (const double h : storey_heights(c)) {
+         out.push_back(at);
+         at += h;
+       }
+       return numbers(std::move(out));
+     }},
+    {"storey.colours", "", "by storey: #rrggbb as ordered; empty: nothing",
+     [](const C& c) -> Value { return texts(by_storey(c, "colour")); }},
+    {"storey.count", "", "full storeys above ground, as many as the lists have entries",
+     [](const C& c) -> Value { return static_cast<double>(storey_count(c)); }},
+    {"storey.heights", "m", "by storey: floor to floor, as ordered; the others even",
+     [](const C& c) -> Value { return numbers(storey_heights(c)); }},
+    {"storey.ordered", "", "storeys whose height is ordered",
+     [](const C& c) -> Value {
+       const auto orders = by_storey(c, "height");
+       return static_cast<double>(
+           std::count_if(orders.begin(), orders.end(), [](const std::string& o) { return !o.empty(); }));
+     }},
+    {"storey.uses", "", "by storey: shop, office … as ordered; empty: nothing",
+     [](const C& c) -> Value { return texts(by_storey(c, "use")); }},
+    {"storey.windows", "", "by storey: none, or a kind of window, as ordered; empty: nothing",
+     [](const C& c) -> Value { return texts(by_storey(c, "parameters.window")); }},
+};
+
+}  // namespace
+
+std::vector<double> entrance_places(const FacadeContext& context) { return places(context, is_entrance); }
+
+const std::vector<ContextAttribute>& context_attributes() { return kAttributes; }
+
+std::optional<Value> context_value(const FacadeContext& context, std::string_view name) {
+  const auto place = std::lower_bound(kAttributes.begin(), kAttributes.end(), name,
+                                      [](const ContextAttribute& a, std::string_view n) { return a.name < n; });
+  if (place == kAttributes.end() || place->name != name) return std::nullopt;
+  return place->read(context);
+}
+
+std::vector<std::string> unheard_orders(const model::Building& building) {
+  using model::DetailKind;
+  // What storey.windows, bay.windows and bay.uses read.
+  constexpr std::pair<DetailKind, std::string_view> kHeard[] = {{DetailKind::storey, "parameters.window"},
+                                                                {DetailKind::bay, "parameters.window"},
+                                                                {DetailKind::bay, "parameters.use"}};
+  std::vector<std::string> out;
+  for (const model::DetailOverride& d : building.detail_overrides)
+    for (const auto& [key, value] : d.values)
+      if (key.starts_with("parameters.") &&
+          std::find(std::begin(kHeard), std::end(kHeard), std::pair(d.kind, std::string_view(key))) == std::end(kHeard))
+        out.push_back(d.from + ": rules ask for no " + key + " of a " + std::string(model::name(d.kind)));
+  return out;
+}
+
+}  // namespace blockrand::facades

@@ -1,0 +1,41 @@
+// What rules can ask about the building and the wall that they work on.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/facades/facade_stretches.h"
+#include "pipeline/facades/wall_frame.h"
+#include "pipeline/model/building.h"
+#include "styles/grammar/language/value.h"
+
+namespace blockrand::facades {
+
+struct FacadeContext {
+  const model::Building& building;
+  const model::BuildingPart& part;
+  const WallFrame& wall;
+  const FacadeStretch& stretch;
+  double eaves = 0;  ///< m above the height reference, of the part: eaves_level()
+};
+
+/// One value that rules may read: "building.storeys". docs/grammar_attributes.md is printed from the list.
+struct ContextAttribute {
+  std::string_view name, unit, meaning;
+  grammar::Value (*read)(const FacadeContext&);
+};
+
+/// All of them, by name.
+const std::vector<ContextAttribute>& context_attributes();
+std::optional<grammar::Value> context_value(const FacadeContext& context, std::string_view name);
+
+/// m from the left end of the stretch to each mapped entrance, in order, each place once.
+std::vector<double> entrance_places(const FacadeContext& context);
+
+/// Orders of storeys, edges and bays that no rule file can ask for: parameters without a name in the list above. One
+/// sentence each, with the place of the order.
+std::vector<std::string> unheard_orders(const model::Building& building);
+
+}  // namespace blockrand::facades

@@ -1,0 +1,202 @@
+#include "pipeline/facades/opening_proof.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/grid.h"
+
+namespace blockrand::facades {
+namespace {
+
+using geometry::Grid2;
+using geometry::Grid3;
+using model::Point3;
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// m across a wall that its corners may take up: as much as the judge lets pass without looking for folds.
+constexpr double kThickest = 4 / model::kGridStepsPerMetre;
+/// Cosine of the angle between a reveal's direction and the wall's normal: rounding turns reveals of a centimetre by 4
+/// degrees.
+constexpr double kNearlyAcross = 0.9;
+
+/// A direction of the plan in grid steps, into the building.
+using Inward = std::array<std::int64_t, 2>;
+
+struct OpenedWall {
+  std::uint32_t face = 0;
+  Point3 origin;
+  double nx = 0, ny = 0, nz = 0;  ///< unit normal
+  double low = 0, high = 0;       ///< m along the normal, of all its corners
+  Grid3 least, most;
+  std::vector<Inward> views;
+  double along_normal(const Point3& p) const {
+    return (p.x - origin.x) * nx + (p.y - origin.y) * ny + (p.z - origin.z) * nz;
+  }
+};
+
+class Proof {
+ public:
+  Proof(const OpenedSolid& opened, const model::SolidTriangles& triangles)
+      : opened_(opened), solid_(opened.solid), triangles_(triangles) {}
+
+  bool holds() {
+    for (const model::Opening& o : opened_.openings)
+      if (o.kind == model::OpeningKind::passage) return false;
+    if (triangles_.first.size() != solid_.faces.size() + 1) return false;
+    grid_.resize(solid_.vertices.size());
+    for (std::size_t i = 0; i < grid_.size(); ++i) grid_[i] = geometry::to_grid(solid_.vertices[i]);
+    wall_of_.assign(solid_.faces.size(), kNone);
+    is_new_.assign(solid_.faces.size(), false);
+    for (const model::Opening& o : opened_.openings) {
+      is_new_[o.polygon] = true;
+      for (std::uint32_t r = 0; r < o.reveal_count; ++r) is_new_[o.first_reveal + r] = true;
+      if (wall_of_[o.wall] != kNone) continue;
+      wall_of_[o.wall] = static_cast<std::uint32_t>(walls_.size());
+      auto wall = thin_wall(o.wall);
+      if (!wall) return false;
+      walls_.push_back(std::move(*wall));
+    }
+    for (const model::Opening& o : opened_.openings) {
+      OpenedWall& wall = walls_[wall_of_[o.wall]];
+      const auto in = inward(o, wall);
+      if (!in || !turns_left(o.polygon, *in)) return false;
+      if (std::find(wall.views.begin(), wall.views.end(), *in) == wall.views.end()) wall.views.push_back(*in);
+    }
+    for (const OpenedWall& wall : walls_)
+      for (const Inward& in : wall.views)
+        if (!turns_left(wall.face, in)) return false;
+    for (const OpenedWall& wall : walls_)
+      if (meets_others(wall)) return false;
+    return true;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffff;
+
+  std::span<const Triangle> triangles_of(std::uint32_t face) const {
+    return std::span(triangles_.triangles)
+        .subspan(triangles_.first[face], triangles_.first[face + 1] - triangles_.first[face]);
+  }
+
+  std::optional<OpenedWall> thin_wall(std::uint32_t face) const {
+    OpenedWall wall;
+    wall.face = face;
+    const auto loops = solid_.loops_of(solid_.faces[face]);
+    const auto outer = solid_.indices_of(loops[0]);
+    wall.origin = solid_.vertices[outer[0]];
+    wall.least = wall.most = grid_[outer[0]];
+    for (std::size_t i = 0; i < outer.size(); ++i) {
+      const Point3& p = solid_.vertices[outer[i]];
+      const Point3& q = solid_.vertices[outer[i + 1 == outer.size() ? 0 : i + 1]];
+      const double px = p.x - wall.origin.x, py = p.y - wall.origin.y, pz = p.z - wall.origin.z;
+      const double qx = q.x - wall.origin.x, qy = q.y - wall.origin.y, qz = q.z - wall.origin.z;
+      wall.nx += py * qz - pz * qy;
+      wall.ny += pz * qx - px * qz;
+      wall.nz += px * qy - py * qx;
+      const Grid3& g = grid_[outer[i]];
+      wall.least = {std::min(wall.least.x, g.x), std::min(wall.least.y, g.y), std::min(wall.least.z, g.z)};
+      wall.most = {std::max(wall.most.x, g.x), std::max(wall.most.y, g.y), std::max(wall.most.z, g.z)};
+    }
+    const double size = std::sqrt(wall.nx * wall.nx + wall.ny * wall.ny + wall.nz * wall.nz);
+    if (!(size > 0)) return std::nullopt;
+    wall.nx /= size;
+    wall.ny /= size;
+    wall.nz /= size;
+    if (std::fabs(wall.nz) > kMostLean * std::sqrt(wall.nx * wall.nx + wall.ny * wall.ny)) return std::nullopt;
+    for (const auto& loop : loops)
+      for (const std::uint32_t i : solid_.indices_of(loop)) {
+        const double h = wall.along_normal(solid_.vertices[i]);
+        wall.low = std::min(wall.low, h);
+        wall.high = std::max(wall.high, h);
+      }
+    if (wall.high - wall.low > kThickest) return std::nullopt;
+    return wall;
+  }
+
+  /// Which way the reveal goes; of flush openings the axis nearest to it.
+  std::optional<Inward> inward(const model::Opening& o, const OpenedWall& wall) const {
+    if (o.reveal_count == 0) {
+      if (std::fabs(wall.nx) >= std::fabs(wall.ny)) return Inward{wall.nx > 0 ? -1 : 1, 0};
+      return Inward{0, wall.ny > 0 ? -1 : 1};
+    }
+    const auto ring = solid_.indices_of(solid_.loops_of(solid_.faces[o.first_reveal])[0]);
+    if (ring.size() != 4) return std::nullopt;
+    const Grid3 in = grid_[ring[3]] - grid_[ring[0]];
+    const double x = static_cast<double>(in.x), y = static_cast<double>(in.y), across = -(wall.nx * x + wall.ny * y);
+    if (in.z != 0 || across * across < kNearlyAcross * kNearlyAcross * (x * x + y * y) || across <= 0)
+      return std::nullopt;
+    return Inward{in.x, in.y};
+  }
+
+  /// All triangles of a face are counter-clockwise, seen from outside along `in`.
+  bool turns_left(std::uint32_t face, const Inward& in) const {
+    const auto triangles = triangles_of(face);
+    if (triangles.empty()) return false;
+    const Grid3 o = grid_[triangles[0][0]];
+    const auto seen = [&](std::uint32_t i) {
+      const Grid3 p = grid_[i] - o;
+      return Grid2{p.x * in[1] - p.y * in[0], p.z};
+    };
+    return std::all_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
+      return geometry::orientation(seen(t[0]), seen(t[1]), seen(t[2])) > 0;
+    });
+  }
+
+  bool boxes_apart(const Triangle& t, const Grid3& least, const Grid3& most) const {
+    const Grid3 &a = grid_[t[0]], &b = grid_[t[1]], &c = grid_[t[2]];
+    return std::max({a.x, b.x, c.x}) < least.x || std::min({a.x, b.x, c.x}) > most.x ||
+           std::max({a.y, b.y, c.y}) < least.y || std::min({a.y, b.y, c.y}) > most.y ||
+           std::max({a.z, b.z, c.z}) < least.z || std::min({a.z, b.z, c.z}) > most.z;
+  }
+
+  /// Whether a triangle of the wall conflicts with one of another face that is no reveal.
+  bool meets_others(const OpenedWall& wall) {
+    near_.clear();
+    for (std::uint32_t f = 0; f < solid_.faces.size(); ++f) {
+      if (f == wall.face || is_new_[f] || (wall_of_[f] != kNone && f < wall.face)) continue;
+      for (const Triangle& t : triangles_of(f)) {
+        if (boxes_apart(t, wall.least, wall.most)) continue;
+        int before = 0, behind = 0;
+        for (const std::uint32_t i : t) {
+          const double h = wall.along_normal(solid_.vertices[i]);
+          before += h > wall.high + kSure;
+          behind += h < wall.low - kSure;
+        }
+        if (before < 3 && behind < 3) near_.push_back(t);
+      }
+    }
+    for (const Triangle& mine : triangles_of(wall.face)) {
+      const Grid3 &a = grid_[mine[0]], &b = grid_[mine[1]], &c = grid_[mine[2]];
+      const Grid3 least{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})};
+      const Grid3 most{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})};
+      for (const Triangle& t : near_)
+        if (!boxes_apart(t, least, most) && geometry::triangles_conflict(grid_, mine, t)) return true;
+    }
+    return false;
+  }
+
+  /// m; more than doubles are wrong by.
+  static constexpr double kSure = 1e-6;
+
+  const OpenedSolid& opened_;
+  const model::Solid& solid_;
+  const model::SolidTriangles& triangles_;
+  std::vector<Grid3> grid_;
+  std::vector<OpenedWall> walls_;
+  std::vector<std::uint32_t> wall_of_;  ///< by face: into walls_
+  std::vector<bool> is_new_;            ///< by face: a reveal, or an opening's polygon
+  std::vector<Triangle> near_;
+};
+
+}  // namespace
+
+bool proved_valid(const OpenedSolid& opened, const model::SolidTriangles& triangles) {
+  return Proof(opened, triangles).holds();
+}
+
+}  // namespace blockrand::facades

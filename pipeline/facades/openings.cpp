@@ -1,0 +1,327 @@
+#include "pipeline/facades/openings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+#include <utility>
+
+#include "pipeline/facades/opening_blocks.h"
+#include "pipeline/facades/outlines.h"
+#include "pipeline/geometry/polygon.h"
+
+namespace blockrand::facades {
+namespace {
+
+using model::Point2;
+using model::Point3;
+
+/// Margin to the sides of a reveal: less than what stays of the wall, so that the wall beside does not count.
+constexpr double kSideMargin = kOpeningClearance / 2;
+/// Off the plane through three of its corners, a tunnel's quadrangle is cut in two. Rounding alone costs half of it.
+constexpr double kPlaneTunnel = 0.002;
+/// Points of two mouths that shall be at one height.
+constexpr double kSameHeight = 0.01;
+
+class Cutter {
+ public:
+  Cutter(const model::Solid& solid, std::span<const WallFrame> walls, std::span<const WallOpening> all)
+      : walls_(walls), all_(all), obstacles_(solid), cut_(walls.size()) {}
+
+  OpeningRefusal try_opening(std::uint32_t index) {
+    const WallOpening& o = all_[index];
+    if (const auto bad = in_wall(o); bad != OpeningRefusal::none) return bad;
+    if (o.kind != model::OpeningKind::passage) {
+      const Block block = reveal_block(o);
+      if (!block.valid() || obstacles_.blocked(block, walls_[o.wall].face, walls_[o.wall].face))
+        return OpeningRefusal::wall_too_thin;
+      return take(block, {index});
+    }
+    if (o.through >= all_.size()) return OpeningRefusal::passage_blocked;
+    const WallOpening& other = all_[o.through];
+    if (other.kind != o.kind || other.through != index || other.wall == o.wall ||
+        other.outline.size() != o.outline.size())
+      return OpeningRefusal::passage_blocked;
+    if (const auto bad = in_wall(other); bad != OpeningRefusal::none) return bad;
+    const std::optional<Block> tunnel = tunnel_block(o, other);
+    for (const WallOpening* mouth : {&o, &other}) {
+      const Block before = reveal_block(*mouth);
+      if (!before.valid() || obstacles_.blocked(before, walls_[o.wall].face, walls_[other.wall].face))
+        return OpeningRefusal::passage_blocked;
+    }
+    if (!tunnel || obstacles_.blocked(*tunnel, walls_[o.wall].face, walls_[other.wall].face) || !partners(o, other))
+      return OpeningRefusal::passage_blocked;
+    return take(*tunnel, {index, o.through});
+  }
+
+  /// For each point of the first mouth the matching one of the second.
+  std::optional<std::vector<std::size_t>> partners(const WallOpening& a, const WallOpening& b) const {
+    const std::size_t n = a.outline.size();
+    std::optional<std::vector<std::size_t>> best;
+    double least = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      std::vector<std::size_t> match(n);
+      double sum = 0;
+      bool fits = true;
+      for (std::size_t i = 0; i < n && fits; ++i) {
+        match[i] = (k + n - i) % n;
+        const Point3 p = walls_[a.wall].at(a.outline[i]), q = walls_[b.wall].at(b.outline[match[i]]);
+        fits = std::fabs(p.z - q.z) <= kSameHeight;
+        sum += std::sqrt((p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y));
+      }
+      if (fits && (!best || sum < least)) {
+        best = std::move(match);
+        least = sum;
+      }
+    }
+    return best;
+  }
+
+ private:
+  struct Cut {
+    Box2 box;
+    std::uint32_t opening = 0;
+  };
+
+  OpeningRefusal take(const Block& block, std::initializer_list<std::uint32_t> openings) {
+    for (const Block& b : blocks_)
+      if (b.meets(block)) return OpeningRefusal::meets_opening;
+    blocks_.push_back(block);
+    for (const std::uint32_t o : openings) cut_[all_[o].wall].push_back({box_of(all_[o].outline), o});
+    return OpeningRefusal::none;
+  }
+
+  OpeningRefusal in_wall(const WallOpening& o) const {
+    if (o.wall >= walls_.size() || o.outline.size() < 3 || !(o.reveal >= 0)) return OpeningRefusal::bad_outline;
+    for (const Point2& p : o.outline)
+      if (!std::isfinite(p.x) || !std::isfinite(p.y)) return OpeningRefusal::bad_outline;
+    const Box2 box = box_of(o.outline);
+    if (!(box.right - box.left >= kLeastOpening && box.high - box.low >= kLeastOpening))
+      return OpeningRefusal::bad_outline;
+    if (!(geometry::signed_area(o.outline) > 0) || !is_simple_by(kLeastFeature, o.outline))
+      return OpeningRefusal::bad_outline;
+    const WallFrame& wall = walls_[o.wall];
+    for (std::size_t l = 0; l < wall.loops.size(); ++l) {
+      if (rings_nearer_than(kOpeningClearance, o.outline, box, wall.loops[l])) return OpeningRefusal::beyond_wall;
+      if (surely_inside(wall.loops[l], o.outline[0]) != (l == 0)) return OpeningRefusal::beyond_wall;
+      // A hole of the wall inside the opening.
+      if (l > 0 && surely_inside(o.outline, wall.loops[l][0])) return OpeningRefusal::beyond_wall;
+    }
+    for (const Cut& cut : cut_[o.wall]) {
+      if (cut.box.apart(box, kOpeningClearance)) continue;
+      const auto& other = all_[cut.opening].outline;
+      if (rings_nearer_than(kOpeningClearance, o.outline, box, other) || surely_inside(other, o.outline[0]) ||
+          surely_inside(o.outline, other[0]))
+        return OpeningRefusal::meets_opening;
+    }
+    return OpeningRefusal::none;
+  }
+
+  /// From a little before the wall to behind the reveal: an opening that looks into a slit would meet the wall across.
+  Block reveal_block(const WallOpening& o) const {
+    const WallFrame& wall = walls_[o.wall];
+    const Box2 box = box_of(o.outline);
+    const double front = -kOpeningClearance, depth = o.reveal + kLeastBehind;
+    const double left = box.left - kSideMargin, right = box.right + kSideMargin;
+    const auto at = [&](double u, double d) { return wall.at({u, 0}, d).xy(); };
+    return {{at(left, depth), at(left, front), at(right, front), at(right, depth)},
+            wall.base + box.low - kSideMargin,
+            wall.base + box.high + kSideMargin};
+  }
+
+  std::optional<Block> tunnel_block(const WallOpening& a, const WallOpening& b) const {
+    const WallFrame &from = walls_[a.wall], &to = walls_[b.wall];
+    const Box2 near = box_of(a.outline), far = box_of(b.outline);
+    const auto at = [](const WallFrame& wall, double u) { return wall.at({u, 0}).xy(); };
+    // Seen along the tunnel both mouths must be wide enough: its sides then never cross.
+    const Point2 a0 = at(from, near.left), a1 = at(from, near.right), b0 = at(to, far.right), b1 = at(to, far.left);
+    const double ax = (b0.x + b1.x - a0.x - a1.x) / 2, ay = (b0.y + b1.y - a0.y - a1.y) / 2,
+                 length = std::sqrt(ax * ax + ay * ay);
+    const auto across = [&](Point2 p, Point2 q) { return ((q.x - p.x) * -ay + (q.y - p.y) * ax) / -length; };
+    if (!(across(a0, a1) >= kLeastPassage && across(b0, b1) >= kLeastPassage)) return std::nullopt;
+    const Block block{{at(to, far.right + kSideMargin), at(from, near.left - kSideMargin),
+                       at(from, near.right + kSideMargin), at(to, far.left - kSideMargin)},
+                      from.base + near.low - kSideMargin,
+                      from.base + near.high + kSideMargin};
+    if (!block.valid()) return std::nullopt;
+    return block;
+  }
+
+  std::span<const WallFrame> walls_;
+  std::span<const WallOpening> all_;
+  Obstacles obstacles_;
+  std::vector<Block> blocks_;
+  std::vector<std::vector<Cut>> cut_;  ///< by wall
+};
+
+/// Puts the solid together anew, loop by loop: walls get more loops than they had.
+class Assembly {
+ public:
+  Assembly(const model::Solid& solid, std::span<const WallFrame> walls)
+      : solid_(solid), walls_(walls), holes_(solid.faces.size()) {
+    out_.vertices = solid.vertices;
+  }
+
+  std::vector<std::uint32_t> add_points(const WallFrame& wall, std::span<const Point2> outline) {
+    std::vector<std::uint32_t> at;
+    for (const Point2& p : outline) at.push_back(add(model::snap(wall.at(p))));
+    return at;
+  }
+  std::uint32_t add(Point3 p) {
+    out_.vertices.push_back(p);
+    return static_cast<std::uint32_t>(out_.vertices.size()) - 1;
+  }
+  /// \param ring  as the opening's outline runs: counter-clockwise seen from outside
+  void add_hole(std::uint32_t face, std::vector<std::uint32_t> ring) {
+    std::reverse(ring.begin(), ring.end());
+    holes_[face].push_back(std::move(ring));
+  }
+  std::uint32_t add_face(std::vector<std::uint32_t> ring, model::Face looks) {
+    added_.push_back({std::move(ring), looks});
+    return static_cast<std::uint32_t>(solid_.faces.size() + added_.size()) - 1;
+  }
+  const Point3& point(std::uint32_t i) const { return out_.vertices[i]; }
+  const model::Face& face(std::uint32_t wall) const { return solid_.faces[walls_[wall].face]; }
+
+  model::Solid take() {
+    for (std::size_t f = 0; f < solid_.faces.size(); ++f) {
+      model::Face face = solid_.faces[f];
+      const auto loops = solid_.loops_of(face);
+      face.first_loop = static_cast<std::uint32_t>(out_.loops.size());
+      for (const auto& loop : loops) add_loop(solid_.indices_of(loop));
+      for (const auto& hole : holes_[f]) add_loop(hole);
+      face.loop_count = static_cast<std::uint32_t>(out_.loops.size()) - face.first_loop;
+      out_.faces.push_back(face);
+    }
+    for (const auto& [ring, looks] : added_) {
+      model::Face face = looks;
+      face.first_loop = static_cast<std::uint32_t>(out_.loops.size());
+      face.loop_count = 1;
+      add_loop(ring);
+      out_.faces.push_back(face);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  void add_loop(std::span<const std::uint32_t> ring) {
+    out_.loops.push_back({static_cast<std::uint32_t>(out_.indices.size()), static_cast<std::uint32_t>(ring.size())});
+    out_.indices.insert(out_.indices.end(), ring.begin(), ring.end());
+  }
+
+  const model::Solid& solid_;
+  std::span<const WallFrame> walls_;
+  model::Solid out_;
+  std::vector<std::vector<std::vector<std::uint32_t>>> holes_;
+  std::vector<std::pair<std::vector<std::uint32_t>, model::Face>> added_;
+};
+
+/// m that `d` lies off the plane of the other three.
+double off_plane(const Point3& a, const Point3& b, const Point3& c, const Point3& d) {
+  const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
+  const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+  const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
+  return length > 0 ? std::fabs(nx * (d.x - a.x) + ny * (d.y - a.y) + nz * (d.z - a.z)) / length : 0;
+}
+
+model::SurfaceKind tunnel_kind(const Point3& a, const Point3& b, const Point3& c) {
+  const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z, vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
+  const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+  // Steeper than 45 degrees is a side.
+  if (nz * nz <= nx * nx + ny * ny) return model::SurfaceKind::wall;
+  return nz > 0 ? model::SurfaceKind::outer_floor : model::SurfaceKind::outer_ceiling;
+}
+
+}  // namespace
+
+OpenedSolid cut_openings(const model::Solid& solid, std::span<const WallFrame> walls,
+                         std::span<const WallOpening> openings) {
+  OpenedSolid out;
+  Cutter cutter(solid, walls, openings);
+  Assembly assembly(solid, walls);
+  out.refusals.assign(openings.size(), OpeningRefusal::none);
+  for (std::uint32_t i = 0; i < openings.size(); ++i) {
+    const WallOpening& o = openings[i];
+    const bool passage = o.kind == model::OpeningKind::passage;
+    // The second mouth of a passage shares the first one's fate.
+    if (passage && o.through < i && openings[o.through].through == i && openings[o.through].kind == o.kind) {
+      out.refusals[i] = out.refusals[o.through];
+      continue;
+    }
+    out.refusals[i] = cutter.try_opening(i);
+    if (out.refusals[i] != OpeningRefusal::none) continue;
+    const WallFrame& wall = walls[o.wall];
+    model::Face looks = assembly.face(o.wall);
+    model::Opening opening;
+    opening.kind = o.kind;
+    opening.wall = wall.face;
+    opening.storey = o.storey;
+    const std::vector<std::uint32_t> mouth = assembly.add_points(wall, o.outline);
+    const std::size_t n = mouth.size();
+    assembly.add_hole(wall.face, mouth);
+    if (!passage) {
+      std::vector<std::uint32_t> end = mouth;
+      if (o.reveal >= kLeastReveal) {
+        const Point2 outward = wall.outward();
+        const Point2 in = model::snap(Point2{-outward.x * o.reveal, -outward.y * o.reveal});
+        for (std::size_t k = 0; k < n; ++k) {
+          const Point3 p = assembly.point(mouth[k]);
+          end[k] = assembly.add({p.x + in.x, p.y + in.y, p.z});
+        }
+        looks.kind = model::SurfaceKind::wall;
+        for (std::size_t k = 0; k < n; ++k) {
+          const std::size_t next = (k + 1) % n;
+          const std::uint32_t face = assembly.add_face({mouth[k], mouth[next], end[next], end[k]}, looks);
+          if (k == 0) opening.first_reveal = face;
+        }
+        opening.reveal_count = static_cast<std::uint32_t>(n);
+      }
+      looks.kind = o.kind == model::OpeningKind::window ? model::SurfaceKind::window : model::SurfaceKind::door;
+      opening.polygon = assembly.add_face(end, looks);
+      out.openings.push_back(opening);
+      out.given.push_back(i);
+      continue;
+    }
+    const WallOpening& other = openings[o.through];
+    const WallFrame& far_wall = walls[other.wall];
+    const auto match = cutter.partners(o, other);
+    std::vector<std::uint32_t> end(n), far_ring(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      Point3 p = model::snap(far_wall.at(other.outline[(*match)[k]]));
+      p.z = assembly.point(mouth[k]).z;  // one level, to the last bit
+      end[k] = assembly.add(p);
+      far_ring[(*match)[k]] = end[k];
+    }
+    assembly.add_hole(far_wall.face, far_ring);
+    opening.polygon = far_wall.face;
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t next = (k + 1) % n;
+      const std::uint32_t a = mouth[k], b = mouth[next], c = end[next], d = end[k];
+      looks.kind = tunnel_kind(assembly.point(a), assembly.point(b), assembly.point(c));
+      std::uint32_t face = 0;
+      if (off_plane(assembly.point(a), assembly.point(b), assembly.point(c), assembly.point(d)) <= kPlaneTunnel) {
+        face = assembly.add_face({a, b, c, d}, looks);
+        ++opening.reveal_count;
+      } else {
+        face = assembly.add_face({a, b, c}, looks);
+        assembly.add_face({a, c, d}, looks);
+        opening.reveal_count += 2;
+      }
+      if (k == 0) opening.first_reveal = face;
+    }
+    out.openings.push_back(opening);
+    out.given.push_back(i);
+    model::Opening second = opening;
+    second.wall = far_wall.face;
+    second.polygon = wall.face;
+    second.reveal_count = 0;
+    second.storey = other.storey;
+    out.openings.push_back(second);
+    out.given.push_back(o.through);
+  }
+  out.solid = assembly.take();
+  return out;
+}
+
+}  // namespace blockrand::facades

@@ -1,0 +1,21 @@
+// Where on Earth an extract lies.
+#pragma once
+
+#include <optional>
+
+#include "pipeline/georef/lon_lat.h"
+#include "pipeline/model/extract.h"
+
+namespace blockrand::footprints {
+
+/// The median place of all buildings, and the box of those within 5 degrees of it: one stray object at 0/0 must not
+/// choose the CRS. Longitudes are unwrapped around the first building.
+struct Area {
+  georef::GeoBox box;
+  georef::LonLat centre;
+};
+
+/// Empty when no pending building has an outline.
+std::optional<Area> area_of(const model::Extract& extract);
+
+}  // namespace blockrand::footprints

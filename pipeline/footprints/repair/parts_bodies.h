@@ -1,0 +1,56 @@
+// The parts of one building among themselves: walls shared, overlaps resolved.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "pipeline/model/building.h"
+#include "pipeline/model/report.h"
+#include "pipeline/footprints/repair/options.h"
+
+namespace blockrand::repair {
+
+/// From where to where a part stands, as far as its tags tell. Metres above the ground.
+struct HeightSpan {
+  double low = 0, high = 0;  ///< high may be infinite: unknown
+  bool low_counted = false;  ///< from storeys, not from metres
+  bool high_counted = false;
+  bool slab = false;  ///< a roof without walls whose underside is unknown: only its own kind is in its way
+};
+
+/// What the tags of a part say, of `building` where the part says nothing: height, else storeys of 3 m each; without
+/// any, infinite.
+HeightSpan height_span(const model::MappedAttributes& part, bool canopy, const model::MappedAttributes& building);
+
+/// True when both stand at some height together. Bounds of one kind (metres with metres, storeys with storeys) are
+/// compared with a margin of 0.1 m, of different kinds with half a storey.
+bool heights_meet(const HeightSpan& a, const HeightSpan& b);
+
+/// A mapped part as polygons.
+struct PartBody {
+  std::size_t part = 0;  ///< index into Building::parts
+  model::OsmId osm;
+  HeightSpan heights;
+  std::vector<model::Polygon> polygons;
+};
+
+/// Makes parts at one height that almost meet share their walls: corners of different parts within `snap_distance` and
+/// within a third of their shortest walls become one point, their mean (a corner of the outline, where one of them is
+/// that), nearest first; corners so near to a wall of another part go to its nearest point, which becomes a corner of
+/// that wall. Only where all polygons stay strictly simple and keep their area to `max_area_change`: else the same is
+/// tried with a quarter of the distance, else nothing is changed. Points that several parts have move together.
+/// \return how many corners were joined to another part's corner or wall that did not have them before
+int share_part_walls(std::vector<PartBody>& bodies, std::span<const model::Polygon> outline,
+                     const RepairOptions& options);
+
+/// What is left of a plan without `taken`. Pieces narrower than 0.3 m or smaller than 0.5 m² are drawing tolerance and
+/// go; empty where there are only such. Nodes of both are kept.
+std::vector<model::Polygon> plan_without(std::span<const model::Polygon> plan, std::span<const model::Polygon> taken,
+                                         const RepairOptions& options);
+
+/// Resolves overlaps of more than `min_overlap_area` between parts at overlapping heights: in order of area (smaller
+/// first), then id, each part loses what those before it cover (plan_without); a part of which nothing would be left
+/// keeps its plan. A PARTS_OVERLAP row each.
+void resolve_part_overlaps(std::vector<PartBody>& bodies, const RepairOptions& options, model::Report& report);
+
+}  // namespace blockrand::repair

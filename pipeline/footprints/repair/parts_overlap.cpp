@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <tuple>
+
+#include "pipeline/geometry/needles.h"
+#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/footprints/repair/parts_bodies.h"
+#include "pipeline/footprints/repair/rings.h"
+
+namespace blockrand::repair {
+
+namespace {
+
+using model::IssueCode;
+using model::Point2;
+using model::Polygon;
+
+constexpr double kStoreyHeight = 3.0;    // m; only to compare storeys with metres
+constexpr double kSameKindMargin = 0.1;  // m; heights are mapped in tenths
+constexpr double kMixedMargin = 1.5;     // m; half a storey: real ones are 2.5 to 4.5 m high
+constexpr double kLeastPartWidth = 0.3;  // m; what is left of a part and narrower is the noise of two drawn walls
+constexpr double kLeastPartArea = 0.5;   // m²; smaller than the smallest chimney or turret that somebody maps
+
+struct Box {
+  Point2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  Point2 high{-low.x, -low.y};
+};
+
+Box box_of(const std::vector<Polygon>& polygons) {
+  Box box;
+  for (const Polygon& p : polygons)
+    for (const Point2 q : p.outer.points) {
+      box.low = {std::min(box.low.x, q.x), std::min(box.low.y, q.y)};
+      box.high = {std::max(box.high.x, q.x), std::max(box.high.y, q.y)};
+    }
+  return box;
+}
+
+bool may_overlap(const Box& a, const Box& b, double area) {
+  const double w = std::min(a.high.x, b.high.x) - std::max(a.low.x, b.low.x);
+  const double h = std::min(a.high.y, b.high.y) - std::max(a.low.y, b.low.y);
+  return w > 0 && h > 0 && w * h > area;
+}
+
+double area_of(const std::vector<Polygon>& polygons) {
+  double sum = 0;
+  for (const Polygon& p : polygons) sum += geometry::area(p);
+  return sum;
+}
+
+}  // namespace
+
+HeightSpan height_span(const model::MappedAttributes& part, bool canopy, const model::MappedAttributes& building) {
+  HeightSpan span;
+  if (part.min_height) {
+    span.low = *part.min_height;
+  } else if (part.min_storey) {
+    span.low = *part.min_storey * kStoreyHeight;
+    span.low_counted = true;
+  } else {
+    span.slab = canopy;
+  }
+  const auto top = [&](const model::MappedAttributes& a) {
+    if (a.height) {
+      span.high = *a.height;
+      return true;
+    }
+    if (!a.storeys) return false;
+    span.high = *a.storeys * kStoreyHeight;
+    span.high_counted = true;
+    return true;
+  };
+  // A top at or below the underside says nothing; whatever it was meant to be, the part stands up to somewhere.
+  const bool known = (top(part) && span.high > span.low) || (top(building) && span.high > span.low);
+  if (!known) {
+    span.high = std::numeric_limits<double>::infinity();
+    span.high_counted = false;
+  }
+  return span;
+}
+
+bool heights_meet(const HeightSpan& a, const HeightSpan& b) {
+  if (a.slab != b.slab) return false;
+  const bool low_of_a = a.low > b.low, high_of_a = a.high < b.high;
+  const double low = low_of_a ? a.low : b.low, high = high_of_a ? a.high : b.high;
+  const bool low_counted = low_of_a ? a.low_counted : b.low_counted;
+  const bool high_counted = high_of_a ? a.high_counted : b.high_counted;
+  // The ground is the ground in metres and in storeys.
+  const bool one_kind = low == 0 || low_counted == high_counted;
+  return high - low > (one_kind ? kSameKindMargin : kMixedMargin);
+}
+
+std::vector<Polygon> plan_without(std::span<const Polygon> plan, std::span<const Polygon> taken,
+                                  const RepairOptions& options) {
+  geometry::ValidPolygons rest = geometry::difference(plan, taken, kLeastPartArea, options.ring_clearance);
+  std::erase_if(rest.polygons, [](const Polygon& p) { return geometry::equivalent_width(p) < kLeastPartWidth; });
+  geometry::cut_needles(rest.polygons, options.spike_width);
+  restore_nodes(rest.polygons, plan);
+  restore_nodes(rest.polygons, taken);
+  return std::move(rest.polygons);
+}
+
+void resolve_part_overlaps(std::vector<PartBody>& bodies, const RepairOptions& options, model::Report& report) {
+  if (bodies.size() < 2) return;
+  struct Entry {
+    double area;
+    model::OsmId osm;
+    std::size_t body;
+    Box box;
+  };
+  std::vector<Entry> order;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    order.push_back({area_of(bodies[i].polygons), bodies[i].osm, i, box_of(bodies[i].polygons)});
+  std::sort(order.begin(), order.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.area, a.osm, a.body) < std::tie(b.area, b.osm, b.body);
+  });
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    PartBody& weak = bodies[order[i].body];
+    std::vector<Polygon> taken;
+    std::string takers;
+    for (std::size_t k = 0; k < i; ++k) {
+      const PartBody& strong = bodies[order[k].body];
+      if (!may_overlap(order[i].box, order[k].box, options.min_overlap_area)) continue;
+      if (!heights_meet(weak.heights, strong.heights)) continue;
+      if (geometry::common_area(weak.polygons, strong.polygons) <= options.min_overlap_area) continue;
+      taken.insert(taken.end(), strong.polygons.begin(), strong.polygons.end());
+      takers += (takers.empty() ? "" : ", ") + strong.osm.text();
+    }
+    if (taken.empty()) continue;
+    const double overlap = geometry::common_area(weak.polygons, taken);
+    std::vector<Polygon> rest = plan_without(weak.polygons, taken, options);
+    if (rest.empty()) {
+      report.add(weak.osm, IssueCode::parts_overlap,
+                 square_metres(overlap) + " with " + takers + "; stays, nothing else is left");
+      continue;
+    }
+    weak.polygons = std::move(rest);
+    report.add(weak.osm, IssueCode::parts_overlap, square_metres(overlap) + " given to " + takers);
+  }
+}
+
+}  // namespace blockrand::repair

@@ -1,0 +1,64 @@
+// Geometries as well-known binary (OGC 06-103r4, clause 8), little-endian.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+
+#include "pipeline/model/polygon.h"
+
+namespace blockrand::layer_file {
+
+static_assert(std::endian::native == std::endian::little, "well-known binary is written as memory holds it");
+
+template <class T>
+void append_raw(std::string& out, T value) {
+  char bytes[sizeof value];
+  std::memcpy(bytes, &value, sizeof value);
+  out.append(bytes, sizeof value);
+}
+
+inline constexpr std::uint32_t kPoint = 1, kLineString = 2, kPolygon = 3, kMultiPolygon = 6;
+
+inline void append_header(std::string& out, std::uint32_t type, std::size_t count) {
+  out += '\1';
+  append_raw(out, type);
+  append_raw(out, static_cast<std::uint32_t>(count));
+}
+
+inline void append_ring(std::string& out, const model::Ring& ring) {
+  append_raw(out, static_cast<std::uint32_t>(ring.size() + 1));
+  for (std::size_t i = 0; i <= ring.size(); ++i) {
+    const model::Point2 p = ring.points[i == ring.size() ? 0 : i];
+    append_raw(out, p.x);
+    append_raw(out, p.y);
+  }
+}
+
+inline void append_polygon(std::string& out, const model::Polygon& polygon) {
+  if (polygon.outer.points.empty()) return append_header(out, kPolygon, 0);
+  append_header(out, kPolygon, 1 + polygon.holes.size());
+  append_ring(out, polygon.outer);
+  for (const model::Ring& hole : polygon.holes) append_ring(out, hole);
+}
+
+inline void append_line(std::string& out, model::Point2 from, model::Point2 to) {
+  append_header(out, kLineString, 2);
+  for (const double v : {from.x, from.y, to.x, to.y}) append_raw(out, v);
+}
+
+inline void append_point(std::string& out, model::Point2 point) {
+  out += '\1';
+  append_raw(out, kPoint);
+  append_raw(out, point.x);
+  append_raw(out, point.y);
+}
+
+inline void append_multi_polygon(std::string& out, std::span<const model::Polygon> polygons) {
+  append_header(out, kMultiPolygon, polygons.size());
+  for (const model::Polygon& polygon : polygons) append_polygon(out, polygon);
+}
+
+}  // namespace blockrand::layer_file

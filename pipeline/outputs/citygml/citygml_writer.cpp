@@ -1,0 +1,630 @@
+#include "pipeline/outputs/citygml/citygml_writer.h"
+
+#include <libxml/parser.h>
+#include <libxml/xmlwriter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <new>
+
+#include "pipeline/outputs/citygml/codes.h"
+#include "pipeline/outputs/citygml/geometry_text.h"
+#include "pipeline/outputs/materials.h"
+#include "pipeline/outputs/placed_element.h"
+#include "pipeline/outputs/text.h"
+
+namespace blockrand::outputs {
+namespace {
+
+/// Whether the model has this building: it is owned by the tile and something of it could be built.
+bool is_written(const model::Building& building) { return building.owned && !building.parts.empty(); }
+
+/// The smallest box around everything that is written.
+struct Envelope {
+  bool empty = true;
+  model::Point3 min, max;
+  void add(const model::Point3& p) {
+    if (empty) min = max = p;
+    empty = false;
+    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+  }
+};
+
+double footprint_height(const model::Attributes& attributes) {
+  const double z = attributes.ground_height.value;
+  return std::isfinite(z) ? model::snap(z) : 0;
+}
+
+/// The next point of the grid, outwards: elements are turned off it.
+model::Point3 on_grid(const model::Point3& p, bool down) {
+  const auto step = [&](double v) {
+    const double steps = v * model::kGridStepsPerMetre;
+    return (down ? std::floor(steps) : std::ceil(steps)) / model::kGridStepsPerMetre;
+  };
+  return {step(p.x), step(p.y), step(p.z)};
+}
+
+Envelope envelope(const model::Region& region, int lod) {
+  Envelope box;
+  PlacedBoxes placed(region);
+  const auto add_plan = [&](const model::Polygon& plan, double z) {
+    for (const model::Point2& p : plan.outer.points) box.add({p.x, p.y, z});
+  };
+  for (const model::Building& building : region.buildings) {
+    if (!is_written(building)) continue;
+    for (const model::BuildingPart& part : building.parts) {
+      add_plan(part.plan, footprint_height(part.attributes));
+      if (lod >= 1)
+        for (const model::Point3& p : part.lod1.vertices) box.add(p);
+      if (lod >= 2)
+        for (const model::Point3& p : part.lod2.vertices) box.add(p);
+      if (lod < 3) continue;
+      for (const model::Placement& p : part.lod3.placements)
+        if (const auto* corners = placed.corners(p))
+          for (const model::Point3& c : *corners) box.add(on_grid(c, true)), box.add(on_grid(c, false));
+      for (const model::WallInstallation& body : part.lod3.installations)
+        for (const model::Point3& p : body.solid.vertices) box.add(p);
+      for (const model::RoofInstallation& body : part.lod3.roof_installations)
+        for (const model::Point3& p : body.solid.vertices) box.add(p);
+    }
+  }
+  return box;
+}
+
+bool is_year(std::string_view text) {
+  return text.size() == 4 && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }) &&
+         text != "0000";
+}
+
+/// Which polygons have which material. Kept until all buildings are written: about 40 bytes a face.
+class Looks {
+ public:
+  void add(const model::Solid& solid, std::string_view id) {
+    for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+      append_polygon_id(target(solid.faces[f].material, solid.faces[f].colour), id, f);
+      close();
+    }
+  }
+
+  /// The polygons of a LoD3 solid that its LoD2 solid does not have.
+  void add_detail(const model::Solid& lod2, const model::Solid& lod3, std::string_view id) {
+    for (std::size_t f = 0; f < lod3.faces.size(); ++f)
+      if (!is_shared_face(lod2, lod3, f)) {
+        append_detail_polygon_id(target(lod3.faces[f].material, lod3.faces[f].colour), id, f);
+        close();
+      }
+  }
+  void add(const model::ColouredElement& element, std::string_view id) {
+    const auto& faces = element.element->mesh.faces;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const model::PartLook& look = element.looks[static_cast<std::size_t>(faces[f].part)];
+      append_polygon_id(target(look.material, look.colour), id, f);
+      close();
+    }
+  }
+
+  /// Hands the appearanceMember to `write` in pieces; nothing when nothing was added.
+  template <class Write>
+  void write(const std::vector<model::MaterialClass>& classes, const Write& write) const {
+    if (targets_.empty()) return;
+    std::string out = "<app:appearanceMember><app:Appearance><app:theme>";
+    out += kVisualTheme;
+    out += "</app:theme>\n";
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+      const std::uint32_t key = numbers_.keys()[i];
+      const X3dMaterial look = x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
+      out += "<app:surfaceDataMember><app:X3DMaterial><gml:name>";
+      append_xml(out, look.name);
+      out += "</gml:name><app:diffuseColor>";
+      append_ten_thousandths(out, look.diffuse, ' ');
+      out += "</app:diffuseColor><app:specularColor>";
+      append_ten_thousandths(out, look.specular, ' ');
+      out += "</app:specularColor><app:shininess>";
+      append_ten_thousandths(out, look.shininess);
+      out += "</app:shininess>\n";
+      write(out);
+      write(targets_[i]);
+      out = "</app:X3DMaterial></app:surfaceDataMember>\n";
+    }
+    out += "</app:Appearance></app:appearanceMember>\n";
+    write(out);
+  }
+
+ private:
+  /// Opens a target of this look; the caller appends the id and closes it.
+  std::string& target(std::uint8_t material, model::Colour colour) {
+    last_ = numbers_.number(MaterialNumbers::key(material, colour));
+    if (last_ == targets_.size()) targets_.emplace_back();
+    targets_[last_] += "<app:target>#";
+    return targets_[last_];
+  }
+  void close() { targets_[last_] += "</app:target>\n"; }
+
+  MaterialNumbers numbers_;
+  std::vector<std::string> targets_;  // by number of the material
+  std::uint32_t last_ = 0;
+};
+
+/// Writes the text of one building after the other. Buildings are put together by hand from fixed pieces: an element at
+/// a time through the XML library costs several times as much.
+class BuildingText {
+ public:
+  BuildingText(const model::Region& region, const CityGmlOptions& options, Looks& looks)
+      : region_(region), options_(options), tags_(region.extract), geometry_(out_), looks_(looks) {}
+
+  /// The text of one cityObjectMember; valid until the next call.
+  std::string_view member(const model::Building& building) {
+    out_.clear();
+    const std::string id = building.id();
+    const bool single = building.parts.size() == 1 && building.parts.front().id == id;
+    out_ += "<cityObjectMember><bldg:Building gml:id=\"";
+    out_ += id;
+    out_ += "\">\n";
+    head(building.osm, building.tags);
+    if (single) {
+      const model::BuildingPart& part = building.parts.front();
+      attributes(part.attributes, building.tags, &part);
+      geometry(part, id);
+    } else {
+      attributes(building.attributes, building.tags, nullptr);
+      for (const model::BuildingPart& part : building.parts) {
+        const std::string part_id = part.id == id ? id + ".1" : part.id;
+        out_ += "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id=\"";
+        out_ += part_id;
+        out_ += "\">\n";
+        // A remainder or a piece of the outline carries the building's tags, which stand above.
+        const bool own_tags = part.osm != building.osm;
+        head(part.osm, own_tags ? part.tags : model::Range{});
+        attributes(part.attributes, own_tags ? part.tags : model::Range{}, &part);
+        geometry(part, part_id);
+        if (own_tags) address(part.tags);
+        out_ += "</bldg:BuildingPart></bldg:consistsOfBuildingPart>\n";
+      }
+    }
+    address(building.tags);
+    out_ += "</bldg:Building></cityObjectMember>\n";
+    return out_;
+  }
+
+ private:
+  /// What every city object starts with: its name and where it comes from.
+  void head(const model::OsmId& osm, model::Range tags) {
+    if (const std::string_view name = tags_.name(tags); !name.empty()) element("gml:name", name);
+    const std::string page = osm_page(osm);
+    if (page.empty()) return;
+    out_ +=
+        "<externalReference><informationSystem>https://www.openstreetmap.org</informationSystem><externalObject><uri>";
+    out_ += page;
+    out_ += "</uri></externalObject></externalReference>\n";
+  }
+
+  void element(std::string_view name, std::string_view text) {
+    out_ += '<';
+    out_ += name;
+    out_ += '>';
+    append_xml(out_, text);
+    out_ += "</";
+    out_ += name;
+    out_ += ">\n";
+  }
+
+  void open_generic(const char* type, std::string_view name, const char* suffix = "") {
+    out_ += "<gen:";
+    out_ += type;
+    out_ += " name=\"";
+    append_xml(out_, name);
+    out_ += suffix;
+    out_ += "\"><gen:value>";
+  }
+  void close_generic(const char* type) {
+    out_ += "</gen:value></gen:";
+    out_ += type;
+    out_ += ">\n";
+  }
+  void generic_text(std::string_view name, std::string_view text, const char* suffix = "") {
+    if (text.empty()) return;
+    open_generic("stringAttribute", name, suffix);
+    append_xml(out_, text);
+    close_generic("stringAttribute");
+  }
+
+  // One overload per type of attribute value.
+  void generic(std::string_view name, std::string_view, const std::string& value) { generic_text(name, value); }
+  void generic(std::string_view name, std::string_view, model::Colour value) { generic_text(name, model::text(value)); }
+  void generic(std::string_view name, std::string_view, model::RoofShape value) {
+    generic_text(name, model::name(value));
+  }
+  void generic(std::string_view name, std::string_view, model::RoofOrientation value) {
+    generic_text(name, value == model::RoofOrientation::along ? "along" : "across");
+  }
+  void generic(std::string_view name, std::string_view unit, double value) {
+    if (!std::isfinite(value)) return;
+    if (unit.empty()) {
+      open_generic("doubleAttribute", name);
+      append_number(out_, value);
+      close_generic("doubleAttribute");
+      return;
+    }
+    out_ += "<gen:measureAttribute name=\"";
+    out_ += name;
+    out_ += "\"><gen:value uom=\"";
+    out_ += unit;
+    out_ += "\">";
+    append_number(out_, value);
+    close_generic("measureAttribute");
+  }
+
+  /// Generic attributes, then the elements of bldg:_AbstractBuilding up to the storeys' heights.
+  void attributes(const model::Attributes& a, model::Range tags, const model::BuildingPart* part) {
+    constexpr double kMostStoreys = 1000;  // longer lists of heights would be nonsense
+    const bool whole_storeys =
+        a.storeys.value >= 0 && a.storeys.value <= kMostStoreys && a.storeys.value == std::floor(a.storeys.value);
+    const bool storey_list = whole_storeys && a.storeys.value >= 1 && std::isfinite(a.storey_height.value);
+    model::for_each_attribute(
+        a,
+        [&](std::string_view name, std::string_view unit, const auto& sourced) {
+          const bool has_element = name == "use" || name == "height" || (name == "storeys" && whole_storeys) ||
+                                   (name == "storey_height" && storey_list);
+          if (!has_element) generic(name, unit, sourced.value);
+          if (sourced.source == model::Source::tag) return;
+          generic_text(name, model::name(sourced.source), "_source");
+          open_generic("doubleAttribute", name, "_confidence");
+          append_number(out_, sourced.confidence);
+          close_generic("doubleAttribute");
+          if (options_.evidence && sourced.evidence != 0)
+            generic_text(name, region_.evidence[sourced.evidence].text, "_evidence");
+        },
+        [](std::string_view, std::string_view) {});
+    if (part) {
+      generic_text("built_roof", model::name(part->built_roof));
+      open_generic("intAttribute", "lod");
+      append_number(out_, static_cast<std::int64_t>(part->lod));
+      close_generic("intAttribute");
+      if (!part->fallbacks.empty()) {
+        open_generic("stringAttribute", "fallbacks");
+        for (std::size_t i = 0; i < part->fallbacks.size(); ++i) {
+          if (i) out_ += ' ';
+          out_ += model::info(part->fallbacks[i]).text;
+        }
+        close_generic("stringAttribute");
+      }
+    }
+    osm_tags(tags);
+
+    if (const std::string_view code = class_code(a.use.value); !code.empty()) coded("class", kClassCodeSpace, code);
+    if (!a.use.value.empty()) coded("function", kUseCodeSpace, a.use.value);
+    if (const std::string_view use = tags_.building_use(tags); !use.empty()) coded("usage", {}, use);
+    if (const std::string_view date = tags_.start_date(tags); is_year(date)) element("bldg:yearOfConstruction", date);
+    if (part)
+      if (const std::string_view code = roof_type_code(part->built_roof); !code.empty())
+        coded("roofType", kRoofTypeCodeSpace, code);
+    if (std::isfinite(a.height.value)) {
+      out_ += "<bldg:measuredHeight uom=\"m\">";
+      append_number(out_, a.height.value);
+      out_ += "</bldg:measuredHeight>\n";
+    }
+    if (whole_storeys) {
+      out_ += "<bldg:storeysAboveGround>";
+      append_number(out_, a.storeys.value);
+      out_ += "</bldg:storeysAboveGround>\n";
+    }
+    if (storey_list) {
+      out_ += "<bldg:storeyHeightsAboveGround uom=\"m\">";
+      for (int i = 0; i < static_cast<int>(a.storeys.value); ++i) {
+        if (i) out_ += ' ';
+        append_number(out_, a.storey_height.value);
+      }
+      out_ += "</bldg:storeyHeightsAboveGround>\n";
+    }
+  }
+
+  void coded(std::string_view name, std::string_view code_space, std::string_view code) {
+    out_ += "<bldg:";
+    out_ += name;
+    if (!code_space.empty()) {
+      out_ += " codeSpace=\"";
+      out_ += code_space;
+      out_ += '"';
+    }
+    out_ += '>';
+    append_xml(out_, code);
+    out_ += "</bldg:";
+    out_ += name;
+    out_ += ">\n";
+  }
+
+  void osm_tags(model::Range tags) {
+    if (!region_.extract) return;
+    for (const model::Tag& tag : region_.extract->tags_of(tags)) {
+      out_ += "<gen:stringAttribute name=\"osm.";
+      append_xml(out_, region_.extract->strings.view(tag.key));
+      out_ += "\"><gen:value>";
+      append_xml(out_, region_.extract->strings.view(tag.value));
+      close_generic("stringAttribute");
+    }
+  }
+
+  void geometry(const model::BuildingPart& part, const std::string& id) {
+    if (part.plan.outer.size() >= 3) {
+      out_ += "<bldg:lod0FootPrint><gml:MultiSurface><gml:surfaceMember>";
+      geometry_.footprint(part.plan, footprint_height(part.attributes));
+      out_ += "</gml:surfaceMember></gml:MultiSurface></bldg:lod0FootPrint>\n";
+    }
+    const bool lod2 = options_.lod >= 2 && part.lod >= 2 && !part.lod2.empty();
+    if (options_.lod >= 1 && part.lod >= 1 && !part.lod1.empty()) {
+      const std::string solid_id = id + "_lod1";
+      out_ += "<bldg:lod1Solid>";
+      geometry_.solid(part.lod1, solid_id, !lod2);
+      out_ += "</bldg:lod1Solid>\n";
+      if (!lod2) looks_.add(part.lod1, solid_id);
+    }
+    if (lod2) {
+      out_ += "<bldg:lod2Solid>";
+      geometry_.solid_of_references(part.lod2, id + "_lod2", id);
+      out_ += "</bldg:lod2Solid>\n";
+      looks_.add(part.lod2, id);
+      if (options_.lod >= 3 && part.lod >= 3 && !part.lod3.solid.empty())
+        detail(part, id);
+      else
+        geometry_.surfaces(part.lod2, id);
+    }
+  }
+
+  /// What stands on walls, the surfaces of both levels with windows and doors, and the solid of LoD3.
+  void detail(const model::BuildingPart& part, const std::string& id) {
+    const model::Detail& lod3 = part.lod3;
+    std::vector<const model::Placement*> in_opening(lod3.openings.size(), nullptr);
+    std::size_t number = 0;
+    for (const model::Placement& p : lod3.placements) {
+      if (!has_shape(*region_.elements.at(p.element).element)) continue;
+      if (p.opening != model::kNoOpening) {
+        in_opening[p.opening] = &p;
+        continue;
+      }
+      open_installation(id, number++, region_.elements.at(p.element).element->kind);
+      implicit(p);
+      out_ += "</bldg:BuildingInstallation></bldg:outerBuildingInstallation>\n";
+    }
+    const auto body_of_its_own = [&](const model::Solid& solid, std::string_view kind) {
+      const std::string body_id = open_installation(id, number++, kind);
+      out_ += "<bldg:lod3Geometry>";
+      geometry_.multi_surface(solid, body_id);
+      out_ += "</bldg:lod3Geometry>\n</bldg:BuildingInstallation></bldg:outerBuildingInstallation>\n";
+      looks_.add(solid, body_id);
+    };
+    for (const model::WallInstallation& body : lod3.installations) body_of_its_own(body.solid, body.kind);
+    for (const model::RoofInstallation& body : lod3.roof_installations)
+      body_of_its_own(body.solid, model::name(body.kind));
+    geometry_.surfaces(part.lod2, lod3, id, [&](std::size_t o) {
+      if (in_opening[o]) implicit(*in_opening[o]);
+    });
+    looks_.add_detail(part.lod2, lod3.solid, id);
+    out_ += "<bldg:lod3Solid>";
+    geometry_.solid_of_detail(part.lod2, lod3.solid, id + "_lod3", id);
+    out_ += "</bldg:lod3Solid>\n";
+  }
+
+  /// \return the installation's id
+  std::string open_installation(const std::string& id, std::size_t number, std::string_view kind) {
+    std::string own = id + "_i";
+    append_number(own, static_cast<std::int64_t>(number));
+    out_ += "<bldg:outerBuildingInstallation><bldg:BuildingInstallation gml:id=\"";
+    out_ += own;
+    out_ += "\">";
+    coded("function", {}, kind);
+    return own;
+  }
+
+  /// An element where it stands; its own geometry is written with the first of its places in the file.
+  void implicit(const model::Placement& p) {
+    out_ += "<bldg:lod3ImplicitRepresentation><ImplicitGeometry><transformationMatrix>";
+    const auto number = [&](double v) {
+      append_number(out_, std::nearbyint(v * 1e9) / 1e9 + 0.0);
+      out_ += ' ';
+    };
+    number(p.along.x);
+    number(0 - p.along.y);
+    out_ += "0 0 ";
+    number(p.along.y);
+    number(p.along.x);
+    out_ += "0 0 0 0 1 0 0 0 0 1</transformationMatrix><relativeGMLGeometry";
+    if (written_.size() < region_.elements.size()) written_.resize(region_.elements.size(), false);
+    std::string id = "element_" + region_tile();
+    append_number(id, static_cast<std::int64_t>(p.element));
+    if (written_[p.element]) {
+      out_ += " xlink:href=\"#" + id + "\"/>";
+    } else {
+      written_[p.element] = true;
+      out_ += '>';
+      geometry_.multi_surface(region_.elements[p.element].element->mesh, id);
+      out_ += "</relativeGMLGeometry>";
+      looks_.add(region_.elements[p.element], id);
+    }
+    out_ += "<referencePoint><gml:Point><gml:pos>";
+    append_grid(out_, p.origin.x);
+    out_ += ' ';
+    append_grid(out_, p.origin.y);
+    out_ += ' ';
+    append_grid(out_, p.origin.z);
+    out_ += "</gml:pos></gml:Point></referencePoint></ImplicitGeometry></bldg:lod3ImplicitRepresentation>\n";
+  }
+
+  /// Ids of elements differ between the files of a build.
+  std::string region_tile() const {
+    const model::TileId& tile = region_.tile;
+    return std::to_string(tile.level) + "_" + std::to_string(tile.x) + "_" + std::to_string(tile.y) + "_";
+  }
+
+  void address(model::Range tags) {
+    const Address a = tags_.address(tags);
+    const bool locality = !(a.city.empty() && a.suburb.empty() && a.postcode.empty() && a.street.empty() &&
+                            a.place.empty() && a.house_number.empty() && a.house_name.empty());
+    if (!locality) return;
+    out_ += "<bldg:address><Address><xalAddress><xAL:AddressDetails>";
+    if (!a.country.empty()) {
+      out_ += "<xAL:Country>";
+      element(a.country.size() == 2 ? "xAL:CountryNameCode" : "xAL:CountryName", a.country);
+    }
+    out_ += "<xAL:Locality Type=\"Town\">";
+    if (!a.city.empty()) element("xAL:LocalityName", a.city);
+    const std::string_view street = a.street.empty() ? a.place : a.street;
+    const std::string_view number = a.house_number.empty() ? a.house_name : a.house_number;
+    if (!street.empty() || !number.empty()) {
+      out_ += "<xAL:Thoroughfare Type=\"Street\">";
+      if (!number.empty()) element("xAL:ThoroughfareNumber", number);
+      if (!street.empty()) element("xAL:ThoroughfareName", street);
+      out_ += "</xAL:Thoroughfare>";
+    }
+    if (!a.suburb.empty()) {
+      out_ += "<xAL:DependentLocality>";
+      element("xAL:DependentLocalityName", a.suburb);
+      out_ += "</xAL:DependentLocality>";
+    }
+    if (!a.postcode.empty()) {
+      out_ += "<xAL:PostalCode>";
+      element("xAL:PostalCodeNumber", a.postcode);
+      out_ += "</xAL:PostalCode>";
+    }
+    out_ += "</xAL:Locality>";
+    if (!a.country.empty()) out_ += "</xAL:Country>";
+    out_ += "</xAL:AddressDetails></xalAddress></Address></bldg:address>\n";
+  }
+
+  const model::Region& region_;
+  const CityGmlOptions& options_;
+  TagReader tags_;
+  std::string out_;
+  GeometryText geometry_;
+  Looks& looks_;
+  std::vector<bool> written_;  ///< elements whose geometry stands in the file
+};
+
+/// What the callback of libxml2 sees: exceptions must not pass through C code. After an error the rest is swallowed;
+/// to report it to libxml2 would only make it print a message.
+struct SinkState {
+  const Sink* sink = nullptr;
+  std::exception_ptr error;
+};
+
+int write_to_sink(void* context, const char* bytes, int size) {
+  auto& state = *static_cast<SinkState*>(context);
+  if (state.error) return size;
+  try {
+    (*state.sink)(std::string_view(bytes, static_cast<std::size_t>(size)));
+  } catch (...) {
+    state.error = std::current_exception();
+  }
+  return size;
+}
+
+const xmlChar* xml(const char* text) { return reinterpret_cast<const xmlChar*>(text); }
+
+std::string description(const CityGmlOptions& options) {
+  std::string text;
+  const auto add = [&](std::string_view label, std::string_view value) {
+    if (value.empty()) return;
+    if (!text.empty()) text += "; ";
+    text += label;
+    append_clean(text, value);
+  };
+  add("CRS: ", options.srs_name);
+  add("heights: ", options.height_reference);
+  add("data: ", options.attribution);
+  return text;
+}
+
+void write_envelope(xmlTextWriterPtr writer, const Envelope& box, const std::string& srs_name) {
+  if (box.empty) return;
+  const auto corner = [&](const char* name, const model::Point3& p) {
+    std::string text;
+    append_grid(text, p.x);
+    text += ' ';
+    append_grid(text, p.y);
+    text += ' ';
+    append_grid(text, p.z);
+    xmlTextWriterWriteElement(writer, xml(name), xml(text.c_str()));
+  };
+  xmlTextWriterStartElement(writer, xml("gml:boundedBy"));
+  xmlTextWriterStartElement(writer, xml("gml:Envelope"));
+  if (!srs_name.empty()) xmlTextWriterWriteAttribute(writer, xml("srsName"), xml(srs_name.c_str()));
+  xmlTextWriterWriteAttribute(writer, xml("srsDimension"), xml("3"));
+  corner("gml:lowerCorner", box.min);
+  corner("gml:upperCorner", box.max);
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterEndElement(writer);
+  xmlTextWriterWriteRaw(writer, xml("\n"));
+}
+
+}  // namespace
+
+void write_citygml(const model::Region& region, const CityGmlOptions& options, const Sink& sink) {
+  // Once, before several threads are in the library.
+  [[maybe_unused]] static const bool initialised = (xmlInitParser(), true);
+  SinkState state{&sink, nullptr};
+  xmlOutputBufferPtr output = xmlOutputBufferCreateIO(write_to_sink, nullptr, &state, nullptr);
+  if (!output) throw std::bad_alloc();
+  const std::unique_ptr<xmlTextWriter, void (*)(xmlTextWriterPtr)> owner(xmlNewTextWriter(output), xmlFreeTextWriter);
+  xmlTextWriterPtr writer = owner.get();
+  if (!writer) {
+    xmlOutputBufferClose(output);
+    throw std::bad_alloc();
+  }
+
+  xmlTextWriterWriteRaw(writer, xml("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"));
+  xmlTextWriterStartElement(writer, xml("CityModel"));
+  const std::pair<const char*, const char*> namespaces[] = {
+      {"xmlns", "http://www.opengis.net/citygml/2.0"},
+      {"xmlns:app", "http://www.opengis.net/citygml/appearance/2.0"},
+      {"xmlns:bldg", "http://www.opengis.net/citygml/building/2.0"},
+      {"xmlns:gen", "http://www.opengis.net/citygml/generics/2.0"},
+      {"xmlns:gml", "http://www.opengis.net/gml"},
+      {"xmlns:xAL", "urn:oasis:names:tc:ciq:xsdschema:xAL:2.0"},
+      {"xmlns:xlink", "http://www.w3.org/1999/xlink"},
+      {"xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance"},
+      {"xsi:schemaLocation",
+       "http://www.opengis.net/citygml/appearance/2.0 "
+       "http://schemas.opengis.net/citygml/appearance/2.0/appearance.xsd "
+       "http://www.opengis.net/citygml/building/2.0 http://schemas.opengis.net/citygml/building/2.0/building.xsd "
+       "http://www.opengis.net/citygml/generics/2.0 http://schemas.opengis.net/citygml/generics/2.0/generics.xsd"},
+  };
+  for (const auto& [name, value] : namespaces) xmlTextWriterWriteAttribute(writer, xml(name), xml(value));
+  xmlTextWriterWriteRaw(writer, xml("\n"));
+  // The description comes before the name in GML's sequence.
+  if (const std::string text = description(options); !text.empty()) {
+    xmlTextWriterWriteElement(writer, xml("gml:description"), xml(text.c_str()));
+    xmlTextWriterWriteRaw(writer, xml("\n"));
+  }
+  if (!options.name.empty()) {
+    std::string clean;
+    append_clean(clean, options.name);
+    xmlTextWriterWriteElement(writer, xml("gml:name"), xml(clean.c_str()));
+    xmlTextWriterWriteRaw(writer, xml("\n"));
+  }
+  write_envelope(writer, envelope(region, options.lod), options.srs_name);
+
+  const auto write_raw = [&](std::string_view piece) {
+    if (!state.error) xmlTextWriterWriteRawLen(writer, xml(piece.data()), static_cast<int>(piece.size()));
+  };
+  Looks looks;
+  BuildingText text(region, options, looks);
+  for (const model::Building& building : region.buildings) {
+    if (!is_written(building)) continue;
+    if (state.error) break;
+    write_raw(text.member(building));
+  }
+  looks.write(region.materials, write_raw);
+  xmlTextWriterEndDocument(writer);
+  xmlTextWriterFlush(writer);
+  if (state.error) std::rethrow_exception(state.error);
+}
+
+std::string write_citygml(const model::Region& region, const CityGmlOptions& options) {
+  std::string out;
+  write_citygml(region, options, [&](std::string_view bytes) { out += bytes; });
+  return out;
+}
+
+}  // namespace blockrand::outputs

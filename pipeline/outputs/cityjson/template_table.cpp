@@ -1,0 +1,106 @@
+#include "pipeline/outputs/cityjson/template_table.h"
+
+#include <map>
+
+#include "pipeline/outputs/placed_element.h"
+#include "pipeline/outputs/text.h"
+
+namespace blockrand::outputs {
+namespace {
+
+void append_index(std::string& out, std::size_t index) { append_number(out, static_cast<std::int64_t>(index)); }
+
+}  // namespace
+
+std::vector<std::uint32_t> TemplateTable::add(const model::Region& region, const std::vector<std::uint8_t>& class_of) {
+  std::vector<std::uint32_t> out(region.elements.size(), kNoTemplate);
+  for (const model::Building& building : region.buildings) {
+    if (!building.owned) continue;
+    for (const model::BuildingPart& part : building.parts) {
+      if (part.lod < 3 || part.lod3.solid.empty()) continue;
+      for (const model::Placement& p : part.lod3.placements)
+        if (std::uint32_t& n = out[p.element]; n == kNoTemplate && has_shape(*region.elements.at(p.element).element))
+          n = number(region.elements[p.element], class_of);
+    }
+  }
+  return out;
+}
+
+std::uint32_t TemplateTable::number(const model::ColouredElement& coloured, const std::vector<std::uint8_t>& class_of) {
+  const model::ElementMesh& mesh = coloured.element->mesh;
+  // y up and z out of the wall become z up and y into it, which keeps the frame right-handed.
+  std::vector<std::string> points;
+  std::map<std::string, std::size_t> known;
+  const auto vertex = [&](const model::Point3& p) {
+    std::string text = "[";
+    append_four_decimals(text, p.x);
+    text += ',';
+    append_four_decimals(text, 0.0 - p.z);
+    text += ',';
+    append_four_decimals(text, p.y);
+    text += ']';
+    const auto [place, added] = known.emplace(text, points.size());
+    if (added) points.push_back(std::move(text));
+    return place->second;
+  };
+  std::vector<std::vector<std::size_t>> faces;
+  std::vector<std::uint32_t> looks;
+  std::string key;
+  for (const model::ElementFace& face : mesh.faces) {
+    std::vector<std::size_t> ring;
+    for (std::uint32_t i = 0; i < face.count; ++i) {
+      const std::size_t v = vertex(mesh.vertices[mesh.indices[face.first + i]]);
+      if (ring.empty() || ring.back() != v) ring.push_back(v);
+    }
+    while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+    if (ring.size() < 3) continue;  // narrower than the last decimal
+    const model::PartLook& look = coloured.looks[static_cast<std::size_t>(face.part)];
+    looks.push_back(materials_.number(MaterialNumbers::key(class_of.at(look.material), look.colour)));
+    append_index(key, looks.back());
+    for (const std::size_t v : ring) {
+      key += ' ';
+      append_index(key, v);
+    }
+    key += ';';
+    faces.push_back(std::move(ring));
+  }
+  for (const std::string& p : points) key += p;
+  const auto [place, added] = numbers_.emplace(std::move(key), static_cast<std::uint32_t>(numbers_.size()));
+  if (!added) return place->second;
+
+  templates_ += templates_.empty() ? "" : ",";
+  templates_ += "{\"type\":\"MultiSurface\",\"lod\":\"3\",\"boundaries\":[";
+  for (const auto& ring : faces) {
+    if (&ring != &faces.front()) templates_ += ',';
+    templates_ += "[[";
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      if (i > 0) templates_ += ',';
+      append_index(templates_, vertex_count_ + ring[i]);
+    }
+    templates_ += "]]";
+  }
+  templates_ += "],\"material\":{\"";
+  templates_ += kVisualTheme;
+  templates_ += "\":{\"values\":[";
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (i > 0) templates_ += ',';
+    append_index(templates_, looks[i]);
+  }
+  templates_ += "]}}}";
+  for (const std::string& p : points) {
+    if (!vertices_.empty()) vertices_ += ',';
+    vertices_ += p;
+  }
+  vertex_count_ += static_cast<std::uint32_t>(points.size());
+  return place->second;
+}
+
+void TemplateTable::append(std::string& out) const {
+  out += "{\"templates\":[";
+  out += templates_;
+  out += "],\"vertices-templates\":[";
+  out += vertices_;
+  out += "]}";
+}
+
+}  // namespace blockrand::outputs

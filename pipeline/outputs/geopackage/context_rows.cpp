@@ -1,0 +1,83 @@
+#include "pipeline/outputs/geopackage/context_rows.h"
+
+#include "pipeline/outputs/geopackage/cell_writer.h"
+#include "pipeline/outputs/geopackage/columns.h"
+
+namespace blockrand::outputs {
+namespace {
+
+model::Polygon square(model::Point2 corner, double size) {
+  model::Polygon p;
+  p.outer.points = {corner, {corner.x + size, corner.y}, {corner.x + size, corner.y + size}, {corner.x, corner.y + size}};
+  p.outer.nodes.assign(4, 0);
+  return p;
+}
+
+/// Shares to a ten-thousandth.
+double share(double value) { return std::nearbyint(value * 10000) / 10000; }
+std::optional<double> share(const std::optional<double>& value) {
+  return value ? std::optional(share(*value)) : std::nullopt;
+}
+
+}  // namespace
+
+void append_row(CellTable& table, const BlockRow& b) {
+  static const std::size_t width = block_columns().size();
+  RowWriter row(table, width);
+  row.text(b.id);
+  row.text(b.kind);
+  row.real(rounded(b.area));
+  row.flag(b.cut_by_extract_edge);
+  row.flag(b.too_large);
+  row.integer(b.buildings);
+  for (const auto& value : {b.built_share, b.tagged_share, b.floor_area_ratio, b.closure}) row.real(share(value));
+  row.real(rounded(b.front_length));
+  row.real(rounded(b.courtyard_area));
+  row.integer(b.courtyards);
+  std::string streets;
+  for (const std::string& street : b.streets) streets += (streets.empty() ? "" : "; ") + street;
+  row.text(streets);
+  append_polygon(row.geometry(), b.polygon);
+  row.end_row();
+}
+
+void append_row(CellTable& table, const CourtyardRow& c) {
+  static const std::size_t width = courtyard_columns().size();
+  RowWriter row(table, width);
+  row.text(c.id);
+  row.text(c.block);
+  row.real(rounded(c.area));
+  row.flag(c.closed);
+  row.real(rounded(c.opening));
+  row.integer(static_cast<std::int64_t>(c.buildings.size()));
+  std::string ids;
+  for (const model::OsmId id : c.buildings) ids += (ids.empty() ? "" : " ") + id.text();
+  row.text(ids);
+  append_polygon(row.geometry(), c.polygon);
+  row.end_row();
+}
+
+void append_row(CellTable& table, const CellRow& c) {
+  static const std::size_t width = cell_columns().size();
+  RowWriter row(table, width);
+  row.text(c.id);
+  row.real(c.size);
+  row.integer(c.buildings);
+  row.real(share(c.covered_share));
+  row.real(share(c.density));
+  row.real(share(c.built_share));
+  row.real(share(c.tagged_share));
+  row.real(share(c.storeys_mean));
+  row.real(share(c.storeys_spread));
+  row.real(share(c.floor_area_ratio));
+  row.real(share(c.party_wall_share));
+  row.real(share(c.dated_share));
+  row.real(share(c.year_mean));
+  row.real(share(c.year_spread));
+  for (const auto& area : {c.footprint_quartile, c.footprint_median, c.footprint_upper_quartile})
+    row.real(rounded(area));
+  append_polygon(row.geometry(), square(c.corner, c.size));
+  row.end_row();
+}
+
+}  // namespace blockrand::outputs

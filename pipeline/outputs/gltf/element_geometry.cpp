@@ -1,0 +1,124 @@
+#include "pipeline/outputs/gltf/element_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "pipeline/outputs/placed_element.h"
+
+namespace blockrand::outputs {
+namespace {
+
+using model::Point3;
+
+/// Collects faces of one part; corners with equal place and normal become one.
+class PartBuilder {
+ public:
+  void add_face(const std::vector<Point3>& corners) {
+    double nx = 0, ny = 0, nz = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Point3 &p = corners[i], &q = corners[i + 1 == corners.size() ? 0 : i + 1];
+      nx += (p.y - q.y) * (p.z + q.z);
+      ny += (p.z - q.z) * (p.x + q.x);
+      nz += (p.x - q.x) * (p.y + q.y);
+    }
+    const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
+    if (!(length > 0)) return;
+    const auto quantise = [&](double v) { return static_cast<std::int8_t>(std::nearbyint(v / length * 127)); };
+    const std::array<std::int8_t, 3> normal{quantise(nx), quantise(ny), quantise(nz)};
+    if (pieces.empty() || pieces.back().vertices.size() + corners.size() > ElementGeometry::kMostVertices) {
+      pieces.emplace_back();
+      known_.clear();
+    }
+    std::vector<std::uint32_t> at;
+    const Point3 exact{nx / length, ny / length, nz / length};
+    for (const Point3& p : corners) at.push_back(vertex(p, normal, exact));
+    auto& indices = pieces.back().indices;
+    for (std::size_t i = 2; i < at.size(); ++i) indices.insert(indices.end(), {at[0], at[i - 1], at[i]});
+  }
+  std::vector<ElementGeometry::PartTriangles> pieces;  ///< several where one would be too large
+
+ private:
+  std::uint32_t vertex(const Point3& p, std::array<std::int8_t, 3> normal, const Point3& exact) {
+    auto& vertices = pieces.back().vertices;
+    const auto [place, added] = known_.try_emplace({p, normal}, static_cast<std::uint32_t>(vertices.size()));
+    if (added) vertices.push_back({p, normal, exact});
+    return place->second;
+  }
+  std::map<std::pair<Point3, std::array<std::int8_t, 3>>, std::uint32_t> known_;
+};
+
+}  // namespace
+
+ElementGeometry element_geometry(const model::Element& element, bool with_reveal) {
+  std::array<PartBuilder, model::kElementPartCount> builders;
+  const model::ElementMesh& mesh = element.mesh;
+  std::vector<Point3> corners;
+  for (const model::ElementFace& face : mesh.faces) {
+    corners.clear();
+    for (std::uint32_t i = 0; i < face.count; ++i) corners.push_back(mesh.vertices[mesh.indices[face.first + i]]);
+    builders[static_cast<std::size_t>(face.part)].add_face(corners);
+  }
+  const auto& outline = element.opening.outline;
+  if (with_reveal && element.opening.reveal > 0) {
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const model::Point2 a = outline[i], b = outline[(i + 1) % outline.size()];
+      const double depth = -element.opening.reveal;
+      corners = {{a.x, a.y, 0}, {b.x, b.y, 0}, {b.x, b.y, depth}, {a.x, a.y, depth}};
+      builders[static_cast<std::size_t>(model::ElementPart::wall)].add_face(corners);
+    }
+  }
+  ElementGeometry out;
+  for (std::size_t i = 0; i < builders.size(); ++i)
+    for (ElementGeometry::PartTriangles& piece : builders[i].pieces) {
+      if (piece.indices.empty()) continue;
+      piece.part = static_cast<model::ElementPart>(i);
+      for (const ElementVertex& v : piece.vertices) {
+        const Point3& p = v.position;
+        const bool first = out.parts.empty() && &v == &piece.vertices.front();
+        out.min = first ? p : Point3{std::min(out.min.x, p.x), std::min(out.min.y, p.y), std::min(out.min.z, p.z)};
+        out.max = first ? p : Point3{std::max(out.max.x, p.x), std::max(out.max.y, p.y), std::max(out.max.z, p.z)};
+      }
+      out.parts.push_back(std::move(piece));
+    }
+  return out;
+}
+
+std::vector<InstanceGroup> element_instances(const model::Region& region, const Frame& frame) {
+  std::vector<InstanceGroup> groups(region.elements.size());
+  for (std::uint32_t i = 0; i < groups.size(); ++i) groups[i].element = i;
+  // Two points each: where the element stands, and a metre to its right, so that directions are those of the frame.
+  std::vector<Point3> source;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> element_and_feature;
+  std::uint32_t feature = 0;
+  for (const model::Building& building : region.buildings) {
+    if (!building.owned) continue;
+    for (const model::BuildingPart& part : building.parts) {
+      if (part.lod >= 3)
+        for (const model::Placement& p : part.lod3.placements) {
+          if (!has_shape(*region.elements.at(p.element).element)) continue;
+          source.push_back(p.origin);
+          source.push_back({p.origin.x + p.along.x, p.origin.y + p.along.y, p.origin.z});
+          element_and_feature.emplace_back(p.element, feature);
+        }
+      ++feature;
+    }
+  }
+  std::vector<Point3> local(source.size());
+  if (frame.to_enu && !source.empty())
+    frame.to_enu(source, local);
+  else
+    local = source;
+  for (std::size_t i = 0; i < element_and_feature.size(); ++i) {
+    const Point3 &origin = local[2 * i], &right = local[2 * i + 1];
+    const double east = right.x - origin.x, north = right.y - origin.y, length = std::sqrt(east * east + north * north);
+    const model::Point2 along = length > 0 ? model::Point2{east / length, north / length} : model::Point2{1, 0};
+    groups[element_and_feature[i].first].instances.push_back({element_and_feature[i].second, origin, along});
+  }
+  std::erase_if(groups, [](const InstanceGroup& g) { return g.instances.empty(); });
+  return groups;
+}
+
+}  // namespace blockrand::outputs

@@ -1,0 +1,53 @@
+// Facade elements as triangles, and where they stand in a tile's frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/outputs/frame.h"
+#include "pipeline/model/region.h"
+
+namespace blockrand::outputs {
+
+/// A corner in the element's frame.
+struct ElementVertex {
+  model::Point3 position;               ///< m: x right, y up, z out of the wall
+  std::array<std::int8_t, 3> normal{};  ///< in 1/127, the same axes
+  model::Point3 exact_normal;           ///< unit vector, for those who turn it before they round it
+};
+
+/// The triangles of an element by part; vertices are shared within a part.
+struct ElementGeometry {
+  struct PartTriangles {
+    model::ElementPart part = model::ElementPart::frame;
+    std::vector<ElementVertex> vertices;
+    std::vector<std::uint32_t> indices;  ///< counter-clockwise from outside
+  };
+  /// In the order of ElementPart; none is empty, none has more than kMostVertices.
+  std::vector<PartTriangles> parts;
+  model::Point3 min, max;  ///< m
+  static constexpr std::size_t kMostVertices = 65535;
+};
+
+/// \param with_reveal  also the strip from the wall to the opening's end, as part `wall`, which solids have as faces
+ElementGeometry element_geometry(const model::Element& element, bool with_reveal);
+
+/// An element where it stands, in east, north, up.
+struct ElementInstance {
+  std::uint32_t feature = 0;  ///< row of the property table
+  model::Point3 origin;       ///< m
+  model::Point2 along;        ///< unit vector, east and north
+};
+
+/// All places of one element.
+struct InstanceGroup {
+  std::uint32_t element = 0;  ///< into Region::elements
+  std::vector<ElementInstance> instances;
+};
+
+/// The placements of elements with a shape, of parts that were built at LoD3, by element; features as build_mesh()
+/// counts them.
+std::vector<InstanceGroup> element_instances(const model::Region& region, const Frame& frame);
+
+}  // namespace blockrand::outputs

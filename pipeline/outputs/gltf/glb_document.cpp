@@ -1,0 +1,263 @@
+#include "pipeline/outputs/gltf/glb_document.h"
+
+#include <bit>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "pipeline/outputs/gltf/meshopt.h"
+#include "pipeline/outputs/text.h"
+
+namespace blockrand::outputs {
+
+static_assert(std::endian::native == std::endian::little, "buffers are copied as they lie in memory");
+
+namespace {
+
+constexpr std::size_t kAlignment = 8;              // what property tables need; of all views, for simplicity
+constexpr std::uint64_t kMostBytes = 0xFFFF0000u;  // sizes are 32-bit numbers
+
+struct StreamInfo {
+  std::size_t size;  ///< bytes of an element
+  bool vertices;     ///< a vertex attribute: its stride is stated
+  MeshoptCoding coding;
+};
+
+StreamInfo info_of(Stream stream) {
+  switch (stream) {
+    case Stream::positions:
+      return {12, true, MeshoptCoding::steps};
+    case Stream::far_positions:
+      return {12, true, MeshoptCoding::attributes};
+    case Stream::normals:
+    case Stream::features:
+    case Stream::wide_features:
+      return {4, true, MeshoptCoding::attributes};
+    case Stream::colours:
+    case Stream::element_positions:
+      return {8, true, MeshoptCoding::attributes};
+    case Stream::indices:
+      return {2, false, MeshoptCoding::triangles};
+    case Stream::translations:
+      return {12, false, MeshoptCoding::whole};
+    case Stream::far_translations:
+    case Stream::scales:
+      return {12, false, MeshoptCoding::attributes};
+    case Stream::rotations:
+      return {8, false, MeshoptCoding::attributes};
+    case Stream::wide_instance_features:
+      return {4, false, MeshoptCoding::attributes};
+    case Stream::instance_features:
+      return {2, false, MeshoptCoding::attributes};
+  }
+  return {};
+}
+
+/// The stride that meshopt is told: its elements have a multiple of four bytes, so that two words go together.
+std::size_t coded_size(Stream stream) {
+  const std::size_t size = info_of(stream).size;
+  return stream == Stream::instance_features ? 2 * size : size;
+}
+
+void pad(std::string& bytes, std::size_t alignment, char with = '\0') {
+  bytes.resize((bytes.size() + alignment - 1) / alignment * alignment, with);
+}
+
+void append_list(std::string& out, const char* name, const std::vector<std::string>& entries) {
+  if (entries.empty()) return;
+  out += ",\"";
+  out += name;
+  out += "\":[";
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (i) out += ',';
+    out += entries[i];
+  }
+  out += ']';
+}
+
+void field(std::string& out, const char* name, std::size_t value) {
+  if (out.back() != '{') out += ',';
+  out += '"';
+  out += name;
+  out += "\":";
+  append_number(out, static_cast<std::int64_t>(value));
+}
+
+void append_word(std::string& out, std::uint64_t value) {
+  const auto word = static_cast<std::uint32_t>(value);
+  out.append(reinterpret_cast<const char*>(&word), sizeof(word));
+}
+
+}  // namespace
+
+GlbDocument::GlbDocument()
+    : asset_(std::make_unique<nlohmann::json>()), extensions_(std::make_unique<nlohmann::json>()) {}
+GlbDocument::~GlbDocument() = default;
+
+int GlbDocument::view_of(Stream stream) {
+  const auto [place, added] = view_numbers_.try_emplace(stream, static_cast<int>(views_.size()));
+  if (added) views_.push_back({{}, stream});
+  return place->second;
+}
+
+std::size_t GlbDocument::append_bytes(Stream stream, const void* bytes, std::size_t size) {
+  std::string& to = views_[static_cast<std::size_t>(view_of(stream))].bytes;
+  const std::size_t at = to.size();
+  to.append(static_cast<const char*>(bytes), size);
+  return at;
+}
+
+int GlbDocument::add_view(std::string bytes) {
+  views_.push_back({std::move(bytes), std::nullopt});
+  return static_cast<int>(views_.size()) - 1;
+}
+
+int GlbDocument::add_accessor(const GlbAccessor& a) {
+  std::string json = "{";
+  field(json, "bufferView", static_cast<std::size_t>(view_of(a.stream)));
+  if (a.offset > 0) field(json, "byteOffset", a.offset);
+  field(json, "componentType", static_cast<std::size_t>(a.component));
+  field(json, "count", a.count);
+  if (a.bounds)
+    for (const int end : {1, 0}) {
+      json += end ? ",\"max\":[" : ",\"min\":[";
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (i) json += ',';
+        append_number(json, (*a.bounds)[static_cast<std::size_t>(end)][i]);
+      }
+      json += ']';
+    }
+  if (a.normalised) json += ",\"normalized\":true";
+  json += ",\"type\":\"";
+  json += a.type;
+  json += "\"}";
+  accessors_.push_back(std::move(json));
+  return static_cast<int>(accessors_.size()) - 1;
+}
+
+int GlbDocument::add_material(const std::string& json) {
+  const auto [place, added] = material_numbers_.try_emplace(json, static_cast<int>(materials_.size()));
+  if (added) materials_.push_back(json);
+  return place->second;
+}
+int GlbDocument::add_mesh(std::string json) {
+  meshes_.push_back(std::move(json));
+  return static_cast<int>(meshes_.size()) - 1;
+}
+int GlbDocument::add_node(std::string json) {
+  nodes_.push_back(std::move(json));
+  return static_cast<int>(nodes_.size()) - 1;
+}
+
+void GlbDocument::use(const std::string& extension, bool required) {
+  bool& known = used_[extension];
+  known = known || required;
+}
+
+std::string GlbDocument::write(Compression compression) {
+  const bool compress = compression == Compression::meshopt && !view_numbers_.empty();
+  if (compress) use("EXT_meshopt_compression", true);
+
+  std::string binary;
+  std::uint64_t unpacked = 0;  // size of the buffer that is there once everything is decompressed
+  std::vector<std::string> views;
+  for (View& view : views_) {
+    std::string json = "{";
+    if (!view.stream) {
+      pad(binary, kAlignment);
+      field(json, "buffer", 0);
+      field(json, "byteLength", view.bytes.size());
+      if (!binary.empty()) field(json, "byteOffset", binary.size());
+      binary += view.bytes;
+    } else {
+      const StreamInfo info = info_of(*view.stream);
+      if (info.coding != MeshoptCoding::triangles) pad(view.bytes, coded_size(*view.stream));
+      const std::size_t length = view.bytes.size();
+      const std::uint64_t offset = compress ? unpacked : (binary.size() + kAlignment - 1) / kAlignment * kAlignment;
+      field(json, "buffer", compress ? 1 : 0);
+      field(json, "byteLength", length);
+      if (offset > 0) field(json, "byteOffset", offset);
+      if (info.vertices) field(json, "byteStride", info.size);
+      pad(binary, kAlignment);
+      if (compress) {
+        const std::size_t size = coded_size(*view.stream);
+        const std::size_t count = length / size;
+        const std::string coded = meshopt_encode(view.bytes, size, count, info.coding);
+        json += ",\"extensions\":{\"EXT_meshopt_compression\":{";
+        field(json, "buffer", 0);
+        field(json, "byteLength", coded.size());
+        if (!binary.empty()) field(json, "byteOffset", binary.size());
+        field(json, "byteStride", size);
+        field(json, "count", count);
+        json += info.coding == MeshoptCoding::triangles ? ",\"mode\":\"TRIANGLES\"" : ",\"mode\":\"ATTRIBUTES\"";
+        if (has_filter(info.coding)) json += ",\"filter\":\"EXPONENTIAL\"";
+        json += "}}";
+        unpacked += (length + kAlignment - 1) / kAlignment * kAlignment;
+        binary += coded;
+      } else {
+        binary += view.bytes;
+      }
+      if (info.vertices || *view.stream == Stream::indices) field(json, "target", info.vertices ? 34962 : 34963);
+    }
+    json += '}';
+    views.push_back(std::move(json));
+    view.bytes = {};
+    if (binary.size() > kMostBytes || unpacked > kMostBytes) throw std::length_error("too much data for one GLB");
+  }
+
+  std::string json = "{\"asset\":" + asset_->dump();
+  std::vector<std::string> used, required;
+  for (const auto& [name, must] : used_) {
+    used.push_back('"' + name + '"');
+    if (must) required.push_back(used.back());
+  }
+  append_list(json, "extensionsUsed", used);
+  append_list(json, "extensionsRequired", required);
+  if (!extensions_->is_null()) json += ",\"extensions\":" + extensions_->dump();
+  if (!roots_.empty()) {
+    json += ",\"scene\":0,\"scenes\":[{\"nodes\":[";
+    for (std::size_t i = 0; i < roots_.size(); ++i) {
+      if (i) json += ',';
+      append_number(json, static_cast<std::int64_t>(roots_[i]));
+    }
+    json += "]}]";
+  }
+  append_list(json, "nodes", nodes_);
+  append_list(json, "meshes", meshes_);
+  append_list(json, "materials", materials_);
+  append_list(json, "accessors", accessors_);
+  append_list(json, "bufferViews", views);
+  std::vector<std::string> buffers;
+  if (!binary.empty()) {
+    buffers.emplace_back("{");
+    field(buffers.back(), "byteLength", binary.size());
+    buffers.back() += '}';
+  }
+  if (compress) {
+    // Only a loader that decompresses gives it bytes.
+    buffers.emplace_back("{");
+    field(buffers.back(), "byteLength", unpacked);
+    buffers.back() += ",\"extensions\":{\"EXT_meshopt_compression\":{\"fallback\":true}}}";
+  }
+  append_list(json, "buffers", buffers);
+  json += '}';
+  pad(json, 4, ' ');
+  pad(binary, 4);
+
+  std::string out = "glTF";
+  const std::uint64_t total = 12 + 8 + json.size() + (binary.empty() ? 0 : 8 + binary.size());
+  if (total > kMostBytes) throw std::length_error("too much data for one GLB");
+  out.reserve(total);
+  append_word(out, 2);
+  append_word(out, total);
+  append_word(out, json.size());
+  out += "JSON";
+  out += json;
+  if (!binary.empty()) {
+    append_word(out, binary.size());
+    out.append("BIN\0", 4);
+    out += binary;
+  }
+  return out;
+}
+
+}  // namespace blockrand::outputs

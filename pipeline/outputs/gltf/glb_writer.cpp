@@ -1,0 +1,224 @@
+#include "pipeline/outputs/gltf/glb_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+
+#include "pipeline/outputs/gltf/building_table.h"
+#include "pipeline/outputs/gltf/glb_document.h"
+#include "pipeline/outputs/gltf/linear_light.h"
+#include "pipeline/outputs/gltf/material.h"
+#include "pipeline/outputs/gltf/mesh.h"
+#include "pipeline/outputs/gltf/property_table.h"
+#include "pipeline/outputs/text.h"
+
+namespace blockrand::outputs {
+namespace {
+
+/// East, north, up to glTF's axes: x east, y up, z south. The only place that knows.
+template <class T>
+std::array<T, 3> y_up(T east, T north, T up) {
+  return {east, up, static_cast<T>(0 - north)};
+}
+
+/// Appends vertices and the accessors of the primitives to a document.
+class MeshWriter {
+ public:
+  MeshWriter(GlbDocument& document, const Mesh& mesh, std::size_t features)
+      : document_(document), mesh_(mesh), wide_features_(features > 0xFFFF) {
+    far_ = std::max({std::fabs(mesh.min.x), std::fabs(mesh.min.y), std::fabs(mesh.min.z), std::fabs(mesh.max.x),
+                     std::fabs(mesh.max.y), std::fabs(mesh.max.z)}) > kFinestReach;
+  }
+
+  void write(const model::Region& region) {
+    std::string json = "{\"primitives\":[";
+    for (const MeshPrimitive& p : mesh_.primitives) {
+      if (json.back() == '}') json += ',';
+      json += "{\"attributes\":{";
+      if (!p.colour) attribute(json, "COLOR_0", add_colours(p));
+      attribute(json, "NORMAL", add_normals(p));
+      attribute(json, "POSITION", add_positions(p));
+      attribute(json, "_FEATURE_ID_0", add_features(p));
+      json += "},\"extensions\":{\"EXT_mesh_features\":" + feature_ids(p) + "},\"indices\":";
+      append_number(json, std::int64_t{add_indices(p)});
+      json += ",\"material\":";
+      append_number(json,
+                    std::int64_t{document_.add_material(material_json(region.materials.at(p.material), p.colour))});
+      json += '}';
+    }
+    const int mesh = document_.add_mesh(json + "]}");
+    json = "{\"mesh\":";
+    append_number(json, std::int64_t{mesh});
+    document_.add_root(document_.add_node(json + '}'));
+  }
+
+ private:
+  static void attribute(std::string& json, const char* name, int accessor) {
+    if (json.back() != '{') json += ',';
+    json += '"';
+    json += name;
+    json += "\":";
+    append_number(json, std::int64_t{accessor});
+  }
+
+  int add_positions(const MeshPrimitive& p) {
+    std::vector<float> values;
+    values.reserve(3 * p.vertices.size());
+    std::array<std::array<double, 3>, 2> bounds{};
+    for (const MeshVertex& v : p.vertices) {
+      const model::Point3& enu = mesh_.positions[v.position];
+      const std::array<double, 3> xyz = y_up(enu.x, enu.y, enu.z);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double stored = far_ ? xyz[i] : std::nearbyint(xyz[i] * kGlbStepsPerMetre) / kGlbStepsPerMetre;
+        const float value = static_cast<float>(stored) + 0.0f;  // no -0
+        const bool first = values.size() < 3;
+        bounds[0][i] = first ? value : std::min<double>(bounds[0][i], value);
+        bounds[1][i] = first ? value : std::max<double>(bounds[1][i], value);
+        values.push_back(value);
+      }
+    }
+    return add<float>(far_ ? Stream::far_positions : Stream::positions, values, Component::float32, "VEC3", p, false,
+                      bounds);
+  }
+
+  int add_normals(const MeshPrimitive& p) {
+    std::vector<std::int8_t> values;
+    values.reserve(4 * p.vertices.size());
+    for (const MeshVertex& v : p.vertices) {
+      const std::array<std::int8_t, 3> normal = y_up(v.normal[0], v.normal[1], v.normal[2]);
+      values.insert(values.end(), {normal[0], normal[1], normal[2], std::int8_t{0}});
+    }
+    return add<std::int8_t>(Stream::normals, values, Component::int8, "VEC3", p, true);
+  }
+
+  int add_colours(const MeshPrimitive& p) {
+    std::vector<std::uint16_t> values;
+    values.reserve(4 * p.vertices.size());
+    for (const model::Colour& c : p.colours)
+      values.insert(values.end(), {kLinearLight[c.r], kLinearLight[c.g], kLinearLight[c.b], std::uint16_t{65535}});
+    return add<std::uint16_t>(Stream::colours, values, Component::uint16, "VEC4", p, true);
+  }
+
+  int add_features(const MeshPrimitive& p) {
+    if (wide_features_) {
+      std::vector<float> values;
+      for (const MeshVertex& v : p.vertices) values.push_back(static_cast<float>(v.feature));
+      return add<float>(Stream::wide_features, values, Component::float32, "SCALAR", p, false);
+    }
+    std::vector<std::uint16_t> values;
+    values.reserve(2 * p.vertices.size());
+    for (const MeshVertex& v : p.vertices)
+      values.insert(values.end(), {static_cast<std::uint16_t>(v.feature), std::uint16_t{0}});
+    return add<std::uint16_t>(Stream::features, values, Component::uint16, "SCALAR", p, false);
+  }
+
+  int add_indices(const MeshPrimitive& p) {
+    const std::size_t at = document_.append<std::uint16_t>(Stream::indices, p.indices);
+    return document_.add_accessor({Stream::indices, at, Component::uint16, "SCALAR", p.indices.size()});
+  }
+
+  template <class T>
+  int add(Stream stream, std::span<const T> values, Component component, std::string_view type, const MeshPrimitive& p,
+          bool normalised, std::optional<std::array<std::array<double, 3>, 2>> bounds = std::nullopt) {
+    const std::size_t at = document_.append(stream, values);
+    return document_.add_accessor({stream, at, component, type, p.vertices.size(), normalised, bounds});
+  }
+
+  static std::string feature_ids(const MeshPrimitive& p) {
+    // featureCount is the number of different rows that this primitive uses.
+    std::vector<std::uint32_t> rows;
+    for (const MeshVertex& v : p.vertices)
+      if (rows.empty() || rows.back() != v.feature) rows.push_back(v.feature);
+    std::sort(rows.begin(), rows.end());
+    const auto count = std::unique(rows.begin(), rows.end()) - rows.begin();
+    std::string json = "{\"featureIds\":[{\"attribute\":0,\"featureCount\":";
+    append_number(json, std::int64_t{count});
+    return json + ",\"label\":\"" + kBuildingClass + "\",\"propertyTable\":0}]}";
+  }
+
+  GlbDocument& document_;
+  const Mesh& mesh_;
+  bool wide_features_, far_ = false;
+};
+
+nlohmann::json georeference(const GlbOptions& options) {
+  std::string crs, height_reference;
+  append_clean(crs, options.crs);
+  append_clean(height_reference, options.height_reference);
+  return {{"georeference",
+           {{"crs", crs},
+            {"height_reference", height_reference},
+            {"origin",
+             {{"longitude", options.frame.longitude},
+              {"latitude", options.frame.latitude},
+              {"height", options.frame.height}}},
+            {"local_to_ecef", options.frame.enu_to_ecef}}}};
+}
+
+nlohmann::json metadata(GlbDocument& document, const PropertyTable& table) {
+  nlohmann::json classes;
+  classes[kBuildingClass] = {{"name", "Building part"}, {"properties", table.class_properties()}};
+  nlohmann::json extension;
+  extension["schema"] = {
+      {"id", "blockrand"}, {"version", "1.0.0"}, {"classes", std::move(classes)}, {"enums", building_enums()}};
+  extension["propertyTables"] = nlohmann::json::array({table.write(document, kBuildingClass)});
+  return extension;
+}
+
+}  // namespace
+
+Glb write_glb(const model::Region& region, const GlbOptions& options) {
+  const PropertyTable table = building_table(region, options.evidence);
+  const bool bake = options.instancing == Instancing::baked;
+  const Mesh mesh = build_mesh(region, options.lod, options.frame, bake);
+  std::vector<InstanceGroup> groups;
+  if (options.lod >= 3 && !bake) groups = element_instances(region, options.frame);
+  if (table.rows() > (1u << 24)) throw std::length_error("too many building parts for one GLB");
+
+  GlbDocument document;
+  std::string generator, attribution;
+  append_clean(generator, options.generator);
+  append_clean(attribution, options.attribution);
+  document.asset() = {{"version", "2.0"}};
+  if (!generator.empty()) document.asset()["generator"] = generator;
+  if (!attribution.empty()) document.asset()["copyright"] = attribution;
+  document.asset()["extras"] = georeference(options);
+  InstanceFigures instances;
+  if (table.rows() > 0) {
+    if (!mesh.empty()) {
+      MeshWriter(document, mesh, table.rows()).write(region);
+      document.use("EXT_mesh_features", false);
+      document.use("KHR_mesh_quantization", true);
+    }
+    if (!groups.empty()) instances = write_instances(document, region, groups, options.instancing, table.rows());
+    document.use("EXT_structural_metadata", false);
+    document.extensions()["EXT_structural_metadata"] = metadata(document, table);
+  }
+
+  Glb glb;
+  glb.rows = table.rows();
+  glb.triangles = mesh.triangles + instances.triangles;
+  glb.placements = instances.places;
+  glb.elements = instances.elements;
+  if (!mesh.empty()) {
+    glb.min = mesh.min;
+    glb.max = mesh.max;
+  }
+  if (instances.places > 0) {
+    const bool alone = mesh.empty();
+    glb.min = alone ? instances.min
+                    : model::Point3{std::min(glb.min.x, instances.min.x), std::min(glb.min.y, instances.min.y),
+                                    std::min(glb.min.z, instances.min.z)};
+    glb.max = alone ? instances.max
+                    : model::Point3{std::max(glb.max.x, instances.max.x), std::max(glb.max.y, instances.max.y),
+                                    std::max(glb.max.z, instances.max.z)};
+  }
+  glb.bytes = document.write(options.compression);
+  return glb;
+}
+
+}  // namespace blockrand::outputs

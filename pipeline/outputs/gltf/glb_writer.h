@@ -1,0 +1,48 @@
+// A tile as binary glTF.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "pipeline/outputs/frame.h"
+#include "pipeline/outputs/gltf/compression.h"
+#include "pipeline/outputs/gltf/instance_writer.h"
+#include "pipeline/model/region.h"
+
+namespace blockrand::outputs {
+
+struct GlbOptions {
+  int lod = 2;                   ///< highest level of detail: 0 to 3; with 0 the mesh is the footprints
+  std::string crs;               ///< of the build, for example "EPSG:25833"
+  std::string height_reference;  ///< in words: "ellipsoidal heights (EGM96 + terrain)", "heights above local ground"
+  std::string generator;         ///< program and version, for asset.generator
+  std::string attribution;       ///< asset.copyright: "© OpenStreetMap contributors, ODbL 1.0"
+  Frame frame;
+  Instancing instancing = Instancing::ext;  ///< of what stands in facades, at LoD3
+  Compression compression = Compression::none;
+  bool evidence = false;  ///< also why each attribute has its value
+};
+
+struct Glb {
+  std::string bytes;
+  std::size_t rows = 0;       ///< of the property table: parts of owned buildings
+  std::size_t triangles = 0;  ///< as drawn; 0: the file is valid, but shows nothing; a tileset should leave it out
+  std::size_t elements = 0, placements = 0;  ///< distinct elements and their places, where they are not baked
+  model::Point3 min, max;                    ///< of the mesh in east, north, up; zero without triangles
+};
+
+/// The owned buildings of `region` as one GLB.
+///
+/// One mesh, indexed, y up: a primitive for each material class, another for each colour of many vertices
+/// (MeshPrimitive). Attributes lie in streams of their own (glb_document.h): POSITION as floats that are multiples of
+/// 1/4096 m, NORMAL (8 bits), COLOR_0 (16 bits, linear light; where the material has no colour) and _FEATURE_ID_0, the
+/// row of the part in the property table. Extensions: KHR_mesh_quantization (required), EXT_mesh_features,
+/// EXT_structural_metadata. Elements of LoD3 as GlbOptions::instancing says (instance_writer.h), with
+/// EXT_mesh_gpu_instancing (required) and EXT_instance_features; with compression EXT_meshopt_compression (required).
+/// `asset.extras.georeference` says where on the Earth the mesh stands.
+///
+/// The same region gives the same bytes. A region without parts gives a valid file with an empty scene.
+/// \throws std::length_error when the tile has more than 2^24 parts or 4 GB of data
+Glb write_glb(const model::Region& region, const GlbOptions& options);
+
+}  // namespace blockrand::outputs

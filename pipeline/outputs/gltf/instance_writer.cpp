@@ -1,0 +1,239 @@
+#include "pipeline/outputs/gltf/instance_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "pipeline/outputs/gltf/glb_document.h"
+#include "pipeline/outputs/gltf/material.h"
+#include "pipeline/outputs/gltf/stored_element.h"
+#include "pipeline/outputs/text.h"
+
+namespace blockrand::outputs {
+namespace {
+
+void number(std::string& json, std::size_t value) { append_number(json, static_cast<std::int64_t>(value)); }
+
+/// A place as it is written.
+struct Place {
+  const ElementInstance* instance = nullptr;
+  double stretch = 1;
+};
+
+/// All places of one mesh: of stored geometry in certain colours.
+struct PlacedMesh {
+  const model::ColouredElement* element = nullptr;  ///< the first of those that share it
+  int stored = 0;
+  std::vector<Place> places;
+};
+
+class InstanceWriter {
+ public:
+  InstanceWriter(GlbDocument& document, const model::Region& region, std::size_t rows)
+      : document_(document), region_(region), elements_(document), wide_features_(rows > 0xFFFF) {}
+
+  InstanceFigures write(const std::vector<InstanceGroup>& groups, Instancing how) {
+    for (const InstanceGroup& group : groups) collect(group);
+    for (const PlacedMesh& placed : meshes_) {
+      const int mesh = add_mesh(placed);
+      auto& children = children_[elements_[placed.stored].steps];
+      if (how == Instancing::ext)
+        children.push_back(add_instanced_node(mesh, placed));
+      else
+        for (const Place& place : placed.places) children.push_back(add_node(mesh, place, placed));
+    }
+    figures_.elements = meshes_.size();
+    for (auto step = children_.rbegin(); step != children_.rend(); ++step) add_parent(step->first, step->second);
+    return figures_;
+  }
+
+ private:
+  /// Finds the mesh that the places of a group belong to.
+  void collect(const InstanceGroup& group) {
+    const model::ColouredElement& element = region_.elements.at(group.element);
+    const ElementForm form = elements_.form(*element.element);
+    if (form.stored < 0) return;
+    const StoredElement& stored = elements_[form.stored];
+    std::vector<int> key{form.stored};
+    for (const StoredElement::Part& part : stored.parts) {
+      const model::PartLook& look = element.looks[static_cast<std::size_t>(part.part)];
+      key.insert(key.end(), {look.material, look.colour.r, look.colour.g, look.colour.b});
+    }
+    const auto [place, added] = known_.try_emplace(std::move(key), meshes_.size());
+    if (added) meshes_.push_back({&element, form.stored, {}});
+    PlacedMesh& mesh = meshes_[place->second];
+    for (const ElementInstance& at : group.instances) {
+      mesh.places.push_back({&at, form.stretch});
+      widen(at, form);
+    }
+    figures_.places += group.instances.size();
+    figures_.triangles += stored.triangles * group.instances.size();
+  }
+
+  void widen(const ElementInstance& at, const ElementForm& form) {
+    const model::Point2 out{at.along.y, -at.along.x};
+    for (const double x : {form.min.x, form.max.x})
+      for (const double z : {form.min.z, form.max.z}) {
+        const double east = at.origin.x + at.along.x * x + out.x * z, north = at.origin.y + at.along.y * x + out.y * z;
+        const double low = at.origin.z + form.min.y, high = at.origin.z + form.max.y;
+        if (first_) figures_.min = figures_.max = {east, north, low};
+        first_ = false;
+        figures_.min = {std::min(figures_.min.x, east), std::min(figures_.min.y, north), std::min(figures_.min.z, low)};
+        figures_.max = {std::max(figures_.max.x, east), std::max(figures_.max.y, north),
+                        std::max(figures_.max.z, high)};
+      }
+  }
+
+  /// Neighbouring parts that look the same are one primitive.
+  int add_mesh(const PlacedMesh& placed) {
+    const StoredElement& stored = elements_[placed.stored];
+    const model::ColouredElement& element = *placed.element;
+    const auto look = [&](std::size_t i) -> const model::PartLook& {
+      return element.looks[static_cast<std::size_t>(stored.parts[i].part)];
+    };
+    std::string json = "{\"name\":";
+    append_json(json, stored.stretched ? element.element->kind : element.element->name);
+    json += ",\"primitives\":[";
+    for (std::size_t first = 0; first < stored.parts.size();) {
+      std::size_t last = first;
+      while (last + 1 < stored.parts.size() && stored.parts[last + 1].block == stored.parts[first].block &&
+             look(last + 1) == look(first))
+        ++last;
+      const StoredElement::Block& block = stored.blocks[static_cast<std::size_t>(stored.parts[first].block)];
+      if (first > 0) json += ',';
+      json += "{\"attributes\":{\"NORMAL\":";
+      append_number(json, std::int64_t{block.normal});
+      json += ",\"POSITION\":";
+      append_number(json, std::int64_t{block.position});
+      json += "},\"indices\":";
+      append_number(json, std::int64_t{elements_.indices(placed.stored, first, last)});
+      json += ",\"material\":";
+      append_number(json, std::int64_t{document_.add_material(
+                              material_json(region_.materials.at(look(first).material), look(first).colour))});
+      json += '}';
+      first = last + 1;
+    }
+    return document_.add_mesh(json + "]}");
+  }
+
+  /// East, north, up to glTF's y up, in whole steps.
+  static std::array<double, 3> translation(const Place& place, double steps) {
+    const model::Point3& p = place.instance->origin;
+    return {std::nearbyint(p.x * steps), std::nearbyint(p.z * steps), 0.0 - std::nearbyint(p.y * steps)};
+  }
+  /// A turn about the upright axis that leads east to `along`, by half angles without trigonometry.
+  static std::array<double, 4> rotation(const Place& place) {
+    const model::Point2& along = place.instance->along;
+    const double c = std::sqrt(std::max(0.0, (1 + along.x) / 2)), s = std::sqrt(std::max(0.0, (1 - along.x) / 2));
+    return {0, along.y < 0 ? -s : s, 0, c};
+  }
+
+  int add_instanced_node(int mesh, const PlacedMesh& placed) {
+    const StoredElement& stored = elements_[placed.stored];
+    const std::size_t n = placed.places.size();
+    std::vector<float> translations, scales, wide;
+    std::vector<std::int16_t> rotations;
+    std::vector<std::uint16_t> narrow;
+    std::set<std::uint32_t> rows;
+    bool far = false;
+    for (const Place& place : placed.places) {
+      for (const double v : translation(place, stored.steps)) {
+        translations.push_back(static_cast<float>(v) + 0.0f);
+        far = far || std::fabs(v) > kFinestReach * kGlbStepsPerMetre;
+      }
+      for (const double v : rotation(place)) rotations.push_back(static_cast<std::int16_t>(std::nearbyint(v * 32767)));
+      scales.insert(scales.end(), {static_cast<float>(place.stretch), 1.0f, 1.0f});
+      rows.insert(place.instance->feature);
+      if (wide_features_)
+        wide.push_back(static_cast<float>(place.instance->feature));
+      else
+        narrow.push_back(static_cast<std::uint16_t>(place.instance->feature));
+    }
+    const Stream to = far ? Stream::far_translations : Stream::translations;
+    std::string json = "{\"extensions\":{\"EXT_instance_features\":{\"featureIds\":[{\"attribute\":0,\"featureCount\":";
+    number(json, rows.size());
+    json += ",\"propertyTable\":0}]},\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"ROTATION\":";
+    const std::size_t r = document_.append<std::int16_t>(Stream::rotations, rotations);
+    append_number(json,
+                  std::int64_t{document_.add_accessor({Stream::rotations, r, Component::int16, "VEC4", n, true})});
+    if (stored.stretched) {
+      json += ",\"SCALE\":";
+      const std::size_t s = document_.append<float>(Stream::scales, scales);
+      append_number(json, std::int64_t{document_.add_accessor({Stream::scales, s, Component::float32, "VEC3", n})});
+    }
+    json += ",\"TRANSLATION\":";
+    const std::size_t t = document_.append<float>(to, translations);
+    append_number(json, std::int64_t{document_.add_accessor({to, t, Component::float32, "VEC3", n})});
+    json += ",\"_FEATURE_ID_0\":";
+    const Stream ids = wide_features_ ? Stream::wide_instance_features : Stream::instance_features;
+    const std::size_t f =
+        wide_features_ ? document_.append<float>(ids, wide) : document_.append<std::uint16_t>(ids, narrow);
+    append_number(json, std::int64_t{document_.add_accessor(
+                            {ids, f, wide_features_ ? Component::float32 : Component::uint16, "SCALAR", n})});
+    json += "}}},\"mesh\":";
+    append_number(json, std::int64_t{mesh});
+    document_.use("EXT_mesh_gpu_instancing", true);
+    document_.use("EXT_instance_features", false);
+    return document_.add_node(json + '}');
+  }
+
+  int add_node(int mesh, const Place& place, const PlacedMesh& placed) {
+    const StoredElement& stored = elements_[placed.stored];
+    std::string json = "{\"extras\":{\"feature\":";
+    number(json, place.instance->feature);
+    json += "},\"mesh\":";
+    append_number(json, std::int64_t{mesh});
+    const auto list = [&](const char* name, const auto& values) {
+      json += name;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (i) json += ',';
+        append_number(json, values[i]);
+      }
+      json += ']';
+    };
+    auto turn = rotation(place);
+    for (double& v : turn) v = std::nearbyint(v * 1e7) / 1e7;
+    list(",\"rotation\":[", turn);
+    if (stored.stretched) list(",\"scale\":[", std::array<double, 3>{place.stretch, 1, 1});
+    list(",\"translation\":[", translation(place, stored.steps));
+    return document_.add_node(json + '}');
+  }
+
+  void add_parent(double steps, const std::vector<int>& children) {
+    std::string json = "{\"children\":[";
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      if (i) json += ',';
+      append_number(json, std::int64_t{children[i]});
+    }
+    json += "],\"scale\":[";
+    for (int i = 0; i < 3; ++i) {
+      if (i) json += ',';
+      append_number(json, 1 / steps);
+    }
+    document_.add_root(document_.add_node(json + "]}"));
+  }
+
+  GlbDocument& document_;
+  const model::Region& region_;
+  StoredElements elements_;
+  bool wide_features_;
+  std::vector<PlacedMesh> meshes_;
+  std::map<std::vector<int>, std::size_t> known_;  ///< by stored geometry and the looks of its parts
+  std::map<double, std::vector<int>> children_;    ///< nodes by steps of a metre
+  InstanceFigures figures_;
+  bool first_ = true;
+};
+
+}  // namespace
+
+InstanceFigures write_instances(GlbDocument& document, const model::Region& region,
+                                const std::vector<InstanceGroup>& groups, Instancing how, std::size_t rows) {
+  return InstanceWriter(document, region, rows).write(groups, how);
+}
+
+}  // namespace blockrand::outputs

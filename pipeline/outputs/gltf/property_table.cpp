@@ -1,0 +1,175 @@
+#include "pipeline/outputs/gltf/property_table.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/outputs/gltf/glb_document.h"
+#include "pipeline/outputs/text.h"
+
+namespace blockrand::outputs {
+
+static_assert(std::endian::native == std::endian::little, "buffers are copied as they lie in memory");
+
+namespace {
+
+using Kind = PropertyTable::Kind;
+using Object = nlohmann::json;
+
+std::size_t element_size(Kind kind) {
+  switch (kind) {
+    case Kind::int64:
+    case Kind::float64:
+      return 8;
+    default:
+      return 1;
+  }
+}
+
+}  // namespace
+
+int PropertyTable::add(Column column) {
+  assert(rows_ == 0);
+  Data data;
+  data.column = std::move(column);
+  if (data.column.kind == Kind::text) data.offsets.push_back(0);
+  columns_.push_back(std::move(data));
+  return static_cast<int>(columns_.size()) - 1;
+}
+
+void PropertyTable::put(Data& data, const void* value, std::size_t size) {
+  assert(!data.set);
+  data.bytes.append(static_cast<const char*>(value), size);
+  data.set = data.any = true;
+}
+
+void PropertyTable::set_text(int column, std::string_view text) {
+  if (text.empty()) return;
+  Data& data = columns_[static_cast<std::size_t>(column)];
+  assert(data.column.kind == Kind::text && !data.set);
+  append_clean(data.bytes, text);
+  data.set = data.any = true;
+}
+
+void PropertyTable::set_raw_text(int column, std::string_view text) {
+  if (text.empty()) return;
+  put(columns_[static_cast<std::size_t>(column)], text.data(), text.size());
+}
+
+void PropertyTable::set_enum(int column, std::uint8_t value) {
+  put(columns_[static_cast<std::size_t>(column)], &value, 1);
+}
+
+void PropertyTable::set_int8(int column, std::int8_t value) {
+  put(columns_[static_cast<std::size_t>(column)], &value, 1);
+}
+
+void PropertyTable::set_int64(int column, std::int64_t value) {
+  put(columns_[static_cast<std::size_t>(column)], &value, 8);
+}
+
+void PropertyTable::set_float64(int column, double value) {
+  if (!std::isfinite(value)) return;
+  if (value == 0) value = 0;
+  put(columns_[static_cast<std::size_t>(column)], &value, 8);
+}
+
+void PropertyTable::set_unit_interval(int column, double value) {
+  if (std::isnan(value)) return;
+  const auto byte = static_cast<std::uint8_t>(std::nearbyint(std::clamp(value, 0.0, 1.0) * 255));
+  put(columns_[static_cast<std::size_t>(column)], &byte, 1);
+}
+
+void PropertyTable::end_row() {
+  ++rows_;
+  for (Data& data : columns_) {
+    const Column& column = data.column;
+    assert(data.set || !column.required);
+    if (column.kind == Kind::text) {
+      data.offsets.push_back(static_cast<std::uint32_t>(data.bytes.size()));
+    } else if (!data.set) {
+      char filler[8] = {};
+      const double absent = column.no_data.value_or(0);
+      if (column.kind == Kind::float64) {
+        std::memcpy(filler, &absent, 8);
+      } else {
+        const auto integer = static_cast<std::int64_t>(absent);
+        std::memcpy(filler, &integer, 8);
+      }
+      data.bytes.append(filler, element_size(column.kind));
+    }
+    data.set = false;
+  }
+}
+
+nlohmann::json PropertyTable::class_properties() const {
+  Object properties = Object::object();
+  for (const Data& data : columns_) {
+    const Column& column = data.column;
+    Object property;
+    switch (column.kind) {
+      case Kind::text:
+        property.emplace("type", "STRING");
+        break;
+      case Kind::enumeration:
+        property.emplace("type", "ENUM");
+        property.emplace("enumType", column.enum_type);
+        break;
+      default:
+        property.emplace("type", "SCALAR");
+        property.emplace("componentType", column.kind == Kind::int8      ? "INT8"
+                                          : column.kind == Kind::int64   ? "INT64"
+                                          : column.kind == Kind::float64 ? "FLOAT64"
+                                                                         : "UINT8");
+        if (column.kind == Kind::unit_interval) property.emplace("normalized", true);
+    }
+    if (!column.description.empty()) property.emplace("description", column.description);
+    // The specification forbids noData together with required.
+    if (column.required) {
+      property.emplace("required", true);
+    } else if (column.kind == Kind::text) {
+      property.emplace("noData", "");
+    } else if (column.kind == Kind::enumeration) {
+      if (!column.no_data_name.empty()) property.emplace("noData", column.no_data_name);
+    } else if (column.no_data) {
+      property.emplace("noData", static_cast<int>(*column.no_data));
+    }
+    properties.emplace(column.name, std::move(property));
+  }
+  return properties;
+}
+
+nlohmann::json PropertyTable::write(GlbDocument& document, const std::string& class_name) const {
+  Object properties = Object::object();
+  for (const Data& data : columns_) {
+    if (!data.any) continue;
+    assert(!data.bytes.empty());
+    Object property;
+    property.emplace("values", document.add_view(data.bytes));
+    if (data.column.kind == Kind::text) {
+      // The smallest type that holds the last offset: most texts of a tile are short.
+      const std::uint32_t last = data.offsets.back();
+      std::string offsets;
+      const auto append = [&](const auto& numbers) {
+        offsets.assign(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(numbers[0]));
+      };
+      if (last <= 0xFFFF)
+        append(std::vector<std::uint16_t>(data.offsets.begin(), data.offsets.end()));
+      else
+        append(data.offsets);
+      property.emplace("stringOffsets", document.add_view(std::move(offsets)));
+      if (last <= 0xFFFF) property.emplace("stringOffsetType", "UINT16");
+    }
+    properties.emplace(data.column.name, std::move(property));
+  }
+  Object table;
+  table.emplace("class", class_name);
+  table.emplace("count", static_cast<int>(rows_));
+  table.emplace("properties", std::move(properties));
+  return table;
+}
+
+}  // namespace blockrand::outputs

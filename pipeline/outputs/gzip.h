@@ -1,0 +1,18 @@
+// Deterministic gzip.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace blockrand::outputs {
+
+/// `bytes` as one gzip member: no file name, time 0, unknown operating system, so that equal input gives equal output
+/// (with the same zlib).
+/// \param level  1 (fast) to 9 (small)
+/// \throws std::bad_alloc when zlib cannot allocate
+std::string gzip(std::string_view bytes, int level = 6);
+
+/// The content of a gzip file of one member. \throws std::runtime_error when it is damaged or cut off
+std::string gunzip(std::string_view bytes);
+
+}  // namespace blockrand::outputs

@@ -1,0 +1,281 @@
+#include "pipeline/outputs/report/pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "pipeline/base/parallel.h"
+#include "pipeline/base/text.h"
+#include "pipeline/georef/tiles.h"
+#include "pipeline/picture/render.h"
+
+namespace blockrand::outputs {
+
+namespace {
+
+using model::Point3;
+using picture::Camera;
+using picture::Direction;
+
+constexpr model::Colour kGround{214, 214, 208};
+
+/// Tiles from the densest one. Scattered villages in one picture would be specks: what lies further off is left out.
+constexpr std::int64_t kWholeReach = 5, kPartReach = 3;
+
+/// Square of the distance between two tiles in tiles; the quadtree closes at 180 degrees.
+std::int64_t distance(const model::TileId& a, const model::TileId& b) {
+  const std::int64_t round = std::int64_t{2} << a.level;
+  std::int64_t dx = std::abs(static_cast<std::int64_t>(a.x) - static_cast<std::int64_t>(b.x));
+  dx = std::min(dx, round - dx);
+  const std::int64_t dy = static_cast<std::int64_t>(a.y) - static_cast<std::int64_t>(b.y);
+  return dx * dx + dy * dy;
+}
+
+/// The buildings without the few that lie far from the others, which would make the rest small.
+std::vector<Point3> core_points(const std::vector<PicturedBuilding>& buildings) {
+  std::vector<double> xs, ys;
+  for (const PicturedBuilding& b : buildings) {
+    xs.push_back(b.box.centre().x);
+    ys.push_back(b.box.centre().y);
+  }
+  std::sort(xs.begin(), xs.end());
+  std::sort(ys.begin(), ys.end());
+  const std::size_t cut = xs.size() / 100, last = xs.size() - 1 - cut;
+  std::vector<Point3> out;
+  for (const PicturedBuilding& b : buildings) {
+    const Point3 c = b.box.centre();
+    if (c.x < xs[cut] || c.x > xs[last] || c.y < ys[cut] || c.y > ys[last]) continue;
+    for (const Point3& p : b.box.corners()) out.push_back(p);
+  }
+  return out;
+}
+
+/// Stands on the ground and has the size of a house: neither a shed, nor a hall, nor a part of a roof.
+bool like_a_house(const PicturedBuilding& b) {
+  const double area = (b.box.max.x - b.box.min.x) * (b.box.max.y - b.box.min.y);
+  return b.box.max.z - b.ground >= 5 && b.box.min.z - b.ground < 2 && area >= 60 && area <= 2500;
+}
+
+/// The middle of the cell that has, with its neighbours, the most houses; where there is none, the most of anything.
+Point3 densest_spot(const std::vector<PicturedBuilding>& buildings) {
+  constexpr double kCell = 50;  // m
+  using Key = std::pair<std::int64_t, std::int64_t>;
+  for (const bool houses_only : {true, false}) {
+    std::map<Key, std::uint64_t> cells;
+    for (const PicturedBuilding& b : buildings) {
+      if (houses_only && !like_a_house(b)) continue;
+      const Point3 c = b.box.centre();
+      const Key home{static_cast<std::int64_t>(std::floor(c.x / kCell)), static_cast<std::int64_t>(std::floor(c.y / kCell))};
+      for (std::int64_t x = -1; x <= 1; ++x)
+        for (std::int64_t y = -1; y <= 1; ++y) ++cells[{home.first + x, home.second + y}];
+    }
+    const auto best = std::max_element(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (best == cells.end()) continue;
+    return {(static_cast<double>(best->first.first) + 0.5) * kCell, (static_cast<double>(best->first.second) + 0.5) * kCell, 0};
+  }
+  return {};
+}
+
+/// Corners of what stands within `reach` of a spot.
+std::vector<Point3> points_near(const picture::Scene& scene, Point3 spot, double reach) {
+  std::vector<Point3> out;
+  const Point3 o = scene.origin();
+  for (const picture::Scene::Triangle& t : scene.triangles())
+    for (const picture::Scene::Vector& v : t.corners) {
+      const Point3 p{o.x + v.x, o.y + v.y, o.z + v.z};
+      if ((p.x - spot.x) * (p.x - spot.x) + (p.y - spot.y) * (p.y - spot.y) <= reach * reach) out.push_back(p);
+    }
+  return out;
+}
+
+/// Where the overview is taken from. The sun stands at the viewer's side in the south, so that walls and shadows show.
+struct View {
+  double azimuth, sun;  ///< degrees
+  std::string_view from, to;
+};
+
+constexpr double kElevation = 38, kFieldOfView = 30, kMargin = 0.07;
+constexpr int kWidth = 1200, kHeight = 750;
+
+/// The view that shows most: a long town is seen from its side. The south-west is preferred unless another is much nearer.
+View best_view(std::span<const Point3> points) {
+  constexpr View kViews[] = {{215, 135, "south-west", "north-east"},
+                             {145, 225, "south-east", "north-west"},
+                             {180, 110, "south", "north"},
+                             {260, 180, "west", "east"}};
+  const auto distance = [&](const View& view) {
+    const Camera c =
+        picture::fit_perspective(points, {view.azimuth, kElevation}, static_cast<double>(kWidth) / kHeight, kFieldOfView, kMargin);
+    double sum = 0;
+    for (const Point3& p : points)
+      sum += (p.x - c.eye.x) * c.forward.x + (p.y - c.eye.y) * c.forward.y + (p.z - c.eye.z) * c.forward.z;
+    return sum / static_cast<double>(points.size());
+  };
+  View best = kViews[0];
+  double nearest = 0.93 * distance(best);
+  for (const View& view : kViews)
+    if (const double d = distance(view); d < nearest) {
+      nearest = d;
+      best = view;
+    }
+  return best;
+}
+
+}  // namespace
+
+PicturePlan plan_pictures(std::span<const footprints::Shard> shards, const georef::Projection& projection, std::uint64_t budget) {
+  PicturePlan plan;
+  plan.chosen.assign(shards.size(), false);
+  if (shards.empty()) return plan;
+  std::size_t densest = 0;
+  for (std::size_t i = 0; i < shards.size(); ++i)
+    if (shards[i].seeds.size() > shards[densest].seeds.size()) densest = i;
+  const georef::LonLat middle = georef::centre(shards[densest].tile);
+  const model::Point2 origin = projection.forward(middle.lon, middle.lat);
+  plan.origin = {origin.x, origin.y, 0};
+
+  std::vector<std::size_t> order(shards.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return distance(shards[a].tile, shards[densest].tile) < distance(shards[b].tile, shards[densest].tile);
+  });
+  std::uint64_t all = 0;
+  for (const footprints::Shard& s : shards) all += s.seeds.size();
+  const std::int64_t reach = all <= budget ? kWholeReach : kPartReach;
+  for (const std::size_t i : order) {
+    // The densest tile comes first and is shown in any case; a gap in the picture would look like a hole in the model.
+    if (i != densest && (plan.buildings + shards[i].seeds.size() > budget ||
+                         distance(shards[i].tile, shards[densest].tile) > reach * reach)) {
+      plan.whole = false;
+      break;
+    }
+    plan.chosen[i] = true;
+    plan.buildings += shards[i].seeds.size();
+  }
+  return plan;
+}
+
+PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, std::size_t shard) {
+  PictureTile tile{picture::Scene(plan.origin), {}};
+  if (!plan.chosen[shard]) return tile;
+  for (const model::Building& building : region.buildings) {
+    if (!building.owned) continue;
+    const auto object = static_cast<std::uint32_t>(tile.buildings.size());
+    PicturedBuilding pictured;
+    pictured.ground = building.attributes.ground_height.value;
+    for (const model::BuildingPart& part : building.parts) {
+      const bool with_roof = part.lod >= 2 && !part.lod2.empty();
+      const model::Solid& solid = with_roof ? part.lod2 : part.lod1;
+      if (solid.empty()) continue;
+      tile.scene.add(solid, with_roof ? part.lod2_triangles : part.lod1_triangles, object);
+      for (const Point3& p : solid.vertices) pictured.box.include(p);
+    }
+    if (!pictured.box.empty) tile.buildings.push_back(pictured);
+  }
+  return tile;
+}
+
+void Pictures::add(PictureTile&& tile) {
+  scene_.append(tile.scene, static_cast<std::uint32_t>(buildings_.size()));
+  buildings_.insert(buildings_.end(), tile.buildings.begin(), tile.buildings.end());
+}
+
+/// One plane, or where the ground rises and falls a mesh through the grounds of the buildings.
+void Pictures::lay_ground() {
+  double low = buildings_[0].ground, high = low;
+  picture::Box box;
+  for (const PicturedBuilding& b : buildings_) {
+    low = std::min(low, b.ground);
+    high = std::max(high, b.ground);
+    box.include(b.box.min);
+    box.include(b.box.max);
+  }
+  if (high - low < 0.1) {
+    scene_.set_ground(low, kGround);
+    return;
+  }
+  constexpr int kCells = 80;          // along the longer side
+  constexpr double kBorder = 60;      // m around the buildings
+  constexpr double kSmoothing = 400;  // m²: nearer than its root, neighbours weigh alike
+  const double west = box.min.x - kBorder, south = box.min.y - kBorder;
+  const double width = box.max.x + kBorder - west, height = box.max.y + kBorder - south;
+  const double cell = std::max(width, height) / kCells;
+  const int columns = static_cast<int>(width / cell) + 1, rows = static_cast<int>(height / cell) + 1;
+  std::vector<double> z;
+  for (int j = 0; j <= rows; ++j)
+    for (int i = 0; i <= columns; ++i) {
+      // Mean of the grounds, weighted by the inverse fourth power of the distance.
+      double sum = 0, weights = 0;
+      for (const PicturedBuilding& b : buildings_) {
+        const Point3 c = b.box.centre();
+        const double dx = c.x - (west + i * cell), dy = c.y - (south + j * cell), d = dx * dx + dy * dy + kSmoothing;
+        const double w = 1 / (d * d);
+        sum += b.ground * w;
+        weights += w;
+      }
+      z.push_back(sum / weights);
+    }
+  const auto object = static_cast<std::uint32_t>(buildings_.size());
+  const auto node = [&](int i, int j) {
+    return Point3{west + i * cell, south + j * cell, z[static_cast<std::size_t>(j * (columns + 1) + i)]};
+  };
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      scene_.add_triangle({node(i, j), node(i + 1, j), node(i + 1, j + 1)}, kGround, object);
+      scene_.add_triangle({node(i, j), node(i + 1, j + 1), node(i, j + 1)}, kGround, object);
+    }
+}
+
+std::string Pictures::note() const {
+  if (plan_.whole) return {};
+  return fmt::format("The pictures show the densest part of the build: {} buildings. The whole is in the files.",
+                     base::with_thousands(plan_.buildings));
+}
+
+std::vector<outputs::ReportPicture> Pictures::take(int workers) {
+  std::vector<outputs::ReportPicture> out;
+  if (buildings_.empty()) return out;
+  lay_ground();
+
+  struct Shot {
+    Camera camera;
+    picture::RenderOptions options;
+    std::string caption;
+  };
+  std::vector<Shot> shots;
+  const std::vector<Point3> core = core_points(buildings_);
+  const View view = best_view(core);
+  const auto shoot = [&](std::span<const Point3> points, Direction from, double field_of_view, int width, int height,
+                         std::string caption) {
+    Shot shot;
+    shot.options.width = width;
+    shot.options.height = height;
+    shot.options.sun_azimuth = view.sun;
+    shot.camera = fit_perspective(points, from, static_cast<double>(width) / height, field_of_view, kMargin);
+    shot.caption = std::move(caption);
+    shots.push_back(std::move(shot));
+  };
+  shoot(core, {view.azimuth, kElevation}, kFieldOfView, kWidth, kHeight, fmt::format("Seen from the {}.", view.from));
+  shoot(core, {view.azimuth + 180, kElevation}, kFieldOfView, 960, 600, fmt::format("The same from the {}.", view.to));
+  constexpr double kDetailReach = 75;  // m
+  std::vector<Point3> near = points_near(scene_, densest_spot(buildings_), kDetailReach);
+  shoot(near.empty() ? core : near, {view.azimuth, 27}, 40, 960, 600, "Where houses stand densest.");
+  shots.back().options.sky_directions = 64;  // near by, single shades of the sky would show
+
+  out.resize(shots.size());
+  base::ordered_parallel(
+      shots.size(), std::min<int>(workers, 2), shots.size(),
+      [&](std::size_t i) {
+        const Shot& shot = shots[i];
+        out[i] = {picture::png(picture::render(scene_, shot.camera, shot.options)), shot.options.width, shot.options.height, shot.caption};
+      },
+      [](std::size_t) {});
+  scene_ = picture::Scene(plan_.origin);
+  buildings_ = {};
+  return out;
+}
+
+}  // namespace blockrand::outputs

@@ -1,0 +1,70 @@
+// The report's pictures: which tiles they show, what those tiles give to the scene, and the cameras.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/outputs/report/report_facts.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/model/region.h"
+#include "pipeline/picture/scene.h"
+#include "pipeline/footprints/shard.h"
+
+namespace blockrand::outputs {
+
+/// Builds up to this many buildings are pictured whole, unless they are scattered wide: more would be specks in a
+/// picture, and cost memory.
+inline constexpr std::uint64_t kPicturedBuildings = 4000;
+
+/// What the pictures will show, decided before any tile runs, so that only those tiles keep their meshes.
+struct PicturePlan {
+  std::vector<bool> chosen;     ///< parallel to the shards
+  bool whole = true;            ///< every tile is chosen
+  std::uint64_t buildings = 0;  ///< seeds of the chosen tiles
+  model::Point3 origin;         ///< of the scene: the middle of the densest tile, build CRS
+};
+
+/// Chooses the tile with the most buildings and its neighbours by distance, until the next would exceed `budget` or lies
+/// more than some tiles away.
+PicturePlan plan_pictures(std::span<const footprints::Shard> shards, const georef::Projection& projection,
+                          std::uint64_t budget = kPicturedBuildings);
+
+/// A building in the scene: the box of its bodies, and the ground under it.
+struct PicturedBuilding {
+  picture::Box box;
+  double ground = 0;  ///< m
+};
+
+struct PictureTile {
+  picture::Scene scene;
+  std::vector<PicturedBuilding> buildings;  ///< object k of the scene is buildings[k]
+};
+
+/// The best solids of a finished tile; empty for a tile that is not pictured. Pure: safe for different tiles at the same
+/// time.
+/// \param shard  the tile's index
+PictureTile picture_tile(const model::Region& region, const PicturePlan& plan, std::size_t shard);
+
+/// Collects tiles and takes the pictures: an overview, the same from the other side, and the densest spot.
+class Pictures {
+ public:
+  explicit Pictures(const PicturePlan& plan) : plan_(plan), scene_(plan.origin) {}
+
+  /// Takes a tile; call in tile order.
+  void add(PictureTile&& tile);
+  /// The pictures, on up to `workers` threads; none where no building has a solid. The same bytes for any number of
+  /// threads. Leaves the collection empty, so that its memory is free.
+  std::vector<outputs::ReportPicture> take(int workers);
+  /// What they show, where that is not the whole build.
+  std::string note() const;
+
+ private:
+  void lay_ground();
+  PicturePlan plan_;
+  picture::Scene scene_;
+  std::vector<PicturedBuilding> buildings_;
+};
+
+}  // namespace blockrand::outputs

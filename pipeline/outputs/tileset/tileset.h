@@ -1,0 +1,57 @@
+// The tileset that places a build's tiles on the globe.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/model/region.h"
+
+namespace blockrand::outputs {
+
+/// m. What a level lacks, as viewers measure it: with the usual 16 pixels of tolerance, 1080 lines and a field of view
+/// of 60 degrees they go on to the next finer level within 58 times this distance. Blocks lack roofs; within 1.2 km a
+/// roof of 5 m is 4 pixels high. LoD2 lacks facades; within 350 m a storey of 3 m with its windows is 8 pixels high.
+inline constexpr double kBlockError = 20, kRoofError = 6;
+
+/// The same buildings in less detail.
+struct CoarserLevel {
+  std::string uri;
+  double geometric_error = 0;  ///< m
+};
+
+/// A tile with content.
+struct TileEntry {
+  model::TileId id;
+  std::string uri;                                  ///< relative to the tileset: "tiles/15/x/y.glb"
+  std::vector<CoarserLevel> coarser;                ///< the coarsest first; errors fall
+  std::array<double, 16> enu_to_ecef{};             ///< column-major
+  model::Point3 min, max;                           ///< of all levels: m east, north, up of the tile's origin
+  double west = 0, south = 0, east = 0, north = 0;  ///< degrees; west > east where the mesh crosses 180°
+  double min_height = 0, max_height = 0;            ///< m above the ellipsoid
+};
+
+struct TilesetOptions {
+  std::string crs;               ///< of the build
+  std::string height_reference;  ///< in words
+  std::string generator;
+  std::string attribution;
+  /// m. Geometric error of the parents of the leaves; it doubles with every level above. A viewer with the usual 16
+  /// pixels of tolerance and 1080 lines then loads buildings within about 6 km.
+  double parent_error = 100;
+};
+
+/// A 3D Tiles 1.1 tileset.json: leaves with content in boxes (in the tile's frame, z up), above them their parents in
+/// the geodetic quadtree as regions without content, where a parent with a single child is left out but for the root.
+///
+/// A tile with coarser levels is a chain of them, each replaced by the next (REPLACE), the finest last.
+///
+/// Regions are widened by what a box corner can lie outside the bounds of its vertices: 5 cm, and 10 r²/R horizontally
+/// and r²/R vertically for a mesh of radius r around its origin (R: the Earth's), from the convergence of meridians up
+/// to 79° of latitude and from the curvature. Angles are degrees times a constant; no other maths enters.
+/// Without tiles the root is an empty box.
+/// \param tiles  in any order; no two with the same id, all of one level
+std::string write_tileset(std::span<const TileEntry> tiles, const TilesetOptions& options);
+
+}  // namespace blockrand::outputs

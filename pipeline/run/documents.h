@@ -1,0 +1,68 @@
+// build.json, run.json and report.json: what a build tells about itself.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/base/progress.h"
+#include "pipeline/base/publish.h"
+#include "pipeline/georef/crs.h"
+#include "pipeline/georef/round_trip.h"
+#include "pipeline/model/extract.h"
+#include "pipeline/run/build.h"
+#include "pipeline/context/height_reference.h"
+#include "pipeline/run/region_facts.h"
+#include "pipeline/footprints/repair_extract.h"
+#include "pipeline/outputs/statistics.h"
+
+namespace blockrand::run {
+
+/// A file that went into the build.
+struct InputFile {
+  std::string role;  ///< "extract", "terrain", "config"
+  std::string path;  ///< as given
+  std::uint64_t bytes = 0;
+  std::string sha256;
+};
+
+/// Everything that the same call writes again byte for byte.
+struct BuildRecord {
+  std::vector<InputFile> inputs;
+  std::string data_time;
+  georef::Crs crs;
+  bool portable = true;
+  georef::RoundTrip round_trip;
+  context::HeightReference heights;
+  std::optional<importers::elevation::TerrainDescription> terrain;
+  RegionFacts facts;
+  footprints::RepairTotals repair;
+  BuildSummary summary;
+  outputs::Statistics statistics;
+  model::ExtractCounts counts;
+  std::vector<base::PublishedFile> files;  ///< in path order
+};
+
+/// What differs from run to run.
+struct RunRecord {
+  std::vector<base::Progress::PhaseTime> timings;
+  double seconds = 0;
+  double tile_context_seconds = 0;    ///< of all threads: parts and facade edges, which are worked on in tiles
+  std::uint64_t peak_rss_bytes = 0;
+  std::uint64_t store_bytes = 0;      ///< the object store with its indices
+  std::uint64_t tiles_in_flight = 0;
+  int jobs = 0;
+  std::string host;
+};
+
+/// Every option that shapes the results, as build.json has it.
+nlohmann::ordered_json configuration(const BuildOptions& options);
+std::string build_json(const BuildOptions& options, const BuildRecord& record);
+std::string run_json(const RunRecord& run, const BuildSummary& summary);
+/// Every object that is not modelled itself, every fallback and every notice, sorted by object; and what codes mean.
+std::string report_json(const model::Extract& extract, const std::vector<model::ReportRow>& rows);
+
+}  // namespace blockrand::run

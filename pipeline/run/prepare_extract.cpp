@@ -1,0 +1,107 @@
+#include "pipeline/run/prepare_extract.h"
+
+#include <fmt/format.h>
+#include <malloc.h>
+
+#include <utility>
+
+#include "importers/osm/read_extract.h"
+#include "pipeline/base/error.h"
+#include "pipeline/base/parallel.h"
+#include "pipeline/footprints/load.h"
+
+namespace blockrand::run {
+
+LocatedExtract locate_extract(const BuildOptions& options, const std::optional<TileChoice>& tile,
+                              base::Progress& progress) {
+  progress.begin("read");
+  importers::osm::ReadOptions read_options;
+  read_options.bbox = tile ? tile->window : options.bbox;
+  model::Extract extract = importers::osm::read_extract(options.input, read_options);
+  malloc_trim(0);  // libosmium's buffers go back to the system before tiles need the room
+
+  progress.begin("locate");
+  const std::optional<footprints::Area> area = footprints::area_of(extract);
+  if (!area)
+    progress.warn(fmt::format("{}: no building with an outline{}; the outputs are valid but empty", options.input,
+                              options.bbox || tile ? " in the given place" : ""));
+  RegionFacts facts;
+  if (tile) {
+    facts = tile->facts;
+  } else {
+    if (area) facts = {"", area->box, area->centre, {}, {}};
+    facts.crs = options.crs.empty() ? georef::choose_crs(facts.centre.lon, facts.centre.lat) : options.crs;
+  }
+  const georef::GeoBox box = facts.box;
+  const georef::Crs crs = georef::open_crs(facts.crs, box);
+  georef::Projection projection(crs, box);
+  const georef::RoundTrip round_trip = georef::measure_round_trip(projection, box);
+  if (!round_trip.ok())
+    throw base::UsageError(fmt::format(
+        "{}: positions do not come back within 1 mm here (error {:.4f} m, {} of {} sample points undefined). "
+        "Choose another --crs, or leave it out",
+        crs.authority_code, round_trip.projection_m, round_trip.undefined, round_trip.points));
+  return {std::move(extract), area, std::move(facts), crs, round_trip, std::move(projection)};
+}
+
+std::vector<classify::RegionPrior> region_priors(const districts::RuleBook& book,
+                                                 const classify::Tables& tables) {
+  std::vector<classify::RegionPrior> out;
+  for (const districts::RuleSet& set : book.sets) {
+    classify::RegionPrior prior;
+    prior.style = set.prior.style;
+    prior.era = set.prior.era;
+    if (!set.prior.substyle.empty()) {
+      prior.substyle.assign(tables.catalogue.size(), 1);
+      for (const auto& [id, weight] : set.prior.substyle)
+        if (const auto index = tables.catalogue.index(id)) prior.substyle[*index] = classify::kNamedSubstyle * weight;
+    }
+    for (std::size_t i = 0; i < prior.storeys.size(); ++i)
+      if (const auto usual = set.prior.storeys.find(std::string(districts::kStoreyPriorNames[i]));
+          usual != set.prior.storeys.end())
+        prior.storeys[i] = usual->second;
+    out.push_back(std::move(prior));
+  }
+  return out;
+}
+
+evidence::StyleExtract classify_by_book(const model::Extract& extract, const footprints::FootprintStore& footprints,
+                              const evidence::FactsExtract& facts, const evidence::TagFacts& tags, const classify::Tables& tables,
+                              const districts::RuleBook& book, int workers, base::Progress& progress) {
+  const std::vector<classify::RegionPrior> priors = region_priors(book, tables);
+  const evidence::PriorOf prior = [&](std::uint32_t building) -> const classify::RegionPrior* {
+    const std::uint32_t set = book.choose(footprints::box_centre(extract, extract.buildings[footprints[building].lead]));
+    return set == districts::RuleBook::kNoSet ? nullptr : &priors[set];
+  };
+  return evidence::classify_extract(facts, tags, tables, prior, {}, workers, progress);
+}
+
+PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& options,
+                                const std::optional<TileChoice>& tile, const classify::Tables& tables,
+                                const districts::RuleBook& book, base::Progress& progress) {
+  const int workers = base::worker_count(options.jobs);
+  const model::Extract& extract = located.extract;
+  model::Report report;
+  std::vector<footprints::Shard> shards = footprints::make_shards(extract, report, tile ? tile->id.level : footprints::kTileLevel);
+  if (!tile) located.facts.coverage = context::coverage_of(footprints::building_places(extract, located.projection));
+  repair::KeptNodes kept(extract);
+  footprints::RepairedExtract repaired =
+      footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress);
+  malloc_trim(0);
+  const context::UseOfTags use_of = [&](const std::function<std::string_view(std::string_view)>& tag) {
+    const auto category = tables.ground_floor.category(tag);
+    return category ? std::string_view(tables.ground_floor.categories[*category].name) : std::string_view();
+  };
+  context::ContextExtract context = context::context_extract(extract, repaired.footprints, located.facts.coverage, located.projection,
+                                           workers, progress, use_of);
+  malloc_trim(0);
+  evidence::FactsExtract facts = evidence::facts_extract(extract, repaired.footprints, context,
+                                     context::SurroundingsFinder(extract, repaired.footprints, context), workers, progress);
+  evidence::TagFacts tags = evidence::tag_facts(extract, repaired.footprints, context, tables, located.projection, facts);
+  malloc_trim(0);
+  evidence::StyleExtract styles = classify_by_book(extract, repaired.footprints, facts, tags, tables, book, workers, progress);
+  return {std::move(shards),  std::move(report), std::move(kept), std::move(repaired),
+          std::move(context), std::move(facts),  std::move(tags), std::move(styles)};
+}
+
+}  // namespace blockrand::run

@@ -1,0 +1,70 @@
+// What is known of an extract before any tile runs: read, located, repaired, put into context, classified.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pipeline/base/progress.h"
+#include "pipeline/georef/crs.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/georef/round_trip.h"
+#include "pipeline/model/extract.h"
+#include "pipeline/footprints/area.h"
+#include "pipeline/run/build.h"
+#include "pipeline/evidence/building_facts.h"
+#include "pipeline/evidence/classify_extract.h"
+#include "pipeline/context/context_extract.h"
+#include "pipeline/run/region_facts.h"
+#include "pipeline/footprints/repair_extract.h"
+#include "pipeline/footprints/shard.h"
+#include "pipeline/run/tile_choice.h"
+#include "pipeline/footprints/repair/kept_nodes.h"
+#include "styles/districts/rule_set.h"
+
+namespace blockrand::run {
+
+/// An extract and where on Earth it lies.
+struct LocatedExtract {
+  model::Extract extract;
+  std::optional<footprints::Area> area;  ///< empty: no building has an outline
+  RegionFacts facts;         ///< without coverage, but for a tile alone
+  georef::Crs crs;
+  georef::RoundTrip round_trip;
+  georef::Projection projection;
+};
+
+/// Reads the extract (of a tile alone: its window) and chooses its frame, or takes the pinned one.
+/// \throws base::InputError  unreadable extract
+/// \throws base::UsageError  a CRS that cannot be used here
+LocatedExtract locate_extract(const BuildOptions& options, const std::optional<TileChoice>& tile,
+                              base::Progress& progress);
+
+/// What the stages before the tiles found. Keeps no reference to the extract but in `kept`.
+struct PreparedExtract {
+  std::vector<footprints::Shard> shards;
+  model::Report report;  ///< of cutting into shards
+  repair::KeptNodes kept;
+  footprints::RepairedExtract repaired;
+  context::ContextExtract context;
+  evidence::FactsExtract facts;
+  evidence::TagFacts tags;
+  evidence::StyleExtract styles;
+};
+
+/// What may be assumed of the regions of a rule book's sets, parallel to them.
+std::vector<classify::RegionPrior> region_priors(const districts::RuleBook& book,
+                                                 const classify::Tables& tables);
+
+/// Classifies by what a rule book lets assume of its places; everything else that classification looks at is the same
+/// for all books.
+evidence::StyleExtract classify_by_book(const model::Extract& extract, const footprints::FootprintStore& footprints,
+                              const evidence::FactsExtract& facts, const evidence::TagFacts& tags, const classify::Tables& tables,
+                              const districts::RuleBook& book, int workers, base::Progress& progress);
+
+/// Cuts into shards, repairs, finds the context, measures, classifies; fills facts.coverage where no earlier build
+/// pinned it. \param located  stays where it is while the result is used
+PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& options,
+                                const std::optional<TileChoice>& tile, const classify::Tables& tables,
+                                const districts::RuleBook& book, base::Progress& progress);
+
+}  // namespace blockrand::run

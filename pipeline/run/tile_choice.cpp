@@ -1,0 +1,96 @@
+#include "pipeline/run/tile_choice.h"
+
+#include <algorithm>
+#include <charconv>
+#include <string>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/portable_math.h"
+#include "pipeline/georef/tiles.h"
+
+namespace blockrand::run {
+
+namespace {
+
+using model::MappedBuilding;
+using model::ObjectState;
+
+constexpr double kMetresPerDegree = 111'000;  // of latitude, the least on the ellipsoid is 110.6 km: rounds the halo up
+constexpr int kMinLevel = 8, kMaxLevel = 20;  // 0.7 degrees to 19 m: smaller tiles are all halo
+
+model::TileId parse_tile(const std::string& text) {
+  std::int64_t numbers[3];
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  bool ok = true;
+  for (int i = 0; i < 3 && ok; ++i) {
+    const auto [next, error] = std::from_chars(at, end, numbers[i]);
+    ok = error == std::errc() && (i == 2 ? next == end : next != end && *next == '/');
+    at = next + 1;
+  }
+  ok = ok && numbers[0] >= kMinLevel && numbers[0] <= kMaxLevel && numbers[1] >= 0 && numbers[1] < (2LL << numbers[0]) &&
+       numbers[2] >= 0 && numbers[2] < (1LL << numbers[0]);
+  if (!ok)
+    throw base::UsageError("--tile " + text + " is no tile. Write level/x/y as in the file names below tiles/, for example 15/35207/25941; level from " +
+                           std::to_string(kMinLevel) + " to " + std::to_string(kMaxLevel));
+  return {static_cast<int>(numbers[0]), static_cast<std::uint32_t>(numbers[1]), static_cast<std::uint32_t>(numbers[2])};
+}
+
+}  // namespace
+
+std::optional<TileChoice> choose_tile(const BuildOptions& options) {
+  if (options.tile.empty()) {
+    if (!options.pinned.empty()) throw base::UsageError("--pinned is of use with --tile only");
+    return std::nullopt;
+  }
+  if (options.pinned.empty())
+    throw base::UsageError("--tile needs --pinned build.json of a build of the whole extract: a tile alone cannot choose the CRS");
+  if (options.bbox) throw base::UsageError("--tile and --bbox contradict each other");
+  if (!options.crs.empty()) throw base::UsageError("--tile takes the CRS of --pinned: leave out --crs");
+  TileChoice choice;
+  choice.id = parse_tile(options.tile);
+  choice.facts = read_region_facts(options.pinned, options);
+  const georef::GeoBox tile = georef::bounds(choice.id);
+  const double north = kHalo / kMetresPerDegree;
+  const double farthest = std::min(89.0, std::max(std::abs(tile.south), std::abs(tile.north)) + north);
+  const double east = north / base::cos(farthest * base::kPi / 180);
+  // A tile at 180 degrees sees nothing of what lies beyond: OSM cuts ways there.
+  choice.window = {std::max(-180.0, tile.west - east), std::max(-90.0, tile.south - north), std::min(180.0, tile.east + east),
+                   std::min(90.0, tile.north + north)};
+  return choice;
+}
+
+std::vector<std::size_t> shards_to_build(std::span<const footprints::Shard> shards, const std::optional<TileChoice>& tile) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < shards.size(); ++i)
+    if (!tile || shards[i].tile == tile->id) out.push_back(i);
+  return out;
+}
+
+void forget_others(model::Extract& extract, model::TileId tile, std::vector<model::ReportRow>& rows) {
+  std::vector<model::OsmId> kept;
+  const auto find = [&](model::OsmId id) -> const MappedBuilding* {
+    const auto place = std::lower_bound(extract.buildings.begin(), extract.buildings.end(), id,
+                                        [](const MappedBuilding& b, model::OsmId wanted) { return b.id < wanted; });
+    return place != extract.buildings.end() && place->id == id ? &*place : nullptr;
+  };
+  const auto is_here = [&](const MappedBuilding& b) {
+    // Modelled objects were built with this tile; what stands for others stands where it was built.
+    if (b.state == ObjectState::modelled) return true;
+    if (b.state == ObjectState::pending) return false;
+    if (b.state == ObjectState::represented)
+      if (const MappedBuilding* by = find(b.related)) return by->state != ObjectState::pending;
+    const std::optional<model::Location> place = b.rings.count > 0 ? footprints::box_centre(extract, b) : b.place;
+    return place && georef::tile_of(*place, tile.level) == tile;
+  };
+  std::vector<MappedBuilding> buildings;
+  for (const MappedBuilding& b : extract.buildings)
+    if (is_here(b)) {
+      buildings.push_back(b);
+      kept.push_back(b.id);
+    }
+  extract.buildings = std::move(buildings);
+  std::erase_if(rows, [&](const model::ReportRow& row) { return !std::binary_search(kept.begin(), kept.end(), row.object); });
+}
+
+}  // namespace blockrand::run

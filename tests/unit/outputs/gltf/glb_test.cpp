@@ -1,0 +1,257 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "pipeline/outputs/gltf/glb_writer.h"
+#include "pipeline/outputs/gltf/linear_light.h"
+#include "tests/unit/outputs/closed.h"
+#include "tests/unit/outputs/sample_region.h"
+#include "tests/validators/glb_reader.h"
+
+namespace blockrand::outputs {
+namespace {
+
+using test::SampleRegion;
+using validators::GlbFile;
+
+GlbOptions options() {
+  GlbOptions o;
+  o.crs = "EPSG:25833";
+  o.height_reference = "heights above local ground";
+  o.generator = "blockrand test";
+  o.attribution = "\xC2\xA9 OpenStreetMap contributors, ODbL 1.0";
+  o.frame.longitude = 13.4;
+  o.frame.latitude = 52.5;
+  o.frame.to_enu = [](std::span<const model::Point3> in, std::span<model::Point3> out) {
+    // Turned by 1.2 degrees, as by the convergence of the meridians: nothing stays on a grid.
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      const double x = in[i].x - 391040.7, y = in[i].y - 5819030.2;
+      out[i] = {0.99978 * x - 0.02094 * y, 0.02094 * x + 0.99978 * y, in[i].z};
+    }
+  };
+  return o;
+}
+
+nlohmann::json document(const std::string& bytes) {
+  std::uint32_t length = 0;
+  std::memcpy(&length, &bytes[12], 4);
+  return nlohmann::json::parse(bytes.substr(20, length));
+}
+
+std::vector<std::vector<model::Point3>> triangles(const validators::GlbFeature& feature) {
+  std::vector<std::vector<model::Point3>> out;
+  for (const auto& t : feature.triangles) out.emplace_back(t.corners.begin(), t.corners.end());
+  return out;
+}
+
+const validators::GlbFeature& feature(const GlbFile& file, const std::string& id) {
+  for (const auto& f : file.features)
+    if (f.id == id) return f;
+  throw std::runtime_error("no feature " + id);
+}
+
+TEST(Glb, EverySolidClosesAgain) {
+  const SampleRegion zoo = SampleRegion::zoo();
+  const Glb glb = write_glb(zoo.region(), options());
+  const GlbFile file = validators::read_glb_bytes(glb.bytes);
+  ASSERT_EQ(file.features.size(), 9u);
+  EXPECT_EQ(glb.rows, 9u);
+  std::size_t count = 0;
+  for (const auto& f : file.features) {
+    count += f.triangles.size();
+    if (f.id == "w60") {
+      EXPECT_TRUE(f.triangles.empty());
+      continue;
+    }
+    EXPECT_TRUE(test::closed(triangles(f))) << f.id;
+    EXPECT_GT(test::six_volumes(triangles(f)), 0) << f.id;
+  }
+  EXPECT_EQ(count, glb.triangles);
+  EXPECT_NEAR(test::six_volumes(triangles(feature(file, "w40"))) / 6, (40.0 * 40 - 20 * 20) * 22 * 0.99978 * 0.99978,
+              30);
+}
+
+TEST(Glb, PositionsCountInSteps) {
+  SampleRegion s;
+  model::Building& b = s.add_building(1, {{"building", "house"}});
+  s.add_gable(b, b.id(), 391000, 5819000, 12.3, 9.7, 34.25, 40.5, 44.125);
+  GlbOptions o = options();
+  const Glb glb = write_glb(s.region(), o);
+  const nlohmann::json json = document(glb.bytes);
+  constexpr double step = 1.0 / 4096;
+  EXPECT_FALSE(json["nodes"][0].contains("scale"));
+  const GlbFile file = validators::read_glb_bytes(glb.bytes);
+  EXPECT_TRUE(test::closed(triangles(file.features.at(0))));
+  // Each corner lies within half a step of one that the frame gives.
+  std::vector<model::Point3> expected(b.parts[0].lod2.vertices.size());
+  o.frame.to_enu(b.parts[0].lod2.vertices, expected);
+  for (const auto& t : file.features[0].triangles)
+    for (const model::Point3& p : t.corners) {
+      for (const double v : {p.x, p.y, p.z}) EXPECT_EQ(v / step, std::nearbyint(v / step));
+      double best = 1;
+      for (const model::Point3& e : expected)
+        best = std::min(best, std::max({std::abs(e.x - p.x), std::abs(e.y - p.y), std::abs(e.z - p.z)}));
+      EXPECT_LE(best, step / 2 + 1e-9);
+    }
+}
+
+/// Beyond 2 km steps would no longer fit into what compression keeps of a float.
+TEST(Glb, WideMeshesKeepFloats) {
+  SampleRegion s;
+  for (const double x : {391000.0, 391000.0 + 5000}) {
+    model::Building& b = s.add_building(static_cast<std::int64_t>(x), {{"building", "house"}});
+    s.add_gable(b, b.id(), x, 5819000, 12.3, 9.7, 34.25, 40.5, 44.125);
+  }
+  for (const Compression compression : {Compression::none, Compression::meshopt}) {
+    GlbOptions o = options();
+    o.compression = compression;
+    const nlohmann::json json = document(write_glb(s.region(), o).bytes);
+    for (const auto& p : json["meshes"][0]["primitives"]) {
+      const auto& a = json["accessors"][p["attributes"]["POSITION"].get<std::size_t>()];
+      EXPECT_EQ(a["componentType"], 5126);
+      EXPECT_GT(a["max"][0].get<double>() - a["min"][0].get<double>(), 4000);
+      for (const auto& view : json["bufferViews"]) EXPECT_EQ(view.dump().find("EXPONENTIAL"), std::string::npos);
+    }
+  }
+}
+
+/// A colour of many vertices has a material of its own, few share one and carry their colours.
+TEST(Glb, ColoursOfManyVerticesAreMaterials) {
+  const SampleRegion many = SampleRegion::settlement(400, false);
+  const nlohmann::json json = document(write_glb(many.region(), options()).bytes);
+  std::size_t own = 0;
+  for (const auto& p : json["meshes"][0]["primitives"]) {
+    const auto& material = json["materials"][p["material"].get<std::size_t>()]["pbrMetallicRoughness"];
+    EXPECT_NE(material.contains("baseColorFactor"), p["attributes"].contains("COLOR_0"));
+    own += material.contains("baseColorFactor");
+  }
+  EXPECT_GT(own, 0u);
+}
+
+TEST(Glb, NormalsAndColoursBelongToTheFaces) {
+  const SampleRegion zoo = SampleRegion::zoo();
+  const GlbFile file = validators::read_glb_bytes(write_glb(zoo.region(), options()).bytes);
+  std::set<std::string> materials;
+  for (const auto& f : file.features)
+    for (const auto& t : f.triangles) {
+      materials.insert(t.material);
+      const auto &a = t.corners[0], &b = t.corners[1], &c = t.corners[2];
+      const double x = (b.y - a.y) * (c.z - a.z) - (b.z - a.z) * (c.y - a.y);
+      const double y = (b.z - a.z) * (c.x - a.x) - (b.x - a.x) * (c.z - a.z);
+      const double z = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+      const double length = std::sqrt(x * x + y * y + z * z);
+      EXPECT_GT((x * t.normal[0] + y * t.normal[1] + z * t.normal[2]) / length, 0.99) << f.id;
+      if (t.material == "roof_tiles") {
+        EXPECT_NEAR(t.colour[0] * 65535, kLinearLight[160], 0.33);  // materials have five decimals
+        EXPECT_NEAR(t.colour[2] * 65535, kLinearLight[40], 0.33);
+      }
+    }
+  EXPECT_EQ(materials, (std::set<std::string>{"plaster", "roof_tiles"}));
+}
+
+TEST(Glb, TellsWhatIsKnownAboutEachPart) {
+  const SampleRegion zoo = SampleRegion::zoo();
+  GlbOptions o = options();
+  o.evidence = true;
+  const GlbFile file = validators::read_glb_bytes(write_glb(zoo.region(), o).bytes);
+  EXPECT_EQ(file.crs, "EPSG:25833");
+  EXPECT_EQ(file.longitude, 13.4);
+  EXPECT_EQ(file.copyright, o.attribution);
+
+  const auto& shop = feature(file, "w-7");
+  EXPECT_EQ(shop.numbers.at("osm_id"), -7);
+  EXPECT_EQ(shop.texts.at("osm_type"), "way");
+  EXPECT_EQ(shop.texts.at("name"), "Zum \"Krokodil\" & <S\xC3\xB6hne>");
+  EXPECT_EQ(nlohmann::json::parse(shop.texts.at("tags"))["note"], "two\nlines\tand a tab");
+  EXPECT_EQ(nlohmann::json::parse(shop.texts.at("evidence"))["use"], "the tag amenity=place_of_worship");
+  EXPECT_EQ(shop.texts.at("use"), "church");
+  EXPECT_EQ(shop.texts.at("use_source"), "implied");
+  EXPECT_NEAR(shop.numbers.at("use_confidence"), 0.5, 1.0 / 255);
+  EXPECT_EQ(shop.numbers.count("roof_direction"), 0u);
+  EXPECT_EQ(shop.texts.count("roof_direction_source"), 0u);
+  EXPECT_EQ(shop.texts.at("built_roof"), "flat");
+  EXPECT_EQ(shop.texts.at("roof_shape"), "gabled");
+  EXPECT_EQ(shop.texts.at("wall_colour"), "#decdaa");
+  EXPECT_EQ(shop.texts.count("address"), 0u);
+
+  const auto& house = feature(file, "w12");
+  EXPECT_EQ(house.texts.at("address"), "Kastanienallee 12, 10435 Berlin");
+  EXPECT_EQ(house.numbers.at("roof_direction"), 90);
+  EXPECT_EQ(house.texts.at("roof_direction_source"), "tag");
+  EXPECT_EQ(house.numbers.at("height"), 9.5);
+  EXPECT_EQ(house.numbers.at("lod"), 2);
+  EXPECT_EQ(nlohmann::json::parse(house.texts.at("tags"))["description"], "]]> \xF0\x9F\x8F\xA0 'quoted'");
+
+  const auto& nave = feature(file, "w30.w31");
+  EXPECT_EQ(nave.texts.at("building"), "w30");
+  EXPECT_EQ(nave.numbers.at("osm_id"), 31);
+  EXPECT_EQ(nave.texts.at("name"), "St. Marien");
+  EXPECT_EQ(nlohmann::json::parse(nave.texts.at("building_tags"))["building"], "cathedral");
+  const auto& tower = feature(file, "w30.w32");
+  EXPECT_EQ(tower.texts.at("fallbacks"), "ROOF_FAILED ROOF_SHAPE_ADAPTED");
+  EXPECT_EQ(tower.texts.count("building_tags"), 0u);
+  EXPECT_EQ(feature(file, "w60").numbers.at("lod"), 0);
+}
+
+TEST(Glb, LowerLevelsOfDetail) {
+  const SampleRegion zoo = SampleRegion::zoo();
+  GlbOptions o = options();
+  o.lod = 1;
+  const GlbFile one = validators::read_glb_bytes(write_glb(zoo.region(), o).bytes);
+  EXPECT_EQ(feature(one, "w12").triangles.size(), 12u);  // a block instead of the gable house
+  // LoD0 shows the footprint as one horizontal face on the ground.
+  o.lod = 0;
+  const GlbFile ground = validators::read_glb_bytes(write_glb(zoo.region(), o).bytes);
+  EXPECT_EQ(ground.features.size(), 9u);
+  const auto& house = feature(ground, "w12");
+  ASSERT_EQ(house.triangles.size(), 2u);
+  for (const auto& triangle : house.triangles)
+    for (const auto& corner : triangle.corners) EXPECT_NEAR(corner.z, house.triangles[0].corners[0].z, 1e-3);
+}
+
+TEST(Glb, NoDataPropertiesAreLeftOut) {
+  SampleRegion s;
+  model::Building& b = s.add_building(1, {});
+  s.add_box(b, b.id(), 391000, 5819000, 10, 8, 0, 6);
+  const nlohmann::json json = document(write_glb(s.region(), options()).bytes);
+  const auto& extension = json["extensions"]["EXT_structural_metadata"];
+  EXPECT_FALSE(extension["propertyTables"][0]["properties"].contains("roof_direction"));
+  EXPECT_TRUE(extension["schema"]["classes"]["building_part"]["properties"].contains("roof_direction"));
+  for (const auto& view : json["bufferViews"]) EXPECT_EQ(view.value("byteOffset", 0) % 8, 0);
+}
+
+TEST(Glb, TheSameBytesTwice) {
+  const std::string a = write_glb(SampleRegion::zoo().region(), options()).bytes;
+  const std::string b = write_glb(SampleRegion::zoo().region(), options()).bytes;
+  EXPECT_EQ(a, b);
+}
+
+TEST(Glb, ManyVerticesTakeSeveralPrimitives) {
+  const SampleRegion many = SampleRegion::settlement(4000, false);
+  const Glb glb = write_glb(many.region(), options());
+  const nlohmann::json json = document(glb.bytes);
+  std::set<int> types;
+  for (const auto& p : json["meshes"][0]["primitives"])
+    types.insert(json["accessors"][p["indices"].get<std::size_t>()]["componentType"].get<int>());
+  EXPECT_EQ(types, std::set<int>{5123});
+  for (const auto& p : json["meshes"][0]["primitives"])
+    EXPECT_LE(json["accessors"][p["attributes"]["POSITION"].get<std::size_t>()]["count"].get<int>(), 65535);
+  const GlbFile file = validators::read_glb_bytes(glb.bytes);
+  EXPECT_TRUE(test::closed(triangles(file.features.at(3999))));
+}
+
+TEST(Glb, EmptyRegion) {
+  const Glb glb = write_glb(SampleRegion().region(), options());
+  EXPECT_EQ(glb.rows, 0u);
+  EXPECT_EQ(glb.triangles, 0u);
+  const nlohmann::json json = document(glb.bytes);
+  EXPECT_EQ(json["asset"]["version"], "2.0");
+  EXPECT_TRUE(json["asset"]["extras"].contains("georeference"));
+  EXPECT_FALSE(json.contains("buffers"));
+}
+
+}  // namespace
+}  // namespace blockrand::outputs

@@ -1,0 +1,144 @@
+#include "tests/unit/run/built_town.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "importers/osm/read_extract.h"
+#include "pipeline/base/parallel.h"
+#include "pipeline/context/blocks.h"
+#include "pipeline/georef/crs.h"
+#include "pipeline/footprints/area.h"
+#include "pipeline/attributes/assign_extract.h"
+#include "pipeline/evidence/classify_extract.h"
+#include "pipeline/context/context_extract.h"
+#include "pipeline/footprints/load.h"
+#include "pipeline/run/prepare_extract.h"
+#include "pipeline/attributes/rule_book.h"
+#include "pipeline/evidence/style_values.h"
+#include "pipeline/context/surroundings_finder.h"
+#include "pipeline/run/tile_stages.h"
+
+namespace blockrand::region::test {
+
+namespace {
+
+std::vector<Shard> shards_of(const model::Extract& extract) {
+  model::Report report;
+  return make_shards(extract, report);
+}
+
+georef::Projection projection_of(const model::Extract& extract) {
+  const Area area = area_of(extract).value();
+  return {georef::open_crs(georef::choose_crs(area.centre.lon, area.centre.lat), area.box), area.box};
+}
+
+}  // namespace
+
+const attributes::GenerateOptions& usual_generation() {
+  static const attributes::GenerateOptions options;
+  return options;
+}
+
+struct BuiltTown::State {
+  base::Progress progress;
+  repair::RepairOptions repair;
+  int workers = base::worker_count(0);
+  model::Extract extract;
+  georef::Projection projection;
+  attributes::Defaults defaults = attributes::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
+  std::vector<Shard> shards;
+  repair::KeptNodes kept;
+  RepairedExtract repaired;
+  ContextExtract context;
+  SurroundingsFinder surroundings;
+  RoofLineFinder roof_lines;
+  footprints::BuildingNumbers numbers;
+  context::TaggedNeighbours neighbours;
+  classify::Tables tables = classify::Tables::read(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
+  ReadRuleBook rules = read_rule_book(std::string(BLOCKRAND_SOURCE_DIR) + "/configs", "");
+  attributes::Overrides overrides;
+  FactsExtract facts;
+  TagFacts tags;
+  StyleExtract style_extract;
+  StyleInputs style_inputs{facts, tags, style_extract, tables};
+  std::optional<DistrictAssigner> assigner;
+
+  explicit State(const std::filesystem::path& file)
+      : extract(importers::osm::read_extract(file.string())),
+        projection(projection_of(extract)),
+        shards(shards_of(extract)),
+        kept(extract),
+        repaired(repair_extract(extract, shards, projection, kept, repair, workers, progress)),
+        context(context_extract(extract, repaired.footprints,
+                                context::coverage_of(building_places(extract, projection)), projection, workers,
+                                progress)),
+        surroundings(extract, repaired.footprints, context),
+        roof_lines(extract, projection),
+        numbers(repaired.footprints),
+        neighbours(tagged_buildings(extract, defaults, projection), usual_generation().neighbour_reach),
+        facts(facts_extract(extract, repaired.footprints, context, surroundings, workers, progress)),
+        tags(tag_facts(extract, repaired.footprints, context, tables, projection, facts)),
+        style_extract(classified()) {
+    assigner.emplace(rules.book, AssignInputs{.extract = extract,
+                                              .footprints = repaired.footprints,
+                                              .context = context,
+                                              .styles = style_extract,
+                                              .projection = projection,
+                                              .defaults = defaults,
+                                              .neighbours = neighbours,
+                                              .overrides = &overrides,
+                                              .pinned = {}});
+  }
+
+  /// With the priors of its region, as a build does.
+  StyleExtract classified() {
+    const std::vector<classify::RegionPrior> priors = region_priors(rules.book, tables);
+    return classify_extract(
+        facts, tags, tables,
+        [&](std::uint32_t b) -> const classify::RegionPrior* {
+          const std::uint32_t set = rules.book.choose(box_centre(extract, extract.buildings[repaired.footprints[b].lead]));
+          return set == blockrand::districts::RuleBook::kNoSet ? nullptr : &priors[set];
+        },
+        {}, workers, progress);
+  }
+};
+
+BuiltTown::BuiltTown(const std::filesystem::path& file) : state_(std::make_unique<State>(file)) {}
+BuiltTown::~BuiltTown() = default;
+
+const model::Extract& BuiltTown::extract() const { return state_->extract; }
+const FootprintStore& BuiltTown::footprints() const { return state_->repaired.footprints; }
+const georef::Projection& BuiltTown::projection() const { return state_->projection; }
+const attributes::Defaults& BuiltTown::defaults() const { return state_->defaults; }
+const std::vector<Shard>& BuiltTown::shards() const { return state_->shards; }
+
+std::size_t BuiltTown::shard_of(std::uint32_t building) const {
+  const auto& first = state_->repaired.first;
+  return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), building) - first.begin()) - 1;
+}
+
+model::Region BuiltTown::tile(std::size_t shard, int lod) const {
+  std::atomic<std::int64_t> time = 0;
+  const State& s = *state_;
+  return run_tile(shard, {.extract = s.extract,
+                          .shards = s.shards,
+                          .projection = s.projection,
+                          .defaults = s.defaults,
+                          .kept = s.kept,
+                          .repaired = s.repaired,
+                          .context = s.context,
+                          .surroundings = s.surroundings,
+                          .roof_lines = s.roof_lines,
+                          .numbers = s.numbers,
+                          .neighbours = s.neighbours,
+                          .assigner = *s.assigner,
+                          .overrides = s.overrides,
+                          .styles = s.style_inputs,
+                          .repair = s.repair,
+                          .generate = usual_generation(),
+                          .lod = lod,
+                          .ground = [](const model::Building&) { return context::BuildingGround{}; },
+                          .context_time = time});
+}
+
+}  // namespace blockrand::region::test

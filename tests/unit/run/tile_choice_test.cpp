@@ -1,0 +1,120 @@
+// One tile alone: what the options say, and what a build keeps of it.
+#include "pipeline/run/tile_choice.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "pipeline/base/error.h"
+#include "pipeline/georef/tiles.h"
+#include "pipeline/run/documents.h"
+
+namespace blockrand::region {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Pinned : public ::testing::Test {
+ protected:
+  void write(const std::string& text) { std::ofstream(path_) << text; }
+  void TearDown() override { std::filesystem::remove(path_); }
+  std::string path_ = ::testing::TempDir() + "pinned-" + std::to_string(::getpid()) + ".json";
+  std::string good_ = R"({"configuration":)" + configuration({}).dump() + R"(,"crs":{"code":"EPSG:25833"},"region":{"box":[13.3,52.4,13.5,52.6],"centre":[13.4,52.5],
+                          "areas":[],"coverage":[[380000,5800000],[390000,5800000],[385000,5810000.5]]}})";
+};
+
+template <class Error>
+std::string message(const BuildOptions& options) {
+  try {
+    choose_tile(options);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST_F(Pinned, ATileTakesItsFactsFromTheWhole) {
+  write(good_);
+  BuildOptions options;
+  options.tile = "15/35207/25941";
+  options.pinned = path_;
+  const auto choice = choose_tile(options);
+  ASSERT_TRUE(choice);
+  EXPECT_EQ(choice->id, (model::TileId{15, 35207, 25941}));
+  EXPECT_EQ(choice->facts.crs, "EPSG:25833");
+  ASSERT_EQ(choice->facts.coverage.size(), 3u);
+  EXPECT_EQ(choice->facts.coverage[2], (model::Point2{385000, 5810000.5}));
+  // A degree of latitude is 111 km; the window reaches 3 km beyond the tile on all sides.
+  const double size = 180.0 / 32768;
+  const double west = -180 + 35207 * size, south = -90 + 25941 * size;
+  EXPECT_NEAR((south - choice->window[1]) * 111.2, 3.0, 0.05);
+  EXPECT_GE((west - choice->window[0]) * 111.2 * 0.6085, 3.0) << "cos(52.5 degrees) is 0.6088";
+  EXPECT_LT((west - choice->window[0]) * 111.2 * 0.6085, 3.2);
+}
+
+TEST_F(Pinned, MistakesAreNamed) {
+  write(good_);
+  BuildOptions options;
+  options.pinned = path_;
+  EXPECT_THAT(message<base::UsageError>(options), HasSubstr("--tile"));
+  options.tile = "15/35207/25941";
+  options.pinned.clear();
+  EXPECT_THAT(message<base::UsageError>(options), HasSubstr("--pinned"));
+  options.pinned = path_;
+  for (const char* text : {"15", "15/1", "15/1/2/3", "a/b/c", "15/-1/2", "15/65536/2", "15/1/32768", "5/1/1", "15/1/2 ", "15//2"}) {
+    options.tile = text;
+    EXPECT_THAT(message<base::UsageError>(options), HasSubstr("level/x/y")) << text;
+  }
+  options.tile = "15/35207/25941";
+  options.crs = "EPSG:25833";
+  EXPECT_THAT(message<base::UsageError>(options), HasSubstr("--crs"));
+  options.crs.clear();
+  options.repair.max_shift = 0.3;
+  EXPECT_THAT(message<base::UsageError>(options), HasSubstr("repair.max_shift"));
+  options.repair = {};
+  for (const char* text : {"", "{", "[]", "{\"crs\":{\"code\":\"EPSG:25833\"}}",
+                           R"({"crs":{"code":"EPSG:25833"},"region":{"box":[1,2,3],"centre":[1,2],"coverage":[]}})"}) {
+    write(text);
+    EXPECT_THAT(message<base::InputError>(options), HasSubstr(path_)) << text;
+  }
+  std::filesystem::remove(path_);
+  EXPECT_THAT(message<base::InputError>(options), HasSubstr("cannot be opened"));
+}
+
+TEST(ForgetOthers, KeepsWhatWasBuiltHereAndWhatItStandsFor) {
+  using model::ObjectState;
+  model::Extract e;
+  const auto add = [&](std::int64_t id, ObjectState state, std::int64_t related = 0) {
+    model::MappedBuilding b;
+    b.id = {model::OsmType::way, id};
+    b.state = state;
+    b.related = {model::OsmType::way, related};
+    b.place = model::Location{134'000'000, 525'000'000};
+    e.buildings.push_back(b);
+  };
+  add(1, ObjectState::modelled);
+  add(2, ObjectState::represented, 1);
+  add(3, ObjectState::pending);
+  add(4, ObjectState::represented, 3);  // by a building of another tile, though it lies here
+  add(5, ObjectState::reported);
+  add(6, ObjectState::duplicate, 3);
+  std::vector<model::ReportRow> rows = {{{model::OsmType::way, 2}, model::IssueCode::squared, ""},
+                                        {{model::OsmType::way, 4}, model::IssueCode::squared, ""}};
+  const model::TileId here = georef::tile_of(*e.buildings[0].place, 15);
+  forget_others(e, here, rows);
+  std::vector<std::int64_t> kept;
+  for (const model::MappedBuilding& b : e.buildings) kept.push_back(b.id.number);
+  EXPECT_THAT(kept, ::testing::ElementsAre(1, 2, 5, 6));
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].object.number, 2);
+  forget_others(e, {15, here.x + 1, here.y}, rows);
+  kept.clear();
+  for (const model::MappedBuilding& b : e.buildings) kept.push_back(b.id.number);
+  EXPECT_THAT(kept, ::testing::ElementsAre(1, 2)) << "what was reported lies elsewhere";
+}
+
+}  // namespace
+}  // namespace blockrand::region
