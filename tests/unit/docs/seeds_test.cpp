@@ -1,4 +1,4 @@
-// docs/seeds.md is a ledger: every checklist id of the five theses' digests, what became of it, and the test that
+// docs/internal/seeds.md is a ledger: every checklist id of the five theses' digests, what became of it, and the test that
 // proves it. This test keeps the page complete and true.
 //
 // Compile definitions: BLOCKRAND_SOURCE_DIR (root of the repository) and BLOCKRAND_SHARED_DIR (the folder that holds
@@ -248,7 +248,7 @@ std::string joined(const Complaints& complaints) {
   return text;
 }
 
-std::string page_text() { return read_text(kSourceDir / "docs" / "seeds.md"); }
+std::string page_text() { return read_text(kSourceDir / "docs" / "internal" / "seeds.md"); }
 
 // ---- the page itself
 // -------------------------------------------------------------------------------------------------
