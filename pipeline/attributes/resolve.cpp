@@ -47,7 +47,7 @@ double tangent(double degrees) { return base::tan(degrees * base::kRadiansPerDeg
 
 /// Full storeys under rafters: Berlin's building codes from 1887 allowed five and 22 m to the eaves, post-war ones call what has
 /// its highest floor above 22 m a tower. Of 37 houses with seven storeys and more that looked sloped 37 are tagged flat, of 29
-/// with six 14 (tests/bench/RESULTS.md, "Roofs against references").
+/// with six 14 (docs/internal/RESULTS.md, "Roofs against references").
 constexpr float kMostStoreysUnderRafters = 6;
 
 /// m. Storeys that tagged height and terrain would squeeze below this say that the height is measured from elsewhere.

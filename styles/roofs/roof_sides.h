@@ -59,7 +59,7 @@ double party_share_of(const PlanSide& facade, std::optional<model::Point2> stree
 /// Unit vector along which the ridge of a plan of one wing runs between its party walls where no street tells: across
 /// the longer side when neighbours stand at both long sides (at 0.3 of each), or at more than half of one of a plan no
 /// longer than 2 widths, and at none of its short sides; else along it. Of 252 gabled roofs of The Hague between two
-/// such neighbours 251 run so (tests/bench/RESULTS.md, "Roofs against references"). None without party walls.
+/// such neighbours 251 run so (docs/internal/RESULTS.md, "Roofs against references"). None without party walls.
 std::optional<model::Point2> ridge_between(const model::Polygon& plan, const std::vector<PlanSide>& edges,
                                            const std::vector<char>& party);
 

@@ -1,6 +1,6 @@
 // Are our roofs those that surveyors found? Ridge and eaves of what is built from OSM against surveyed and hand-built
 // models on the same ground, and, with the survey's own ridge, eaves and shape given to the builder of roofs, one
-// surface against the other. Skipped where the data is absent. Figures: tests/bench/RESULTS.md, "Roofs against
+// surface against the other. Skipped where the data is absent. Figures: docs/internal/RESULTS.md, "Roofs against
 // references". BLOCKRAND_ROOF_CASES=1 prints every building.
 #include <gtest/gtest.h>
 
