@@ -1,5 +1,6 @@
 #include "importers/osm/tag_values.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -270,40 +271,14 @@ std::optional<model::Colour> parse_colour(std::string_view text) {
 std::optional<model::RoofShape> parse_roof_shape(std::string_view text) {
   const std::string name = normal_name(first_of_list(text));
   if (name.empty()) return std::nullopt;
-  for (int i = 0; i <= static_cast<int>(model::RoofShape::other); ++i)
-    if (normal_name(model::kRoofShapeNames[i]) == name) return static_cast<model::RoofShape>(i);
-  struct Synonym {
-    std::string_view name;
-    model::RoofShape shape;
-  };
-  using enum model::RoofShape;
-  static constexpr Synonym synonyms[] = {{"gable", gabled},
-                                         {"pitched", gabled},
-                                         {"saddle", gabled},
-                                         {"dual_pitched", gabled},
-                                         {"hip", hipped},
-                                         {"half_hip", half_hipped},
-                                         {"jerkinhead", half_hipped},
-                                         {"pyramid", pyramidal},
-                                         {"tented", pyramidal},
-                                         {"shed", skillion},
-                                         {"lean_to", skillion},
-                                         {"monopitch", skillion},
-                                         {"mono_pitched", skillion},
-                                         {"single_pitch", skillion},
-                                         {"conical", cone},
-                                         {"barrel", round},
-                                         {"rounded", round},
-                                         {"cross_gabled", crosspitched},
-                                         {"saw_tooth", sawtooth},
-                                         {"helm", spire},
-                                         {"hipped_gabled", hipped_and_gabled},
-                                         {"gambrel_roof", gambrel},
-                                         {"flat_roof", flat},
-                                         {"multiple", many}};
-  for (const Synonym& s : synonyms)
-    if (s.name == name) return s.shape;
-  return other;
+  for (std::size_t i = 0; i < model::kRoofShapeCount; ++i) {
+    const model::RoofTraits& row = model::kRoofTraits[i];
+    if (!row.is_tag_value) continue;
+    if (normal_name(row.name) == name ||
+        std::find(row.synonyms.begin(), row.synonyms.end(), name) != row.synonyms.end())
+      return static_cast<model::RoofShape>(i);
+  }
+  return model::RoofShape::other;
 }
 
 std::optional<model::RoofOrientation> parse_roof_orientation(std::string_view text) {

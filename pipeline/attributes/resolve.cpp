@@ -53,29 +53,10 @@ constexpr float kMostStoreysUnderRafters = 6;
 /// m. Storeys that tagged height and terrain would squeeze below this say that the height is measured from elsewhere.
 constexpr double kSquashedStorey = 1.5;
 
-/// Pitch of roofs that no tag measures, degrees; of mansard and gambrel that of the lower slope. The sources stand in
-/// references/styles.md, section 2.7.
-double usual_pitch(RoofShape shape, double ridged) {
-  switch (shape) {
-    case RoofShape::skillion:
-    case RoofShape::butterfly: return std::min(ridged, 10.0);  // lean-to roofs of side wings: 5 to 20
-    case RoofShape::sawtooth: return 30;                       // workshops: 30 to 60, over teeth of 5 m
-    case RoofShape::saltbox:
-    case RoofShape::gabled_height_moved: return std::min(ridged, 30.0);
-    // The steep strip of a Berlin roof is 2 to 5 m high; over 0.6 of half a house's depth 45 degrees give 3 to 4 m.
-    case RoofShape::double_saltbox:
-    case RoofShape::quadruple_saltbox: return 45;
-    case RoofShape::berlin: return 45;  // has pitches of its own
-    case RoofShape::mansard:
-    case RoofShape::gambrel: return 65;  // where it is too low for an attic storey
-    case RoofShape::round: return 30;    // halls: the rise is a quarter to a third of the span
-    case RoofShape::dome: return 45;     // half a sphere
-    case RoofShape::cone:
-    case RoofShape::onion: return 55;
-    case RoofShape::helm: return 60;
-    case RoofShape::spire: return 70;
-    default: return ridged;
-  }
+/// Pitch of roofs that no tag measures, degrees. \param of_use  that of sloped roofs of the building's use
+double usual_pitch(RoofShape shape, double of_use) {
+  const model::UsualPitch& pitch = model::traits(shape).pitch;
+  return pitch.own > 0 ? pitch.own : std::min(of_use, pitch.most);
 }
 
 /// One thing that an attribute could be.
@@ -264,9 +245,10 @@ struct Resolver {
     roofs::RoofRequest request = tagged_request(own, shape, row());
     request.across = orientation == RoofOrientation::across;
     const roofs::MainSlope slope = plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
-    if (shape == RoofShape::berlin)
+    const auto* edges = model::constructed_as<model::EdgeRoof>(shape);
+    if (edges && edges->eaves == model::EavesProfile::berlin)
       return {slope.run, preset_source(), preset_confidence(), "60 degrees to the street, 8 to the yard, a knee wall there"};
-    if (shape == RoofShape::mansard || shape == RoofShape::gambrel) {
+    if (edges && edges->eaves == model::EavesProfile::broken) {
       const double run = roofs::main_slope(plan(), request, false).run, attic = attic_height(preset.storey_height);
       // Below an attic's height there is no storey in it: the pitch alone counts.
       if (run * roofs::kMansardSteep > 2 * attic)
@@ -564,23 +546,25 @@ struct Resolver {
   }
   std::string text(const Sourced<RoofOrientation>& orientation) const { return region.evidence[orientation.evidence].text; }
 
+  /// Whether outputs state the direction of a ridge.
   static bool has_ridge(RoofShape shape) {
-    switch (shape) {
-      case RoofShape::gabled:
-      case RoofShape::gabled_height_moved:
-      case RoofShape::hipped:
-      case RoofShape::half_hipped:
-      case RoofShape::side_hipped:
-      case RoofShape::side_half_hipped:
-      case RoofShape::hipped_and_gabled:
-      case RoofShape::mansard:
-      case RoofShape::gambrel:
-      case RoofShape::saltbox:
-      case RoofShape::double_saltbox:
-      case RoofShape::quadruple_saltbox:
-      case RoofShape::berlin: return true;
-      default: return false;
+    using enum model::RoofGroup;
+    switch (model::traits(shape).group) {
+      case gabled:
+      case hipped:
+      case mansard:
+      case saltbox:
+        return true;
+      case flat:
+      case cross_gabled:
+      case pyramidal:
+      case shed:
+      case folded:
+      case round:
+      case other:
+        break;
     }
+    return false;
   }
 };
 

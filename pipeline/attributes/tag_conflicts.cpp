@@ -38,42 +38,34 @@ bool apart(double a, double b, double share) {
   return std::fabs(a - b) > kApart && std::fabs(a - b) > share * std::max(a, b);
 }
 
-bool stands_around_apex(RoofShape shape) {
-  return shape == RoofShape::pyramidal || shape == RoofShape::cone || shape == RoofShape::spire ||
-         shape == RoofShape::helm;
+/// Straight slopes up to an apex, as towers have: they may be steeper than others. What is vaulted on plans without an
+/// apex is a dome.
+bool is_pointed(RoofShape shape) {
+  if (const auto* crossed = model::constructed_as<model::CrossedRoof>(shape)) return crossed->gable_height < 1;
+  const auto* rings = model::constructed_as<model::ApexRoof>(shape);
+  return rings && model::rises_from_edges(rings->relative);
 }
 
-/// Roofs that have one pitch from the eaves up, so that an angle gives a height without doubt.
-bool has_one_pitch(RoofShape shape) {
-  switch (shape) {
-    case RoofShape::gabled:
-    case RoofShape::hipped:
-    case RoofShape::half_hipped:
-    case RoofShape::side_hipped:
-    case RoofShape::side_half_hipped:
-    case RoofShape::hipped_and_gabled:
-    case RoofShape::skillion:
-    case RoofShape::pyramidal:
+/// Both ends of a wing are alike: no direction is needed to tell one from the other.
+bool ends_are_alike(model::WingEnds ends) {
+  switch (ends) {
+    case model::WingEnds::hips:
+    case model::WingEnds::gables:
+    case model::WingEnds::half_hips:
+    case model::WingEnds::gablets:
       return true;
-    default:
-      return false;
+    case model::WingEnds::one_hip:
+    case model::WingEnds::one_half_hip:
+      break;
   }
+  return false;
 }
 
-/// Roofs with a ridge across which they fall, so that direction and orientation speak of one thing.
-bool has_ridge(RoofShape shape) {
-  switch (shape) {
-    case RoofShape::gabled:
-    case RoofShape::hipped:
-    case RoofShape::half_hipped:
-    case RoofShape::hipped_and_gabled:
-    case RoofShape::mansard:
-    case RoofShape::gambrel:
-    case RoofShape::round:
-      return true;
-    default:
-      return false;
-  }
+/// Roofs with a ridge across which they fall, so that direction and orientation speak of one thing. Those of saltboxes
+/// are decks, or lie to one side.
+bool falls_across_ridge(RoofShape shape) {
+  const auto* edges = model::constructed_as<model::EdgeRoof>(shape);
+  return edges && ends_are_alike(edges->ends) && model::traits(shape).group != model::RoofGroup::saltbox;
 }
 
 std::string shape_text(RoofShape shape) { return "roof:shape=" + std::string(model::name(shape)); }
@@ -126,14 +118,14 @@ class Finder {
   void heights() {
     const auto height = useful_roof_height(tags_, shape_);
     if (tags_.roof_angle) {
-      const double limit = stands_around_apex(shape_) ? kSteepestSpire : kSteepestRoof;
+      const double limit = is_pointed(shape_) ? kSteepestSpire : kSteepestRoof;
       if (*tags_.roof_angle > limit)
         out_.push_back(
             {IssueCode::value_clamped, fmt::format("roof:angle={:g}, limited to {:g}", *tags_.roof_angle, limit)});
     }
     // What an angle means hangs on the shape, which must not be a guess.
     std::optional<double> from_angle;
-    if (tags_.roof_shape && has_one_pitch(shape_)) from_angle = height_of_angle(tags_, shape_, plan_, edges_);
+    if (tags_.roof_shape && model::traits(shape_).one_pitch) from_angle = height_of_angle(tags_, shape_, plan_, edges_);
     const double share = plain_ ? kApartShare : kRoughShare;
     if (height && from_angle && apart(*height, *from_angle, share))
       note("roof:height={:g} against roof:angle={:g}, which gives {:.1f} m: roof:height won", *height,
@@ -165,7 +157,7 @@ class Finder {
   }
 
   void directions() {
-    if (!tags_.roof_direction || !tags_.roof_orientation || !has_ridge(shape_) || !plain_) return;
+    if (!tags_.roof_direction || !tags_.roof_orientation || !falls_across_ridge(shape_) || !plain_) return;
     const model::Point2 axis = geometry::long_axis(plan_.outer.points);
     const auto extent = [&](model::Point2 d) {
       const geometry::Extent e = geometry::extent_along(plan_.outer.points, d);
@@ -230,7 +222,7 @@ std::optional<double> useful_roof_height(const MappedAttributes& tags, RoofShape
 
 std::optional<double> useful_roof_angle(const MappedAttributes& tags, RoofShape shape) {
   if (!tags.roof_angle || shape == RoofShape::flat || *tags.roof_angle < kNoRoofAngle) return std::nullopt;
-  return std::min<double>(*tags.roof_angle, stands_around_apex(shape) ? kSteepestSpire : kSteepestRoof);
+  return std::min<double>(*tags.roof_angle, is_pointed(shape) ? kSteepestSpire : kSteepestRoof);
 }
 
 roofs::RoofRequest tagged_request(const MappedAttributes& tags, RoofShape shape, const std::vector<model::RoofEdge>& edges) {

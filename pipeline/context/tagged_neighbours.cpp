@@ -53,7 +53,7 @@ std::optional<NeighbourOpinion<double>> TaggedNeighbours::storeys(model::Point2 
 
 std::optional<NeighbourOpinion<model::RoofShape>> TaggedNeighbours::roof_shape(model::Point2 place, std::uint8_t group,
                                                                                model::OsmId self, int minimum) const {
-  std::array<int, std::size(model::kRoofShapeNames)> votes{};
+  std::array<int, model::kRoofShapeCount> votes{};
   int voices = 0;
   for_each_near(place, group, self, [&](const TaggedBuilding& b) {
     if (!b.roof_shape) return;

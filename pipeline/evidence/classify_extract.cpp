@@ -123,28 +123,6 @@ std::optional<model::RoofShape> usual_shape(classify::RoofFamily family, const c
   return style.double_saltbox > 0 ? std::optional(RoofShape::berlin) : std::nullopt;
 }
 
-/// Shapes that neighbours can lend: a dome or a tower's helmet is one building's own.
-bool is_lent(model::RoofShape shape) {
-  using enum model::RoofShape;
-  switch (shape) {
-    case flat:
-    case gabled:
-    case skillion:
-    case hipped:
-    case half_hipped:
-    case side_hipped:
-    case mansard:
-    case gambrel:
-    case pyramidal:
-    case saltbox:
-    case double_saltbox:
-    case quadruple_saltbox:
-      return true;
-    default:
-      return false;
-  }
-}
-
 }  // namespace
 
 TagFacts tag_facts(const model::Extract& extract, const footprints::FootprintStore& store, const context::ContextExtract& context,
@@ -464,9 +442,9 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
       f[Feature::tag_roof] = std::numeric_limits<float>::quiet_NaN();
       f[Feature::tag_storeys] = static_cast<float>(sub.storeys);
       const PerAnswer own_roof = classify::probabilities(tables.roof.log_odds(f, true), kRoofs);
-      std::array<double, std::size(model::kRoofShapeNames)> shapes{};
+      std::array<double, model::kRoofShapeCount> shapes{};
       const Poll::Result roofs = roofs_poll.ask(b, near, [&](std::uint32_t voter, double weight) {
-        if (is_lent(*tags.roofs[voter])) shapes[static_cast<std::size_t>(*tags.roofs[voter])] += weight;
+        if (model::traits(*tags.roofs[voter]).lent) shapes[static_cast<std::size_t>(*tags.roofs[voter])] += weight;
       });
       const PerAnswer roof = classify::posterior(roofs.votes, own_roof, tables.roof_votes, kRoofs);
       // The likeliest family that can be shown: by the shape that most neighbours of that family have, else by its

@@ -52,9 +52,6 @@ std::optional<Checked> checked(Solid solid) {
   return Checked{std::move(solid), std::move(*triangles)};
 }
 
-/// Values of roof:shape that name no shape.
-bool is_unknown(RoofShape shape) { return shape == RoofShape::other || shape == RoofShape::many; }
-
 /// What is asked of the roof; not yet its measures and the plan's edges.
 roofs::RoofRequest request_of(const model::Attributes& attributes, RoofShape shape) {
   roofs::RoofRequest request;
@@ -173,7 +170,7 @@ class MassBuilder {
     request.measures = {levels.eaves, levels.top - levels.eaves};
     request.along_eaves_lines = true;
     if (build_tidied(part, plan, levels, looks, request)) return true;
-    if (!roofs::rises_from_edges(request.shape) || !roofs::eaves_plan(plan, request.edges)) return false;
+    if (!model::rises_from_edges(request.shape) || !roofs::eaves_plan(plan, request.edges)) return false;
     // Where the roof of whole facades does not fit, or does not come out valid, every bay gets slopes of its own.
     const double along = roofs::main_slope(plan, request, true).run;
     request.along_eaves_lines = false;

@@ -199,28 +199,6 @@ void find_ends(const std::vector<Wall>& walls, const BuildingPart& part, std::ve
   }
 }
 
-/// Shapes that have eaves at two sides of a house at least.
-bool falls_both_ways(model::RoofShape shape) {
-  using enum model::RoofShape;
-  switch (shape) {
-    case gabled:
-    case hipped:
-    case half_hipped:
-    case side_hipped:
-    case side_half_hipped:
-    case hipped_and_gabled:
-    case mansard:
-    case gambrel:
-    case round:
-    case double_saltbox:
-    case quadruple_saltbox:
-    case berlin:
-      return true;
-    default:
-      return false;
-  }
-}
-
 double height_at(const SlopeEnd& end, double along) {
   for (std::uint32_t i = 1; i < end.count; ++i) {
     const auto& a = end.profile[i - 1];
@@ -291,7 +269,7 @@ RoofscapeCount count_roofscape(const model::Region& region) {
         has_rear = has_rear || (w.kind != RoofEdge::party_wall && w.kind != RoofEdge::street && looks < kRear &&
                                 w.length >= kLeastFront);
       }
-      if (!falls_both_ways(part.attributes.roof_shape.value)) continue;
+      if (!model::rises_from_edges(part.attributes.roof_shape.value)) continue;
       if (building.situation.position == model::BuildingPosition::mid_row) {
         ++s.mid_row;
         s.eaves_to_street += main.mostly_eaves();

@@ -110,26 +110,26 @@ std::size_t storey_answer(const Tables& tables, double storeys) {
 }
 
 RoofFamily family_of(model::RoofShape shape) {
-  using enum model::RoofShape;
-  switch (shape) {
+  using enum model::RoofGroup;
+  switch (model::traits(shape).group) {
     case flat:
       return RoofFamily::flat;
     case gabled:
-    case gabled_height_moved:
       return RoofFamily::gabled;
     case hipped:
-    case half_hipped:
-    case side_hipped:
-    case side_half_hipped:
-    case hipped_and_gabled:
     case pyramidal:
       return RoofFamily::hipped;
     case mansard:
-    case gambrel:
       return RoofFamily::mansard;
-    default:
-      return RoofFamily::other;
+    case cross_gabled:
+    case saltbox:
+    case shed:
+    case folded:
+    case round:
+    case other:
+      break;
   }
+  return RoofFamily::other;
 }
 
 PerAnswer prior_log_odds(std::span<const double> p, const EvidenceModel& model) {

@@ -20,34 +20,29 @@ constexpr float kMinDateConfidence = 0.5f;
 }  // namespace
 
 int roof_kind(model::RoofShape shape) {
-  using enum model::RoofShape;
-  switch (shape) {
+  using enum model::RoofGroup;
+  switch (model::traits(shape).group) {
     case flat:
       return 1;
     case gabled:
-    case gabled_height_moved:
       return 2;
     case hipped:
-    case half_hipped:
-    case side_hipped:
-    case side_half_hipped:
-    case hipped_and_gabled:
       return 3;
     case mansard:
-    case gambrel:
       return 4;
     case saltbox:
-    case double_saltbox:
-    case quadruple_saltbox:
-    case berlin:
       return 5;
-    case skillion:
+    case shed:
       return 6;
     case pyramidal:
       return 7;
-    default:
-      return 8;
+    case cross_gabled:
+    case folded:
+    case round:
+    case other:
+      break;
   }
+  return 8;
 }
 
 TagTables TagTables::read(const std::string& path) {

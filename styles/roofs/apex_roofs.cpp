@@ -76,19 +76,19 @@ constexpr ApexRing kSpire[] = {{1, 0}, {0.5, 0.15}, {0, 1}};
 }  // namespace
 
 std::span<const ApexRing> apex_rings(RoofShape shape) {
-  switch (shape) {
-    case RoofShape::pyramidal:
-    case RoofShape::cone:
+  const auto* rings = model::constructed_as<model::ApexRoof>(shape);
+  if (!rings) return {};
+  switch (rings->profile) {
+    case model::ApexProfile::pyramid:
       return kPyramid;
-    case RoofShape::dome:
+    case model::ApexProfile::dome:
       return kDome;
-    case RoofShape::onion:
+    case model::ApexProfile::onion:
       return kOnion;
-    case RoofShape::spire:
+    case model::ApexProfile::spire:
       return kSpire;
-    default:
-      return {};
   }
+  return {};
 }
 
 std::optional<Roof> apex_roof(const Polygon& plan, RoofMeasures measures, std::span<const ApexRing> rings) {

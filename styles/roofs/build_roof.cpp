@@ -1,6 +1,7 @@
 // Which kind of roof a shape is, and what stands for it on plans that do not take it. docs/roofs.md is the list.
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "pipeline/geometry/polygon.h"
 #include "styles/roofs/roof.h"
@@ -31,10 +32,9 @@ std::optional<BuiltRoof> adapted(const Polygon& plan, RoofRequest request, RoofS
 BuiltRoof as_asked(Roof roof, RoofShape shape) { return {std::move(roof), shape, IssueCode::none, {}}; }
 
 /// The way up across the plan of the shapes with one profile.
-Point2 way_up(const Polygon& plan, const RoofRequest& request) {
+Point2 way_up(const Polygon& plan, const RoofRequest& request, const model::ProfileRoof& profile) {
   if (request.down) return {-request.down->x, -request.down->y};
-  if (request.shape == RoofShape::skillion || request.shape == RoofShape::saltbox ||
-      request.shape == RoofShape::sawtooth) {
+  if (profile.falls_one_way) {
     const Point2 down = default_slope(plan, request.edges);
     return {-down.x, -down.y};
   }
@@ -49,55 +49,73 @@ Point2 way_up(const Polygon& plan, const RoofRequest& request) {
   return against > 0 ? Point2{-up.x, -up.y} : up;
 }
 
+/// Relatives are shapes that stand on every plan.
+constexpr bool relatives_rise_from_edges() {
+  for (std::size_t i = 0; i < model::kRoofShapeCount; ++i) {
+    const auto shape = static_cast<RoofShape>(i);
+    const auto* crossed = model::constructed_as<model::CrossedRoof>(shape);
+    if (crossed && !model::rises_from_edges(crossed->relative)) return false;
+    const auto* rings = model::constructed_as<model::ApexRoof>(shape);
+    if (rings && !model::rises_from_edges(rings->relative) && !model::constructed_as<model::ApexRoof>(rings->relative))
+      return false;
+  }
+  return true;
+}
+static_assert(relatives_rise_from_edges());
+
+/// build_roof() by construction.
+struct RoofBuilder {
+  const Polygon& plan;
+  const RoofRequest& request;
+
+  std::optional<BuiltRoof> operator()(const model::EdgeRoof&) const { return skeleton_roof(plan, request); }
+
+  std::optional<BuiltRoof> operator()(const model::ApexRoof& form) const {
+    if (auto roof = apex_roof(plan, request.measures, apex_rings(request.shape)))
+      return as_asked(std::move(*roof), request.shape);
+    if (model::rises_from_edges(form.relative)) return adapted(plan, request, form.relative);
+    auto built = vaulted_roof(plan, request);
+    if (built && built->note == IssueCode::none) {
+      built->note = IssueCode::roof_shape_adapted;
+      built->shape = form.relative;
+      built->detail = std::string(model::name(request.shape)) + " without an apex";
+    }
+    return built;
+  }
+
+  std::optional<BuiltRoof> operator()(const model::CrossedRoof& form) const {
+    if (auto roof = crossed_roof(plan, request.measures, form.gable_height))
+      return as_asked(std::move(*roof), request.shape);
+    return adapted(plan, request, form.relative);
+  }
+
+  std::optional<BuiltRoof> operator()(const model::ProfileRoof& form) const {
+    const Point2 up = way_up(plan, request, form);
+    const geometry::Extent extent = geometry::extent_along(plan.outer.points, up);
+    const auto points = profile_points(request.shape, extent.maximum - extent.minimum);
+    if (auto roof = profile_roof(plan, request.measures, up, points)) return as_asked(std::move(*roof), request.shape);
+    return std::nullopt;
+  }
+
+  std::optional<BuiltRoof> operator()(const model::LevelRoof&) const { return level(); }
+  /// Lines make a roof by lined_roof(): here is none of them.
+  std::optional<BuiltRoof> operator()(const model::LinedRoof&) const { return level(); }
+  std::optional<BuiltRoof> operator()(const model::UnknownRoof&) const {
+    BuiltRoof out = level();
+    out.note = IssueCode::roof_shape_unknown;
+    out.detail = request.shape == RoofShape::many ? "many" : "";
+    return out;
+  }
+
+  BuiltRoof level() const {
+    return as_asked(flat_roof(plan, request.measures.eaves + request.measures.height), RoofShape::flat);
+  }
+};
+
 }  // namespace
 
 std::optional<BuiltRoof> build_roof(const Polygon& plan, const RoofRequest& request) {
-  const RoofMeasures measures = request.measures;
-  if (rises_from_edges(request.shape)) return skeleton_roof(plan, request);
-  switch (request.shape) {
-    case RoofShape::pyramidal:
-    case RoofShape::cone:
-    case RoofShape::spire:
-    case RoofShape::dome:
-    case RoofShape::onion: {
-      if (auto roof = apex_roof(plan, measures, apex_rings(request.shape)))
-        return as_asked(std::move(*roof), request.shape);
-      if (request.shape != RoofShape::dome && request.shape != RoofShape::onion)
-        return adapted(plan, request, RoofShape::hipped);
-      auto built = vaulted_roof(plan, request);
-      if (built && built->note == IssueCode::none) {
-        built->note = IssueCode::roof_shape_adapted;
-        built->shape = RoofShape::dome;
-        built->detail = std::string(model::name(request.shape)) + " without an apex";
-      }
-      return built;
-    }
-    case RoofShape::crosspitched:
-      if (auto roof = crossed_roof(plan, measures, 1)) return as_asked(std::move(*roof), request.shape);
-      return adapted(plan, request, RoofShape::gabled);
-    case RoofShape::helm:
-      if (auto roof = crossed_roof(plan, measures, 0.5)) return as_asked(std::move(*roof), request.shape);
-      return adapted(plan, request, RoofShape::hipped);
-    case RoofShape::skillion:
-    case RoofShape::saltbox:
-    case RoofShape::butterfly:
-    case RoofShape::gabled_height_moved:
-    case RoofShape::sawtooth: {
-      const Point2 up = way_up(plan, request);
-      const geometry::Extent extent = geometry::extent_along(plan.outer.points, up);
-      const auto points = profile_points(request.shape, extent.maximum - extent.minimum);
-      if (auto roof = profile_roof(plan, measures, up, points)) return as_asked(std::move(*roof), request.shape);
-      return std::nullopt;
-    }
-    default: {
-      BuiltRoof out = as_asked(flat_roof(plan, measures.eaves + measures.height), RoofShape::flat);
-      if (request.shape == RoofShape::other || request.shape == RoofShape::many) {
-        out.note = IssueCode::roof_shape_unknown;
-        out.detail = request.shape == RoofShape::many ? "many" : "";
-      }
-      return out;
-    }
-  }
+  return std::visit(RoofBuilder{plan, request}, model::traits(request.shape).construction);
 }
 
 }  // namespace blockrand::roofs

@@ -232,20 +232,15 @@ BuiltGable ornamental_gable(const model::Polygon& plan, const Roof& roof, std::u
 }
 
 bool may_stand_before(GableForm form, RoofShape roof) {
-  switch (roof) {
-    case RoofShape::gabled:
-    case RoofShape::half_hipped:
-    case RoofShape::side_half_hipped:
-    case RoofShape::mansard:
-    case RoofShape::gambrel:
+  switch (model::traits(roof).ornament) {
+    case model::OrnamentalGable::gable:
       return form != GableForm::attic;
-    case RoofShape::hipped:
-    case RoofShape::side_hipped:
-    case RoofShape::flat:
+    case model::OrnamentalGable::attic:
       return form == GableForm::attic;
-    default:
-      return false;
+    case model::OrnamentalGable::none:
+      break;
   }
+  return false;
 }
 
 namespace {

@@ -412,16 +412,19 @@ class Subdivision {
 }  // namespace
 
 std::vector<ProfilePoint> profile_points(RoofShape shape, double width_across) {
-  switch (shape) {
-    case RoofShape::skillion:
+  const auto* across = model::constructed_as<model::ProfileRoof>(shape);
+  if (!across) return {};
+  using enum model::CrossProfile;
+  switch (across->profile) {
+    case skillion:
       return {{0, 0}, {1, 1}};
-    case RoofShape::saltbox:
+    case saltbox:
       return {{0, 0}, {0.6, 1}, {1, 1}};
-    case RoofShape::butterfly:
+    case butterfly:
       return {{0, 1}, {0.5, 0}, {1, 1}};
-    case RoofShape::gabled_height_moved:
+    case gabled_height_moved:
       return {{0, 0}, {0.5, 0.7}, {0.5, 1}, {1, 0.3}};
-    case RoofShape::sawtooth: {
+    case sawtooth: {
       constexpr double kToothWidth = 5;  // m, docs/roofs.md
       const int teeth = std::max(2, static_cast<int>(std::lround(width_across / kToothWidth)));
       std::vector<ProfilePoint> points;
@@ -431,9 +434,8 @@ std::vector<ProfilePoint> profile_points(RoofShape shape, double width_across) {
       }
       return points;
     }
-    default:
-      return {};
   }
+  return {};
 }
 
 std::optional<Roof> profile_roof(const Polygon& plan, RoofMeasures measures, Point2 up,

@@ -1,19 +1,20 @@
 // How far the slopes of a roof run, so that a pitch gives a height. docs/roofs.md, "Tags", has the list.
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "pipeline/geometry/polygon.h"
-#include "styles/roofs/roof.h"
-#include "styles/roofs/shape_tables.h"
 #include "styles/roofs/eaves_lines.h"
+#include "styles/roofs/roof.h"
 #include "styles/roofs/roof_sides.h"
+#include "styles/roofs/shape_tables.h"
 #include "styles/roofs/skeleton_roofs.h"
 
 namespace blockrand::roofs {
 
+using model::EavesProfile;
 using model::Point2;
 using model::Polygon;
-using model::RoofShape;
 
 namespace {
 
@@ -37,22 +38,76 @@ double half_span(const Polygon& plan, const RoofRequest& request) {
 }
 
 /// The plan's extent down a slope that a profile across the plan gives.
-double way_down(const Polygon& plan, const RoofRequest& request) {
+double way_down(const Polygon& plan, const RoofRequest& request, const model::ProfileRoof& profile) {
   if (request.down) return extent(plan, *request.down);
-  if (request.shape == RoofShape::skillion || request.shape == RoofShape::sawtooth ||
-      request.shape == RoofShape::saltbox)
-    return extent(plan, default_slope(plan, request.edges));
+  if (profile.falls_one_way) return extent(plan, default_slope(plan, request.edges));
   const Point2 axis = geometry::long_axis(plan.outer.points);
   return extent(plan, request.across ? axis : Point2{-axis.y, axis.x});
 }
 
 /// Do extents tell how far the slopes run, or does it take the skeleton?
-bool needs_skeleton(const Polygon& plan, const RoofRequest& request) {
-  if (!rises_from_edges(request.shape)) return false;
+bool needs_skeleton(const Polygon& plan, const RoofRequest& request, const model::EdgeRoof& roof) {
   const bool in_row = std::find(request.edges.begin(), request.edges.end(), model::RoofEdge::party_wall) != request.edges.end();
-  return in_row || request.shape == RoofShape::berlin || !is_one_wing(plan) ||
+  return in_row || roof.eaves == EavesProfile::berlin || !is_one_wing(plan) ||
          (request.along_eaves_lines && eaves_plan(plan, request.edges));
 }
+
+/// Do the slopes beside a ridge end at upright gables, so that the plan's span across the ridge is theirs? Hips at the
+/// ends, of gablets as well, bound the run by the shorter side.
+bool spans_between_gables(const model::EdgeRoof& roof) {
+  switch (roof.ends) {
+    case model::WingEnds::gables:
+      // Without a skeleton, extents tell of the Berlin roof roughly.
+      return roof.eaves != EavesProfile::berlin;
+    case model::WingEnds::half_hips:
+    case model::WingEnds::one_hip:
+    case model::WingEnds::one_half_hip:
+      return true;
+    case model::WingEnds::hips:
+    case model::WingEnds::gablets:
+      break;
+  }
+  return false;
+}
+
+/// main_slope() by construction.
+struct SlopeFinder {
+  const Polygon& plan;
+  const RoofRequest& request;
+  bool steep;
+
+  MainSlope operator()(const model::LevelRoof&) const { return {0, 1}; }
+  MainSlope operator()(const model::UnknownRoof&) const { return {0, 1}; }
+  MainSlope operator()(const model::ApexRoof&) const { return {half_width(plan), 1}; }
+  MainSlope operator()(const model::CrossedRoof&) const { return {half_width(plan), 1}; }
+  MainSlope operator()(const model::LinedRoof&) const { return {half_width(plan), 1}; }
+
+  MainSlope operator()(const model::ProfileRoof& roof) const {
+    const double way = way_down(plan, request, roof);
+    const auto points = profile_points(request.shape, way);
+    return {points[1].at * way, std::fabs(points[1].height - points[0].height)};
+  }
+
+  MainSlope operator()(const model::EdgeRoof& roof) const {
+    if (needs_skeleton(plan, request, roof))
+      if (const SkeletonRun s = skeleton_run(plan, request); s.run > 0) return of_run(roof, s.run, s.leans);
+    return of_run(roof, spans_between_gables(roof) ? half_span(plan, request) : half_width(plan), false);
+  }
+
+  MainSlope of_run(const model::EdgeRoof& roof, double run, bool leans) const {
+    switch (roof.eaves) {
+      case EavesProfile::broken:
+        return steep ? MainSlope{kMansardRun * run, kMansardHeight, leans} : MainSlope{run, 1, leans};
+      case EavesProfile::decked:
+        return {kDeckRun * run, 1, leans};
+      case EavesProfile::one_pitch:
+      case EavesProfile::vaulted:
+      case EavesProfile::berlin:
+        break;
+    }
+    return {run, 1, leans};
+  }
+};
 
 }  // namespace
 
@@ -63,54 +118,7 @@ double mansard_height(double run, double attic) {
 bool has_plain_extents(const Polygon& plan) { return is_one_wing(plan); }
 
 MainSlope main_slope(const Polygon& plan, const RoofRequest& request, bool steep) {
-  if (needs_skeleton(plan, request)) {
-    if (const SkeletonRun s = skeleton_run(plan, request); s.run > 0) {
-      switch (request.shape) {
-        case RoofShape::gambrel:
-        case RoofShape::mansard:
-          return steep ? MainSlope{kMansardRun * s.run, kMansardHeight, s.leans} : MainSlope{s.run, 1, s.leans};
-        case RoofShape::double_saltbox:
-        case RoofShape::quadruple_saltbox:
-          return {kDeckRun * s.run, 1, s.leans};
-        default:
-          return {s.run, 1, s.leans};
-      }
-    }
-  }
-  switch (request.shape) {
-    case RoofShape::flat:
-    case RoofShape::many:
-    case RoofShape::other:
-      return {0, 1};
-    case RoofShape::skillion:
-      return {way_down(plan, request), 1};
-    case RoofShape::saltbox:
-      return {kDeckRun * way_down(plan, request), 1};
-    case RoofShape::butterfly:
-    case RoofShape::gabled_height_moved:
-    case RoofShape::sawtooth: {
-      const double way = way_down(plan, request);
-      const auto points = profile_points(request.shape, way);
-      return {points[1].at * way, std::fabs(points[1].height - points[0].height)};
-    }
-    case RoofShape::gambrel:
-    case RoofShape::mansard: {
-      const double run = request.shape == RoofShape::mansard ? half_width(plan) : half_span(plan, request);
-      return steep ? MainSlope{kMansardRun * run, kMansardHeight} : MainSlope{run, 1};
-    }
-    case RoofShape::double_saltbox:
-      return {kDeckRun * half_span(plan, request), 1};
-    case RoofShape::quadruple_saltbox:
-      return {kDeckRun * half_width(plan), 1};
-    case RoofShape::gabled:
-    case RoofShape::half_hipped:
-    case RoofShape::side_hipped:
-    case RoofShape::side_half_hipped:
-    case RoofShape::round:
-      return {half_span(plan, request), 1};
-    default:
-      return {half_width(plan), 1};
-  }
+  return std::visit(SlopeFinder{plan, request, steep}, model::traits(request.shape).construction);
 }
 
 }  // namespace blockrand::roofs

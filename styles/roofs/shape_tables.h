@@ -25,12 +25,11 @@ inline constexpr double kBerlinGentle = 0.14054083470239145; ///< 8 degrees
 inline constexpr double kKneeWall = 0.4;  ///< of the height the roof has without it: about 0.7 m at a depth of 13 m
 inline constexpr double kLeastKneeWall = 0.1;  ///< m
 
-/// Rings of pyramidal, cone, dome, onion and spire for apex_roof(); empty for all other shapes.
+/// Rings of a model::ApexRoof for apex_roof(); empty for all other shapes.
 std::span<const ApexRing> apex_rings(model::RoofShape shape);
 
-/// Heights of skillion, saltbox, butterfly, gabled_height_moved and sawtooth for profile_roof(); empty for all other
-/// shapes. \param width_across  m. The plan's extent in the direction of the profile; decides the number of sawtooth's
-/// teeth.
+/// Heights of a model::ProfileRoof for profile_roof(); empty for all other shapes.
+/// \param width_across  m. The plan's extent in the direction of the profile; decides the number of sawtooth's teeth.
 std::vector<ProfilePoint> profile_points(model::RoofShape shape, double width_across);
 
 }  // namespace blockrand::roofs

@@ -22,11 +22,14 @@ namespace {
 using geometry::EdgeProfile;
 using geometry::kUpright;
 using geometry::WeightedSkeleton;
+using model::EavesProfile;
+using model::EdgeRoof;
 using model::IssueCode;
 using model::Point2;
 using model::Point3;
 using model::Polygon;
 using model::RoofShape;
+using model::WingEnds;
 
 // Shares of the roof's height and run; docs/roofs.md has them.
 constexpr double kGableShare = 0.6;        ///< of H: where a half-hip begins, a gablet as well
@@ -98,71 +101,61 @@ std::optional<WeightedSkeleton> by_cgal(const Polygon& plan) {
 
 using Skeleton = tl::expected<WeightedSkeleton, geometry::SkeletonFailure>;
 
-/// Shapes whose wings end in gables.
-bool has_gables(RoofShape shape) {
-  switch (shape) {
-    case RoofShape::hipped:
-    case RoofShape::mansard:
-    case RoofShape::quadruple_saltbox:
-    case RoofShape::dome:
-    case RoofShape::onion:
+/// Ends are treated apart where eaves have one pitch: Builder::one_pitch() knows no other profile.
+constexpr bool ends_fit_eaves() {
+  for (std::size_t i = 0; i < model::kRoofShapeCount; ++i) {
+    const auto* roof = model::constructed_as<EdgeRoof>(static_cast<RoofShape>(i));
+    if (roof && roof->eaves != EavesProfile::one_pitch && roof->ends != WingEnds::hips &&
+        roof->ends != WingEnds::gables)
       return false;
-    default:
-      return true;
   }
+  return true;
 }
+static_assert(ends_fit_eaves());
 
 /// Everything about one plan that shapes ask for.
 class Builder {
  public:
-  Builder(const Polygon& plan, const RoofRequest& request)
-      : plan_(plan), request_(request), sides_(roof_sides(plan, request, has_gables(request.shape))) {}
+  Builder(const Polygon& plan, const RoofRequest& request, const EdgeRoof& form)
+      : plan_(plan), request_(request), form_(form), sides_(roof_sides(plan, request, ends_apart())) {}
 
   bool leans() const { return sides_.leans; }
 
   /// The farthest that a point of the plan lies from the eaves that rise to it, m; where some slopes are gentler, as
   /// much less. 0 when there is no skeleton.
   double largest_run() const {
-    const auto s = skeleton(request_.shape == RoofShape::berlin ? berlin() : all_sides(pitch(1)));
+    const auto s = skeleton(form_.eaves == EavesProfile::berlin ? berlin() : all_sides(pitch(1)));
     return s ? s->height() : 0;
   }
 
   std::optional<BuiltRoof> build() const {
     // Profiles rise to the largest run, at 45 degrees on the whole; the skeleton's plan depends on the ratios of slopes alone, and
     // heights are scaled to what is asked at the end.
-    switch (request_.shape) {
-      case RoofShape::hipped:
-      case RoofShape::gabled:
-        return finish(all_sides(pitch(1)));
-      case RoofShape::side_hipped:
-      case RoofShape::side_half_hipped:
-      case RoofShape::half_hipped:
-      case RoofShape::hipped_and_gabled:
-        return with_treated_ends();
-      case RoofShape::mansard:
-      case RoofShape::gambrel: {
+    switch (form_.eaves) {
+      case EavesProfile::one_pitch:
+        return one_pitch();
+      case EavesProfile::broken: {
         const double run = largest_run();
         return run > 0 ? finish(all_sides(broken(run))) : fallback();
       }
-      case RoofShape::dome:
-      case RoofShape::onion:
-      case RoofShape::round: {
+      case EavesProfile::vaulted: {
         const double run = largest_run();
         return run > 0 ? finish(all_sides(vault(run, run))) : fallback();
       }
-      case RoofShape::double_saltbox:
-      case RoofShape::quadruple_saltbox: {
+      case EavesProfile::decked: {
         const double run = largest_run();
         return run > 0 ? finish(all_sides(pitch(1 / kDeckRun)), run) : fallback();
       }
-      case RoofShape::berlin:
+      case EavesProfile::berlin:
         return finish(berlin());
-      default:
-        return std::nullopt;
     }
+    return std::nullopt;
   }
 
  private:
+  /// Do the ends of wings rise in another way than eaves?
+  bool ends_apart() const { return form_.ends != WingEnds::hips; }
+
   /// What rises from every edge: eaves, gentler eaves of lean-to slopes, walls; and from the yard's corner.
   struct Profiles {
     std::vector<EdgeProfile> edges;
@@ -215,23 +208,31 @@ class Builder {
     return profiles;
   }
 
-  std::optional<BuiltRoof> with_treated_ends() const {
+  std::optional<BuiltRoof> one_pitch() const {
+    const double slope = 1;
+    Profiles all = all_sides(pitch(slope));
+    if (form_.ends == WingEnds::hips || form_.ends == WingEnds::gables) return finish(all);
     const double run = largest_run();
     if (run <= 0) return fallback();
-    const double slope = 1, change = kGableShare * run;
-    Profiles all = all_sides(pitch(slope));
+    const double change = kGableShare * run;
     const std::vector<std::uint32_t> ends = sides_.which(RoofSide::gable);
     const EdgeProfile half_hip{kUpright, {{change, slope}}};
-    switch (request_.shape) {
-      case RoofShape::half_hipped:
+    switch (form_.ends) {
+      case WingEnds::hips:
+      case WingEnds::gables:
+        break;
+      case WingEnds::half_hips:
         for (const std::uint32_t e : ends) all.edges[e] = half_hip;
         break;
-      case RoofShape::hipped_and_gabled:
+      case WingEnds::gablets:
         for (const std::uint32_t e : ends) all.edges[e] = {slope, {{change, kUpright}}};
         break;
-      default:
-        if (const auto one = single_end(ends))
-          all.edges[*one] = request_.shape == RoofShape::side_hipped ? pitch(slope) : half_hip;
+      case WingEnds::one_hip:
+        if (const auto one = single_end(ends)) all.edges[*one] = pitch(slope);
+        break;
+      case WingEnds::one_half_hip:
+        if (const auto one = single_end(ends)) all.edges[*one] = half_hip;
+        break;
     }
     return finish(all);
   }
@@ -258,7 +259,7 @@ class Builder {
     if (!s) return fallback();
     BuiltRoof out{to_roof(plan_, *s, request_.measures, request_.coarseness), request_.shape, IssueCode::none, {}};
     if (sides_.leans) out.shape = RoofShape::skillion;
-    if (has_gables(request_.shape) && !sides_.has(RoofSide::gable) && !sides_.has(RoofSide::party) && plan_.holes.empty()) {
+    if (ends_apart() && !sides_.has(RoofSide::gable) && !sides_.has(RoofSide::party) && plan_.holes.empty()) {
       out.note = IssueCode::roof_shape_adapted;
       out.detail = std::string(model::name(request_.shape)) + " without gables: no wing has an end";
     }
@@ -276,7 +277,8 @@ class Builder {
 
   const Polygon& plan_;
   const RoofRequest& request_;
-  RoofSides sides_;
+  const EdgeRoof form_;
+  const RoofSides sides_;
 };
 
 /// The request for the plan's eaves lines.
@@ -288,32 +290,13 @@ RoofRequest on_facades(RoofRequest request, const EavesPlan& eaves) {
 
 }  // namespace
 
-bool rises_from_edges(RoofShape shape) {
-  switch (shape) {
-    case RoofShape::hipped:
-    case RoofShape::gabled:
-    case RoofShape::side_hipped:
-    case RoofShape::side_half_hipped:
-    case RoofShape::half_hipped:
-    case RoofShape::hipped_and_gabled:
-    case RoofShape::mansard:
-    case RoofShape::gambrel:
-    case RoofShape::round:
-    case RoofShape::double_saltbox:
-    case RoofShape::quadruple_saltbox:
-    case RoofShape::berlin:
-      return true;
-    default:
-      return false;
-  }
-}
-
 std::optional<BuiltRoof> skeleton_roof(const Polygon& plan, const RoofRequest& request) {
-  if (!rises_from_edges(request.shape)) return std::nullopt;
+  const auto* form = model::constructed_as<EdgeRoof>(request.shape);
+  if (!form) return std::nullopt;
   if (request.along_eaves_lines) {
     if (const auto eaves = eaves_plan(plan, request.edges)) {
       const RoofRequest whole = on_facades(request, *eaves);
-      auto built = Builder(eaves->plan, whole).build();
+      auto built = Builder(eaves->plan, whole, *form).build();
       if (!built || built->note == IssueCode::skeleton_fallback) return std::nullopt;
       auto roof = onto_plan(built->roof, *eaves, plan);
       if (!roof) return std::nullopt;
@@ -321,7 +304,7 @@ std::optional<BuiltRoof> skeleton_roof(const Polygon& plan, const RoofRequest& r
       return built;
     }
   }
-  return Builder(plan, request).build();
+  return Builder(plan, request, *form).build();
 }
 
 namespace {
@@ -334,19 +317,23 @@ bool goes_onto(const Builder& builder, const EavesPlan& eaves, const Polygon& pl
 }  // namespace
 
 SkeletonRun skeleton_run(const Polygon& plan, const RoofRequest& request) {
+  const auto* form = model::constructed_as<EdgeRoof>(request.shape);
+  if (!form) return {};
   if (request.along_eaves_lines) {
     if (const auto eaves = eaves_plan(plan, request.edges)) {
       RoofRequest whole = on_facades(request, *eaves);
       whole.measures = {0, geometry::equivalent_width(plan) / 2};  // of the usual steepness
-      const Builder builder(eaves->plan, whole);
+      const Builder builder(eaves->plan, whole, *form);
       // The roof that will be built, and not one that turns out not to fit the plan.
       if (const double run = builder.largest_run(); run > 0 && goes_onto(builder, *eaves, plan)) return {run, builder.leans()};
     }
   }
-  const Builder builder(plan, request);
+  const Builder builder(plan, request, *form);
   return {builder.largest_run(), builder.leans()};
 }
 
-std::optional<BuiltRoof> vaulted_roof(const Polygon& plan, const RoofRequest& request) { return Builder(plan, request).build(); }
+std::optional<BuiltRoof> vaulted_roof(const Polygon& plan, const RoofRequest& request) {
+  return Builder(plan, request, {EavesProfile::vaulted, WingEnds::hips}).build();
+}
 
 }  // namespace blockrand::roofs

@@ -8,11 +8,8 @@
 
 namespace blockrand::roofs {
 
-/// True for the shapes that docs/roofs.md makes by the weighted straight skeleton.
-bool rises_from_edges(model::RoofShape shape);
-
-/// One of those shapes on a plan. Where the plan has no end of a wing, gables are left out. Where the weighted skeleton
-/// gives up, hips by CGAL's (SKELETON_FALLBACK); empty when that gives up as well.
+/// A model::EdgeRoof on a plan; empty for all other shapes. Where the plan has no end of a wing, gables are left out.
+/// Where the weighted skeleton gives up, hips by CGAL's (SKELETON_FALLBACK); empty when that gives up as well.
 std::optional<BuiltRoof> skeleton_roof(const model::Polygon& plan, const RoofRequest& request);
 
 /// How far the slopes of such a roof run, m: the height of the highest point where eaves rise at 45 degrees; 0 where there is

@@ -9,8 +9,6 @@
 namespace blockrand::outputs {
 namespace {
 
-using model::RoofShape;
-
 /// Decimetres. On wider maps houses are less than a pixel; a hairline keeps them visible.
 constexpr std::int64_t kFar = 60'000;
 
@@ -347,40 +345,28 @@ int storey_class(const MapBuilding& b) {
 
 int roof_class(const MapBuilding& b) {
   if (!b.built) return 0;
-  switch (b.roof) {
-    case RoofShape::flat:
+  using enum model::RoofGroup;
+  switch (model::traits(b.roof).group) {
+    case flat:
       return 1;
-    case RoofShape::gabled:
-    case RoofShape::gabled_height_moved:
-    case RoofShape::saltbox:
-    case RoofShape::double_saltbox:
-    case RoofShape::quadruple_saltbox:
-    case RoofShape::berlin:
-    case RoofShape::crosspitched:
+    case gabled:
+    case cross_gabled:
+    case saltbox:
       return 2;
-    case RoofShape::hipped:
-    case RoofShape::half_hipped:
-    case RoofShape::side_hipped:
-    case RoofShape::side_half_hipped:
-    case RoofShape::hipped_and_gabled:
-    case RoofShape::pyramidal:
+    case hipped:
+    case pyramidal:
       return 3;
-    case RoofShape::mansard:
-    case RoofShape::gambrel:
+    case mansard:
       return 4;
-    case RoofShape::skillion:
-    case RoofShape::sawtooth:
-    case RoofShape::butterfly:
+    case shed:
+    case folded:
       return 5;
-    case RoofShape::cone:
-    case RoofShape::dome:
-    case RoofShape::onion:
-    case RoofShape::round:
-    case RoofShape::spire:
+    case round:
       return 6;
-    default:
-      return 7;
+    case other:
+      break;
   }
+  return 7;
 }
 
 ReportMap report_map(const MapFootprints& footprints, const std::vector<std::uint8_t>& issue,

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 
@@ -38,7 +39,12 @@ TEST(ApexRings, GoFromThePlanToTheApex) {
     EXPECT_EQ(rings.back().height, 1);
     for (std::size_t i = 1; i < rings.size(); ++i) EXPECT_LT(rings[i - 1].height, rings[i].height);
   }
-  EXPECT_TRUE(apex_rings(RoofShape::hipped).empty());
+  for (std::size_t i = 0; i < model::kRoofShapeCount; ++i) {
+    const auto shape = static_cast<RoofShape>(i);
+    const bool listed = std::any_of(std::begin(kFacesPerEdge), std::end(kFacesPerEdge),
+                                    [&](const auto& entry) { return entry.first == shape; });
+    EXPECT_EQ(listed, !apex_rings(shape).empty()) << model::name(shape);
+  }
   const auto dome = apex_rings(RoofShape::dome);
   for (std::size_t i = 0; i < dome.size(); ++i) {
     EXPECT_NEAR(dome[i].size, std::cos(static_cast<double>(i) * M_PI / 12), 1e-15);

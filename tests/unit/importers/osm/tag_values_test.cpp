@@ -125,8 +125,14 @@ TEST(ParseColour, KnowsTheFirstAndTheLastName) {
 }
 
 TEST(ParseRoofShape, TakesTheSchemesNamesInEitherSpelling) {
-  for (int i = 0; i < static_cast<int>(RoofShape::other); ++i)
-    EXPECT_EQ(parse_roof_shape(model::kRoofShapeNames[i]), static_cast<RoofShape>(i));
+  for (std::size_t i = 0; i < model::kRoofShapeCount; ++i) {
+    const model::RoofTraits& row = model::kRoofTraits[i];
+    const RoofShape shape = row.is_tag_value ? static_cast<RoofShape>(i) : RoofShape::other;
+    EXPECT_EQ(parse_roof_shape(row.name), shape);
+    for (const std::string_view synonym : row.synonyms)
+      if (!synonym.empty()) EXPECT_EQ(parse_roof_shape(synonym), shape) << synonym;
+  }
+  EXPECT_EQ(parse_roof_shape("berlin"), RoofShape::other) << "no value of the scheme";
   EXPECT_EQ(parse_roof_shape("half_hipped"), RoofShape::half_hipped);
   EXPECT_EQ(parse_roof_shape("Half Hipped"), RoofShape::half_hipped);
   EXPECT_EQ(parse_roof_shape("Gabled"), RoofShape::gabled);
