@@ -1,6 +1,8 @@
 // What generation assumes where the map is silent, and its geometric tolerances. Lengths in metres, angles in degrees.
 #pragma once
 
+#include "pipeline/base/option_table.h"
+
 namespace blockrand::attributes {
 
 struct GenerateOptions {
@@ -15,5 +17,8 @@ struct GenerateOptions {
   double collinear_tolerance = 0.01; ///< m. Plan points nearer to the line of their neighbours do not make a wall.
   double simplify_tolerance = 0.25;  ///< m. Second try for a plan whose solid fails its check.
 };
+
+/// How users set them: section [generate].
+base::OptionTable<GenerateOptions> generate_options();
 
 }  // namespace blockrand::attributes

@@ -38,10 +38,9 @@ std::size_t read_in(const compare::City& city) {
 compare::OptionList options_of(const settings::Settings& s) {
   compare::OptionList list;
   for (const settings::Option& o : settings::options()) {
-    const bool measures = o.section == settings::Section::compare || o.name == "crs" || o.name == "seed";
+    const bool of_comparison = o.section == compare::kCompareSection && o.record != base::OptionRecord::none;
+    const bool measures = of_comparison || o.name == "crs" || o.name == "seed";
     if (!(o.commands & settings::kCompare) || !measures) continue;
-    // What is written, and what it is set against, do not change what is measured.
-    if (o.name == "pictures" || o.name == "baseline" || o.name == "fail-if-worse") continue;
     if (const std::string value = o.show(s); !value.empty()) list.emplace_back(std::string(o.name), value);
   }
   return list;

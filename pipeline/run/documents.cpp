@@ -1,10 +1,10 @@
 #include "pipeline/run/documents.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-
 #include "pipeline/base/version.h"
+#include "pipeline/run/configuration.h"
 
 namespace blockrand::run {
 
@@ -16,52 +16,6 @@ using Json = nlohmann::ordered_json;
 double rounded(double value, double steps = 100) { return std::nearbyint(value * steps) / steps; }
 
 }  // namespace
-
-nlohmann::ordered_json configuration(const BuildOptions& options) {
-  Json c;
-  c["lod"] = options.lod;
-  c["formats"] = Json::array();
-  if (options.gltf) c["formats"].push_back("gltf");
-  if (options.citygml) c["formats"].push_back("citygml");
-  if (options.cityjson) c["formats"].push_back("cityjson");
-  if (options.geopackage) c["formats"].push_back("gpkg");
-  c["report"] = options.report;
-  c["explain"] = options.explain;
-  c["evidence"] = options.evidence;
-  c["gzip"] = options.gzip;
-  constexpr const char* kInstancings[] = {"ext", "nodes", "baked"};
-  c["instancing"] = kInstancings[static_cast<int>(options.instancing)];
-  c["compress"] = options.compression == outputs::Compression::meshopt ? "meshopt" : "none";
-  c["single_glb"] = options.single_glb;
-  c["single_cityjson"] = options.single_cityjson;
-  c["seed"] = options.seed;
-  if (!options.tile.empty()) c["tile"] = options.tile;
-  c["bbox"] = options.bbox ? Json(*options.bbox) : Json(nullptr);
-  c["districts"] = options.districts;
-  c["overrides"] = options.overrides;
-  c["terrain"] = options.terrain;
-  c["terrain_height_reference"] = options.terrain_height_reference;
-  c["ground_height"] = options.ground_height ? Json(*options.ground_height) : Json(nullptr);
-  const auto& p = options.repair;
-  c["repair"] = {{"duplicate_distance", p.duplicate_distance}, {"spike_width", p.spike_width},
-                 {"min_piece_area", p.min_piece_area},         {"ring_clearance", p.ring_clearance},
-                 {"parts_free_area", p.parts_free_area},       {"parts_free_width", p.parts_free_width},
-                 {"simplify", p.simplify},                     {"collinear_distance", p.collinear_distance},
-                 {"share_walls", p.share_walls},               {"square", p.square},
-                 {"fit_parts", p.fit_parts},                   {"arcs", p.arcs},
-                 {"settle_coverings", p.settle_coverings},     {"resolve_overlaps", p.resolve_overlaps},
-                 {"max_ring_area_change", p.max_ring_area_change},
-                 {"snap_distance", p.snap_distance},           {"snap_reach", p.snap_reach},
-                 {"snap_angle", p.snap_angle},                 {"min_overlap", p.min_overlap},
-                 {"max_shift", p.max_shift},                   {"max_area_change", p.max_area_change},
-                 {"min_overlap_area", p.min_overlap_area},     {"max_loss", p.max_loss}};
-  const auto& g = options.generate;
-  c["generate"] = {{"neighbour_reach", g.neighbour_reach},         {"neighbour_minimum", g.neighbour_minimum},
-                   {"min_wall_height", g.min_wall_height},         {"min_roof_height", g.min_roof_height},
-                   {"max_roof_pitch", g.max_roof_pitch},           {"canopy_thickness", g.canopy_thickness},
-                   {"collinear_tolerance", g.collinear_tolerance}, {"simplify_tolerance", g.simplify_tolerance}};
-  return c;
-}
 
 std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   Json j;

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "pipeline/base/progress.h"
 #include "pipeline/base/publish.h"
 #include "pipeline/georef/crs.h"
@@ -58,8 +56,6 @@ struct RunRecord {
   std::string host;
 };
 
-/// Every option that shapes the results, as build.json has it.
-nlohmann::ordered_json configuration(const BuildOptions& options);
 std::string build_json(const BuildOptions& options, const BuildRecord& record);
 std::string run_json(const RunRecord& run, const BuildSummary& summary);
 /// Every object that is not modelled itself, every fallback and every notice, sorted by object; and what codes mean.

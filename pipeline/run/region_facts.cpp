@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/base/error.h"
-#include "pipeline/run/documents.h"
+#include "pipeline/run/configuration.h"
 
 namespace blockrand::run {
 
@@ -15,17 +15,6 @@ double finite(const nlohmann::json& value) {
   const double v = value.get<double>();
   if (!std::isfinite(v)) throw std::runtime_error("a number is not finite");
   return v;
-}
-
-/// The first option that shapes a building and differs; empty for none.
-std::string first_difference(const nlohmann::json& theirs, const nlohmann::json& ours) {
-  for (const char* name : {"lod", "seed", "ground_height", "terrain_height_reference", "districts", "overrides"})
-    if (theirs.at(name) != ours.at(name)) return name;
-  for (const char* section : {"repair", "generate"})
-    for (const auto& [name, value] : ours.at(section).items())
-      if (!theirs.at(section).contains(name) || theirs.at(section).at(name) != value)
-        return std::string(section) + "." + name;
-  return {};
 }
 
 attributes::PinnedArea pinned_area(const nlohmann::json& j) {
@@ -54,7 +43,7 @@ RegionFacts read_region_facts(const std::string& path, const BuildOptions& optio
     const nlohmann::json& box = r.at("box");
     facts.box = {finite(box.at(0)), finite(box.at(1)), finite(box.at(2)), finite(box.at(3))};
     facts.centre = {finite(r.at("centre").at(0)), finite(r.at("centre").at(1))};
-    if (const std::string name = first_difference(j.at("configuration"), configuration(options)); !name.empty())
+    if (const std::string name = first_difference(j.at("configuration"), options); !name.empty())
       throw base::UsageError(path + ": that build had another " + name +
                              ", so this tile would not fit into it. Build with the same options");
     for (const nlohmann::json& p : r.at("coverage")) facts.coverage.push_back({finite(p.at(0)), finite(p.at(1))});

@@ -24,6 +24,7 @@ struct RegionFacts {
 /// Reads the facts that an earlier build wrote into its build.json.
 /// \throws base::InputError  `path` is no build.json, is damaged, or comes from a version that wrote no facts
 /// \throws base::UsageError  that build had other options than this one, so that a tile would not fit into it
+///                           (first_difference; an option that its record lacks had its default)
 RegionFacts read_region_facts(const std::string& path, const BuildOptions& options);
 
 }  // namespace blockrand::run

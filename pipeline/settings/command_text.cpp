@@ -12,8 +12,14 @@ namespace {
 
 constexpr std::size_t kHelpColumn = 28, kHelpWidth = 100;
 
-/// Sections whose options are for tuning: the reference and the manual have them, a command's --help does not.
-bool for_tuning(Section section) { return section == Section::repair || section == Section::generate; }
+/// Those whose options a command's --help lists: its own first.
+std::vector<base::OptionSection> sections_of_help(unsigned command) {
+  std::vector<base::OptionSection> listed = sections();
+  std::erase_if(listed, [](const base::OptionSection& section) { return section.tuning; });
+  std::ranges::stable_partition(
+      listed, [&](const base::OptionSection& section) { return section.name == name(static_cast<Commands>(command)); });
+  return listed;
+}
 
 /// "  NAMES   meaning", the meaning broken at its own column.
 std::string row(const std::string& names, const std::string& meaning) {
@@ -47,7 +53,7 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
 
 std::string option_help(unsigned command) {
   std::string text;
-  for (const Section section : {Section::compare, Section::build, Section::messages}) {
+  for (const base::OptionSection& section : sections_of_help(command)) {
     std::string rows;
     for (const Option& o : options()) {
       if (o.section != section || !(o.commands & command)) continue;
@@ -60,7 +66,8 @@ std::string option_help(unsigned command) {
       if (!fallback.empty()) help += " [" + fallback + "]";
       rows += row(names, help);
     }
-    const std::string_view heading = section == Section::build && command != kBuild ? (command == kCompare ? "Output" : "Arguments") : title(section);
+    std::string_view heading = section.title;
+    if (section == base::kMainSection && command != kBuild) heading = command == kCompare ? "Output" : "Arguments";
     if (!rows.empty()) text += fmt::format("\n{}:\n{}", heading, rows);
   }
   return text;
@@ -83,9 +90,8 @@ std::string command_help(const CommandText& command) {
     text += row(name, topic.summary);
   }
   if (command.options != 0) text += option_help(command.options);
-  if (std::ranges::any_of(options(), [&](const Option& o) {
-        return for_tuning(o.section) && (o.commands & command.options);
-      }))
+  if (std::ranges::any_of(options(),
+                          [&](const Option& o) { return o.section.tuning && (o.commands & command.options); }))
     text += "\nOptions that tune repair and inference: blockrand help options\n";
   if (!command.examples.empty()) text += "\nExamples:\n";
   for (const Example& example : command.examples) {

@@ -44,8 +44,9 @@ std::optional<std::string> value_text(base::TomlTable& table, const Option& opti
 void read_config(const std::string& path, Settings& settings) {
   base::TomlTable root = base::TomlTable::read(path);
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  for (const Section section : {Section::build, Section::repair, Section::generate}) {
-    std::optional<base::TomlTable> table = root.table(name(section));
+  for (const base::OptionSection& section : sections()) {
+    if (!in_config(section)) continue;
+    std::optional<base::TomlTable> table = root.table(section.name);
     if (!table) continue;
     for (const Option& option : options()) {
       if (option.section != section || option.key.empty()) continue;
@@ -68,8 +69,9 @@ std::string config_template() {
   std::string text =
       "# Options of `blockrand build`, read with --config FILE.toml; the command line is stronger.\n"
       "# Every key stands here with its default. Relative paths start at this file's folder.\n";
-  for (const Section section : {Section::build, Section::repair, Section::generate}) {
-    text += "\n[" + std::string(name(section)) + "]\n";
+  for (const base::OptionSection& section : sections()) {
+    if (!in_config(section)) continue;
+    text += "\n[" + std::string(section.name) + "]\n";
     for (const Option& option : options()) {
       if (option.section != section || option.key.empty()) continue;
       const Settings fresh;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "pipeline/settings/options.h"
 
@@ -71,6 +72,13 @@ std::string usage(std::string_view text) {
   return roff;
 }
 
+bool of_several_commands(const base::OptionSection& section) {
+  unsigned commands = 0;
+  for (const Option& o : options())
+    if (o.section == section) commands |= o.commands;
+  return std::popcount(commands) > 1;
+}
+
 std::string option_entry(const Option& o, unsigned all_commands) {
   std::string tag;
   if (!o.letter.empty()) tag = bold("-" + std::string(o.letter)) + ", ";
@@ -85,7 +93,7 @@ std::string option_entry(const Option& o, unsigned all_commands) {
   std::string commands;
   for (const Commands c : kAllCommands)
     if (o.commands & all_commands & c) commands += (commands.empty() ? "" : ", ") + std::string(name(c));
-  if (o.section == Section::build || o.section == Section::messages) body += " Commands: " + commands + ".";
+  if (of_several_commands(o.section)) body += " Commands: " + commands + ".";
   return hanging(tag, prose(body));
 }
 
@@ -123,11 +131,11 @@ std::string manual(const ManualText& text, std::span<const CommandText> commands
                 "by that name. The last of a repeated option counts. Long options also take their value after =.");
   roff += hanging(bold("-h") + ", " + bold("--help"), prose("print the help of the command."));
   roff += hanging(bold("-V") + ", " + bold("--version"), prose("print version and licence. Without a command only."));
-  for (const Section part : {Section::build, Section::repair, Section::generate, Section::compare, Section::messages}) {
+  for (const base::OptionSection& part : sections()) {
     std::string entries;
     for (const Option& o : options())
       if (o.section == part && (o.commands & known)) entries += option_entry(o, known);
-    if (!entries.empty()) roff += fmt::format(".SS {}\n", literal(title(part))) + entries;
+    if (!entries.empty()) roff += fmt::format(".SS {}\n", literal(part.title)) + entries;
   }
 
   roff += section("CONFIG FILE") +

@@ -27,9 +27,9 @@ std::string options_markdown() {
       "`blockrand help options --toml` prints such a file with every default. "
       "Every flag can be taken back with `--no-` before its name; a flag that is on unless you say so stands here by that "
       "name, but its key is the plain one: `report = false`.\n";
-  for (const Section section : {Section::build, Section::repair, Section::generate, Section::compare, Section::messages}) {
-    text += fmt::format("\n## {}{}\n\n", title(section),
-                        section == Section::messages || section == Section::compare ? "" : fmt::format(" (`[{}]`)", name(section)));
+  for (const base::OptionSection& section : sections()) {
+    text +=
+        fmt::format("\n## {}{}\n\n", section.title, in_config(section) ? fmt::format(" (`[{}]`)", section.name) : "");
     text += "| option | key | commands | default | range | meaning |\n|---|---|---|---|---|---|\n";
     for (const Option& o : options()) {
       if (o.section != section) continue;

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "pipeline/base/option_table.h"
+
 namespace blockrand::validate {
 
 struct ValidateOptions {
@@ -12,5 +14,8 @@ struct ValidateOptions {
   int sample = 1;       ///< only every n-th tile; counts are not compared then
   int jobs = 0;         ///< worker threads; 0: one per core
 };
+
+/// How users set them: main section. Folder and jobs are other commands' options, too.
+base::OptionTable<ValidateOptions> validate_options();
 
 }  // namespace blockrand::validate

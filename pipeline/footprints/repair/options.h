@@ -1,6 +1,8 @@
 // How far repair may go. All lengths in metres on the ground.
 #pragma once
 
+#include "pipeline/base/option_table.h"
+
 namespace blockrand::repair {
 
 struct RepairOptions {
@@ -37,5 +39,8 @@ struct RepairOptions {
   double parts_free_area = 10.0;  ///< m². A larger uncovered remainder of an outline with parts is built.
   double parts_free_width = 1.0;  ///< m. Narrower remainders are drawing tolerance.
 };
+
+/// How users set them: section [repair].
+base::OptionTable<RepairOptions> repair_options();
 
 }  // namespace blockrand::repair

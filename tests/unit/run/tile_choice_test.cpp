@@ -10,7 +10,7 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/georef/tiles.h"
-#include "pipeline/run/documents.h"
+#include "pipeline/run/configuration.h"
 
 namespace blockrand::region {
 namespace {

@@ -1,0 +1,319 @@
+#include "pipeline/run/options.h"
+
+#include <cmath>
+
+#include "pipeline/base/option.h"
+
+namespace blockrand::run {
+namespace {
+
+using base::choice;
+using base::custom;
+using base::flag;
+using base::integer;
+using base::number;
+using base::OptionRecord;
+using base::OptionType;
+using base::RecordValue;
+using base::text;
+using base::ValueError;
+using enum base::Commands;
+using B = BuildOptions;
+
+// ---- Values with a grammar of their own.
+
+std::array<double, 4> parse_bbox(const std::string& text) {
+  const std::string remedy = "Write west,south,east,north in degrees, for example 12.36,51.33,12.40,51.35.";
+  const std::vector<std::string> parts = base::split(text, ',');
+  if (parts.size() != 4) throw ValueError(base::in_quotes(text) + " does not have four numbers", remedy);
+  std::array<double, 4> box{};
+  for (std::size_t i = 0; i < 4; ++i) box[i] = base::parse_number(parts[i], remedy);
+  const auto [west, south, east, north] = box;
+  if (std::abs(west) > 180 || std::abs(east) > 180) throw ValueError("a longitude lies outside of -180 to 180", remedy);
+  if (std::abs(south) > 90 || std::abs(north) > 90)
+    throw ValueError("a latitude lies outside of -90 to 90", "Longitude comes first. " + remedy);
+  if (south >= north) throw ValueError("south is not below north", remedy);
+  if (west >= east)
+    throw ValueError("west is not left of east",
+                     remedy + " A box across 180 degrees cannot be given: build its two sides one after the other.");
+  return box;
+}
+
+std::string show_bbox(const B& b) {
+  std::vector<std::string> numbers;
+  if (b.bbox)
+    for (const double v : *b.bbox) numbers.push_back(base::shortest(v));
+  return base::joined(numbers, ",");
+}
+
+std::optional<RecordValue> record_bbox(const B& b) {
+  return b.bbox ? RecordValue(std::vector<double>(b.bbox->begin(), b.bbox->end())) : RecordValue();
+}
+
+/// The formats in the order of all listings.
+const base::Choices<bool B::*> kFormats = {
+    {"gltf", &B::gltf}, {"citygml", &B::citygml}, {"cityjson", &B::cityjson}, {"gpkg", &B::geopackage}};
+
+void set_formats(B& b, const std::string& text) {
+  base::Choices<bool B::*> names = kFormats;
+  for (const char* other : {"tileset", "3dtiles"}) names.emplace_back(other, &B::gltf);
+  names.emplace_back("geopackage", &B::geopackage);
+  std::vector<bool B::*> wanted;
+  for (const std::string& part : base::split(text, ',')) wanted.push_back(base::choose(part, names));
+  for (const auto& [name, member] : kFormats) b.*member = false;
+  for (const auto member : wanted) b.*member = true;
+}
+
+std::vector<std::string> formats_of(const B& b) {
+  std::vector<std::string> names;
+  for (const auto& [name, member] : kFormats)
+    if (b.*member) names.push_back(name);
+  return names;
+}
+
+void set_crs(B& b, const std::string& text) {
+  // Whether the code exists and suits the place is for georef to say; here only what cannot be one.
+  std::string_view code = text;
+  if (code.size() > 5 && (code.starts_with("EPSG:") || code.starts_with("epsg:"))) code.remove_prefix(5);
+  if (code.size() < 4 || code.size() > 6 || code.find_first_not_of("0123456789") != std::string_view::npos)
+    throw ValueError(base::in_quotes(text) + " is not an EPSG code", "Write for example EPSG:25833.");
+  b.crs = "EPSG:" + std::string(code);
+}
+
+const base::Choices<outputs::Instancing> kInstancings = {
+    {"ext", outputs::Instancing::ext}, {"nodes", outputs::Instancing::nodes}, {"baked", outputs::Instancing::baked}};
+
+const base::Choices<outputs::Compression> kCompressions = {{"none", outputs::Compression::none},
+                                                           {"meshopt", outputs::Compression::meshopt}};
+
+// ---- The table. Places in the record: build.json keeps the order of its first versions.
+
+base::OptionTable<B> places_and_formats() {
+  return {
+      text({.name = "INPUT",
+            .key = "input",
+            .argument = "FILE",
+            .type = OptionType::path,
+            .commands = kBuild | kInfo,
+            .help = "OSM extract: .osm, .osm.pbf, .osm.gz or .osm.bz2",
+            .if_missing = "no INPUT is given: name an OSM extract.",
+            .record = OptionRecord::none},
+           &B::input),
+      text({.name = "output",
+            .letter = "o",
+            .key = "output",
+            .argument = "FOLDER",
+            .type = OptionType::folder,
+            .commands = kBuild | kCompare | kDistricts | kGrammar,
+            .help = "folder that is written; it appears when everything in it is complete; districts diff, grammar "
+                    "run, grammar import: a file",
+            .if_missing = "no output folder is given: name one with --output FOLDER.",
+            .optional_for = kCompare | kDistricts | kGrammar,
+            .record = OptionRecord::none},
+           &B::output),
+      custom<B>(
+          {.name = "formats",
+           .key = "formats",
+           .argument = "LIST",
+           .type = OptionType::list,
+           .help = "what is written, separated by commas: gltf (3D Tiles with GLB; also called tileset, "
+                   "3dtiles), citygml, cityjson, gpkg (GeoPackage; also called geopackage)",
+           .choices = base::words_of(kFormats),
+           .record = OptionRecord::yes,
+           .record_place = 2},
+          set_formats, [](const B& b) { return base::joined(formats_of(b), ","); },
+          [](const B& b) { return RecordValue(formats_of(b)); }),
+      integer({.name = "lod",
+               .key = "lod",
+               .argument = "N",
+               .minimum = 0,
+               .maximum = 3,
+               .help = "highest level of detail: 0 footprints, 1 blocks, 2 roofs, 3 facades with windows and doors",
+               .record_place = 1},
+              &B::lod),
+      choice({.name = "instancing",
+              .key = "instancing",
+              .argument = "HOW",
+              .help = "how GLBs of level 3 hold windows and ornaments: ext stores each once and places it "
+                      "(EXT_mesh_gpu_instancing), nodes makes a node of each place for programs without that, baked "
+                      "makes triangles of all",
+              .record = OptionRecord::yes,
+              .record_place = 7},
+             kInstancings, &B::instancing),
+      choice({.name = "compress",
+              .key = "compress",
+              .argument = "HOW",
+              .help = "how GLBs are compressed: none, or meshopt (EXT_meshopt_compression), a third of the size, for "
+                      "viewers that can decompress it",
+              .record = OptionRecord::yes,
+              .record_place = 8},
+             kCompressions, &B::compression)};
+}
+
+base::OptionTable<B> place_and_ground() {
+  return {
+      custom<B>(
+          {.name = "bbox",
+           .key = "bbox",
+           .argument = "W,S,E,N",
+           .type = OptionType::list,
+           .commands = kBuild | kInfo | kDistricts,
+           .help = "only what lies in this box: west,south,east,north in degrees",
+           .record = OptionRecord::yes,
+           .record_place = 13},
+          [](B& b, const std::string& text) { b.bbox = parse_bbox(text); }, show_bbox, record_bbox),
+      custom<B>(
+          {.name = "tile",
+           .argument = "LEVEL/X/Y",
+           .help = "build this tile alone, from what lies within 3 km of it: the same as in a build of the "
+                   "whole; needs --pinned",
+           .record = OptionRecord::yes,
+           .record_place = 12},
+          [](B& b, const std::string& text) { b.tile = text; }, [](const B& b) { return b.tile; },
+          [](const B& b) { return b.tile.empty() ? std::nullopt : std::optional(RecordValue(b.tile)); }),
+      text({.name = "pinned",
+            .argument = "BUILD.JSON",
+            .type = OptionType::path,
+            .help = "with --tile: build.json of a build of the whole extract, whose CRS and coverage are taken",
+            .record = OptionRecord::none},
+           &B::pinned),
+      // The record has the CRS that was used beside what PROJ says of it.
+      custom<B>({.name = "crs",
+                 .key = "crs",
+                 .argument = "EPSG:CODE",
+                 .commands = kBuild | kInfo | kCompare | kDistricts,
+                 .help = "projected coordinate system in metres; else ETRS89/UTM in Europe and WGS 84/UTM elsewhere; "
+                         "compare: else that of the reference",
+                 .record = OptionRecord::none},
+                set_crs, [](const B& b) { return b.crs; }),
+      text({.name = "districts",
+            .key = "districts",
+            .argument = "NAME",
+            .commands = kBuild | kDistricts,
+            .help = "district rules for everything: the name of a rule set in configs/districts/, or a file; else "
+                    "each place's own"},
+           &B::districts),
+      text({.name = "overrides",
+            .key = "overrides",
+            .argument = "FILE",
+            .type = OptionType::path,
+            .commands = kBuild | kDistricts,
+            .help = "corrections by OSM id, stronger than every tag (docs/districts.md)"},
+           &B::overrides),
+      text({.name = "terrain",
+            .key = "terrain",
+            .argument = "RASTER",
+            .type = OptionType::path,
+            .help = "ground heights: any raster that GDAL reads",
+            .record = OptionRecord::yes},
+           &B::terrain),
+      text({.name = "terrain-height-reference",
+            .key = "terrain_height_reference",
+            .argument = "REFERENCE",
+            .help = "what the raster's heights are above, where it does not say so itself: sea-level (taken for "
+                    "EGM96), ellipsoid, or a vertical coordinate system such as EPSG:7837"},
+           &B::terrain_height_reference),
+      number({.name = "ground-height",
+              .key = "ground_height",
+              .argument = "METRES",
+              .minimum = -500,
+              .maximum = 9000,
+              .help = "height of the ground where there is no terrain, in m: above sea level, or beside --terrain in "
+                      "the raster's heights"},
+             &B::ground_height)};
+}
+
+base::OptionTable<B> what_files_hold() {
+  return {
+      flag({.name = "evidence",
+            .key = "evidence",
+            .help = "GLB, CityGML and CityJSON also say why each attribute has its value (explain/ always does)",
+            .record = OptionRecord::yes,
+            .record_place = 5},
+           &B::evidence),
+      flag({.name = "gzip",
+            .key = "gzip",
+            .help = "compress the CityGML and CityJSON files (.gml.gz, .city.jsonl.gz)",
+            .record = OptionRecord::yes,
+            .record_place = 6},
+           &B::gzip),
+      flag({.name = "single-glb",
+            .key = "single_glb",
+            .help = "also write model.glb: the whole build in one frame",
+            .record = OptionRecord::yes,
+            .record_place = 9},
+           &B::single_glb),
+      flag({.name = "single-cityjson",
+            .key = "single_cityjson",
+            .help = "also write model.city.json: the whole build as one CityJSON object",
+            .record = OptionRecord::yes,
+            .record_place = 10},
+           &B::single_cityjson),
+      flag({.name = "report",
+            .key = "report",
+            .help = "write report.html: what was built, where values come from, a map and pictures",
+            .without = "no report.html, the page with what was built, where values come from, a map and pictures; no "
+                       "plan.png",
+            .record = OptionRecord::yes,
+            .record_place = 3},
+           &B::report),
+      flag({.name = "explain",
+            .key = "explain",
+            .help = "write explain/, from which 'blockrand explain' tells why a building looks as it does",
+            .without = "no explain/: 'blockrand explain' cannot tell why a building of this build looks as it does",
+            .record = OptionRecord::yes,
+            .record_place = 4},
+           &B::explain)};
+}
+
+base::OptionTable<B> how_it_runs() {
+  constexpr double most = 9223372036854774784.0;  // the largest double below 2^63: TOML's integers end there
+  return {integer({.name = "seed",
+                   .key = "seed",
+                   .argument = "N",
+                   .commands = kBuild | kCompare | kDistricts | kGrammar,
+                   .minimum = 0,
+                   .maximum = most,
+                   .help = "of all random choices; the same seed gives the same bytes",
+                   .record_place = 11},
+                  &B::seed),
+          integer({.name = "jobs",
+                   .letter = "j",
+                   .key = "jobs",
+                   .argument = "N",
+                   .commands = kBuild | kInfo | kValidate | kCompare | kDistricts,
+                   .minimum = 0,
+                   .maximum = 1024,
+                   .help = "worker threads; 0 is one per core",
+                   .record = OptionRecord::none},
+                  &B::jobs),
+          flag({.name = "strict",
+                .key = "strict",
+                .help = "exit with code 3 when a building is simpler than asked or has no solid",
+                .record = OptionRecord::none},
+               &B::strict),
+          // The record has the files that were read, each with its hash.
+          text({.name = "configs",
+                .key = "configs",
+                .argument = "DIR",
+                .type = OptionType::folder,
+                .commands = kBuild | kDistricts,
+                .help = "folder with defaults/ and materials/; else the configs/ that came with the program",
+                .record = OptionRecord::none},
+               &B::configs),
+          flag({.name = "force",
+                .commands = kBuild | kCompare | kDistricts | kGrammar,
+                .help = "replace an existing build, comparison, map or file",
+                .record = OptionRecord::none},
+               &B::force)};
+}
+
+}  // namespace
+
+base::OptionTable<BuildOptions> build_options() {
+  return base::concatenated({places_and_formats(), place_and_ground(), what_files_hold(), how_it_runs(),
+                             base::of_member(repair::repair_options(), &B::repair),
+                             base::of_member(attributes::generate_options(), &B::generate)});
+}
+
+}  // namespace blockrand::run

@@ -1,0 +1,55 @@
+// What `blockrand build` is asked for.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "pipeline/attributes/options.h"
+#include "pipeline/base/option_table.h"
+#include "pipeline/footprints/repair/options.h"
+#include "pipeline/outputs/gltf/compression.h"
+#include "pipeline/outputs/gltf/instance_writer.h"
+
+namespace blockrand::run {
+
+/// What the user asked for. Defaults are those of `blockrand build`.
+struct BuildOptions {
+  std::string input;                          ///< .osm, .osm.pbf, .osm.gz, .osm.bz2
+  std::string output;                         ///< folder that the build becomes
+  std::string configs;                        ///< folder with defaults/ and materials/; empty: found by the program
+  std::optional<std::array<double, 4>> bbox;  ///< west, south, east, north in degrees
+  std::string tile;                           ///< "15/35207/25941": build this tile alone; needs `pinned`
+  std::string pinned;                         ///< build.json of an earlier build of the extract: its CRS, its coverage
+  std::string crs;                            ///< "EPSG:…"; empty: chosen from the extent
+  int lod = 2;                                ///< highest level of detail, 0 to 3
+  outputs::Compression compression = outputs::Compression::none;  ///< of vertices, indices and places in GLBs
+  outputs::Instancing instancing = outputs::Instancing::ext;      ///< how GLBs hold what stands in facades
+  bool gltf = true;                                               ///< tileset.json and tiles/
+  bool citygml = true;                                            ///< citygml/
+  bool cityjson = true;                                           ///< cityjson/
+  bool geopackage = true;                                         ///< buildings.gpkg
+  bool report = true;                                             ///< report.html
+  bool explain = true;                                            ///< explain/: what `blockrand explain` reads
+  bool evidence = false;                 ///< GLB, CityGML and CityJSON also say why each attribute has its value
+  bool gzip = false;                     ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
+  bool single_glb = false;               ///< also model.glb: the whole build in one frame
+  bool single_cityjson = false;          ///< also model.city.json: the whole build as one CityJSON object
+  bool force = false;                    ///< replace an existing build
+  bool strict = false;                   ///< exit code 3 when a building is below the asked quality
+  int jobs = 0;                          ///< worker threads; 0: one per core
+  std::uint64_t seed = 1;                ///< of all random choices
+  std::string terrain;                   ///< raster with ground heights, or empty
+  std::string terrain_height_reference;  ///< "EPSG:7837", "sea-level", "ellipsoid"; empty: what the raster says
+  std::string districts;                 ///< rule set by name or file; empty: chosen by place from configs/districts/
+  std::string overrides;                 ///< overrides.toml, or empty
+  std::optional<double> ground_height;   ///< m above sea level for every base where there is no terrain
+  repair::RepairOptions repair;
+  attributes::GenerateOptions generate;
+};
+
+/// How users set them: the main section, and those of the stages whose options a build holds.
+base::OptionTable<BuildOptions> build_options();
+
+}  // namespace blockrand::run

@@ -1,0 +1,221 @@
+// Options that belong to a command rather than to a stage: members of Settings itself.
+#include <algorithm>
+
+#include "pipeline/settings/options.h"
+
+namespace blockrand::settings {
+namespace {
+
+using base::choice;
+using base::custom;
+using base::flag;
+using base::number;
+using base::OptionRecord;
+using base::text;
+using base::texts;
+using base::word;
+using S = Settings;
+using Table = base::OptionTable<Settings>;
+
+Table of_finished_builds() {
+  return {text({.name = "FOLDER",
+                .argument = "FOLDER",
+                .type = OptionType::folder,
+                .commands = kExplain | kValidate,
+                .help = "what 'blockrand build' wrote",
+                .if_missing = "no FOLDER is given: name the output folder of a build.",
+                .after = "INPUT"},
+               &S::folder)};
+}
+
+Table of_districts() {
+  return {word({.name = "ACTION",
+                .argument = "ACTION",
+                .commands = kDistricts,
+                .help = "check, show or diff",
+                .if_missing = "no ACTION is given: check, show or diff.",
+                .choices = {"check", "show", "diff"},
+                .after = "FOLDER"},
+               &S::action),
+          texts({.name = "FILE",
+                 .argument = "FILE",
+                 .type = OptionType::path,
+                 .commands = kDistricts,
+                 .help = "check: rule sets, without any those that came with the program; show: an extract; diff: two "
+                         "rule sets and an extract"},
+                &S::files),
+          word({.name = "by",
+                .argument = "WHAT",
+                .commands = kDistricts,
+                .help = "districts show: what the map is coloured by, preset or rule",
+                .choices = {"preset", "rule"},
+                .after = "overrides"},
+               &S::map_by)};
+}
+
+/// Folders separated by commas, without empty ones. Spaces belong to their names.
+std::vector<std::string> parse_roots(const std::string& text) {
+  std::vector<std::string> roots;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    if (end > at) roots.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return roots;
+}
+
+void add_attribute(S& s, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw ValueError(base::in_quotes(text) + " is no NAME=VALUE", "For example: height=12");
+  s.rule_attributes.push_back(text);
+}
+
+Table of_grammar() {
+  return {
+      word({.name = "TASK",
+            .argument = "TASK",
+            .commands = kGrammar,
+            .help = "check, run, test or import",
+            .if_missing = "no TASK is given: check, run, test or import.",
+            .choices = {"check", "run", "test", "import"},
+            .after = "FILE"},
+           &S::task),
+      texts({.name = "RULES",
+             .argument = "RULES",
+             .type = OptionType::path,
+             .commands = kGrammar,
+             .help = "check, test: rule files; run: one; import: a file of facade rules in XML",
+             .if_missing = "no RULES are given: name rule files."},
+            &S::rule_files),
+      custom<S>(
+          {.name = "roots",
+           .argument = "LIST",
+           .type = OptionType::list,
+           .commands = kGrammar,
+           .help = "folders, separated by commas, in which imported files are looked for besides the importing "
+                   "file's; /PREFIX=FOLDER: where paths that begin with /PREFIX lie"},
+          [](S& s, const std::string& text) { s.rule_roots = parse_roots(text); },
+          [](const S& s) { return base::joined(s.rule_roots, ","); }),
+      text({.name = "lot",
+            .argument = "WxD",
+            .commands = kGrammar,
+            .help = "run: the rectangle that the rules begin with, width and depth in metres, such as 20x12"},
+           &S::rule_lot),
+      number({.name = "storeys",
+              .argument = "N",
+              .commands = kGrammar,
+              .minimum = 0,
+              .maximum = 200,
+              .help = "run: building.storeys and building__levels"},
+             &S::rule_storeys),
+      custom<S>({.name = "attr",
+                 .argument = "NAME=VALUE",
+                 .commands = kGrammar,
+                 .help = "run: value of an attribute, or of what the program gives (building.height); several times",
+                 .several = true},
+                add_attribute, [](const S& s) { return base::joined(s.rule_attributes, " "); }),
+      text({.name = "rule",
+            .argument = "NAME",
+            .commands = kGrammar,
+            .help = "run: where to begin; else the rule file's own start rule"},
+           &S::start_rule),
+      flag({.name = "tree", .commands = kGrammar, .help = "run: print all shapes, not only the leaves' number"},
+           &S::rule_tree)};
+}
+
+Table of_build() {
+  return {text({.name = "config",
+                .argument = "FILE.toml",
+                .type = OptionType::path,
+                .help = "read options from this file; the command line is stronger",
+                .after = "force"},
+               &S::config)};
+}
+
+Table of_explain() {
+  return {text({.name = "ID",
+                .argument = "ID",
+                .commands = kExplain,
+                .help = "of the building: w123 for way 123, r45 for relation 45",
+                .if_missing = "no ID is given: name a building, for example w123.",
+                .after = "tree"},
+               &S::id),
+          flag({.name = "edges",
+                .commands = kExplain,
+                .help = "list the walls as well: what each faces, how long it is, where it looks",
+                .after = "sample"},
+               &S::edges),
+          flag({.name = "style",
+                .commands = kExplain,
+                .help = "list everything that spoke for or against its style, not the weightiest alone"},
+               &S::style)};
+}
+
+/// "2%", "2 %" or "2" → 0.02.
+double parse_percent(const std::string& text) {
+  const std::string remedy = "Write for example 2%.";
+  std::string_view number = text;
+  if (number.ends_with('%')) number.remove_suffix(1);
+  while (number.ends_with(' ')) number.remove_suffix(1);
+  const double percent = base::parse_number(number, remedy);
+  if (percent < 0 || percent > 1000) throw ValueError(base::in_quotes(text) + " is out of range", remedy);
+  return percent / 100;
+}
+
+Table of_compare() {
+  return base::in_section<S>(
+      compare::kCompareSection,
+      {text({.name = "baseline",
+             .argument = "COMPARE.JSON",
+             .type = OptionType::path,
+             .commands = kCompare,
+             .help = "an earlier comparison's compare.json: every measure is set against it",
+             .record = OptionRecord::none},
+            &S::baseline),
+       custom<S>(
+           {.name = "fail-if-worse",
+            .argument = "PERCENT",
+            .commands = kCompare,
+            .help = "exit with code 3 when a measure is worse than in --baseline by more than this: 2%",
+            .record = OptionRecord::none},
+           [](S& s, const std::string& text) { s.fail_if_worse = parse_percent(text); },
+           [](const S& s) { return s.fail_if_worse ? base::shortest(*s.fail_if_worse * 100) + "%" : ""; })});
+}
+
+Table of_several() {
+  return {flag({.name = "json", .commands = kInfo | kExplain | kValidate | kCompare, .help = "print JSON"}, &S::json)};
+}
+
+const base::Choices<base::ProgressStyle> kProgressStyles = {{"auto", base::ProgressStyle::automatic},
+                                                            {"bar", base::ProgressStyle::bar},
+                                                            {"plain", base::ProgressStyle::plain},
+                                                            {"none", base::ProgressStyle::none}};
+const base::Choices<base::LogFormat> kLogFormats = {{"text", base::LogFormat::text}, {"json", base::LogFormat::json}};
+
+Table of_messages() {
+  constexpr unsigned all = kBuild | kInfo | kValidate | kCompare | kDistricts | kGrammar;
+  constexpr base::OptionSection messages{.name = "messages", .title = "Messages"};
+  return base::in_section<S>(
+      messages,
+      {choice({.name = "progress",
+               .argument = "STYLE",
+               .commands = all,
+               .help = "auto (bar on a terminal, else plain), bar, plain (lines) or none"},
+              kProgressStyles, &S::progress),
+       choice({.name = "log-format",
+               .argument = "FORMAT",
+               .commands = all,
+               .help = "messages, progress and the summary as text or as json lines"},
+              kLogFormats, &S::log_format),
+       flag({.name = "quiet", .letter = "q", .commands = all, .help = "warnings and errors only"}, &S::quiet)});
+}
+
+}  // namespace
+
+std::vector<base::OptionTable<Settings>> command_options() {
+  return {of_finished_builds(), of_districts(), of_grammar(), of_build(),
+          of_explain(),         of_several(),   of_compare(), of_messages()};
+}
+
+}  // namespace blockrand::settings
