@@ -119,7 +119,7 @@ bool remove_tree(const std::string& path) noexcept {
   return false;
 }
 
-bool exchange(const std::string& a, const std::string& b) {
+bool exchange_paths(const std::string& a, const std::string& b) {
   return ::syscall(SYS_renameat2, AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
 }
 
@@ -374,7 +374,7 @@ std::string StagedFolder::publish() {
     };
     if (!exists) {
       if (::rename(staging_.c_str(), target_.c_str()) != 0) throw fail(errno);
-    } else if (exchange(staging_, target_)) {
+    } else if (exchange_paths(staging_, target_)) {
       old = staging_;
     } else {
       old = sibling(target_, ".old-" + std::to_string(::getpid()));
