@@ -10,14 +10,14 @@
 #   --data DIR        folder with osm/ and reference/; else ../shared/data beside the repository
 #   --configs DIR     the program's configs; else those beside it or in a folder above it
 #   --keep            the builds stay in OUTDIR/work (4 GB), to look at what differs; else OUTDIR/work is removed
-# The second form names the files that differ and exits with 1 when there are any. --allow says what may differ:
+# The second form names the files that differ, of the cases that both have, and exits with 1 when there are any. --allow says what may differ:
 #   max_usual_roof_height   build.json may record this option and does not have to
 #   info                    `blockrand info`, its help, and what lists its options (reference, manual, completion)
 # All calls run in OUTDIR/work with relative paths, so that no path of this machine can reach an output.
 set -eu
 
 usage() {
-  sed -n '2,18p' "$0"
+  sed -n '2,17p' "$0" | sed 's/^# \{0,1\}//'
   exit "$1"
 }
 
@@ -55,8 +55,31 @@ def texts(folder):
     return out
 
 
-(files_a, roof_a), (files_b, roof_b) = hashes(before), hashes(after)
-texts_a, texts_b = texts(before), texts(after)
+CASES = ('zionskirchplatz', 'husum', 'helsinki', 'monaco', 'ingolstadt', 'vinohrady', 'pariser_platz', 'settings')
+
+
+def case_of(path):
+    if path.startswith(('stdout/districts_show', 'stdout/districts_diff')):
+        return 'vinohrady'
+    return next((c for c in CASES if c in path), 'commands')
+
+
+def cases(folder):
+    with open(os.path.join(folder, 'cases.txt'), encoding='utf-8') as f:
+        return set(f.read().split(','))
+
+
+common = cases(before) & cases(after)
+
+
+def of_common(found):
+    return {path: what for path, what in found.items() if case_of(path) in common}
+
+
+files_a, roof_a = map(of_common, hashes(before))
+files_b, roof_b = map(of_common, hashes(after))
+texts_a, texts_b = of_common(texts(before)), of_common(texts(after))
+print('cases that both have: ' + ', '.join(sorted(common)))
 wrong, granted = [], []
 for path in sorted(files_a.keys() | files_b.keys()):
     a, b = files_a.get(path), files_b.get(path)
@@ -140,7 +163,7 @@ done
 [ -n "$configs" ] || { echo "byte_equality: no configs beside $program; name them with --configs" >&2; exit 1; }
 
 work=$out/work
-rm -rf "$work" "$out/stdout" "$out/hashes.txt"
+rm -rf "$work" "$out/stdout" "$out/hashes.txt" "$out/cases.txt"
 mkdir -p "$work" "$out/stdout"
 ln -s "$data/osm" "$work/osm"
 ln -s "$data/reference" "$work/reference"
@@ -647,6 +670,7 @@ for one in $(printf '%s' "$cases" | tr ',' ' '); do
   done_with "$one"
 done
 LC_ALL=C sort -k 2 hashes >"$out/hashes.txt"
+printf '%s' "$cases" >"$out/cases.txt"
 cat "$out/hashes.txt"
 cd "$out"
 [ $keep = yes ] || rm -rf "$work"
