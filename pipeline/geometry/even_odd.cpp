@@ -11,6 +11,7 @@
 
 #include "pipeline/base/random.h"
 #include "pipeline/geometry/footprint_overlap.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::geometry {
 
@@ -44,9 +45,6 @@ using model::Point2;
 /// m. Where points stand on edges, moving them by so little decides whether edges cross there; 1/100 of the grid.
 constexpr double kApart = 1e-5;
 
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
-Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
-
 /// The ring's points relative to the first, each moved by less than kApart in a way that depends on its place in the
 /// ring alone.
 std::vector<Point2> moved_apart(std::span<const Point2> ring) {
@@ -54,7 +52,7 @@ std::vector<Point2> moved_apart(std::span<const Point2> ring) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const std::uint64_t bits = base::mix64(i);
     const auto part = [](std::uint64_t half) { return kApart * (static_cast<double>(half & 0xffffffff) / 4294967296.0); };
-    const Point2 p = minus(ring[i], ring[0]);
+    const Point2 p = ring[i] - ring[0];
     out.push_back({p.x + part(bits), p.y + part(bits >> 32)});
   }
   return out;
@@ -71,12 +69,12 @@ std::vector<std::vector<double>> crossings_of(const std::vector<Point2>& p) {
   std::vector<std::vector<double>> out(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t e = order[i];
-    const Point2 a = p[e], u = minus(end(e), a);
+    const Point2 a = p[e], u = end(e) - a;
     const double most = std::max(a.x, end(e).x);
     for (std::size_t k = i + 1; k < n && low(order[k]) <= most; ++k) {
       const std::size_t f = order[k];
       if ((e + 1) % n == f || (f + 1) % n == e) continue;
-      const Point2 c = p[f], v = minus(end(f), c), w = minus(c, a);
+      const Point2 c = p[f], v = end(f) - c, w = c - a;
       const double turn = cross(u, v);
       if (turn == 0) continue;
       const double along_e = cross(w, v) / turn, along_f = cross(w, u) / turn;
@@ -97,7 +95,7 @@ double tangled_area(const model::Ring& ring) {
   const std::vector<std::vector<double>> crossings = crossings_of(p);
   double twice = 0, side = 1;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const Point2 a = p[i], u = minus(p[i + 1 == p.size() ? 0 : i + 1], a);
+    const Point2 a = p[i], u = p[i + 1 == p.size() ? 0 : i + 1] - a;
     double from = 0;
     const auto go_to = [&](double to) {
       twice += side * (to - from) * cross(a, u);  // of a and b, twice the triangle with the origin

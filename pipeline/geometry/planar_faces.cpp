@@ -14,6 +14,7 @@
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/noded_lines.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::geometry {
 
@@ -299,7 +300,7 @@ class Attribution {
       const auto node =
           std::lower_bound(nodes_.begin(), nodes_.end(), std::pair(p, std::numeric_limits<std::int64_t>::min()));
       if (node != nodes_.end() && node->first == p) ring.nodes[i] = node->second;
-      const double length = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
+      const double length = distance(q, p);
       // The interior lies on the left of every ring edge: the same direction as the line's means left of the line.
       const bool forward = p < q;
       const Point2 a = std::min(p, q), b = std::max(p, q);
