@@ -1,44 +1,19 @@
 #include "pipeline/geometry/even_odd.h"
 
-#include <geos_c.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numeric>
 #include <span>
 #include <vector>
 
 #include "pipeline/base/random.h"
 #include "pipeline/geometry/footprint_overlap.h"
+#include "pipeline/geometry/geos_scope.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::geometry {
 
 namespace {
-
-/// One GEOS context per thread: contexts are not shared between threads.
-class Context {
- public:
-  Context() : handle_(GEOS_init_r()) {}
-  ~Context() { GEOS_finish_r(handle_); }
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
-  GEOSContextHandle_t get() const { return handle_; }
-
- private:
-  GEOSContextHandle_t handle_;
-};
-
-GEOSContextHandle_t context() {
-  thread_local Context c;
-  return c.get();
-}
-
-struct Deleter {
-  void operator()(GEOSGeometry* g) const { GEOSGeom_destroy_r(context(), g); }
-};
-using Geometry = std::unique_ptr<GEOSGeometry, Deleter>;
 
 using model::Point2;
 
@@ -116,23 +91,13 @@ bool tangled(const model::Ring& ring) {
 }
 
 double even_odd_area(const model::Ring& ring) {
-  const auto n = static_cast<unsigned>(ring.size());
-  if (n < 3) return 0;
+  if (ring.size() < 3) return 0;
   if (tangled(ring)) return tangled_area(ring);
-  // Near the origin GEOS's rounding stays far below the grid.
-  const model::Point2 origin = ring.points[0];
-  GEOSCoordSequence* sequence = GEOSCoordSeq_create_r(context(), n + 1, 2);
-  for (unsigned i = 0; i <= n; ++i)
-    GEOSCoordSeq_setXY_r(context(), sequence, i, ring.points[i % n].x - origin.x, ring.points[i % n].y - origin.y);
-  const Geometry polygon(
-      GEOSGeom_createPolygon_r(context(), GEOSGeom_createLinearRing_r(context(), sequence), nullptr, 0));
-  // LINEWORK, the other method than the one that mends: it makes holes of what is enclosed twice.
-  GEOSMakeValidParams* parameters = GEOSMakeValidParams_create_r(context());
-  GEOSMakeValidParams_setMethod_r(context(), parameters, GEOS_MAKE_VALID_LINEWORK);
-  const Geometry valid(GEOSMakeValidWithParams_r(context(), polygon.get(), parameters));
-  GEOSMakeValidParams_destroy_r(context(), parameters);
+  const geos::Geometry polygon = geos::polygon_of({ring, {}}, ring.points[0]);
+  // LINEWORK, the other method than the one that mends.
+  const geos::Geometry valid = geos::made_valid(polygon.get(), GEOS_MAKE_VALID_LINEWORK);
   double area = 0;
-  if (valid) GEOSArea_r(context(), valid.get(), &area);
+  if (valid) GEOSArea_r(geos::context(), valid.get(), &area);
   return area;
 }
 
