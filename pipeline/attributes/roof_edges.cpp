@@ -32,9 +32,11 @@ RoofEdge kind_of(const model::FacadeEdge& e) {
       return RoofEdge::courtyard;
     case EdgeKind::party_wall:
       return e.outbuilding ? RoofEdge::open : RoofEdge::party_wall;
-    default:
-      return RoofEdge::open;
+    case EdgeKind::unknown:
+    case EdgeKind::side:
+      break;
   }
+  return RoofEdge::open;
 }
 
 /// m of the stretch from a to b that lie on the edge from p to q and run its way.

@@ -90,9 +90,14 @@ class Side {
         return kPictureWall;
       case Hull::roof:
         return kPictureRoof;
-      default:
-        return kPictureOther;
+      case Hull::ground:
+      case Hull::closure:
+      case Hull::outer_ceiling:
+      case Hull::outer_floor:
+      case Hull::installation:
+        break;
     }
+    return kPictureOther;
   }
 
   void paint(picture::Scene& scene, const Opening& opening, std::uint32_t object) const {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/osm_keys.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::footprints {
@@ -147,7 +148,7 @@ RoofLineFinder::RoofLineFinder(const model::Extract& extract, const georef::Proj
     if (!way && !node) continue;
     RoofLine line;
     line.id = feature.id;
-    const std::string_view ridge = extract.tag(feature.tags, "roof:ridge");
+    const std::string_view ridge = extract.tag(feature.tags, model::osm_key::kRoofRidge);
     line.kind = node ? RoofLineKind::apex : !ridge.empty() && ridge != "no" ? RoofLineKind::ridge : RoofLineKind::edge;
     for (const model::MappedRing& ring : extract.rings_of(feature.rings)) {
       line.points.clear();

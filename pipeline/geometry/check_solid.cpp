@@ -103,8 +103,9 @@ Grid2 project(Grid3 p, Axis axis) {
   switch (axis) {
     case Axis::x: return {p.y, p.z};
     case Axis::y: return {p.z, p.x};
-    default: return {p.x, p.y};
+    case Axis::z: break;
   }
+  return {p.x, p.y};
 }
 
 bool segments_meet(Grid2 a, Grid2 b, Grid2 c, Grid2 d) {

@@ -432,7 +432,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       case ObjectState::modelled: ++summary.models; break;
       case ObjectState::duplicate: ++summary.duplicates; break;
       case ObjectState::represented: ++summary.represented; break;
-      default: ++summary.reported;
+      case ObjectState::pending:
+      case ObjectState::reported: ++summary.reported;
     }
     if (b.state == ObjectState::reported) ++summary.issues[std::string(info(b.code).text)];
   }
