@@ -6,6 +6,7 @@
 
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/model/osm_keys.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::footprints {
 
@@ -17,8 +18,6 @@ using model::RoofLine;
 using model::RoofLineKind;
 
 namespace {
-
-double distance(Point2 a, Point2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
 /// The plan's boundary as segments.
 template <class Visit>
