@@ -1,8 +1,5 @@
 #include "importers/elevation/terrain.h"
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
-#include <gdal.h>
 #include <ogr_srs_api.h>
 
 #include <algorithm>
@@ -18,6 +15,7 @@
 
 #include "importers/elevation/bilinear.h"
 #include "pipeline/base/error.h"
+#include "pipeline/gdal/gdal_scope.h"
 #include "pipeline/georef/transform.h"
 
 namespace blockrand::importers::elevation {
@@ -34,26 +32,6 @@ constexpr double kPixelSteps = 65536;
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 using Block = std::vector<double>;  // row by row, kMissing where there is no value
-
-struct DatasetCloser {
-  void operator()(void* dataset) const { GDALClose(dataset); }
-};
-
-/// Silences GDAL on this thread while it lives; the last message goes into our own error.
-class Quiet {
- public:
-  Quiet() {
-    CPLPushErrorHandler(CPLQuietErrorHandler);
-    CPLErrorReset();
-  }
-  ~Quiet() { CPLPopErrorHandler(); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-  static std::string message() {
-    const std::string text = CPLGetLastErrorMsg();
-    return text.empty() ? "" : " (GDAL: " + text + ")";
-  }
-};
 
 /// Position in the raster: column and row, pixel centres at whole numbers.
 struct Pixel {
@@ -94,7 +72,7 @@ struct Terrain::Impl {
 
   // GDAL's datasets are for one thread at a time.
   std::mutex reading;
-  std::unique_ptr<void, DatasetCloser> dataset;
+  std::unique_ptr<void, gdal::CloseDataset> dataset;
   GDALRasterBandH band = nullptr;
   GDALRasterBandH mask = nullptr;
 
@@ -149,7 +127,7 @@ std::shared_ptr<const Block> Terrain::Impl::read(long long block_column, long lo
   auto block = std::make_shared<Block>(static_cast<std::size_t>(kBlockSize) * kBlockSize, kMissing);
   std::vector<std::uint8_t> valid(block->size(), 255);
   const std::lock_guard lock(reading);
-  const Quiet quiet;
+  const gdal::GdalScope scope;
   CPLErr error = GDALRasterIO(band, GF_Read, x, y, width, height, block->data(), width, height, GDT_Float64, 0,
                               kBlockSize * static_cast<int>(sizeof(double)));
   if (error < CE_Failure && mask != nullptr) {
@@ -157,7 +135,7 @@ std::shared_ptr<const Block> Terrain::Impl::read(long long block_column, long lo
   }
   if (error >= CE_Failure) {
     throw base::InputError(description.path, "pixel " + std::to_string(x) + "," + std::to_string(y),
-                           "the terrain raster cannot be read" + Quiet::message(),
+                           "the terrain raster cannot be read" + gdal::GdalScope::last_words(),
                            "The file is damaged or was cut short; fetch it again");
   }
   for (std::size_t i = 0; i < block->size(); ++i) {
@@ -299,12 +277,12 @@ Terrain::Terrain(const std::string& path, std::optional<double> metres_per_unit)
            "Name one raster file; several tiles can be joined without copying: gdalbuildvrt terrain.vrt " + path +
                "/*.tif");
   }
-  GDALAllRegister();
+  gdal::register_drivers();
   if (GDALGetCacheMax64() > kMaxGdalCache) GDALSetCacheMax64(kMaxGdalCache);
-  const Quiet quiet;
+  const gdal::GdalScope scope;
   impl.dataset.reset(GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
   if (!impl.dataset) {
-    refuse("is no raster that GDAL can read" + Quiet::message(),
+    refuse("is no raster that GDAL can read" + gdal::GdalScope::last_words(),
            "Check with gdalinfo; the file may be damaged or of another kind");
   }
   GDALDatasetH dataset = impl.dataset.get();

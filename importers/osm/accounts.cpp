@@ -6,10 +6,12 @@
 #include <unordered_set>
 
 #include "importers/osm/equal_outlines.h"
+#include "pipeline/model/osm_keys.h"
 
 namespace blockrand::importers::osm {
 namespace {
 
+namespace osm_key = model::osm_key;
 using model::IssueCode;
 using model::ObjectKind;
 using model::ObjectState;
@@ -27,15 +29,16 @@ bool is_lifecycle(std::string_view use) {
 }
 
 bool is_underground(const RawData& data, const RawObject& object, std::string_view use) {
-  if (is_any_of(data.tag(object, "location"), "underground", "underwater")) return true;
-  const std::string_view text = data.tag(object, "layer");
+  if (is_any_of(data.tag(object, osm_key::kLocation), "underground", "underwater")) return true;
+  const std::string_view text = data.tag(object, osm_key::kLayer);
   if (!text.starts_with('-')) return false;
   int layer = 0;
   std::from_chars(text.data(), text.data() + text.size(), layer);
   if (layer >= 0 || is_any_of(use, "roof", "bridge", "viaduct")) return false;
-  if (data.tag(object, "tunnel") == "yes") return true;
+  if (data.tag(object, osm_key::kTunnel) == "yes") return true;
   if (layer > -2) return false;
-  for (const std::string_view key : {"height", "building:height", "building:levels", "levels"})
+  for (const std::string_view key :
+       {osm_key::kHeight, osm_key::kBuildingHeight, osm_key::kBuildingLevels, osm_key::kLevels})
     if (const auto value = data.tag(object, key); !value.empty() && value != "0") return false;
   return true;
 }
@@ -157,7 +160,7 @@ class Bookkeeper {
         if (area_type || shaped)
           reject(*account, area.code, area.detail);
         else
-          reject(*account, IssueCode::relation_type, "type=" + std::string(data_.tag(relation, "type")));
+          reject(*account, IssueCode::relation_type, "type=" + std::string(data_.tag(relation, osm_key::kType)));
         if (area_type) explain_open_members(relation, area);
         continue;
       }
@@ -178,7 +181,8 @@ class Bookkeeper {
   }
 
   void note_conflicts(const Account& account, const RawWay& way) {
-    for (const std::string_view key : {"height", "building:levels", "roof:levels", "roof:shape"}) {
+    for (const std::string_view key :
+         {osm_key::kHeight, osm_key::kBuildingLevels, osm_key::kRoofLevels, osm_key::kRoofShape}) {
       const auto ours = data_.tag(*account.raw, key), theirs = data_.tag(way, key);
       if (!ours.empty() && !theirs.empty() && ours != theirs)
         out_.notices.push_back({account.id, IssueCode::values_conflict,
@@ -271,14 +275,14 @@ class Bookkeeper {
   void settle_lifecycle() {
     for (Account& account : out_.list) {
       if (account.state != ObjectState::pending) continue;
-      const char* const key = account.kind == ObjectKind::building ? "building" : "building:part";
+      const std::string_view key = account.kind == ObjectKind::building ? osm_key::kBuilding : osm_key::kBuildingPart;
       const std::string_view use = data_.tag(*account.raw, key);
       if (is_lifecycle(use))
         reject(account, IssueCode::lifecycle, std::string(key) + "=" + std::string(use));
       else if (is_underground(data_, *account.raw, use))
         reject(account, IssueCode::underground,
-               "layer=" + std::string(data_.tag(*account.raw, "layer")) +
-                   ", location=" + std::string(data_.tag(*account.raw, "location")));
+               "layer=" + std::string(data_.tag(*account.raw, osm_key::kLayer)) +
+                   ", location=" + std::string(data_.tag(*account.raw, osm_key::kLocation)));
     }
   }
 

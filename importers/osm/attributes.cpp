@@ -5,10 +5,12 @@
 
 #include "importers/osm/construction_date.h"
 #include "importers/osm/tag_values.h"
+#include "pipeline/model/osm_keys.h"
 
 namespace blockrand::importers::osm {
 namespace {
 
+namespace osm_key = model::osm_key;
 using model::IssueCode;
 using Tags = std::span<const std::pair<std::string_view, std::string_view>>;
 using Keys = std::initializer_list<std::string_view>;
@@ -71,26 +73,26 @@ class AttributeReader {
 bool any_key_of_the_scheme(Tags tags) {
   for (const auto& [k, v] : tags)
     if (k.starts_with("building:") || k.starts_with("roof:") || k.ends_with("height") || k.ends_with("level") ||
-        k == "levels" || k == "layer" || k.starts_with("facade:") || k == "start_date" || k == "construction_date" ||
-        k == "year_of_construction")
+        k == osm_key::kLevels || k == osm_key::kLayer || k.starts_with("facade:") || k == osm_key::kStartDate ||
+        k == osm_key::kConstructionDate || k == osm_key::kYearOfConstruction)
       return true;
   return false;
 }
 
 /// `start_date` of an object that is a business as well may be the day it opened.
 bool is_a_business_too(const AttributeReader& read) {
-  for (const std::string_view key : {"shop", "amenity", "office", "craft"})
+  for (const std::string_view key : {osm_key::kShop, osm_key::kAmenity, osm_key::kOffice, osm_key::kCraft})
     if (const std::string_view value = read.value(key); !value.empty() && value != "no") return true;
-  const std::string_view tourism = read.value("tourism");
+  const std::string_view tourism = read.value(osm_key::kTourism);
   return tourism == "hotel" || tourism == "museum";
 }
 
 std::optional<model::ConstructionDate> read_construction_date(AttributeReader& read) {
-  const auto of_the_building =
-      read.first({"building:start_date", "building:year_of_construction", "year_of_construction", "construction_date"},
-                 parse_construction_date);
+  const auto of_the_building = read.first({osm_key::kBuildingStartDate, osm_key::kBuildingYearOfConstruction,
+                                           osm_key::kYearOfConstruction, osm_key::kConstructionDate},
+                                          parse_construction_date);
   if (of_the_building) return of_the_building;
-  auto date = read.first({"start_date"}, parse_construction_date);
+  auto date = read.first({osm_key::kStartDate}, parse_construction_date);
   if (date && is_a_business_too(read)) date->confidence /= 2;
   return date;
 }
@@ -101,36 +103,39 @@ model::MappedAttributes read_attributes(model::OsmId id, model::ObjectKind kind,
                                         model::Report& report) {
   model::MappedAttributes a;
   AttributeReader read(id, tags, report);
-  a.use = strings.intern(read.value(kind == model::ObjectKind::building ? "building" : "building:part"));
+  a.use = strings.intern(read.value(kind == model::ObjectKind::building ? osm_key::kBuilding : osm_key::kBuildingPart));
   if (!any_key_of_the_scheme(tags)) return a;  // four of five buildings
 
   const auto length = [](std::string_view t) { return parse_length(t); };
   const auto lowest_length = [](std::string_view t) { return parse_length(t, Pick::lowest); };
   const auto storeys = [](std::string_view t) { return parse_storeys(t); };
   const auto lowest_storey = [](std::string_view t) { return parse_storeys(t, Pick::lowest); };
-  a.height = read.number({"height", "building:height", "est_height"}, 0, 1000, true, length);
-  a.min_height = read.number({"min_height", "building:min_height"}, 0, 1000, false, lowest_length);
-  a.storeys = read.number({"building:levels", "levels"}, 0, 200, false, storeys);
-  a.min_storey = read.number({"building:min_level", "min_level"}, 0, 200, false, lowest_storey);
-  a.layer = read.number({"layer"}, -20, 20, false, lowest_storey);
-  a.roof_storeys = read.number({"roof:levels", "building:roof:levels"}, 0, 20, false, storeys);
-  a.storeys_underground = read.number({"building:levels:underground"}, 0, 50, false, storeys);
-  a.roof_height = read.number({"roof:height", "building:roof:height"}, 0, 300, false, length);
-  a.roof_angle = read.number({"roof:angle", "building:roof:angle"}, 0, 89.9, false, parse_angle);
-  a.roof_direction = read.number({"roof:direction", "roof:slope:direction"}, 0, 360, false, parse_direction);
-  a.roof_orientation = read.first({"roof:orientation", "building:roof:orientation"}, parse_roof_orientation);
-  a.roof_shape = read.first({"roof:shape", "building:roof:shape"}, parse_roof_shape);
+  a.height = read.number({osm_key::kHeight, osm_key::kBuildingHeight, osm_key::kEstHeight}, 0, 1000, true, length);
+  a.min_height = read.number({osm_key::kMinHeight, osm_key::kBuildingMinHeight}, 0, 1000, false, lowest_length);
+  a.storeys = read.number({osm_key::kBuildingLevels, osm_key::kLevels}, 0, 200, false, storeys);
+  a.min_storey = read.number({osm_key::kBuildingMinLevel, osm_key::kMinLevel}, 0, 200, false, lowest_storey);
+  a.layer = read.number({osm_key::kLayer}, -20, 20, false, lowest_storey);
+  a.roof_storeys = read.number({osm_key::kRoofLevels, osm_key::kBuildingRoofLevels}, 0, 20, false, storeys);
+  a.storeys_underground = read.number({osm_key::kBuildingLevelsUnderground}, 0, 50, false, storeys);
+  a.roof_height = read.number({osm_key::kRoofHeight, osm_key::kBuildingRoofHeight}, 0, 300, false, length);
+  a.roof_angle = read.number({osm_key::kRoofAngle, osm_key::kBuildingRoofAngle}, 0, 89.9, false, parse_angle);
+  a.roof_direction =
+      read.number({osm_key::kRoofDirection, osm_key::kRoofSlopeDirection}, 0, 360, false, parse_direction);
+  a.roof_orientation =
+      read.first({osm_key::kRoofOrientation, osm_key::kBuildingRoofOrientation}, parse_roof_orientation);
+  a.roof_shape = read.first({osm_key::kRoofShape, osm_key::kBuildingRoofShape}, parse_roof_shape);
   if (!a.roof_shape) {
     // building:roof holds shapes, materials or nothing of the kind; only a shape is meant for us.
-    const auto shape = parse_roof_shape(read.value("building:roof"));
+    const auto shape = parse_roof_shape(read.value(osm_key::kBuildingRoof));
     if (shape && *shape != model::RoofShape::other) a.roof_shape = shape;
   }
-  a.wall_colour =
-      read.first({"building:colour", "building:color", "building:facade:colour", "facade:colour"}, parse_colour);
-  a.roof_colour = read.first({"roof:colour", "roof:color", "building:roof:colour"}, parse_colour);
-  a.wall_material =
-      strings.intern(read.first_text({"building:material", "building:facade:material", "facade:material"}));
-  a.roof_material = strings.intern(read.first_text({"roof:material", "building:roof:material"}));
+  a.wall_colour = read.first(
+      {osm_key::kBuildingColour, osm_key::kBuildingColor, osm_key::kBuildingFacadeColour, osm_key::kFacadeColour},
+      parse_colour);
+  a.roof_colour = read.first({osm_key::kRoofColour, osm_key::kRoofColor, osm_key::kBuildingRoofColour}, parse_colour);
+  a.wall_material = strings.intern(
+      read.first_text({osm_key::kBuildingMaterial, osm_key::kBuildingFacadeMaterial, osm_key::kFacadeMaterial}));
+  a.roof_material = strings.intern(read.first_text({osm_key::kRoofMaterial, osm_key::kBuildingRoofMaterial}));
   a.built = read_construction_date(read);
   return a;
 }

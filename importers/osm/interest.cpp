@@ -1,137 +1,54 @@
 #include "importers/osm/interest.h"
 
-#include "pipeline/model/extract.h"
+#include <algorithm>
+#include <iterator>
+
+#include "importers/osm/interest_rules.h"
 
 namespace blockrand::importers::osm {
 namespace {
 
-template <class... Words>
-bool is_any_of(std::string_view text, Words... words) {
-  return ((text == words) || ...);
-}
+using interest_rules::bit;
 
-constexpr std::uint32_t bit(model::FeatureKind kind) { return static_cast<std::uint32_t>(kind); }
+constexpr bool by_first_letter(const InterestRule& a, const InterestRule& b) { return a.key.front() < b.key.front(); }
+static_assert(std::is_sorted(std::begin(kInterestRules), std::end(kInterestRules), by_first_letter));
+
+/// Index of the first rule whose key begins with a letter or a later one: every tag of the file passes here.
+constexpr auto kFirstOfLetter = [] {
+  std::array<std::uint8_t, 257> first{};
+  for (std::size_t letter = 0; letter < first.size(); ++letter)
+    for (const InterestRule& rule : kInterestRules)
+      first[letter] += static_cast<unsigned char>(rule.key.front()) < letter;
+  return first;
+}();
+
+bool is_of(const InterestRule& rule, std::string_view key, std::string_view value) {
+  if (key != rule.key && !(rule.key.ends_with(':') && key.starts_with(rule.key))) return false;
+  if (rule.values.front().empty()) return true;
+  return !value.empty() && std::find(rule.values.begin(), rule.values.end(), value) != rule.values.end();
+}
 
 }  // namespace
 
 void Interest::add(model::OsmType type, std::string_view key, std::string_view value) {
-  using enum model::FeatureKind;
-  if (key.empty() || value == "no") {
-    if (key == "area") area_no = true;
+  if (key == model::osm_key::kArea) {
+    area_no = area_no || value == "no";
+    area_yes = area_yes || value == "yes";
     return;
   }
-  const bool node = type == model::OsmType::node;
-  switch (key.front()) {
-    case 'a':
-      if (key == "area") {
-        area_yes = area_yes || value == "yes";
-      } else if (key == "amenity") {
-        kinds |= bit(amenity);
-        area_by_tag = true;
-      } else if (key.starts_with("addr:")) {
-        kinds |= bit(address);
-        if (key == "addr:interpolation")
-          line_by_tag = true;
-        else
-          area_by_tag = true;
-      }
-      break;
-    case 'b':
-      if (key == "building") {
-        building = true;
-        if (value == "entrance") kinds |= bit(entrance);
-      } else if (key == "building:part") {
-        building_part = true;
-      } else if (key == "barrier" && !node &&
-                 is_any_of(value, "wall", "fence", "retaining_wall", "city_wall", "hedge")) {
-        kinds |= bit(barrier);
-        line_by_tag = true;
-      } else if (key == "boundary" && !node) {
-        kinds |= bit(boundary);
-        area_by_tag = true;
-      }
-      break;
-    case 'c':
-      if (key == "covered") covered_way = true;
-      break;
-    case 'd':
-      if (key == "door") kinds |= bit(entrance);
-      break;
-    case 'e':
-      if (key == "entrance") kinds |= bit(entrance);
-      break;
-    case 'h':
-      if (key == "highway" && !node) {
-        kinds |= bit(street);
-        line_by_tag = true;
-      }
-      break;
-    case 'l':
-      if (node) break;
-      if (key == "landuse") {
-        kinds |= bit(land_use);
-        if (is_any_of(value, "reservoir", "basin")) kinds |= bit(water);
-        area_by_tag = true;
-      } else if (key == "leisure") {
-        kinds |= bit(land_use);
-        if (is_any_of(value, "track", "slipway"))
-          line_by_tag = true;
-        else
-          area_by_tag = true;
-      }
-      break;
-    case 'n':
-      if (key == "natural") {
-        if (is_any_of(value, "tree", "tree_row")) {
-          kinds |= bit(tree);
-          line_by_tag = true;
-        } else if (node) {
-          break;
-        } else if (is_any_of(value, "water", "coastline")) {
-          kinds |= bit(water);
-          (value == "water" ? area_by_tag : line_by_tag) = true;
-        } else {
-          kinds |= bit(land_use);
-          (is_any_of(value, "cliff", "ridge", "arete", "valley", "earth_bank", "gully") ? line_by_tag : area_by_tag) =
-              true;
-        }
-      }
-      break;
-    case 'p':
-      if (key == "place") {
-        kinds |= bit(place);
-        area_by_tag = true;
-      }
-      break;
-    case 'r':
-      if (key == "railway" && !node) {
-        kinds |= bit(railway);
-        (is_any_of(value, "station", "platform", "turntable", "traverser", "roundhouse", "yard") ? area_by_tag
-                                                                                                 : line_by_tag) = true;
-      } else if (key == "roof:ridge" || key == "roof:edge") {
-        kinds |= bit(roof_line);
-        line_by_tag = true;
-      } else if (key == "roof:apex") {
-        kinds |= bit(roof_apex);
-      }
-      break;
-    case 's':
-      if (key == "shop") {
-        kinds |= bit(shop);
-        area_by_tag = true;
-      }
-      break;
-    case 't':
-      if (key == "tunnel" && value == "building_passage") covered_way = true;
-      break;
-    case 'w':
-      if (key == "waterway" && !node) {
-        kinds |= bit(water);
-        (is_any_of(value, "riverbank", "dock", "boatyard") ? area_by_tag : line_by_tag) = true;
-      }
-      break;
-    default:
-      break;
+  if (key.empty() || value == "no") return;
+  const auto letter = static_cast<unsigned char>(key.front());
+  for (std::size_t i = kFirstOfLetter[letter]; i < kFirstOfLetter[letter + 1u]; ++i) {
+    const InterestRule& rule = kInterestRules[i];
+    if (!is_of(rule, key, value)) continue;
+    if (type == model::OsmType::node && !rule.nodes) return;
+    kinds |= rule.kinds;
+    building = building || rule.mark == ObjectMark::building;
+    building_part = building_part || rule.mark == ObjectMark::building_part;
+    covered_way = covered_way || rule.mark == ObjectMark::covered_way;
+    area_by_tag = area_by_tag || rule.closed == ClosedWay::area;
+    line_by_tag = line_by_tag || rule.closed == ClosedWay::line;
+    return;
   }
 }
 
@@ -141,8 +58,7 @@ void Interest::finish(model::OsmType type) {
 }
 
 bool is_remark(std::string_view key) {
-  return is_any_of(key, "type", "created_by", "source", "note", "fixme", "FIXME", "comment", "attribution", "odbl",
-                   "area") ||
+  return std::find(std::begin(kRemarkKeys), std::end(kRemarkKeys), key) != std::end(kRemarkKeys) ||
          key.starts_with("source:") || key.starts_with("note:") || key.starts_with("test:");
 }
 

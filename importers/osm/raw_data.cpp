@@ -8,6 +8,8 @@
 #include <string>
 #include <unordered_map>
 
+#include "pipeline/model/osm_keys.h"
+
 namespace blockrand::importers::osm {
 namespace {
 
@@ -135,7 +137,7 @@ class RawReader {
           const Interest interest = look_at(model::OsmType::relation, object);
           RelationType type = RelationType::none;
           for_each_tag(object, [&](std::string_view key, std::string_view value) {
-            if (key == "type") type = relation_type_of(value);
+            if (key == model::osm_key::kType) type = relation_type_of(value);
           });
           const bool wanted = interest.is_building() || type == RelationType::multipolygon ||
                               type == RelationType::building || (type == RelationType::boundary && interest.kinds != 0);

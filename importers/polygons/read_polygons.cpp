@@ -1,8 +1,5 @@
 #include "importers/polygons/read_polygons.h"
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
-#include <gdal.h>
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
 
@@ -15,48 +12,20 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/toml_file.h"
+#include "pipeline/gdal/gdal_scope.h"
 #include "pipeline/georef/transform.h"
 
 namespace blockrand::importers::polygons {
 
 namespace {
 
-/// Silences GDAL on this thread while it lives and keeps its first failure: drivers reset their own, and what ends a
-/// loop over features looks like the end of the file.
-class Quiet {
- public:
-  Quiet() {
-    CPLPushErrorHandlerEx(&Quiet::hear, this);
-    CPLErrorReset();
-  }
-  ~Quiet() { CPLPopErrorHandler(); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-  static std::string message() {
-    const std::string text = CPLGetLastErrorMsg();
-    return text.empty() ? "" : " (GDAL: " + text + ")";
-  }
-  /// What GDAL said first when it failed, be it while it looked for layers; empty: nothing.
-  const std::string& failure() const { return failure_; }
-
- private:
-  static void hear(CPLErr kind, CPLErrorNum, const char* text) {
-    Quiet& self = *static_cast<Quiet*>(CPLGetErrorHandlerUserData());
-    if (kind >= CE_Failure && self.failure_.empty()) self.failure_ = text && *text ? text : "no reason given";
-  }
-  std::string failure_;
-};
-
-struct CloseDataset {
-  void operator()(void* d) const { GDALClose(d); }
-};
 struct DestroyFeature {
   void operator()(void* f) const { OGR_F_Destroy(f); }
 };
 struct DestroyGeometry {
   void operator()(void* g) const { OGR_G_DestroyGeometry(g); }
 };
-using Dataset = std::unique_ptr<void, CloseDataset>;
+using Dataset = std::unique_ptr<void, gdal::CloseDataset>;
 using Feature = std::unique_ptr<void, DestroyFeature>;
 using Geometry = std::unique_ptr<void, DestroyGeometry>;
 
@@ -148,15 +117,15 @@ model::Point2 east_first(OGRLayerH layer, model::Point2 p) {
 }  // namespace
 
 std::vector<PolygonFeature> read_polygons(const std::string& path, const VectorChoice& choice) {
-  const Quiet quiet;
+  const gdal::GdalScope scope;
   std::error_code error;
   if (!std::filesystem::exists(path, error))
     throw base::InputError(path, "", "does not exist",
                            "Check the path; it starts at the folder of the file that names it");
-  GDALAllRegister();
+  gdal::register_drivers();
   const Dataset data(GDALOpenEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
   if (!data)
-    throw base::InputError(path, "", "is no vector file that GDAL reads" + Quiet::message(),
+    throw base::InputError(path, "", "is no vector file that GDAL reads" + gdal::GdalScope::last_words(),
                            "Name a GeoJSON, GeoPackage, Shapefile, GML ...");
   OGRLayerH layer = choose_layer(data.get(), path, choice.layer);
   const std::vector<int> fields = field_indices(layer, path, choice);
@@ -199,8 +168,9 @@ std::vector<PolygonFeature> read_polygons(const std::string& path, const VectorC
     }
     if (!polygon.polygons.empty()) out.push_back(std::move(polygon));
   }
-  if (!quiet.failure().empty())
-    throw base::InputError(path, layer_name, "breaks off or is damaged (GDAL: " + quiet.failure() + ")",
+  if (scope.failed())
+    throw base::InputError(path, layer_name,
+                           "breaks off or is damaged (GDAL: " + scope.failure("no reason given") + ")",
                            "Export or download the file again");
   if (out.empty())
     throw base::InputError(path, layer_name,

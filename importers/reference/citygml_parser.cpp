@@ -3,6 +3,7 @@
 #include <libxml/tree.h>
 
 #include <algorithm>
+#include <array>
 #include <initializer_list>
 #include <span>
 #include <utility>
@@ -124,20 +125,9 @@ void CityGmlParser::element(const XmlElement& element) {
     e.role = start_template(e);
   }
   text_.clear();
-  switch (e.role) {
-    case Role::coordinates:
-    case Role::attribute_value:
-    case Role::value:
-    case Role::corner:
-    case Role::description:
-    case Role::matrix:
-    case Role::library:
-    case Role::reference_point:
-      collects_ = true;
-      break;
-    default:
-      collects_ = false;
-  }
+  static constexpr std::array kWithText{Role::coordinates, Role::attribute_value, Role::value,   Role::corner,
+                                        Role::description, Role::matrix,          Role::library, Role::reference_point};
+  collects_ = std::find(kWithText.begin(), kWithText.end(), e.role) != kWithText.end();
   stack_.push_back(std::move(e));
 }
 

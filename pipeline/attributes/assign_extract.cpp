@@ -8,9 +8,10 @@
 #include <set>
 
 #include "importers/polygons/read_polygons.h"
-#include "pipeline/base/parallel.h"
 #include "pipeline/attributes/resolve.h"
+#include "pipeline/base/parallel.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/osm_keys.h"
 #include "styles/districts/read_rule_set.h"
 
 namespace blockrand::attributes {
@@ -142,7 +143,7 @@ struct DistrictAssigner::Impl {
   Point2 project(Location p) const { return model::snap(in.projection.forward(p)); }
 
   bool is_named(const Feature& f, FeatureKind kind, std::string_view name) const {
-    return f.is(kind) && in.extract.tag(f.tags, in.extract.strings.find("name")) == name;
+    return f.is(kind) && in.extract.tag(f.tags, in.extract.strings.find(model::osm_key::kName)) == name;
   }
 
   /// Adds what the build of the whole pinned, and pins what is large.
@@ -207,7 +208,7 @@ struct DistrictAssigner::Impl {
       case Kind::land_use:
         for (const Feature& f : in.extract.features) {
           if (!f.area || !f.is(FeatureKind::land_use)) continue;
-          const std::string_view value = in.extract.tag(f.tags, "landuse");
+          const std::string_view value = in.extract.tag(f.tags, model::osm_key::kLanduse);
           if (std::find(q.values.begin(), q.values.end(), value) != q.values.end())
             areas.push_back({f.id, rings_of(in.extract, f)});
         }

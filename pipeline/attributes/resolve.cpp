@@ -597,11 +597,9 @@ const UseDefaults& with_style(const Building& building, const ResolveInputs& in,
 }
 
 std::string ground_reason(Source source) {
-  switch (source) {
-    case Source::terrain: return "lowest terrain under the outline";
-    case Source::override_: return "one ground height for all, as given";
-    default: return "no terrain and no ground height given";
-  }
+  if (source == Source::terrain) return "lowest terrain under the outline";
+  if (source == Source::override_) return "one ground height for all, as given";
+  return "no terrain and no ground height given";
 }
 
 double area_of(const std::vector<model::Polygon>& plans) {

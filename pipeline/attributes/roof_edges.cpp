@@ -7,6 +7,7 @@
 
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::attributes {
 
@@ -31,14 +32,16 @@ RoofEdge kind_of(const model::FacadeEdge& e) {
       return RoofEdge::courtyard;
     case EdgeKind::party_wall:
       return e.outbuilding ? RoofEdge::open : RoofEdge::party_wall;
-    default:
-      return RoofEdge::open;
+    case EdgeKind::unknown:
+    case EdgeKind::side:
+      break;
   }
+  return RoofEdge::open;
 }
 
 /// m of the stretch from a to b that lie on the edge from p to q and run its way.
 double common_length(Point2 a, Point2 b, Point2 p, Point2 q) {
-  const double length = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
+  const double length = distance(q, p);
   const Point2 u{(q.x - p.x) / length, (q.y - p.y) / length};
   const auto off = [&](Point2 r) { return std::fabs((r.x - p.x) * u.y - (r.y - p.y) * u.x); };
   const auto way = [&](Point2 r) { return (r.x - p.x) * u.x + (r.y - p.y) * u.y; };
@@ -76,7 +79,7 @@ OutlineStretches::OutlineStretches(const model::Building& building) {
     const Ring& ring = e.ring == 0 ? outline.outer : outline.holes[e.ring - 1];
     if (e.edge >= ring.size()) continue;
     const Point2 p = ring.points[e.edge], q = ring.points[(e.edge + 1) % ring.size()];
-    const double length = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
+    const double length = distance(q, p);
     if (length <= 0) continue;
     const auto at = [&](double s) { return Point2{p.x + (q.x - p.x) * s / length, p.y + (q.y - p.y) * s / length}; };
     stretches_.push_back({at(e.start), at(e.end), kind_of(e)});
@@ -99,7 +102,7 @@ RoofEdge OutlineStretches::kind(Point2 p, Point2 q) const {
       continue;
     length[static_cast<std::size_t>(s.kind)] += common_length(s.a, s.b, p, q);
   }
-  const double whole = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
+  const double whole = distance(q, p);
   const double share =
       street_ && (q.y - p.y) * street_->x - (q.x - p.x) * street_->y < kLooksAway * whole ? kRearShare : kPartyShare;
   if (length[static_cast<std::size_t>(RoofEdge::party_wall)] >= share * whole) return RoofEdge::party_wall;

@@ -37,9 +37,13 @@ std::string kind_name(const toml::node& node) {
       return "the number " + shortest(node.ref<double>());
     case toml::node_type::boolean:
       return "a boolean";
-    default:
-      return "a date or time";
+    case toml::node_type::none:
+    case toml::node_type::date:
+    case toml::node_type::time:
+    case toml::node_type::date_time:
+      break;
   }
+  return "a date or time";
 }
 
 std::string range_text(const std::string& minimum, const std::string& maximum) {
@@ -247,18 +251,11 @@ std::optional<std::string> TomlTable::plain(std::string_view key) {
   const toml::node* node = data_->ask(key);
   if (!node) return std::nullopt;
   const auto scalar = [&](const toml::node& value) -> std::string {
-    switch (value.type()) {
-      case toml::node_type::string:
-        return value.ref<std::string>();
-      case toml::node_type::integer:
-        return std::to_string(value.ref<std::int64_t>());
-      case toml::node_type::floating_point:
-        return shortest(value.ref<double>());
-      case toml::node_type::boolean:
-        return value.ref<bool>() ? "true" : "false";
-      default:
-        data_->fail(value, key, "cannot be " + kind_name(value), "Write a text, a number or an array of them.");
-    }
+    if (value.is_string()) return value.ref<std::string>();
+    if (value.is_integer()) return std::to_string(value.ref<std::int64_t>());
+    if (value.is_floating_point()) return shortest(value.ref<double>());
+    if (value.is_boolean()) return value.ref<bool>() ? "true" : "false";
+    data_->fail(value, key, "cannot be " + kind_name(value), "Write a text, a number or an array of them.");
   };
   if (!node->is_array()) return scalar(*node);
   std::string joined;

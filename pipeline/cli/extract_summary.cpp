@@ -10,11 +10,13 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/text.h"
 #include "pipeline/footprints/shard.h"
+#include "pipeline/model/osm_keys.h"
 #include "pipeline/outputs/output.h"
 
 namespace blockrand::cli {
 namespace {
 
+namespace osm_key = model::osm_key;
 using base::with_byte_unit;
 using base::with_thousands;
 using model::FeatureKind;
@@ -22,23 +24,23 @@ using model::ObjectKind;
 using model::ObjectState;
 
 // The keys that decide what a building looks like; https://wiki.openstreetmap.org/wiki/Simple_3D_Buildings.
-constexpr const char* kKeys[] = {"height",
-                                 "min_height",
-                                 "building:levels",
-                                 "building:min_level",
-                                 "roof:shape",
-                                 "roof:levels",
-                                 "roof:height",
-                                 "roof:angle",
-                                 "roof:direction",
-                                 "roof:orientation",
-                                 "building:colour",
-                                 "building:material",
-                                 "roof:colour",
-                                 "roof:material",
-                                 "addr:housenumber",
-                                 "start_date",
-                                 "building:levels:underground"};
+constexpr std::string_view kKeys[] = {osm_key::kHeight,
+                                      osm_key::kMinHeight,
+                                      osm_key::kBuildingLevels,
+                                      osm_key::kBuildingMinLevel,
+                                      osm_key::kRoofShape,
+                                      osm_key::kRoofLevels,
+                                      osm_key::kRoofHeight,
+                                      osm_key::kRoofAngle,
+                                      osm_key::kRoofDirection,
+                                      osm_key::kRoofOrientation,
+                                      osm_key::kBuildingColour,
+                                      osm_key::kBuildingMaterial,
+                                      osm_key::kRoofColour,
+                                      osm_key::kRoofMaterial,
+                                      osm_key::kAddrHousenumber,
+                                      osm_key::kStartDate,
+                                      osm_key::kBuildingLevelsUnderground};
 
 constexpr std::pair<FeatureKind, const char*> kFeatureNames[] = {{FeatureKind::street, "streets"},
                                                                  {FeatureKind::land_use, "land use"},
@@ -145,11 +147,11 @@ ExtractSummary summarise(const model::Extract& extract) {
   s.counts = extract.counts;
 
   std::unordered_map<base::StringId, std::size_t> key_index;
-  for (const char* key : kKeys) {
+  for (const std::string_view key : kKeys) {
     if (const base::StringId id = extract.strings.find(key); id != 0) key_index.emplace(id, s.keys.size());
     s.keys.push_back({key});
   }
-  const base::StringId roof_shape = extract.strings.find("roof:shape");
+  const base::StringId roof_shape = extract.strings.find(osm_key::kRoofShape);
   IdCounts building_values, part_values, roof_shapes;
   for (const model::MappedBuilding& b : extract.buildings) {
     const bool is_part = b.kind == ObjectKind::building_part;

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <map>
 
+#include "pipeline/compare/area_vector.h"
 #include "pipeline/compare/cover.h"
 #include "pipeline/compare/face_triangles.h"
 #include "pipeline/compare/roof_surfaces.h"
-#include "pipeline/compare/vector.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/valid_polygon.h"
@@ -30,10 +30,10 @@ struct Enclosed {
   void add(const Rings3& rings, Point3 base) {
     for (const auto& ring : rings) {
       if (ring.size() < 3) continue;
-      const Point3 a = minus(ring[0], base);
+      const Point3 a = ring[0] - base;
       for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-        const Point3 b = minus(ring[i], base), c = minus(ring[i + 1], base);
-        const Point3 n = cross(minus(b, a), minus(c, a));
+        const Point3 b = ring[i] - base, c = ring[i + 1] - base;
+        const Point3 n = cross(b - a, c - a);
         vector = {vector.x + n.x, vector.y + n.y, vector.z + n.z};
         volume += dot(a, cross(b, c)) / 6;
         const double place[] = {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3};
@@ -134,7 +134,7 @@ std::string shell_defect(const Shell& shell) {
     for (const auto& ring : rings) {
       model::Solid::Loop loop{static_cast<std::uint32_t>(solid.indices.size()), 0};
       for (const Point3& p : ring) {
-        const Point3 at = model::snap(minus(p, origin));
+        const Point3 at = model::snap(p - origin);
         const auto [entry, fresh] =
             index.emplace(geometry::to_grid(at), static_cast<std::uint32_t>(solid.vertices.size()));
         if (fresh) solid.vertices.push_back(at);

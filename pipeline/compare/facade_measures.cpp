@@ -79,25 +79,15 @@ Weighted measure(Measure m, const Totals& t, std::optional<int> model_stated, st
     return {static_cast<double>(*model - *reference), 1};
   }
   if (t.reference_openings == 0) return {};
-  switch (m) {
-    case Measure::axes_error:
-      return mean(t.axes_error, t.axes_pairs);
-    case Measure::openings_ratio:
-      return share(t.model_openings, t.reference_openings);
-    case Measure::window_to_wall_error:
-      if (!(t.model_area > 0) || !(t.reference_area > 0)) return {};
-      return {t.model_opening_area / t.model_area - t.reference_opening_area / t.reference_area, t.reference_area};
-    case Measure::opening_precision:
-      return share(t.matched, t.model_openings);
-    case Measure::opening_recall:
-      return share(t.matched, t.reference_openings);
-    case Measure::storey_pitch_error:
-      return mean(t.storey_pitch_error, t.storey_pitch_pairs);
-    case Measure::axis_pitch_error:
-      return mean(t.axis_pitch_error, t.axis_pitch_pairs);
-    default:
-      return {};
-  }
+  if (m == Measure::axes_error) return mean(t.axes_error, t.axes_pairs);
+  if (m == Measure::openings_ratio) return share(t.model_openings, t.reference_openings);
+  if (m == Measure::window_to_wall_error && t.model_area > 0 && t.reference_area > 0)
+    return {t.model_opening_area / t.model_area - t.reference_opening_area / t.reference_area, t.reference_area};
+  if (m == Measure::opening_precision) return share(t.matched, t.model_openings);
+  if (m == Measure::opening_recall) return share(t.matched, t.reference_openings);
+  if (m == Measure::storey_pitch_error) return mean(t.storey_pitch_error, t.storey_pitch_pairs);
+  if (m == Measure::axis_pitch_error) return mean(t.axis_pitch_error, t.axis_pitch_pairs);
+  return {};
 }
 
 }  // namespace

@@ -6,11 +6,11 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/compare/facades.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::compare {
 namespace {
 
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 long long rounded(double v) { return std::llround(v * 1e6); }
 
 Point2 along(const Facade& f) {

@@ -8,8 +8,9 @@
 #include <tuple>
 
 #include "pipeline/base/portable_math.h"
-#include "pipeline/compare/vector.h"
+#include "pipeline/compare/area_vector.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::compare {
 namespace {
@@ -18,8 +19,6 @@ constexpr double kOnePlane = 0.02;                     // m. Surveyors' points o
 constexpr double kLeastArea = 1e-6;                    // m². A square millimetre has no direction.
 constexpr std::array<double, 2> kProbes = {0.3, 1.0};  // m beside a wall, where its inside is looked for
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 
 struct Interval {
   double low = kInfinite, high = -kInfinite;
@@ -292,7 +291,7 @@ Flat flat_of(const Rings3& rings) {
     const double sign = (r == 0) == (ring_area >= 0) ? 1.0 : -1.0;
     flat.area += sign * 0.5 * ring_area;
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Point3 a = minus(ring[i], base), b = minus(ring[i + 1 == ring.size() ? 0 : i + 1], base);
+      const Point3 a = ring[i] - base, b = ring[i + 1 == ring.size() ? 0 : i + 1] - base;
       const double weight = sign * 0.5 * dot(flat.normal, cross(a, b)) / 3;
       moment = {moment.x + weight * (a.x + b.x), moment.y + weight * (a.y + b.y), moment.z + weight * (a.z + b.z)};
     }

@@ -10,6 +10,7 @@
 #include "pipeline/compare/facade_planes.h"
 #include "pipeline/compare/opening_grid.h"
 #include "pipeline/compare/union_area.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::compare {
 namespace {
@@ -21,7 +22,6 @@ constexpr double kFacing = 0.5;  // cosine: polygons of an opening that are stee
 constexpr double kSameOpening = 0.9;  // IoU
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 long long rounded(double v) { return std::llround(v * 1e6); }
 
 /// An opening of a building, before it is known which facade it is in.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "pipeline/compare/vector.h"
+#include "pipeline/compare/area_vector.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"

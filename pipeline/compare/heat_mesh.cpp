@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/compare/vector.h"
+#include "pipeline/compare/area_vector.h"
 
 namespace blockrand::compare {
 namespace {
@@ -24,7 +24,7 @@ class Cutter {
       std::size_t longest = 0;
       double size = -1;
       for (std::size_t i = 0; i < 3; ++i) {
-        const Point3 edge = minus(t[(i + 1) % 3], t[i]);
+        const Point3 edge = t[(i + 1) % 3] - t[i];
         if (dot(edge, edge) > size) {
           size = dot(edge, edge);
           longest = i;

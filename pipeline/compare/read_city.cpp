@@ -11,8 +11,8 @@
 #include "importers/reference/transform.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/parallel.h"
+#include "pipeline/compare/area_vector.h"
 #include "pipeline/compare/face_triangles.h"
-#include "pipeline/compare/vector.h"
 #include "pipeline/geometry/nearest_surface.h"
 #include "pipeline/geometry/plan_shape.h"
 #include "pipeline/georef/crs.h"
@@ -256,7 +256,7 @@ void classify(Building& b) {
     const Point3 base = b.faces[0].rings[0][0];
     for (const auto& ring : f.rings)
       for (std::size_t i = 1; i + 1 < ring.size(); ++i)
-        volume += dot(minus(ring[0], base), cross(minus(ring[i], base), minus(ring[i + 1], base))) / 6;
+        volume += dot(ring[0] - base, cross(ring[i] - base, ring[i + 1] - base)) / 6;
   }
   const bool inwards = none_stated && volume < 0;
   double lowest = 1e300;

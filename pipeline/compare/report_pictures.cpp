@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "pipeline/base/portable_math.h"
+#include "pipeline/compare/area_vector.h"
 #include "pipeline/compare/face_triangles.h"
 #include "pipeline/compare/heat_mesh.h"
-#include "pipeline/compare/vector.h"
 #include "pipeline/picture/render.h"
 
 namespace blockrand::compare {
@@ -90,15 +90,20 @@ class Side {
         return kPictureWall;
       case Hull::roof:
         return kPictureRoof;
-      default:
-        return kPictureOther;
+      case Hull::ground:
+      case Hull::closure:
+      case Hull::outer_ceiling:
+      case Hull::outer_floor:
+      case Hull::installation:
+        break;
     }
+    return kPictureOther;
   }
 
   void paint(picture::Scene& scene, const Opening& opening, std::uint32_t object) const {
     for (const Rings3& polygon : opening.polygons)
       for (const Triangle3& t : triangles_of(polygon)) {
-        const Point3 n = cross(minus(t[1], t[0]), minus(t[2], t[0]));
+        const Point3 n = cross(t[1] - t[0], t[2] - t[0]);
         const double size = length(n);
         if (!(size > 0)) continue;
         // Before and behind: which side is out, not every model says.

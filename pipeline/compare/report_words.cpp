@@ -39,12 +39,8 @@ std::string with_unit(const MeasureInfo& measure, double value) {
 
 /// 1: agrees, 0: between, -1: differs.
 int verdict(const MeasureInfo& measure, const Limit& limit, double value) {
-  switch (measure.better) {
-    case Better::higher:
-      return value >= limit.agrees ? 1 : value < limit.differs ? -1 : 0;
-    default:
-      return value <= limit.agrees ? 1 : value > limit.differs ? -1 : 0;
-  }
+  if (measure.better == Better::higher) return value >= limit.agrees ? 1 : value < limit.differs ? -1 : 0;
+  return value <= limit.agrees ? 1 : value > limit.differs ? -1 : 0;
 }
 
 std::string count_of(std::size_t n, std::string_view one, std::string_view many) {

@@ -7,6 +7,7 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::compare {
 
@@ -73,8 +74,6 @@ std::vector<Point2> grid(const std::vector<Polygon>& a, const std::vector<Polygo
   return out;
 }
 
-double length(Point2 v) { return std::sqrt(v.x * v.x + v.y * v.y); }
-
 double between(double a, double b) {
   const double d = std::fabs(std::remainder(a - b, 360.0));
   return d;
@@ -138,7 +137,7 @@ std::optional<RoofHeights> heights_of(const RoofSurfaces& roof, const std::vecto
   const auto walk = [&](const model::Ring& ring) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
-      const double l = length({b.x - a.x, b.y - a.y});
+      const double l = distance(b, a);
       const Point2 in{-(b.y - a.y) / l, (b.x - a.x) / l};  // outer rings run counter-clockwise, holes clockwise
       for (double s = kStep / 2; s < l; s += kStep) {
         ++steps;

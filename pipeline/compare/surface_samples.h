@@ -7,8 +7,8 @@
 #include <span>
 
 #include "pipeline/base/random.h"
+#include "pipeline/compare/area_vector.h"
 #include "pipeline/compare/face_triangles.h"
-#include "pipeline/compare/vector.h"
 
 namespace blockrand::compare {
 
@@ -38,12 +38,12 @@ void for_each_sample(std::span<const Triangle3> triangles, Point3 normal, Point3
   for (const Triangle3& t : triangles) {
     double x[3], y[3];
     for (int i = 0; i < 3; ++i) {
-      const Point3 p = minus(t[static_cast<std::size_t>(i)], anchor);
+      const Point3 p = t[static_cast<std::size_t>(i)] - anchor;
       x[i] = dot(p, axes.u);
       y[i] = dot(p, axes.v);
     }
     const double twice = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
-    const double true_twice = length(cross(minus(t[1], t[0]), minus(t[2], t[0])));
+    const double true_twice = length(cross(t[1] - t[0], t[2] - t[0]));
     if (std::fabs(twice) < 1e-12 || !(true_twice > 0)) continue;
     // Polygons that are not plane have triangles that stand across their mean plane.
     const double weight = spacing * spacing * std::min(10.0, true_twice / std::fabs(twice));

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "pipeline/base/portable_math.h"
+#include "pipeline/compare/area_vector.h"
 #include "pipeline/compare/surface_samples.h"
-#include "pipeline/compare/vector.h"
 
 namespace blockrand::compare {
 
@@ -134,7 +134,7 @@ MatchSurface::MatchSurface(const City& city, std::span<const std::uint32_t> buil
       patch.first = static_cast<std::uint32_t>(triangles_.size());
       for (Triangle3 t : triangles_of(rings)) {
         for (Point3& p : t) p.z += up;
-        area_ += length(cross(minus(t[1], t[0]), minus(t[2], t[0]))) / 2;
+        area_ += length(cross(t[1] - t[0], t[2] - t[0])) / 2;
         triangles_.push_back(t);
         patch_of_.push_back(static_cast<std::uint32_t>(patches_.size()));
       }

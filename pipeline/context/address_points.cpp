@@ -4,10 +4,13 @@
 #include <charconv>
 #include <optional>
 
+#include "pipeline/model/osm_keys.h"
+
 namespace blockrand::context {
 
 namespace {
 
+namespace osm_key = model::osm_key;
 using model::Extract;
 using model::Feature;
 using model::FeatureKind;
@@ -37,13 +40,14 @@ std::vector<PassageWay> passage_ways(const Extract& extract, const Project& proj
   std::vector<PassageWay> out;
   for (const Feature& f : extract.features) {
     if (!f.is(FeatureKind::passage) || f.area || f.id.type != model::OsmType::way) continue;
-    if (extract.tag(f.tags, "indoor") == "yes") continue;
+    if (extract.tag(f.tags, osm_key::kIndoor) == "yes") continue;
     for (const model::MappedRing& ring : extract.rings_of(f.rings)) {
       PassageWay way;
       way.id = f.id;
-      way.name = extract.tag(f.tags, "name");
-      way.width = metres(extract.tag(f.tags, "width")).value_or(assumed_width(extract.tag(f.tags, "highway")));
-      way.covered_only = extract.tag(f.tags, "tunnel") != "building_passage";
+      way.name = extract.tag(f.tags, osm_key::kName);
+      way.width =
+          metres(extract.tag(f.tags, osm_key::kWidth)).value_or(assumed_width(extract.tag(f.tags, osm_key::kHighway)));
+      way.covered_only = extract.tag(f.tags, osm_key::kTunnel) != "building_passage";
       for (const model::Location v : extract.vertices_of(ring)) way.points.push_back(model::snap(project(v)));
       const auto nodes = extract.nodes_of(ring);
       way.nodes.assign(nodes.begin(), nodes.end());
@@ -60,7 +64,7 @@ std::vector<SitePoint> site_points(const Extract& extract, const Project& projec
     SitePoint point;
     if (use_of && (f.is(FeatureKind::shop) || f.is(FeatureKind::amenity)))
       point.use = use_of([&](std::string_view key) { return extract.tag(f.tags, key); });
-    if (f.is(FeatureKind::entrance) && extract.tag(f.tags, "entrance") != "no")
+    if (f.is(FeatureKind::entrance) && extract.tag(f.tags, osm_key::kEntrance) != "no")
       point.kind = SitePointKind::entrance;
     else if (f.is(FeatureKind::address))
       point.kind = SitePointKind::address;
@@ -75,17 +79,19 @@ std::vector<SitePoint> site_points(const Extract& extract, const Project& projec
     if (rings.empty() || extract.vertices_of(rings[0]).empty()) continue;
     point.id = f.id;
     point.place = model::snap(project(extract.vertices_of(rings[0])[0]));
-    point.street = extract.tag(f.tags, "addr:street");
-    point.house_number = extract.tag(f.tags, "addr:housenumber");
+    point.street = extract.tag(f.tags, osm_key::kAddrStreet);
+    point.house_number = extract.tag(f.tags, osm_key::kAddrHousenumber);
     out.push_back(std::move(point));
   }
   return out;
 }
 
 BuildingAddress building_address(const Extract& extract, model::OsmId id, model::Range tags) {
-  return {id, extract.tag(tags, "addr:street"), extract.tag(tags, "addr:housenumber")};
+  return {id, extract.tag(tags, osm_key::kAddrStreet), extract.tag(tags, osm_key::kAddrHousenumber)};
 }
 
-std::string_view address_street(const Extract& extract, model::Range tags) { return extract.tag(tags, "addr:street"); }
+std::string_view address_street(const Extract& extract, model::Range tags) {
+  return extract.tag(tags, osm_key::kAddrStreet);
+}
 
 }  // namespace blockrand::context

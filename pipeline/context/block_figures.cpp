@@ -9,6 +9,7 @@
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/segment_grid.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::context {
 
@@ -25,8 +26,6 @@ constexpr double kStreetCell = 128;  ///< m. Cells of the index of streets
 constexpr double kOnTheWall = 0.1;
 /// m². Less of a building in a block is drawing noise.
 constexpr double kMinCommonArea = 0.5;
-
-double distance(Point2 a, Point2 b) { return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y)); }
 
 void append_segments(const Polygon& polygon, std::vector<Segment>& out) {
   const auto add = [&](const model::Ring& ring) {

@@ -8,6 +8,7 @@
 #include "pipeline/geometry/planar_faces.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/segment_grid.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::context {
 
@@ -30,8 +31,6 @@ struct Wall {
   std::uint32_t building = 0;
   std::uint32_t previous = 0, next = 0;  ///< indices of the walls before and after it in its ring
 };
-
-double distance(Point2 a, Point2 b) { return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y)); }
 
 double square(double x) { return x * x; }
 

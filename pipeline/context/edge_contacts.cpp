@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::context {
 
@@ -18,10 +19,6 @@ constexpr double kOnOutline = 0.3;
 constexpr double kMinMouthSine = 0.342;
 /// m. How far behind the outline a way is looked for inside the building.
 constexpr double kInside = 0.6;
-
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
-Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
 
 /// Keeps of overlapping intervals the longest, then the first by `key`; the others keep what sticks out.
 template <class Interval, class Key>
@@ -83,16 +80,16 @@ bool in_building(const model::Building& building, Point2 p) {
 void add_mouth_points(const model::Building& building, const OutlineEdge& edge, const PassageWay& way, std::uint32_t index,
                       std::vector<MouthPoint>& out) {
   for (std::size_t i = 1; i < way.points.size(); ++i) {
-    const Point2 p = way.points[i - 1], q = way.points[i], d = minus(q, p);
+    const Point2 p = way.points[i - 1], q = way.points[i], d = q - p;
     const double length = std::sqrt(dot(d, d));
     if (length == 0) continue;
     const Point2 unit{d.x / length, d.y / length};
     const double sine = cross(edge.along, unit);
     if (std::fabs(sine) < kMinMouthSine) continue;
     // Along the way to the edge's line, and along the edge to there.
-    const double to_line = cross(minus(edge.a, p), edge.along) / -sine;
+    const double to_line = cross(edge.a - p, edge.along) / -sine;
     const Point2 m{p.x + unit.x * to_line, p.y + unit.y * to_line};
-    const double along = dot(minus(m, edge.a), edge.along);
+    const double along = dot(m - edge.a, edge.along);
     if (to_line < -kOnOutline || to_line > length + kOnOutline || along < -kOnOutline || along > edge.length + kOnOutline)
       continue;
     if (way.covered_only) {
@@ -118,7 +115,7 @@ std::vector<OutlineEdge> edges_of(const std::vector<model::Polygon>& outline) {
           e.from_node = ring.nodes[i];
           e.to_node = ring.nodes[next];
         }
-        const Point2 d = minus(e.b, e.a);
+        const Point2 d = e.b - e.a;
         e.length = std::sqrt(dot(d, d));
         if (e.length > 0) e.along = {d.x / e.length, d.y / e.length};
         e.outward = {e.along.y, -e.along.x};
@@ -143,7 +140,7 @@ std::vector<Contact> contacts_of(const OutlineEdge& edge, model::OsmId own, bool
     const Wall& wall = scene.walls()[w];
     const model::OsmId id = index.all().footprints[wall.footprint].id;
     if (id == own || (!canopy && scene.is_canopy(wall.footprint))) continue;
-    const Point2 p = minus(wall.b, edge.a), q = minus(wall.a, edge.a);  // a neighbour's wall runs the other way
+    const Point2 p = wall.b - edge.a, q = wall.a - edge.a;  // a neighbour's wall runs the other way
     double s = dot(p, edge.along), t = dot(q, edge.along);
     if (t <= s) continue;
     double u = dot(p, edge.outward), v = dot(q, edge.outward);
@@ -214,7 +211,7 @@ std::vector<std::vector<Mouth>> mouths_of(const model::Building& building, const
     const OutlineEdge& edge = edges[e];
     if (edge.length == 0) continue;
     for (const MouthPoint& m : points) {
-      const Point2 to = minus(m.place, edge.a);
+      const Point2 to = m.place - edge.a;
       const double sine = std::fabs(cross(edge.along, m.direction));
       if (sine < kMinMouthSine || std::fabs(dot(to, edge.outward)) > kOnOutline) continue;
       const double half = m.width / 2 / sine, middle = dot(to, edge.along);

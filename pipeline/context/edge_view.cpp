@@ -5,6 +5,7 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::context {
 
@@ -101,7 +102,7 @@ void Scene::add_streets(std::span<const NetworkLine> lines) {
     for (std::size_t i = 1; i < line.points.size(); ++i) {
       const Point2 a = line.points[i - 1], b = line.points[i];
       if (a == b) continue;
-      const double length = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+      const double length = distance(b, a);
       streets_.push_back({a, b, l, {(b.x - a.x) / length, (b.y - a.y) / length}, line.area});
       ends.push_back(a);
       ends.push_back(b);

@@ -258,7 +258,9 @@ double confidence_of(const Piece& piece, const SurroundingsIndex& index) {
       const double mean = piece.samples.empty() ? 0 : ahead / static_cast<double>(piece.samples.size());
       return 0.6 + 0.38 * std::clamp(2 * mean - 1, 0.0, 1.0);
     }
-    default:
+    case EdgeKind::unknown:
+    case EdgeKind::courtyard:
+    case EdgeKind::side:
       break;
   }
   for (const EdgeSample& s : piece.samples)

@@ -6,6 +6,7 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::context {
 
@@ -28,9 +29,6 @@ constexpr double kMinWingLength = 1.5;      ///< times the depth
 constexpr double kSidewards = 0.5;          ///< cosine of 60 degrees: party walls that look left or right of the front
 constexpr double kSetbackReach = 40;        ///< m to both sides: whose fronts make the building line
 constexpr double kSetbackStep = 8;          ///< m between places where it is looked for: a narrow house
-
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
 
 /// Finds the outline edge of a stretch.
 class Edges {

@@ -6,6 +6,7 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::context {
 
@@ -22,8 +23,6 @@ struct Share {
 bool same_street(const NetworkLine& a, const NetworkLine& b) {
   return a.name.empty() && b.name.empty() ? a.id == b.id : a.name == b.name;
 }
-
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 
 }  // namespace
 

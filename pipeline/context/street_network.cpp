@@ -5,11 +5,13 @@
 #include <string_view>
 
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/osm_keys.h"
 
 namespace blockrand::context {
 
 namespace {
 
+namespace osm_key = model::osm_key;
 using model::Extract;
 using model::Feature;
 using model::FeatureKind;
@@ -50,16 +52,16 @@ class Classifier {
     const std::optional<LineClass> kind = kind_of(f);
     if (!kind) return std::nullopt;
     line.kind = *kind;
-    const std::string_view tunnel = tag(f, "tunnel");
-    line.tunnel = (is_yes(tunnel) && tunnel != "building_passage") || tag(f, "location") == "underground";
-    line.bridge = is_yes(tag(f, "bridge"));
-    line.roundabout = tag(f, "junction") == "roundabout" || tag(f, "junction") == "circular";
-    const std::string_view oneway = tag(f, "oneway");
+    const std::string_view tunnel = tag(f, osm_key::kTunnel);
+    line.tunnel = (is_yes(tunnel) && tunnel != "building_passage") || tag(f, osm_key::kLocation) == "underground";
+    line.bridge = is_yes(tag(f, osm_key::kBridge));
+    line.roundabout = tag(f, osm_key::kJunction) == "roundabout" || tag(f, osm_key::kJunction) == "circular";
+    const std::string_view oneway = tag(f, osm_key::kOneway);
     // Motorways and roundabouts run one way without a word.
     line.oneway = oneway == "yes" || oneway == "true" || oneway == "1" || oneway == "-1" || line.roundabout ||
                   (line.kind == LineClass::motorway && oneway != "no");
-    if (is_street(line.kind)) line.name = tag(f, "name");
-    line.layer = layer_of(tag(f, "layer"));
+    if (is_street(line.kind)) line.name = tag(f, osm_key::kName);
+    line.layer = layer_of(tag(f, osm_key::kLayer));
     return line;
   }
 
@@ -75,21 +77,21 @@ class Classifier {
 
   std::optional<LineClass> kind_of(const Feature& f) const {
     if (f.is(FeatureKind::street)) {
-      if (const std::string_view highway = tag(f, "highway"); !highway.empty()) {
+      if (const std::string_view highway = tag(f, osm_key::kHighway); !highway.empty()) {
         const LineClass c = street_class(highway);
-        if (tag(f, "indoor") == "yes") return LineClass::other;
+        if (tag(f, osm_key::kIndoor) == "yes") return LineClass::other;
         // An area of another class is a yard or a car park; its outline is no street.
         if (f.area && c != LineClass::pedestrian) return std::nullopt;
         return c;
       }
     }
     if (f.is(FeatureKind::railway) && !f.area) {
-      const std::string_view railway = tag(f, "railway");
+      const std::string_view railway = tag(f, osm_key::kRailway);
       if (railway == "rail" || railway == "light_rail" || railway == "narrow_gauge")
-        return is_yes(tag(f, "service")) ? LineClass::other : LineClass::railway;
+        return is_yes(tag(f, osm_key::kService)) ? LineClass::other : LineClass::railway;
     }
     if (f.is(FeatureKind::water)) {
-      const std::string_view natural = tag(f, "natural"), waterway = tag(f, "waterway");
+      const std::string_view natural = tag(f, osm_key::kNatural), waterway = tag(f, osm_key::kWaterway);
       if (natural == "coastline") return LineClass::coastline;
       if (f.area && (natural == "water" || waterway == "riverbank" || waterway == "dock")) return LineClass::shore;
       if (!f.area && (waterway == "river" || waterway == "canal")) return LineClass::waterway;

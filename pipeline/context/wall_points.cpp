@@ -21,8 +21,11 @@ int rank(EdgeKind kind) {
     case EdgeKind::street: return 0;
     case EdgeKind::passage: return 1;
     case EdgeKind::courtyard: return 2;
-    default: return 3;
+    case EdgeKind::unknown:
+    case EdgeKind::side:
+    case EdgeKind::party_wall: break;
   }
+  return 3;
 }
 
 /// Distances of places to the stretches of a building.

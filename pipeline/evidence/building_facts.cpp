@@ -8,6 +8,7 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::evidence {
 
@@ -34,10 +35,6 @@ constexpr double kSameArea = 0.10;      ///< of the area: houses that repeat eac
 constexpr std::int32_t kTownCells = 2;  ///< cells to each side of a building's own that make its town
 constexpr int kCircleCorners = 24;
 
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
-Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
-
 float as_float(double v) { return static_cast<float>(v); }
 
 /// FNV-1a: the same in every run and every tile.
@@ -59,8 +56,7 @@ int corners_of(const model::Ring& ring) {
   int corners = 0;
   const std::size_t n = ring.points.size();
   for (std::size_t i = 0; i < n; ++i) {
-    const Point2 a = minus(ring.points[i], ring.points[(i + n - 1) % n]),
-                 b = minus(ring.points[(i + 1) % n], ring.points[i]);
+    const Point2 a = ring.points[i] - ring.points[(i + n - 1) % n], b = ring.points[(i + 1) % n] - ring.points[i];
     const double lengths = std::sqrt(dot(a, a) * dot(b, b));
     if (lengths > 0 && (std::fabs(cross(a, b)) > kCornerSine * lengths || dot(a, b) < 0)) ++corners;
   }
@@ -194,7 +190,7 @@ void measure_situation(const Building& building, Own& own) {
     if (e.street != main.street && e.street_name != main.street_name) continue;
     const model::Polygon& polygon = building.outline[e.polygon];
     const auto& ring = (e.ring == 0 ? polygon.outer : polygon.holes[e.ring - 1]).points;
-    const Point2 a = ring[e.edge], b = ring[(e.edge + 1) % ring.size()], d = minus(b, a);
+    const Point2 a = ring[e.edge], b = ring[(e.edge + 1) % ring.size()], d = b - a;
     const double length = std::sqrt(dot(d, d));
     if (length <= 0 || std::fabs(dot(d, along)) < kFrontCosine * length) continue;
     for (const double t : {e.start / length, e.end / length}) {
@@ -219,8 +215,8 @@ double covered_circle(Point2 centre, double radius, std::span<const Point2> ring
   if (ring.size() < 3) return whole;
   bool inside = true;
   for (std::size_t i = 0; i < ring.size() && inside; ++i) {
-    const Point2 a = ring[i], d = minus(ring[(i + 1) % ring.size()], a);
-    inside = cross(d, minus(centre, a)) >= radius * std::sqrt(dot(d, d));
+    const Point2 a = ring[i], d = ring[(i + 1) % ring.size()] - a;
+    inside = cross(d, centre - a) >= radius * std::sqrt(dot(d, d));
   }
   if (inside) return whole;
   std::vector<Point2> shape, next;
@@ -229,11 +225,11 @@ double covered_circle(Point2 centre, double radius, std::span<const Point2> ring
     shape.push_back({centre.x + radius * base::cos(turn), centre.y + radius * base::sin(turn)});
   }
   for (std::size_t i = 0; i < ring.size() && !shape.empty(); ++i) {
-    const Point2 a = ring[i], d = minus(ring[(i + 1) % ring.size()], a);
+    const Point2 a = ring[i], d = ring[(i + 1) % ring.size()] - a;
     next.clear();
     for (std::size_t k = 0; k < shape.size(); ++k) {
       const Point2 p = shape[k], q = shape[(k + 1) % shape.size()];
-      const double sp = cross(d, minus(p, a)), sq = cross(d, minus(q, a));
+      const double sp = cross(d, p - a), sq = cross(d, q - a);
       if (sp >= 0) next.push_back(p);
       if ((sp >= 0) != (sq >= 0))
         next.push_back({p.x + (q.x - p.x) * sp / (sp - sq), p.y + (q.y - p.y) * sp / (sp - sq)});
@@ -481,7 +477,7 @@ std::vector<std::size_t> runs_of(const footprints::FootprintStore& store) {
   Point2 first{};
   for (std::uint32_t b = 0; b < store.size(); ++b) {
     const bool known = !store[b].box.empty();
-    const Point2 d = known ? minus(store[b].box.centre(), first) : Point2{};
+    const Point2 d = known ? store[b].box.centre() - first : Point2{};
     if (starts.empty() || b - starts.back() == kRun || dot(d, d) > kRunExtent * kRunExtent) {
       starts.push_back(b);
       if (known) first = store[b].box.centre();
@@ -511,7 +507,7 @@ void PlaceIndex::near(Point2 place, double distance, std::vector<std::uint32_t>&
     const Entry first{x, cell(place.y - distance), 0};
     for (auto e = std::lower_bound(entries_.begin(), entries_.end(), first);
          e != entries_.end() && e->x == x && e->y <= cell(place.y + distance); ++e) {
-      const Point2 d = minus(facts_.places[e->building].place, place);
+      const Point2 d = facts_.places[e->building].place - place;
       if (dot(d, d) <= distance * distance) out.push_back(e->building);
     }
   }

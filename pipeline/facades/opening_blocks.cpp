@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::facades {
 

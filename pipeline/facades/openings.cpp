@@ -10,6 +10,7 @@
 #include "pipeline/facades/opening_blocks.h"
 #include "pipeline/facades/outlines.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::facades {
 namespace {
@@ -68,7 +69,7 @@ class Cutter {
         match[i] = (k + n - i) % n;
         const Point3 p = walls_[a.wall].at(a.outline[i]), q = walls_[b.wall].at(b.outline[match[i]]);
         fits = std::fabs(p.z - q.z) <= kSameHeight;
-        sum += std::sqrt((p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y));
+        sum += distance(p.xy(), q.xy());
       }
       if (fits && (!best || sum < least)) {
         best = std::move(match);

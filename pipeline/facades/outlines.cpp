@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::facades {
 

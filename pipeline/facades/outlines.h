@@ -7,11 +7,6 @@
 
 namespace blockrand::facades {
 
-/// Twice the area of a triangle; positive when counter-clockwise.
-inline double cross(model::Point2 a, model::Point2 b, model::Point2 c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
 /// An upright rectangle of the plane.
 struct Box2 {
   double left = 0, right = 0, low = 0, high = 0;

@@ -19,9 +19,12 @@ int rank(EdgeKind kind) {
       return 2;
     case EdgeKind::side:
       return 1;
-    default:
-      return 0;
+    case EdgeKind::unknown:
+    case EdgeKind::party_wall:
+    case EdgeKind::passage:
+      break;
   }
+  return 0;
 }
 
 bool beside(const FacadeStretch& left, const FacadeStretch& right) {

@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/osm_keys.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::footprints {
 
@@ -16,8 +18,6 @@ using model::RoofLine;
 using model::RoofLineKind;
 
 namespace {
-
-double distance(Point2 a, Point2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
 /// The plan's boundary as segments.
 template <class Visit>
@@ -148,7 +148,7 @@ RoofLineFinder::RoofLineFinder(const model::Extract& extract, const georef::Proj
     if (!way && !node) continue;
     RoofLine line;
     line.id = feature.id;
-    const std::string_view ridge = extract.tag(feature.tags, "roof:ridge");
+    const std::string_view ridge = extract.tag(feature.tags, model::osm_key::kRoofRidge);
     line.kind = node ? RoofLineKind::apex : !ridge.empty() && ridge != "no" ? RoofLineKind::ridge : RoofLineKind::edge;
     for (const model::MappedRing& ring : extract.rings_of(feature.rings)) {
       line.points.clear();

@@ -9,6 +9,7 @@
 #include "pipeline/geometry/ring_defects.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::geometry {
 
@@ -102,8 +103,9 @@ Grid2 project(Grid3 p, Axis axis) {
   switch (axis) {
     case Axis::x: return {p.y, p.z};
     case Axis::y: return {p.z, p.x};
-    default: return {p.x, p.y};
+    case Axis::z: break;
   }
+  return {p.x, p.y};
 }
 
 bool segments_meet(Grid2 a, Grid2 b, Grid2 c, Grid2 d) {
@@ -241,15 +243,7 @@ Int128 sixfold_volume(std::span<const Grid3> vertices, std::span<const std::arra
 
 // ---- faces --------------------------------------------------------------------------------------------------------
 
-struct Vector {
-  double x = 0, y = 0, z = 0;
-};
-Vector operator-(const model::Point3& a, const model::Point3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double length(const Vector& v) { return std::sqrt(dot(v, v)); }
+using Vector = model::Point3;
 
 /// The plane of a face's outer loop: Newell's normal through the mean of its corners.
 struct FacePlane {

@@ -1,51 +1,24 @@
 #include "pipeline/geometry/even_odd.h"
 
-#include <geos_c.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numeric>
 #include <span>
 #include <vector>
 
 #include "pipeline/base/random.h"
 #include "pipeline/geometry/footprint_overlap.h"
+#include "pipeline/geometry/geos_scope.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::geometry {
 
 namespace {
 
-/// One GEOS context per thread: contexts are not shared between threads.
-class Context {
- public:
-  Context() : handle_(GEOS_init_r()) {}
-  ~Context() { GEOS_finish_r(handle_); }
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
-  GEOSContextHandle_t get() const { return handle_; }
-
- private:
-  GEOSContextHandle_t handle_;
-};
-
-GEOSContextHandle_t context() {
-  thread_local Context c;
-  return c.get();
-}
-
-struct Deleter {
-  void operator()(GEOSGeometry* g) const { GEOSGeom_destroy_r(context(), g); }
-};
-using Geometry = std::unique_ptr<GEOSGeometry, Deleter>;
-
 using model::Point2;
 
 /// m. Where points stand on edges, moving them by so little decides whether edges cross there; 1/100 of the grid.
 constexpr double kApart = 1e-5;
-
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
-Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
 
 /// The ring's points relative to the first, each moved by less than kApart in a way that depends on its place in the
 /// ring alone.
@@ -54,7 +27,7 @@ std::vector<Point2> moved_apart(std::span<const Point2> ring) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const std::uint64_t bits = base::mix64(i);
     const auto part = [](std::uint64_t half) { return kApart * (static_cast<double>(half & 0xffffffff) / 4294967296.0); };
-    const Point2 p = minus(ring[i], ring[0]);
+    const Point2 p = ring[i] - ring[0];
     out.push_back({p.x + part(bits), p.y + part(bits >> 32)});
   }
   return out;
@@ -71,12 +44,12 @@ std::vector<std::vector<double>> crossings_of(const std::vector<Point2>& p) {
   std::vector<std::vector<double>> out(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t e = order[i];
-    const Point2 a = p[e], u = minus(end(e), a);
+    const Point2 a = p[e], u = end(e) - a;
     const double most = std::max(a.x, end(e).x);
     for (std::size_t k = i + 1; k < n && low(order[k]) <= most; ++k) {
       const std::size_t f = order[k];
       if ((e + 1) % n == f || (f + 1) % n == e) continue;
-      const Point2 c = p[f], v = minus(end(f), c), w = minus(c, a);
+      const Point2 c = p[f], v = end(f) - c, w = c - a;
       const double turn = cross(u, v);
       if (turn == 0) continue;
       const double along_e = cross(w, v) / turn, along_f = cross(w, u) / turn;
@@ -97,7 +70,7 @@ double tangled_area(const model::Ring& ring) {
   const std::vector<std::vector<double>> crossings = crossings_of(p);
   double twice = 0, side = 1;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const Point2 a = p[i], u = minus(p[i + 1 == p.size() ? 0 : i + 1], a);
+    const Point2 a = p[i], u = p[i + 1 == p.size() ? 0 : i + 1] - a;
     double from = 0;
     const auto go_to = [&](double to) {
       twice += side * (to - from) * cross(a, u);  // of a and b, twice the triangle with the origin
@@ -118,23 +91,13 @@ bool tangled(const model::Ring& ring) {
 }
 
 double even_odd_area(const model::Ring& ring) {
-  const auto n = static_cast<unsigned>(ring.size());
-  if (n < 3) return 0;
+  if (ring.size() < 3) return 0;
   if (tangled(ring)) return tangled_area(ring);
-  // Near the origin GEOS's rounding stays far below the grid.
-  const model::Point2 origin = ring.points[0];
-  GEOSCoordSequence* sequence = GEOSCoordSeq_create_r(context(), n + 1, 2);
-  for (unsigned i = 0; i <= n; ++i)
-    GEOSCoordSeq_setXY_r(context(), sequence, i, ring.points[i % n].x - origin.x, ring.points[i % n].y - origin.y);
-  const Geometry polygon(
-      GEOSGeom_createPolygon_r(context(), GEOSGeom_createLinearRing_r(context(), sequence), nullptr, 0));
-  // LINEWORK, the other method than the one that mends: it makes holes of what is enclosed twice.
-  GEOSMakeValidParams* parameters = GEOSMakeValidParams_create_r(context());
-  GEOSMakeValidParams_setMethod_r(context(), parameters, GEOS_MAKE_VALID_LINEWORK);
-  const Geometry valid(GEOSMakeValidWithParams_r(context(), polygon.get(), parameters));
-  GEOSMakeValidParams_destroy_r(context(), parameters);
+  const geos::Geometry polygon = geos::polygon_of({ring, {}}, ring.points[0]);
+  // LINEWORK, the other method than the one that mends.
+  const geos::Geometry valid = geos::made_valid(polygon.get(), GEOS_MAKE_VALID_LINEWORK);
   double area = 0;
-  if (valid) GEOSArea_r(context(), valid.get(), &area);
+  if (valid) GEOSArea_r(geos::context(), valid.get(), &area);
   return area;
 }
 

@@ -7,6 +7,7 @@
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::geometry {
 
@@ -15,8 +16,6 @@ namespace {
 using model::Point2;
 using model::Polygon;
 using model::Ring;
-
-double distance(Point2 a, Point2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
 Point2 foot_on(Point2 p, Point2 a, Point2 b) {
   const double dx = b.x - a.x, dy = b.y - a.y;

@@ -1,22 +1,15 @@
 #include "pipeline/geometry/plan_shape.h"
 
-#include <geos_c.h>
-
 #include <stdexcept>
+
+#include "pipeline/geometry/geos_scope.h"
 
 namespace blockrand::geometry {
 
 namespace {
 
+using geos::context;
 using model::Point2;
-
-GEOSContextHandle_t context() {
-  thread_local const struct Context {
-    GEOSContextHandle_t handle = GEOS_init_r();
-    ~Context() { GEOS_finish_r(handle); }
-  } context;
-  return context.handle;
-}
 
 using Shape = std::shared_ptr<void>;
 
@@ -26,21 +19,6 @@ Shape held(GEOSGeometry* geometry) {
 }
 
 const GEOSGeometry* raw(const Shape& shape) { return static_cast<const GEOSGeometry*>(shape.get()); }
-
-GEOSGeometry* linear_ring(const model::Ring& ring) {
-  const auto n = static_cast<unsigned>(ring.size());
-  GEOSCoordSequence* points = GEOSCoordSeq_create_r(context(), n + 1, 2);
-  for (unsigned i = 0; i <= n; ++i)
-    GEOSCoordSeq_setXY_r(context(), points, i, ring.points[i % n].x, ring.points[i % n].y);
-  return GEOSGeom_createLinearRing_r(context(), points);
-}
-
-GEOSGeometry* polygon_of(const model::Polygon& polygon) {
-  std::vector<GEOSGeometry*> holes;
-  for (const model::Ring& hole : polygon.holes) holes.push_back(linear_ring(hole));
-  return GEOSGeom_createPolygon_r(context(), linear_ring(polygon.outer), holes.data(),
-                                  static_cast<unsigned>(holes.size()));
-}
 
 double area_of(const Shape& shape) {
   double area = 0;
@@ -52,7 +30,7 @@ double area_of(const Shape& shape) {
 
 PlanShape::PlanShape(const std::vector<model::Polygon>& polygons) {
   std::vector<GEOSGeometry*> parts;
-  for (const model::Polygon& p : polygons) parts.push_back(polygon_of(p));
+  for (const model::Polygon& p : polygons) parts.push_back(geos::polygon_of(p, {}).release());
   const Shape all = held(GEOSGeom_createCollection_r(context(), GEOS_GEOMETRYCOLLECTION, parts.data(),
                                                      static_cast<unsigned>(parts.size())));
   shape_ = held(GEOSUnaryUnion_r(context(), raw(all)));

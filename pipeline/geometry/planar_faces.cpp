@@ -1,7 +1,5 @@
 #include "pipeline/geometry/planar_faces.h"
 
-#include <geos_c.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,9 +9,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "pipeline/geometry/geos_scope.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/noded_lines.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::geometry {
 
@@ -22,29 +22,6 @@ namespace {
 using model::Point2;
 using model::Polygon;
 using model::Ring;
-
-/// GEOS contexts are not shared between threads.
-GEOSContextHandle_t context() {
-  struct Owner {
-    GEOSContextHandle_t handle = GEOS_init_r();
-    Owner() = default;
-    Owner(const Owner&) = delete;
-    Owner& operator=(const Owner&) = delete;
-    ~Owner() { GEOS_finish_r(handle); }
-  };
-  thread_local Owner owner;
-  return owner.handle;
-}
-
-struct Deleter {
-  void operator()(GEOSGeometry* g) const { GEOSGeom_destroy_r(context(), g); }
-};
-using Geometry = std::unique_ptr<GEOSGeometry, Deleter>;
-
-Geometry checked(GEOSGeometry* geometry, const char* what) {
-  if (geometry == nullptr) throw std::runtime_error(std::string("GEOS failed to ") + what);
-  return Geometry(geometry);
-}
 
 /// The arrangement of noded edges as a planar map, and the rings of its faces.
 class PlanarMap {
@@ -299,7 +276,7 @@ class Attribution {
       const auto node =
           std::lower_bound(nodes_.begin(), nodes_.end(), std::pair(p, std::numeric_limits<std::int64_t>::min()));
       if (node != nodes_.end() && node->first == p) ring.nodes[i] = node->second;
-      const double length = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
+      const double length = distance(q, p);
       // The interior lies on the left of every ring edge: the same direction as the line's means left of the line.
       const bool forward = p < q;
       const Point2 a = std::min(p, q), b = std::max(p, q);
@@ -337,22 +314,13 @@ std::vector<Face> faces_of_lines(std::span<const DividingLine> lines) {
 
 Point2 inner_point(const Polygon& polygon) {
   const Point2 origin = polygon.outer.points[0];
-  const auto ring = [&](const Ring& r) {
-    const auto n = static_cast<unsigned>(r.size());
-    GEOSCoordSequence* sequence = GEOSCoordSeq_create_r(context(), n + 1, 2);
-    for (unsigned i = 0; i <= n; ++i)
-      GEOSCoordSeq_setXY_r(context(), sequence, i, r.points[i % n].x - origin.x, r.points[i % n].y - origin.y);
-    return GEOSGeom_createLinearRing_r(context(), sequence);
-  };
-  std::vector<GEOSGeometry*> holes;
-  for (const Ring& hole : polygon.holes) holes.push_back(ring(hole));
-  const Geometry g = checked(
-      GEOSGeom_createPolygon_r(context(), ring(polygon.outer), holes.data(), static_cast<unsigned>(holes.size())),
-      "make a polygon");
-  const Geometry point(GEOSPointOnSurface_r(context(), g.get()));
+  const geos::Geometry g = geos::polygon_of(polygon, origin);
+  if (!g) throw std::runtime_error("GEOS failed to make a polygon");
+  const geos::Geometry point(GEOSPointOnSurface_r(geos::context(), g.get()));
   Point2 p = origin;
   double x = 0, y = 0;
-  if (point && GEOSGeomGetX_r(context(), point.get(), &x) == 1 && GEOSGeomGetY_r(context(), point.get(), &y) == 1)
+  if (point && GEOSGeomGetX_r(geos::context(), point.get(), &x) == 1 &&
+      GEOSGeomGetY_r(geos::context(), point.get(), &y) == 1)
     p = model::snap(Point2{origin.x + x, origin.y + y});
   return p;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "pipeline/geometry/grid.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::geometry {
 
@@ -31,7 +32,7 @@ double perimeter(std::span<const Point2> ring) {
   double sum = 0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const Point2 a = ring[i], b = ring[(i + 1) % ring.size()];
-    sum += std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+    sum += distance(b, a);
   }
   return sum;
 }

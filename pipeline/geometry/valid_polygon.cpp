@@ -1,14 +1,11 @@
 #include "pipeline/geometry/valid_polygon.h"
 
-#include <geos_c.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
 #include <map>
-#include <memory>
 #include <numeric>
 
+#include "pipeline/geometry/geos_scope.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon.h"
 
@@ -81,49 +78,12 @@ bool repeats_a_point(const Ring& ring) {
 
 // ---- GEOS ---------------------------------------------------------------------------------------------------------
 
-/// One GEOS context per thread: contexts are not shared between threads.
-class Context {
- public:
-  Context() : handle_(GEOS_init_r()) {}
-  ~Context() { GEOS_finish_r(handle_); }
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
-  GEOSContextHandle_t get() const { return handle_; }
-
- private:
-  GEOSContextHandle_t handle_;
-};
-
-GEOSContextHandle_t context() {
-  thread_local Context c;
-  return c.get();
-}
-
-struct Deleter {
-  void operator()(GEOSGeometry* g) const { GEOSGeom_destroy_r(context(), g); }
-};
-using Geometry = std::unique_ptr<GEOSGeometry, Deleter>;
-
-/// All work happens relative to this origin: small coordinates keep GEOS's own rounding far below the grid.
-GEOSGeometry* ring_of(std::span<const Point2> points, Point2 origin) {
-  const auto n = static_cast<unsigned>(points.size());
-  GEOSCoordSequence* sequence = GEOSCoordSeq_create_r(context(), n + 1, 2);
-  for (unsigned i = 0; i <= n; ++i)
-    GEOSCoordSeq_setXY_r(context(), sequence, i, points[i % n].x - origin.x, points[i % n].y - origin.y);
-  return GEOSGeom_createLinearRing_r(context(), sequence);
-}
-
-Geometry geometry_of(const Polygon& polygon, Point2 origin) {
-  std::vector<GEOSGeometry*> holes;
-  for (const Ring& hole : polygon.holes)
-    if (hole.size() >= 3) holes.push_back(ring_of(hole.points, origin));
-  return Geometry(GEOSGeom_createPolygon_r(context(), ring_of(polygon.outer.points, origin), holes.data(),
-                                           static_cast<unsigned>(holes.size())));
-}
+using geos::context;
+using geos::Geometry;
 
 Geometry collection_of(std::span<const Polygon> polygons, Point2 origin) {
   std::vector<GEOSGeometry*> parts;
-  for (const Polygon& p : polygons) parts.push_back(geometry_of(p, origin).release());
+  for (const Polygon& p : polygons) parts.push_back(geos::polygon_of(p, origin).release());
   return Geometry(GEOSGeom_createCollection_r(context(), GEOS_MULTIPOLYGON, parts.data(),
                                               static_cast<unsigned>(parts.size())));
 }
@@ -133,43 +93,16 @@ Geometry union_all(std::span<const Polygon> polygons, Point2 origin) {
   return Geometry(GEOSUnaryUnion_r(context(), all.get()));
 }
 
-Geometry made_valid(const GEOSGeometry* geometry) {
-  GEOSMakeValidParams* parameters = GEOSMakeValidParams_create_r(context());
-  // STRUCTURE keeps overlaps inside and holes out; LINEWORK would turn overlaps into holes (feasibility.md, section 2).
-  GEOSMakeValidParams_setMethod_r(context(), parameters, GEOS_MAKE_VALID_STRUCTURE);
-  GEOSMakeValidParams_setKeepCollapsed_r(context(), parameters, 0);
-  Geometry out(GEOSMakeValidWithParams_r(context(), geometry, parameters));
-  GEOSMakeValidParams_destroy_r(context(), parameters);
-  return out;
-}
-
-Ring ring_from(const GEOSGeometry* ring, Point2 origin) {
-  Ring out;
-  const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(context(), ring);
-  unsigned n = 0;
-  GEOSCoordSeq_getSize_r(context(), sequence, &n);
-  for (unsigned i = 0; i + 1 < n; ++i) {
-    double x = 0, y = 0;
-    GEOSCoordSeq_getXY_r(context(), sequence, i, &x, &y);
-    const Point2 p = model::snap(Point2{x + origin.x, y + origin.y});
-    if (!out.points.empty() && out.points.back() == p) continue;
-    out.points.push_back(p);
-  }
-  while (out.points.size() > 1 && out.points.back() == out.points.front()) out.points.pop_back();
-  out.nodes.assign(out.points.size(), 0);
-  return out;
-}
-
 void append_polygons(const GEOSGeometry* geometry, Point2 origin, std::vector<Polygon>& out) {
   if (!geometry) return;
   const int type = GEOSGeomTypeId_r(context(), geometry);
   if (type == GEOS_POLYGON) {
     if (GEOSisEmpty_r(context(), geometry)) return;
     Polygon p;
-    p.outer = ring_from(GEOSGetExteriorRing_r(context(), geometry), origin);
+    p.outer = geos::ring_from(GEOSGetExteriorRing_r(context(), geometry), origin);
     const int holes = GEOSGetNumInteriorRings_r(context(), geometry);
     for (int i = 0; i < holes; ++i) {
-      Ring hole = ring_from(GEOSGetInteriorRingN_r(context(), geometry, i), origin);
+      Ring hole = geos::ring_from(GEOSGetInteriorRingN_r(context(), geometry, i), origin);
       if (hole.size() >= 3) p.holes.push_back(std::move(hole));
     }
     if (p.outer.size() >= 3) out.push_back(std::move(p));
@@ -231,8 +164,9 @@ void finish(std::vector<Polygon> pieces, double min_area, double clearance, Vali
         continue;
       }
       const Point2 origin = p.outer.points[0];
-      const Geometry raw = geometry_of(p, origin);
-      Geometry valid = GEOSisValid_r(context(), raw.get()) == 1 ? nullptr : made_valid(raw.get());
+      const Geometry raw = geos::polygon_of(p, origin);
+      Geometry valid =
+          GEOSisValid_r(context(), raw.get()) == 1 ? nullptr : geos::made_valid(raw.get(), GEOS_MAKE_VALID_STRUCTURE);
       if (!valid) {
         const double half_size = clearance * (round + 1);
         std::vector<Polygon> with_squares = squares_at_touches(p, half_size);
@@ -320,8 +254,8 @@ ValidPolygons make_valid(std::span<const Ring> rings, const std::vector<bool>& i
     }
     for (const Polygon& p : mend) {
       const Point2 origin = p.outer.points[0];
-      const Geometry geometry = geometry_of(p, origin);
-      const Geometry valid = made_valid(geometry.get());
+      const Geometry geometry = geos::polygon_of(p, origin);
+      const Geometry valid = geos::made_valid(geometry.get(), GEOS_MAKE_VALID_STRUCTURE);
       std::vector<Polygon> pieces;
       append_polygons(valid.get(), origin, pieces);
       finish(std::move(pieces), min_area, clearance, out);
@@ -337,7 +271,8 @@ ValidPolygons outlines_of(const Ring& ring, double min_area, double clearance) {
   out.changed = true;
   if (ring.size() < 3) return out;
   const Point2 origin = ring.points[0];
-  const Geometry raw = geometry_of({ring, {}}, origin), valid = made_valid(raw.get());
+  const Geometry raw = geos::polygon_of({ring, {}}, origin),
+                 valid = geos::made_valid(raw.get(), GEOS_MAKE_VALID_STRUCTURE);
   std::vector<Polygon> pieces;
   append_polygons(valid.get(), origin, pieces);
   for (Polygon& p : pieces) p.holes.clear();

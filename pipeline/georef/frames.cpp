@@ -3,14 +3,9 @@
 #include <cmath>
 
 #include "pipeline/base/portable_math.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::georef {
-namespace {
-
-double dot(const model::Point3& a, const model::Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-}  // namespace
-
 model::Point3 to_ecef(const Geodetic& p) {
   const base::SinCos lon = base::sin_cos(p.lon * base::kRadiansPerDegree);
   const base::SinCos lat = base::sin_cos(p.lat * base::kRadiansPerDegree);

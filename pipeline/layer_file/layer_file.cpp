@@ -11,13 +11,14 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <mutex>
 
 #include "pipeline/base/error.h"
-#include "pipeline/layer_file/gdal_scope.h"
+#include "pipeline/gdal/gdal_scope.h"
 
 namespace blockrand::layer_file {
 namespace {
+
+using gdal::GdalScope;
 
 /// "2024-05-01T00:00:00Z" as GeoPackage wants it, with milliseconds; the epoch where the data does not say.
 std::string geopackage_time(const std::string& data_time) {
@@ -77,10 +78,6 @@ constexpr std::array<OGRwkbGeometryType, 4> kTypes{wkbPoint, wkbLineString, wkbP
 /// Text that holds a JSON object.
 bool is_json(const Column& column) { return column.name == "tags"; }
 
-struct DatasetCloser {
-  void operator()(GDALDataset* dataset) const { GDALClose(GDALDataset::ToHandle(dataset)); }
-};
-
 }  // namespace
 
 struct LayerFile::Impl {
@@ -93,7 +90,7 @@ struct LayerFile::Impl {
 
   std::string path;
   FileOptions options;
-  std::unique_ptr<GDALDataset, DatasetCloser> dataset;
+  std::unique_ptr<GDALDataset, gdal::CloseDataset> dataset;
   OGRSpatialReference srs;
   std::vector<std::unique_ptr<Layer>> layers;  // in the order of the file
   bool made = false, closed = false;
@@ -110,9 +107,9 @@ struct LayerFile::Impl {
 
   [[noreturn]] void fail(const GdalScope& scope) const {
     const int error = error_of_writing(path);
-    throw base::OutputError(
-        path + ": cannot write: " + (scope.failed() ? scope.failure() : std::string("GDAL does not say why")) +
-        (error != 0 ? " (" + std::string(std::strerror(error)) + ")" : "") + ". " + remedy(error));
+    throw base::OutputError(path + ": cannot write: " +
+                            (scope.failed() ? scope.failure("unknown failure") : std::string("GDAL does not say why")) +
+                            (error != 0 ? " (" + std::string(std::strerror(error)) + ")" : "") + ". " + remedy(error));
   }
   void check(const GdalScope& scope, bool good) const {
     if (!good || scope.failed()) fail(scope);
@@ -240,8 +237,7 @@ struct LayerFile::Impl {
   }
 
   void create(const std::vector<LayerSpec>& specs, const std::vector<QgisStyle>& styles) {
-    static std::once_flag registered;
-    std::call_once(registered, [] { GDALAllRegister(); });
+    gdal::register_drivers();
     const GdalScope scope(settings());
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored))

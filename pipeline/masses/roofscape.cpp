@@ -6,9 +6,10 @@
 #include <optional>
 #include <unordered_map>
 
-#include "pipeline/base/portable_math.h"
 #include "pipeline/attributes/roof_edges.h"
+#include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/grid.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::masses {
 
@@ -42,7 +43,6 @@ constexpr double kSameHeight = 0.02;        ///< m
 constexpr double kSameDirection = 0.99985;  ///< cosine of 1 degree
 constexpr double kSamePitch = 0.001;        ///< rise over run: 1 cm over 10 m
 
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
 Point2 unit(Point2 a) {
   const double l = std::sqrt(dot(a, a));
   return l > 0 ? Point2{a.x / l, a.y / l} : Point2{};
@@ -101,7 +101,7 @@ class House {
       Wall w;
       w.from = s.vertices[loop[0]].xy();
       w.to = s.vertices[loop[1]].xy();
-      w.length = std::sqrt(dot({w.to.x - w.from.x, w.to.y - w.from.y}, {w.to.x - w.from.x, w.to.y - w.from.y}));
+      w.length = distance(w.to, w.from);
       w.kind = stretches.kind(w.from, w.to);
       const Point2 out = w.outwards();
       for (std::size_t i = loop.size(); i-- > 2;) {
@@ -114,7 +114,7 @@ class House {
         const double steep = std::sqrt(dot(*down, *down));
         if (steep < kLeastFall || dot(*down, out) < kOverEdge * steep) continue;
         const Point3 p = s.vertices[loop[i]], q = s.vertices[loop[i - 1]];
-        const double length = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
+        const double length = distance(q.xy(), p.xy());
         if (std::fabs(q.z - p.z) > kLevel * length) continue;  // water runs along it
         w.eaves += length;
       }

@@ -5,10 +5,11 @@
 #include <tuple>
 #include <utility>
 
-#include "pipeline/outputs/placed_element.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
+#include "pipeline/outputs/placed_element.h"
 
 namespace blockrand::outputs {
 
@@ -49,7 +50,7 @@ TileStatistics count_statistics(const model::Region& region) {
       const model::Polygon& polygon = building.outline[e.polygon];
       const model::Ring& ring = e.ring == 0 ? polygon.outer : polygon.holes[e.ring - 1];
       const model::Point2 a = ring.points[e.edge], b = ring.points[(e.edge + 1) % ring.size()];
-      const double whole = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+      const double whole = distance(b, a);
       if (e.kind == model::EdgeKind::party_wall && e.start <= kWholeEdge && e.end >= whole - kWholeEdge)
         out.party_sides.push_back({wall_key(a, b), whole, base, base + wall_height});
       else

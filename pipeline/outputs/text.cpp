@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "pipeline/model/osm_keys.h"
 #include "pipeline/model/point.h"
 
 namespace blockrand::outputs {
@@ -110,17 +111,17 @@ std::string Address::line() const {
 TagReader::TagReader(const model::Extract* extract) : extract_(extract) {
   if (!extract) return;
   const auto key = [&](std::string_view text) { return extract->strings.find(text); };
-  name_ = key("name");
-  start_date_ = key("start_date");
-  building_use_ = key("building:use");
-  country_ = key("addr:country");
-  city_ = key("addr:city");
-  suburb_ = key("addr:suburb");
-  postcode_ = key("addr:postcode");
-  street_ = key("addr:street");
-  place_ = key("addr:place");
-  house_number_ = key("addr:housenumber");
-  house_name_ = key("addr:housename");
+  name_ = key(model::osm_key::kName);
+  start_date_ = key(model::osm_key::kStartDate);
+  building_use_ = key(model::osm_key::kBuildingUse);
+  country_ = key(model::osm_key::kAddrCountry);
+  city_ = key(model::osm_key::kAddrCity);
+  suburb_ = key(model::osm_key::kAddrSuburb);
+  postcode_ = key(model::osm_key::kAddrPostcode);
+  street_ = key(model::osm_key::kAddrStreet);
+  place_ = key(model::osm_key::kAddrPlace);
+  house_number_ = key(model::osm_key::kAddrHousenumber);
+  house_name_ = key(model::osm_key::kAddrHousename);
 }
 
 Address TagReader::address(model::Range tags) const {

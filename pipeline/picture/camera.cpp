@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/base/portable_math.h"
-#include "pipeline/picture/vector.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::picture {
 namespace {
@@ -27,7 +27,7 @@ Camera aimed(Direction from) {
 
 /// How far the points reach along `axis` plus `depth` times the view direction.
 double reach(std::span<const Point3> points, Point3 axis, Point3 forward, double depth) {
-  const Point3 direction = plus(axis, times(forward, depth));
+  const Point3 direction = axis + forward * depth;
   double furthest = dot(points[0], direction);
   for (const Point3& p : points) furthest = std::max(furthest, dot(p, direction));
   return furthest;
@@ -39,7 +39,7 @@ Camera look_at(Point3 eye, Point3 target, double field_of_view) {
   Camera camera;
   camera.eye = eye;
   camera.field_of_view = field_of_view;
-  aim(camera, eye == target ? Point3{0, 1, 0} : minus(target, eye), {1, 0, 0});
+  aim(camera, eye == target ? Point3{0, 1, 0} : target - eye, {1, 0, 0});
   return camera;
 }
 
@@ -52,14 +52,13 @@ Camera fit_perspective(std::span<const Point3> points, Direction from, double as
   // as far back as the tighter pair wants, and in the middle of both.
   const double up = base::tan(field_of_view / 2 * base::kRadiansPerDegree) * (1 - margin), side = up * aspect;
   const double east = reach(points, camera.right, camera.forward, -side);
-  const double west = reach(points, times(camera.right, -1), camera.forward, -side);
+  const double west = reach(points, camera.right * -1, camera.forward, -side);
   const double top = reach(points, camera.up, camera.forward, -up);
-  const double bottom = reach(points, times(camera.up, -1), camera.forward, -up);
+  const double bottom = reach(points, camera.up * -1, camera.forward, -up);
   double depth = std::min(-(east + west) / (2 * side), -(top + bottom) / (2 * up));
   // All points in front of the near plane, even a single one.
   depth = std::min(depth, -reach(points, {}, camera.forward, -1) - 10 * camera.near);
-  camera.eye = plus(plus(times(camera.right, (east - west) / 2), times(camera.up, (top - bottom) / 2)),
-                    times(camera.forward, depth));
+  camera.eye = camera.right * ((east - west) / 2) + camera.up * ((top - bottom) / 2) + camera.forward * depth;
   return camera;
 }
 
@@ -67,12 +66,11 @@ Camera fit_orthographic(std::span<const Point3> points, Direction from, double a
   Camera camera = aimed(from);
   camera.projection = Projection::orthographic;
   if (points.empty()) return camera;
-  const double east = reach(points, camera.right, {}, 0), west = -reach(points, times(camera.right, -1), {}, 0);
-  const double top = reach(points, camera.up, {}, 0), bottom = -reach(points, times(camera.up, -1), {}, 0);
+  const double east = reach(points, camera.right, {}, 0), west = -reach(points, camera.right * -1, {}, 0);
+  const double top = reach(points, camera.up, {}, 0), bottom = -reach(points, camera.up * -1, {}, 0);
   const double nearest = -reach(points, {}, camera.forward, -1);
   camera.height = std::max({top - bottom, (east - west) / aspect, 1e-3}) / (1 - margin);
-  camera.eye = plus(plus(times(camera.right, (east + west) / 2), times(camera.up, (top + bottom) / 2)),
-                    times(camera.forward, nearest - 1));
+  camera.eye = camera.right * ((east + west) / 2) + camera.up * ((top + bottom) / 2) + camera.forward * (nearest - 1);
   return camera;
 }
 

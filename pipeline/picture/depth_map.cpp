@@ -9,7 +9,7 @@ namespace blockrand::picture {
 
 void DepthMap::draw(const Scene& scene, Point3 to_light, const Box& receivers) {
   std::fill(depth_.begin(), depth_.end(), -std::numeric_limits<float>::max());
-  const Point3 forward = times(to_light, -1);
+  const Point3 forward = to_light * -1;
   Point3 right = cross(forward, {0, 0, 1});
   right = length(right) > 5e-6 ? unit(right) : Point3{1, 0, 0};
   const Point3 up = cross(right, forward);

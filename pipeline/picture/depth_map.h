@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "pipeline/model/vector.h"
 #include "pipeline/picture/scene.h"
-#include "pipeline/picture/vector.h"
 
 namespace blockrand::picture {
 

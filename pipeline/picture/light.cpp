@@ -38,7 +38,7 @@ Receivers receivers_of(const Scene& scene, const View& view, const Samples& samp
   out.asks.assign(samples.what.size(), false);
   const Box bounds = scene.bounds();
   if (bounds.empty) return out;
-  Point3 low = minus(bounds.min, scene.origin()), high = minus(bounds.max, scene.origin());
+  Point3 low = bounds.min - scene.origin(), high = bounds.max - scene.origin();
   const double reach = scene.ground() ? kReach * std::max(0.0, high.z - scene.ground()->z) : 0;
   low = {low.x - reach, low.y - reach, 0};
   high = {high.x + reach, high.y + reach, 0};

@@ -65,7 +65,7 @@ Samples see(const Scene& scene, const View& view) {
     const Scene::Triangle& triangle = triangles[t];
     if (triangle.closed) {
       const Scene::Vector& c = triangle.corners[0];
-      const Point3 sight = view.perspective() ? minus({c.x, c.y, c.z}, eye) : view.forward();
+      const Point3 sight = view.perspective() ? Point3{c.x, c.y, c.z} - eye : view.forward();
       if (triangle.normal.x * sight.x + triangle.normal.y * sight.y + triangle.normal.z * sight.z >= 0) continue;
     }
     draw(view, triangle, [&](std::size_t i, double nearness) {
@@ -185,7 +185,7 @@ class Shader {
     sun_ = {static_cast<float>(sun.x), static_cast<float>(sun.y), static_cast<float>(sun.z)};
     const Box box = scene.bounds();
     if (!box.empty) {
-      centre_ = minus(box.centre(), scene.origin());
+      centre_ = box.centre() - scene.origin();
       const double dx = box.max.x - box.min.x, dy = box.max.y - box.min.y;
       radius_ = std::max(1.0, std::sqrt(dx * dx + dy * dy) / 2);
     }
@@ -231,16 +231,16 @@ class Shader {
     // Barycentric coordinates of the place, as shares of the triangle's area.
     const auto corner = [&](std::size_t k) { return Point3{t.corners[k].x, t.corners[k].y, t.corners[k].z}; };
     const Point3 p = view_.position(x + 0.5, y + 0.5, samples_.nearness[i]), a = corner(0), b = corner(1), c = corner(2);
-    const Point3 n = cross(minus(b, a), minus(c, a));
+    const Point3 n = cross(b - a, c - a);
     const double whole = dot(n, n);
-    const double wb = std::clamp(dot(cross(minus(p, a), minus(c, a)), n) / whole, 0.0, 1.0);
-    const double wc = std::clamp(dot(cross(minus(b, a), minus(p, a)), n) / whole, 0.0, 1.0 - wb);
+    const double wb = std::clamp(dot(cross(p - a, c - a), n) / whole, 0.0, 1.0);
+    const double wc = std::clamp(dot(cross(b - a, p - a), n) / whole, 0.0, 1.0 - wb);
     return tones_.linear(t.colours[0]) * static_cast<float>(1 - wb - wc) + tones_.linear(t.colours[1]) * static_cast<float>(wb) +
            tones_.linear(t.colours[2]) * static_cast<float>(wc);
   }
   /// How far a place of the ground has faded into the background.
   float faded(std::size_t i, int x, int y) const {
-    const Point3 d = minus(view_.position(x + 0.5, y + 0.5, samples_.nearness[i]), centre_);
+    const Point3 d = view_.position(x + 0.5, y + 0.5, samples_.nearness[i]) - centre_;
     const double distance = std::sqrt(d.x * d.x + d.y * d.y) / radius_ - options_.ground_fade;
     const double share = std::clamp(distance / (0.6 * options_.ground_fade), 0.0, 1.0);
     return static_cast<float>(share * share * (3 - 2 * share));

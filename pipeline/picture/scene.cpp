@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "pipeline/picture/vector.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::picture {
 
@@ -20,7 +20,7 @@ std::array<Point3, 8> Box::corners() const {
   return out;
 }
 
-Point3 Box::centre() const { return times(plus(min, max), 0.5); }
+Point3 Box::centre() const { return (min + max) * 0.5; }
 
 Scene::Vector Scene::local(Point3 p) const {
   return {static_cast<float>(p.x - origin_.x), static_cast<float>(p.y - origin_.y), static_cast<float>(p.z - origin_.z)};
@@ -28,7 +28,7 @@ Scene::Vector Scene::local(Point3 p) const {
 
 void Scene::push(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours, std::uint32_t object,
                  bool closed) {
-  const Point3 normal = unit(cross(minus(corners[1], corners[0]), minus(corners[2], corners[0])));
+  const Point3 normal = unit(cross(corners[1] - corners[0], corners[2] - corners[0]));
   if (!(dot(normal, normal) > 0)) return;  // also what is not a number
   Triangle t;
   for (std::size_t i = 0; i < 3; ++i) t.corners[i] = local(corners[i]);
@@ -46,8 +46,8 @@ void Scene::add(const model::Solid& solid, const model::SolidTriangles& triangle
     const Colour c = solid.faces[f].colour;
     for (std::uint32_t t = triangles.first[f]; t < triangles.first[f + 1]; ++t) {
       const auto& corners = triangles.triangles[t];
-      push({plus(solid.vertices[corners[0]], offset), plus(solid.vertices[corners[1]], offset),
-            plus(solid.vertices[corners[2]], offset)},
+      push({solid.vertices[corners[0]] + offset, solid.vertices[corners[1]] + offset,
+            solid.vertices[corners[2]] + offset},
            {c, c, c}, object, true);
     }
   }

@@ -6,7 +6,7 @@ namespace blockrand::picture {
 
 View::View(const Camera& camera, Point3 origin, int width, int height)
     : perspective_(camera.projection == Projection::perspective),
-      eye_(minus(camera.eye, origin)),
+      eye_(camera.eye - origin),
       right_(camera.right),
       up_(camera.up),
       forward_(camera.forward),
@@ -55,7 +55,7 @@ int View::clip(std::array<Point3, kMaxCorners>& corners, int count) const {
       const double vp = value(p), vq = value(q);
       if (vp >= 0 && n < kMaxCorners) kept[static_cast<std::size_t>(n++)] = p;
       if ((vp >= 0) != (vq >= 0) && n < kMaxCorners)
-        kept[static_cast<std::size_t>(n++)] = plus(p, times(minus(q, p), vp / (vp - vq)));
+        kept[static_cast<std::size_t>(n++)] = p + (q - p) * (vp / (vp - vq));
     }
     corners = kept;
     count = n;
@@ -65,7 +65,7 @@ int View::clip(std::array<Point3, kMaxCorners>& corners, int count) const {
 
 Point3 View::direction(double x, double y) const {
   if (!perspective_) return forward_;
-  return unit(plus(forward_, plus(times(right_, (x - cx_) / scale_), times(up_, (cy_ - y) / scale_))));
+  return unit(forward_ + (right_ * ((x - cx_) / scale_) + up_ * ((cy_ - y) / scale_)));
 }
 
 View::Linear View::plane(Point3 normal, double offset) const {

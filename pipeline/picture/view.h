@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "pipeline/model/vector.h"
 #include "pipeline/picture/camera.h"
-#include "pipeline/picture/vector.h"
 
 namespace blockrand::picture {
 
@@ -32,7 +32,7 @@ class View {
 
   /// Right, up and depth from the eye.
   Point3 to_camera(Point3 p) const {
-    const Point3 d = minus(p, eye_);
+    const Point3 d = p - eye_;
     return {dot(d, right_), dot(d, up_), dot(d, forward_)};
   }
   Projected project(Point3 camera_point) const {
@@ -54,8 +54,8 @@ class View {
   /// Where the line of sight through a sample has this nearness, in the scene's local coordinates.
   Point3 position(double x, double y, double nearness) const {
     const double a = (x - cx_) * size_, b = (cy_ - y) * size_;
-    if (!perspective_) return plus(plus(eye_, plus(times(right_, a), times(up_, b))), times(forward_, -nearness));
-    return plus(eye_, times(plus(forward_, plus(times(right_, a), times(up_, b))), 1 / nearness));
+    if (!perspective_) return eye_ + (right_ * a + up_ * b) + (forward_ * -nearness);
+    return eye_ + (forward_ + (right_ * a + up_ * b)) * (1 / nearness);
   }
   /// Unit vector from the eye through a sample.
   Point3 direction(double x, double y) const;

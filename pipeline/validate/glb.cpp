@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "pipeline/model/vector.h"
 #include "pipeline/validate/glb_container.h"
 #include "pipeline/validate/property_table.h"
 
@@ -29,12 +30,6 @@ std::uint8_t srgb(double linear) {
   const double s = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
   return static_cast<std::uint8_t>(std::lround(s * 255));
 }
-
-Point3 cross(const Point3& o, const Point3& a, const Point3& b) {
-  const double ux = a.x - o.x, uy = a.y - o.y, uz = a.z - o.z, vx = b.x - o.x, vy = b.y - o.y, vz = b.z - o.z;
-  return {uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
-}
-double length(const Point3& p) { return std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z); }
 
 class Reader {
  public:
@@ -321,7 +316,7 @@ class Reader {
     const double tolerance = normal.is_float() ? 1e-4 : normal.size == 1 ? 0.87 / 127 : 0.87 / 32767;
     std::size_t off = 0;
     for (std::size_t i = 0; i < normal.count; ++i) {
-      const double l = length({glb_.value(normal, i, 0), glb_.value(normal, i, 1), glb_.value(normal, i, 2)});
+      const double l = length(Point3{glb_.value(normal, i, 0), glb_.value(normal, i, 1), glb_.value(normal, i, 2)});
       if (!(std::fabs(l - 1) <= tolerance) && ++off == 1)
         rule(fmt::format("{}: normal {} has length {:.4f}", where, i, l));
     }
@@ -364,7 +359,7 @@ class Reader {
     };
     if (!s.position.is_float() && !placed) {
       const double steps = !s.position.normalised ? 1 : s.position.size == 1 ? 255 : 65535;
-      out_.position_step = std::max(out_.position_step, length({matrix[0], matrix[1], matrix[2]}) / steps);
+      out_.position_step = std::max(out_.position_step, length(Point3{matrix[0], matrix[1], matrix[2]}) / steps);
     }
     // Vertices first: most are used by several triangles.
     std::vector<Point3> points(s.position.count);
@@ -396,7 +391,7 @@ class Reader {
       GlbTriangle triangle;
       for (std::size_t k = 0; k < 3; ++k) triangle.corners[k] = points[corner[k]];
       const auto& c = triangle.corners;
-      const Point3 n = cross(c[0], c[1], c[2]);
+      const Point3 n = cross(c[1] - c[0], c[2] - c[0]);
       const double area = length(n);
       if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0] || !(area > 0)) {
         first(flat, fmt::format("triangle {} has no area", t / 3));
@@ -407,9 +402,7 @@ class Reader {
         const double nx = glb_.value(*s.normal, corner[0], 0), ny = glb_.value(*s.normal, corner[0], 1),
                      nz = glb_.value(*s.normal, corner[0], 2);
         const Point3 said = placed ? Point3{nx, ny, nz} : Point3{nx, 0.0 - nz, ny};
-        const double longest = std::max({length({c[1].x - c[0].x, c[1].y - c[0].y, c[1].z - c[0].z}),
-                                         length({c[2].x - c[1].x, c[2].y - c[1].y, c[2].z - c[1].z}),
-                                         length({c[0].x - c[2].x, c[0].y - c[2].y, c[0].z - c[2].z})});
+        const double longest = std::max({length(c[1] - c[0]), length(c[2] - c[1]), length(c[0] - c[2])});
         if (area / longest > (placed ? kElementSliver : 0.1) &&
             n.x * said.x + n.y * said.y + n.z * said.z <= 0.5 * area)
           first(turned, fmt::format("triangle {} does not look where its normal points", t / 3));

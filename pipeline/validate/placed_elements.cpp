@@ -10,6 +10,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "pipeline/model/vector.h"
+
 namespace blockrand::validate {
 namespace {
 
@@ -20,8 +22,6 @@ constexpr double kAround = 0.01;
 
 /// Of unit vectors. Rotations have 16 bits, and a metre in the build CRS is measured on a grid.
 constexpr double kTurn = 0.005;
-
-double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// A placed element's box, ready to be asked for points of the tile's frame (z up).
 class Box {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "pipeline/model/vector.h"
 #include "pipeline/validate/json_access.h"
 
 namespace blockrand::validate {
@@ -17,9 +18,6 @@ using model::Point3;
 constexpr int kDeepest = 64;              // levels; a quadtree of the Earth has no more
 constexpr double kRadius = 6.37e6;        // m; turns angles into distances
 constexpr double kHighestOrigin = 20000;  // m; a frame's origin stands near the ground
-
-double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Point3 minus(const Point3& a, const Point3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 
 /// How far east or west of a region a longitude lies, in radians; regions may cross 180 degrees.
 double beside(double lon, double west, double east) {
@@ -144,7 +142,7 @@ class Reader {
       return nullptr;
     }
     const auto rotated = [&](double x, double y, double z) {
-      return minus(apply(matrix, {x, y, z}), {matrix[12], matrix[13], matrix[14]});
+      return apply(matrix, {x, y, z}) - Point3{matrix[12], matrix[13], matrix[14]};
     };
     if (region) {
       const auto r = numbers(region, 6);
@@ -195,7 +193,7 @@ class Reader {
 
 double Volume::outside(const Point3& ecef) const {
   if (kind == Kind::region) return outside_region(region, geodetic(ecef));
-  const Point3 d = minus(ecef, centre);
+  const Point3 d = ecef - centre;
   if (kind == Kind::sphere) return std::max(std::sqrt(dot(d, d)) - radius, 0.0);
   double worst = 0;
   for (const Point3& a : half_axes) {

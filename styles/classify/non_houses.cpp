@@ -7,6 +7,7 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/toml_file.h"
+#include "pipeline/model/osm_keys.h"
 
 namespace blockrand::classify {
 
@@ -138,7 +139,7 @@ std::optional<NonHouse> non_house(const NonHouseFacts& facts, const NonHouseRule
     }
 
   const bool dwelling = contains(rules.dwellings, facts.use);
-  const bool shop = facts.tag && !facts.tag("shop").empty() && facts.tag("shop") != "no";
+  const bool shop = facts.tag && !facts.tag(model::osm_key::kShop).empty() && facts.tag(model::osm_key::kShop) != "no";
   if (facts.has_address) return std::nullopt;
   if (!dwelling && !shop && !facts.storeys && facts.area <= rules.equal_largest_area) {
     const int count = facts.on_memorial_ground ? rules.equal_count_on_memorial_ground : rules.equal_count;

@@ -4,11 +4,13 @@
 #include <iterator>
 
 #include "pipeline/base/toml_file.h"
+#include "pipeline/model/osm_keys.h"
 
 namespace blockrand::classify {
 
 namespace {
 
+namespace osm_key = model::osm_key;
 constexpr int kOtherUse = 12;
 /// Names of the values of Feature::tag_use.
 constexpr std::string_view kUses[] = {"untold",      "flats",  "residential", "house",    "detached",
@@ -84,7 +86,8 @@ void fill_tag_features(FeatureVector& f, const model::MappedAttributes& a, std::
   if (a.roof_storeys) f[Feature::tag_roof_storeys] = *a.roof_storeys;
   f[Feature::tag_use] = static_cast<float>(tables.use_of(use));
   // Style of appearance: what is named outranks the year in which something was rebuilt (styles.md 3.5).
-  if (const auto style = tables.architecture.find(tag("building:architecture")); style != tables.architecture.end())
+  if (const auto style = tables.architecture.find(tag(osm_key::kBuildingArchitecture));
+      style != tables.architecture.end())
     f[Feature::tag_year] = static_cast<float>(style->second);
   else if (a.built && a.built->confidence >= kMinDateConfidence)
     f[Feature::tag_year] = static_cast<float>(a.built->years.middle());
@@ -92,9 +95,9 @@ void fill_tag_features(FeatureVector& f, const model::MappedAttributes& a, std::
     const std::string_view value = tag(key);
     return !value.empty() && value != "no" && value != "none" && value != "vacant";
   };
-  if (told("heritage") || told("historic")) f[Feature::tag_heritage] = 1;
-  if (told("shop") || told("office") || told("amenity")) f[Feature::tag_shop] = 1;
-  f[Feature::tag_number] = tag("addr:housenumber").empty() ? 0.f : 1.f;
+  if (told(osm_key::kHeritage) || told(osm_key::kHistoric)) f[Feature::tag_heritage] = 1;
+  if (told(osm_key::kShop) || told(osm_key::kOffice) || told(osm_key::kAmenity)) f[Feature::tag_shop] = 1;
+  f[Feature::tag_number] = tag(osm_key::kAddrHousenumber).empty() ? 0.f : 1.f;
 }
 
 }  // namespace blockrand::classify

@@ -14,9 +14,13 @@ Standing standing_of(model::BuildingPosition position) {
     case model::BuildingPosition::rear_building:
     case model::BuildingPosition::side_wing:
       return Standing::behind;
-    default:
-      return Standing::front;
+    case model::BuildingPosition::free_standing:
+    case model::BuildingPosition::end_of_row:
+    case model::BuildingPosition::mid_row:
+    case model::BuildingPosition::corner_house:
+      break;
   }
+  return Standing::front;
 }
 
 VoteKernel VoteKernel::read(base::TomlTable& table) {

@@ -6,14 +6,12 @@
 #include <cmath>
 
 #include "pipeline/geometry/triangulate.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::elements {
 namespace {
 
 using model::Point2;
-
-double cross(Point2 o, Point2 a, Point2 b) { return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x); }
-double distance(Point2 a, Point2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
 /// Points that follow one another too closely become one.
 Outline without_repetitions(const Outline& polygon) {

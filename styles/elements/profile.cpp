@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "pipeline/base/portable_math.h"
+#include "pipeline/model/vector.h"
 #include "styles/elements/mesh_builder.h"
 
 namespace blockrand::elements {
@@ -156,8 +157,8 @@ Outline without_fine_members(const Outline& section) {
     double least = kFinestMember;
     for (std::size_t i = 1; i + 1 < out.size(); ++i) {
       const Point2 a = out[i - 1], b = out[i], c = out[i + 1];
-      const double l = std::sqrt((c.x - a.x) * (c.x - a.x) + (c.y - a.y) * (c.y - a.y));
-      const double ab = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+      const double l = distance(c, a);
+      const double ab = distance(b, a);
       const double off = l > 1e-9 ? std::fabs((c.x - a.x) * (b.y - a.y) - (c.y - a.y) * (b.x - a.x)) / l : ab;
       if (off < least) {
         least = off;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pipeline/base/portable_math.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::elements {
 namespace {
@@ -13,13 +14,7 @@ namespace {
 using model::Point2;
 using model::Point3;
 
-Point2 plus(Point2 a, Point2 b) { return {a.x + b.x, a.y + b.y}; }
-Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
-Point2 times(Point2 a, double s) { return {a.x * s, a.y * s}; }
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
-double length(Point2 a) { return std::sqrt(dot(a, a)); }
-Point2 unit(Point2 a) { return times(a, 1 / length(a)); }
+Point2 unit(Point2 a) { return a * (1 / length(a)); }
 Point2 right_of(Point2 d) { return {d.y, -d.x}; }
 
 /// m. Corners nearer than this to one another or to the straight line are none.
@@ -39,14 +34,14 @@ struct Corner {
 std::vector<Corner> corners_of(std::span<const Point2> path, bool closed) {
   std::vector<Corner> out;
   for (std::size_t i = 0; i < path.size(); ++i)
-    if (out.empty() || length(minus(path[i], out.back().at)) >= kNoCorner) out.push_back({path[i], i});
-  while (closed && out.size() > 1 && length(minus(out.back().at, out.front().at)) < kNoCorner) out.pop_back();
+    if (out.empty() || length(path[i] - out.back().at) >= kNoCorner) out.push_back({path[i], i});
+  while (closed && out.size() > 1 && length(out.back().at - out.front().at) < kNoCorner) out.pop_back();
   for (std::size_t i = closed ? 0 : 1; out.size() > 2 && i + (closed ? 0 : 1) < out.size();) {
     const Point2 a = out[(i + out.size() - 1) % out.size()].at, b = out[i].at, c = out[(i + 1) % out.size()].at;
-    const Point2 ab = minus(b, a), ac = minus(c, a);
+    const Point2 ab = b - a, ac = c - a;
     const double along = length(ac);
-    const bool straight = along > kNoCorner && std::fabs(cross(ab, ac)) / along < kNoCorner && dot(ab, ac) > 0 &&
-                          dot(minus(c, b), ac) > 0;
+    const bool straight =
+        along > kNoCorner && std::fabs(cross(ab, ac)) / along < kNoCorner && dot(ab, ac) > 0 && dot(c - b, ac) > 0;
     if (straight)
       out.erase(out.begin() + static_cast<std::ptrdiff_t>(i));
     else
@@ -75,14 +70,14 @@ Joint joint_of(Point2 before, Point2 after, double limit) {
     joint.leave = n2;
     return joint;
   }
-  joint.inner = times(plus(n1, n2), 1 / (1 + c));
+  joint.inner = (n1 + n2) * (1 / (1 + c));
   joint.arrive = joint.leave = joint.inner;
   const double tangent = std::sqrt(std::max(0.0, 1 - half * half)) / half;
   joint.taken = cross(before, after) > 0 ? -tangent : tangent;
   if (joint.taken < 0 && 1 / half > limit) {
-    const Point2 middle = times(plus(n1, n2), 1 / length(plus(n1, n2)));
-    joint.arrive = times(plus(n1, middle), 1 / (1 + dot(n1, middle)));
-    joint.leave = times(plus(middle, n2), 1 / (1 + dot(middle, n2)));
+    const Point2 middle = (n1 + n2) * (1 / length(n1 + n2));
+    joint.arrive = (n1 + middle) * (1 / (1 + dot(n1, middle)));
+    joint.leave = (middle + n2) * (1 / (1 + dot(middle, n2)));
     joint.cut_off = true;
   }
   return joint;
@@ -144,9 +139,9 @@ std::vector<Joint> joints_of(const std::vector<Corner>& corners, bool closed, do
   std::vector<Point2> direction(edges);
   std::vector<double> lengths(edges);
   for (std::size_t e = 0; e < edges; ++e) {
-    const Point2 d = minus(corners[(e + 1) % n].at, corners[e].at);
+    const Point2 d = corners[(e + 1) % n].at - corners[e].at;
     lengths[e] = length(d);
-    direction[e] = times(d, 1 / lengths[e]);
+    direction[e] = d * (1 / lengths[e]);
   }
   std::vector<Joint> joints(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -190,8 +185,7 @@ std::vector<Stretch> stretches_of(std::span<const Point2> chain, bool closed,
                                   std::span<const std::pair<double, double>> interruptions) {
   const std::size_t edges = closed ? chain.size() : chain.size() - 1;
   std::vector<double> at{0};
-  for (std::size_t e = 0; e < edges; ++e)
-    at.push_back(at.back() + length(minus(chain[(e + 1) % chain.size()], chain[e])));
+  for (std::size_t e = 0; e < edges; ++e) at.push_back(at.back() + length(chain[(e + 1) % chain.size()] - chain[e]));
   const double whole = at.back();
   std::vector<std::pair<double, double>> gaps;
   for (auto [from, to] : interruptions) {
@@ -219,7 +213,7 @@ std::vector<Stretch> stretches_of(std::span<const Point2> chain, bool closed,
       if (at[e + 1] <= start || at[e] >= stop) continue;
       const Point2 a = chain[e], b = chain[(e + 1) % chain.size()];
       const double l = at[e + 1] - at[e];
-      const auto point = [&](double t) { return plus(a, times(minus(b, a), (t - at[e]) / l)); };
+      const auto point = [&](double t) { return a + (b - a) * ((t - at[e]) / l); };
       if (s.points.empty()) {
         s.points.push_back(at[e] >= start ? a : point(start));
         s.index.push_back(e);
@@ -267,7 +261,7 @@ Ends ends_of(const SweepOptions& options, const Stretch& s, const std::vector<Co
   }
   // What re-entrant corners take of the first and the last piece of the run must be there.
   const auto room = [&](double slope, std::size_t from, double taken) {
-    return slope >= 0 || length(minus(corners[from + 1].at, corners[from].at)) - taken >= kLeastRun;
+    return slope >= 0 || length(corners[from + 1].at - corners[from].at) - taken >= kLeastRun;
   };
   const std::size_t pieces = corners.size() - 1;
   const double first_taken = std::max(0.0, -out.first_slope) * out_of_wall,
@@ -366,9 +360,9 @@ tl::expected<Sweep, std::string> sweep(const Profile& profile, std::span<const P
       // Two steps into the wall at a returned end: the corner's mitre makes the return. It stands out beyond the end as
       // far as the moulding does; beside an interruption the end steps back by that, where the wall is long enough.
       const auto step_back = [&](Point2 end, Point2 next) {
-        const Point2 d = minus(next, end);
+        const Point2 d = next - end;
         const double l = length(d);
-        return l > 2.5 * out_of_wall ? plus(end, times(d, out_of_wall / l)) : end;
+        return l > 2.5 * out_of_wall ? end + d * (out_of_wall / l) : end;
       };
       const std::size_t n = corners.size();
       if (ends.first == RunEnd::returned && s.gap_before)
@@ -376,24 +370,24 @@ tl::expected<Sweep, std::string> sweep(const Profile& profile, std::span<const P
       if (ends.last == RunEnd::returned && s.gap_after)
         s.points.back() = corners[n - 1].at = step_back(corners[n - 1].at, corners[n - 2].at);
       path.path = s.points;
-      const auto into = [](Point2 d) { return times(right_of(d), -2 * kApart / length(d)); };
+      const auto into = [](Point2 d) { return right_of(d) * (-2 * kApart / length(d)); };
       if (ends.first == RunEnd::returned) {
-        path.path.insert(path.path.begin(), plus(corners[0].at, into(minus(corners[1].at, corners[0].at))));
+        path.path.insert(path.path.begin(), corners[0].at + into(corners[1].at - corners[0].at));
         added = 1;
       }
       if (ends.last == RunEnd::returned)
-        path.path.push_back(plus(corners[n - 1].at, into(minus(corners[n - 1].at, corners[n - 2].at))));
+        path.path.push_back(corners[n - 1].at + into(corners[n - 1].at - corners[n - 2].at));
       bracketed = s.points;
       // On the bisector the section goes along the wall as well; in re-entrant corners back along it.
-      const Point2 first_way = unit(minus(corners[1].at, corners[0].at)),
-                   last_way = unit(minus(corners[n - 1].at, corners[n - 2].at));
+      const Point2 first_way = unit(corners[1].at - corners[0].at),
+                   last_way = unit(corners[n - 1].at - corners[n - 2].at);
       if (ends.first_slope != 0) {
-        path.start = plus(right_of(first_way), times(first_way, -ends.first_slope));
-        bracketed.front() = plus(bracketed.front(), times(first_way, std::max(0.0, -ends.first_slope) * out_of_wall));
+        path.start = right_of(first_way) + (first_way * -ends.first_slope);
+        bracketed.front() = bracketed.front() + first_way * (std::max(0.0, -ends.first_slope) * out_of_wall);
       }
       if (ends.last_slope != 0) {
-        path.end = plus(right_of(last_way), times(last_way, ends.last_slope));
-        bracketed.back() = plus(bracketed.back(), times(last_way, std::min(0.0, ends.last_slope) * out_of_wall));
+        path.end = right_of(last_way) + last_way * ends.last_slope;
+        bracketed.back() = bracketed.back() + last_way * (std::min(0.0, ends.last_slope) * out_of_wall);
       }
     }
     const auto unmitred = add_sweep(builder, path);
@@ -412,7 +406,7 @@ tl::expected<Sweep, std::string> sweep(const Profile& profile, std::span<const P
         // Along the wall, seen from outside from left to right: outwards turned left.
         const Point2 along{-p.outwards.y, p.outwards.x};
         for (Point3& v : placed.vertices) {
-          const Point2 plan = plus(p.at, plus(times(along, v.x), times(p.outwards, v.z)));
+          const Point2 plan = p.at + (along * v.x + p.outwards * v.z);
           v = {plan.x, v.y, -plan.y};
         }
         builder.append(placed);
@@ -435,15 +429,15 @@ std::vector<ConsolePlace> console_places(std::span<const Point2> chain, bool clo
   const std::size_t n = corners.size(), edges = closed ? n : n - 1;
   for (std::size_t e = 0; e < edges; ++e) {
     const Point2 a = corners[e].at, b = corners[(e + 1) % n].at;
-    const double whole = length(minus(b, a));
+    const double whole = length(b - a);
     const double from = std::max(0.0, joints[e].taken) * projection,
                  to = whole - std::max(0.0, joints[(e + 1) % n].taken) * projection;
     const double room = to - from - width - 2 * kApart;  // clear of the ends: nothing in one plane with them
     if (room < 0) continue;
     const int count = static_cast<int>(std::floor(room / spacing + 1e-9)) + 1;
-    const Point2 d = times(minus(b, a), 1 / whole);
+    const Point2 d = (b - a) * (1 / whole);
     const double first = (from + to) / 2 - spacing * (count - 1) / 2;
-    for (int k = 0; k < count; ++k) out.push_back({plus(a, times(d, first + spacing * k)), right_of(d)});
+    for (int k = 0; k < count; ++k) out.push_back({a + d * (first + spacing * k), right_of(d)});
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "pipeline/base/portable_math.h"
+#include "pipeline/model/vector.h"
 #include "styles/elements/sweep.h"
 
 namespace blockrand::elements {
@@ -43,7 +44,7 @@ std::vector<Point2> bisectors(const std::vector<Point2>& path, bool closed) {
   const std::size_t n = path.size();
   const auto normal = [&](std::size_t i) {
     const Point2 a = path[i % n], b = path[(i + 1) % n];
-    const double l = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+    const double l = distance(b, a);
     return Point2{(b.y - a.y) / l, -(b.x - a.x) / l};
   };
   for (std::size_t i = 0; i < n; ++i) {
@@ -70,7 +71,7 @@ void add_stones(MeshBuilder& builder, const std::vector<Point2>& path, bool clos
   const std::size_t n = path.size(), edges = closed ? n : n - 1;
   for (std::size_t e = 0; e < edges; ++e) {
     const Point2 a = path[e], b = path[(e + 1) % n], oa = offset[e], ob = offset[(e + 1) % n];
-    const double whole = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+    const double whole = distance(b, a);
     const Point2 d{(b.x - a.x) / whole, (b.y - a.y) / whole}, normal{d.y, -d.x};
     // On arcs each piece of the arc is a wedge.
     const int count = std::max(1, static_cast<int>(std::lround(whole / length)));
@@ -279,7 +280,7 @@ Made add_pediment(MeshBuilder& builder, double span, double base, double height,
     }
   }
   const auto cut_upright = [](Point2 a, Point2 b) {
-    const double l = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+    const double l = distance(b, a);
     return Point2{0, l / -(b.x - a.x)};
   };
   if (upright) {

@@ -5,6 +5,7 @@
 
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 #include "styles/roofs/shape_tables.h"
 
 namespace blockrand::roofs {
@@ -30,8 +31,6 @@ constexpr double kNarrowestGable = 0.02;       // m. Its peak would stand within
 /// m off their common plane. Half of what the checker allows: the rest is for rounding.
 constexpr double kOnePlane = 0.005;
 
-double length(Point2 a, Point2 b) { return std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y)); }
-
 /// The centroid on the grid, when it sees every edge of the plan well from inside.
 std::optional<Point2> apex_over(const Polygon& plan) {
   const auto& points = plan.outer.points;
@@ -40,7 +39,7 @@ std::optional<Point2> apex_over(const Polygon& plan) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point2 a = points[i], b = points[(i + 1) % points.size()];
     const double left = (b.x - a.x) * (apex.y - a.y) - (b.y - a.y) * (apex.x - a.x);
-    if (left < kLeastDistance * length(a, b)) return std::nullopt;
+    if (left < kLeastDistance * distance(a, b)) return std::nullopt;
   }
   return apex;
 }
@@ -49,7 +48,7 @@ double shortest_edge(const Polygon& plan) {
   const auto& points = plan.outer.points;
   double shortest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < points.size(); ++i)
-    shortest = std::min(shortest, length(points[i], points[(i + 1) % points.size()]));
+    shortest = std::min(shortest, distance(points[i], points[(i + 1) % points.size()]));
   return shortest;
 }
 

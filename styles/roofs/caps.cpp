@@ -10,6 +10,7 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/grid.h"
+#include "pipeline/model/vector.h"
 #include "styles/roofs/roof_outline.h"
 
 namespace blockrand::roofs {
@@ -31,10 +32,6 @@ constexpr double kSharpest = 0.17;     ///< rad (10 degrees): an end this pointe
 constexpr double kLeastAcross = 0.17;  ///< sine of 10 degrees: an edge nearer to the line's direction cuts nothing
 constexpr double kGoesOn = 0.01;       ///< sine: an overhang's corner this far off the line continues it
 
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
-Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
-Point2 moved(Point2 p, Point2 by, double length) { return {p.x + by.x * length, p.y + by.y * length}; }
 Point2 unit(Point2 v) {
   const double length = std::hypot(v.x, v.y);
   return {v.x / length, v.y / length};
@@ -124,7 +121,7 @@ class Caps {
     line.to = loop[(left.index + 1) % loop.size()];
     const double length = length_of(line);
     if (length < options_.least_length) return std::nullopt;
-    const Point2 along = unit(minus(line.to.xy(), line.from.xy())), inward{-along.y, along.x};
+    const Point2 along = unit(line.to.xy() - line.from.xy()), inward{-along.y, along.x};
     line.left = {left, plane_of(a), {}, {}};
     line.right = {right, plane_of(b), {}, {}};
     const Point2 g = line.left.plane.gradient, h = line.right.plane.gradient;
@@ -136,7 +133,7 @@ class Caps {
       const auto found = corners_.find(geometry::to_grid(p));
       if (found == corners_.end()) return nullptr;
       // The line must go on in its direction there, as planes that go on do.
-      const Point2 beyond = minus(found->second->outer.xy(), p.xy());
+      const Point2 beyond = found->second->outer.xy() - p.xy();
       const bool straight = std::fabs(cross(unit(beyond), along)) < kGoesOn;
       return straight ? found->second : nullptr;
     };
@@ -147,14 +144,14 @@ class Caps {
 
   /// Ends a line before what stands on it.
   void cut(Line& line) const {
-    const Point2 from = line.from.xy(), along = unit(minus(line.to.xy(), from));
+    const Point2 from = line.from.xy(), along = unit(line.to.xy() - from);
     const double length = length_of(line), half = options_.width / 2 + kTouch;
     double start = 0, end = length;
     for (const auto& piece : keep_clear_) {
       // What of the piece lies in the cap's band, along the line.
       double first = 1e9, last = -1e9;
       for (std::size_t i = 0; i < piece.size(); ++i) {
-        const Point2 p = minus(piece[i], from), q = minus(piece[(i + 1) % piece.size()], from);
+        const Point2 p = piece[i] - from, q = piece[(i + 1) % piece.size()] - from;
         double u = 0, v = 1;
         const double lp = cross(along, p), lq = cross(along, q);
         for (const double side : {1.0, -1.0}) {
@@ -184,8 +181,8 @@ class Caps {
       line.capped = false;
       return;
     }
-    if (start > kTouch) line.cut_from = moved(from, along, start);
-    if (end < length - kTouch) line.cut_to = moved(from, along, end);
+    if (start > kTouch) line.cut_from = from + along * start;
+    if (end < length - kTouch) line.cut_to = from + along * end;
   }
 
   /// The foot of a cap at one end, on the left of the direction `along` away from the end `node`.
@@ -199,15 +196,15 @@ class Caps {
     if (capped) {
       const double s = base::sin(angle / 2), c = base::cos(angle / 2);
       if (s < base::sin(kSharpest / 2)) return std::nullopt;
-      return moved(moved(node, side, half), along, half * c / s);
+      return node + side * half + along * (half * c / s);
     }
-    if (angle > kBluntest) return moved(node, side, half);
+    if (angle > kBluntest) return node + side * half;
     if (angle < kSharpest) return std::nullopt;
-    return moved(moved(node, side, half), along, half * base::cos(angle) / base::sin(angle));
+    return node + side * half + along * (half * base::cos(angle) / base::sin(angle));
   }
 
   void place_feet(Line& line) {
-    const Point2 along = unit(minus(line.to.xy(), line.from.xy()));
+    const Point2 along = unit(line.to.xy() - line.from.xy());
     // A cap that is wider than the overhang's edge ends at the wall.
     const auto too_wide = [&](const OverhangCorner* c) {
       if (!c) return false;
@@ -229,12 +226,12 @@ class Caps {
       };
       const Point2 side{-way.y, way.x};
       const auto at = [&](Point3 node, Point2 away, Point3 other, bool turned) -> std::optional<Point2> {
-        const Point2 next = minus(other.xy(), node.xy());
-        if (next.x == 0 && next.y == 0) return moved(node.xy(), side, options_.width / 2);
+        const Point2 next = other.xy() - node.xy();
+        if (next.x == 0 && next.y == 0) return node.xy() + side * (options_.width / 2);
         return foot(node.xy(), away, unit(next), capped(node, other), turned);
       };
-      const auto first = cut_start ? moved(*cut_start, side, options_.width / 2) : at(start, way, before, false);
-      const auto last = cut_end ? moved(*cut_end, side, options_.width / 2) : at(end, {-way.x, -way.y}, after, true);
+      const auto first = cut_start ? *cut_start + side * (options_.width / 2) : at(start, way, before, false);
+      const auto last = cut_end ? *cut_end + side * (options_.width / 2) : at(end, {-way.x, -way.y}, after, true);
       if (!first || !last) return false;
       half.start_foot = *first;
       half.end_foot = *last;
@@ -257,7 +254,7 @@ class Caps {
   /// The same, on to the edge of the overhang and cut along it.
   std::vector<Point2> extended(const Line& l, bool left) const {
     auto o = outline(l, left);
-    const Point2 way = unit(minus(o[1], o[0])), across{-way.y, way.x};
+    const Point2 way = unit(o[1] - o[0]), across{-way.y, way.x};
     const auto extend = [&](const OverhangCorner* c, bool at_start) {
       if (!c) return;
       // Seen outwards, a ring runs from right to left: what leaves the corner lies on the left.
@@ -266,7 +263,7 @@ class Caps {
       if (std::fabs(along_edge) < kLeastAcross) return;
       const Point2 tip = c->outer.xy();
       o[at_start ? 0 : 1] = tip;
-      o[at_start ? 3 : 2] = moved(tip, edge, options_.width / 2 / along_edge);
+      o[at_start ? 3 : 2] = tip + edge * (options_.width / 2 / along_edge);
     };
     const bool cut_start = left ? l.cut_from.has_value() : l.cut_to.has_value(),
                cut_end = left ? l.cut_to.has_value() : l.cut_from.has_value();
@@ -285,8 +282,8 @@ class Caps {
         const Half& half = left ? lines_[i].left : lines_[i].right;
         by_surface[half.at.surface].push_back({i, left});
         const auto o = outline(lines_[i], left);
-        const Point2 way = unit(minus(o[1], o[0]));
-        if (dot(minus(o[2], o[3]), way) < kShortest) {
+        const Point2 way = unit(o[1] - o[0]);
+        if (dot(o[2] - o[3], way) < kShortest) {
           bad.insert(i);
           continue;
         }
@@ -347,17 +344,17 @@ class Caps {
   std::vector<PlanCell> cells(const Line& line) const {
     std::vector<PlanCell> out;
     const int pieces = options_.profile == CapProfile::triangular ? 1 : std::max(1, options_.segments);
-    const Point2 along = unit(minus(line.to.xy(), line.from.xy()));
+    const Point2 along = unit(line.to.xy() - line.from.xy());
     const double rises = (line.to.z - line.from.z) / length_of(line);
-    const auto ridge = [&](Point2 p) { return line.from.z + rises * dot(minus(p, line.from.xy()), along); };
+    const auto ridge = [&](Point2 p) { return line.from.z + rises * dot(p - line.from.xy(), along); };
     const auto side = [&](const Half& half, bool left) {
       const auto o = extended(line, left);
-      const Point2 way = unit(minus(o[1], o[0])), across{-way.y, way.x};
+      const Point2 way = unit(o[1] - o[0]), across{-way.y, way.x};
       const double fall = -dot(half.plane.gradient, across) * options_.width / 2;
       const auto corner = [&](bool at_start, double share) {
         const Point2 node = o[at_start ? 0 : 1], foot = o[at_start ? 3 : 2];
         const Point2 p = model::snap(Point2{node.x + share * (foot.x - node.x), node.y + share * (foot.y - node.y)});
-        const Point2 way_on = minus(p, node);
+        const Point2 way_on = p - node;
         const double under = ridge(node) + dot(half.plane.gradient, way_on);
         return PlanCell::Corner{p, under, under + rise(share, fall), false};
       };

@@ -9,6 +9,7 @@
 #include "pipeline/geometry/planar_faces.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/model/vector.h"
 #include "styles/roofs/roof_sides.h"
 #include "styles/roofs/wing_ends.h"
 
@@ -33,11 +34,6 @@ constexpr double kChip = 0.6;                   ///< m. A shorter piece of wall 
 /// m below the eaves to which a roof may come down over a bay: half a storey, so that the bay keeps its windows.
 constexpr double kDeepestDrop = 1.4;
 constexpr double kMostChange = 0.2;  ///< of the plan's area
-
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
-Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
-double distance(Point2 a, Point2 b) { return std::sqrt(dot(minus(a, b), minus(a, b))); }
 
 // ---- facades of a ring
 
@@ -91,7 +87,7 @@ class RingFacades {
       const Point2 here = edge(i).from;
       const double sine = cross(a.along(), b.along());
       if (std::fabs(sine) >= kTurns) {
-        const double t = cross(minus(b.from, a.from), b.along()) / sine;
+        const double t = cross(b.from - a.from, b.along()) / sine;
         const Point2 meet{a.from.x + t * a.along().x, a.from.y + t * a.along().y};
         if (distance(meet, here) <= kSameCorner) {
           out.push_back({here, after, before, after});
@@ -116,12 +112,10 @@ class RingFacades {
   const PlanSide& edge(std::size_t i) const { return edges_[begin_ + i]; }
   static Point2 foot(const PlanSide& line, Point2 p) {
     const Point2 u = line.along();
-    const double t = dot(minus(p, line.from), u);
+    const double t = dot(p - line.from, u);
     return {line.from.x + t * u.x, line.from.y + t * u.y};
   }
-  bool near(const PlanSide& line, Point2 p) const {
-    return std::fabs(cross(line.along(), minus(p, line.from))) <= depth_;
-  }
+  bool near(const PlanSide& line, Point2 p) const { return std::fabs(cross(line.along(), p - line.from)) <= depth_; }
 
   /// Takes edges into the facade of `lead`, one way round the ring (step 1 or count - 1).
   bool grow(std::size_t lead, std::size_t step) {
@@ -136,8 +130,8 @@ class RingFacades {
         const double way = dot(line.along(), edge(e).along());
         // It must lead on, not back past what the facade has.
         const Point2 end = step == 1 ? edge(e).to : edge(e).from, has = step == 1 ? edge(last).to : edge(last).from;
-        const double on = dot(minus(end, has), line.along()) * (step == 1 ? 1 : -1);
-        const double drift = std::fabs(cross(line.along(), minus(edge(e).to, edge(e).from)));
+        const double on = dot(end - has, line.along()) * (step == 1 ? 1 : -1);
+        const double drift = std::fabs(cross(line.along(), edge(e).to - edge(e).from));
         if (way >= kSameWay && drift <= kDrift && on > 0) {
           for (std::size_t f = (last + step) % count_;; f = (f + step) % count_) {
             lead_[f] = lead;
@@ -274,7 +268,7 @@ class Bringer {
       if (z < eaves - kDeepestDrop) return std::nullopt;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       std::vector<Point2>& points = on_wall[e];
-      const auto along = [&](Point2 p) { return dot(minus(p, edges_[e].from), edges_[e].along()); };
+      const auto along = [&](Point2 p) { return dot(p - edges_[e].from, edges_[e].along()); };
       std::sort(points.begin(), points.end(),
                 [&](Point2 a, Point2 b) { return along(a) != along(b) ? along(a) > along(b) : a < b; });
       points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -322,7 +316,7 @@ class Bringer {
         const Point3 p = at_end ? c.to : c.from, other = at_end ? c.from : c.to;
         if (!border.contains(p)) continue;
         // Beside the crease, on its left one's side, the left plane lies lower than the right one's on a ridge.
-        const Point2 u = minus(c.to.xy(), c.from.xy()), middle{(p.x + other.x) / 2, (p.y + other.y) / 2};
+        const Point2 u = c.to.xy() - c.from.xy(), middle{(p.x + other.x) / 2, (p.y + other.y) / 2};
         const Point2 left{middle.x - u.y, middle.y + u.x};
         ends_.push_back({p.xy(), c.left, c.right, planes_[c.left].z(left) < planes_[c.right].z(left)});
       }

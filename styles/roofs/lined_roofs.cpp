@@ -12,6 +12,7 @@
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/triangulate.h"
+#include "pipeline/model/vector.h"
 #include "styles/roofs/roof.h"
 
 namespace blockrand::roofs {
@@ -31,8 +32,6 @@ constexpr double kSame = 0.02;
 constexpr double kPlane = 0.005;
 /// Points whose heights are solved for: a roof has a dozen, a slip of the pen thousands.
 constexpr std::size_t kMostUnknown = 200;
-
-double distance(Point2 a, Point2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
 /// Where p lies along ab, 0 at a, 1 at b.
 double share_of(Point2 p, Point2 a, Point2 b) {

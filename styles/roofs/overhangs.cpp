@@ -6,6 +6,7 @@
 #include <set>
 
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 #include "styles/roofs/roof_outline.h"
 
 namespace blockrand::roofs {
@@ -23,10 +24,6 @@ constexpr double kShortest = 0.02;     ///< m: an outer edge shorter than this i
 constexpr double kTouch = 0.003;       ///< m: what overlaps by less touches; three grid steps
 constexpr double kSameLine = 0.02;     ///< sine: pieces that bend less continue each other
 constexpr double kLeastAcross = 0.17;  ///< sine of 10 degrees: a cut along a line that runs nearer to the wall is none
-
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
-double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
-Point2 moved(Point2 p, Point2 by, double length) { return {p.x + by.x * length, p.y + by.y * length}; }
 
 bool rises(const TopSegment& top) { return std::fabs(top.to.z - top.from.z) > kRising * top.length(); }
 
@@ -165,10 +162,10 @@ class Overhangs {
     if (s.reach == 0 || next.reach == 0) {
       const bool straight = same_edge || std::fabs(cross(s.top.along, next.top.along)) < kSameLine;
       if (s.reach > 0)
-        s.end = model::snap(moved(corner, straight ? n : bare_end(n, s.top.along, next.top.along), s.reach));
+        s.end = model::snap(corner + (straight ? n : bare_end(n, s.top.along, next.top.along)) * s.reach);
       if (next.reach > 0) {
         const Point2 back{-next.top.along.x, -next.top.along.y}, other{-s.top.along.x, -s.top.along.y};
-        next.start = model::snap(moved(corner, straight ? m : bare_end(m, back, other), next.reach));
+        next.start = model::snap(corner + (straight ? m : bare_end(m, back, other)) * next.reach);
       }
       return;
     }
@@ -186,15 +183,15 @@ class Overhangs {
         constexpr double kMostSkew = 0.7;  // cosine of 45 degrees
         if (dot(line, ray) > kMostSkew) ray = {line.x / dot(line, ray), line.y / dot(line, ray)};
       }
-      s.end = model::snap(moved(corner, ray, s.reach));
-      next.start = model::snap(moved(corner, ray, next.reach));
+      s.end = model::snap(corner + ray * s.reach);
+      next.start = model::snap(corner + ray * next.reach);
       s.joined_after = s.end == next.start && !s.step_after;
       return;
     }
     // Where the outer edges meet: corner + n * s.reach + along * way.
     if (std::fabs(turn) >= kSameLine) {
       const double way = (next.reach - s.reach * dot(n, m)) / dot(s.top.along, m);
-      const Point2 meet = moved(moved(corner, n, s.reach), s.top.along, way);
+      const Point2 meet = corner + n * s.reach + s.top.along * way;
       if (turn < 0 ||
           std::hypot(meet.x - corner.x, meet.y - corner.y) <= options_.longest_mitre * std::max(s.reach, next.reach)) {
         s.end = next.start = model::snap(meet);
@@ -202,8 +199,8 @@ class Overhangs {
         return;
       }
     }
-    s.end = model::snap(moved(corner, n, s.reach));
-    next.start = model::snap(moved(corner, m, next.reach));
+    s.end = model::snap(corner + n * s.reach);
+    next.start = model::snap(corner + m * next.reach);
   }
 
   void join_all() {

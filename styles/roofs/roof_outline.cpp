@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pipeline/geometry/grid.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::roofs {
 
@@ -17,21 +18,14 @@ namespace {
 
 constexpr double kLevel = 0.0349;  // tan 2 degrees
 
-struct Vector {
-  double x = 0, y = 0, z = 0;
-};
-
 /// Newell's normal, twice the area long.
-Vector normal_of(const std::vector<std::vector<Point3>>& loops) {
-  Vector n;
+Point3 normal_of(const std::vector<std::vector<Point3>>& loops) {
+  Point3 n;
   const Point3 o = loops[0][0];
   for (const auto& loop : loops)
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const Point3 &p = loop[i], &q = loop[(i + 1) % loop.size()];
-      const Vector a{p.x - o.x, p.y - o.y, p.z - o.z}, b{q.x - o.x, q.y - o.y, q.z - o.z};
-      n.x += a.y * b.z - a.z * b.y;
-      n.y += a.z * b.x - a.x * b.z;
-      n.z += a.x * b.y - a.y * b.x;
+      n = n + cross(p - o, q - o);
     }
   return n;
 }
@@ -57,7 +51,7 @@ std::pair<double, double> inside_range(const std::vector<Point2>& convex, Point2
 }  // namespace
 
 RoofPlane plane_of(const Roof::Surface& surface) {
-  const Vector n = normal_of(surface.loops);
+  const Point3 n = normal_of(surface.loops);
   RoofPlane plane;
   // The mean of the outer loop: what is not quite plane is off to both sides then.
   const auto& loop = surface.loops[0];
@@ -74,7 +68,7 @@ RoofPlane plane_of(const Roof::Surface& surface) {
 }
 
 bool is_level(const Roof::Surface& surface) {
-  const Vector n = normal_of(surface.loops);
+  const Point3 n = normal_of(surface.loops);
   return !surface.upright && n.z > 0 && std::hypot(n.x, n.y) <= kLevel * n.z;
 }
 

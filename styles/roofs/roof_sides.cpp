@@ -7,6 +7,7 @@
 
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 #include "styles/roofs/eaves_lines.h"
 
 namespace blockrand::roofs {
@@ -35,9 +36,6 @@ constexpr double kOblong = 2.0;                 ///< length by width: longer win
 
 /// Lengths are compared so that their last digits do not count.
 std::int64_t centimetres(double metres) { return std::llround(metres * 100); }
-
-double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
-Point2 negated(Point2 a) { return {-a.x, -a.y}; }
 
 /// First edge of each ring, and one past the last.
 std::vector<std::size_t> ring_starts(const Polygon& plan) {
@@ -262,7 +260,7 @@ class Finder {
   /// The first edge that a way into the plan meets.
   std::optional<std::size_t> opposite(std::size_t e, double share) const {
     const PlanSide& from = edges_[e];
-    const Point2 in = negated(from.outwards());
+    const Point2 in = -from.outwards();
     const Point2 p{from.from.x + share * (from.to.x - from.from.x), from.from.y + share * (from.to.y - from.from.y)};
     std::optional<std::size_t> found;
     double nearest = 0;
@@ -284,7 +282,7 @@ class Finder {
   /// m of an edge behind which eaves look the other way.
   double eaves_behind(std::size_t e, const RoofSides& out) const {
     const PlanSide& from = edges_[e];
-    const Point2 along = from.along(), in = negated(from.outwards());
+    const Point2 along = from.along(), in = -from.outwards();
     double length = 0;
     for (std::size_t f = 0; f < edges_.size(); ++f) {
       if (f == e || out.sides[f] == RoofSide::party || out.sides[f] == RoofSide::gable) continue;

@@ -47,9 +47,12 @@ std::vector<Point3> head_of(const StandingMeasures& m) {
       out.front().z = out.back().z = 0;
       return out;
     }
-    default:
-      return {{half, 0, wall}, {-half, 0, wall}};
+    case DormerKind::hipped:
+    case DormerKind::shed:
+    case DormerKind::flat:
+      break;
   }
+  return {{half, 0, wall}, {-half, 0, wall}};
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "pipeline/model/vector.h"
+
 namespace blockrand::repair {
 
 namespace {
@@ -19,8 +21,6 @@ constexpr std::size_t kLeastEdges = 4;              // three turns: fewer are ch
 constexpr double kLeastRadius = 0.5, kLargestRadius = 60;  // m
 constexpr double kHeightShare = 1.0 / 8;                   // of the curve's height that a corner may lie off the circle
 constexpr double kLeastOff = 0.02, kLargestOff = 0.15;     // m. Bounds of that: OSM's grid; what mappers see
-
-double distance(Point2 a, Point2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
 struct Circle {
   Point2 centre;

@@ -8,6 +8,7 @@
 #include "pipeline/base/random.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::repair {
 
@@ -23,12 +24,10 @@ constexpr std::size_t kLeastCurvePoints = 3;
 // m. Dropped points of a curve lie outside its chords by more than rounding to the grid explains.
 constexpr double kLeastBulge = 0.002;
 
-double distance2(Point2 a, Point2 b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
-
 double distance2_to_segment(Point2 p, Point2 a, Point2 b) {
   const double dx = b.x - a.x, dy = b.y - a.y, length2 = dx * dx + dy * dy;
   const double t = length2 > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / length2, 0.0, 1.0) : 0;
-  return distance2(p, {a.x + t * dx, a.y + t * dy});
+  return squared_distance(p, {a.x + t * dx, a.y + t * dy});
 }
 
 /// Do the legs from-a and from-b, which leave a tip (a point, or a short edge from `a` to `b`) for p and q, run back
@@ -43,7 +42,7 @@ bool turns_back(Point2 p, Point2 a, Point2 b, Point2 q, double width2) {
 bool is_spike(Point2 p, Point2 tip, Point2 q, double width2) { return turns_back(p, tip, tip, q, width2); }
 
 bool is_blunt_spike(Point2 p, Point2 a, Point2 b, Point2 q, double width2) {
-  return distance2(a, b) <= width2 && turns_back(p, a, b, q, width2);
+  return squared_distance(a, b) <= width2 && turns_back(p, a, b, q, width2);
 }
 
 /// The ring as a circular list: erasing costs the same everywhere.
@@ -88,8 +87,8 @@ bool is_clean(const Ring& ring, double duplicate2, double spike2) {
   Point2 before = ring.points[n - 1], at = ring.points[0];
   for (std::size_t i = 0; i < n; ++i) {
     const Point2 after = ring.points[i + 1 == n ? 0 : i + 1];
-    if (distance2(at, after) <= duplicate2 || is_spike(before, at, after, spike2)) return false;
-    if (n >= 4 && distance2(at, after) <= spike2) {
+    if (squared_distance(at, after) <= duplicate2 || is_spike(before, at, after, spike2)) return false;
+    if (n >= 4 && squared_distance(at, after) <= spike2) {
       const Point2 last = ring.points[i + 2 >= n ? i + 2 - n : i + 2];
       if (is_blunt_spike(before, at, after, last, spike2)) return false;
     }
@@ -120,14 +119,14 @@ void remove_repeats(Ring& ring, const KeptNodes& kept, double duplicate2, RingCl
     node = ring.nodes[i];
   };
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    if (!out.points.empty() && distance2(out.points.back(), ring.points[i]) <= duplicate2) {
+    if (!out.points.empty() && squared_distance(out.points.back(), ring.points[i]) <= duplicate2) {
       merge(out.points.back(), out.nodes.back(), i);
       continue;
     }
     out.points.push_back(ring.points[i]);
     out.nodes.push_back(ring.nodes[i]);
   }
-  while (out.size() > 1 && distance2(out.points.front(), out.points.back()) <= duplicate2) {
+  while (out.size() > 1 && squared_distance(out.points.front(), out.points.back()) <= duplicate2) {
     if (kept.contains(out.nodes.back()) && !kept.contains(out.nodes.front())) {
       out.points.front() = out.points.back();
       out.nodes.front() = out.nodes.back();
@@ -145,7 +144,7 @@ void remove_spikes(Ring& ring, const KeptNodes& kept, double duplicate2, double 
   std::size_t calm = 0;
   for (std::size_t i = 0; circle.size() >= 3 && calm < circle.size();) {
     const std::size_t before = circle.previous(i), after = circle.next(i);
-    if (distance2(p[i], p[after]) <= duplicate2) {
+    if (squared_distance(p[i], p[after]) <= duplicate2) {
       // Removing a spike can bring its two ends together.
       circle.erase(kept.contains(ring.nodes[after]) && !kept.contains(ring.nodes[i]) ? i : after);
       ++done.duplicates;
@@ -213,7 +212,7 @@ std::vector<std::size_t> with_curve_points(const Ring& ring, const Circle& circl
     const std::size_t next = (k + 1) % kept.size();
     const Point2 a = ring.points[kept[k]], b = ring.points[kept[next]];
     const int way = curve[k] != 0 ? curve[k] : curve[next];
-    const double length = std::sqrt(distance2(a, b));
+    const double length = std::sqrt(squared_distance(a, b));
     std::vector<std::size_t> between;
     bool bulges = way != 0;
     double most = 0;
@@ -260,8 +259,8 @@ RingCleaning clean_ring(Ring& ring, const KeptNodes& kept, const RepairOptions& 
     start_at_least_point(ring);
     std::size_t longest = 0;
     for (std::size_t i = 1; i < n; ++i)
-      if (distance2(ring.points[i], ring.points[(i + 1) % n]) >
-          distance2(ring.points[longest], ring.points[(longest + 1) % n]))
+      if (squared_distance(ring.points[i], ring.points[(i + 1) % n]) >
+          squared_distance(ring.points[longest], ring.points[(longest + 1) % n]))
         longest = i;
     turn_to_start(ring, (longest + 1) % n);
     remove_repeats(ring, kept, duplicate2, done);

@@ -6,12 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/model/point.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::repair {
 
-inline double dot(model::Point2 a, model::Point2 b) { return a.x * b.x + a.y * b.y; }
-inline double cross(model::Point2 a, model::Point2 b) { return a.x * b.y - a.y * b.x; }
 inline model::Point2 unit(model::Point2 a) {
   const double n = std::sqrt(dot(a, a));
   return n > 0 ? model::Point2{a.x / n, a.y / n} : model::Point2{1, 0};

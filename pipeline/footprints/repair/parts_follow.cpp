@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "pipeline/model/vector.h"
+
 namespace blockrand::repair {
 
 namespace {
@@ -15,8 +17,6 @@ using model::Ring;
 
 // Pairing two rings costs their product; beyond this (two rings of 2,000 corners) corners go to the nearest one.
 constexpr std::size_t kMostPairs = 4'000'000;
-
-double distance2(Point2 a, Point2 b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
 
 /// Place of the point of ab nearest to p, from 0 at a to 1 at b.
 double foot(Point2 p, Point2 a, Point2 b) {
@@ -33,7 +33,7 @@ Partners nearest_corners(const Ring& before, const Ring& after, double reach) {
   for (std::size_t i = 0; i < before.size(); ++i) {
     double best = reach * reach;
     for (const Point2 q : after.points)
-      if (const double d = distance2(before.points[i], q); d <= best) best = d, out[i] = q;
+      if (const double d = squared_distance(before.points[i], q); d <= best) best = d, out[i] = q;
   }
   return out;
 }
@@ -44,7 +44,7 @@ Partners pair_corners(const Ring& before, const Ring& after, double reach) {
   if (n * m > kMostPairs) return nearest_corners(before, after, reach);
   const double reach2 = reach * reach, skip = reach2 / 2, infinite = std::numeric_limits<double>::infinity();
   const auto cost = [&](std::size_t i, std::size_t j) {
-    const double d = distance2(before.points[i], after.points[j]);
+    const double d = squared_distance(before.points[i], after.points[j]);
     if (d > reach2) return infinite;
     // The same node is the same corner unless another lies much nearer.
     return before.nodes[i] != 0 && before.nodes[i] == after.nodes[j] ? d / 16 : d;
@@ -126,13 +126,13 @@ std::vector<Point2> movements(const Ring& ring, const Partners& partners) {
     std::size_t i = first;
     do {
       const std::size_t next = (i + 1) % n;
-      length += std::sqrt(distance2(ring.points[i], ring.points[next]));
+      length += std::sqrt(squared_distance(ring.points[i], ring.points[next]));
       i = next;
     } while (i != last);
     double along = 0;
     for (i = first; (i + 1) % n != last; i = (i + 1) % n) {
       const std::size_t next = (i + 1) % n;
-      along += std::sqrt(distance2(ring.points[i], ring.points[next]));
+      along += std::sqrt(squared_distance(ring.points[i], ring.points[next]));
       out[next] = between(out[first], out[last], length > 0 ? along / length : 0);
     }
   }
@@ -172,7 +172,7 @@ Point2 MovedWalls::operator()(Point2 p) const {
   double weights = 0, nearest = std::numeric_limits<double>::infinity();
   for (const Wall& wall : walls_) {
     if (p == wall.a) return model::snap(Point2{p.x + wall.da.x, p.y + wall.da.y});
-    const double t = foot(p, wall.a, wall.b), d2 = distance2(p, between(wall.a, wall.b, t));
+    const double t = foot(p, wall.a, wall.b), d2 = squared_distance(p, between(wall.a, wall.b, t));
     const Point2 d = between(wall.da, wall.db, t);
     if (d2 < nearest) nearest = d2, on_wall = d;
     // A tenth of a millimetre stands for nothing, so that weights stay finite.
@@ -188,7 +188,7 @@ Point2 MovedWalls::operator()(Point2 p) const {
   Point2 out = target;
   for (const Segment& wall : targets_) {
     const Point2 q = between(wall.a, wall.b, foot(target, wall.a, wall.b));
-    if (const double d = distance2(target, q); d < best) best = d, out = q;
+    if (const double d = squared_distance(target, q); d < best) best = d, out = q;
   }
   return model::snap(out);
 }

@@ -4,9 +4,10 @@
 #include <numeric>
 #include <tuple>
 
+#include "pipeline/footprints/repair/parts_bodies.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
-#include "pipeline/footprints/repair/parts_bodies.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::repair {
 
@@ -20,8 +21,6 @@ constexpr double kShareOfWall = 1.0 / 3;  // corners nearer than this share of t
 constexpr double kMostBend = 0.1;         // m; a wall bends no farther to a corner that must not move
 constexpr double kFromEnds = 0.05;        // m; a corner nearer to the end of a wall is that end's business
 constexpr double kSecondTry = 0.25;       // of the distance
-
-double distance(Point2 a, Point2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
 template <class Bodies, class Visit>
 void for_each_ring(Bodies& bodies, Visit&& visit) {

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <string>
 
+#include "pipeline/footprints/repair/measure_text.h"
+#include "pipeline/footprints/repair/rings.h"
 #include "pipeline/geometry/footprint_overlap.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/valid_polygon.h"
-#include "pipeline/footprints/repair/measure_text.h"
-#include "pipeline/footprints/repair/rings.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::repair {
 
@@ -25,8 +26,6 @@ constexpr double kRounding = 0.71 / model::kGridStepsPerMetre;
 constexpr double kMoved = 0.001;
 /// m. OSM writes places in steps of 11 mm: nobody drew a smaller one. It is in the record, but no notice.
 constexpr double kWorthANotice = 0.02;
-
-double distance(Point2 a, Point2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
 /// A corner in a ring of the graph.
 struct Place {

@@ -7,15 +7,13 @@
 
 #include "pipeline/footprints/repair/arcs.h"
 #include "pipeline/footprints/repair/frames.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::repair {
 
 namespace {
 
 using model::Point2;
-
-Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
-double norm(Point2 a) { return std::sqrt(dot(a, a)); }
 
 class Reader {
  public:
@@ -99,9 +97,9 @@ class Reader {
       l.buildings.erase(std::unique(l.buildings.begin(), l.buildings.end()), l.buildings.end());
       if (l.corners.size() == 2) {
         const Corner &a = graph_.corners[l.corners[0]], &b = graph_.corners[l.corners[1]];
-        const Point2 d = minus(corner_evidence(b), corner_evidence(a));
+        const Point2 d = corner_evidence(b) - corner_evidence(a);
         const double ka = corner_weight(a), kb = corner_weight(b);
-        l.length = norm(d);
+        l.length = length(d);
         l.along = unit(d);
         l.weight = ka * kb / (ka + kb) * l.length * l.length;
         continue;
@@ -115,20 +113,20 @@ class Reader {
     std::sort(l.corners.begin(), l.corners.end());
     l.corners.erase(std::unique(l.corners.begin(), l.corners.end()), l.corners.end());
     const Point2 origin = graph_.corners[l.corners.front()].start;
-    const auto from_origin = [&](Point2 p) { return minus(p, origin); };
+    const auto from_origin = [&](Point2 p) { return p - origin; };
     // The corner farthest from any other is an end; the one farthest from that is the other end.
     const auto farthest = [&](Point2 from) {
       Point2 best = from;
       double most = -1;
       for (const std::uint32_t c : l.corners) {
-        const Point2 p = from_origin(graph_.corners[c].start), d = minus(p, from);
+        const Point2 p = from_origin(graph_.corners[c].start), d = p - from;
         if (dot(d, d) > most) most = dot(d, d), best = p;
       }
       return best;
     };
     const Point2 a = farthest({0, 0}), b = farthest(a);
-    l.length = norm(minus(b, a));
-    l.along = unit(minus(b, a));
+    l.length = length(b - a);
+    l.along = unit(b - a);
     double k = 0;
     Point2 mean;
     for (const std::uint32_t c : l.corners) {
@@ -141,7 +139,7 @@ class Reader {
       double tt = 0, tr = 0;
       for (const std::uint32_t c : l.corners) {
         const double w = corner_weight(graph_.corners[c]);
-        const Point2 d = minus(from_origin(corner_evidence(graph_.corners[c])), mean);
+        const Point2 d = from_origin(corner_evidence(graph_.corners[c])) - mean;
         const double t = dot(d, l.along);
         tt += w * t * t, tr += w * t * cross(l.along, d);
       }

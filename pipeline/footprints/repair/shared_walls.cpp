@@ -8,6 +8,7 @@
 #include "pipeline/footprints/repair/contacts.h"
 #include "pipeline/footprints/repair/row_vertices.h"
 #include "pipeline/footprints/repair/wall_lines.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::repair {
 
@@ -24,8 +25,6 @@ constexpr double kLeastReach = 0.03;
 constexpr double kMergeShare = 0.9;
 /// m. A corner nearer to a wall's end than this is not put into the wall.
 constexpr double kLeastPiece = 0.03;
-
-double distance(Point2 a, Point2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
 /// Vertices that are one corner: rings of linked members, one ring for each corner.
 class Groups {

@@ -9,6 +9,7 @@
 #include "pipeline/footprints/repair/directions.h"
 #include "pipeline/footprints/repair/frames.h"
 #include "pipeline/footprints/repair/square_system.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::repair {
 
@@ -26,11 +27,6 @@ constexpr double kShiftFloor = 0.005;  // m, added to that
 constexpr double kFixedOff = 0.0002;   // m. Fixed corners that a wall of given direction may miss
 constexpr int kSoftRounds = 8;         // then only the bound of the options counts,
 constexpr int kHardRounds = 8;         // then whole neighbourhoods are given up
-
-Point2 minus(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
-Point2 plus(Point2 a, Point2 b) { return {a.x + b.x, a.y + b.y}; }
-Point2 times(double f, Point2 a) { return {f * a.x, f * a.y}; }
-double norm(Point2 a) { return std::sqrt(dot(a, a)); }
 
 /// Where a corner is: base + unknown[u0] g0 + unknown[u1] g1, with as many terms as it is free to move.
 struct Place {
@@ -61,8 +57,8 @@ class Squaring {
     for (std::uint32_t i = 0; i < corners_.size(); ++i) {
       local_[corners_[i]] = i;
       const Corner& c = graph.corners[corners_[i]];
-      start_.push_back(minus(c.start, origin_));
-      evidence_.push_back(minus(corner_evidence(c), origin_));
+      start_.push_back(c.start - origin_);
+      evidence_.push_back(corner_evidence(c) - origin_);
       weight_.push_back(corner_weight(c));
     }
     for (WallLine& l : told_.row.lines)
@@ -107,7 +103,7 @@ class Squaring {
   void write() {
     for (std::size_t i = 0; i < corners_.size(); ++i) {
       Corner& c = graph_.corners[corners_[i]];
-      c.position = position_[i] == start_[i] ? c.start : plus(position_[i], origin_);
+      c.position = position_[i] == start_[i] ? c.start : position_[i] + origin_;
     }
   }
 
@@ -260,21 +256,21 @@ class Squaring {
         for (const Point2 d : {Point2{1, 0}, Point2{0, 1}}) {
           Equation e;
           e.weight = kCurveStiffness;
-          e.value = dot(d, minus(evidence_[b], evidence_[a]));
+          e.value = dot(d, evidence_[b] - evidence_[a]);
           add(e, b, d), add(e, a, {-d.x, -d.y});
           equations_.push_back(e);
         }
       }
-      const Point2 chord = minus(position_[b], position_[a]);
-      const double length = norm(chord);
+      const Point2 chord = position_[b] - position_[a];
+      const double length = model::length(chord);
       if (length <= 0) continue;
       const Point2 n{-chord.y / length, chord.x / length};
       for (std::uint32_t k = 1; k < w.count; ++k) {
         const std::uint32_t c = corner(k);
-        const double t = dot(minus(position_[c], position_[a]), chord) / (length * length);
+        const double t = dot(position_[c] - position_[a], chord) / (length * length);
         Equation e;
         e.weight = kStrong;
-        add(e, c, n), add(e, a, times(t - 1, n)), add(e, b, times(-t, n));
+        add(e, c, n), add(e, a, (t - 1) * n), add(e, b, -t * n);
         equations_.push_back(e);
         pieces = true;
       }
@@ -306,7 +302,7 @@ class Squaring {
         }
         position_[c] = p.base;
         for (std::uint32_t k = 0; k < p.size; ++k)
-          position_[c] = plus(position_[c], times(solution_.unknown[p.unknown[k]], p.g[k]));
+          position_[c] = position_[c] + solution_.unknown[p.unknown[k]] * p.g[k];
       }
       if (!pieces) break;  // the only equations that depend on where corners are
     }
@@ -315,12 +311,12 @@ class Squaring {
 
   bool too_far(std::uint32_t c, bool soft) const {
     const Corner& corner = graph_.corners[corners_[c]];
-    if (soft && norm(minus(position_[c], evidence_[c])) >
+    if (soft && length(position_[c] - evidence_[c]) >
                     kShiftDeviations * told_.noise / std::sqrt(std::min(weight_[c], 4.0)) + kShiftFloor)
       return position_[c] != start_[c];
     const auto far_from = [&](Point2 p) {
-      const double allowed = std::max(options_.max_shift - kRounding, norm(minus(corner.start, p)));
-      return norm(minus(plus(position_[c], origin_), p)) > allowed + 1e-9;
+      const double allowed = std::max(options_.max_shift - kRounding, length(corner.start - p));
+      return length(position_[c] + origin_ - p) > allowed + 1e-9;
     };
     if (corner.said.empty()) return far_from(corner.start);
     return std::any_of(corner.said.begin(), corner.said.end(), far_from);
@@ -332,7 +328,7 @@ class Squaring {
     for (std::uint32_t i = at_first_[c]; i < at_first_[c + 1]; ++i) {
       const WallLine& l = told_.row.lines[at_[i].line];
       if (std::find(l.corners.begin(), l.corners.end(), without) != l.corners.end()) continue;
-      const double off = std::fabs(dot(normal(l), minus(position_[c], evidence_[c])));
+      const double off = std::fabs(dot(normal(l), position_[c] - evidence_[c]));
       if (off > most) most = off, worst = at_[i].line;
     }
     return worst;
@@ -363,7 +359,7 @@ class Squaring {
       for (std::uint32_t k = 0; k < w.count; ++k) {
         const std::uint32_t a = local_[ring[(w.first + k) % ring.size()]],
                             b = local_[ring[(w.first + k + 1) % ring.size()]];
-        if (dot(minus(position_[b], position_[a]), minus(start_[b], start_[a])) > 0 || start_[a] == start_[b]) continue;
+        if (dot(position_[b] - position_[a], start_[b] - start_[a]) > 0 || start_[a] == start_[b]) continue;
         any = true;
         give_up(a), give_up(b);
         double most = -1;

@@ -247,7 +247,11 @@ class Writer {
         case model::Source::cell:
         case model::Source::district:
         case model::Source::region: ++around; break;
-        default: ++followed;
+        case model::Source::implied:
+        case model::Source::part:
+        case model::Source::imagery:
+        case model::Source::terrain:
+        case model::Source::geometry: ++followed;
       }
     };
     model::for_each_attribute(building.attributes, count, [](std::string_view, std::string_view) {});

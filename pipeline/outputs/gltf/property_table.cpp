@@ -24,9 +24,13 @@ std::size_t element_size(Kind kind) {
     case Kind::int64:
     case Kind::float64:
       return 8;
-    default:
-      return 1;
+    case Kind::text:
+    case Kind::enumeration:
+    case Kind::int8:
+    case Kind::unit_interval:
+      break;
   }
+  return 1;
 }
 
 }  // namespace
@@ -118,7 +122,10 @@ nlohmann::json PropertyTable::class_properties() const {
         property.emplace("type", "ENUM");
         property.emplace("enumType", column.enum_type);
         break;
-      default:
+      case Kind::int8:
+      case Kind::int64:
+      case Kind::float64:
+      case Kind::unit_interval:
         property.emplace("type", "SCALAR");
         property.emplace("componentType", column.kind == Kind::int8      ? "INT8"
                                           : column.kind == Kind::int64   ? "INT64"

@@ -66,9 +66,12 @@ ValueResult with_array(const Value& value, const With& with) {
       return with(std::get<TruthArray>(value));
     case Type::text_array:
       return with(std::get<TextArray>(value));
-    default:
-      return failure("a " + std::string(type_name(type_of(value))) + " has no elements");
+    case Type::number:
+    case Type::truth:
+    case Type::text:
+      break;
   }
+  return failure("a " + std::string(type_name(type_of(value))) + " has no elements");
 }
 
 template <typename T>
@@ -173,9 +176,13 @@ ValueResult make_array(std::span<const std::vector<Value>> rows) {
       return joined_rows<std::uint8_t>(rows);
     case Type::text:
       return joined_rows<std::string>(rows);
-    default:
-      return joined_rows<double>(rows);
+    case Type::number:
+    case Type::number_array:
+    case Type::truth_array:
+    case Type::text_array:
+      break;
   }
+  return joined_rows<double>(rows);
 }
 
 ValueResult index_value(const Value& array, const Value& index) {

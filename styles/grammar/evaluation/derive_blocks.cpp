@@ -141,9 +141,18 @@ bool Run::mentions_selector(NodeId id, const Place& place) const {
       return mentions_selector(e.first, place);
     case ExpressionKind::binary:
       return mentions_selector(e.first, place) || mentions_selector(e.second, place);
-    default:
-      return false;
+    case ExpressionKind::number:
+    case ExpressionKind::text:
+    case ExpressionKind::truth:
+    case ExpressionKind::index:
+    case ExpressionKind::array:
+    case ExpressionKind::range:
+    case ExpressionKind::cases:
+    case ExpressionKind::chances:
+    case ExpressionKind::component_map:
+      break;
   }
+  return false;
 }
 
 std::vector<std::size_t> Run::choose_components(NodeId id, const ComponentSplit& split, std::vector<bool>& taken,

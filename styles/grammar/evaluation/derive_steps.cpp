@@ -61,16 +61,12 @@ void Run::execute(NodeId id, Work& work, Place& place, bool last) {
 
 void Run::execute_call(const Call& call, Work& work, Place& place, bool last) {
   const Target& found = target(place.module, call.use);
-  switch (found.kind) {
-    case TargetKind::operation:
-      execute_operation(call, found.index, work, place);
-      break;
-    case TargetKind::extension:
-      execute_order(call, work, place);
-      break;
-    default:
-      execute_symbol(call, found, work, place, last);
-      break;
+  if (found.kind == TargetKind::operation) {
+    execute_operation(call, found.index, work, place);
+  } else if (found.kind == TargetKind::extension) {
+    execute_order(call, work, place);
+  } else {
+    execute_symbol(call, found, work, place, last);
   }
 }
 

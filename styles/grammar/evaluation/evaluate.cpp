@@ -231,9 +231,13 @@ Value Run::evaluate_name(const Expression& e, Place& place) {
     }
     case TargetKind::unknown:
       return read_source(e, program_.unit(place.module).name(e.name));
-    default:
-      return 0.0;
+    case TargetKind::leaf:
+    case TargetKind::operation:
+    case TargetKind::rule:
+    case TargetKind::extension:
+      break;
   }
+  return 0.0;
 }
 
 Value Run::read_source(const Expression& e, std::string_view name) {

@@ -16,41 +16,21 @@ ValueResult wrong(const char* sign, const Value& left, const Value& right) {
 
 template <typename T>
 bool compare(Operator op, const T& a, const T& b) {
-  switch (op) {
-    case Operator::equal:
-      return a == b;
-    case Operator::not_equal:
-      return !(a == b);
-    case Operator::less:
-      return a < b;
-    case Operator::less_equal:
-      return a <= b;
-    case Operator::greater:
-      return a > b;
-    case Operator::greater_equal:
-      return a >= b;
-    default:
-      return false;
-  }
+  if (op == Operator::equal) return a == b;
+  if (op == Operator::not_equal) return !(a == b);
+  if (op == Operator::less) return a < b;
+  if (op == Operator::less_equal) return a <= b;
+  if (op == Operator::greater) return a > b;
+  return op == Operator::greater_equal && a >= b;
 }
 
 double calculate(Operator op, double a, double b) {
-  switch (op) {
-    case Operator::add:
-      return a + b;
-    case Operator::subtract:
-      return a - b;
-    case Operator::multiply:
-      return a * b;
-    case Operator::divide:
-      return a / b;
-    default:
-      return std::fmod(a, b);
-  }
+  if (op == Operator::add) return a + b;
+  if (op == Operator::subtract) return a - b;
+  if (op == Operator::multiply) return a * b;
+  if (op == Operator::divide) return a / b;
+  return std::fmod(a, b);
 }
-
-bool is_comparison(Operator op) { return op >= Operator::equal && op <= Operator::greater_equal; }
-bool is_arithmetic(Operator op) { return op >= Operator::add && op <= Operator::modulo; }
 
 const char* sign_of(Operator op) {
   static constexpr const char* kSigns[] = {"?",  "-",  "+",   "!",   "+",  "-",   "*",  "/",   "%",   "==",
@@ -98,9 +78,12 @@ std::size_t size_of(const Value& value) {
       return std::get<TruthArray>(value).items.size();
     case Type::text_array:
       return std::get<TextArray>(value).items.size();
-    default:
-      return 1;
+    case Type::number:
+    case Type::truth:
+    case Type::text:
+      break;
   }
+  return 1;
 }
 std::size_t columns_of(const Value& value) {
   switch (type_of(value)) {
@@ -110,9 +93,12 @@ std::size_t columns_of(const Value& value) {
       return std::get<TruthArray>(value).columns;
     case Type::text_array:
       return std::get<TextArray>(value).columns;
-    default:
-      return 0;
+    case Type::number:
+    case Type::truth:
+    case Type::text:
+      break;
   }
+  return 0;
 }
 bool is_array(const Value& value) { return type_of(value) >= Type::number_array; }
 Value item(const Value& value, std::size_t i) {
@@ -123,9 +109,12 @@ Value item(const Value& value, std::size_t i) {
       return std::get<TruthArray>(value).items[i] != 0;
     case Type::text_array:
       return std::get<TextArray>(value).items[i];
-    default:
-      return value;
+    case Type::number:
+    case Type::truth:
+    case Type::text:
+      break;
   }
+  return value;
 }
 
 ValueResult apply_each(Operator op, const Value& left, const Value& right) {

@@ -81,6 +81,9 @@ enum class Operator : std::uint8_t {
   each_and,
   each_or,
 };
+constexpr bool is_arithmetic(Operator op) { return op >= Operator::add && op <= Operator::modulo; }
+constexpr bool is_comparison(Operator op) { return op >= Operator::equal && op <= Operator::greater_equal; }
+constexpr bool is_connective(Operator op) { return op == Operator::logical_and || op == Operator::logical_or; }
 
 struct Expression {
   Location location;

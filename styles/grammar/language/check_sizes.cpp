@@ -21,6 +21,23 @@ struct Budget {
   int steps = 2000;
 };
 
+std::optional<double> folded(Operator op, double a, double b) {
+  if (op == Operator::add) return a + b;
+  if (op == Operator::subtract) return a - b;
+  if (op == Operator::multiply) return a * b;
+  if (op == Operator::divide) return a / b;
+  if (op == Operator::modulo) return std::fmod(a, b);
+  if (op == Operator::equal) return a == b;
+  if (op == Operator::not_equal) return a != b;
+  if (op == Operator::less) return a < b;
+  if (op == Operator::less_equal) return a <= b;
+  if (op == Operator::greater) return a > b;
+  if (op == Operator::greater_equal) return a >= b;
+  if (op == Operator::logical_and) return a != 0 && b != 0;
+  if (op == Operator::logical_or) return a != 0 || b != 0;
+  return std::nullopt;
+}
+
 std::optional<double> folded(const Checked& c, NodeId id, Budget& constants) {
   if (--constants.steps < 0) return std::nullopt;
   const Expression& e = c.expression(id);
@@ -38,36 +55,7 @@ std::optional<double> folded(const Checked& c, NodeId id, Budget& constants) {
       if (!a) return std::nullopt;
       const auto b = folded(c, e.second, constants);
       if (!b) return std::nullopt;
-      switch (e.op) {
-        case Operator::add:
-          return *a + *b;
-        case Operator::subtract:
-          return *a - *b;
-        case Operator::multiply:
-          return *a * *b;
-        case Operator::divide:
-          return *a / *b;
-        case Operator::modulo:
-          return std::fmod(*a, *b);
-        case Operator::equal:
-          return *a == *b;
-        case Operator::not_equal:
-          return *a != *b;
-        case Operator::less:
-          return *a < *b;
-        case Operator::less_equal:
-          return *a <= *b;
-        case Operator::greater:
-          return *a > *b;
-        case Operator::greater_equal:
-          return *a >= *b;
-        case Operator::logical_and:
-          return *a != 0 && *b != 0;
-        case Operator::logical_or:
-          return *a != 0 || *b != 0;
-        default:
-          return std::nullopt;
-      }
+      return folded(e.op, *a, *b);
     }
     case ExpressionKind::name: {
       // Constants of the same file only: those of imports are folded where they are checked.
@@ -82,9 +70,16 @@ std::optional<double> folded(const Checked& c, NodeId id, Budget& constants) {
       ++constants.constants;
       return value;
     }
-    default:
-      return std::nullopt;
+    case ExpressionKind::text:
+    case ExpressionKind::index:
+    case ExpressionKind::array:
+    case ExpressionKind::range:
+    case ExpressionKind::cases:
+    case ExpressionKind::chances:
+    case ExpressionKind::component_map:
+      break;
   }
+  return std::nullopt;
 }
 
 void check_branches(const Checked& c, Range range, bool chances) {

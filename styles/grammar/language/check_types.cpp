@@ -37,7 +37,12 @@ class TypeCheck {
         case ExpressionKind::name:
           arguments(c_.module.targets[e.use], e.arguments, e.location, c_.unit.name(e.name));
           break;
-        default:
+        case ExpressionKind::number:
+        case ExpressionKind::text:
+        case ExpressionKind::truth:
+        case ExpressionKind::array:
+        case ExpressionKind::range:
+        case ExpressionKind::component_map:
           break;
       }
     }
@@ -76,37 +81,21 @@ class TypeCheck {
 
   void operands(const Expression& e) const {
     const auto a = of(e.first), b = of(e.second);
-    switch (e.op) {
-      case Operator::subtract:
-      case Operator::multiply:
-      case Operator::divide:
-      case Operator::modulo:
-        require_number(e.first);
-        require_number(e.second);
-        break;
-      case Operator::logical_and:
-      case Operator::logical_or:
-        require(e.first, Type::truth, "this operator");
-        require(e.second, Type::truth, "this operator");
-        break;
-      case Operator::add:
-        // Texts take anything; numbers and truth values do not add up.
-        if (a && b && *a != Type::text && *b != Type::text && *a != *b)
-          c_.tell(Severity::error, "type", e.location,
-                  "a " + std::string(name_of(*a)) + " and a " + std::string(name_of(*b)) + " cannot be added");
-        break;
-      case Operator::equal:
-      case Operator::not_equal:
-      case Operator::less:
-      case Operator::less_equal:
-      case Operator::greater:
-      case Operator::greater_equal:
-        if (a && b && *a != *b)
-          c_.tell(Severity::error, "type", e.location,
-                  "a " + std::string(name_of(*a)) + " is compared with a " + std::string(name_of(*b)));
-        break;
-      default:
-        break;
+    const bool differ = a && b && *a != *b;
+    if (e.op == Operator::add) {
+      // Texts take anything; numbers and truth values do not add up.
+      if (differ && *a != Type::text && *b != Type::text)
+        c_.tell(Severity::error, "type", e.location,
+                "a " + std::string(name_of(*a)) + " and a " + std::string(name_of(*b)) + " cannot be added");
+    } else if (is_arithmetic(e.op)) {
+      require_number(e.first);
+      require_number(e.second);
+    } else if (is_connective(e.op)) {
+      require(e.first, Type::truth, "this operator");
+      require(e.second, Type::truth, "this operator");
+    } else if (is_comparison(e.op) && differ) {
+      c_.tell(Severity::error, "type", e.location,
+              "a " + std::string(name_of(*a)) + " is compared with a " + std::string(name_of(*b)));
     }
   }
 

@@ -11,68 +11,45 @@ namespace blockrand::grammar::detail {
 namespace {
 
 struct Infix {
+  TokenKind token = TokenKind::end;
   Operator op = Operator::none;
   int precedence = 0;
 };
 
+constexpr Infix kInfixes[] = {
+    {TokenKind::logical_or, Operator::logical_or, 1},
+    {TokenKind::each_or, Operator::each_or, 1},
+    {TokenKind::logical_and, Operator::logical_and, 2},
+    {TokenKind::each_and, Operator::each_and, 2},
+    {TokenKind::equal, Operator::equal, 3},
+    {TokenKind::not_equal, Operator::not_equal, 3},
+    {TokenKind::each_equal, Operator::each_equal, 3},
+    {TokenKind::each_not_equal, Operator::each_not_equal, 3},
+    {TokenKind::less, Operator::less, 4},
+    {TokenKind::less_equal, Operator::less_equal, 4},
+    {TokenKind::greater, Operator::greater, 4},
+    {TokenKind::greater_equal, Operator::greater_equal, 4},
+    {TokenKind::each_less, Operator::each_less, 4},
+    {TokenKind::each_less_equal, Operator::each_less_equal, 4},
+    {TokenKind::each_greater, Operator::each_greater, 4},
+    {TokenKind::each_greater_equal, Operator::each_greater_equal, 4},
+    {TokenKind::plus, Operator::add, 5},
+    {TokenKind::minus, Operator::subtract, 5},
+    {TokenKind::each_plus, Operator::each_add, 5},
+    {TokenKind::each_minus, Operator::each_subtract, 5},
+    {TokenKind::times, Operator::multiply, 6},
+    {TokenKind::divide, Operator::divide, 6},
+    {TokenKind::percent, Operator::modulo, 6},
+    {TokenKind::each_times, Operator::each_multiply, 6},
+    {TokenKind::each_divide, Operator::each_divide, 6},
+    {TokenKind::each_percent, Operator::each_modulo, 6},
+};
+
+/// Operator::none of a token that joins nothing.
 Infix infix(TokenKind kind) {
-  using K = TokenKind;
-  switch (kind) {
-    case K::logical_or:
-      return {Operator::logical_or, 1};
-    case K::each_or:
-      return {Operator::each_or, 1};
-    case K::logical_and:
-      return {Operator::logical_and, 2};
-    case K::each_and:
-      return {Operator::each_and, 2};
-    case K::equal:
-      return {Operator::equal, 3};
-    case K::not_equal:
-      return {Operator::not_equal, 3};
-    case K::each_equal:
-      return {Operator::each_equal, 3};
-    case K::each_not_equal:
-      return {Operator::each_not_equal, 3};
-    case K::less:
-      return {Operator::less, 4};
-    case K::less_equal:
-      return {Operator::less_equal, 4};
-    case K::greater:
-      return {Operator::greater, 4};
-    case K::greater_equal:
-      return {Operator::greater_equal, 4};
-    case K::each_less:
-      return {Operator::each_less, 4};
-    case K::each_less_equal:
-      return {Operator::each_less_equal, 4};
-    case K::each_greater:
-      return {Operator::each_greater, 4};
-    case K::each_greater_equal:
-      return {Operator::each_greater_equal, 4};
-    case K::plus:
-      return {Operator::add, 5};
-    case K::minus:
-      return {Operator::subtract, 5};
-    case K::each_plus:
-      return {Operator::each_add, 5};
-    case K::each_minus:
-      return {Operator::each_subtract, 5};
-    case K::times:
-      return {Operator::multiply, 6};
-    case K::divide:
-      return {Operator::divide, 6};
-    case K::percent:
-      return {Operator::modulo, 6};
-    case K::each_times:
-      return {Operator::each_multiply, 6};
-    case K::each_divide:
-      return {Operator::each_divide, 6};
-    case K::each_percent:
-      return {Operator::each_modulo, 6};
-    default:
-      return {};
-  }
+  for (const Infix& known : kInfixes)
+    if (known.token == kind) return known;
+  return {};
 }
 
 }  // namespace
@@ -203,40 +180,35 @@ NodeId Parser::primary() {
   const Token& t = token();
   Expression expression;
   expression.location = place(t);
-  switch (t.kind) {
-    case K::number: {
-      expression.kind = ExpressionKind::number;
-      const std::string_view digits = slice(t);
-      const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), expression.number);
-      if (read.ec == std::errc::result_out_of_range)
-        warn(t, "number_range", "this number is beyond what can be stored");
-      ++at_;
-      return add(expression);
-    }
-    case K::text:
-      expression.kind = ExpressionKind::text;
-      expression.text = add_text(text_value(slice(t)));
-      ++at_;
-      return add(expression);
-    case K::name:
-      return name_expression();
-    case K::open_round: {
-      const Nesting nesting(*this);
-      ++at_;
-      ++depth_;
-      const NodeId inner = value();
-      expect(K::close_round, "')'", ")");
-      --depth_;
-      return inner;
-    }
-    case K::open_square:
-      return array();
-    case K::relative:
-    case K::floating:
-      fail(t, "syntax", "this mark stands only before a whole argument or a whole size");
-    default:
-      fail(t, "syntax", "expected a value, found");
+  if (t.kind == K::number) {
+    expression.kind = ExpressionKind::number;
+    const std::string_view digits = slice(t);
+    const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), expression.number);
+    if (read.ec == std::errc::result_out_of_range)
+      warn(t, "number_range", "this number is beyond what can be stored");
+    ++at_;
+    return add(expression);
   }
+  if (t.kind == K::text) {
+    expression.kind = ExpressionKind::text;
+    expression.text = add_text(text_value(slice(t)));
+    ++at_;
+    return add(expression);
+  }
+  if (t.kind == K::name) return name_expression();
+  if (t.kind == K::open_round) {
+    const Nesting nesting(*this);
+    ++at_;
+    ++depth_;
+    const NodeId inner = value();
+    expect(K::close_round, "')'", ")");
+    --depth_;
+    return inner;
+  }
+  if (t.kind == K::open_square) return array();
+  if (t.kind == K::relative || t.kind == K::floating)
+    fail(t, "syntax", "this mark stands only before a whole argument or a whole size");
+  fail(t, "syntax", "expected a value, found");
 }
 
 NodeId Parser::name_expression() {

@@ -252,22 +252,14 @@ BlockItem Parser::item(BlockKind kind) {
 bool Parser::item_has_size() const {
   for (std::size_t i = at_; i < tokens_.size(); ++i) {
     const Token& t = tokens_[i];
-    switch (t.kind) {
-      case K::colon:
-        return true;
-      case K::bar:
-      case K::close_curly:
-      case K::end:
-        return i == at_;  // An empty item: the missing size is told.
-      case K::open_round:
-      case K::open_square:
-      case K::open_curly:
-        if (t.partner == kNone) return true;
-        i = t.partner;
-        break;
-      default:
-        if (t.line_start && t.kind == K::name && arrow_follows(i)) return true;
-        break;
+    if (t.kind == K::colon) return true;
+    if (t.kind == K::bar || t.kind == K::close_curly || t.kind == K::end)
+      return i == at_;  // An empty item: the missing size is told.
+    if (t.kind == K::open_round || t.kind == K::open_square || t.kind == K::open_curly) {
+      if (t.partner == kNone) return true;
+      i = t.partner;
+    } else if (t.line_start && t.kind == K::name && arrow_follows(i)) {
+      return true;
     }
   }
   return true;

@@ -150,20 +150,11 @@ std::size_t Parser::after_arithmetic(std::size_t index) const {
     }
     while (token_at(next).kind == K::open_square && !token_at(next).space_before && token_at(next).partner != kNone)
       next = token_at(next).partner + 1;
-    switch (token_at(next).kind) {
-      case K::percent:
-        if (token_at(next + 1).kind == K::colon) return next;
-        ++next;
-        break;
-      case K::plus:
-      case K::minus:
-      case K::times:
-      case K::divide:
-        ++next;
-        break;
-      default:
-        return next;
-    }
+    const K joint = token_at(next).kind;
+    if (joint == K::percent && token_at(next + 1).kind == K::colon) return next;
+    if (joint != K::percent && joint != K::plus && joint != K::minus && joint != K::times && joint != K::divide)
+      return next;
+    ++next;
   }
 }
 

@@ -258,7 +258,11 @@ class Resolver {
       case ExpressionKind::name:
         resolve_name(id, e, use);
         break;
-      default:
+      case ExpressionKind::number:
+      case ExpressionKind::text:
+      case ExpressionKind::truth:
+      case ExpressionKind::array:
+      case ExpressionKind::range:
         break;
     }
   }

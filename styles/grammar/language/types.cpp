@@ -151,9 +151,21 @@ class Inference {
       case Operator::each_or:
         if ((a && is_array(*a)) || (b && is_array(*b))) return Type::truth_array;
         return a && b ? Known(Type::truth) : std::nullopt;
-      default:
-        return Type::truth;
+      case Operator::none:
+      case Operator::negate:
+      case Operator::plus:
+      case Operator::logical_not:
+      case Operator::equal:
+      case Operator::not_equal:
+      case Operator::less:
+      case Operator::less_equal:
+      case Operator::greater:
+      case Operator::greater_equal:
+      case Operator::logical_and:
+      case Operator::logical_or:
+        break;
     }
+    return Type::truth;
   }
 
   Known type_of_name(NodeId id, const Expression& e) const {
@@ -192,9 +204,15 @@ class Inference {
         }
         return common;
       }
-      default:
-        return std::nullopt;
+      case TargetKind::leaf:
+      case TargetKind::unknown:
+      case TargetKind::operation:
+      case TargetKind::word:
+      case TargetKind::rule:
+      case TargetKind::extension:
+        break;
     }
+    return std::nullopt;
   }
 
   bool is_word(NodeId id) const {
@@ -246,7 +264,12 @@ class Inference {
         case ExpressionKind::name:
           expect_arguments(module_.targets[e.use], e.arguments);
           break;
-        default:
+        case ExpressionKind::number:
+        case ExpressionKind::text:
+        case ExpressionKind::truth:
+        case ExpressionKind::array:
+        case ExpressionKind::range:
+        case ExpressionKind::component_map:
           break;
       }
     }
@@ -261,30 +284,15 @@ class Inference {
   }
 
   void expect_operands(const Expression& e) {
-    switch (e.op) {
-      case Operator::subtract:
-      case Operator::multiply:
-      case Operator::divide:
-      case Operator::modulo:
-        expect(e.first, Type::number);
-        expect(e.second, Type::number);
-        break;
-      case Operator::equal:
-      case Operator::not_equal:
-      case Operator::less:
-      case Operator::less_equal:
-      case Operator::greater:
-      case Operator::greater_equal:
-        expect(e.first, module_.types[e.second]);
-        expect(e.second, module_.types[e.first]);
-        break;
-      case Operator::logical_and:
-      case Operator::logical_or:
-        expect(e.first, Type::truth);
-        expect(e.second, Type::truth);
-        break;
-      default:
-        break;
+    if (is_comparison(e.op)) {
+      expect(e.first, module_.types[e.second]);
+      expect(e.second, module_.types[e.first]);
+    } else if (is_connective(e.op)) {
+      expect(e.first, Type::truth);
+      expect(e.second, Type::truth);
+    } else if (is_arithmetic(e.op) && e.op != Operator::add) {  // texts add too
+      expect(e.first, Type::number);
+      expect(e.second, Type::number);
     }
   }
 

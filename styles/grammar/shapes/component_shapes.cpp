@@ -29,13 +29,16 @@ Frame own_frame(const ComponentSplit& split, const Component& item) {
       return frame_with_z(mesh.vertices[item.vertex_a], item.normal, cross({0, 1, 0}, item.normal));
     case ComponentKind::face_vertices:
       return frame_with_z(mesh.vertices[item.vertex_a], item.normal, cross(item.up, item.normal));
-    default: {
-      const Loop& loop = mesh.faces[item.face].loops[item.loop];
-      const Vector3 a = mesh.vertices[loop[0].vertex], b = mesh.vertices[loop[1 % loop.size()].vertex];
-      if (split.kind == ComponentKind::holes) return frame_with_z(b, item.normal, a - b);
-      return frame_with_z(a, item.normal, b - a);
-    }
+    case ComponentKind::faces:
+    case ComponentKind::groups:
+    case ComponentKind::materials:
+    case ComponentKind::holes:
+      break;
   }
+  const Loop& loop = mesh.faces[item.face].loops[item.loop];
+  const Vector3 a = mesh.vertices[loop[0].vertex], b = mesh.vertices[loop[1 % loop.size()].vertex];
+  if (split.kind == ComponentKind::holes) return frame_with_z(b, item.normal, a - b);
+  return frame_with_z(a, item.normal, b - a);
 }
 
 bool has_faces(ComponentKind kind) {

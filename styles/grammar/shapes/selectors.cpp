@@ -141,7 +141,10 @@ bool tagged(const ComponentSplit& split, const Component& item, const Selector& 
       return std::any_of(item.faces.begin(), item.faces.end(), face_tagged);
     case ComponentKind::holes:
       return face_tagged(item.face);
-    default:
+    case ComponentKind::edges:
+    case ComponentKind::face_edges:
+    case ComponentKind::vertices:
+    case ComponentKind::face_vertices:
       break;
   }
   // Edges and vertices: their own tags, and those of their faces.
@@ -302,9 +305,21 @@ bool direction_selected(const Shape& shape, Vector3 normal, const Selector& sele
       const Vector3 object = in_space(shape, normal, Selector::Space::object);
       return !dominant(object, {0, 1, 0}) && !dominant(object, {0, -1, 0}) && !street_selected(shape, normal, side);
     }
-    default:
-      return false;
+    case Kind::none:
+    case Kind::border:
+    case Kind::inside:
+    case Kind::eave:
+    case Kind::hip:
+    case Kind::valley:
+    case Kind::ridge:
+    case Kind::index:
+    case Kind::tagged:
+    case Kind::uv:
+    case Kind::remainder:
+    case Kind::shape:
+      break;
   }
+  return false;
 }
 
 bool selected(const ComponentSplit& split, std::size_t item, const Selector& selector) {
@@ -331,9 +346,20 @@ bool selected(const ComponentSplit& split, std::size_t item, const Selector& sel
       return tagged(split, component, selector);
     case Kind::uv:
       return split.kind == ComponentKind::face_edges && uv_selected(split, component, selector);
-    default:
-      return direction_selected(split.parent, component.normal, selector);
+    case Kind::all:
+    case Kind::none:
+    case Kind::direction:
+    case Kind::side:
+    case Kind::vertical:
+    case Kind::horizontal:
+    case Kind::aslant:
+    case Kind::nutant:
+    case Kind::street:
+    case Kind::remainder:
+    case Kind::shape:
+      break;
   }
+  return direction_selected(split.parent, component.normal, selector);
 }
 
 }  // namespace blockrand::grammar

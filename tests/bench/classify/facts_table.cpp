@@ -87,7 +87,7 @@ void in_tenths(
   }
 }
 
-void run(const std::string& input, const std::string& configs, const std::string& table, bool answers, bool quick) {
+void write_table(const std::string& input, const std::string& configs, const std::string& table, bool answers, bool quick) {
   base::Progress progress;
   const model::Extract extract = importers::osm::read_extract(input, {});
   const auto area = footprints::area_of(extract);
@@ -243,7 +243,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   try {
-    run(argv[1], argv[2], argv[3], answers, quick);
+    write_table(argv[1], argv[2], argv[3], answers, quick);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "%s\n", e.what());
     return 2;

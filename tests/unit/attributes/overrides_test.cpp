@@ -9,7 +9,7 @@
 #include "pipeline/base/error.h"
 #include "pipeline/attributes/resolve.h"
 
-namespace blockrand::generate {
+namespace blockrand::attributes {
 namespace {
 
 using model::OsmId;
@@ -84,7 +84,7 @@ class House {
     region.buildings = {building};
     const context::TaggedNeighbours none({}, 100);
     const auto ground = [](const model::Building&) {
-      BuildingGround g;
+      context::BuildingGround g;
       g.lowest = {0, Source::default_, 0, 0};
       return g;
     };
@@ -368,4 +368,4 @@ TEST(Style, AnOrderedClassLeavesNoSubStyleOfAnother) {
 }
 
 }  // namespace
-}  // namespace blockrand::generate
+}  // namespace blockrand::attributes

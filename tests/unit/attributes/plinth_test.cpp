@@ -9,7 +9,7 @@
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/attributes/tag_conflicts.h"
 
-namespace blockrand::generate {
+namespace blockrand::attributes {
 namespace {
 
 using model::Attributes;
@@ -72,7 +72,7 @@ class Slope {
     return out;
   }
 
-  BuildingGround ground;
+  context::BuildingGround ground;
   MappedAttributes* tags;
 
  private:
@@ -253,4 +253,4 @@ TEST(Plinth, KeepsGroundFloorsAboveTheTerrain) {
 }
 
 }  // namespace
-}  // namespace blockrand::generate
+}  // namespace blockrand::attributes

@@ -5,7 +5,7 @@
 #include "pipeline/masses/roofscape.h"
 #include "tests/unit/geometry/shapes.h"
 
-namespace blockrand::generate {
+namespace blockrand::attributes {
 namespace {
 
 using model::EdgeKind;
@@ -83,8 +83,8 @@ TEST(RoofPlans, LosePointsThatBendNoWall) {
   EXPECT_EQ(b.parts[0].roof_edges[0], RoofEdge::street);
 }
 
-SlopeEnd end_at(std::int64_t x, double z, Point2 wall, Point2 eaves, double pitch, double usual) {
-  SlopeEnd e;
+masses::SlopeEnd end_at(std::int64_t x, double z, Point2 wall, Point2 eaves, double pitch, double usual) {
+  masses::SlopeEnd e;
   e.x = x;
   e.z = z;
   e.wall = wall;
@@ -97,14 +97,14 @@ SlopeEnd end_at(std::int64_t x, double z, Point2 wall, Point2 eaves, double pitc
 }
 
 TEST(Roofscape, SlopesMeetWhenTheyAreOnePlane) {
-  const auto met = [](const SlopeEnd& a, const SlopeEnd& b) {
-    std::vector<SlopeEnd> ends{a, b};
-    Roofscape sums;
-    settle_slope_ends(ends, sums);
+  const auto met = [](const masses::SlopeEnd& a, const masses::SlopeEnd& b) {
+    std::vector<masses::SlopeEnd> ends{a, b};
+    masses::Roofscape sums;
+    masses::settle_slope_ends(ends, sums);
     return std::tuple(sums.meetings, sums.apart, ends.size());
   };
   using Result = std::tuple<std::uint64_t, std::uint64_t, std::size_t>;
-  const SlopeEnd left = end_at(7, 12, {0, 1}, {-1, 0}, 0.8, 38);
+  const masses::SlopeEnd left = end_at(7, 12, {0, 1}, {-1, 0}, 0.8, 38);
   EXPECT_EQ(met(left, end_at(7, 12, {0, 1}, {1, 0}, 0.8, 38)), Result(1, 0, 0));
   EXPECT_EQ(met(left, end_at(7, 12, {0, 1}, {1, 0}, 0.79, 38)), Result(1, 1, 0)) << "asked alike, built 6 cm apart";
   EXPECT_EQ(met(left, end_at(7, 12, {0, 1}, {1, 0}, 0.6, 0)), Result(0, 0, 2)) << "another pitch, as mapped";
@@ -114,4 +114,4 @@ TEST(Roofscape, SlopesMeetWhenTheyAreOnePlane) {
 }
 
 }  // namespace
-}  // namespace blockrand::generate
+}  // namespace blockrand::attributes

@@ -5,7 +5,7 @@
 
 #include "tests/unit/geometry/shapes.h"
 
-namespace blockrand::generate {
+namespace blockrand::attributes {
 namespace {
 
 using model::MappedAttributes;
@@ -213,4 +213,4 @@ TEST(TagConflicts, StoreysOfAPartThatWereCountedFromItsUnderside) {
 }
 
 }  // namespace
-}  // namespace blockrand::generate
+}  // namespace blockrand::attributes

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "pipeline/compare/area_vector.h"
 #include "pipeline/compare/read_city.h"
-#include "pipeline/compare/vector.h"
 #include "pipeline/geometry/polygon.h"
 
 namespace blockrand::compare::test {

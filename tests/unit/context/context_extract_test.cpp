@@ -5,7 +5,7 @@
 
 #include "pipeline/georef/crs.h"
 
-namespace blockrand::region {
+namespace blockrand::context {
 namespace {
 
 constexpr model::Point2 kCorner{391000, 5820000};  // of the cell c1564_23280
@@ -16,7 +16,7 @@ class Buildings {
   explicit Buildings(std::size_t count) : store_(count) { extract_.buildings.resize(count); }
 
   void square(double x, double y, double size, repair::Level level = {}) {
-    StoredFootprint f;
+    footprints::StoredFootprint f;
     f.id = {model::OsmType::way, next_ + 1};
     f.lead = next_;
     f.level = level;
@@ -36,7 +36,7 @@ class Buildings {
 
  private:
   model::Extract extract_;
-  FootprintStore store_;
+  footprints::FootprintStore store_;
   std::uint32_t next_ = 0;
 };
 
@@ -60,4 +60,4 @@ TEST(DistrictCells, KnowTheCoverageTheyWereGiven) {
 }
 
 }  // namespace
-}  // namespace blockrand::region
+}  // namespace blockrand::context

@@ -6,7 +6,7 @@
 
 #include "pipeline/base/error.h"
 
-namespace blockrand::region {
+namespace blockrand::context {
 namespace {
 
 using importers::elevation::TerrainDescription;
@@ -100,4 +100,4 @@ TEST(HeightReference, RaisesByWhatPROJKnows) {
 }
 
 }  // namespace
-}  // namespace blockrand::region
+}  // namespace blockrand::context

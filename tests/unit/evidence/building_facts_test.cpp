@@ -8,13 +8,13 @@
 
 #include "tests/unit/run/osm_town.h"
 
-namespace blockrand::region {
+namespace blockrand::evidence {
 namespace {
 
 using classify::Feature;
 using model::BuildingPosition;
-using test::MeasuredTown;
-using test::OsmTown;
+using run::test::MeasuredTown;
+using run::test::OsmTown;
 
 /// Coordinates of OSM have 1 cm, repair's squaring a few.
 constexpr double kLength = 0.15;
@@ -211,4 +211,4 @@ TEST(BuildingFacts, APartOfATownGivesTheSameInsideIt) {
 }
 
 }  // namespace
-}  // namespace blockrand::region
+}  // namespace blockrand::evidence

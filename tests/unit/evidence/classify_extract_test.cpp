@@ -8,7 +8,7 @@
 
 #include "tests/unit/classify/small_weights.h"
 
-namespace blockrand::region {
+namespace blockrand::evidence {
 namespace {
 
 using classify::Feature;
@@ -260,4 +260,4 @@ TEST(ClassifyExtract, WhatIsFarAwayIsNotListenedTo) {
 }
 
 }  // namespace
-}  // namespace blockrand::region
+}  // namespace blockrand::evidence

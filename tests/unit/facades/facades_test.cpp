@@ -25,7 +25,7 @@
 #include "styles/roofs/roof.h"
 #include "tests/unit/geometry/shapes.h"
 
-namespace blockrand::generate {
+namespace blockrand::facades {
 namespace {
 
 using model::EdgeKind;
@@ -80,12 +80,12 @@ model::Region region_of(const House& house, const std::string& preset, std::int6
   part.osm = b.osm;
   part.plan = part.roof_plan = plan;
   part.attributes = a;
-  EnvelopeLooks looks;
+  masses::EnvelopeLooks looks;
   looks.wall.kind = model::SurfaceKind::wall;
   looks.wall.colour = a.wall_colour.value;
   looks.roof.kind = model::SurfaceKind::roof;
   looks.under.kind = model::SurfaceKind::ground;
-  part.lod2 = envelope(plan, 30, roofs::flat_roof(plan, 30 + a.height.value), looks);
+  part.lod2 = masses::envelope(plan, 30, roofs::flat_roof(plan, 30 + a.height.value), looks);
   part.lod2_triangles = *geometry::triangulate(part.lod2);
   part.lod = 2;
   b.parts.push_back(std::move(part));
@@ -172,7 +172,7 @@ TEST_P(Preset, KeepsTheProportionsOfItsStyle) {
   for (int i = 0; i < 1000; ++i) {
     const House house = random_house(random, modern ? 4 : 3, modern ? 8 : 5, modern ? 2.8 : 3.75);
     model::Region region = region_of(house, name, 1000 + i);
-    build_facades(region, shipped(), Defaults{}, {42});
+    build_facades(region, shipped(), attributes::Defaults{}, {42});
     const model::BuildingPart& part = region.buildings[0].parts[0];
     ASSERT_EQ(part.lod, 3) << i;
     for (const model::ReportRow& row : region.report.rows) ADD_FAILURE() << i << ": " << row.detail;
@@ -278,7 +278,7 @@ TEST(Facades, BaysAndBalconiesKeepTheirDistance) {
     for (int i = 0; i < 1000; ++i) {
       const House house = random_house(random, modern ? 4 : 3, modern ? 8 : 5, modern ? 2.8 : 3.75);
       model::Region region = region_of(house, preset, 5000 + i);
-      build_facades(region, shipped(), Defaults{}, {42});
+      build_facades(region, shipped(), attributes::Defaults{}, {42});
       const model::BuildingPart& part = region.buildings[0].parts[0];
       for (const model::ReportRow& row : region.report.rows) ADD_FAILURE() << preset << " " << i << ": " << row.detail;
       bool bay = false, balcony = false;
@@ -342,7 +342,7 @@ TEST(Facades, ShopsAndOrdersAreKept) {
     const Point2 from = b.outline[0].outer.points[0];
     shop.place = {from.x + 15, from.y + 4};  // in its room, 15 m from the left end
     b.edges[0].points = {shop};
-    build_facades(region, shipped(), Defaults{}, {42});
+    build_facades(region, shipped(), attributes::Defaults{}, {42});
     int near = 0, far = 0;
     for (const Placed& p : on_wall(region, b.parts[0], 0))
       if (p.kind == "shop_window") (std::fabs(p.u - 15) < 6 ? near : far) += 1;
@@ -355,8 +355,8 @@ TEST(Facades, ShopsAndOrdersAreKept) {
       after.buildings[0].detail_overrides.push_back({after.buildings[0].id(), kind, name, {{key, value}}, "o.toml:1"});
     };
     order(model::DetailKind::storey, "2", "parameters.window", "none");
-    build_facades(before, shipped(), Defaults{}, {42});
-    build_facades(after, shipped(), Defaults{}, {42});
+    build_facades(before, shipped(), attributes::Defaults{}, {42});
+    build_facades(after, shipped(), attributes::Defaults{}, {42});
     const auto windows = [](const model::Region& r, int storey) {
       int n = 0;
       for (const model::Placement& p : r.buildings[0].parts[0].lod3.placements)
@@ -377,7 +377,7 @@ TEST(Facades, ShopsAndOrdersAreKept) {
        {{"parameters.widnow", "triple"}, {"width", "2.6"}},
        "o.toml:7"},
       {unheard.buildings[0].id(), model::DetailKind::storey, "1", {{"parameters.window", "none"}}, "o.toml:9"}};
-  build_facades(unheard, shipped(), Defaults{}, {42});
+  build_facades(unheard, shipped(), attributes::Defaults{}, {42});
   ASSERT_EQ(unheard.report.rows.size(), 1u);
   EXPECT_EQ(unheard.report.rows[0].code, model::IssueCode::override_unmatched);
   EXPECT_EQ(unheard.report.rows[0].detail, "o.toml:7: rules ask for no parameters.widnow of a bay");
@@ -387,8 +387,8 @@ TEST(Facades, ShopsAndOrdersAreKept) {
       {after.buildings[0].id(), model::DetailKind::storey, "0", {{"height", "6"}}, "o.toml:1"});
   after.buildings[0].detail_overrides.push_back(
       {after.buildings[0].id(), model::DetailKind::bay, "0", {{"parameters.window", "none"}}, "o.toml:2"});
-  build_facades(before, shipped(), Defaults{}, {42});
-  build_facades(after, shipped(), Defaults{}, {42});
+  build_facades(before, shipped(), attributes::Defaults{}, {42});
+  build_facades(after, shipped(), attributes::Defaults{}, {42});
   const auto lowest_above = [](const model::Region& r) {
     double least = 1e9;
     for (const Placed& p : on_wall(r, r.buildings[0].parts[0], 0))
@@ -403,7 +403,7 @@ TEST(Facades, TheSameHouseTwiceIsTheSame) {
   for (const char* preset : {"gruenderzeit", "slab"}) {
     const auto text = [&] {
       model::Region region = region_of({}, preset, 77);
-      build_facades(region, shipped(), Defaults{}, {42});
+      build_facades(region, shipped(), attributes::Defaults{}, {42});
       std::string out;
       for (const Placed& p : on_wall(region, region.buildings[0].parts[0], 0))
         out += p.name + std::to_string(p.u) + std::to_string(p.v);
@@ -420,7 +420,7 @@ TEST(Facades, NarrowHousesDegradeInOrder) {
     House house;
     house.width = width;
     model::Region region = region_of(house, "gruenderzeit", 5);
-    build_facades(region, shipped(), Defaults{}, {42});
+    build_facades(region, shipped(), attributes::Defaults{}, {42});
     const model::BuildingPart& part = region.buildings[0].parts[0];
     EXPECT_EQ(part.lod, 3) << width;
     EXPECT_EQ(geometry::check_solid(part.lod3.solid, part.lod3.triangles).text(), "none");
@@ -445,7 +445,7 @@ TEST(Facades, LowStoreysKeepTheirWindows) {
       house.storey_height = height;
       house.plinth = 0.4;
       model::Region region = region_of(house, preset, 5);
-      build_facades(region, shipped(), Defaults{}, {42});
+      build_facades(region, shipped(), attributes::Defaults{}, {42});
       int windows = 0, balconies = 0, french = 0;
       for (const std::uint32_t edge : {0u, 2u})
         for (const Placed& p : on_wall(region, region.buildings[0].parts[0], edge)) {
@@ -467,7 +467,7 @@ TEST(Facades, DistrictRulesAreStrongerThanThePreset) {
   const auto ornaments = [](const char* stripped) {
     model::Region region = region_of({}, "gruenderzeit", 5);  // the preset says stripped = 0
     if (stripped) region.buildings[0].preset_parameters = {{"stripped", stripped}};
-    build_facades(region, shipped(), Defaults{}, {42});
+    build_facades(region, shipped(), attributes::Defaults{}, {42});
     int n = 0;
     for (const Placed& p : on_wall(region, region.buildings[0].parts[0], 0)) n += p.width == 0;
     return n;
@@ -481,7 +481,7 @@ TEST(Facades, RevealsLookLikeTheirWall) {
   // Outputs draw the reveal of an opening in the look of the element's wall, whatever faces its mesh has.
   for (const char* preset : {"gruenderzeit", "tenement", "slab", "plain"}) {
     model::Region region = region_of({}, preset, 4711);
-    build_facades(region, shipped(), Defaults{}, {42});
+    build_facades(region, shipped(), attributes::Defaults{}, {42});
     int reveals = 0;
     for (const model::Placement& p : region.buildings[0].parts[0].lod3.placements) {
       const model::ColouredElement& element = region.elements[p.element];
@@ -497,7 +497,7 @@ TEST(Facades, RevealsLookLikeTheirWall) {
 
 TEST(Facades, WithoutGrammarWallsStayAsTheyAre) {
   model::Region region = region_of({}, "no such preset", 5);
-  build_facades(region, shipped(), Defaults{}, {42});
+  build_facades(region, shipped(), attributes::Defaults{}, {42});
   EXPECT_EQ(region.buildings[0].parts[0].lod, 2);
   EXPECT_TRUE(region.elements.empty());
 }
@@ -578,7 +578,7 @@ TEST(Passages, MouthsLieInTheirFront) {
 
 TEST(Passages, AreCutAndNothingStandsInThem) {
   HouseWithPassage house(true);
-  build_facades(house.region, shipped(), Defaults{}, {42});
+  build_facades(house.region, shipped(), attributes::Defaults{}, {42});
   const model::BuildingPart& part = house.region.buildings[0].parts[0];
   ASSERT_EQ(part.lod, 3);
   int mouths = 0, above = 0;
@@ -611,7 +611,7 @@ TEST(Passages, AreCutAndNothingStandsInThem) {
 
 TEST(Passages, WithoutASecondMouthAreGates) {
   HouseWithPassage house(false);
-  build_facades(house.region, shipped(), Defaults{}, {42});
+  build_facades(house.region, shipped(), attributes::Defaults{}, {42});
   const model::BuildingPart& part = house.region.buildings[0].parts[0];
   int gates = 0;
   for (const model::Placement& p : part.lod3.placements)
@@ -674,7 +674,7 @@ TEST(Passages, StretchesBeyondKnowTheFrontThatTookTheMouthIn) {
   mouth.start = b.edges[0].end = 15;
   b.edges.insert(b.edges.begin() + 1, mouth);
   build_facades(region, own_book("Facade --> case edge.kind_left == \"street\" : Marked else : Wall.\n" + kOneWindow),
-                Defaults{}, {42});
+                attributes::Defaults{}, {42});
   EXPECT_EQ(on_wall(region, b.parts[0], 1).size(), 1u) << "the side follows the street front, not its passage";
 }
 
@@ -702,11 +702,11 @@ void break_solid(model::BuildingPart& part) {
   for (auto& surface : roof.surfaces)
     for (auto& loop : surface.loops)
       for (model::Point3& p : loop) p.z = 40;
-  EnvelopeLooks looks;
+  masses::EnvelopeLooks looks;
   looks.wall = part.lod2.faces[1];
   looks.roof.kind = model::SurfaceKind::roof;
   looks.under.kind = model::SurfaceKind::ground;
-  part.lod2 = envelope(part.plan, 30, roof, looks);
+  part.lod2 = masses::envelope(part.plan, 30, roof, looks);
   part.lod2_triangles = *geometry::triangulate(part.lod2);
 }
 
@@ -719,7 +719,7 @@ TEST(Facades, WallsOfASolidThatTakesNoOpeningsStayClosedAndEverythingIsTold) {
       own_book("Facade --> split(x){ ~1 : Marked | ~1 : Odd }\n" + kOneWindow +
                "Odd --> split(y){ 8.75 : Wall. | 2.5 : split(x){ 2 : Wall. | 1 : Pane | ~1 : Odder } | ~1 : "
                "Wall. }\nOdder --> blockrand.element(\"no\" + building.preset)\n");
-  build_facades(house.region, book, Defaults{}, {42});
+  build_facades(house.region, book, attributes::Defaults{}, {42});
   EXPECT_EQ(part.lod, 3);
   EXPECT_TRUE(part.lod3.openings.empty());
   EXPECT_EQ(part.lod3.solid.faces.size(), part.lod2.faces.size());
@@ -746,7 +746,7 @@ TEST(Passages, DoorsAtMappedEntrancesThatYieldAreTold) {
         e.points = {p};
         e.entrances = 1;
       }
-    build_facades(house.region, shipped(), Defaults{}, {42});
+    build_facades(house.region, shipped(), attributes::Defaults{}, {42});
     EXPECT_EQ(b.parts[0].fallbacks,
               mapped ? std::vector{model::IssueCode::opening_left_out} : std::vector<model::IssueCode>{});
     bool told = false;
@@ -771,11 +771,11 @@ TEST(WallCorners, EavesAreThoseThatWereBuilt) {
     part.attributes.roof_shape.value = asked;
     part.attributes.height.value = height;
     part.attributes.roof_height.value = roof_height;
-    EnvelopeLooks looks;
+    masses::EnvelopeLooks looks;
     looks.wall.kind = model::SurfaceKind::wall;
     looks.roof.kind = model::SurfaceKind::roof;
     looks.under.kind = model::SurfaceKind::ground;
-    part.lod2 = envelope(part.plan, 30, roof, looks);
+    part.lod2 = masses::envelope(part.plan, 30, roof, looks);
     return part;
   };
   const model::Polygon plan = region_of(House{}, "gruenderzeit", 5).buildings[0].parts[0].plan;
@@ -799,7 +799,7 @@ TEST(Facades, CornicesLieUnderTheEavesThatWereBuilt) {
   model::BuildingPart& part = region.buildings[0].parts[0];
   part.attributes.roof_shape.value = model::RoofShape::many;
   part.attributes.roof_height.value = 5;
-  build_facades(region, shipped(), Defaults{}, {42});
+  build_facades(region, shipped(), attributes::Defaults{}, {42});
   double highest = 0;
   for (const Placed& p : on_wall(region, part, 0))
     if (p.width == 0) highest = std::max(highest, p.v);
@@ -847,4 +847,4 @@ TEST(ContextAttributes, AreListedInTheManual) {
 }
 
 }  // namespace
-}  // namespace blockrand::generate
+}  // namespace blockrand::facades

@@ -16,7 +16,7 @@
 #include "tests/unit/geometry/random_plans.h"
 #include "tests/unit/geometry/shapes.h"
 
-namespace blockrand::generate {
+namespace blockrand::facades {
 namespace {
 
 using model::OpeningKind;
@@ -38,11 +38,11 @@ Solid house(const Polygon& plan, model::RoofShape shape = model::RoofShape::flat
   request.measures = {kBase + eaves, shape == model::RoofShape::flat ? 0 : roof};
   const auto built = roofs::build_roof(plan, request);
   EXPECT_TRUE(built);
-  EnvelopeLooks looks;
+  masses::EnvelopeLooks looks;
   looks.wall.kind = SurfaceKind::wall;
   looks.roof.kind = SurfaceKind::roof;
   looks.under.kind = SurfaceKind::ground;
-  return envelope(plan, kBase, built->roof, looks);
+  return masses::envelope(plan, kBase, built->roof, looks);
 }
 
 std::vector<WallFrame> walls_of(const Solid& solid) {
@@ -322,10 +322,10 @@ TEST(Openings, RandomHousesStayValid) {
     request.measures = {kBase + 9, 3};
     const auto built = roofs::build_roof(plan, request);
     if (!built) continue;
-    EnvelopeLooks looks;
+    masses::EnvelopeLooks looks;
     looks.wall.kind = SurfaceKind::wall;
     looks.roof.kind = SurfaceKind::roof;
-    const Solid solid = envelope(plan, kBase, built->roof, looks);
+    const Solid solid = masses::envelope(plan, kBase, built->roof, looks);
     if (verdict(solid) != "none") continue;
     ++houses;
     const auto walls = walls_of(solid);
@@ -375,4 +375,4 @@ TEST(Openings, RandomHousesStayValid) {
 }
 
 }  // namespace
-}  // namespace blockrand::generate
+}  // namespace blockrand::facades

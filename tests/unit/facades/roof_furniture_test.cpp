@@ -12,7 +12,7 @@
 #include "pipeline/geometry/triangulate.h"
 #include "tests/unit/geometry/shapes.h"
 
-namespace blockrand::generate {
+namespace blockrand::facades {
 namespace {
 
 using model::Point2;
@@ -20,8 +20,8 @@ using model::RoofEdge;
 using model::RoofShape;
 using testing_shapes::polygon;
 
-const Defaults& defaults() {
-  static const Defaults d = read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
+const attributes::Defaults& defaults() {
+  static const attributes::Defaults d = attributes::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
   return d;
 }
 
@@ -59,11 +59,11 @@ model::Region region_of(const House& h, std::int64_t id = 1) {
   part.plan = part.roof_plan = h.plan;
   part.roof_edges = h.edges;
   part.built_roof = h.shape;
-  EnvelopeLooks looks;
+  masses::EnvelopeLooks looks;
   looks.wall.kind = model::SurfaceKind::wall;
   looks.roof.kind = model::SurfaceKind::roof;
   looks.under.kind = model::SurfaceKind::ground;
-  part.lod2 = envelope(h.plan, 0, roof_of(h), looks);
+  part.lod2 = masses::envelope(h.plan, 0, roof_of(h), looks);
   part.lod2_triangles = *geometry::triangulate(part.lod2);
   part.lod3.solid = part.lod2;
   part.lod3.triangles = part.lod2_triangles;
@@ -222,11 +222,11 @@ model::BuildingPart body(const model::Polygon& plan, double bottom, double top, 
   h.shape = RoofShape::flat;
   model::BuildingPart part = region_of(h).buildings[0].parts[0];
   part.id = id;
-  EnvelopeLooks looks;
+  masses::EnvelopeLooks looks;
   looks.wall.kind = model::SurfaceKind::wall;
   looks.roof.kind = model::SurfaceKind::roof;
   looks.under.kind = model::SurfaceKind::ground;
-  part.lod2 = part.lod3.solid = envelope(plan, bottom, roofs::flat_roof(plan, top), looks);
+  part.lod2 = part.lod3.solid = masses::envelope(plan, bottom, roofs::flat_roof(plan, top), looks);
   part.lod2_triangles = part.lod3.triangles = *geometry::triangulate(part.lod2);
   return part;
 }
@@ -258,4 +258,4 @@ TEST(RoofFurniture, WithoutAFrontageThePlanTellsIt) {
 }
 
 }  // namespace
-}  // namespace blockrand::generate
+}  // namespace blockrand::facades

@@ -20,7 +20,7 @@
 #include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/rows.h"
 
-namespace blockrand::region {
+namespace blockrand::footprints {
 namespace {
 
 using model::Polygon;
@@ -130,4 +130,4 @@ INSTANTIATE_TEST_SUITE_P(Small, RealExtracts,
 INSTANTIATE_TEST_SUITE_P(City, RealExtracts, ::testing::Values("berlin-2014-06.osm.pbf"));
 
 }  // namespace
-}  // namespace blockrand::region
+}  // namespace blockrand::footprints

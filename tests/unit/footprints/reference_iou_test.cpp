@@ -19,9 +19,14 @@
 #include "pipeline/footprints/repair_extract.h"
 #include "tests/unit/run/survey_match.h"
 
-namespace blockrand::region::test {
+namespace blockrand::footprints::test {
 namespace {
 
+using geometry::PlanShape;
+using run::test::match_survey;
+using run::test::read_survey;
+using run::test::shape_of;
+using run::test::SurveyMatch;
 namespace fs = std::filesystem;
 using model::Point2;
 
@@ -254,4 +259,4 @@ TEST(SurveyedBuildings, BlocksLoseNothing) {
 }
 
 }  // namespace
-}  // namespace blockrand::region::test
+}  // namespace blockrand::footprints::test

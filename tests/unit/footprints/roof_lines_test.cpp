@@ -4,7 +4,7 @@
 
 #include "tests/unit/geometry/shapes.h"
 
-namespace blockrand::region {
+namespace blockrand::footprints {
 namespace {
 
 using model::OsmType;
@@ -70,4 +70,4 @@ TEST(RoofLines, NoRidgeNoLines) {
 }
 
 }  // namespace
-}  // namespace blockrand::region
+}  // namespace blockrand::footprints

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace blockrand::region {
+namespace blockrand::footprints {
 namespace {
 
 using model::Point2;
@@ -116,4 +116,4 @@ TEST(Rows, WhatIsReadOfALongRowIsCutTheSame) {
 }
 
 }  // namespace
-}  // namespace blockrand::region
+}  // namespace blockrand::footprints

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace blockrand::region {
+namespace blockrand::footprints {
 namespace {
 
 using model::Extract;
@@ -173,4 +173,4 @@ TEST(Shards, ObjectsThatAreNotPendingAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace blockrand::region
+}  // namespace blockrand::footprints

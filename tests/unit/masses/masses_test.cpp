@@ -11,7 +11,7 @@
 #include "tests/unit/geometry/shapes.h"
 #include "tests/unit/footprints/repair/repair_alone.h"
 
-namespace blockrand::generate {
+namespace blockrand::masses {
 namespace {
 
 using model::IssueCode;
@@ -26,7 +26,7 @@ const std::string kConfigs = std::string(BLOCKRAND_SOURCE_DIR) + "/configs";
 /// One tile with buildings made from outlines and tags, taken through repair, resolve and mass.
 class Town {
  public:
-  Town() : defaults(read_defaults(kConfigs)) { extract.strings.intern("yes"); }
+  Town() : defaults(attributes::read_defaults(kConfigs)) { extract.strings.intern("yes"); }
 
   MappedAttributes& add(std::vector<Point2> outline, const std::string& use = "yes") {
     model::Building b;
@@ -53,10 +53,10 @@ class Town {
   }
   void build(int lod = 2) {
     region.extract = &extract;
-    for (const Material& m : defaults.materials) region.materials.push_back(m.looks);
+    for (const attributes::Material& m : defaults.materials) region.materials.push_back(m.looks);
     repair::test::repair_alone(region);
     const context::TaggedNeighbours index(neighbours, 100);
-    resolve_attributes(region, {defaults, index, seed, [this](const model::Building&) { return ground; }}, {});
+    attributes::resolve_attributes(region, {defaults, index, seed, [this](const model::Building&) { return ground; }}, {});
     build_masses(region, defaults, {}, lod);
   }
   const model::BuildingPart& part(std::size_t building = 0, std::size_t part = 0) const { return region.buildings.at(building).parts.at(part); }
@@ -64,12 +64,12 @@ class Town {
     return std::any_of(region.report.rows.begin(), region.report.rows.end(), [&](const auto& r) { return r.code == code; });
   }
 
-  Defaults defaults;
+  attributes::Defaults defaults;
   model::Extract extract;
   model::Region region;
   std::vector<context::TaggedBuilding> neighbours;
   std::uint64_t seed = 1;
-  BuildingGround ground{.lowest = {34, Source::override_, 1, 0}, .entrance_reason = {}, .part_rise = {}};
+  context::BuildingGround ground{.lowest = {34, Source::override_, 1, 0}, .entrance_reason = {}, .part_rise = {}};
 };
 
 const std::vector<Point2> kHouse{{0, 0}, {12, 0}, {12, 9}, {0, 9}};
@@ -87,7 +87,7 @@ double bottom(const model::Solid& s) {
 }
 
 TEST(Defaults, ReadsTheShippedTables) {
-  const Defaults d = read_defaults(kConfigs);
+  const attributes::Defaults d = attributes::read_defaults(kConfigs);
   EXPECT_EQ(d.use("bungalow").storeys, 1);
   EXPECT_EQ(d.use("no such use").name, "default");
   EXPECT_EQ(d.materials[static_cast<std::size_t>(d.material("sandstone"))].looks.name, "stone");
@@ -150,7 +150,7 @@ TEST(Resolve, StoreysFromAHeightAlone) {
 TEST(Resolve, NeighboursBeatPresetsAndTagsBeatNeighbours) {
   Town t;
   for (int i = 0; i < 3; ++i)
-    t.neighbours.push_back({{model::OsmType::way, 100 + i}, {10.0 * i, 20}, neighbour_group(t.defaults, "yes", 100), 6, std::nullopt});
+    t.neighbours.push_back({{model::OsmType::way, 100 + i}, {10.0 * i, 20}, attributes::neighbour_group(t.defaults, "yes", 100), 6, std::nullopt});
   t.add(kHouse);
   t.add({{20, 0}, {32, 0}, {32, 9}, {20, 9}}).storeys = 2;
   t.build();
@@ -166,7 +166,7 @@ TEST(Resolve, NeighboursBeatPresetsAndTagsBeatNeighbours) {
 TEST(Resolve, AGarageDoesNotGrowToItsNeighbours) {
   Town t;
   for (int i = 0; i < 5; ++i)
-    t.neighbours.push_back({{model::OsmType::way, 100 + i}, {10.0 * i, 20}, neighbour_group(t.defaults, "yes", 100), 6, std::nullopt});
+    t.neighbours.push_back({{model::OsmType::way, 100 + i}, {10.0 * i, 20}, attributes::neighbour_group(t.defaults, "yes", 100), 6, std::nullopt});
   t.add({{0, 0}, {6, 0}, {6, 3}, {0, 3}}, "garage");
   t.add({{20, 0}, {21, 0}, {21, 2}, {20, 2}}, "yes");  // a stele
   t.build();
@@ -367,4 +367,4 @@ TEST(Parts, InheritColoursFromTheOutline) {
 }
 
 }  // namespace
-}  // namespace blockrand::generate
+}  // namespace blockrand::masses

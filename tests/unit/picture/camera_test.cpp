@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include "pipeline/model/vector.h"
 #include "pipeline/picture/image.h"
-#include "pipeline/picture/vector.h"
 #include "pipeline/picture/view.h"
 #include "tests/unit/picture/scenes.h"
 
@@ -15,7 +15,7 @@ namespace {
 using namespace test;
 using testing::DoubleNear;
 
-MATCHER_P(IsNear, p, "") { return length(minus(arg, p)) < 1e-9; }
+MATCHER_P(IsNear, p, "") { return length(arg - p) < 1e-9; }
 
 std::vector<Point3> corners_of_a_box() {
   Box box;
@@ -82,7 +82,7 @@ TEST(View, PositionsComeBack) {
   for (const Camera& camera : {fit_perspective(points, {215, 35}, 1.5), fit_orthographic(points, {215, 35}, 1.5)}) {
     const View view(camera, {1000, 2000, 0}, 300, 200);
     for (const Point3& p : points) {
-      const Point3 local = minus(p, {1000, 2000, 0});
+      const Point3 local = p - Point3{1000, 2000, 0};
       const Projected q = view.project(view.to_camera(local));
       EXPECT_THAT(view.position(q.x, q.y, q.nearness), IsNear(local));
     }

@@ -14,21 +14,22 @@
 #include "pipeline/footprints/load.h"
 #include "pipeline/run/prepare_extract.h"
 #include "pipeline/attributes/rule_book.h"
+#include "pipeline/attributes/tagged_buildings.h"
 #include "pipeline/evidence/style_values.h"
 #include "pipeline/context/surroundings_finder.h"
 #include "pipeline/run/tile_stages.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 
 namespace {
 
-std::vector<Shard> shards_of(const model::Extract& extract) {
+std::vector<footprints::Shard> shards_of(const model::Extract& extract) {
   model::Report report;
-  return make_shards(extract, report);
+  return footprints::make_shards(extract, report);
 }
 
 georef::Projection projection_of(const model::Extract& extract) {
-  const Area area = area_of(extract).value();
+  const footprints::Area area = footprints::area_of(extract).value();
   return {georef::open_crs(georef::choose_crs(area.centre.lon, area.centre.lat), area.box), area.box};
 }
 
@@ -46,40 +47,40 @@ struct BuiltTown::State {
   model::Extract extract;
   georef::Projection projection;
   attributes::Defaults defaults = attributes::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
-  std::vector<Shard> shards;
+  std::vector<footprints::Shard> shards;
   repair::KeptNodes kept;
-  RepairedExtract repaired;
-  ContextExtract context;
-  SurroundingsFinder surroundings;
-  RoofLineFinder roof_lines;
+  footprints::RepairedExtract repaired;
+  context::ContextExtract context;
+  context::SurroundingsFinder surroundings;
+  footprints::RoofLineFinder roof_lines;
   footprints::BuildingNumbers numbers;
   context::TaggedNeighbours neighbours;
   classify::Tables tables = classify::Tables::read(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
-  ReadRuleBook rules = read_rule_book(std::string(BLOCKRAND_SOURCE_DIR) + "/configs", "");
+  attributes::ReadRuleBook rules = attributes::read_rule_book(std::string(BLOCKRAND_SOURCE_DIR) + "/configs", "");
   attributes::Overrides overrides;
-  FactsExtract facts;
-  TagFacts tags;
-  StyleExtract style_extract;
-  StyleInputs style_inputs{facts, tags, style_extract, tables};
-  std::optional<DistrictAssigner> assigner;
+  evidence::FactsExtract facts;
+  evidence::TagFacts tags;
+  evidence::StyleExtract style_extract;
+  evidence::StyleInputs style_inputs{facts, tags, style_extract, tables};
+  std::optional<attributes::DistrictAssigner> assigner;
 
   explicit State(const std::filesystem::path& file)
       : extract(importers::osm::read_extract(file.string())),
         projection(projection_of(extract)),
         shards(shards_of(extract)),
         kept(extract),
-        repaired(repair_extract(extract, shards, projection, kept, repair, workers, progress)),
-        context(context_extract(extract, repaired.footprints,
-                                context::coverage_of(building_places(extract, projection)), projection, workers,
+        repaired(footprints::repair_extract(extract, shards, projection, kept, repair, workers, progress)),
+        context(context::context_extract(extract, repaired.footprints,
+                                context::coverage_of(footprints::building_places(extract, projection)), projection, workers,
                                 progress)),
         surroundings(extract, repaired.footprints, context),
         roof_lines(extract, projection),
         numbers(repaired.footprints),
-        neighbours(tagged_buildings(extract, defaults, projection), usual_generation().neighbour_reach),
-        facts(facts_extract(extract, repaired.footprints, context, surroundings, workers, progress)),
-        tags(tag_facts(extract, repaired.footprints, context, tables, projection, facts)),
+        neighbours(attributes::tagged_buildings(extract, defaults, projection), usual_generation().neighbour_reach),
+        facts(evidence::facts_extract(extract, repaired.footprints, context, surroundings, workers, progress)),
+        tags(evidence::tag_facts(extract, repaired.footprints, context, tables, projection, facts)),
         style_extract(classified()) {
-    assigner.emplace(rules.book, AssignInputs{.extract = extract,
+    assigner.emplace(rules.book, attributes::AssignInputs{.extract = extract,
                                               .footprints = repaired.footprints,
                                               .context = context,
                                               .styles = style_extract,
@@ -91,12 +92,12 @@ struct BuiltTown::State {
   }
 
   /// With the priors of its region, as a build does.
-  StyleExtract classified() {
+  evidence::StyleExtract classified() {
     const std::vector<classify::RegionPrior> priors = region_priors(rules.book, tables);
-    return classify_extract(
+    return evidence::classify_extract(
         facts, tags, tables,
         [&](std::uint32_t b) -> const classify::RegionPrior* {
-          const std::uint32_t set = rules.book.choose(box_centre(extract, extract.buildings[repaired.footprints[b].lead]));
+          const std::uint32_t set = rules.book.choose(footprints::box_centre(extract, extract.buildings[repaired.footprints[b].lead]));
           return set == blockrand::districts::RuleBook::kNoSet ? nullptr : &priors[set];
         },
         {}, workers, progress);
@@ -107,10 +108,10 @@ BuiltTown::BuiltTown(const std::filesystem::path& file) : state_(std::make_uniqu
 BuiltTown::~BuiltTown() = default;
 
 const model::Extract& BuiltTown::extract() const { return state_->extract; }
-const FootprintStore& BuiltTown::footprints() const { return state_->repaired.footprints; }
+const footprints::FootprintStore& BuiltTown::footprints() const { return state_->repaired.footprints; }
 const georef::Projection& BuiltTown::projection() const { return state_->projection; }
 const attributes::Defaults& BuiltTown::defaults() const { return state_->defaults; }
-const std::vector<Shard>& BuiltTown::shards() const { return state_->shards; }
+const std::vector<footprints::Shard>& BuiltTown::shards() const { return state_->shards; }
 
 std::size_t BuiltTown::shard_of(std::uint32_t building) const {
   const auto& first = state_->repaired.first;
@@ -141,4 +142,4 @@ model::Region BuiltTown::tile(std::size_t shard, int lod) const {
                           .context_time = time});
 }
 
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

@@ -15,7 +15,7 @@
 #include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/shard.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 
 /// An extract of ../shared/data/osm, repaired, with its context. Ground lies at height 0.
 class BuiltTown {
@@ -23,10 +23,10 @@ class BuiltTown {
   explicit BuiltTown(const std::filesystem::path& file);
   ~BuiltTown();
   const model::Extract& extract() const;
-  const FootprintStore& footprints() const;
+  const footprints::FootprintStore& footprints() const;
   const georef::Projection& projection() const;
   const attributes::Defaults& defaults() const;
-  const std::vector<Shard>& shards() const;
+  const std::vector<footprints::Shard>& shards() const;
   /// The shard of a building, by its number in `footprints`.
   std::size_t shard_of(std::uint32_t building) const;
   /// run_tile: attributes and, at lod 1 and 2, solids. Repair's table of rows stays behind.
@@ -40,4 +40,4 @@ class BuiltTown {
 /// Those of the extracts' default options.
 const attributes::GenerateOptions& usual_generation();
 
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

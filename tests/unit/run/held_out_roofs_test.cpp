@@ -12,11 +12,12 @@
 
 #include "pipeline/base/random.h"
 #include "pipeline/attributes/resolve.h"
+#include "pipeline/attributes/tagged_buildings.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/footprints/load.h"
 #include "tests/unit/run/built_town.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -156,7 +157,7 @@ void for_each_tagged(const Building& building, Visit&& visit) {
 HeldOut hold_out(const fs::path& file) {
   const BuiltTown town(file);
   HeldOut out;
-  const auto tagged = tagged_buildings(town.extract(), town.defaults(), town.projection());
+  const auto tagged = attributes::tagged_buildings(town.extract(), town.defaults(), town.projection());
   std::vector<context::TaggedNeighbours> neighbours;
   for (int fold = 0; fold < kFolds; ++fold) {
     auto visible = tagged;
@@ -263,4 +264,4 @@ INSTANTIATE_TEST_SUITE_P(Small, HeldOutRoofs,
 INSTANTIATE_TEST_SUITE_P(City, HeldOutRoofs, testing::Values(HeldOutSet{"berlin-2014-06.osm.pbf", 0.76, 0.81}));
 
 }  // namespace
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

@@ -25,7 +25,7 @@
 #include "pipeline/footprints/shard.h"
 #include "pipeline/footprints/repair/kept_nodes.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 
 /// Draws houses and streets in metres around a place in Berlin; equal points become one node.
 class OsmTown {
@@ -83,9 +83,9 @@ class OsmTown {
 /// A town read, repaired and measured.
 struct MeasuredTown {
   model::Extract extract;
-  std::unique_ptr<RepairedExtract> repaired;
-  ContextExtract context;
-  FactsExtract facts;
+  std::unique_ptr<footprints::RepairedExtract> repaired;
+  context::ContextExtract context;
+  evidence::FactsExtract facts;
 
   /// \param crs_of  the projection of another town, pinned as in a build; null: its own
   explicit MeasuredTown(const OsmTown& town, const std::string& name, const MeasuredTown* crs_of = nullptr,
@@ -94,21 +94,21 @@ struct MeasuredTown {
     town.write(path);
     extract = importers::osm::read_extract(path, {});
     std::filesystem::remove(path);
-    const Area area = area_of(extract).value();
+    const footprints::Area area = footprints::area_of(extract).value();
     projection = crs_of
                      ? crs_of->projection
                      : std::make_shared<georef::Projection>(
                            georef::open_crs(georef::choose_crs(area.centre.lon, area.centre.lat), area.box), area.box);
     base::Progress quiet;
     model::Report report;
-    const auto shards = make_shards(extract, report);
+    const auto shards = footprints::make_shards(extract, report);
     const repair::KeptNodes kept(extract);
     repaired =
-        std::make_unique<RepairedExtract>(repair_extract(extract, shards, *projection, kept, {}, workers, quiet));
-    context = context_extract(extract, repaired->footprints,
-                              context::coverage_of(building_places(extract, *projection)), *projection, workers, quiet);
-    const SurroundingsFinder surroundings(extract, repaired->footprints, context);
-    facts = facts_extract(extract, repaired->footprints, context, surroundings, workers, quiet);
+        std::make_unique<footprints::RepairedExtract>(footprints::repair_extract(extract, shards, *projection, kept, {}, workers, quiet));
+    context = context::context_extract(extract, repaired->footprints,
+                              context::coverage_of(footprints::building_places(extract, *projection)), *projection, workers, quiet);
+    const context::SurroundingsFinder surroundings(extract, repaired->footprints, context);
+    facts = evidence::facts_extract(extract, repaired->footprints, context, surroundings, workers, quiet);
   }
   std::uint32_t number(std::int64_t id, model::OsmType type = model::OsmType::way) const {
     for (std::uint32_t b = 0; b < repaired->footprints.size(); ++b)
@@ -124,4 +124,4 @@ struct MeasuredTown {
   std::shared_ptr<georef::Projection> projection;
 };
 
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

@@ -17,7 +17,7 @@
 #include "tests/unit/run/built_town.h"
 #include "tests/unit/run/roof_survey.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -567,4 +567,4 @@ TEST(ReferenceRoofs, OfTheHagueAreTheSurveysSurfaces) {
 }
 
 }  // namespace
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

@@ -10,7 +10,7 @@
 #include "importers/reference/transform.h"
 #include "pipeline/geometry/valid_polygon.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 
 namespace {
 
@@ -55,9 +55,9 @@ bool same_ground(const SurveyedRoof& a, const SurveyedRoof& b) {
   return a.box.near(b.box, 0) && a.shape.common_area(b.shape) > 0.5 * std::min(a.shape.area(), b.shape.area());
 }
 
-PlanBox box_around(const std::vector<model::Polygon>& polygons) {
-  PlanBox box;
-  for (const model::Polygon& p : polygons) box.include(box_of(p.outer.points));
+geometry::PlanBox box_around(const std::vector<model::Polygon>& polygons) {
+  geometry::PlanBox box;
+  for (const model::Polygon& p : polygons) box.include(geometry::box_of(p.outer.points));
   return box;
 }
 
@@ -160,4 +160,4 @@ std::vector<SurveyedRoof> read_cityjson_roofs(const fs::path& file) {
   return out;
 }
 
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

@@ -8,7 +8,7 @@
 #include "tests/unit/run/surveyed_surfaces.h"
 #include "tests/unit/run/survey_match.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 
 struct SurveyedRoof {
   std::string id;
@@ -17,7 +17,7 @@ struct SurveyedRoof {
   double ground = 0;                 ///< z of the lowest ground, m
   RoofSurfaces roof;  ///< of the highest level of detail; without dormers and chimneys that are installations
   PlanShape shape;
-  PlanBox box;
+  geometry::PlanBox box;
 };
 
 /// All buildings of the CityGML files below `folder` that have a ground and a roof, in the order of the files' names,
@@ -27,4 +27,4 @@ std::vector<SurveyedRoof> read_roof_survey(const std::filesystem::path& folder, 
 /// The buildings and parts of a CityJSON 1.0 file with LoD2 solids, each alone, in the file's CRS.
 std::vector<SurveyedRoof> read_cityjson_roofs(const std::filesystem::path& file);
 
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

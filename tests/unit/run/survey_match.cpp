@@ -7,7 +7,7 @@
 #include "importers/reference/footprints.h"
 #include "importers/reference/transform.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 
 namespace {
 
@@ -40,9 +40,9 @@ std::vector<fs::path> models_below(const fs::path& folder) {
   return files;
 }
 
-PlanBox box_around(const std::vector<model::Polygon>& polygons) {
-  PlanBox box;
-  for (const model::Polygon& p : polygons) box.include(box_of(p.outer.points));
+geometry::PlanBox box_around(const std::vector<model::Polygon>& polygons) {
+  geometry::PlanBox box;
+  for (const model::Polygon& p : polygons) box.include(geometry::box_of(p.outer.points));
   return box;
 }
 
@@ -67,15 +67,15 @@ std::vector<SurveyedBuilding> read_survey(const fs::path& folder, const std::str
   return out;
 }
 
-PlanShape shape_of(const FootprintStore& store, const std::vector<std::uint32_t>& buildings) {
+PlanShape shape_of(const footprints::FootprintStore& store, const std::vector<std::uint32_t>& buildings) {
   std::vector<model::Polygon> all;
   for (const std::uint32_t b : buildings)
     for (model::Polygon& p : store.polygons(b)) all.push_back(std::move(p));
   return PlanShape(all);
 }
 
-std::vector<SurveyMatch> match_survey(const FootprintStore& mapped, const std::vector<SurveyedBuilding>& survey) {
-  const FootprintIndex index(mapped);
+std::vector<SurveyMatch> match_survey(const footprints::FootprintStore& mapped, const std::vector<SurveyedBuilding>& survey) {
+  const footprints::FootprintIndex index(mapped);
   const std::size_t n = survey.size();
   Groups groups(n + mapped.size());
   std::vector<bool> linked(n + mapped.size(), false);
@@ -104,4 +104,4 @@ std::vector<SurveyMatch> match_survey(const FootprintStore& mapped, const std::v
   return all;
 }
 
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

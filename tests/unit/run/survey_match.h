@@ -11,7 +11,7 @@
 #include "pipeline/model/polygon.h"
 #include "pipeline/footprints/footprint_store.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 
 using geometry::PlanShape;
 
@@ -19,7 +19,7 @@ using geometry::PlanShape;
 struct SurveyedBuilding {
   std::string id;
   PlanShape ground;
-  PlanBox box;
+  geometry::PlanBox box;
 };
 
 /// All buildings of the CityGML files below `folder`, in the order of the files' names, in a projected CRS. What is
@@ -37,9 +37,9 @@ struct SurveyMatch {
 /// a building and a surveyed one are linked when they have more than half of the smaller one in common; what is linked,
 /// directly or through others, is one match (1:1, 1:n, n:1, n:m); a match counts when both sides, each united, have
 /// more than half of their area in common. Anything else is another building than the survey saw, not one drawn badly.
-std::vector<SurveyMatch> match_survey(const FootprintStore& mapped, const std::vector<SurveyedBuilding>& survey);
+std::vector<SurveyMatch> match_survey(const footprints::FootprintStore& mapped, const std::vector<SurveyedBuilding>& survey);
 
 /// The outlines of some buildings together.
-PlanShape shape_of(const FootprintStore& store, const std::vector<std::uint32_t>& buildings);
+PlanShape shape_of(const footprints::FootprintStore& store, const std::vector<std::uint32_t>& buildings);
 
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

@@ -1,6 +1,6 @@
 #include "tests/unit/run/surveyed_surfaces.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 
 using model::Point3;
 
@@ -23,4 +23,4 @@ RoofSurfaces surfaces_of(const roofs::Roof& roof) {
   return out;
 }
 
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

@@ -5,7 +5,7 @@
 #include "pipeline/model/solid.h"
 #include "styles/roofs/roof.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 
 using compare::common_directions;
 using compare::common_grid;
@@ -20,4 +20,4 @@ using compare::SurfaceError;
 void add_roof_of(const model::Solid& solid, RoofSurfaces& out);
 RoofSurfaces surfaces_of(const roofs::Roof& roof);
 
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

@@ -12,7 +12,7 @@
 #include "pipeline/georef/tiles.h"
 #include "pipeline/run/configuration.h"
 
-namespace blockrand::region {
+namespace blockrand::run {
 namespace {
 
 using ::testing::HasSubstr;
@@ -117,4 +117,4 @@ TEST(ForgetOthers, KeepsWhatWasBuiltHereAndWhatItStandsFor) {
 }
 
 }  // namespace
-}  // namespace blockrand::region
+}  // namespace blockrand::run

@@ -17,7 +17,7 @@
 #include "tests/unit/roofs/dressed_roof.h"
 #include "tests/unit/roofs/element_checks.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -321,4 +321,4 @@ INSTANTIATE_TEST_SUITE_P(Extracts, RoofEdges,
                          [](const auto& info) { return std::string(info.index == 0 ? "Husum" : "Luisenstadt"); });
 
 }  // namespace
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

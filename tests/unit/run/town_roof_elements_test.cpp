@@ -11,7 +11,7 @@
 #include "tests/unit/run/built_town.h"
 #include "tests/unit/roofs/furnished_roof.h"
 
-namespace blockrand::region::test {
+namespace blockrand::run::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ INSTANTIATE_TEST_SUITE_P(Large, TownRoofElements,
                          town_name);
 
 }  // namespace
-}  // namespace blockrand::region::test
+}  // namespace blockrand::run::test

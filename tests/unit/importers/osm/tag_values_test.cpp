@@ -129,8 +129,11 @@ TEST(ParseRoofShape, TakesTheSchemesNamesInEitherSpelling) {
     const model::RoofTraits& row = model::kRoofTraits[i];
     const RoofShape shape = row.is_tag_value ? static_cast<RoofShape>(i) : RoofShape::other;
     EXPECT_EQ(parse_roof_shape(row.name), shape);
-    for (const std::string_view synonym : row.synonyms)
-      if (!synonym.empty()) EXPECT_EQ(parse_roof_shape(synonym), shape) << synonym;
+    for (const std::string_view synonym : row.synonyms) {
+      if (!synonym.empty()) {
+        EXPECT_EQ(parse_roof_shape(synonym), shape) << synonym;
+      }
+    }
   }
   EXPECT_EQ(parse_roof_shape("berlin"), RoofShape::other) << "no value of the scheme";
   EXPECT_EQ(parse_roof_shape("half_hipped"), RoofShape::half_hipped);

@@ -11,7 +11,7 @@
 #include "pipeline/outputs/explain/explanation.h"
 #include "pipeline/outputs/gzip.h"
 
-namespace blockrand::region {
+namespace blockrand::outputs {
 namespace {
 
 using model::OsmId;
@@ -128,4 +128,4 @@ TEST_F(FindExplanation, DamageIsNamed) {
 }
 
 }  // namespace
-}  // namespace blockrand::region
+}  // namespace blockrand::outputs

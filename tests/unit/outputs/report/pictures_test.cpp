@@ -5,7 +5,7 @@
 #include "pipeline/georef/crs.h"
 #include "tests/unit/outputs/sample_region.h"
 
-namespace blockrand::region {
+namespace blockrand::outputs {
 namespace {
 
 using outputs::test::SampleRegion;
@@ -14,8 +14,8 @@ const georef::GeoBox kBox{13.3, 52.4, 13.5, 52.6};
 
 georef::Projection projection() { return {georef::open_crs("EPSG:25833", kBox), kBox}; }
 
-Shard shard(std::uint32_t x, std::uint32_t y, std::size_t seeds) {
-  Shard s;
+footprints::Shard shard(std::uint32_t x, std::uint32_t y, std::size_t seeds) {
+  footprints::Shard s;
   s.tile = {15, 35200 + x, 25950 + y};
   s.seeds.resize(seeds);
   return s;
@@ -29,7 +29,7 @@ PicturePlan all_of(std::size_t shards) {
 }
 
 TEST(PicturePlan, SmallBuildsArePicturedWhole) {
-  const std::vector<Shard> shards{shard(0, 0, 10), shard(1, 0, 20), shard(4, 3, 5)};
+  const std::vector<footprints::Shard> shards{shard(0, 0, 10), shard(1, 0, 20), shard(4, 3, 5)};
   const PicturePlan plan = plan_pictures(shards, projection(), 100);
   EXPECT_TRUE(plan.whole);
   EXPECT_EQ(plan.buildings, 35u);
@@ -37,7 +37,7 @@ TEST(PicturePlan, SmallBuildsArePicturedWhole) {
 }
 
 TEST(PicturePlan, LargeOnesShowTheDensestTileAndItsNeighbours) {
-  const std::vector<Shard> shards{shard(0, 0, 30), shard(1, 0, 30), shard(2, 0, 50), shard(3, 0, 20), shard(9, 9, 1)};
+  const std::vector<footprints::Shard> shards{shard(0, 0, 30), shard(1, 0, 30), shard(2, 0, 50), shard(3, 0, 20), shard(9, 9, 1)};
   const PicturePlan plan = plan_pictures(shards, projection(), 100);
   EXPECT_FALSE(plan.whole);
   // 50, then its two neighbours at the same distance; the far tile of one building would fit but stands apart.
@@ -46,14 +46,14 @@ TEST(PicturePlan, LargeOnesShowTheDensestTileAndItsNeighbours) {
 }
 
 TEST(PicturePlan, ScatteredVillagesAreNotPicturedAsSpecks) {
-  const std::vector<Shard> shards{shard(0, 0, 10), shard(1, 0, 20), shard(40, 0, 5)};
+  const std::vector<footprints::Shard> shards{shard(0, 0, 10), shard(1, 0, 20), shard(40, 0, 5)};
   const PicturePlan plan = plan_pictures(shards, projection(), 100);
   EXPECT_EQ(plan.chosen, (std::vector<bool>{true, true, false}));
   EXPECT_FALSE(plan.whole);
 }
 
 TEST(PicturePlan, TheDensestTileIsShownWhateverTheBudget) {
-  const std::vector<Shard> shards{shard(0, 0, 3), shard(1, 0, 500)};
+  const std::vector<footprints::Shard> shards{shard(0, 0, 3), shard(1, 0, 500)};
   const PicturePlan plan = plan_pictures(shards, projection(), 100);
   EXPECT_EQ(plan.chosen, (std::vector<bool>{false, true}));
 }
@@ -113,4 +113,4 @@ TEST(Pictures, HillsHaveGroundUnderTheirHouses) {
 }
 
 }  // namespace
-}  // namespace blockrand::region
+}  // namespace blockrand::outputs
