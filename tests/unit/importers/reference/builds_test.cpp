@@ -132,7 +132,7 @@ void expect_same_in_all_formats(const fs::path& input, std::size_t least, bool g
   options.configs = BLOCKRAND_SOURCE_DIR "/configs";
   options.outputs.formats = {"gltf", "citygml", "cityjson"};
   options.outputs.report = options.outputs.explain = false;
-  options.single_glb = options.single_cityjson = true;
+  options.outputs.single_glb = options.outputs.single_cityjson = true;
   options.outputs.gzip = gzip;
   options.bbox = bbox;
   options.jobs = 2;
