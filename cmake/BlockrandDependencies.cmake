@@ -1,4 +1,4 @@
-# Every third-party library, found once. Packages: cmake/packages.txt (traps: DESIGN section 10).
+# Every third-party library, found once. Packages: cmake/packages.txt (traps: docs/sources.md, Packages).
 find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)

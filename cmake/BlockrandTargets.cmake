@@ -1,12 +1,12 @@
 # One library target per folder. A target sees its own headers and those of the targets it links, nothing else:
 # every folder's headers stand behind an include directory of their own (a link farm in the build tree), so an include
-# across the arrows of DESIGN section 4 does not compile.
+# across the arrows of ARCHITECTURE.md, "Targets that cannot see too far", does not compile.
 #
 #   HEADERS standard | own | none: which precompiled header; `model` where nothing is said. `own` for targets with flags of
 #   their own, which compile it again.
 #   blockrand_library(NAME base FOLDER pipeline/base SOURCES a.cpp ... LINKS blockrand::model ... PRIVATE_LINKS CGAL::CGAL ...)
 
-# Bit-for-bit reproducible floating point on every x86-64 (DESIGN law 3): no contraction, no fast-math, no -march.
+# Bit-for-bit reproducible floating point on every x86-64 (ARCHITECTURE.md, law 3): no contraction, no fast-math, no -march.
 add_library(blockrand_options INTERFACE)
 target_compile_definitions(blockrand_options INTERFACE BLOCKRAND_VERSION="${PROJECT_VERSION}")
 # -Wswitch-enum: who adds an enumerator is told of every switch that forgets it, one with `default:` too.

@@ -1,4 +1,4 @@
-// Reads the rule XML of Bilke (2009): references/bilke.md §3.7.
+// Reads the rule XML of Bilke (2009): docs/sources.md, Bilke 3.7.
 #pragma once
 
 #include <string>

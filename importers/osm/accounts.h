@@ -36,7 +36,8 @@ struct Accounts {
   Account* find(model::OsmId id) { return const_cast<Account*>(static_cast<const Accounts*>(this)->find(id)); }
 };
 
-/// Decides the state of every building object (DESIGN law 1). The rules, in the order in which they are applied:
+/// Decides the state of every building object (ARCHITECTURE.md, law 1). The rules, in the order in which they are
+/// applied:
 ///
 /// 1. A node is NODE_ONLY; a way stands for itself when it closes, by node id or by position.
 /// 2. A multipolygon (or boundary) relation with building tags is an area. An outer way of it with building tags of the

@@ -7,7 +7,7 @@
 
 #include "importers/osm/accounts.h"
 #include "importers/osm/attributes.h"
-#include "importers/osm/features.h"
+#include "importers/osm/osm_features.h"
 #include "importers/osm/text_cleaner.h"
 
 namespace blockrand::importers::osm {

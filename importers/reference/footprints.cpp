@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "pipeline/base/error.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::importers::reference {

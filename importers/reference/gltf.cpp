@@ -10,7 +10,7 @@
 #include "importers/reference/gltf_scene.h"
 #include "importers/reference/height_words.h"
 #include "importers/reference/polygons.h"
-#include "importers/reference/tileset.h"
+#include "importers/reference/tileset_tree.h"
 #include "pipeline/base/error.h"
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/crs_facts.h"

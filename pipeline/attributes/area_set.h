@@ -38,8 +38,8 @@ class AreaSet {
 
 bool holds(const AreaRings& rings, model::Location place);
 
-/// A large area, or a node with a large radius, that rules ask for: region data (DESIGN law 4), which a tile alone
-/// takes from the build of the whole, because its window may show none of it.
+/// A large area, or a node with a large radius, that rules ask for: region data (ARCHITECTURE.md, law 4), which a tile
+/// alone takes from the build of the whole, because its window may show none of it.
 struct PinnedArea {
   std::string question;  ///< what is asked of it: PlaceQuery::text, or the key of a tag
   std::string value;     ///< of that tag

@@ -10,7 +10,7 @@
 #include "importers/polygons/read_polygons.h"
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/base/parallel.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/osm_keys.h"
 #include "styles/districts/read_rule_set.h"
 
@@ -21,7 +21,7 @@ namespace {
 namespace districts = districts;
 using districts::CellStatistic;
 using districts::PlaceQuery;
-using districts::RuleBook;
+using districts::RuleSets;
 using model::Extract;
 using model::Feature;
 using model::FeatureKind;
@@ -98,7 +98,7 @@ struct Answers {
 }  // namespace
 
 struct DistrictAssigner::Impl {
-  const RuleBook& book;
+  const RuleSets& book;
   AssignInputs in;
   std::vector<std::vector<Answers>> answers;         // by rule set, by query
   std::map<std::string_view, AreaSet> tagged_areas;  // by key of kAreaTags
@@ -110,7 +110,7 @@ struct DistrictAssigner::Impl {
 
   std::set<std::uint32_t> sets_here;  // that hold for a building
 
-  Impl(const RuleBook& rules, const AssignInputs& inputs) : book(rules), in(inputs) {
+  Impl(const RuleSets& rules, const AssignInputs& inputs) : book(rules), in(inputs) {
     for (std::uint32_t b = 0; b < in.footprints.size(); ++b)
       if (!in.footprints[b].box.empty()) sets_here.insert(book.choose(place_of(b)));
     for (const auto& [cell, sums] : in.context.cells)
@@ -278,8 +278,8 @@ struct DistrictAssigner::Impl {
       return std::max(1.0, std::round(static_cast<double>(*b.attributes.height) / kHeightPerStorey));
     const footprints::StoredFootprint& f = in.footprints[building];
     const std::uint8_t group = neighbour_group(in.defaults, use, f.record.area);
-    if (const auto opinion = in.neighbours.storeys(project(place_of(building)), group, b.id, in.neighbour_minimum))
-      return opinion->value;
+    if (const auto vote = in.neighbours.storeys(project(place_of(building)), group, b.id, in.neighbour_minimum))
+      return vote->value;
     return std::nullopt;
   }
 
@@ -311,7 +311,7 @@ struct DistrictAssigner::Impl {
   }
 
   /// A preset that the user ordered: stronger than any tag or rule. kNone for none that the book knows.
-  std::pair<std::uint32_t, std::string> ordered_preset(std::uint32_t building) const {
+  std::pair<std::uint32_t, std::string> overridden_preset(std::uint32_t building) const {
     const OverrideEntry* order = in.overrides ? in.overrides->find(lead(building).id) : nullptr;
     const std::string* name = order ? order->text("preset") : nullptr;
     const std::size_t preset = name ? districts::find_preset(book.presets, *name) : districts::kNoPreset;
@@ -346,7 +346,7 @@ struct DistrictAssigner::Impl {
     if (in.overrides)
       if (const OverrideEntry* order = in.overrides->find(b.id))
         for (const char* key : {"style", "substyle"})
-          if (const std::string* text = order->text(key)) s.ordered_style = *text;
+          if (const std::string* text = order->text(key)) s.overridden_style = *text;
     s.storeys = [this, building, &s] { return storeys(building, s.use); };
     s.cell = [this, building](CellStatistic what) { return cell_figure(building, what); };
     s.tag = [this, &b](std::string_view key) { return in.extract.tag(b.tags, key); };
@@ -361,7 +361,7 @@ struct DistrictAssigner::Impl {
   }
 };
 
-DistrictAssigner::DistrictAssigner(const RuleBook& book, const AssignInputs& inputs)
+DistrictAssigner::DistrictAssigner(const RuleSets& book, const AssignInputs& inputs)
     : impl_(std::make_unique<Impl>(book, inputs)) {}
 DistrictAssigner::~DistrictAssigner() = default;
 
@@ -373,7 +373,7 @@ districts::Decision DistrictAssigner::decide(std::uint32_t building, model::Buil
   districts::Decision d = impl_->ask(building, position, [&](std::uint32_t set, const districts::Subject& s) {
     return districts::decide(impl_->book, set, s, impl_->in.seed);
   });
-  if (const auto [preset, place] = impl_->ordered_preset(building); preset != districts::Decision::kNone)
+  if (const auto [preset, place] = impl_->overridden_preset(building); preset != districts::Decision::kNone)
     Impl::order(d, preset);
   return d;
 }
@@ -382,11 +382,11 @@ districts::Assignment DistrictAssigner::assign(std::uint32_t building, model::Bu
   districts::Assignment a = impl_->ask(building, position, [&](std::uint32_t set, const districts::Subject& s) {
     return districts::assign(impl_->book, set, s, impl_->in.seed);
   });
-  auto [preset, place] = impl_->ordered_preset(building);
+  auto [preset, place] = impl_->overridden_preset(building);
   if (preset == districts::Decision::kNone) return a;
   districts::Decision& d = a.decision;
   if (d.preset != districts::Decision::kNone && d.preset != preset)
-    a.lost.insert(a.lost.begin(), {d.source, d.confidence, impl_->book.presets[d.preset].name, std::move(a.why)});
+    a.other_candidates.insert(a.other_candidates.begin(), {d.source, d.confidence, impl_->book.presets[d.preset].name, std::move(a.why)});
   Impl::order(d, preset);
   a.why = std::move(place);
   return a;
@@ -394,7 +394,7 @@ districts::Assignment DistrictAssigner::assign(std::uint32_t building, model::Bu
 
 std::vector<PinnedArea> DistrictAssigner::to_pin() const { return impl_->pins; }
 std::vector<std::string> DistrictAssigner::unanswered() const { return impl_->missing; }
-const RuleBook& DistrictAssigner::book() const { return impl_->book; }
+const RuleSets& DistrictAssigner::book() const { return impl_->book; }
 
 void assign_region(model::Region& region, std::span<const std::uint32_t> numbers, const DistrictAssigner& assigner) {
   for (std::size_t i = 0; i < region.buildings.size(); ++i) {
@@ -408,7 +408,7 @@ void assign_region(model::Region& region, std::span<const std::uint32_t> numbers
     building.preset_parameters.clear();
     for (districts::Parameter& p : a.parameters)
       building.preset_parameters.emplace_back(std::move(p.key), std::move(p.value));
-    const model::EvidenceId why = region.evidence.add({std::move(a.why), std::move(a.lost)});
+    const model::EvidenceId why = region.evidence.add({std::move(a.why), std::move(a.other_candidates)});
     building.attributes.preset = {name, d.source, d.confidence, why};
     for (model::BuildingPart& part : building.parts) part.attributes.preset = building.attributes.preset;
   }

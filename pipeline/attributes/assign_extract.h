@@ -19,7 +19,7 @@
 #include "pipeline/footprints/footprint_store.h"
 #include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/shard.h"
-#include "pipeline/context/surroundings_finder.h"
+#include "pipeline/context/vicinity_finder.h"
 #include "styles/districts/assign.h"
 
 namespace blockrand::attributes {
@@ -48,12 +48,12 @@ struct AssignInputs {
 class DistrictAssigner {
  public:
   /// \throws base::InputError  a file that a rule names cannot be used
-  DistrictAssigner(const districts::RuleBook& book, const AssignInputs& inputs);
+  DistrictAssigner(const districts::RuleSets& book, const AssignInputs& inputs);
   ~DistrictAssigner();
   DistrictAssigner(const DistrictAssigner&) = delete;
   DistrictAssigner& operator=(const DistrictAssigner&) = delete;
 
-  /// Index into the book's sets, or RuleBook::kNoSet.
+  /// Index into the book's sets, or RuleSets::kNoSet.
   std::uint32_t rule_set(std::uint32_t building) const;
   districts::Decision decide(std::uint32_t building, model::BuildingPosition position) const;
   districts::Assignment assign(std::uint32_t building, model::BuildingPosition position) const;
@@ -63,7 +63,7 @@ class DistrictAssigner {
   /// Questions that nothing in the extract can answer: a place or boundary with a name that is not there,
   /// of sets that hold for a building here.
   std::vector<std::string> unanswered() const;
-  const districts::RuleBook& book() const;
+  const districts::RuleSets& book() const;
 
  private:
   struct Impl;

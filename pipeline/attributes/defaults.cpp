@@ -76,7 +76,7 @@ void read_use(TomlTable& table, UseDefaults& use, const Defaults& defaults) {
     if (!value) return;
     if (defaults.material(*value) < 0)
       table.fail(key, "unknown material `" + *value + "`", "Add it to configs/materials/materials.toml");
-    target = defaults.materials[static_cast<std::size_t>(defaults.material(*value))].looks.name;
+    target = defaults.materials[static_cast<std::size_t>(defaults.material(*value))].material_class.name;
   };
   material("wall_material", use.wall_material);
   material("roof_material", use.roof_material);
@@ -92,9 +92,9 @@ void read_materials(const std::string& path, Defaults& out) {
   for (const std::string& name : classes->keys()) {
     TomlTable table = *classes->table(name);
     Material material;
-    material.looks.name = name;
-    if (const auto v = table.number("roughness", 0, 1)) material.looks.roughness = static_cast<float>(*v);
-    if (const auto v = table.number("metallic", 0, 1)) material.looks.metallic = static_cast<float>(*v);
+    material.material_class.name = name;
+    if (const auto v = table.number("roughness", 0, 1)) material.material_class.roughness = static_cast<float>(*v);
+    if (const auto v = table.number("metallic", 0, 1)) material.material_class.metallic = static_cast<float>(*v);
     const auto colour = table.text("colour");
     if (!colour) table.fail("colour", "no colour", "Write colour = \"#rrggbb\"");
     material.colour = palette(table, "colour", {*colour})[0];

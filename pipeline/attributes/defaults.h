@@ -30,7 +30,7 @@ struct UseDefaults {
 
 /// A material class with the colour it has where none is mapped.
 struct Material {
-  model::MaterialClass looks;
+  model::MaterialClass material_class;
   model::Colour colour;
 };
 

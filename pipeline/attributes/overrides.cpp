@@ -79,11 +79,11 @@ void give(const OverrideEntry& e, MappedAttributes& m, base::StringPool& strings
 /// Takes away the tags that leave no sound heights beside what is ordered. \return  one sentence for each
 std::vector<std::string> drop_contradicted(const OverrideEntry& e, MappedAttributes& m) {
   std::vector<std::string> told;
-  const auto ordered = [&](const char* key) { return e.number(key) != nullptr; };
-  const bool height = ordered("height") || ordered("eaves_height"), under = ordered("min_height"),
-             storeys = ordered("storeys");
+  const auto overridden = [&](const char* key) { return e.number(key) != nullptr; };
+  const bool height = overridden("height") || overridden("eaves_height"), under = overridden("min_height"),
+             storeys = overridden("storeys");
   const bool roof =
-      ordered("roof_height") || ordered("roof_pitch") || ordered("eaves_height") || e.values.contains("roof_shape");
+      overridden("roof_height") || overridden("roof_pitch") || overridden("eaves_height") || e.values.contains("roof_shape");
   const auto drop = [&](std::optional<float>& value, const char* tag, const std::string& why) {
     told.push_back(fmt::format("{}={:g} is left aside: {}", tag, *value, why));
     value.reset();
@@ -221,7 +221,7 @@ class Marker {
   /// What is ordered for the building holds for a part, where nothing is ordered for the part itself.
   void from_building(const OverrideEntry& building, const OverrideEntry* part, model::Attributes& attributes) {
     const auto by_part = [&](std::string_view key) { return part && part->values.contains(std::string(key)); };
-    std::vector<const OverrideEntry*> orders = {part};
+    std::vector<const OverrideEntry*> applicable = {part};
     each(attributes, [&](std::string_view attribute, auto& sourced) {
       if (!is_shared(attribute) || by_part(attribute)) return;
       // A part with a style of its own has no sub-style of the building's.
@@ -231,9 +231,9 @@ class Marker {
       if (const auto order = building.values.find(std::string(attribute)); order != building.values.end())
         put(building, attribute, order->second, sourced);
     });
-    if (!by_part("style") && !by_part("substyle")) orders.push_back(&building);
-    std::erase(orders, nullptr);
-    style(orders, building.object, attributes);
+    if (!by_part("style") && !by_part("substyle")) applicable.push_back(&building);
+    std::erase(applicable, nullptr);
+    style(applicable, building.object, attributes);
   }
 
   void tell(OsmId object, int line, const std::string& why, model::IssueCode code = model::IssueCode::values_conflict) {
@@ -259,13 +259,13 @@ class Marker {
     model::Evidence evidence{place, {}};
     if (const auto tagged = tagged_text(entry.tagged, attribute, region_.extract->strings);
         tagged && *tagged != text_of(wanted))
-      evidence.lost.push_back({model::Source::tag, 0.95f, *tagged, "tagged"});
+      evidence.other_candidates.push_back({model::Source::tag, 0.95f, *tagged, "tagged"});
     const bool met = same(sourced.value, wanted);
     if (!met && !stands_alone(attribute)) {
       // It could not be met: the value is that of what was stronger.
       evidence.text = found.text;
-      evidence.lost.insert(evidence.lost.begin(), {model::Source::override_, 1, text_of(wanted), place});
-      evidence.lost.insert(evidence.lost.end(), found.lost.begin(), found.lost.end());
+      evidence.other_candidates.insert(evidence.other_candidates.begin(), {model::Source::override_, 1, text_of(wanted), place});
+      evidence.other_candidates.insert(evidence.other_candidates.end(), found.other_candidates.begin(), found.other_candidates.end());
       if (sourced.source == model::Source::tag) sourced.source = model::Source::implied;
       sourced.evidence = region_.evidence.add(std::move(evidence));
       tell(entry.object, order.line,
@@ -276,11 +276,11 @@ class Marker {
     if (!met) {
       const std::string was = text_of(sourced.value);
       if (!was.empty() && sourced.evidence != 0)
-        evidence.lost.push_back({sourced.source, sourced.confidence, was, found.text});
+        evidence.other_candidates.push_back({sourced.source, sourced.confidence, was, found.text});
       sourced.value = wanted;
     }
     // Where it acted as a tag, what else was considered lost against it.
-    evidence.lost.insert(evidence.lost.end(), found.lost.begin(), found.lost.end());
+    evidence.other_candidates.insert(evidence.other_candidates.end(), found.other_candidates.begin(), found.other_candidates.end());
     sourced.source = model::Source::override_;
     sourced.confidence = 1;
     sourced.evidence = region_.evidence.add(std::move(evidence));
@@ -319,10 +319,10 @@ class Marker {
   }
 
   /// What follows from an ordered sub-style or class: the other one, and the era. \param orders  strongest first
-  void style(const std::vector<const OverrideEntry*>& orders, OsmId object, model::Attributes& a) {
+  void style(const std::vector<const OverrideEntry*>& applicable, OsmId object, model::Attributes& a) {
     if (!catalogue_) return;
     const auto order = [&](const char* key) -> const OverrideValue* {
-      for (const OverrideEntry* e : orders)
+      for (const OverrideEntry* e : applicable)
         if (const auto found = e->values.find(key); found != e->values.end()) return &found->second;
       return nullptr;
     };
@@ -331,7 +331,7 @@ class Marker {
       if (to.value == value) return;
       model::Evidence evidence{std::move(why), {}};
       if (to.evidence != 0)
-        evidence.lost.push_back({to.source, to.confidence, to.value, region_.evidence[to.evidence].text});
+        evidence.other_candidates.push_back({to.source, to.confidence, to.value, region_.evidence[to.evidence].text});
       to = {std::move(value), source, confidence, region_.evidence.add(std::move(evidence))};
     };
     const OverrideValue *by_substyle = order("substyle"), *by_style = order("style"), *by_era = order("era");
@@ -386,7 +386,7 @@ bool is_there(const model::DetailOverride& d, const model::Building& building, c
   if (d.kind == model::DetailKind::storey)
     return std::stoi(d.name) < std::ceil(attributes.storeys.value + attributes.roof_storeys.value);
   if (d.kind != model::DetailKind::edge) return true;
-  return std::any_of(building.edges.begin(), building.edges.end(), [&](const model::FacadeEdge& e) {
+  return std::any_of(building.edges.begin(), building.edges.end(), [&](const model::WallSegment& e) {
     // Ends that repair made have no node to go by; their names are the exporter's.
     if (e.from_node == 0 || e.to_node == 0) return true;
     const std::string id = fmt::format("e{}_{}", e.from_node, e.to_node);

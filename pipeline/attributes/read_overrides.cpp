@@ -83,7 +83,7 @@ class Reader {
   Reader(std::string file, const Defaults& defaults, const OverrideNames& names) : defaults_(defaults), names_(names) {
     out_.file = std::move(file);
     out_.name = out_.file.substr(out_.file.find_last_of('/') + 1);
-    for (const Material& m : defaults.materials) materials_.push_back(m.looks.name);
+    for (const Material& m : defaults.materials) materials_.push_back(m.material_class.name);
   }
 
   Overrides read(TomlTable root) {
@@ -170,7 +170,7 @@ class Reader {
     if (key == "wall_material" || key == "roof_material") {
       const int index = defaults_.material(*v);
       if (index < 0) unknown(table, key, *v, materials_);
-      v = defaults_.materials[static_cast<std::size_t>(index)].looks.name;
+      v = defaults_.materials[static_cast<std::size_t>(index)].material_class.name;
     } else if (key == "era") {
       check_name(table, key, *v, model::kEraNames);
     } else if (key == "style") {
@@ -285,8 +285,8 @@ class Reader {
     } else if (kind == model::DetailKind::edge) {
       text("kind", [&](const std::string& v) {
         std::vector<std::string> kinds;
-        for (int i = 1; i < model::kEdgeKindCount; ++i)
-          kinds.emplace_back(model::name(static_cast<model::EdgeKind>(i)));
+        for (int i = 1; i < model::kWallSegmentKindCount; ++i)
+          kinds.emplace_back(model::name(static_cast<model::WallSegmentKind>(i)));
         check_name(table, "kind", v, kinds);
       });
       number("wall_thickness", 0.05, 3);

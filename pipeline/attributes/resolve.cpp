@@ -9,7 +9,7 @@
 #include "pipeline/base/random.h"
 #include "pipeline/attributes/roof_edges.h"
 #include "pipeline/attributes/tag_conflicts.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "styles/roofs/roof_sides.h"
 
 namespace blockrand::attributes {
@@ -40,7 +40,7 @@ constexpr float kPresetConfidence = 0.3f;
 constexpr float kPlinthConfidence = 0.6f;
 constexpr float kDefaultConfidence = 0.1f;
 
-/// degrees. Wings of half depth lean on the neighbour's wall at 5 to 20 (styles.md 2.7).
+/// degrees. Wings of half depth lean on the neighbour's wall at 5 to 20 (docs/style_measures.md 2.7).
 constexpr double kLeanPitch = 12;
 
 double tangent(double degrees) { return base::tan(degrees * base::kRadiansPerDegree); }
@@ -94,12 +94,12 @@ struct Resolver {
   double usual_pitch_asked = 0;         ///< degrees, of usual_height()
 
   template <class T>
-  Sourced<T> make(T value, Source source, double confidence, std::string why, std::vector<model::Candidate> lost = {}) {
+  Sourced<T> make(T value, Source source, double confidence, std::string why, std::vector<model::Candidate> other_candidates = {}) {
     return {std::move(value), source, static_cast<float>(confidence),
-            region.evidence.add({std::move(why), std::move(lost)})};
+            region.evidence.add({std::move(why), std::move(other_candidates)})};
   }
   template <class T>
-  model::Candidate lost(const Choice<T>& choice) {
+  model::Candidate other_candidates(const Choice<T>& choice) {
     return {choice.source, static_cast<float>(choice.confidence), text_of(choice.value), choice.why};
   }
   /// The first of `choices`, which stand in the order of their strength; the others are noted as what lost.
@@ -107,7 +107,7 @@ struct Resolver {
   Sourced<T> first(std::vector<Choice<T>> choices) {
     std::vector<model::Candidate> others;
     others.reserve(choices.size() - 1);
-    for (std::size_t i = 1; i < choices.size(); ++i) others.push_back(lost(choices[i]));
+    for (std::size_t i = 1; i < choices.size(); ++i) others.push_back(other_candidates(choices[i]));
     Choice<T>& won = choices.front();
     return make<T>(std::move(won.value), won.source, won.confidence, std::move(won.why), std::move(others));
   }
@@ -139,11 +139,11 @@ struct Resolver {
       choices.push_back({*own.storeys, Source::tag, kTagConfidence, "tagged"});
     if (outline && !own.height && outline->storeys)
       choices.push_back({*outline->storeys, Source::implied, kOutlineConfidence, "the outline's storeys"});
-    if (const auto& offer = building.inferred.storeys; offer.confidence > 0)
-      choices.push_back({static_cast<double>(offer.value), offer.source, static_cast<double>(offer.confidence), offer.why});
-    else if (const auto opinion = in.neighbours.storeys(place(), group, id, options.neighbour_minimum); opinion && !is_non_house())
-      choices.push_back({opinion->value, Source::neighbours, 0.3 + 0.4 * opinion->share,
-                         fmt::format("median of {} neighbours within {:.0f} m", opinion->voices, in.neighbours.reach())});
+    if (const auto& inferred_candidate = building.inferred.storeys; inferred_candidate.confidence > 0)
+      choices.push_back({static_cast<double>(inferred_candidate.value), inferred_candidate.source, static_cast<double>(inferred_candidate.confidence), inferred_candidate.why});
+    else if (const auto vote = in.neighbours.storeys(place(), group, id, options.neighbour_minimum); vote && !is_non_house())
+      choices.push_back({vote->value, Source::neighbours, 0.3 + 0.4 * vote->share,
+                         fmt::format("median of {} neighbours within {:.0f} m", vote->voices, in.neighbours.reach())});
     choices.push_back({preset.storeys, preset_source(), preset_confidence(), preset_name()});
     return first(std::move(choices));
   }
@@ -167,19 +167,19 @@ struct Resolver {
     std::vector<Choice<RoofShape>> choices;
     if (own.roof_shape) choices.push_back({*own.roof_shape, Source::tag, kTagConfidence, "tagged"});
     // What neighbours and evidence say; sloped roofs only where rafters reach.
-    std::optional<context::NeighbourOpinion<RoofShape>> opinion;
-    if (!is_non_house()) opinion = in.neighbours.roof_shape(place(), group, id, options.neighbour_minimum);
-    const model::Offer<RoofShape>& offer = building.inferred.roof_shape;
-    std::string opinion_why;
-    Source opinion_source = Source::neighbours;
-    if (offer.confidence > 0) {
-      opinion = context::NeighbourOpinion<RoofShape>{offer.value, 0, static_cast<double>(offer.confidence)};
-      opinion_why = offer.why;
-      opinion_source = offer.source;
-    } else if (opinion) {
-      opinion_why = fmt::format("{:.0f} % of {} neighbours within {:.0f} m", 100 * opinion->share, opinion->voices, in.neighbours.reach());
+    std::optional<context::NeighbourVote<RoofShape>> vote;
+    if (!is_non_house()) vote = in.neighbours.roof_shape(place(), group, id, options.neighbour_minimum);
+    const model::InferredCandidate<RoofShape>& inferred_candidate = building.inferred.roof_shape;
+    std::string vote_why;
+    Source vote_source = Source::neighbours;
+    if (inferred_candidate.confidence > 0) {
+      vote = context::NeighbourVote<RoofShape>{inferred_candidate.value, 0, static_cast<double>(inferred_candidate.confidence)};
+      vote_why = inferred_candidate.why;
+      vote_source = inferred_candidate.source;
+    } else if (vote) {
+      vote_why = fmt::format("{:.0f} % of {} neighbours within {:.0f} m", 100 * vote->share, vote->voices, in.neighbours.reach());
     }
-    const bool agreed = opinion && (offer.confidence > 0 || opinion->share >= 0.5);
+    const bool agreed = vote && (inferred_candidate.confidence > 0 || vote->share >= 0.5);
     if (part && !part->roof_lines.empty())
       choices.push_back({RoofShape::gabled, Source::implied, kImpliedConfidence, "ridges are mapped"});
     if ((own.roof_height && *own.roof_height < kNoRoofHeight) || (own.roof_angle && *own.roof_angle < kNoRoofAngle))
@@ -187,8 +187,8 @@ struct Resolver {
     if (own.roof_orientation || own.roof_direction || tags_speak_of_slope()) {
       // A direction alone means one slope, storeys or an angle mean two, or what sloped roof is usual here.
       const bool one_slope = own.roof_direction && !own.roof_orientation && !tags_speak_of_slope();
-      const bool as_usual = agreed && opinion->value != RoofShape::flat && opinion->value != RoofShape::other;
-      choices.push_back({one_slope ? RoofShape::skillion : as_usual ? opinion->value : RoofShape::gabled, Source::implied,
+      const bool as_usual = agreed && vote->value != RoofShape::flat && vote->value != RoofShape::other;
+      choices.push_back({one_slope ? RoofShape::skillion : as_usual ? vote->value : RoofShape::gabled, Source::implied,
                          kImpliedConfidence,
                          as_usual && !one_slope ? "other roof tags speak of a slope, neighbours of this one" : "other roof tags speak of a slope"});
     }
@@ -202,9 +202,9 @@ struct Resolver {
       choices.push_back({RoofShape::flat, Source::geometry, kImpliedConfidence, fmt::format("{:g} storeys are too many for rafters", *counted)});
     if (preset.roof_shape != RoofShape::flat && part && roofs::is_enclosed(plan(), part->roof_edges))
       choices.push_back({RoofShape::flat, Source::geometry, kImpliedConfidence, "neighbours stand at all sides: no side for eaves"});
-    if (agreed && (opinion->value == RoofShape::flat || !wide))
-      choices.push_back({opinion->value, opinion_source, offer.confidence > 0 ? static_cast<double>(offer.confidence) : 0.2 + 0.5 * opinion->share,
-                         std::move(opinion_why)});
+    if (agreed && (vote->value == RoofShape::flat || !wide))
+      choices.push_back({vote->value, vote_source, inferred_candidate.confidence > 0 ? static_cast<double>(inferred_candidate.confidence) : 0.2 + 0.5 * vote->share,
+                         std::move(vote_why)});
     if (preset.roof_shape != RoofShape::flat && wide)
       choices.push_back({RoofShape::flat, Source::geometry, kGeometryConfidence,
                          fmt::format("the plan is {:.0f} m wide, too wide for rafters", width())});
@@ -483,7 +483,7 @@ struct Resolver {
     const auto known = [&](base::StringId value) -> int {
       return value == 0 ? -1 : in.defaults.material(text(value));
     };
-    const auto class_name = [&](int index) { return in.defaults.materials[static_cast<std::size_t>(index)].looks.name; };
+    const auto class_name = [&](int index) { return in.defaults.materials[static_cast<std::size_t>(index)].material_class.name; };
     std::vector<Choice<std::string>> choices;
     if (const int m = known(tagged); m >= 0)
       choices.push_back({class_name(m), Source::tag, kTagConfidence, "tagged " + std::string(text(tagged))});
@@ -620,9 +620,9 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
   const auto use_text = [&](const MappedAttributes& mapped) { return region.extract->strings.view(mapped.use); };
   for (Building& building : region.buildings) {
     prepare_roof_plans(building, options.collinear_tolerance);
-    const OverrideEntry* const ordered = in.overrides ? in.overrides->find(building.osm) : nullptr;
+    const OverrideEntry* const entry_of_building = in.overrides ? in.overrides->find(building.osm) : nullptr;
     context::BuildingGround ground = in.ground(building);
-    override_ground(ordered, ground);
+    override_ground(entry_of_building, ground);
     Sourced<double> lowest = ground.lowest;
     lowest.evidence = region.evidence.add({ground_reason(lowest.source), {}});
     const std::string_view use = use_text(building.mapped);
@@ -630,7 +630,7 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
     // An outline of a few square metres that says nothing but `yes` is no house.
     const bool small = use == "yes" && !building.outline.empty() && area < in.defaults.small_area;
     UseDefaults styled, changed;
-    const UseDefaults& preset = with_overrides(ordered, with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled), changed);
+    const UseDefaults& preset = with_overrides(entry_of_building, with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled), changed);
     const std::uint8_t group = neighbour_group(in.defaults, use, area);
 
     std::vector<model::ReportRow> conflicts;

@@ -28,8 +28,8 @@ struct ResolveInputs {
   const classify::Catalogue* catalogue = nullptr;
 };
 
-/// m. Of the storey behind a mansard's steep slopes, where floors are `storey_height` apart: attics are lower (styles.md 2.7:
-/// the break lies 2.2 to 2.8 m above the floor).
+/// m. Of the storey behind a mansard's steep slopes, where floors are `storey_height` apart: attics are lower
+/// (docs/style_measures.md 2.7: the break lies 2.2 to 2.8 m above the floor).
 double attic_height(double storey_height);
 
 /// Which group's neighbours speak for a building whose use is `use` and whose footprint measures `area` m².

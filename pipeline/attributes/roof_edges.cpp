@@ -5,13 +5,13 @@
 #include <cmath>
 #include <tuple>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::attributes {
 
-using model::EdgeKind;
+using model::WallSegmentKind;
 using model::Point2;
 using model::Polygon;
 using model::Ring;
@@ -23,23 +23,23 @@ constexpr double kPartyShare = 0.5;  ///< of an edge: neighbours that stand at l
 constexpr double kRearShare = 0.75;  ///< the same of edges that look away from the street (roofs::party_share_of)
 constexpr double kLooksAway = -0.68199836006249850;  ///< cosine of 133 degrees
 
-RoofEdge kind_of(const model::FacadeEdge& e) {
+RoofEdge kind_of(const model::WallSegment& e) {
   switch (e.kind) {
-    case EdgeKind::street:
-    case EdgeKind::passage:
+    case WallSegmentKind::street:
+    case WallSegmentKind::passage:
       return RoofEdge::street;  // gateways open from streets, mostly
-    case EdgeKind::courtyard:
+    case WallSegmentKind::courtyard:
       return RoofEdge::courtyard;
-    case EdgeKind::party_wall:
+    case WallSegmentKind::party_wall:
       return e.outbuilding ? RoofEdge::open : RoofEdge::party_wall;
-    case EdgeKind::unknown:
-    case EdgeKind::side:
+    case WallSegmentKind::unknown:
+    case WallSegmentKind::side:
       break;
   }
   return RoofEdge::open;
 }
 
-/// m of the stretch from a to b that lie on the edge from p to q and run its way.
+/// m of the wall segment from a to b that lie on the edge from p to q and run its way.
 double common_length(Point2 a, Point2 b, Point2 p, Point2 q) {
   const double length = distance(q, p);
   const Point2 u{(q.x - p.x) / length, (q.y - p.y) / length};
@@ -47,7 +47,7 @@ double common_length(Point2 a, Point2 b, Point2 p, Point2 q) {
   const auto way = [&](Point2 r) { return (r.x - p.x) * u.x + (r.y - p.y) * u.y; };
   const double from = std::max(way(a), 0.0), to = std::min(way(b), length);
   if (to <= from) return 0;
-  // Where the two run side by side, not at the stretch's far ends, which may lie on another edge.
+  // Where the two run side by side, not at the wall segment's far ends, which may lie on another edge.
   const double whole = way(b) - way(a);
   const auto at = [&](double w) {
     const double t = (w - way(a)) / whole;
@@ -56,11 +56,11 @@ double common_length(Point2 a, Point2 b, Point2 p, Point2 q) {
   return std::max(off(at(from)), off(at(to))) <= kSameWall ? to - from : 0;
 }
 
-std::vector<RoofEdge> edges_on(const OutlineStretches& stretches, const Polygon& plan) {
+std::vector<RoofEdge> edges_on(const OutlineSegments& segments, const Polygon& plan) {
   std::vector<RoofEdge> out;
   const auto add = [&](const Ring& ring) {
     for (std::size_t i = 0; i < ring.size(); ++i)
-      out.push_back(stretches.kind(ring.points[i], ring.points[(i + 1) % ring.size()]));
+      out.push_back(segments.kind(ring.points[i], ring.points[(i + 1) % ring.size()]));
   };
   add(plan.outer);
   for (const Ring& hole : plan.holes) add(hole);
@@ -69,10 +69,10 @@ std::vector<RoofEdge> edges_on(const OutlineStretches& stretches, const Polygon&
 
 }  // namespace
 
-OutlineStretches::OutlineStretches(const model::Building& building) {
-  stretches_.reserve(building.edges.size());
+OutlineSegments::OutlineSegments(const model::Building& building) {
+  segments_.reserve(building.edges.size());
   std::tuple<long long, Point2> longest;
-  for (const model::FacadeEdge& e : building.edges) {
+  for (const model::WallSegment& e : building.edges) {
     if (e.polygon >= building.outline.size()) continue;
     const Polygon& outline = building.outline[e.polygon];
     if (e.ring > outline.holes.size()) continue;
@@ -82,9 +82,9 @@ OutlineStretches::OutlineStretches(const model::Building& building) {
     const double length = distance(q, p);
     if (length <= 0) continue;
     const auto at = [&](double s) { return Point2{p.x + (q.x - p.x) * s / length, p.y + (q.y - p.y) * s / length}; };
-    stretches_.push_back({at(e.start), at(e.end), kind_of(e)});
+    segments_.push_back({at(e.start), at(e.end), kind_of(e)});
     // The longest front; of equal ones the one with the least corner.
-    const Stretch& last = stretches_.back();
+    const OutlineSegment& last = segments_.back();
     const std::tuple key(std::llround((e.end - e.start) * 100), Point2{-last.a.x, -last.a.y});
     if (last.kind != RoofEdge::street || (street_ && key <= longest)) continue;
     longest = key;
@@ -92,11 +92,11 @@ OutlineStretches::OutlineStretches(const model::Building& building) {
   }
 }
 
-RoofEdge OutlineStretches::kind(Point2 p, Point2 q) const {
+RoofEdge OutlineSegments::kind(Point2 p, Point2 q) const {
   std::array<double, 4> length{};
   const double low_x = std::min(p.x, q.x) - kSameWall, high_x = std::max(p.x, q.x) + kSameWall;
   const double low_y = std::min(p.y, q.y) - kSameWall, high_y = std::max(p.y, q.y) + kSameWall;
-  for (const Stretch& s : stretches_) {
+  for (const OutlineSegment& s : segments_) {
     if (std::max(s.a.x, s.b.x) < low_x || std::min(s.a.x, s.b.x) > high_x || std::max(s.a.y, s.b.y) < low_y ||
         std::min(s.a.y, s.b.y) > high_y)
       continue;
@@ -113,7 +113,7 @@ RoofEdge OutlineStretches::kind(Point2 p, Point2 q) const {
 }
 
 std::vector<RoofEdge> roof_edges(const model::Building& building, const Polygon& plan) {
-  return building.edges.empty() ? std::vector<RoofEdge>{} : edges_on(OutlineStretches(building), plan);
+  return building.edges.empty() ? std::vector<RoofEdge>{} : edges_on(OutlineSegments(building), plan);
 }
 
 std::optional<Polygon> simpler_plan(const Polygon& plan, double tolerance) {
@@ -125,11 +125,11 @@ std::optional<Polygon> simpler_plan(const Polygon& plan, double tolerance) {
 }
 
 void prepare_roof_plans(model::Building& building, double tolerance) {
-  const OutlineStretches stretches(building);
+  const OutlineSegments segments(building);
   for (model::BuildingPart& part : building.parts) {
     if (part.plan.outer.size() < 3) continue;
     part.roof_plan = simpler_plan(part.plan, tolerance).value_or(part.plan);
-    part.roof_edges = building.edges.empty() ? std::vector<RoofEdge>{} : edges_on(stretches, part.roof_plan);
+    part.roof_edges = building.edges.empty() ? std::vector<RoofEdge>{} : edges_on(segments, part.roof_plan);
   }
 }
 

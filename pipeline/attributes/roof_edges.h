@@ -9,26 +9,26 @@
 
 namespace blockrand::attributes {
 
-/// What each edge of a plan is to the roof above it, ring by ring, from the stretches of the building's outline that
+/// What each edge of a plan is to the roof above it, ring by ring, from the wall segments of the building's outline that
 /// lie on it: a party wall where at least half of it (three quarters where it looks away from the street) has a
 /// neighbour that is no outbuilding, else what most of it faces. Empty when the building's edges have no labels; open
-/// where no stretch lies (walls between two parts of a building).
+/// where no wall segment lies (walls between two parts of a building).
 std::vector<model::RoofEdge> roof_edges(const model::Building& building, const model::Polygon& plan);
 
-/// The labelled stretches of a building's outline, for asking about single walls.
-class OutlineStretches {
+/// The labelled wall segments of a building's outline, for asking about single walls.
+class OutlineSegments {
  public:
-  explicit OutlineStretches(const model::Building& building);
-  bool empty() const { return stretches_.empty(); }
+  explicit OutlineSegments(const model::Building& building);
+  bool empty() const { return segments_.empty(); }
   /// What the wall from p to q is, by the rules of roof_edges().
   model::RoofEdge kind(model::Point2 p, model::Point2 q) const;
 
  private:
-  struct Stretch {
+  struct OutlineSegment {
     model::Point2 a, b;
     model::RoofEdge kind = model::RoofEdge::open;
   };
-  std::vector<Stretch> stretches_;
+  std::vector<OutlineSegment> segments_;
   std::optional<model::Point2> street_;  ///< which way the longest street front looks
 };
 
@@ -38,7 +38,7 @@ void prepare_roof_plans(model::Building& building, double tolerance);
 /// The plan without points that bend no wall; none when that is no simple polygon any more.
 std::optional<model::Polygon> simpler_plan(const model::Polygon& plan, double tolerance);
 
-/// m. Stretches of an outline belong to an edge of a part that lies so near: repair moves both together.
+/// m. Wall segments of an outline belong to an edge of a part that lies so near: repair moves both together.
 inline constexpr double kSameWall = 0.1;
 
 }  // namespace blockrand::attributes

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "pipeline/base/portable_math.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::attributes {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "pipeline/attributes/resolve.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::attributes {
 

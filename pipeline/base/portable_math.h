@@ -1,4 +1,4 @@
-// Elementary functions whose last bit is the same on every x86-64 (DESIGN law 3).
+// Elementary functions whose last bit is the same on every x86-64 (ARCHITECTURE.md, law 3).
 //
 // The C library picks its sin, exp, ... by the CPU (with and without fused multiply-add), so their last bits travel
 // from machine to machine. These use + - * / and sqrt alone, which IEEE 754 rounds in one way, and steps that are

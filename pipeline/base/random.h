@@ -1,4 +1,5 @@
-// Counter-based random numbers: a value depends on its key alone, never on how many were drawn before (DESIGN law 3).
+// Counter-based random numbers: a value depends on its key alone, never on how many were drawn before
+// (ARCHITECTURE.md, law 3).
 #pragma once
 
 #include <cstdint>

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "pipeline/cli/build.h"
-#include "pipeline/cli/compare.h"
-#include "pipeline/cli/districts.h"
-#include "pipeline/cli/explain.h"
-#include "pipeline/cli/grammar.h"
+#include "pipeline/cli/build_command.h"
+#include "pipeline/cli/compare_command.h"
+#include "pipeline/cli/districts_command.h"
+#include "pipeline/cli/explain_command.h"
+#include "pipeline/cli/grammar_command.h"
 #include "pipeline/cli/help.h"
-#include "pipeline/cli/info.h"
-#include "pipeline/cli/validate.h"
+#include "pipeline/cli/info_command.h"
+#include "pipeline/cli/validate_command.h"
 
 namespace blockrand::cli {
 

@@ -1,4 +1,4 @@
-// What the program's exit code says (DESIGN section 8).
+// What the program's exit code says (ARCHITECTURE.md, "Exit codes").
 #pragma once
 
 namespace blockrand::cli {

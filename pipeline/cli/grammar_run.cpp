@@ -19,7 +19,7 @@
 #include "styles/grammar/shapes/initial_shape.h"
 #include "styles/grammar/shapes/mesh_triangles.h"
 #include "styles/grammar/evaluation/rule_tests.h"
-#include "styles/grammar/shapes/surroundings.h"
+#include "styles/grammar/shapes/occlusion.h"
 #include "styles/grammar/language/value_text.h"
 
 namespace blockrand::cli {

@@ -8,7 +8,7 @@
 #include <regex>
 
 #include "pipeline/facades/facade_context.h"
-#include "pipeline/facades/grammar_book.h"
+#include "pipeline/facades/grammar_library.h"
 #include "styles/grammar/evaluation/asset_files.h"
 #include "styles/grammar/evaluation/pattern.h"
 
@@ -77,7 +77,8 @@ std::optional<fs::path> find_file(const std::vector<fs::path>& folders, const st
   return std::nullopt;
 }
 
-/// The files that a query names: `*` any letters, `?` one letter; "$…" is a regular expression (cga.md §3.2).
+/// The files that a query names: `*` any letters, `?` one letter; "$…" is a regular expression
+/// (docs/rule_language.md §3.2).
 tl::expected<std::vector<std::string>, std::string> search(const std::vector<fs::path>& folders,
                                                            const std::string& query) {
   std::optional<std::regex> pattern;

@@ -12,7 +12,7 @@
 #include "pipeline/base/markup.h"
 #include "pipeline/base/portable_math.h"
 #include "pipeline/base/text.h"
-#include "pipeline/compare/report.h"
+#include "pipeline/compare/comparison_report.h"
 #include "pipeline/compare/report_numbers.h"
 #include "pipeline/compare/summary.h"
 
@@ -29,8 +29,8 @@ double rounding(const MeasureInfo& measure) {
 }
 
 /// Values of headline().
-BaselineVerdict::Line judge(const MeasureInfo& measure, double before, double after, double allowed) {
-  BaselineVerdict::Line line{std::string(measure.id), before, after, 0, false};
+BaselineResult::Line judge(const MeasureInfo& measure, double before, double after, double allowed) {
+  BaselineResult::Line line{std::string(measure.id), before, after, 0, false};
   const double step = rounding(measure);
   switch (measure.better) {
     case Better::higher:
@@ -218,15 +218,15 @@ void append_list(std::string& out, std::string_view what, const std::vector<std:
 
 }  // namespace
 
-bool BaselineVerdict::worse() const {
+bool BaselineResult::worse() const {
   return !lost.empty() || !lost_buildings.empty() ||
          std::any_of(lines.begin(), lines.end(), [](const Line& line) { return line.fails; });
 }
 
-BaselineVerdict compare_with_baseline(const Comparison& comparison, const std::string& baseline_json,
+BaselineResult compare_with_baseline(const Comparison& comparison, const std::string& baseline_json,
                                       const std::string& baseline_path, double allowed, const OptionList& options) {
   const Baseline baseline(baseline_json, baseline_path);
-  BaselineVerdict verdict;
+  BaselineResult verdict;
   for (std::size_t m = 0; m < kMeasureCount; ++m) {
     const MeasureInfo& measure = kMeasures[m];
     if (measure.better == Better::none) continue;
@@ -263,9 +263,9 @@ BaselineVerdict compare_with_baseline(const Comparison& comparison, const std::s
   return verdict;
 }
 
-std::string failed_text(const BaselineVerdict& verdict) {
+std::string failed_text(const BaselineResult& verdict) {
   std::vector<std::string> parts;
-  for (const BaselineVerdict::Line& line : verdict.lines)
+  for (const BaselineResult::Line& line : verdict.lines)
     if (line.fails) parts.push_back(line.measure);
   for (const std::string& lost : verdict.lost) parts.push_back("lost " + lost);
   if (const std::size_t n = verdict.lost_buildings.size(); n > 0)
@@ -273,9 +273,9 @@ std::string failed_text(const BaselineVerdict& verdict) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string verdict_text(const BaselineVerdict& verdict) {
+std::string baseline_text(const BaselineResult& verdict) {
   std::string out = fmt::format("{:<26}{:>12}{:>12}{:>11}\n", "against the baseline", "before", "now", "worse by");
-  for (const BaselineVerdict::Line& line : verdict.lines) {
+  for (const BaselineResult::Line& line : verdict.lines) {
     if (line.worse_by == 0) continue;
     const std::string by = std::abs(line.worse_by) >= 10 ? fmt::format("{:>+.0f} x", line.worse_by)
                                                          : fmt::format("{:>+.1f} %", line.worse_by * 100);
@@ -283,7 +283,7 @@ std::string verdict_text(const BaselineVerdict& verdict) {
                        line.fails ? "  WORSE" : "");
   }
   const auto same = std::count_if(verdict.lines.begin(), verdict.lines.end(),
-                                  [](const BaselineVerdict::Line& line) { return line.worse_by == 0; });
+                                  [](const BaselineResult::Line& line) { return line.worse_by == 0; });
   if (same > 0) out += fmt::format("{} of {} measures as before\n", same, verdict.lines.size());
   append_list(out, "LOST: ", verdict.lost);
   append_list(out, "LOST: building ", verdict.lost_buildings);

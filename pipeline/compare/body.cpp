@@ -9,7 +9,7 @@
 #include "pipeline/compare/area_vector.h"
 #include "pipeline/compare/cover.h"
 #include "pipeline/compare/face_triangles.h"
-#include "pipeline/compare/roof_surfaces.h"
+#include "pipeline/compare/roofs_from_above.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/valid_polygon.h"

@@ -4,7 +4,7 @@
 #include "pipeline/base/progress.h"
 #include "pipeline/compare/comparison.h"
 #include "pipeline/compare/options.h"
-#include "pipeline/compare/report.h"
+#include "pipeline/compare/comparison_report.h"
 
 namespace blockrand::compare {
 

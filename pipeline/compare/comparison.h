@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pipeline/compare/city.h"
-#include "pipeline/compare/facades.h"
+#include "pipeline/compare/facade_agreement.h"
 #include "pipeline/compare/measures.h"
 
 namespace blockrand::compare {

@@ -7,7 +7,7 @@
 #include "pipeline/compare/read_city.h"
 #include "pipeline/compare/surface_samples.h"
 #include "pipeline/geometry/plan_shape.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::compare {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pipeline/compare/city.h"
-#include "pipeline/compare/roof_surfaces.h"
+#include "pipeline/compare/roofs_from_above.h"
 #include "pipeline/geometry/box_index.h"
 
 namespace blockrand::compare {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "pipeline/compare/facades.h"
+#include "pipeline/compare/facade_agreement.h"
 
 namespace blockrand::compare {
 namespace {

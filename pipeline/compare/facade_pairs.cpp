@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "pipeline/base/portable_math.h"
-#include "pipeline/compare/facades.h"
+#include "pipeline/compare/facade_agreement.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::compare {

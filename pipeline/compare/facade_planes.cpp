@@ -9,7 +9,7 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/compare/area_vector.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::compare {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pipeline/compare/city.h"
-#include "pipeline/compare/facades.h"
+#include "pipeline/compare/facade_agreement.h"
 
 namespace blockrand::compare {
 

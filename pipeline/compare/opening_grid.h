@@ -1,7 +1,7 @@
 // Rows and columns of a facade's openings. Internal to this folder.
 #pragma once
 
-#include "pipeline/compare/facades.h"
+#include "pipeline/compare/facade_agreement.h"
 
 namespace blockrand::compare {
 

@@ -1,4 +1,4 @@
-#include "pipeline/compare/report_sections.h"
+#include "pipeline/compare/comparison_sections.h"
 
 namespace blockrand::compare {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/compare/report.h"
+#include "pipeline/compare/comparison_report.h"
 
 namespace blockrand::compare {
 

@@ -3,7 +3,7 @@
 
 #include "pipeline/base/markup.h"
 #include "pipeline/base/text.h"
-#include "pipeline/compare/report.h"
+#include "pipeline/compare/comparison_report.h"
 #include "pipeline/compare/report_numbers.h"
 #include "pipeline/compare/report_places.h"
 

@@ -9,7 +9,7 @@
 #include "pipeline/base/portable_math.h"
 #include "pipeline/compare/report_numbers.h"
 #include "pipeline/compare/report_svg.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::compare {
 namespace {

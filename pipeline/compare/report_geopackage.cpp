@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/compare/report.h"
+#include "pipeline/compare/comparison_report.h"
 #include "pipeline/compare/report_numbers.h"
 #include "pipeline/compare/report_places.h"
 #include "pipeline/layer_file/layer_file.h"

@@ -5,9 +5,9 @@
 #include "pipeline/base/markup.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/version.h"
-#include "pipeline/compare/report.h"
+#include "pipeline/compare/comparison_report.h"
 #include "pipeline/compare/report_numbers.h"
-#include "pipeline/compare/report_sections.h"
+#include "pipeline/compare/comparison_sections.h"
 
 namespace blockrand::compare {
 namespace {

@@ -9,7 +9,7 @@
 #include "pipeline/compare/report_numbers.h"
 #include "pipeline/compare/report_pictures.h"
 #include "pipeline/compare/report_places.h"
-#include "pipeline/compare/report_sections.h"
+#include "pipeline/compare/comparison_sections.h"
 #include "pipeline/compare/report_svg.h"
 
 namespace blockrand::compare {

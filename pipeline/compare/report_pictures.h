@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pipeline/compare/report.h"
+#include "pipeline/compare/comparison_report.h"
 #include "pipeline/model/colour.h"
 
 namespace blockrand::compare {

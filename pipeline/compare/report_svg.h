@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "pipeline/compare/report.h"
+#include "pipeline/compare/comparison_report.h"
 
 namespace blockrand::compare {
 

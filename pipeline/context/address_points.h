@@ -18,13 +18,13 @@ namespace blockrand::context {
 struct PassageWay {
   model::OsmId id;
   std::string name;                   ///< of the way, mostly empty
-  double width = 0;                   ///< m, of its mouths: as tagged, else assumed by the kind of way
+  double width = 0;                   ///< m, of its portals: as tagged, else assumed by the kind of way
   bool covered_only = false;          ///< covered=*: may run along a building as well as through one
   std::vector<model::Point2> points;  ///< m, on the grid
   std::vector<std::int64_t> nodes;    ///< parallel to `points`
 };
 
-// m. Widths of mouths where no tag tells.
+// m. Widths of portals where no tag tells.
 inline constexpr double kFootPassageWidth = 2.5;     ///< footways, paths, steps: a door for a cart
 inline constexpr double kServicePassageWidth = 3.5;  ///< service ways: a gateway for a lorry
 inline constexpr double kStreetPassageWidth = 5.5;   ///< streets: two cars pass

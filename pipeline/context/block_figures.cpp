@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "pipeline/geometry/box_index.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/segment_grid.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/model/vector.h"

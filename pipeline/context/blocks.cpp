@@ -8,7 +8,7 @@
 
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/planar_faces.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::context {
 

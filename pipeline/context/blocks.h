@@ -15,8 +15,8 @@ namespace blockrand::context {
 struct BlockOptions {
   /// m, the longer side of the bounding box. Larger blocks give no ratios: the result for a block depends on lines that
   /// come into its box and on nothing else, so a tile that reads this far around a building finds the same block as a
-  /// whole build (DESIGN law 4). Perimeter blocks of Berlin are 100 to 350 m; what is larger is railway land, parks,
-  /// fields.
+  /// whole build (ARCHITECTURE.md, law 4). Perimeter blocks of Berlin are 100 to 350 m; what is larger is railway land,
+  /// parks, fields.
   double max_extent = 1000;
   /// m, 2 area / perimeter: the width of a strip. The green between two carriageways is rarely wider (centre line to
   /// centre line); the narrowest blocks that hold two rows of houses are 30 m and more.

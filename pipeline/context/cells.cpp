@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::context {
 

@@ -29,7 +29,7 @@ struct CellIndex {
 /// Each cell owns its western and southern edge.
 CellIndex cell_of(model::Point2 p);
 
-/// What a cell learns of a building: geometry and tagged values only, never inferred ones (DESIGN law 4).
+/// What a cell learns of a building: geometry and tagged values only, never inferred ones (ARCHITECTURE.md, law 4).
 struct CellBuilding {
   model::Point2 place;            ///< m; the whole building counts in the cell of this point
   double area = 0;                ///< m², footprint

@@ -8,9 +8,9 @@
 #include <tuple>
 
 #include "pipeline/base/parallel.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/box_index.h"
-#include "pipeline/footprints/rows.h"
+#include "pipeline/footprints/terrace_rows.h"
 
 namespace blockrand::context {
 
@@ -111,7 +111,7 @@ void find_loose_courtyards(const Extract& extract, const footprints::FootprintSt
   footprints::FootprintStore loose(store.size());
   for (std::uint32_t b = 0; b < store.size(); ++b)
     if (out.block_of[b] == model::kNoIndex && is_built_land(store[b])) loose.set(b, store[b], store.polygons(b));
-  std::vector<footprints::RowPlan> groups = footprints::find_rows(loose, context::CourtyardOptions{}.max_opening);
+  std::vector<footprints::TerraceRowPlan> groups = footprints::find_terrace_rows(loose, context::CourtyardOptions{}.max_opening);
   // A single building has courtyards, too.
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 64;
   std::vector<std::vector<Courtyard>> slots(in_flight);

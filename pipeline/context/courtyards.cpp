@@ -6,7 +6,7 @@
 
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/planar_faces.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/segment_grid.h"
 #include "pipeline/model/vector.h"
 

@@ -16,7 +16,7 @@ namespace blockrand::context {
 struct Footprint {
   model::OsmId id;
   model::Polygon polygon;         ///< metres, build CRS; of either orientation
-  std::optional<double> storeys;  ///< as tagged, never inferred (DESIGN law 4)
+  std::optional<double> storeys;  ///< as tagged, never inferred (ARCHITECTURE.md, law 4)
   bool canopy = false;            ///< building=roof: covers the ground and has no walls
 };
 

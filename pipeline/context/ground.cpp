@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "importers/elevation/terrain.h"
-#include "pipeline/geometry/facade_stretch.h"
+#include "pipeline/geometry/wall_segment.h"
 
 namespace blockrand::context {
 
@@ -69,8 +69,8 @@ std::optional<Entrance> entrance(const model::Building& building, const Terrain&
                                  const georef::Projection& projection) {
   std::optional<GroundRange> doors, front, around;
   for (const std::uint32_t index : building.situation.fronts) {
-    const model::FacadeEdge& edge = building.edges[index];
-    for (const model::EdgePoint& point : edge.points)
+    const model::WallSegment& edge = building.edges[index];
+    for (const model::WallPoint& point : edge.points)
       if (point.entrance) widen(doors, terrain.range_along(std::vector{projection.inverse(point.place)}));
     const auto ends = geometry::ends_of(building, edge);
     if (!ends) continue;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "pipeline/context/edge_contacts.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/context/wall_contacts.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::context {
 
@@ -40,12 +40,12 @@ double distance_to(const model::Polygon& polygon, Point2 p) {
 }
 
 /// Whether a piece of the footprint's walls within reach of `p` has no neighbour against it.
-bool has_free_wall(const Footprint& footprint, Point2 p, const SurroundingsIndex& index, const EdgeOptions& options) {
+bool has_free_wall(const Footprint& footprint, Point2 p, const VicinityIndex& index, const WallSegmentOptions& options) {
   for (const OutlineEdge& edge : edges_of({footprint.polygon})) {
     if (edge.length == 0 || geometry::distance_to_segment(p, edge.a, edge.b) > kEntranceReach) continue;
     double at = 0;
     const auto near = [&](double end) {
-      return end - at > options.min_stretch &&
+      return end - at > options.min_wall_segment &&
              geometry::distance_to_segment(p, edge.at(at), edge.at(end)) <= kEntranceReach;
     };
     for (const Contact& c : contacts_of(edge, footprint.id, footprint.canopy, index, options)) {
@@ -79,7 +79,7 @@ int agreement_of(const SitePoint& point, const BuildingAddress& address) {
   return told ? 1 : 0;
 }
 
-int agreement_with(const SitePoint& point, model::OsmId building, const SurroundingsIndex& index) {
+int agreement_with(const SitePoint& point, model::OsmId building, const VicinityIndex& index) {
   const auto& all = index.all().addresses;
   const auto found = std::lower_bound(all.begin(), all.end(), building,
                                       [](const BuildingAddress& a, model::OsmId id) { return a.id < id; });
@@ -96,7 +96,7 @@ void keep_best(std::vector<Candidate>& candidates, Worse&& worse) {
 }
 
 /// One for each building, however many polygons it has.
-std::vector<Candidate> candidates_of(const SitePoint& point, const SurroundingsIndex& index) {
+std::vector<Candidate> candidates_of(const SitePoint& point, const VicinityIndex& index) {
   std::vector<Candidate> out;
   for (const std::uint32_t f : index.footprints_at(point.place, kEntranceReach)) {
     const Footprint& footprint = index.all().footprints[f];
@@ -113,8 +113,8 @@ std::vector<Candidate> candidates_of(const SitePoint& point, const SurroundingsI
   return out;
 }
 
-void look_for_free_walls(std::vector<Candidate>& candidates, const SitePoint& point, const SurroundingsIndex& index,
-                         const EdgeOptions& options) {
+void look_for_free_walls(std::vector<Candidate>& candidates, const SitePoint& point, const VicinityIndex& index,
+                         const WallSegmentOptions& options) {
   for (const std::uint32_t f : index.footprints_at(point.place, kEntranceReach)) {
     const Footprint& footprint = index.all().footprints[f];
     const Point2 place = corner_of_node(footprint.polygon, point.id).value_or(point.place);
@@ -134,7 +134,7 @@ std::optional<Point2> corner_of_node(const model::Polygon& polygon, model::OsmId
   return out;
 }
 
-model::OsmId owner_of(const SitePoint& point, const SurroundingsIndex& index, const EdgeOptions& options) {
+model::OsmId owner_of(const SitePoint& point, const VicinityIndex& index, const WallSegmentOptions& options) {
   std::vector<Candidate> candidates = candidates_of(point, index);
   keep_best(candidates, [](const Candidate& c) { return c.canopy ? 1 : 0; });
   keep_best(candidates, [](const Candidate& c) { return c.is_corner ? 0 : 1; });

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "pipeline/context/facade_edges.h"
+#include "pipeline/context/wall_segments.h"
 
 namespace blockrand::context {
 
@@ -22,6 +22,6 @@ std::optional<model::Point2> corner_of_node(const model::Polygon& polygon, model
 /// In this order: walls before canopies; outlines that the node is a corner of; the nearest, where within is nearest;
 /// among several as near (a corner that houses share) those with a wall that no neighbour covers there; the one whose own
 /// address is that of the point, house number and street before either; the least id.
-model::OsmId owner_of(const SitePoint& point, const SurroundingsIndex& surroundings, const EdgeOptions& options);
+model::OsmId owner_of(const SitePoint& point, const VicinityIndex& vicinity, const WallSegmentOptions& options);
 
 }  // namespace blockrand::context

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "pipeline/base/portable_math.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::context {
@@ -13,8 +13,8 @@ namespace blockrand::context {
 namespace {
 
 using model::BuildingPosition;
-using model::EdgeKind;
-using model::FacadeEdge;
+using model::WallSegmentKind;
+using model::WallSegment;
 using model::Point2;
 
 constexpr double kMaxChamfer = 8;           ///< m. Longer walls between two streets are fronts of their own
@@ -30,27 +30,27 @@ constexpr double kSidewards = 0.5;          ///< cosine of 60 degrees: party wal
 constexpr double kSetbackReach = 40;        ///< m to both sides: whose fronts make the building line
 constexpr double kSetbackStep = 8;          ///< m between places where it is looked for: a narrow house
 
-/// Finds the outline edge of a stretch.
+/// Finds the outline edge of a wall segment.
 class Edges {
  public:
   explicit Edges(const std::vector<OutlineEdge>& outline) : outline_(outline) {
     for (std::size_t i = 0; i < outline.size(); ++i)
       if (outline[i].edge == 0) first_[{outline[i].polygon, outline[i].ring}] = i;
   }
-  const OutlineEdge& operator[](const FacadeEdge& f) const { return outline_[first_.at({f.polygon, f.ring}) + f.edge]; }
+  const OutlineEdge& operator[](const WallSegment& f) const { return outline_[first_.at({f.polygon, f.ring}) + f.edge]; }
 
  private:
   const std::vector<OutlineEdge>& outline_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> first_;
 };
 
-bool same_street(const FacadeEdge& a, const FacadeEdge& b) {
+bool same_street(const WallSegment& a, const WallSegment& b) {
   return a.street_name.empty() && b.street_name.empty() ? a.street == b.street : a.street_name == b.street_name;
 }
 
-/// Stretches of one ring: [first, last) of Building::edges.
+/// Wall segments of one ring: [first, last) of Building::edges.
 template <class Visit>
-void for_each_ring(const std::vector<FacadeEdge>& edges, Visit&& visit) {
+void for_each_ring(const std::vector<WallSegment>& edges, Visit&& visit) {
   for (std::size_t first = 0; first < edges.size();) {
     std::size_t last = first;
     while (last < edges.size() && edges[last].polygon == edges[first].polygon && edges[last].ring == edges[first].ring) ++last;
@@ -62,7 +62,7 @@ void for_each_ring(const std::vector<FacadeEdge>& edges, Visit&& visit) {
 // ---- fronts ---------------------------------------------------------------------------------------------------------
 
 /// The street of the building's address: its own, else what most addresses on it name (ties: the first name).
-std::string address_of(const model::Building& building, const SurroundingsIndex& index, std::string_view own) {
+std::string address_of(const model::Building& building, const VicinityIndex& index, std::string_view own) {
   if (!own.empty()) return std::string(own);
   std::map<std::string, int> votes;
   for (const std::uint32_t p : index.points_near(box_of(building, 0.5))) {
@@ -82,43 +82,43 @@ std::string address_of(const model::Building& building, const SurroundingsIndex&
   return best;
 }
 
-/// Street stretches: those of the main front first, each group the longest first. `main` tells how many are the main front.
+/// Street wall segments: those of the main front first, each group the longest first. `main` tells how many are the main front.
 std::vector<std::uint32_t> fronts_of(const model::Building& building, std::string_view address, std::size_t& main) {
-  const std::vector<FacadeEdge>& edges = building.edges;
+  const std::vector<WallSegment>& edges = building.edges;
   struct Street {
-    std::vector<std::uint32_t> stretches;
+    std::vector<std::uint32_t> wall_segments;
     double length = 0;
     bool addressed = false;
   };
   std::vector<Street> streets;
   for (std::uint32_t i = 0; i < edges.size(); ++i) {
-    if (edges[i].kind != EdgeKind::street || edges[i].chamfer) continue;
+    if (edges[i].kind != WallSegmentKind::street || edges[i].chamfer) continue;
     auto street = std::find_if(streets.begin(), streets.end(),
-                               [&](const Street& s) { return same_street(edges[s.stretches[0]], edges[i]); });
+                               [&](const Street& s) { return same_street(edges[s.wall_segments[0]], edges[i]); });
     if (street == streets.end()) {
       streets.push_back({{}, 0, !address.empty() && edges[i].street_name == address});
       street = streets.end() - 1;
     }
-    street->stretches.push_back(i);
+    street->wall_segments.push_back(i);
     street->length += edges[i].length();
   }
   std::sort(streets.begin(), streets.end(), [&](const Street& a, const Street& b) {
-    const FacadeEdge &x = edges[a.stretches[0]], &y = edges[b.stretches[0]];
+    const WallSegment &x = edges[a.wall_segments[0]], &y = edges[b.wall_segments[0]];
     return std::tuple(!a.addressed, -a.length, std::string_view(x.street_name), x.street) <
            std::tuple(!b.addressed, -b.length, std::string_view(y.street_name), y.street);
   });
   std::vector<std::uint32_t> out;
-  main = streets.empty() ? 0 : streets[0].stretches.size();
+  main = streets.empty() ? 0 : streets[0].wall_segments.size();
   for (Street& street : streets) {
-    std::sort(street.stretches.begin(), street.stretches.end(), [&](std::uint32_t a, std::uint32_t b) {
+    std::sort(street.wall_segments.begin(), street.wall_segments.end(), [&](std::uint32_t a, std::uint32_t b) {
       return std::pair(-edges[a].length(), a) < std::pair(-edges[b].length(), b);
     });
-    out.insert(out.end(), street.stretches.begin(), street.stretches.end());
+    out.insert(out.end(), street.wall_segments.begin(), street.wall_segments.end());
   }
   return out;
 }
 
-/// Where the main front looks: mean of the normals by length, among those within 60 degrees of the longest stretch.
+/// Where the main front looks: mean of the normals by length, among those within 60 degrees of the longest wall segment.
 Point2 outlook(const model::Building& building, const Edges& outline, std::span<const std::uint32_t> front) {
   const Point2 main = outline[building.edges[front[0]]].outward;
   Point2 sum;
@@ -143,14 +143,14 @@ double extent(const model::Building& building, Point2 direction) {
 }
 
 /// m that a front stands behind the building line: the lower quartile of where walls stand along its street.
-std::optional<double> setback_of(const FacadeEdge& front, const OutlineEdge& edge, const SurroundingsIndex& index) {
+std::optional<double> setback_of(const WallSegment& front, const OutlineEdge& edge, const VicinityIndex& index) {
   if (front.street_distance <= 0) return std::nullopt;
   const Point2 middle = edge.at((front.start + front.end) / 2);
   // From the street's line, straight back at the front and at its neighbours.
   const Scene& scene = index.scene();
   constexpr double kBefore = 0.02;  // m; clear of the wall's own rounding
   const Point2 eye{middle.x + edge.outward.x * kBefore, middle.y + edge.outward.y * kBefore};
-  const double own = scene.look(eye, edge.outward, kEdgeReach / 2).street;
+  const double own = scene.look(eye, edge.outward, kWallSegmentReach / 2).street;
   if (!std::isfinite(own)) return std::nullopt;
   std::vector<double> depths{own};
   for (const int side : {-1, 1})
@@ -166,7 +166,7 @@ std::optional<double> setback_of(const FacadeEdge& front, const OutlineEdge& edg
 
 // ---- position -------------------------------------------------------------------------------------------------------
 
-double area_of(model::OsmId id, const SurroundingsIndex& index) {
+double area_of(model::OsmId id, const VicinityIndex& index) {
   const auto& all = index.all().footprints;
   double area = 0;
   for (auto f = std::lower_bound(all.begin(), all.end(), id, [](const Footprint& a, model::OsmId i) { return a.id < i; });
@@ -181,8 +181,8 @@ struct PartyWalls {
 };
 PartyWalls party_walls(const model::Building& building, const Edges& outline, Point2 ahead) {
   PartyWalls out;
-  for (const FacadeEdge& f : building.edges) {
-    if (f.kind != EdgeKind::party_wall || f.outbuilding) continue;
+  for (const WallSegment& f : building.edges) {
+    if (f.kind != WallSegmentKind::party_wall || f.outbuilding) continue;
     const double side = cross(ahead, outline[f].outward);
     (side > kSidewards ? out.left : side < -kSidewards ? out.right : out.across) += f.length();
   }
@@ -190,10 +190,10 @@ PartyWalls party_walls(const model::Building& building, const Edges& outline, Po
 }
 
 /// Marks party walls with neighbours that are too small for houses.
-void mark_outbuildings(model::Building& building, const SurroundingsIndex& index) {
+void mark_outbuildings(model::Building& building, const VicinityIndex& index) {
   std::map<model::OsmId, bool> small;
-  for (FacadeEdge& f : building.edges) {
-    if (f.kind != EdgeKind::party_wall) continue;
+  for (WallSegment& f : building.edges) {
+    if (f.kind != WallSegmentKind::party_wall) continue;
     const auto [known, fresh] = small.try_emplace(f.neighbour, false);
     if (fresh) known->second = area_of(f.neighbour, index) < kOutbuildingArea;
     f.outbuilding = known->second;
@@ -204,7 +204,7 @@ BuildingPosition position_of(const model::Building& building, const Edges& outli
   const PartyWalls walls = party_walls(building, outline, ahead);
   if (has_front) {
     const bool corner = std::any_of(building.edges.begin(), building.edges.end(),
-                                    [](const FacadeEdge& f) { return f.corner_start || f.corner_end; });
+                                    [](const WallSegment& f) { return f.corner_start || f.corner_end; });
     if (corner) return BuildingPosition::corner_house;
     const int sides = (walls.left >= kMinPartyWall) + (walls.right >= kMinPartyWall);
     if (sides == 2) return BuildingPosition::mid_row;
@@ -212,7 +212,7 @@ BuildingPosition position_of(const model::Building& building, const Edges& outli
   }
   const bool tied = walls.left >= kMinPartyWall || walls.right >= kMinPartyWall || walls.across >= kMinPartyWall;
   const bool at_court = std::any_of(building.edges.begin(), building.edges.end(),
-                                    [](const FacadeEdge& f) { return f.kind == EdgeKind::courtyard; });
+                                    [](const WallSegment& f) { return f.kind == WallSegmentKind::courtyard; });
   if (!tied) return at_court ? BuildingPosition::rear_building : BuildingPosition::free_standing;
   // `ahead` is the long axis here: its ends look across, its long sides left and right.
   const double depth = extent(building, {-ahead.y, ahead.x}), length = extent(building, ahead);
@@ -224,7 +224,7 @@ BuildingPosition position_of(const model::Building& building, const Edges& outli
 
 // ---- block and courtyards -------------------------------------------------------------------------------------------
 
-bool meets_border(const Block& block, const SurroundingsIndex::Box& box) {
+bool meets_border(const Block& block, const VicinityIndex::Box& box) {
   const auto meets = [&](const model::Ring& ring) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
@@ -238,8 +238,8 @@ bool meets_border(const Block& block, const SurroundingsIndex::Box& box) {
 }
 
 /// The block that holds more than half of the building (as measure_blocks), or empty.
-std::string block_of(const model::Building& building, const SurroundingsIndex& index) {
-  const SurroundingsIndex::Box box = box_of(building, 0);
+std::string block_of(const model::Building& building, const VicinityIndex& index) {
+  const VicinityIndex::Box box = box_of(building, 0);
   const std::span<const Block> blocks = index.all().blocks;
   double area = 0;
   for (const model::Polygon& polygon : building.outline) area += geometry::area(polygon);
@@ -257,13 +257,13 @@ std::string block_of(const model::Building& building, const SurroundingsIndex& i
 }
 
 /// Ids of the courtyards before walls of the building, ascending.
-std::vector<std::string> courtyards_of(const model::Building& building, const Edges& outline, const SurroundingsIndex& index) {
+std::vector<std::string> courtyards_of(const model::Building& building, const Edges& outline, const VicinityIndex& index) {
   std::vector<std::string> out;
   const std::vector<std::uint32_t> near = index.yards_near(box_of(building, 1));
   if (near.empty()) return out;
   constexpr double kBefore = 0.45;  // m; walls and yards are mapped that well
-  for (const FacadeEdge& f : building.edges) {
-    if (f.kind == EdgeKind::party_wall || f.kind == EdgeKind::street) continue;
+  for (const WallSegment& f : building.edges) {
+    if (f.kind == WallSegmentKind::party_wall || f.kind == WallSegmentKind::street) continue;
     const OutlineEdge& edge = outline[f];
     const Point2 wall = edge.at((f.start + f.end) / 2);
     const Point2 p{wall.x + edge.outward.x * kBefore, wall.y + edge.outward.y * kBefore};
@@ -280,29 +280,29 @@ std::vector<std::string> courtyards_of(const model::Building& building, const Ed
 
 void mark_corners(model::Building& building, const std::vector<OutlineEdge>& outline) {
   const Edges of(outline);
-  std::vector<FacadeEdge>& edges = building.edges;
+  std::vector<WallSegment>& edges = building.edges;
   for_each_ring(edges, [&](std::size_t first, std::size_t last) {
     const std::size_t n = last - first;
-    const auto at = [&](std::size_t i) -> FacadeEdge& { return edges[first + i % n]; };
+    const auto at = [&](std::size_t i) -> WallSegment& { return edges[first + i % n]; };
     // A short wall between two others, turned outwards from both, but by less than a right angle.
     const auto is_cut = [&](std::size_t i) {
-      const FacadeEdge &b = at(i + n - 1), &c = at(i), &d = at(i + 1);
-      if (n < 4 || c.length() > kMaxChamfer || c.kind != EdgeKind::street || b.kind != EdgeKind::street || d.kind != EdgeKind::street)
+      const WallSegment &b = at(i + n - 1), &c = at(i), &d = at(i + 1);
+      if (n < 4 || c.length() > kMaxChamfer || c.kind != WallSegmentKind::street || b.kind != WallSegmentKind::street || d.kind != WallSegmentKind::street)
         return false;
-      const auto turns = [&](const FacadeEdge& p, const FacadeEdge& q) {
+      const auto turns = [&](const WallSegment& p, const WallSegment& q) {
         return cross(of[p].along, of[q].along) > kMinCutSine && dot(of[p].along, of[q].along) > kMinCutCosine;
       };
       return turns(b, c) && turns(c, d);
     };
     for (std::size_t i = 0; i < n; ++i) {
-      FacadeEdge& a = at(i);
-      if (a.kind != EdgeKind::street || a.length() < kMinCornerFront || is_cut(i)) continue;
-      // Over cuts and short stretches of street to the next that looks at another one.
+      WallSegment& a = at(i);
+      if (a.kind != WallSegmentKind::street || a.length() < kMinCornerFront || is_cut(i)) continue;
+      // Over cuts and short wall segments of street to the next that looks at another one.
       double between = 0;
       bool curved = false;
       for (std::size_t k = 1; k < n; ++k) {
-        FacadeEdge& b = at(i + k);
-        if (b.kind != EdgeKind::street) break;
+        WallSegment& b = at(i + k);
+        if (b.kind != WallSegmentKind::street) break;
         if (b.length() >= kMinCornerFront && !is_cut(i + k)) {
           if (same_street(a, b) || cross(of[a].along, of[b].along) <= kCornerSine) break;
           a.corner_end = b.corner_start = true;
@@ -317,7 +317,7 @@ void mark_corners(model::Building& building, const std::vector<OutlineEdge>& out
   });
 }
 
-void describe_situation(model::Building& building, const std::vector<OutlineEdge>& outline, const SurroundingsIndex& index,
+void describe_situation(model::Building& building, const std::vector<OutlineEdge>& outline, const VicinityIndex& index,
                         std::string_view address_street) {
   model::BuildingSituation& s = building.situation;
   s = {};
@@ -332,7 +332,7 @@ void describe_situation(model::Building& building, const std::vector<OutlineEdge
     s.orientation = degrees < 0 ? degrees + 360 : degrees;
     s.depth = extent(building, ahead);
     s.width = extent(building, {-ahead.y, ahead.x});
-    const FacadeEdge& front = building.edges[s.fronts[0]];
+    const WallSegment& front = building.edges[s.fronts[0]];
     s.setback = setback_of(front, of[front], index);
   } else {
     ahead = geometry::long_axis(building.outline[0].outer.points);
@@ -340,8 +340,8 @@ void describe_situation(model::Building& building, const std::vector<OutlineEdge
     s.width = extent(building, ahead);
     if (*s.depth > *s.width) std::swap(s.depth, s.width);
   }
-  for (const FacadeEdge& f : building.edges)
-    if (f.kind == EdgeKind::party_wall) s.party_wall_length += f.length();
+  for (const WallSegment& f : building.edges)
+    if (f.kind == WallSegmentKind::party_wall) s.party_wall_length += f.length();
   mark_outbuildings(building, index);
   s.position = position_of(building, of, ahead, !s.fronts.empty());
   s.block = block_of(building, index);

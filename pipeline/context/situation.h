@@ -4,15 +4,15 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/context/edge_contacts.h"
+#include "pipeline/context/wall_contacts.h"
 #include "pipeline/model/building.h"
 
 namespace blockrand::context {
 
 /// Marks, among `building.edges` (labelled, with streets), the ends at street corners and the chamfers that cut them off.
 ///
-/// A street corner lies where two street stretches that look at different streets follow each other and the outline turns
-/// outwards by more than 30 degrees; also across a chamfer or a rounded corner, whose stretches are no more than 8 m long
+/// A street corner lies where two street wall segments that look at different streets follow each other and the outline turns
+/// outwards by more than 30 degrees; also across a chamfer or a rounded corner, whose wall segments are no more than 8 m long
 /// together (20 m along a curve of Building::arcs).
 /// \param outline  edges_of(building.outline)
 void mark_corners(model::Building& building, const std::vector<OutlineEdge>& outline);
@@ -20,7 +20,7 @@ void mark_corners(model::Building& building, const std::vector<OutlineEdge>& out
 /// Fills `building.situation` from the labelled edges.
 ///
 /// The main front is that on the street of the address (the building's, else the one most address nodes on it name), else
-/// the longest; streets are told apart by name. `fronts` begins with the stretches of the main front, the longest first;
+/// the longest; streets are told apart by name. `fronts` begins with the wall segments of the main front, the longest first;
 /// those on other streets follow. Position:
 /// * corner_house: has a street corner (mark_corners);
 /// * with a front: by the sides, left and right of it, that have party walls of more than 1.5 m: mid_row, end_of_row,
@@ -29,6 +29,6 @@ void mark_corners(model::Building& building, const std::vector<OutlineEdge>& out
 ///   times), no deeper than 12 m, has neighbours at an end and along at most one long side; rear_building else.
 /// \param address_street  addr:street of the building, or empty
 void describe_situation(model::Building& building, const std::vector<OutlineEdge>& outline,
-                        const SurroundingsIndex& surroundings, std::string_view address_street);
+                        const VicinityIndex& vicinity, std::string_view address_street);
 
 }  // namespace blockrand::context

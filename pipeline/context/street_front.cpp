@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "pipeline/base/portable_math.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::context {
@@ -33,12 +33,12 @@ std::string_view name(LineClass kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-void face_street(const OutlineEdge& edge, std::span<const EdgeSample> samples, const BuildingView& view,
-                 model::FacadeEdge& stretch) {
-  const SurroundingsIndex& index = *view.index;
+void face_street(const OutlineEdge& edge, std::span<const WallSample> samples, const BuildingView& view,
+                 model::WallSegment& wall_segment) {
+  const VicinityIndex& index = *view.index;
   const auto lines = index.all().lines;
   const std::array<Point2, kFanRays> fan = fan_around(edge.outward);
-  const bool front = stretch.kind == model::EdgeKind::street || stretch.kind == model::EdgeKind::passage;
+  const bool front = wall_segment.kind == model::WallSegmentKind::street || wall_segment.kind == model::WallSegmentKind::passage;
   std::vector<Share> shares;
   std::vector<std::uint32_t> seen;  // lines
   const auto give = [&](std::uint32_t line, double weight) {
@@ -51,7 +51,7 @@ void face_street(const OutlineEdge& edge, std::span<const EdgeSample> samples, c
     shares.push_back({line, weight});
   };
   double visible = 0;
-  for (const EdgeSample& sample : samples) {
+  for (const WallSample& sample : samples) {
     visible += sample.square != kNothing ? 1 : sample.street_share;
     if (sample.square != kNothing) give(index.squares()[sample.square].rings.front(), kFanRays);
     for (std::size_t i = 0; i < kFanRays; ++i) {
@@ -61,7 +61,7 @@ void face_street(const OutlineEdge& edge, std::span<const EdgeSample> samples, c
       give(index.scene().streets()[sample.fan[i].street_piece].line, front ? c * c * c * c : c);
     }
   }
-  if (!samples.empty()) stretch.visibility = static_cast<float>(visible / static_cast<double>(samples.size()));
+  if (!samples.empty()) wall_segment.visibility = static_cast<float>(visible / static_cast<double>(samples.size()));
   if (shares.empty()) return;
   const auto best = std::min_element(shares.begin(), shares.end(), [&](const Share& a, const Share& b) {
     return std::pair(-a.weight, lines[a.line].id) < std::pair(-b.weight, lines[b.line].id);
@@ -70,7 +70,7 @@ void face_street(const OutlineEdge& edge, std::span<const EdgeSample> samples, c
   // The nearest piece of the street among the lines seen.
   std::sort(seen.begin(), seen.end());
   seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-  const Point2 middle = edge.at((stretch.start + stretch.end) / 2);
+  const Point2 middle = edge.at((wall_segment.start + wall_segment.end) / 2);
   double distance = std::numeric_limits<double>::infinity(), cosine = 0;
   const NetworkLine* nearest = nullptr;
   for (const std::uint32_t l : seen) {
@@ -88,11 +88,11 @@ void face_street(const OutlineEdge& edge, std::span<const EdgeSample> samples, c
     }
   }
   if (nearest == nullptr) return;
-  stretch.street = nearest->id;
-  stretch.street_name = nearest->name;
-  stretch.street_class = name(nearest->kind);
-  stretch.street_distance = static_cast<float>(distance);
-  stretch.street_angle = static_cast<float>(base::acos(std::min(1.0, cosine)) * base::kDegreesPerRadian);
+  wall_segment.street = nearest->id;
+  wall_segment.street_name = nearest->name;
+  wall_segment.street_class = name(nearest->kind);
+  wall_segment.street_distance = static_cast<float>(distance);
+  wall_segment.street_angle = static_cast<float>(base::acos(std::min(1.0, cosine)) * base::kDegreesPerRadian);
 }
 
 }  // namespace blockrand::context

@@ -37,7 +37,7 @@ void TaggedNeighbours::for_each_near(model::Point2 place, std::uint8_t group, mo
   }
 }
 
-std::optional<NeighbourOpinion<double>> TaggedNeighbours::storeys(model::Point2 place, std::uint8_t group,
+std::optional<NeighbourVote<double>> TaggedNeighbours::storeys(model::Point2 place, std::uint8_t group,
                                                                   model::OsmId self, int minimum) const {
   std::vector<float> values;
   for_each_near(place, group, self, [&](const TaggedBuilding& b) {
@@ -47,11 +47,11 @@ std::optional<NeighbourOpinion<double>> TaggedNeighbours::storeys(model::Point2 
   std::sort(values.begin(), values.end());
   const float median = values[(values.size() - 1) / 2];
   const auto agree = std::count_if(values.begin(), values.end(), [&](float v) { return std::fabs(v - median) <= 0.5f; });
-  return NeighbourOpinion<double>{median, static_cast<int>(values.size()),
+  return NeighbourVote<double>{median, static_cast<int>(values.size()),
                                   static_cast<double>(agree) / static_cast<double>(values.size())};
 }
 
-std::optional<NeighbourOpinion<model::RoofShape>> TaggedNeighbours::roof_shape(model::Point2 place, std::uint8_t group,
+std::optional<NeighbourVote<model::RoofShape>> TaggedNeighbours::roof_shape(model::Point2 place, std::uint8_t group,
                                                                                model::OsmId self, int minimum) const {
   std::array<int, model::kRoofShapeCount> votes{};
   int voices = 0;
@@ -62,7 +62,7 @@ std::optional<NeighbourOpinion<model::RoofShape>> TaggedNeighbours::roof_shape(m
   });
   if (voices < minimum || voices == 0) return std::nullopt;
   const auto best = std::max_element(votes.begin(), votes.end());
-  return NeighbourOpinion<model::RoofShape>{static_cast<model::RoofShape>(best - votes.begin()), voices,
+  return NeighbourVote<model::RoofShape>{static_cast<model::RoofShape>(best - votes.begin()), voices,
                                             static_cast<double>(*best) / voices};
 }
 

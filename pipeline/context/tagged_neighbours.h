@@ -13,7 +13,7 @@
 namespace blockrand::context {
 
 /// A building whose mapper noted storeys, or its roof. Inferred values never enter, so that what a building looks like
-/// depends on data within the reach alone (DESIGN law 4).
+/// depends on data within the reach alone (ARCHITECTURE.md, law 4).
 struct TaggedBuilding {
   model::OsmId id;
   model::Point2 place;                         ///< m, any point of it
@@ -24,7 +24,7 @@ struct TaggedBuilding {
 
 /// A statement of neighbours.
 template <class T>
-struct NeighbourOpinion {
+struct NeighbourVote {
   T value{};
   int voices = 0;      ///< neighbours that were asked
   double share = 0;    ///< of them that agree: same roof shape, or storeys within half a storey
@@ -38,10 +38,10 @@ class TaggedNeighbours {
 
   /// Median storeys of the neighbours of `group` within the reach of `place`, other than `self`; empty when fewer than
   /// `minimum` are tagged. With an even number the lower of the middle two, so that the value is one that was mapped.
-  std::optional<NeighbourOpinion<double>> storeys(model::Point2 place, std::uint8_t group, model::OsmId self,
+  std::optional<NeighbourVote<double>> storeys(model::Point2 place, std::uint8_t group, model::OsmId self,
                                                   int minimum) const;
   /// The most frequent roof shape (ties: the first in the list of shapes).
-  std::optional<NeighbourOpinion<model::RoofShape>> roof_shape(model::Point2 place, std::uint8_t group,
+  std::optional<NeighbourVote<model::RoofShape>> roof_shape(model::Point2 place, std::uint8_t group,
                                                                model::OsmId self, int minimum) const;
   double reach() const { return reach_; }
 

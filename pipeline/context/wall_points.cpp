@@ -6,34 +6,34 @@
 #include <tuple>
 
 #include "pipeline/context/point_owner.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::context {
 
 namespace {
 
-using model::EdgeKind;
-using model::FacadeEdge;
+using model::WallSegmentKind;
+using model::WallSegment;
 using model::Point2;
 
-int rank(EdgeKind kind) {
+int rank(WallSegmentKind kind) {
   switch (kind) {
-    case EdgeKind::street: return 0;
-    case EdgeKind::passage: return 1;
-    case EdgeKind::courtyard: return 2;
-    case EdgeKind::unknown:
-    case EdgeKind::side:
-    case EdgeKind::party_wall: break;
+    case WallSegmentKind::street: return 0;
+    case WallSegmentKind::passage: return 1;
+    case WallSegmentKind::courtyard: return 2;
+    case WallSegmentKind::unknown:
+    case WallSegmentKind::side:
+    case WallSegmentKind::party_wall: break;
   }
   return 3;
 }
 
-/// Distances of places to the stretches of a building.
-class Stretches {
+/// Distances of places to the wall segments of a building.
+class WallSegments {
  public:
-  Stretches(const model::Building& building, const std::vector<OutlineEdge>& outline) : building_(building) {
+  WallSegments(const model::Building& building, const std::vector<OutlineEdge>& outline) : building_(building) {
     std::size_t at = 0;
-    for (const FacadeEdge& f : building.edges) {
+    for (const WallSegment& f : building.edges) {
       while (outline[at].polygon != f.polygon || outline[at].ring != f.ring || outline[at].edge != f.edge) ++at;
       of_.push_back(&outline[at]);
     }
@@ -43,14 +43,14 @@ class Stretches {
     return geometry::distance_to_segment(p, of_[i]->at(edge(i).start), of_[i]->at(edge(i).end));
   }
 
-  /// The nearest stretch within `reach` for which `allowed(i)` holds; of those as near the one of the least `key(i)`,
+  /// The nearest wall segment within `reach` for which `allowed(i)` holds; of those as near the one of the least `key(i)`,
   /// then the longer, then the earlier.
   template <class Allowed, class Key>
   std::optional<std::uint32_t> nearest(Point2 p, double reach, Allowed&& allowed, Key&& key) const {
     std::vector<std::pair<double, std::uint32_t>> found;
     double least = reach;
     for (std::uint32_t i = 0; i < building_.edges.size(); ++i) {
-      if (edge(i).kind == EdgeKind::party_wall || !allowed(i)) continue;
+      if (edge(i).kind == WallSegmentKind::party_wall || !allowed(i)) continue;
       found.emplace_back(distance(i, p), i);
       least = std::min(least, found.back().first);
     }
@@ -66,7 +66,7 @@ class Stretches {
     const OutlineEdge& e = *of_[i];
     return (p.x - e.a.x) * e.outward.x + (p.y - e.a.y) * e.outward.y >= 0;
   }
-  const FacadeEdge& edge(std::size_t i) const { return building_.edges[i]; }
+  const WallSegment& edge(std::size_t i) const { return building_.edges[i]; }
 
  private:
   const model::Building& building_;
@@ -80,10 +80,10 @@ Point2 place_at(const model::Building& building, const SitePoint& point) {
   return point.place;
 }
 
-/// The stretch that an entrance, address or shop of the building belongs to.
-std::optional<std::uint32_t> stretch_of(const SitePoint& point, Point2 place, const Stretches& walls) {
+/// The wall segment that an entrance, address or shop of the building belongs to.
+std::optional<std::uint32_t> wall_segment_of(const SitePoint& point, Point2 place, const WallSegments& walls) {
   const auto at_its_street = [&](std::uint32_t i) { return !point.street.empty() && walls.edge(i).street_name == point.street; };
-  const auto is_street = [&](std::uint32_t i) { return walls.edge(i).kind == EdgeKind::street; };
+  const auto is_street = [&](std::uint32_t i) { return walls.edge(i).kind == WallSegmentKind::street; };
   const auto any = [](std::uint32_t) { return true; };
   const auto by_kind = [&](std::uint32_t i) { return std::pair(!at_its_street(i), rank(walls.edge(i).kind)); };
   if (const auto near = walls.nearest(place, kEntranceReach, any, by_kind)) return near;
@@ -94,26 +94,26 @@ std::optional<std::uint32_t> stretch_of(const SitePoint& point, Point2 place, co
   return walls.nearest(place, kFar, any, by_kind);
 }
 
-void add_tree(model::Building& building, const SitePoint& tree, const Stretches& walls) {
+void add_tree(model::Building& building, const SitePoint& tree, const WallSegments& walls) {
   const auto before = [&](std::uint32_t i) { return walls.is_before(i, tree.place); };
   const auto by_kind = [&](std::uint32_t i) { return rank(walls.edge(i).kind); };
   if (const auto best = walls.nearest(tree.place, kTreeReach, before, by_kind))
     building.trees.push_back({tree.id, tree.place, *best, static_cast<float>(walls.distance(*best, tree.place))});
 }
 
-bool is_within(const SurroundingsIndex::Box& box, Point2 p) {
+bool is_within(const VicinityIndex::Box& box, Point2 p) {
   return box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y;
 }
 
 }  // namespace
 
-void assign_points(model::Building& building, const std::vector<OutlineEdge>& outline, const SurroundingsIndex& index,
-                   const EdgeOptions& options) {
+void assign_points(model::Building& building, const std::vector<OutlineEdge>& outline, const VicinityIndex& index,
+                   const WallSegmentOptions& options) {
   building.trees.clear();
   const std::vector<std::uint32_t> near = index.points_near(box_of(building, kTreeReach));
   if (near.empty() || building.edges.empty()) return;
-  const SurroundingsIndex::Box own = box_of(building, kEntranceReach);
-  const Stretches walls(building, outline);
+  const VicinityIndex::Box own = box_of(building, kEntranceReach);
+  const WallSegments walls(building, outline);
   for (const std::uint32_t p : near) {
     const SitePoint& point = index.all().points[p];
     if (point.kind == SitePointKind::tree) {
@@ -123,15 +123,15 @@ void assign_points(model::Building& building, const std::vector<OutlineEdge>& ou
     const bool entrance = point.kind == SitePointKind::entrance;
     if ((!entrance && point.house_number.empty() && point.use.empty()) || !is_within(own, point.place)) continue;
     if (owner_of(point, index, options) != building.osm) continue;
-    const auto stretch = stretch_of(point, place_at(building, point), walls);
-    if (!stretch) continue;
-    FacadeEdge& edge = building.edges[*stretch];
+    const auto wall_segment = wall_segment_of(point, place_at(building, point), walls);
+    if (!wall_segment) continue;
+    WallSegment& edge = building.edges[*wall_segment];
     edge.points.push_back({point.id, point.place, entrance, point.house_number, point.use});
     edge.entrances += entrance;
   }
-  for (FacadeEdge& edge : building.edges)
+  for (WallSegment& edge : building.edges)
     std::sort(edge.points.begin(), edge.points.end(),
-              [](const model::EdgePoint& a, const model::EdgePoint& b) { return a.id < b.id; });
+              [](const model::WallPoint& a, const model::WallPoint& b) { return a.id < b.id; });
   std::sort(building.trees.begin(), building.trees.end(),
             [](const model::NearTree& a, const model::NearTree& b) { return a.id < b.id; });
 }

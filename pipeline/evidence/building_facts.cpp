@@ -7,7 +7,7 @@
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/portable_math.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::evidence {
@@ -20,15 +20,16 @@ using classify::kHouseArea;
 using classify::kNearReach;
 using model::Building;
 using model::BuildingPosition;
-using model::EdgeKind;
-using model::FacadeEdge;
+using model::WallSegmentKind;
+using model::WallSegment;
 using model::Point2;
 
 constexpr double kCornerSine = 0.342;   ///< of 20 degrees: what turns less is a bend in a wall
 constexpr double kSectionStep = 1;      ///< m between sections across a house: half a window axis
-constexpr double kFrontCosine = 0.94;   ///< of 20 degrees: stretches of one front
-constexpr double kRunDepth = 0.35;      ///< quantile of the first runs behind the front: its depth (styles.md 2.2)
-constexpr double kWingRatio = 1.5;      ///< depth ratio from which a house has wings (styles.md 2.2)
+constexpr double kFrontCosine = 0.94;   ///< of 20 degrees: wall segments of one front
+constexpr double kRunDepth = 0.35;      ///< quantile of the first runs behind the front: its depth
+                                        ///< (docs/style_measures.md 2.2)
+constexpr double kWingRatio = 1.5;      ///< depth ratio from which a house has wings (docs/style_measures.md 2.2)
 constexpr double kMinContact = 1.5;     ///< m. Shorter common walls tie no row together
 constexpr double kSameWidth = 0.75;     ///< m, and
 constexpr double kSameArea = 0.10;      ///< of the area: houses that repeat each other
@@ -150,14 +151,14 @@ void measure_situation(const Building& building, Own& own) {
   FeatureVector& f = own.features;
   double party = 0, front = 0, court = 0, all = 0;
   std::map<model::OsmId, double> contacts;
-  for (const FacadeEdge& e : building.edges) {
+  for (const WallSegment& e : building.edges) {
     all += e.length();
-    if (e.kind == EdgeKind::party_wall) {
+    if (e.kind == WallSegmentKind::party_wall) {
       party += e.length();
       if (e.neighbour.number != 0 && !e.outbuilding) contacts[e.neighbour] += e.length();
-    } else if (e.kind == EdgeKind::street) {
+    } else if (e.kind == WallSegmentKind::street) {
       front += e.length();
-    } else if (e.kind == EdgeKind::courtyard) {
+    } else if (e.kind == WallSegmentKind::courtyard) {
       court += e.length();
     }
   }
@@ -174,7 +175,7 @@ void measure_situation(const Building& building, Own& own) {
 
   const std::vector<std::uint32_t>& fronts = building.situation.fronts;
   if (fronts.empty() || !building.situation.orientation) return;
-  const FacadeEdge& main = building.edges[fronts.front()];
+  const WallSegment& main = building.edges[fronts.front()];
   own.place.street =
       main.street_name.empty() ? static_cast<std::uint64_t>(main.street.number) : hash_of(main.street_name);
   f[Feature::street_distance] = main.street_distance;
@@ -186,7 +187,7 @@ void measure_situation(const Building& building, Own& own) {
       along{inward.y, -inward.x};
   double from = std::numeric_limits<double>::infinity(), to = -from;
   for (const std::uint32_t i : fronts) {
-    const FacadeEdge& e = building.edges[i];
+    const WallSegment& e = building.edges[i];
     if (e.street != main.street && e.street_name != main.street_name) continue;
     const model::Polygon& polygon = building.outline[e.polygon];
     const auto& ring = (e.ring == 0 ? polygon.outer : polygon.holes[e.ring - 1]).points;
@@ -451,7 +452,7 @@ void measure_town(const context::ContextExtract& context, FactsExtract& facts) {
 
 /// The buildings of one tile with their outlines and nothing else, labelled.
 model::Region labelled(const model::Extract& extract, const footprints::FootprintStore& store,
-                       const context::SurroundingsFinder& surroundings, std::span<const std::uint32_t> numbers) {
+                       const context::VicinityFinder& vicinity, std::span<const std::uint32_t> numbers) {
   model::Region region;
   region.extract = &extract;
   for (const std::uint32_t n : numbers) {
@@ -462,7 +463,7 @@ model::Region labelled(const model::Extract& extract, const footprints::Footprin
     building.arcs = store.arcs(n);
     region.buildings.push_back(std::move(building));
   }
-  surroundings.label_edges(region, numbers);
+  vicinity.label_wall_segments(region, numbers);
   return region;
 }
 
@@ -505,7 +506,7 @@ void PlaceIndex::near(Point2 place, double distance, std::vector<std::uint32_t>&
 }
 
 FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& store, const context::ContextExtract& context,
-                           const context::SurroundingsFinder& surroundings, int workers, base::Progress& progress) {
+                           const context::VicinityFinder& vicinity, int workers, base::Progress& progress) {
   progress.begin("measure");
   const std::size_t count = store.size();
   FactsExtract facts;
@@ -520,7 +521,7 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
   const auto look = [&](std::size_t i) {
     std::vector<std::uint32_t> mine;
     for (std::size_t b = starts[i]; b < starts[i + 1]; ++b) mine.push_back(static_cast<std::uint32_t>(b));
-    const model::Region region = labelled(extract, store, surroundings, mine);
+    const model::Region region = labelled(extract, store, vicinity, mine);
     std::vector<Own> run;
     for (std::size_t k = 0; k < mine.size(); ++k) {
       const footprints::StoredFootprint& stored = store[mine[k]];

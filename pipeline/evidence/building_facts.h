@@ -7,7 +7,7 @@
 
 #include "pipeline/base/progress.h"
 #include "pipeline/context/context_extract.h"
-#include "pipeline/context/surroundings_finder.h"
+#include "pipeline/context/vicinity_finder.h"
 #include "pipeline/footprints/footprint_store.h"
 #include "pipeline/geometry/box_index.h"
 #include "pipeline/model/building.h"
@@ -59,7 +59,7 @@ class PlaceIndex {
 /// Measures all buildings. Deterministic for any number of workers. What a building gets depends on data within
 /// BlockOptions::max_extent + kNearReach + kEdgeReach of it.
 FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& footprints,
-                           const context::ContextExtract& context, const context::SurroundingsFinder& surroundings, int workers,
+                           const context::ContextExtract& context, const context::VicinityFinder& vicinity, int workers,
                            base::Progress& progress);
 
 }  // namespace blockrand::evidence

@@ -6,7 +6,7 @@
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/portable_math.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::evidence {
 
@@ -16,7 +16,7 @@ using classify::Feature;
 using classify::FeatureVector;
 using classify::kNearReach;
 using classify::PerAnswer;
-using classify::Standing;
+using classify::Siting;
 using classify::VoteKernel;
 using classify::Voter;
 using model::BuildingStyle;
@@ -44,7 +44,7 @@ Voter voter_of(const FactsExtract& facts, std::uint32_t b) {
   Voter v;
   v.place = p.place;
   v.area = f.has(Feature::area) ? static_cast<double>(f[Feature::area]) : 0;
-  v.standing = classify::standing_of(p.position);
+  v.siting = classify::siting_of(p.position);
   v.street = p.street;
   v.block = p.block;
   v.use = f.has(Feature::tag_use) ? static_cast<std::uint8_t>(f[Feature::tag_use]) : std::uint8_t{0};
@@ -321,7 +321,7 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
           next[b] = out.styles[b].style;
           if (!known(b) || !facts.places[b].house || out.styles[b].non_house) continue;
           const BuildingPlace& own = facts.places[b];
-          const Standing standing = classify::standing_of(own.position);
+          const Siting siting = classify::siting_of(own.position);
           PerAnswer sum{};
           for (std::size_t c = 0; c < kStyles; ++c) sum[c] = static_cast<double>(base[b][c]);
           const auto listen = [&](const PerAnswer& heard, double weight, double strength) {
@@ -333,7 +333,7 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
           PerAnswer row{};
           double lengths = 0;
           for (const Contact& c : facts.contacts_of(static_cast<std::uint32_t>(b))) {
-            if (classify::standing_of(facts.places[c.other].position) != standing || out.styles[c.other].non_house)
+            if (classify::siting_of(facts.places[c.other].position) != siting || out.styles[c.other].non_house)
               continue;
             for (std::size_t k = 0; k < kStyles; ++k)
               row[k] += static_cast<double>(c.length) * static_cast<double>(out.styles[c.other].style[k]);
@@ -346,7 +346,7 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
             index.near(own.place, kNearReach, near);
             for (const std::uint32_t o : near) {
               if (o == b || facts.places[o].block != own.block ||
-                  classify::standing_of(facts.places[o].position) != standing)
+                  classify::siting_of(facts.places[o].position) != siting)
                 continue;
               for (std::size_t k = 0; k < kStyles; ++k) block[k] += static_cast<double>(out.styles[o].style[k]);
               ++houses_there;

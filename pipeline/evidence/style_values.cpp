@@ -87,7 +87,7 @@ void infer(Building& building, std::uint32_t number, const StyleInputs& in) {
   out.style_confidence = s.substyle_p;
   if (s.non_house) return;  // the defaults of its use know better
   // Who decided: tagged neighbours where their votes outweigh the building's own evidence, else that.
-  const auto offer = [](auto& to, auto value, float confidence, float votes, std::uint16_t voters,
+  const auto inferred_candidate = [](auto& to, auto value, float confidence, float votes, std::uint16_t voters,
                         const classify::VoteKernel& kernel, const std::string& own) {
     const bool heard = static_cast<double>(votes) > kernel.prior;
     const std::string asked =
@@ -99,12 +99,12 @@ void infer(Building& building, std::uint32_t number, const StyleInputs& in) {
   };
   const StoreysEstimate& storeys = in.styles.storeys[number];
   if (storeys.storeys > 0) {
-    offer(out.storeys, storeys.storeys, storeys.confidence, storeys.votes, storeys.voters, in.tables.storeys_votes,
+    inferred_candidate(out.storeys, storeys.storeys, storeys.confidence, storeys.votes, storeys.voters, in.tables.storeys_votes,
           fmt::format("{:g}", storeys.own));
     out.storeys.why += fmt::format("; within one storey {:.0f} %", 100 * static_cast<double>(storeys.within_one));
   }
   const RoofEstimate& roof = in.styles.roofs[number];
-  offer(out.roof_shape, roof.shape, roof.confidence, roof.votes, roof.voters, in.tables.roof_votes,
+  inferred_candidate(out.roof_shape, roof.shape, roof.confidence, roof.votes, roof.voters, in.tables.roof_votes,
         std::string(classify::name(roof.own)));
 }
 
@@ -148,8 +148,8 @@ void put_style_attributes(model::Region& region, std::span<const std::uint32_t> 
     const std::uint32_t number = numbers[i];
     model::Attributes& a = building.attributes;
     const auto put = [&](model::Sourced<std::string>& to, std::string value, Source source, float confidence,
-                         std::string text, std::vector<model::Candidate> lost) {
-      to = {std::move(value), source, confidence, region.evidence.add({std::move(text), std::move(lost)})};
+                         std::string text, std::vector<model::Candidate> other_candidates) {
+      to = {std::move(value), source, confidence, region.evidence.add({std::move(text), std::move(other_candidates)})};
     };
     const auto tag = [&](std::string_view key) { return region.extract->tag(building.tags, key); };
     if (!building.style_known) {

@@ -14,9 +14,9 @@ namespace {
 using grammar::Value;
 using C = FacadeContext;
 
-const model::FacadeEdge* edge_of(const C& c) {
-  const model::FacadeEdge* best = nullptr;
-  for (const std::uint32_t i : c.stretch.edges)
+const model::WallSegment* edge_of(const C& c) {
+  const model::WallSegment* best = nullptr;
+  for (const std::uint32_t i : c.segment.edges)
     if (!best || c.building.edges[i].length() > best->length()) best = &c.building.edges[i];
   return best;
 }
@@ -24,31 +24,31 @@ const model::FacadeEdge* edge_of(const C& c) {
 Value text(std::string_view t) { return std::string(t); }
 Value colour(model::Colour c) { return model::text(c); }
 
-Value kind_text(const std::optional<model::EdgeKind>& kind) { return text(kind ? model::name(*kind) : ""); }
+Value kind_text(const std::optional<model::WallSegmentKind>& kind) { return text(kind ? model::name(*kind) : ""); }
 
 template <class Visit>
 bool any_edge(const C& c, Visit&& visit) {
-  return std::any_of(c.stretch.edges.begin(), c.stretch.edges.end(),
+  return std::any_of(c.segment.edges.begin(), c.segment.edges.end(),
                      [&](std::uint32_t i) { return visit(c.building.edges[i]); });
 }
 
 /// Uses that show a window to the street: categories of configs/styles/ground_floor.toml.
 constexpr std::string_view kShopUses[] = {"shop", "gastronomy", "service", "craft"};
 
-bool is_shop(const model::EdgePoint& p) {
+bool is_shop(const model::WallPoint& p) {
   return std::find(std::begin(kShopUses), std::end(kShopUses), p.use) != std::end(kShopUses);
 }
-bool is_entrance(const model::EdgePoint& p) { return p.entrance; }
+bool is_entrance(const model::WallPoint& p) { return p.entrance; }
 
-/// Points along the stretch that are `wanted`, m from its left end, in order, each place once.
-std::vector<double> places(const C& c, bool (*wanted)(const model::EdgePoint&)) {
+/// Points along the wall segment that are `wanted`, m from its left end, in order, each place once.
+std::vector<double> places(const C& c, bool (*wanted)(const model::WallPoint&)) {
   std::vector<double> out;
-  for (const std::uint32_t i : c.stretch.edges)
-    for (const model::EdgePoint& p : c.building.edges[i].points) {
+  for (const std::uint32_t i : c.segment.edges)
+    for (const model::WallPoint& p : c.building.edges[i].points) {
       if (!wanted(p)) continue;
       const double u = (p.place.x - c.wall.start.x) * c.wall.along.x + (p.place.y - c.wall.start.y) * c.wall.along.y -
-                       c.stretch.from;
-      if (u >= 0 && u <= c.stretch.length()) out.push_back(std::floor(u * 64 + 0.5) / 64);
+                       c.segment.from;
+      if (u >= 0 && u <= c.segment.length()) out.push_back(std::floor(u * 64 + 0.5) / 64);
     }
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
@@ -69,7 +69,7 @@ Value texts(std::vector<std::string> items) {
 }
 
 /// What is ordered for one storey, edge or bay of the part, of its whole building else; empty: nothing.
-std::string ordered(const C& c, model::DetailKind kind, std::string_view name, std::string_view key) {
+std::string overridden(const C& c, model::DetailKind kind, std::string_view name, std::string_view key) {
   std::string out;
   for (const model::DetailOverride& d : c.building.detail_overrides) {
     if (d.kind != kind || d.name != name || (d.body != c.part.id && d.body != c.building.id())) continue;
@@ -79,10 +79,10 @@ std::string ordered(const C& c, model::DetailKind kind, std::string_view name, s
   return out;
 }
 
-/// What is ordered for the edges that the stretch runs along; the first one counts.
-std::string ordered_edge(const C& c, std::string_view key) {
-  for (const std::uint32_t i : c.stretch.edges) {
-    const model::FacadeEdge& e = c.building.edges[i];
+/// What is ordered for the edges that the wall segment runs along; the first one counts.
+std::string overridden_edge(const C& c, std::string_view key) {
+  for (const std::uint32_t i : c.segment.edges) {
+    const model::WallSegment& e = c.building.edges[i];
     if (e.from_node == 0 || e.to_node == 0) continue;
     const std::string id = "e" + std::to_string(e.from_node) + "_" + std::to_string(e.to_node);
     for (const model::DetailOverride& d : c.building.detail_overrides)
@@ -101,7 +101,7 @@ std::size_t storey_count(const C& c) {
 /// What is ordered for each storey from the ground floor up; empty texts where nothing is.
 std::vector<std::string> by_storey(const C& c, std::string_view key) {
   std::vector<std::string> out(storey_count(c));
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = ordered(c, model::DetailKind::storey, std::to_string(i), key);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = overridden(c, model::DetailKind::storey, std::to_string(i), key);
   return out;
 }
 
@@ -113,22 +113,22 @@ std::vector<std::string> by_bay(const C& c, std::string_view key) {
     if (d.kind == model::DetailKind::bay)
       most = std::max(most, static_cast<std::size_t>(std::clamp(std::atoi(d.name.c_str()), 0, kMostBays)) + 1);
   std::vector<std::string> out(most);
-  for (std::size_t i = 0; i < most; ++i) out[i] = ordered(c, model::DetailKind::bay, std::to_string(i), key);
+  for (std::size_t i = 0; i < most; ++i) out[i] = overridden(c, model::DetailKind::bay, std::to_string(i), key);
   return out;
 }
 
 /// Gross heights by storey, m: as ordered, the rest shared out evenly. What is ordered beyond the wall's height is
 /// taken in proportion.
 std::vector<double> storey_heights(const C& c) {
-  const auto orders = by_storey(c, "height");
+  const auto overrides = by_storey(c, "height");
   const model::Attributes& a = c.part.attributes;
-  std::vector<double> out(orders.size(), 0);
+  std::vector<double> out(overrides.size(), 0);
   double sum = 0;
   std::size_t open = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = orders[i].empty() ? 0 : std::atof(orders[i].c_str());
+    out[i] = overrides[i].empty() ? 0 : std::atof(overrides[i].c_str());
     sum += out[i];
-    open += orders[i].empty() ? 1 : 0;
+    open += overrides[i].empty() ? 1 : 0;
   }
   const double all = a.storey_height.value * static_cast<double>(out.size());
   // The others keep 1.5 m, the least that overrides may order.
@@ -143,7 +143,7 @@ std::vector<double> storey_heights(const C& c) {
 
 bool is_main_front(const C& c) {
   const auto& fronts = c.building.situation.fronts;
-  return any_edge(c, [&](const model::FacadeEdge& e) {
+  return any_edge(c, [&](const model::WallSegment& e) {
     const auto number = static_cast<std::uint32_t>(&e - c.building.edges.data());
     return !fronts.empty() && fronts.front() == number;
   });
@@ -151,7 +151,7 @@ bool is_main_front(const C& c) {
 
 int mapped_entrances(const model::Building& b) {
   int n = 0;
-  for (const model::FacadeEdge& e : b.edges) n += e.entrances;
+  for (const model::WallSegment& e : b.edges) n += e.entrances;
   return n;
 }
 
@@ -204,11 +204,11 @@ const std::vector<ContextAttribute> kAttributes = {
     {"building.width", "m", "along the main front; 0: not known",
      [](const C& c) -> Value { return c.building.situation.width.value_or(0); }},
     {"edge.chamfer", "", "cuts off a street corner",
-     [](const C& c) -> Value { return any_edge(c, [](const model::FacadeEdge& e) { return e.chamfer; }); }},
+     [](const C& c) -> Value { return any_edge(c, [](const model::WallSegment& e) { return e.chamfer; }); }},
     {"edge.corner_left", "", "the left end is a corner of the building",
-     [](const C& c) -> Value { return c.stretch.starts_wall; }},
+     [](const C& c) -> Value { return c.segment.starts_wall; }},
     {"edge.corner_right", "", "the right end is a corner of the building",
-     [](const C& c) -> Value { return c.stretch.ends_wall; }},
+     [](const C& c) -> Value { return c.segment.ends_wall; }},
     {"edge.eaves", "m", "the wall's base to the eaves", [](const C& c) -> Value { return eaves(c); }},
     {"edge.entrance", "m", "left end to the first mapped entrance; -1: none",
      [](const C& c) -> Value {
@@ -221,15 +221,15 @@ const std::vector<ContextAttribute> kAttributes = {
      [](const C& c) -> Value { return static_cast<double>(entrance_places(c).size()); }},
     {"edge.kind", "", "street, courtyard, side, passage; as ordered, if it is",
      [](const C& c) -> Value {
-       const std::string order = ordered_edge(c, "kind");
-       return order.empty() ? text(model::name(c.stretch.kind)) : text(order);
+       const std::string order = overridden_edge(c, "kind");
+       return order.empty() ? text(model::name(c.segment.kind)) : text(order);
      }},
     {"edge.kind_left", "",
      "kind of the stretch beyond the left end, round the corner too; empty: none with the same base and eaves",
-     [](const C& c) -> Value { return kind_text(c.stretch.kind_left); }},
+     [](const C& c) -> Value { return kind_text(c.segment.kind_left); }},
     {"edge.kind_right", "", "the same of the right end",
-     [](const C& c) -> Value { return kind_text(c.stretch.kind_right); }},
-    {"edge.length", "m", "of the stretch", [](const C& c) -> Value { return c.stretch.length(); }},
+     [](const C& c) -> Value { return kind_text(c.segment.kind_right); }},
+    {"edge.length", "m", "of the stretch", [](const C& c) -> Value { return c.segment.length(); }},
     {"edge.main_front", "", "the longest stretch of the main front",
      [](const C& c) -> Value { return is_main_front(c); }},
     {"edge.raised", "m", "the ground to the base of the wall: more than 0 above passages and lower parts",
@@ -254,9 +254,9 @@ const std::vector<ContextAttribute> kAttributes = {
     {"edge.turn_left", "degrees",
      "turn of the walls at the left end, positive at corners that stand out; 0: the wall goes on, or edge.kind_left is "
      "empty",
-     [](const C& c) -> Value { return c.stretch.turn_left; }},
+     [](const C& c) -> Value { return c.segment.turn_left; }},
     {"edge.turn_right", "degrees", "the same of the right end",
-     [](const C& c) -> Value { return c.stretch.turn_right; }},
+     [](const C& c) -> Value { return c.segment.turn_right; }},
     {"roof.height", "m", "eaves to the top", [](const C& c) -> Value { return c.part.attributes.roof_height.value; }},
     {"roof.pitch", "degrees", "of the main slope",
      [](const C& c) -> Value { return c.part.attributes.roof_pitch.value; }},
@@ -280,9 +280,9 @@ const std::vector<ContextAttribute> kAttributes = {
      [](const C& c) -> Value { return numbers(storey_heights(c)); }},
     {"storey.ordered", "", "storeys whose height is ordered",
      [](const C& c) -> Value {
-       const auto orders = by_storey(c, "height");
+       const auto overrides = by_storey(c, "height");
        return static_cast<double>(
-           std::count_if(orders.begin(), orders.end(), [](const std::string& o) { return !o.empty(); }));
+           std::count_if(overrides.begin(), overrides.end(), [](const std::string& o) { return !o.empty(); }));
      }},
     {"storey.uses", "", "by storey: shop, office … as ordered; empty: nothing",
      [](const C& c) -> Value { return texts(by_storey(c, "use")); }},
@@ -303,7 +303,7 @@ std::optional<Value> context_value(const FacadeContext& context, std::string_vie
   return place->read(context);
 }
 
-std::vector<std::string> unheard_orders(const model::Building& building) {
+std::vector<std::string> unread_overrides(const model::Building& building) {
   using model::DetailKind;
   // What storey.windows, bay.windows and bay.uses read.
   constexpr std::pair<DetailKind, std::string_view> kHeard[] = {{DetailKind::storey, "parameters.window"},

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/facades/facade_stretches.h"
+#include "pipeline/facades/facade_segments.h"
 #include "pipeline/facades/wall_frame.h"
 #include "pipeline/model/building.h"
 #include "styles/grammar/language/value.h"
@@ -17,7 +17,7 @@ struct FacadeContext {
   const model::Building& building;
   const model::BuildingPart& part;
   const WallFrame& wall;
-  const FacadeStretch& stretch;
+  const FacadeSegment& segment;
   double eaves = 0;  ///< m above the height reference, of the part: eaves_level()
 };
 
@@ -31,11 +31,11 @@ struct ContextAttribute {
 const std::vector<ContextAttribute>& context_attributes();
 std::optional<grammar::Value> context_value(const FacadeContext& context, std::string_view name);
 
-/// m from the left end of the stretch to each mapped entrance, in order, each place once.
+/// m from the left end of the wall segment to each mapped entrance, in order, each place once.
 std::vector<double> entrance_places(const FacadeContext& context);
 
 /// Orders of storeys, edges and bays that no rule file can ask for: parameters without a name in the list above. One
 /// sentence each, with the place of the order.
-std::vector<std::string> unheard_orders(const model::Building& building);
+std::vector<std::string> unread_overrides(const model::Building& building);
 
 }  // namespace blockrand::facades

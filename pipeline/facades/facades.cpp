@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "pipeline/base/random.h"
-#include "pipeline/facades/element_stock.h"
+#include "pipeline/facades/element_library.h"
 #include "pipeline/facades/facade_context.h"
 #include "pipeline/facades/opening_proof.h"
 #include "pipeline/facades/openings.h"
@@ -32,8 +32,8 @@ using model::BuildingPart;
 using model::IssueCode;
 using model::Point2;
 
-/// m that openings of rules keep from the mouth of a passage.
-constexpr double kBesideMouth = 0.1;
+/// m that openings of rules keep from the portal of a passage.
+constexpr double kBesidePortal = 0.1;
 /// m between a mapped entrance and the door that stands for it: rules put doors on the nearest axis, and axes are up to
 /// 3.4 m apart.
 constexpr double kDoorOfEntrance = 1.7;
@@ -47,49 +47,49 @@ struct Asked {
 
 class FacadeBuilder {
  public:
-  FacadeBuilder(model::Region& region, const GrammarBook& grammars, const attributes::Defaults& defaults,
+  FacadeBuilder(model::Region& region, const GrammarLibrary& grammars, const attributes::Defaults& defaults,
                 const FacadeOptions& options)
-      : region_(region), grammars_(grammars), options_(options), stock_(region, defaults) {}
+      : region_(region), grammars_(grammars), options_(options), library_(region, defaults) {}
 
   void build(model::Building& building, BuildingPart& part) {
     if (part.lod < 2 || part.lod2.empty() || part.canopy) return;
-    const GrammarBook::Entry* grammar = grammars_.find(building.attributes.preset.value);
+    const GrammarLibrary::Entry* grammar = grammars_.find(building.attributes.preset.value);
     if (!grammar) return;
     std::vector<WallFrame> walls;
     for (std::uint32_t f = 0; f < part.lod2.faces.size(); ++f)
       if (auto wall = wall_frame(part.lod2, f)) walls.push_back(std::move(*wall));
     asked_.clear();
     told_.clear();
-    usual_looks_ = stock_.usual_looks(part);
+    usual_materials_ = library_.usual_materials(part);
     const std::uint64_t seed = base::random_bits(options_.seed, building.osm.key(), "facades");
     const std::uint64_t row =
         base::random_bits(options_.seed, base::hash_text(building.situation.block), "row of facades");
-    std::vector<FacadeStretch> stretches = facade_stretches(building, walls);
-    mouths_ = take_mouths(part, walls, stretches);
+    std::vector<FacadeSegment> segments = facade_segments(building, walls);
+    portals_ = take_portals(part, walls, segments);
     const double eaves = eaves_level(part);
-    link_corners(stretches, walls, eaves);
-    mouth_elements_ = yielding_ = missed_doors_ = 0;
-    if (!mouths_.empty()) {
+    link_corners(segments, walls, eaves);
+    portal_elements_ = yielding_ = missed_doors_ = 0;
+    if (!portals_.empty()) {
       try_passages(part, walls);
-      close_mouths();
+      close_portals();
     }
-    for (const FacadeStretch& stretch : stretches) {
-      if (stretch.kind == model::EdgeKind::party_wall || stretch.kind == model::EdgeKind::unknown) continue;
-      derive_stretch(*grammar, {building, part, walls[stretch.wall], stretch, eaves}, seed, row);
+    for (const FacadeSegment& segment : segments) {
+      if (segment.kind == model::WallSegmentKind::party_wall || segment.kind == model::WallSegmentKind::unknown) continue;
+      derive_segment(*grammar, {building, part, walls[segment.wall], segment, eaves}, seed, row);
     }
     cut(part, walls);
   }
 
  private:
-  void derive_stretch(const GrammarBook::Entry& grammar, const FacadeContext& context, std::uint64_t seed,
+  void derive_segment(const GrammarLibrary::Entry& grammar, const FacadeContext& context, std::uint64_t seed,
                       std::uint64_t row) {
     const WallFrame& wall = context.wall;
     grammar::Shape shape = wall_shape(wall);
-    if (context.stretch.from > 0 || context.stretch.to < wall.length)
-      shape = grammar::cut_piece(shape, 0, context.stretch.from, context.stretch.to, false);
+    if (context.segment.from > 0 || context.segment.to < wall.length)
+      shape = grammar::cut_piece(shape, 0, context.segment.from, context.segment.to, false);
     grammar::DeriveOptions options;
     const std::string place =
-        fmt::format("{}/{}/{}", context.part.id, wall.face, static_cast<int>(std::floor(context.stretch.from * 16)));
+        fmt::format("{}/{}/{}", context.part.id, wall.face, static_cast<int>(std::floor(context.segment.from * 16)));
     options.seed = base::random_bits(seed, base::hash_text(place), "stretch");
     options.building_seed = seed;
     options.row_seed = row;
@@ -127,24 +127,24 @@ class FacadeBuilder {
     return shape;
   }
 
-  /// An order of a leaf: an element where its scope is. What would stand in the mouth of a passage yields: runs along
+  /// An order of a leaf: an element where its scope is. What would stand in the portal of a passage yields: runs along
   /// the wall are interrupted, the rest is left out.
   void take(const FacadeContext& context, const grammar::Leaf& leaf) {
-    const grammar::Order& order = *leaf.order;
+    const grammar::ElementRequest& order = *leaf.order;
     if (order.arguments.empty() || !std::holds_alternative<std::string>(order.arguments[0])) {
       tell("blockrand." + order.name + " wants the name of an element first");
       return;
     }
     const grammar::Frame frame = grammar::scope_in_object(leaf.shape);
     const double left = frame.origin.x, low = frame.origin.y, width = leaf.shape.size.x, height = leaf.shape.size.y;
-    if (!(ElementStock::size(width) > 0 && ElementStock::size(height) > 0)) return;
+    if (!(ElementLibrary::size(width) > 0 && ElementLibrary::size(height) > 0)) return;
     const elements::ElementKind* kind = elements::find_element_kind(std::get<std::string>(order.arguments[0]));
     const bool run = kind && kind->width_is == "run";
     std::vector<std::pair<double, double>>& pieces = pieces_;
     pieces.assign({{left, left + width}});
-    for (const PassageMouth& m : mouths_) {
-      if (m.wall != context.stretch.wall || low >= m.high + kBesideMouth || low + height <= m.low) continue;
-      const double from = m.left - kBesideMouth, to = m.right + kBesideMouth;
+    for (const PassagePortal& m : portals_) {
+      if (m.wall != context.segment.wall || low >= m.high + kBesidePortal || low + height <= m.low) continue;
+      const double from = m.left - kBesidePortal, to = m.right + kBesidePortal;
       if (left >= to || left + width <= from) continue;
       if (!run) {
         ++yielding_;
@@ -152,7 +152,7 @@ class FacadeBuilder {
           ++missed_doors_;
         return;
       }
-      // Pieces are in order from left to right, and so are what a mouth leaves of one.
+      // Pieces are in order from left to right, and so are what a portal leaves of one.
       for (std::size_t i = 0; i < pieces.size();) {
         const auto [a, b] = pieces[i];
         if (a >= to || b <= from) {
@@ -172,20 +172,20 @@ class FacadeBuilder {
                          context.part.attributes.plinth_height.value;
     const auto storey = storey_height > 0 ? static_cast<std::int32_t>(std::floor(above / storey_height + 0.25)) : 0;
     for (const auto& [from, to] : pieces) {
-      const auto [made_width, made_height] = ElementStock::size(kind, to - from, height);
-      stock_.ask(std::get<std::string>(order.arguments[0]), made_width, made_height, usual_looks_);
+      const auto [made_width, made_height] = ElementLibrary::size(kind, to - from, height);
+      library_.ask(std::get<std::string>(order.arguments[0]), made_width, made_height, usual_materials_);
       complaints_.clear();
-      stock_.add_order(order, from == left, to == left + width, complaints_);
+      library_.add_request(order, from == left, to == left + width, complaints_);
       for (const std::string& what : complaints_) tell(what);
-      place(context.stretch.wall, {(from + to) / 2, low}, std::max(storey, 0));
+      place(context.segment.wall, {(from + to) / 2, low}, std::max(storey, 0));
     }
   }
 
   /// Whether a mapped entrance lies at that piece of the wall.
   static bool at_entrance(const FacadeContext& context, double left, double right) {
     const std::vector<double> places = entrance_places(context);
-    return std::any_of(places.begin(), places.end(), [&](double from_stretch) {
-      const double u = context.stretch.from + from_stretch;
+    return std::any_of(places.begin(), places.end(), [&](double from_segment) {
+      const double u = context.segment.from + from_segment;
       return u >= left - kDoorOfEntrance && u <= right + kDoorOfEntrance;
     });
   }
@@ -193,22 +193,22 @@ class FacadeBuilder {
   /// Takes what the stock was asked for.
   void place(std::uint32_t wall, Point2 at, std::int32_t storey) {
     std::string error;
-    const std::uint32_t element = stock_.take(error);
-    if (element == ElementStock::kNone)
+    const std::uint32_t element = library_.take(error);
+    if (element == ElementLibrary::kNone)
       tell(error);
     else
       asked_.push_back({wall, element, at, storey});
   }
 
-  /// Cuts all open passages alone; mouths of those that cannot be cut are blocked.
+  /// Cuts all open passages alone; portals of those that cannot be cut are blocked.
   /// \return false where the solid is not valid then
   bool takes_passages(const BuildingPart& part, const std::vector<WallFrame>& walls) {
     const std::vector<WallOpening> openings = passage_openings();
     if (openings.empty()) return true;
     const OpenedSolid opened = cut_openings(part.lod2, walls, openings);
     std::size_t i = 0;
-    for (PassageMouth& m : mouths_)
-      if (m.state == MouthState::open && opened.refusals[i++] != OpeningRefusal::none) m.state = MouthState::blocked;
+    for (PassagePortal& m : portals_)
+      if (m.state == PortalState::open && opened.refusals[i++] != OpeningRefusal::none) m.state = PortalState::blocked;
     const auto triangles = geometry::triangulate(opened.solid, part.lod2, part.lod2_triangles);
     return triangles && geometry::check_solid(opened.solid, *triangles).valid();
   }
@@ -216,61 +216,61 @@ class FacadeBuilder {
   /// Leaves open what the solid takes: all passages together, else one after another.
   void try_passages(const BuildingPart& part, const std::vector<WallFrame>& walls) {
     if (takes_passages(part, walls)) return;
-    std::vector<PassageMouth*> tried;
-    for (PassageMouth& m : mouths_)
-      if (m.state == MouthState::open && &mouths_[m.other] > &m) tried.push_back(&m);
-    close_open(MouthState::not_valid);
-    for (PassageMouth* m : tried) {
-      PassageMouth& other = mouths_[m->other];
-      if (m->state != MouthState::not_valid || other.state != MouthState::not_valid) continue;
-      m->state = other.state = MouthState::open;
-      if (!takes_passages(part, walls)) m->state = other.state = MouthState::not_valid;
+    std::vector<PassagePortal*> tried;
+    for (PassagePortal& m : portals_)
+      if (m.state == PortalState::open && &portals_[m.other] > &m) tried.push_back(&m);
+    close_open(PortalState::not_valid);
+    for (PassagePortal* m : tried) {
+      PassagePortal& other = portals_[m->other];
+      if (m->state != PortalState::not_valid || other.state != PortalState::not_valid) continue;
+      m->state = other.state = PortalState::open;
+      if (!takes_passages(part, walls)) m->state = other.state = PortalState::not_valid;
     }
   }
 
-  void close_open(MouthState why) {
-    for (PassageMouth& m : mouths_)
-      if (m.state == MouthState::open) m.state = why;
+  void close_open(PortalState why) {
+    for (PassagePortal& m : portals_)
+      if (m.state == PortalState::open) m.state = why;
   }
 
-  /// Of all open mouths, in their order.
+  /// Of all open portals, in their order.
   std::vector<WallOpening> passage_openings() const {
-    std::vector<std::uint32_t> number(mouths_.size(), model::kNoOpening);
+    std::vector<std::uint32_t> number(portals_.size(), model::kNoOpening);
     std::uint32_t count = 0;
-    for (std::size_t m = 0; m < mouths_.size(); ++m)
-      if (mouths_[m].state == MouthState::open) number[m] = count++;
+    for (std::size_t m = 0; m < portals_.size(); ++m)
+      if (portals_[m].state == PortalState::open) number[m] = count++;
     std::vector<WallOpening> out;
-    for (const PassageMouth& m : mouths_)
-      if (m.state == MouthState::open)
+    for (const PassagePortal& m : portals_)
+      if (m.state == PortalState::open)
         out.push_back({m.wall, model::OpeningKind::passage, m.outline(), 0, 0, number[m.other]});
     return out;
   }
 
-  /// Before all other elements: gates in mouths that lead nowhere, a band round those of passages in street fronts.
-  void close_mouths() {
-    for (const PassageMouth& m : mouths_) {
-      const bool open = m.state == MouthState::open;
-      if (open && m.front != model::EdgeKind::street) continue;
+  /// Before all other elements: gates in portals that lead nowhere, a band round those of passages in street fronts.
+  void close_portals() {
+    for (const PassagePortal& m : portals_) {
+      const bool open = m.state == PortalState::open;
+      if (open && m.front != model::WallSegmentKind::street) continue;
       const bool cart = m.right - m.left >= kLeastGate;
       const std::string_view name = open ? "surround" : cart ? "carriage_gateway" : "house_door";
       const elements::ElementKind& kind = *elements::find_element_kind(name);
-      const double width = std::min(ElementStock::size(m.right - m.left), kind.most_width);
-      const double height = std::min(ElementStock::size(m.high - m.low), kind.most_height);
+      const double width = std::min(ElementLibrary::size(m.right - m.left), kind.most_width);
+      const double height = std::min(ElementLibrary::size(m.high - m.low), kind.most_height);
       if (width < kind.least_width || height < kind.least_height) continue;
-      stock_.ask(name, width, height, usual_looks_);
-      stock_.add("head", std::string_view("straight"));
-      stock_.add("surround", std::string_view(open ? "plain" : "none"));
-      if (!open) stock_.add("reveal", 0.3);
+      library_.ask(name, width, height, usual_materials_);
+      library_.add("head", std::string_view("straight"));
+      library_.add("surround", std::string_view(open ? "plain" : "none"));
+      if (!open) library_.add("reveal", 0.3);
       place(m.wall, {(m.left + m.right) / 2, m.low}, 0);
     }
-    mouth_elements_ = asked_.size();
+    portal_elements_ = asked_.size();
   }
 
   /// A solid with openings.
   struct Cut {
     OpenedSolid opened;
     model::SolidTriangles triangles;
-    std::vector<std::size_t> of_asked;  ///< by opening given: of which element; kNoAsked for mouths of passages
+    std::vector<std::size_t> of_asked;  ///< by opening given: of which element; kNoAsked for portals of passages
   };
 
   /// Cuts passages and what elements need; none when the solid is not valid then.
@@ -279,7 +279,7 @@ class FacadeBuilder {
     std::vector<WallOpening> openings = passage_openings();
     out.of_asked.assign(openings.size(), kNoAsked);
     for (std::size_t i = 0; i < asked_.size(); ++i) {
-      const model::Element& element = stock_.element(asked_[i].element);
+      const model::Element& element = library_.element(asked_[i].element);
       if (element.opening.outline.empty()) continue;
       WallOpening o;
       o.wall = asked_[i].wall;
@@ -302,8 +302,8 @@ class FacadeBuilder {
   void cut(BuildingPart& part, const std::vector<WallFrame>& walls) {
     model::Detail& detail = part.lod3;
     part.lod = 3;
-    const auto is_open = [](const PassageMouth& m) { return m.state == MouthState::open; };
-    const bool passages = std::any_of(mouths_.begin(), mouths_.end(), is_open);
+    const auto is_open = [](const PassagePortal& m) { return m.state == PortalState::open; };
+    const bool passages = std::any_of(portals_.begin(), portals_.end(), is_open);
     if (asked_.empty() && !passages) {  // walls without openings are a facade, too
       detail.solid = part.lod2;
       detail.triangles = part.lod2_triangles;
@@ -312,10 +312,10 @@ class FacadeBuilder {
     }
     std::optional<Cut> made = cut_all(part, walls);
     if (!made && passages) {
-      const std::vector<Asked> rest(asked_.begin() + static_cast<std::ptrdiff_t>(mouth_elements_), asked_.end());
+      const std::vector<Asked> rest(asked_.begin() + static_cast<std::ptrdiff_t>(portal_elements_), asked_.end());
       asked_.clear();
-      close_open(MouthState::not_valid);
-      close_mouths();
+      close_open(PortalState::not_valid);
+      close_portals();
       asked_.insert(asked_.end(), rest.begin(), rest.end());
       made = cut_all(part, walls);
     }
@@ -334,7 +334,7 @@ class FacadeBuilder {
       part.fallbacks.push_back(IssueCode::facade_failed);
       region_.report.add(part.osm, IssueCode::facade_failed, part.id);
       for (std::size_t i = 0; i < asked_.size(); ++i)
-        refused[i] = !stock_.element(asked_[i].element).opening.outline.empty();
+        refused[i] = !library_.element(asked_[i].element).opening.outline.empty();
       detail.solid = part.lod2;
       detail.triangles = part.lod2_triangles;
     }
@@ -361,8 +361,8 @@ class FacadeBuilder {
       if (yielding_ > 0) what += fmt::format(", {} yield to a passage", yielding_);
       region_.report.add(part.osm, IssueCode::opening_left_out, std::move(what));
     }
-    for (const PassageMouth& m : mouths_) {
-      if (m.state == MouthState::open) continue;
+    for (const PassagePortal& m : portals_) {
+      if (m.state == PortalState::open) continue;
       if (part.fallbacks.empty() || part.fallbacks.back() != IssueCode::opening_left_out)
         part.fallbacks.push_back(IssueCode::opening_left_out);
       region_.report.add(part.osm, IssueCode::opening_left_out,
@@ -375,32 +375,32 @@ class FacadeBuilder {
   void tell(const std::string& what) { told_.insert(what); }
 
   static constexpr std::size_t kNoAsked = ~std::size_t{0};
-  /// m; narrower mouths get a house door.
+  /// m; narrower portals get a house door.
   static constexpr double kLeastGate = 1.8;
 
   model::Region& region_;
-  const GrammarBook& grammars_;
+  const GrammarLibrary& grammars_;
   const FacadeOptions& options_;
-  ElementStock stock_;
+  ElementLibrary library_;
   std::vector<Asked> asked_;
-  std::vector<PassageMouth> mouths_;
-  std::size_t mouth_elements_ = 0;  ///< the first of asked_: what close_mouths() put there
-  std::size_t yielding_ = 0;        ///< elements that would stand in a mouth
+  std::vector<PassagePortal> portals_;
+  std::size_t portal_elements_ = 0;  ///< the first of asked_: what close_portals() put there
+  std::size_t yielding_ = 0;        ///< elements that would stand in a portal
   std::size_t missed_doors_ = 0;    ///< those of them that are doors at mapped entrances
   std::set<std::string> told_;
-  PartLooks usual_looks_;  ///< of the part at work
+  PartMaterials usual_materials_;  ///< of the part at work
   std::vector<std::string> complaints_;
   std::vector<std::pair<double, double>> pieces_;
 };
 
 }  // namespace
 
-void build_facades(model::Region& region, const GrammarBook& grammars, const attributes::Defaults& defaults,
+void build_facades(model::Region& region, const GrammarLibrary& grammars, const attributes::Defaults& defaults,
                    const FacadeOptions& options) {
   FacadeBuilder builder(region, grammars, defaults, options);
   for (model::Building& building : region.buildings) {
     if (!building.owned) continue;
-    for (const std::string& order : unheard_orders(building))
+    for (const std::string& order : unread_overrides(building))
       region.report.add(building.osm, IssueCode::override_unmatched, order);
     for (BuildingPart& part : building.parts) builder.build(building, part);
   }

@@ -9,7 +9,7 @@
 
 #include "pipeline/facades/opening_blocks.h"
 #include "pipeline/facades/outlines.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::facades {
@@ -22,7 +22,7 @@ using model::Point3;
 constexpr double kSideMargin = kOpeningClearance / 2;
 /// Off the plane through three of its corners, a tunnel's quadrangle is cut in two. Rounding alone costs half of it.
 constexpr double kPlaneTunnel = 0.002;
-/// Points of two mouths that shall be at one height.
+/// Points of two portals that shall be at one height.
 constexpr double kSameHeight = 0.01;
 
 class Cutter {
@@ -46,8 +46,8 @@ class Cutter {
       return OpeningRefusal::passage_blocked;
     if (const auto bad = in_wall(other); bad != OpeningRefusal::none) return bad;
     const std::optional<Block> tunnel = tunnel_block(o, other);
-    for (const WallOpening* mouth : {&o, &other}) {
-      const Block before = reveal_block(*mouth);
+    for (const WallOpening* portal : {&o, &other}) {
+      const Block before = reveal_block(*portal);
       if (!before.valid() || obstacles_.blocked(before, walls_[o.wall].face, walls_[other.wall].face))
         return OpeningRefusal::passage_blocked;
     }
@@ -56,7 +56,7 @@ class Cutter {
     return take(*tunnel, {index, o.through});
   }
 
-  /// For each point of the first mouth the matching one of the second.
+  /// For each point of the first portal the matching one of the second.
   std::optional<std::vector<std::size_t>> partners(const WallOpening& a, const WallOpening& b) const {
     const std::size_t n = a.outline.size();
     std::optional<std::vector<std::size_t>> best;
@@ -135,7 +135,7 @@ class Cutter {
     const WallFrame &from = walls_[a.wall], &to = walls_[b.wall];
     const Box2 near = box_of(a.outline), far = box_of(b.outline);
     const auto at = [](const WallFrame& wall, double u) { return wall.at({u, 0}).xy(); };
-    // Seen along the tunnel both mouths must be wide enough: its sides then never cross.
+    // Seen along the tunnel both portals must be wide enough: its sides then never cross.
     const Point2 a0 = at(from, near.left), a1 = at(from, near.right), b0 = at(to, far.right), b1 = at(to, far.left);
     const double ax = (b0.x + b1.x - a0.x - a1.x) / 2, ay = (b0.y + b1.y - a0.y - a1.y) / 2,
                  length = std::sqrt(ax * ax + ay * ay);
@@ -245,7 +245,7 @@ OpenedSolid cut_openings(const model::Solid& solid, std::span<const WallFrame> w
   for (std::uint32_t i = 0; i < openings.size(); ++i) {
     const WallOpening& o = openings[i];
     const bool passage = o.kind == model::OpeningKind::passage;
-    // The second mouth of a passage shares the first one's fate.
+    // The second portal of a passage shares the first one's fate.
     if (passage && o.through < i && openings[o.through].through == i && openings[o.through].kind == o.kind) {
       out.refusals[i] = out.refusals[o.through];
       continue;
@@ -258,22 +258,22 @@ OpenedSolid cut_openings(const model::Solid& solid, std::span<const WallFrame> w
     opening.kind = o.kind;
     opening.wall = wall.face;
     opening.storey = o.storey;
-    const std::vector<std::uint32_t> mouth = assembly.add_points(wall, o.outline);
-    const std::size_t n = mouth.size();
-    assembly.add_hole(wall.face, mouth);
+    const std::vector<std::uint32_t> portal = assembly.add_points(wall, o.outline);
+    const std::size_t n = portal.size();
+    assembly.add_hole(wall.face, portal);
     if (!passage) {
-      std::vector<std::uint32_t> end = mouth;
+      std::vector<std::uint32_t> end = portal;
       if (o.reveal >= kLeastReveal) {
         const Point2 outward = wall.outward();
         const Point2 in = model::snap(Point2{-outward.x * o.reveal, -outward.y * o.reveal});
         for (std::size_t k = 0; k < n; ++k) {
-          const Point3 p = assembly.point(mouth[k]);
+          const Point3 p = assembly.point(portal[k]);
           end[k] = assembly.add({p.x + in.x, p.y + in.y, p.z});
         }
         looks.kind = model::SurfaceKind::wall;
         for (std::size_t k = 0; k < n; ++k) {
           const std::size_t next = (k + 1) % n;
-          const std::uint32_t face = assembly.add_face({mouth[k], mouth[next], end[next], end[k]}, looks);
+          const std::uint32_t face = assembly.add_face({portal[k], portal[next], end[next], end[k]}, looks);
           if (k == 0) opening.first_reveal = face;
         }
         opening.reveal_count = static_cast<std::uint32_t>(n);
@@ -290,7 +290,7 @@ OpenedSolid cut_openings(const model::Solid& solid, std::span<const WallFrame> w
     std::vector<std::uint32_t> end(n), far_ring(n);
     for (std::size_t k = 0; k < n; ++k) {
       Point3 p = model::snap(far_wall.at(other.outline[(*match)[k]]));
-      p.z = assembly.point(mouth[k]).z;  // one level, to the last bit
+      p.z = assembly.point(portal[k]).z;  // one level, to the last bit
       end[k] = assembly.add(p);
       far_ring[(*match)[k]] = end[k];
     }
@@ -298,7 +298,7 @@ OpenedSolid cut_openings(const model::Solid& solid, std::span<const WallFrame> w
     opening.polygon = far_wall.face;
     for (std::size_t k = 0; k < n; ++k) {
       const std::size_t next = (k + 1) % n;
-      const std::uint32_t a = mouth[k], b = mouth[next], c = end[next], d = end[k];
+      const std::uint32_t a = portal[k], b = portal[next], c = end[next], d = end[k];
       looks.kind = tunnel_kind(assembly.point(a), assembly.point(b), assembly.point(c));
       std::uint32_t face = 0;
       if (off_plane(assembly.point(a), assembly.point(b), assembly.point(c), assembly.point(d)) <= kPlaneTunnel) {

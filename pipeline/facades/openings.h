@@ -20,7 +20,7 @@ struct WallOpening {
   double reveal = 0;                   ///< m into the wall; less than kLeastReveal is flush
   std::int32_t storey = 0;             ///< 0: ground floor
   std::uint32_t through =
-      model::kNoOpening;  ///< passages: the other mouth, an opening in another wall with as many points
+      model::kNoOpening;  ///< passages: the other portal, an opening in another wall with as many points
 };
 
 /// Why an opening is not cut.
@@ -30,7 +30,7 @@ enum class OpeningRefusal : std::uint8_t {
   beyond_wall,      ///< nearer than kOpeningClearance to the wall's border, or beyond it
   meets_opening,    ///< nearer than that to an opening before it, in its wall or around a corner
   wall_too_thin,    ///< its reveal would come out of another wall, the roof or the ground; or it looks into a slit
-  passage_blocked,  ///< its tunnel would, or its mouths do not fit together
+  passage_blocked,  ///< its tunnel would, or its portals do not fit together
 };
 inline constexpr int kOpeningRefusalCount = 6;
 constexpr std::string_view name(OpeningRefusal refusal) {
@@ -45,7 +45,7 @@ inline constexpr double kLeastOpening = 0.05;      ///< m, width and height
 /// m from a corner of an outline to any edge that does not end there. Rounding moves corners by less than 0.001 m, and
 /// geometry::check_solid wants 0.002 m.
 inline constexpr double kLeastFeature = 0.005;
-inline constexpr double kLeastPassage = 0.6;  ///< m across a tunnel, at both mouths: a person's width
+inline constexpr double kLeastPassage = 0.6;  ///< m across a tunnel, at both portals: a person's width
 inline constexpr double kLeastBehind = 0.05;  ///< m between a reveal's end and what stands behind it
 
 /// A solid with openings.
@@ -60,7 +60,7 @@ struct OpenedSolid {
 ///
 /// Each opening becomes a hole in its wall; reveal faces (kind wall) that lead straight into the building; at their end
 /// a polygon of kind window or door, the outline's exact copy moved by the reveal. Reveals are exact parallelograms,
-/// since their depth is rounded to the grid once. A passage leads from one mouth to the other: floor (outer_floor),
+/// since their depth is rounded to the grid once. A passage leads from one portal to the other: floor (outer_floor),
 /// sides (wall) and ceiling (outer_ceiling), each quadrangle cut in two where it is not plane. That openings lie in
 /// their walls and apart is tested in the drawing of each wall, with distances that rounding cannot use up; what stands
 /// behind them by boxes that are never too small. The result is closed where `solid` is, and valid where proved_valid()

@@ -7,31 +7,31 @@
 namespace blockrand::facades {
 namespace {
 
-using model::EdgeKind;
+using model::WallSegmentKind;
 using model::Point2;
 
-/// Fronts that take a mouth in; the more important first.
-int rank(EdgeKind kind) {
+/// Fronts that take a portal in; the more important first.
+int rank(WallSegmentKind kind) {
   switch (kind) {
-    case EdgeKind::street:
+    case WallSegmentKind::street:
       return 3;
-    case EdgeKind::courtyard:
+    case WallSegmentKind::courtyard:
       return 2;
-    case EdgeKind::side:
+    case WallSegmentKind::side:
       return 1;
-    case EdgeKind::unknown:
-    case EdgeKind::party_wall:
-    case EdgeKind::passage:
+    case WallSegmentKind::unknown:
+    case WallSegmentKind::party_wall:
+    case WallSegmentKind::passage:
       break;
   }
   return 0;
 }
 
-bool beside(const FacadeStretch& left, const FacadeStretch& right) {
-  return left.wall == right.wall && right.from - left.to < kShortestStretch;
+bool beside(const FacadeSegment& left, const FacadeSegment& right) {
+  return left.wall == right.wall && right.from - left.to < kShortestFacadeSegment;
 }
 
-void append(FacadeStretch& to, const FacadeStretch& more) {
+void append(FacadeSegment& to, const FacadeSegment& more) {
   to.to = more.to;
   to.ends_wall = more.ends_wall;
   for (const std::uint32_t e : more.edges)
@@ -44,12 +44,12 @@ double height_of(const model::BuildingPart& part, double width) {
   return std::min(wished, part.attributes.plinth_height.value + storey - kLintel);
 }
 
-Point2 middle(const WallFrame& wall, const PassageMouth& mouth) {
-  return wall.at({(mouth.left + mouth.right) / 2, 0}).xy();
+Point2 middle(const WallFrame& wall, const PassagePortal& portal) {
+  return wall.at({(portal.left + portal.right) / 2, 0}).xy();
 }
 
-/// m between the middles of two mouths; negative when one does not lie behind the other.
-double distance_through(std::span<const WallFrame> walls, const PassageMouth& a, const PassageMouth& b) {
+/// m between the middles of two portals; negative when one does not lie behind the other.
+double distance_through(std::span<const WallFrame> walls, const PassagePortal& a, const PassagePortal& b) {
   const Point2 p = middle(walls[a.wall], a), q = middle(walls[b.wall], b);
   const Point2 out_a = walls[a.wall].outward(), out_b = walls[b.wall].outward(), d{q.x - p.x, q.y - p.y};
   const double length = std::sqrt(d.x * d.x + d.y * d.y);
@@ -59,23 +59,23 @@ double distance_through(std::span<const WallFrame> walls, const PassageMouth& a,
   return length;
 }
 
-void pair_up(std::span<const WallFrame> walls, std::vector<PassageMouth>& mouths) {
+void pair_up(std::span<const WallFrame> walls, std::vector<PassagePortal>& portals) {
   struct Pair {
     double distance;
     std::uint32_t a, b;
   };
   std::vector<Pair> pairs;
-  for (std::uint32_t a = 0; a < mouths.size(); ++a)
-    for (std::uint32_t b = a + 1; b < mouths.size(); ++b) {
-      if (mouths[a].wall == mouths[b].wall) continue;
-      const double d = distance_through(walls, mouths[a], mouths[b]);
+  for (std::uint32_t a = 0; a < portals.size(); ++a)
+    for (std::uint32_t b = a + 1; b < portals.size(); ++b) {
+      if (portals[a].wall == portals[b].wall) continue;
+      const double d = distance_through(walls, portals[a], portals[b]);
       if (d >= 0) pairs.push_back({d, a, b});
     }
   std::sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) {
     return std::pair(x.distance, std::pair(x.a, x.b)) < std::pair(y.distance, std::pair(y.a, y.b));
   });
   for (const Pair& pair : pairs) {
-    PassageMouth &a = mouths[pair.a], &b = mouths[pair.b];
+    PassagePortal &a = portals[pair.a], &b = portals[pair.b];
     if (a.other != model::kNoOpening || b.other != model::kNoOpening) continue;
     // One level from end to end.
     const double low = std::max(walls[a.wall].base + a.low, walls[b.wall].base + b.low);
@@ -83,8 +83,8 @@ void pair_up(std::span<const WallFrame> walls, std::vector<PassageMouth>& mouths
     if (!(high - low >= kLeastHeadroom)) continue;
     a.other = pair.b;
     b.other = pair.a;
-    a.state = b.state = MouthState::open;
-    for (PassageMouth* m : {&a, &b}) {
+    a.state = b.state = PortalState::open;
+    for (PassagePortal* m : {&a, &b}) {
       m->low = low - walls[m->wall].base;
       m->high = high - walls[m->wall].base;
     }
@@ -93,16 +93,16 @@ void pair_up(std::span<const WallFrame> walls, std::vector<PassageMouth>& mouths
 
 }  // namespace
 
-std::vector<PassageMouth> take_mouths(const model::BuildingPart& part, std::span<const WallFrame> walls,
-                                      std::vector<FacadeStretch>& stretches) {
-  std::vector<PassageMouth> mouths;
-  std::vector<FacadeStretch> out;
+std::vector<PassagePortal> take_portals(const model::BuildingPart& part, std::span<const WallFrame> walls,
+                                      std::vector<FacadeSegment>& segments) {
+  std::vector<PassagePortal> portals;
+  std::vector<FacadeSegment> out;
   const double ground = part.attributes.ground_height.value;
-  for (std::size_t i = 0; i < stretches.size(); ++i) {
-    FacadeStretch& mine = stretches[i];
-    if (mine.kind != EdgeKind::passage) {
-      // What was a mouth's neighbour on both sides goes on.
-      if (!out.empty() && beside(out.back(), mine) && i > 0 && stretches[i - 1].kind == EdgeKind::passage &&
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    FacadeSegment& mine = segments[i];
+    if (mine.kind != WallSegmentKind::passage) {
+      // What was a portal's neighbour on both sides goes on.
+      if (!out.empty() && beside(out.back(), mine) && i > 0 && segments[i - 1].kind == WallSegmentKind::passage &&
           out.back().kind == mine.kind && rank(mine.kind) > 0)
         append(out.back(), mine);
       else
@@ -111,34 +111,34 @@ std::vector<PassageMouth> take_mouths(const model::BuildingPart& part, std::span
     }
     const WallFrame& wall = walls[mine.wall];
     const bool has_left = !out.empty() && beside(out.back(), mine);
-    const bool has_right = i + 1 < stretches.size() && beside(mine, stretches[i + 1]);
-    const EdgeKind left = has_left ? out.back().kind : EdgeKind::unknown,
-                   right = has_right ? stretches[i + 1].kind : EdgeKind::unknown;
-    const EdgeKind front = rank(left) >= rank(right) ? left : right;
-    PassageMouth mouth;
-    mouth.wall = mine.wall;
-    mouth.left = std::max(mine.from, kMouthJamb);
-    mouth.right = std::min(mine.to, wall.length - kMouthJamb);
-    mouth.low = std::max(0.0, ground - wall.base) + kMouthThreshold;
-    mouth.high = std::max(0.0, ground - wall.base) + height_of(part, mouth.right - mouth.left);
-    mouth.front = rank(front) > 0 ? front : EdgeKind::passage;
+    const bool has_right = i + 1 < segments.size() && beside(mine, segments[i + 1]);
+    const WallSegmentKind left = has_left ? out.back().kind : WallSegmentKind::unknown,
+                   right = has_right ? segments[i + 1].kind : WallSegmentKind::unknown;
+    const WallSegmentKind front = rank(left) >= rank(right) ? left : right;
+    PassagePortal portal;
+    portal.wall = mine.wall;
+    portal.left = std::max(mine.from, kPortalJamb);
+    portal.right = std::min(mine.to, wall.length - kPortalJamb);
+    portal.low = std::max(0.0, ground - wall.base) + kPortalThreshold;
+    portal.high = std::max(0.0, ground - wall.base) + height_of(part, portal.right - portal.left);
+    portal.front = rank(front) > 0 ? front : WallSegmentKind::passage;
     const bool raised = wall.base > ground + kLintel;
-    if (!raised && mouth.high - mouth.low >= kLeastHeadroom && mouth.right > mouth.left) mouths.push_back(mouth);
+    if (!raised && portal.high - portal.low >= kLeastHeadroom && portal.right > portal.left) portals.push_back(portal);
     if (rank(front) == 0) {
       out.push_back(mine);
     } else if (rank(left) >= rank(right)) {
       append(out.back(), mine);
     } else {
       // The right neighbour begins here.
-      FacadeStretch& next = stretches[i + 1];
+      FacadeSegment& next = segments[i + 1];
       next.from = mine.from;
       next.starts_wall = mine.starts_wall;
       next.edges.insert(next.edges.begin(), mine.edges.begin(), mine.edges.end());
     }
   }
-  stretches = std::move(out);
-  pair_up(walls, mouths);
-  return mouths;
+  segments = std::move(out);
+  pair_up(walls, portals);
+  return portals;
 }
 
 }  // namespace blockrand::facades

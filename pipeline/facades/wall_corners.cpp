@@ -46,20 +46,20 @@ double eaves_level(const model::BuildingPart& part) {
   return as_asked || !std::isfinite(lowest) ? asked : lowest;
 }
 
-void link_corners(std::span<FacadeStretch> stretches, std::span<const WallFrame> walls, double eaves) {
+void link_corners(std::span<FacadeSegment> segments, std::span<const WallFrame> walls, double eaves) {
   // Walls by the place of their right end, which is another one's left end.
   std::map<geometry::Grid2, std::vector<std::uint32_t>> ending;
   for (std::uint32_t w = 0; w < walls.size(); ++w)
     ending[geometry::to_grid(walls[w].at({walls[w].length, 0}).xy())].push_back(w);
   constexpr std::size_t kNone = ~std::size_t{0};
   std::vector<std::size_t> last_of(walls.size(), kNone);
-  for (std::size_t s = 0; s < stretches.size(); ++s)
-    if (stretches[s].ends_wall) last_of[stretches[s].wall] = s;
-  for (std::size_t s = 0; s < stretches.size(); ++s) {
-    FacadeStretch& mine = stretches[s];
-    if (s > 0 && stretches[s - 1].wall == mine.wall && mine.from - stretches[s - 1].to < kShortestStretch) {
-      mine.kind_left = stretches[s - 1].kind;
-      stretches[s - 1].kind_right = mine.kind;
+  for (std::size_t s = 0; s < segments.size(); ++s)
+    if (segments[s].ends_wall) last_of[segments[s].wall] = s;
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    FacadeSegment& mine = segments[s];
+    if (s > 0 && segments[s - 1].wall == mine.wall && mine.from - segments[s - 1].to < kShortestFacadeSegment) {
+      mine.kind_left = segments[s - 1].kind;
+      segments[s - 1].kind_right = mine.kind;
     }
     if (!mine.starts_wall) continue;
     const WallFrame& after = walls[mine.wall];
@@ -72,7 +72,7 @@ void link_corners(std::span<FacadeStretch> stretches, std::span<const WallFrame>
         continue;
       const double across = before.along.x * after.along.y - before.along.y * after.along.x;
       const double forth = before.along.x * after.along.x + before.along.y * after.along.y;
-      FacadeStretch& other = stretches[last_of[w]];
+      FacadeSegment& other = segments[last_of[w]];
       mine.turn_left = other.turn_right = base::atan2(across, forth) * base::kDegreesPerRadian;
       mine.kind_left = other.kind;
       other.kind_right = mine.kind;

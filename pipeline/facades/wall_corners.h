@@ -1,9 +1,9 @@
-// Which stretch comes after which round the corners of a body: courses go on round them.
+// Which wall segment comes after which round the corners of a body: courses go on round them.
 #pragma once
 
 #include <span>
 
-#include "pipeline/facades/facade_stretches.h"
+#include "pipeline/facades/facade_segments.h"
 #include "pipeline/facades/wall_frame.h"
 #include "pipeline/model/building.h"
 
@@ -22,8 +22,8 @@ inline constexpr double kSameEaves = 0.002;
 inline constexpr double kSameLevel = 0.02;
 
 /// Fills in turn_left, turn_right, kind_left and kind_right.
-/// \param stretches  of facade_stretches() for the same walls, after take_mouths()
+/// \param wall segments  of facade_stretches() for the same walls, after take_mouths()
 /// \param eaves      m above the height reference
-void link_corners(std::span<FacadeStretch> stretches, std::span<const WallFrame> walls, double eaves);
+void link_corners(std::span<FacadeSegment> segments, std::span<const WallFrame> walls, double eaves);
 
 }  // namespace blockrand::facades

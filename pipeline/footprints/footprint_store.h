@@ -7,7 +7,7 @@
 
 #include "pipeline/geometry/box_index.h"
 #include "pipeline/model/building.h"
-#include "pipeline/footprints/repair/row.h"
+#include "pipeline/footprints/repair/terrace_row.h"
 
 namespace blockrand::footprints {
 

@@ -7,14 +7,14 @@
 #include <fmt/format.h>
 
 #include "pipeline/base/parallel.h"
-#include "pipeline/geometry/needles.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/slivers.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/footprints/load.h"
-#include "pipeline/footprints/rows.h"
-#include "pipeline/footprints/repair/coverings.h"
+#include "pipeline/footprints/terrace_rows.h"
+#include "pipeline/footprints/repair/nested_outlines.h"
 #include "pipeline/footprints/repair/parts.h"
-#include "pipeline/footprints/repair/repair_row.h"
+#include "pipeline/footprints/repair/repair_terrace_row.h"
 #include "pipeline/footprints/repair/rings.h"
 
 namespace blockrand::footprints {
@@ -115,7 +115,7 @@ void repair_all_rings(const Extract& extract, std::span<const Shard> shards, con
 }
 
 /// For each building of a row: m of its rings that another one at its level has point for point, the other way round.
-std::vector<double> shared_lengths(const repair::Row& row) {
+std::vector<double> shared_lengths(const repair::TerraceRow& row) {
   struct Wall {
     Point2 a, b;
     std::uint32_t building = 0;
@@ -154,22 +154,22 @@ std::vector<double> shared_lengths(const repair::Row& row) {
 }
 
 struct RepairedRow {
-  const RowPlan* plan = nullptr;
-  repair::Row row;
+  const TerraceRowPlan* plan = nullptr;
+  repair::TerraceRow row;
   std::vector<double> shared;
 };
 
-struct RowBatch {
+struct TerraceRowBatch {
   std::vector<RepairedRow> rows;
   model::Report report;
 };
 
-RepairedRow run_row(const Extract& extract, const FootprintStore& store, const RowPlan& plan,
+RepairedRow run_row(const Extract& extract, const FootprintStore& store, const TerraceRowPlan& plan,
                     const repair::RepairOptions& options, model::Report& report) {
   RepairedRow out;
   out.plan = &plan;
   for (const std::uint32_t b : plan.buildings) {
-    repair::RowBuilding building;
+    repair::TerraceBuilding building;
     building.id = store[b].id;
     building.polygons = store.polygons(b);
     building.level = store[b].level;
@@ -183,11 +183,11 @@ RepairedRow run_row(const Extract& extract, const FootprintStore& store, const R
     std::move(polygons.begin(), polygons.end(), std::back_inserter(out.row.beyond_cut));
   }
   if (options.settle_coverings) repair::settle_coverings(out.row, options, report);
-  repair::Row standing;  // what is settled has no polygons left to repair
+  repair::TerraceRow standing;  // what is settled has no polygons left to repair
   standing.beyond_cut = std::move(out.row.beyond_cut);
-  for (repair::RowBuilding& b : out.row.buildings)
+  for (repair::TerraceBuilding& b : out.row.buildings)
     if (!b.polygons.empty()) standing.buildings.push_back(std::move(b));
-  repair::repair_row(standing, options, report);
+  repair::repair_terrace_row(standing, options, report);
   auto repaired = standing.buildings.begin();
   for (std::size_t k = 0; k < out.row.buildings.size(); ++k)
     if (out.row.buildings[k].settled == model::ObjectState::pending) out.row.buildings[k] = std::move(*repaired++);
@@ -195,7 +195,7 @@ RepairedRow run_row(const Extract& extract, const FootprintStore& store, const R
   return out;
 }
 
-bool is_wide(const PlanBox& box) { return longer_side(box) > kMaxRowExtent; }
+bool is_wide(const PlanBox& box) { return longer_side(box) > kMaxTerraceRowExtent; }
 
 /// m. What stands in a wider outline is not all within reach of its tile alone (kHalo): its overlaps stay, and are said.
 constexpr double kWidestYielding = 5'000;
@@ -224,7 +224,7 @@ void yield_to_neighbours(std::uint32_t b, std::span<const std::uint32_t> beyond,
   const std::vector<Polygon> ground = geometry::unite(taken, 0, options.ring_clearance).polygons;
   std::vector<Polygon> rest =
       geometry::difference(outline, ground, options.parts_free_area, options.ring_clearance).polygons;
-  geometry::cut_needles(rest, options.spike_width);
+  geometry::cut_slivers(rest, options.spike_width);
   std::erase_if(rest, [&](const Polygon& p) { return geometry::equivalent_width(p) < options.parts_free_width; });
   here.record.area = 0;
   for (const Polygon& p : rest) here.record.area += geometry::area(p);
@@ -239,9 +239,9 @@ void yield_to_neighbours(std::uint32_t b, std::span<const std::uint32_t> beyond,
 }
 
 /// Rows are repaired apart: what a cut of a long row leaves of overlaps is said.
-void report_overlaps_at_cuts(std::span<const RowPlan> plans, const repair::RepairOptions& options, RepairedExtract& out,
+void report_overlaps_at_cuts(std::span<const TerraceRowPlan> plans, const repair::RepairOptions& options, RepairedExtract& out,
                              RepairTotals& totals) {
-  for (const RowPlan& plan : plans)
+  for (const TerraceRowPlan& plan : plans)
     for (const std::uint32_t b : plan.buildings)
       for (const std::uint32_t other : plan.beyond) {
         const StoredFootprint &here = out.footprints[b], &there = out.footprints[other];
@@ -313,7 +313,7 @@ RepairedExtract repair_extract(const Extract& extract, std::span<const Shard> sh
   repair_all_rings(extract, shards, projection, kept, options, workers, out, mapped);
 
   // Two corners that come towards each other by max_shift each must know of each other.
-  const std::vector<RowPlan> plans = find_rows(mapped, 2 * options.max_shift);
+  const std::vector<TerraceRowPlan> plans = find_terrace_rows(mapped, 2 * options.max_shift);
   std::vector<std::size_t> batches{0};
   for (std::size_t i = 0, size = 0; i < plans.size(); ++i) {
     size += plans[i].buildings.size();
@@ -326,22 +326,22 @@ RepairedExtract repair_extract(const Extract& extract, std::span<const Shard> sh
     if (mapped[b].box.empty()) out.footprints.set(b, mapped[b], {});
   Totals totals;
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2;
-  std::vector<RowBatch> slots(in_flight);
+  std::vector<TerraceRowBatch> slots(in_flight);
   std::uint64_t done = 0;
   const auto work = [&](std::size_t i) {
-    RowBatch batch;
+    TerraceRowBatch batch;
     for (std::size_t k = batches[i]; k < batches[i + 1]; ++k)
       batch.rows.push_back(run_row(extract, mapped, plans[k], options, batch.report));
     slots[i % in_flight] = std::move(batch);
   };
   const auto consume = [&](std::size_t i) {
-    RowBatch batch = std::move(slots[i % in_flight]);
+    TerraceRowBatch batch = std::move(slots[i % in_flight]);
     for (RepairedRow& row : batch.rows) {
       totals.totals_.rows += row.row.buildings.size() > 1;
       std::vector<bool> cut(row.row.buildings.size(), false);
       for (std::size_t k = 0; k < row.row.buildings.size(); ++k) {
         const std::uint32_t b = row.plan->buildings[k];
-        repair::RowBuilding& building = row.row.buildings[k];
+        repair::TerraceBuilding& building = row.row.buildings[k];
         StoredFootprint f = mapped[b];
         f.record = building.record;
         f.settled = building.settled;
@@ -365,7 +365,7 @@ RepairedExtract repair_extract(const Extract& extract, std::span<const Shard> sh
   };
   if (!plans.empty()) base::ordered_parallel(batches.size() - 1, workers, in_flight, work, consume);
   if (options.resolve_overlaps)
-    for (const RowPlan& plan : plans)
+    for (const TerraceRowPlan& plan : plans)
       for (const std::uint32_t b : plan.buildings) yield_to_neighbours(b, plan.beyond, options, out);
   report_overlaps_at_cuts(plans, options, out, totals.totals_);
   out.footprints.shrink_to_fit();

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/osm_keys.h"
 #include "pipeline/model/vector.h"
 

@@ -23,7 +23,7 @@ struct Shard {
   std::vector<Seed> seeds;
 };
 
-/// Level of the tiles that are the unit of work and of output files (DESIGN section 6).
+/// Level of the tiles that are the unit of work and of output files (ARCHITECTURE.md, "Coordinates").
 inline constexpr int kTileLevel = 15;
 
 /// Centre of the raw bounding box of an object's rings; longitudes are unwrapped around its first vertex, so that an

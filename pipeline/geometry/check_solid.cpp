@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/ring_defects.h"
 #include "pipeline/geometry/triangle_conflicts.h"
 #include "pipeline/geometry/triangulate.h"

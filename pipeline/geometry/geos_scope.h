@@ -68,8 +68,8 @@ inline model::Ring ring_from(const GEOSGeometry* ring, model::Point2 origin) {
   return out;
 }
 
-/// STRUCTURE keeps overlaps inside and holes out; LINEWORK makes holes of what is enclosed twice (feasibility.md,
-/// section 2).
+/// STRUCTURE keeps overlaps inside and holes out; LINEWORK makes holes of what is enclosed twice
+/// (docs/sources.md, Libraries 2).
 inline Geometry made_valid(const GEOSGeometry* geometry, GEOSMakeValidMethods method) {
   GEOSMakeValidParams* parameters = GEOSMakeValidParams_create_r(context());
   GEOSMakeValidParams_setMethod_r(context(), parameters, method);

@@ -12,7 +12,7 @@
 #include "pipeline/geometry/geos_scope.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/noded_lines.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::geometry {

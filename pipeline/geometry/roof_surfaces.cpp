@@ -5,7 +5,7 @@
 #include <numeric>
 #include <optional>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::geometry {
 

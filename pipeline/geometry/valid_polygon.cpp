@@ -7,7 +7,7 @@
 
 #include "pipeline/geometry/geos_scope.h"
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::geometry {
 

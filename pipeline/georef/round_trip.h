@@ -7,7 +7,7 @@
 
 namespace blockrand::georef {
 
-inline constexpr double kMaxRoundTrip = 1e-3;  ///< m; DESIGN law 8
+inline constexpr double kMaxRoundTrip = 1e-3;  ///< m; ARCHITECTURE.md, law 8
 
 /// Largest errors over a grid of sample points, in metres on the ground. For build.json.
 struct RoundTrip {

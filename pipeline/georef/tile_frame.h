@@ -17,7 +17,7 @@ namespace blockrand::georef {
 /// and for points outside of that area, the exact way is taken. Deterministic bit for bit when Projection::portable().
 class TileFrame {
  public:
-  static constexpr double kMaxError = 1e-4;  ///< m; a tenth of the millimetre that DESIGN law 8 promises
+  static constexpr double kMaxError = 1e-4;  ///< m; a tenth of the millimetre that ARCHITECTURE.md, law 8 promises
   static constexpr double kMargin = 1000;    ///< m around the tile that the polynomial covers
 
   /// \param tile            the origin is its centre

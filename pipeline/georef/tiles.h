@@ -1,4 +1,4 @@
-// The geodetic quadtree that cuts the world into units of work (DESIGN section 6).
+// The geodetic quadtree that cuts the world into units of work (ARCHITECTURE.md, "Coordinates").
 #pragma once
 
 #include <array>

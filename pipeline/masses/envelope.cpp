@@ -13,7 +13,7 @@ using model::Polygon;
 using model::Ring;
 using model::Solid;
 
-Solid envelope(const Polygon& plan, double bottom, const roofs::Roof& roof, const EnvelopeLooks& looks) {
+Solid envelope(const Polygon& plan, double bottom, const roofs::Roof& roof, const EnvelopeMaterials& materials) {
   geometry::SolidBuilder builder;
   std::vector<std::vector<Point3>> underside;
   const auto loop_below = [&](const Ring& ring) {
@@ -23,7 +23,7 @@ Solid envelope(const Polygon& plan, double bottom, const roofs::Roof& roof, cons
   };
   loop_below(plan.outer);
   for (const Ring& hole : plan.holes) loop_below(hole);
-  builder.add_face(underside, looks.under);
+  builder.add_face(underside, materials.under);
 
   std::int32_t edge = 0;
   const auto walls = [&](const Ring& ring) {
@@ -32,7 +32,7 @@ Solid envelope(const Polygon& plan, double bottom, const roofs::Roof& roof, cons
       std::vector<Point3> loop{{a.x, a.y, bottom}, {b.x, b.y, bottom}};
       const auto& top = roof.wall_tops[static_cast<std::size_t>(edge)];
       loop.insert(loop.end(), top.begin(), top.end());
-      Face face = looks.wall;
+      Face face = materials.wall;
       face.edge = edge;
       builder.add_face(loop, face);
     }
@@ -41,7 +41,7 @@ Solid envelope(const Polygon& plan, double bottom, const roofs::Roof& roof, cons
   for (const Ring& hole : plan.holes) walls(hole);
 
   for (const auto& surface : roof.surfaces) {
-    Face face = surface.upright ? looks.wall : looks.roof;
+    Face face = surface.upright ? materials.wall : materials.roof;
     face.edge = surface.upright ? -1 : surface.edge;
     builder.add_face(surface.loops, face);
   }

@@ -8,13 +8,13 @@
 namespace blockrand::masses {
 
 /// Kind, material and colour of the faces of one mass.
-struct EnvelopeLooks {
+struct EnvelopeMaterials {
   model::Face wall, roof, under;
 };
 
 /// Underside at z = `bottom`, a wall for every edge of the plan up to the roof, and the roof's surfaces. Points are
 /// rounded to the grid, equal ones shared. The plan must be strictly simple; whether the solid is valid is for
 /// geometry::check_solid to say.
-model::Solid envelope(const model::Polygon& plan, double bottom, const roofs::Roof& roof, const EnvelopeLooks& looks);
+model::Solid envelope(const model::Polygon& plan, double bottom, const roofs::Roof& roof, const EnvelopeMaterials& materials);
 
 }  // namespace blockrand::masses

@@ -10,7 +10,7 @@
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/attributes/roof_edges.h"
 #include "pipeline/geometry/check_solid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "styles/roofs/eaves_lines.h"
@@ -77,10 +77,10 @@ class MassBuilder {
     building_ = &building;
     if (part.roof_plan.outer.size() < 3) attributes::prepare_roof_plans(building, options_.collinear_tolerance);
     part.lod = 0;
-    const EnvelopeLooks looks = looks_of(part);
+    const EnvelopeMaterials materials = materials_of(part);
     const Levels levels = levels_of(part);
-    if (lod >= 1) build_lod1(part, part.roof_plan, levels, looks);
-    if (lod >= 2) build_lod2(part, part.roof_plan, levels, looks);
+    if (lod >= 1) build_lod1(part, part.roof_plan, levels, materials);
+    if (lod >= 2) build_lod2(part, part.roof_plan, levels, materials);
     if (part.lod < lod)
       note(part, part.lod == 1 ? IssueCode::lod1_only : IssueCode::no_solid);
   }
@@ -91,7 +91,7 @@ class MassBuilder {
     region_.report.add(part.osm, code, detail.empty() ? part.id : part.id + ": " + detail);
   }
 
-  EnvelopeLooks looks_of(const BuildingPart& part) const {
+  EnvelopeMaterials materials_of(const BuildingPart& part) const {
     const auto face = [&](SurfaceKind kind, const std::string& material, model::Colour colour) {
       Face f;
       f.kind = kind;
@@ -101,11 +101,11 @@ class MassBuilder {
     };
     const auto& a = part.attributes;
     const bool on_ground = a.min_height.value <= 0 && !part.canopy;
-    EnvelopeLooks looks;
-    looks.wall = face(SurfaceKind::wall, a.wall_material.value, a.wall_colour.value);
-    looks.roof = face(SurfaceKind::roof, a.roof_material.value, a.roof_colour.value);
-    looks.under = face(on_ground ? SurfaceKind::ground : SurfaceKind::outer_ceiling, a.wall_material.value, a.wall_colour.value);
-    return looks;
+    EnvelopeMaterials materials;
+    materials.wall = face(SurfaceKind::wall, a.wall_material.value, a.wall_colour.value);
+    materials.roof = face(SurfaceKind::roof, a.roof_material.value, a.roof_colour.value);
+    materials.under = face(on_ground ? SurfaceKind::ground : SurfaceKind::outer_ceiling, a.wall_material.value, a.wall_colour.value);
+    return materials;
   }
 
   Levels levels_of(BuildingPart& part) {
@@ -142,10 +142,10 @@ class MassBuilder {
     return {model::snap(ground + bottom), model::snap(ground + top - roof), model::snap(ground + top)};
   }
 
-  void build_lod1(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks) {
+  void build_lod1(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials) {
     const double top = model::snap((levels.eaves + levels.top) / 2);
     for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, &part.plan}) {
-      if (auto block = checked(envelope(*p, levels.bottom, roofs::flat_roof(*p, top), looks))) {
+      if (auto block = checked(envelope(*p, levels.bottom, roofs::flat_roof(*p, top), materials))) {
         part.lod1 = std::move(block->solid);
         part.lod1_triangles = std::move(block->triangles);
         part.lod = 1;
@@ -154,9 +154,9 @@ class MassBuilder {
     }
   }
 
-  bool accept(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks, const roofs::Roof& roof,
+  bool accept(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials, const roofs::Roof& roof,
               RoofShape built) {
-    auto result = checked(envelope(plan, levels.bottom, roof, looks));
+    auto result = checked(envelope(plan, levels.bottom, roof, materials));
     if (!result) return false;
     part.lod2 = std::move(result->solid);
     part.lod2_triangles = std::move(result->triangles);
@@ -166,16 +166,16 @@ class MassBuilder {
   }
 
   /// One shape on one plan; tidied more coarsely where its solid fails the check.
-  bool build_roof(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks, roofs::RoofRequest request) {
+  bool build_roof(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials, roofs::RoofRequest request) {
     request.measures = {levels.eaves, levels.top - levels.eaves};
     request.along_eaves_lines = true;
-    if (build_tidied(part, plan, levels, looks, request)) return true;
+    if (build_tidied(part, plan, levels, materials, request)) return true;
     if (!model::rises_from_edges(request.shape) || !roofs::eaves_plan(plan, request.edges)) return false;
     // Where the roof of whole facades does not fit, or does not come out valid, every bay gets slopes of its own.
     const double along = roofs::main_slope(plan, request, true).run;
     request.along_eaves_lines = false;
     if (part.usual_pitch > 0 && along > 0) keep_pitch(part, request, roofs::main_slope(plan, request, true).run / along);
-    if (!build_tidied(part, plan, levels, looks, request)) return false;
+    if (!build_tidied(part, plan, levels, materials, request)) return false;
     note(part, IssueCode::roof_with_bays);
     return true;
   }
@@ -199,25 +199,25 @@ class MassBuilder {
   double least_wall(const BuildingPart& part, const Levels& levels) const {
     return std::min(part.canopy ? 0.0 : options_.min_wall_height, levels.eaves - levels.bottom) - 0.001;
   }
-  bool build_tidied(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks, roofs::RoofRequest request) {
+  bool build_tidied(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials, roofs::RoofRequest request) {
     for (const double coarseness : roofs::kCoarseness) {
       request.coarseness = coarseness;
       const auto built = roofs::build_roof(plan, request);
       if (!built || lowest_eaves(built->roof) < levels.bottom + least_wall(part, levels)) continue;
-      if (!accept(part, plan, levels, looks, built->roof, built->shape)) continue;
+      if (!accept(part, plan, levels, materials, built->roof, built->shape)) continue;
       if (built->note != IssueCode::none) note(part, built->note, built->detail);
       return true;
     }
     return false;
   }
 
-  void build_lod2(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeLooks& looks) {
+  void build_lod2(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials) {
     const RoofShape asked = part.attributes.roof_shape.value;
     if (is_unknown(asked)) note(part, IssueCode::roof_shape_unknown, asked == RoofShape::many ? "many" : "");
     const roofs::RoofMeasures measures{levels.eaves, levels.top - levels.eaves};
     if (asked != RoofShape::flat && measures.height > 0 && !part.roof_lines.empty()) {
       const auto lined = roofs::lined_roof(plan, measures, part.roof_lines);
-      if (lined && accept(part, plan, levels, looks, *lined, RoofShape::lined)) return;
+      if (lined && accept(part, plan, levels, materials, *lined, RoofShape::lined)) return;
       note(part, IssueCode::roof_lines_ignored, lined ? "their solid is not valid" : "they do not fit each other or the plan");
     }
     if (asked != RoofShape::flat && !is_unknown(asked) && measures.height > 0) {
@@ -232,7 +232,7 @@ class MassBuilder {
         for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, simplified ? &*simplified : nullptr}) {
           if (!p) continue;
           request.edges = heeds_row ? in_row(*p) : std::vector<model::RoofEdge>{};
-          if (!build_roof(part, *p, levels, looks, request)) continue;
+          if (!build_roof(part, *p, levels, materials, request)) continue;
           if (p != &plan) note(part, IssueCode::roof_simplified);
           if (!heeds_row) note(part, IssueCode::roof_row_ignored);
           return;
@@ -240,7 +240,7 @@ class MassBuilder {
       }
       request.shape = RoofShape::hipped;
       request.edges.clear();
-      if (asked != RoofShape::hipped && build_roof(part, plan, levels, looks, request)) {
+      if (asked != RoofShape::hipped && build_roof(part, plan, levels, materials, request)) {
         note(part, IssueCode::roof_shape_adapted, std::string(model::name(asked)) + " as hipped: its solid is not valid");
         return;
       }
@@ -248,10 +248,10 @@ class MassBuilder {
     }
     // A flat roof in place of a pitched one ends at half its height, so that the volume stays.
     const double top = asked == RoofShape::flat || is_unknown(asked) ? levels.top : model::snap((levels.eaves + levels.top) / 2);
-    if (accept(part, plan, levels, looks, roofs::flat_roof(plan, top), RoofShape::flat)) return;
+    if (accept(part, plan, levels, materials, roofs::flat_roof(plan, top), RoofShape::flat)) return;
     for (const double tolerance : {options_.simplify_tolerance, 2 * options_.simplify_tolerance}) {
       const std::optional<Polygon> simplified = attributes::simpler_plan(part.plan, tolerance);
-      if (simplified && accept(part, *simplified, levels, looks, roofs::flat_roof(*simplified, top), RoofShape::flat)) {
+      if (simplified && accept(part, *simplified, levels, materials, roofs::flat_roof(*simplified, top), RoofShape::flat)) {
         note(part, IssueCode::plan_simplified);
         return;
       }

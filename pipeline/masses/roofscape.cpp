@@ -92,7 +92,7 @@ class House {
         for (std::size_t i = 0; i < loop.size(); ++i) above[key(loop[i], loop[(i + 1) % loop.size()])] = f;
       }
     }
-    const attributes::OutlineStretches stretches(building_);
+    const attributes::OutlineSegments segments(building_);
     for (const Face& face : s.faces) {
       if (face.kind != SurfaceKind::wall || face.edge < 0) continue;
       const auto loop = s.indices_of(s.loops[face.first_loop]);
@@ -102,7 +102,7 @@ class House {
       w.from = s.vertices[loop[0]].xy();
       w.to = s.vertices[loop[1]].xy();
       w.length = distance(w.to, w.from);
-      w.kind = stretches.kind(w.from, w.to);
+      w.kind = segments.kind(w.from, w.to);
       const Point2 out = w.outwards();
       for (std::size_t i = loop.size(); i-- > 2;) {
         w.top.push_back(s.vertices[loop[i]]);

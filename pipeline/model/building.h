@@ -99,16 +99,16 @@ void for_each_attribute(A& a, Visit&& visit, Absent&& absent) {
 
 inline constexpr std::uint32_t kNoIndex = 0xffffffff;
 
-/// What a stretch of an outline faces.
-enum class EdgeKind : std::uint8_t { unknown, street, courtyard, side, party_wall, passage };
-inline constexpr int kEdgeKindCount = 6;
-constexpr std::string_view name(EdgeKind kind) {
+/// What a wall segment of an outline faces.
+enum class WallSegmentKind : std::uint8_t { unknown, street, courtyard, side, party_wall, passage };
+inline constexpr int kWallSegmentKindCount = 6;
+constexpr std::string_view name(WallSegmentKind kind) {
   constexpr std::string_view names[] = {"unknown", "street", "courtyard", "side", "party_wall", "passage"};
   return names[static_cast<int>(kind)];
 }
 
-/// A mapped entrance, address, or shop node, and the stretch of wall it belongs to.
-struct EdgePoint {
+/// A mapped entrance, address, or shop node, and the wall segment of wall it belongs to.
+struct WallPoint {
   OsmId id;
   Point2 place;              ///< m
   bool entrance = false;     ///< else an address or a shop alone
@@ -117,15 +117,15 @@ struct EdgePoint {
                              ///< empty for none
 };
 
-/// A stretch of one edge of the outline with one situation. Edges are cut where their situation changes; the cuts are no
+/// A wall segment of one edge of the outline with one situation. Edges are cut where their situation changes; the cuts are no
 /// corners of the outline, so that roofs and solids keep whole walls.
-struct FacadeEdge {
+struct WallSegment {
   std::int64_t from_node = 0, to_node = 0;  ///< OSM nodes of the ends of the whole edge (0 where a repair made the point)
   std::uint32_t polygon = 0;                ///< index into Building::outline
   std::uint32_t ring = 0;                   ///< 0: outer; k: holes[k - 1]
   std::uint32_t edge = 0;                   ///< from point `edge` of the ring to the next
   double start = 0, end = 0;                ///< m along the edge, from its first point
-  EdgeKind kind = EdgeKind::unknown;
+  WallSegmentKind kind = WallSegmentKind::unknown;
   float confidence = 0;                     ///< of `kind`, [0, 1]
   OsmId neighbour;                          ///< party wall: of whom; number 0 otherwise
   float covered_height = 0;                 ///< m, party wall: what the neighbour covers, known once heights are resolved
@@ -133,13 +133,13 @@ struct FacadeEdge {
   OsmId street;                             ///< the street it faces (street, passage; also of a side or courtyard that
                                             ///< looks out on one); number 0 where none
   std::string street_name, street_class;    ///< of it; class as context::LineClass is written
-  float street_distance = 0;                ///< m, from the middle of the stretch to the street's line
-  float street_angle = 0;                   ///< degrees [0, 90] between the stretch and the street
+  float street_distance = 0;                ///< m, from the middle of the wall segment to the street's line
+  float street_angle = 0;                   ///< degrees [0, 90] between the wall segment and the street
   float visibility = 0;                     ///< [0, 1]: how much of it is seen from street space
   bool corner_start = false, corner_end = false;  ///< a street corner of the block lies at this end
   bool chamfer = false;                     ///< cuts off a street corner
   std::int32_t entrances = 0;               ///< mapped entrances on it
-  std::vector<EdgePoint> points;            ///< mapped entrances and address nodes at it, by id
+  std::vector<WallPoint> points;            ///< mapped entrances and address nodes at it, by id
   std::int32_t arc = -1;                    ///< index into Building::arcs, where the edge is a piece of a curve
   double length() const { return end - start; }
 };
@@ -164,7 +164,7 @@ constexpr std::string_view name(BuildingPosition position) {
 /// What context says about the whole building. Lengths in metres on the ground.
 struct BuildingSituation {
   BuildingPosition position = BuildingPosition::unknown;
-  std::vector<std::uint32_t> fronts;          ///< indices into Building::edges: stretches of the main fronts, the longest first
+  std::vector<std::uint32_t> fronts;          ///< indices into Building::edges: wall segments of the main fronts, the longest first
   std::optional<double> orientation;          ///< degrees clockwise from north: where the main front looks
   std::optional<double> depth, width;         ///< across and along the main front (without one: shorter, longer side)
   std::optional<double> setback;              ///< main front to the street's building line
@@ -177,8 +177,8 @@ struct BuildingSituation {
 struct NearTree {
   OsmId id;
   Point2 place;            ///< m
-  std::uint32_t edge = 0;  ///< index into Building::edges: the stretch it is nearest to
-  float distance = 0;      ///< m, from that stretch
+  std::uint32_t edge = 0;  ///< index into Building::edges: the wall segment it is nearest to
+  float distance = 0;      ///< m, from that wall segment
 };
 
 /// A run of edges that approximates a circle: a rounded corner, a bay, a round tower.
@@ -196,7 +196,7 @@ struct RepairRecord {
   std::uint32_t moved = 0;          ///< of them by more than 1 mm
   double mean_shift = 0, max_shift = 0;  ///< m, of the moved ones
   double mapped_area = 0, area = 0;
-  std::uint32_t shared_walls = 0;   ///< stretches whose points a neighbour has as well
+  std::uint32_t shared_walls = 0;   ///< wall segments whose points a neighbour has as well
   std::uint32_t gaps_closed = 0;    ///< of them that did not touch as mapped
   std::uint32_t overlaps_resolved = 0;
   double overlap_left = 0;          ///< m² common with others at the same level that stay (reported)
@@ -235,7 +235,7 @@ struct BuildingPart {
 
 /// A value that classification offers where the map is silent.
 template <class T>
-struct Offer {
+struct InferredCandidate {
   T value{};
   Source source = Source::default_;
   float confidence = 0;  ///< 0: nothing is offered
@@ -244,8 +244,8 @@ struct Offer {
 
 /// What classification offers for a building's attributes.
 struct Inferred {
-  Offer<float> storeys;
-  Offer<RoofShape> roof_shape;
+  InferredCandidate<float> storeys;
+  InferredCandidate<RoofShape> roof_shape;
   std::uint8_t style = 0;      ///< index into the catalogue of styles: usual heights, pitches, colours
   float style_confidence = 0;  ///< 0: nothing is offered
 };
@@ -257,7 +257,7 @@ struct Building {
   MappedAttributes mapped;           ///< what its tags say
   MappedRings rings;                 ///< empty for a part without outline that stands alone
   std::vector<Polygon> outline;      ///< repaired; usually one
-  std::vector<FacadeEdge> edges;     ///< of the outline: polygon by polygon, ring by ring, edge by edge, along the edge
+  std::vector<WallSegment> edges;     ///< of the outline: polygon by polygon, ring by ring, edge by edge, along the edge
   std::vector<Arc> arcs;             ///< curves of the outline
   RepairRecord repaired;             ///< what repair did to the outline
   BuildingSituation situation;       ///< what context found

@@ -76,16 +76,16 @@ struct Element {
 };
 
 /// How the faces of a part look.
-struct PartLook {
+struct PartMaterial {
   std::uint8_t material = 0;  ///< index into Region::materials
   Colour colour;
-  bool operator==(const PartLook&) const = default;
+  bool operator==(const PartMaterial&) const = default;
 };
 
 /// An element in its colours: what a tile stores once and places.
 struct ColouredElement {
   std::shared_ptr<const Element> element;
-  std::array<PartLook, kElementPartCount> looks;  ///< by ElementPart
+  std::array<PartMaterial, kElementPartCount> materials;  ///< by ElementPart
 };
 
 }  // namespace blockrand::model

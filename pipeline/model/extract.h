@@ -1,4 +1,4 @@
-// What an OSM extract holds that Blockrand uses: the compact object store of a build (DESIGN law 5).
+// What an OSM extract holds that Blockrand uses: the compact object store of a build (ARCHITECTURE.md, law 5).
 //
 // Everything is kept in flat arrays with integer coordinates and interned tags. Importers fill it; afterwards it is
 // read-only. Geometry is raw: rings are as mapped, of either orientation, and may be invalid.
@@ -57,8 +57,8 @@ struct MappedAttributes {
 
 enum class ObjectKind : std::uint8_t { building, building_part };
 
-/// The one final state of an object (DESIGN law 1). The importer decides `duplicate` and `reported` for what cannot
-/// become an area; the region stage decides the rest.
+/// The one final state of an object (ARCHITECTURE.md, law 1). The importer decides `duplicate` and `reported` for what
+/// cannot become an area; the region stage decides the rest.
 enum class ObjectState : std::uint8_t { pending, modelled, represented, duplicate, reported };
 
 /// As written in all outputs.

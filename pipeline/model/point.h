@@ -7,8 +7,8 @@
 
 namespace blockrand::model {
 
-/// The grid of DESIGN section 5: all coordinates at stage borders are multiples of 1/1024 m, which doubles hold exactly,
-/// so that the last bit of a maths library does not travel and exact predicates work on integers.
+/// The grid of ARCHITECTURE.md, "Coordinates": all coordinates at stage borders are multiples of 1/1024 m, which
+/// doubles hold exactly, so that the last bit of a maths library does not travel and exact predicates work on integers.
 inline constexpr double kGridStepsPerMetre = 1024.0;
 
 inline double snap(double metres) { return std::nearbyint(metres * kGridStepsPerMetre) / kGridStepsPerMetre; }

@@ -91,7 +91,7 @@ struct UsualPitch {
   double most = 90;  ///< the use's, at most
 };
 
-/// Which ornamental gables may stand before a roof (Holtmeier section 5.2).
+/// Which ornamental gables may stand before a roof (docs/sources.md, Holtmeier 5.2).
 enum class OrnamentalGable : std::uint8_t {
   none,
   gable,  ///< stepped and curved ones, which hide the roof's own gable
@@ -112,7 +112,7 @@ struct RoofTraits {
 };
 
 // X(identifier, designated initialisers of RoofTraits). The order is that of the numbers in outputs: new shapes go to
-// the end. Sources of the usual pitches: references/styles.md, section 2.7.
+// the end. Sources of the usual pitches: docs/style_measures.md 2.7.
 #define BLOCKRAND_ROOF_SHAPES(X)                                                                                       \
   X(flat, .name = "flat", .group = RoofGroup::flat, .construction = LevelRoof{}, .one_pitch = false, .lent = true,     \
     .ornament = OrnamentalGable::attic, .synonyms = {"flat_roof"})                                                     \

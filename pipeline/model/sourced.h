@@ -1,4 +1,4 @@
-// A value that knows where it came from (DESIGN law 2).
+// A value that knows where it came from (ARCHITECTURE.md, law 2).
 #pragma once
 
 #include <cstdint>
@@ -57,7 +57,7 @@ struct Candidate {
 /// Why a value was chosen: a sentence a layman can read ("median of 7 neighbours within 100 m"), and what lost.
 struct Evidence {
   std::string text;
-  std::vector<Candidate> lost;
+  std::vector<Candidate> other_candidates;
 };
 
 /// One tile's evidence, addressed by EvidenceId.

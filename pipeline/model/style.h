@@ -31,7 +31,7 @@ constexpr Era era_of(int year) {
   return year < 1840 ? Era::pre1840 : year < 1919 ? Era::from1840 : year < 1946 ? Era::from1919 : Era::post1945;
 }
 
-/// How the houses of a quarter stand (references/styles.md 3.3).
+/// How the houses of a quarter stand (docs/style_measures.md 3.3).
 enum class Morphology : std::uint8_t {
   perimeter_block,  ///< deep houses wall to wall around courtyards
   old_town,         ///< narrow houses on small irregular blocks

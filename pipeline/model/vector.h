@@ -7,8 +7,8 @@
 
 namespace blockrand::model {
 
-// Each function is + - * and sqrt in a fixed order, which every x86-64 rounds alike (DESIGN law 3). std::hypot rounds
-// differently: places that call it keep doing so.
+// Each function is + - * and sqrt in a fixed order, which every x86-64 rounds alike (ARCHITECTURE.md, law 3).
+// std::hypot rounds differently: places that call it keep doing so.
 
 constexpr Point2 operator+(Point2 a, Point2 b) { return {a.x + b.x, a.y + b.y}; }
 constexpr Point2 operator-(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }

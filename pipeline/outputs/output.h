@@ -57,7 +57,7 @@ struct FinishedTile {
   std::size_t shard = 0;                    ///< index
   std::string name;                         ///< "15_17600_12900"
   bool has_parts = false;                   ///< a building has a body
-  std::function<Fate(std::uint32_t)> fate;  ///< what becomes of object `mapped_index` of the extract
+  std::function<FinalState(std::uint32_t)> final_state;  ///< what becomes of object `mapped_index` of the extract
   /// What outputs wrote so far, those before this one in all_outputs().
   std::vector<base::PublishedFile> files;
 };

@@ -7,7 +7,7 @@
 
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 #include "pipeline/outputs/placed_element.h"
 
@@ -44,14 +44,14 @@ TileStatistics count_statistics(const model::Region& region) {
     const double wall_height = std::max(0.0, a.height.value - a.roof_height.value - a.min_height.value);
     const double base = a.ground_height.value;
     if (!building.parts.empty()) ++s.positions[static_cast<std::size_t>(building.situation.position)];
-    for (const model::FacadeEdge& e : building.edges) {
+    for (const model::WallSegment& e : building.edges) {
       ++s.edges[static_cast<std::size_t>(e.kind)];
       s.edge_length[static_cast<std::size_t>(e.kind)] += e.length();
       const model::Polygon& polygon = building.outline[e.polygon];
       const model::Ring& ring = e.ring == 0 ? polygon.outer : polygon.holes[e.ring - 1];
       const model::Point2 a = ring.points[e.edge], b = ring.points[(e.edge + 1) % ring.size()];
       const double whole = distance(b, a);
-      if (e.kind == model::EdgeKind::party_wall && e.start <= kWholeEdge && e.end >= whole - kWholeEdge)
+      if (e.kind == model::WallSegmentKind::party_wall && e.start <= kWholeEdge && e.end >= whole - kWholeEdge)
         out.party_sides.push_back({wall_key(a, b), whole, base, base + wall_height});
       else
         s.outer_wall_area += e.length() * wall_height;

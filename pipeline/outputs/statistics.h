@@ -28,8 +28,8 @@ struct Statistics {
   std::uint64_t installations = 0;       ///< bodies of their own on walls and roofs
   std::map<std::string, std::map<std::string, std::uint64_t>> sources;  ///< attribute → source → parts
   std::map<std::string, std::uint64_t> roofs;                           ///< built roof shape → parts
-  std::array<std::uint64_t, model::kEdgeKindCount> edges{};  ///< stretches of outlines by model::EdgeKind
-  std::array<double, model::kEdgeKindCount> edge_length{};   ///< m
+  std::array<std::uint64_t, model::kWallSegmentKindCount> edges{};  ///< stretches of outlines by model::EdgeKind
+  std::array<double, model::kWallSegmentKindCount> edge_length{};   ///< m
   std::array<std::uint64_t, model::kBuildingPositionCount> positions{};  ///< buildings by model::BuildingPosition
   masses::Roofscape roofscape;
 };

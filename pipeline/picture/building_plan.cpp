@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/geometry/facade_stretch.h"
-#include "pipeline/model/edge_colours.h"
+#include "pipeline/geometry/wall_segment.h"
+#include "pipeline/model/wall_segment_colours.h"
 
 namespace blockrand::picture {
 namespace {
 
-using model::EdgeKind;
+using model::WallSegmentKind;
 using model::Point2;
 
 constexpr double kEdgeWidth = 1.1;   // m: walls of neighbours stay apart
 constexpr double kLeastWidth = 2.0;  // pixels: thinner lines lose their colour
 constexpr double kBlockWidth = 1.3;  // pixels
 
-/// A strip along the stretch, in its building.
+/// A strip along the wall segment, in its building.
 model::Polygon strip(const PlanEdge& e, double width) {
   const double dx = e.to.x - e.from.x, dy = e.to.y - e.from.y, length = std::sqrt(dx * dx + dy * dy);
   const Point2 n{-dy / length * width, dx / length * width};
@@ -34,7 +34,7 @@ PlanTile plan_tile(const model::Region& region) {
     tile.buildings.insert(tile.buildings.end(), b.outline.begin(), b.outline.end());
     if (b.outline.empty())
       for (const model::BuildingPart& part : b.parts) tile.buildings.push_back(part.plan);
-    for (const model::FacadeEdge& e : b.edges)
+    for (const model::WallSegment& e : b.edges)
       if (const auto ends = geometry::ends_of(b, e)) tile.edges.push_back({ends->from, ends->to, e.kind});
   }
   return tile;
@@ -69,8 +69,8 @@ void draw(Plan& plan, std::span<const PlanTile> tiles) {
   });
   const double width = std::max(kEdgeWidth, kLeastWidth * plan.metres_per_pixel());
   // Unknown ones first: at corners what is known is over them. Party walls last, as they are between two buildings.
-  for (const EdgeKind kind : {EdgeKind::unknown, EdgeKind::side, EdgeKind::courtyard, EdgeKind::street, EdgeKind::passage,
-                              EdgeKind::party_wall})
+  for (const WallSegmentKind kind : {WallSegmentKind::unknown, WallSegmentKind::side, WallSegmentKind::courtyard, WallSegmentKind::street, WallSegmentKind::passage,
+                              WallSegmentKind::party_wall})
     each(&PlanTile::edges, [&](const PlanEdge& e) {
       if (e.kind == kind) plan.fill(strip(e, width), model::colour_of(kind));
     });

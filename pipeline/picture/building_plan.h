@@ -1,4 +1,4 @@
-// The plan of a neighbourhood: what each stretch of an outline faces, in colours.
+// The plan of a neighbourhood: what each wall segment of an outline faces, in colours.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace blockrand::picture {
 
-/// A stretch of an outline, the building on its left.
+/// A wall segment of an outline, the building on its left.
 struct PlanEdge {
   model::Point2 from, to;  ///< m
-  model::EdgeKind kind = model::EdgeKind::unknown;
+  model::WallSegmentKind kind = model::WallSegmentKind::unknown;
 };
 
 struct PlanStreet {

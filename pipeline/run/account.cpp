@@ -21,29 +21,29 @@ Account::Account(model::Extract& extract, std::vector<model::ReportRow> rows) : 
   earlier_ = rows_;
 }
 
-outputs::Fate Account::fate_of(const Outcome& o) const {
+outputs::FinalState Account::final_state_of(const Outcome& o) const {
   // Where members of a relation are missing, that is why nothing is enclosed.
   const bool no_area = o.code == IssueCode::zero_area || o.code == IssueCode::too_few_points;
   const bool lacks_members = no_area && incomplete_.contains(extract_.buildings[o.index].id);
   return {o.state, lacks_members ? IssueCode::missing_members : o.code, o.related};
 }
 
-std::function<outputs::Fate(std::uint32_t)> Account::fates(const std::vector<Outcome>& outcomes) const {
-  std::map<std::uint32_t, outputs::Fate> fates;
-  for (const Outcome& o : outcomes) fates[o.index] = fate_of(o);
-  return [fates = std::move(fates)](std::uint32_t index) {
-    const auto found = fates.find(index);
-    return found == fates.end() ? outputs::Fate{} : found->second;
+std::function<outputs::FinalState(std::uint32_t)> Account::final_states(const std::vector<Outcome>& outcomes) const {
+  std::map<std::uint32_t, outputs::FinalState> final_states;
+  for (const Outcome& o : outcomes) final_states[o.index] = final_state_of(o);
+  return [final_states = std::move(final_states)](std::uint32_t index) {
+    const auto found = final_states.find(index);
+    return found == final_states.end() ? outputs::FinalState{} : found->second;
   };
 }
 
 void Account::take(const Outcomes& outcomes, std::vector<model::ReportRow> rows, BuildSummary& summary) {
   for (const Outcome& o : outcomes.list) {
     MappedBuilding& object = extract_.buildings[o.index];
-    const outputs::Fate fate = fate_of(o);
-    object.state = fate.state;
-    object.code = fate.code;
-    object.related = fate.related;
+    const outputs::FinalState final_state = final_state_of(o);
+    object.state = final_state.state;
+    object.code = final_state.code;
+    object.related = final_state.related;
     if (o.state == ObjectState::modelled) ++summary.models_by_lod[static_cast<std::size_t>(std::clamp(o.lod, 0, 3))];
   }
   std::move(rows.begin(), rows.end(), std::back_inserter(rows_));

@@ -1,4 +1,5 @@
-// The account of a build: in which state each object of the extract ends, and what is reported of it (DESIGN law 1).
+// The account of a build: in which state each object of the extract ends, and what is reported of it
+// (ARCHITECTURE.md, law 1).
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,7 @@ class Account {
   /// Rows from before the tiles, sorted.
   std::span<const model::ReportRow> earlier() const { return earlier_; }
   /// What becomes of an object, looked up by its index: of a tile's objects. Safe from several threads.
-  std::function<outputs::Fate(std::uint32_t)> fates(const std::vector<Outcome>& outcomes) const;
+  std::function<outputs::FinalState(std::uint32_t)> final_states(const std::vector<Outcome>& outcomes) const;
 
   /// Takes over what a tile decided, in tile order.
   void take(const Outcomes& outcomes, std::vector<model::ReportRow> rows, BuildSummary& summary);
@@ -34,7 +35,7 @@ class Account {
   const std::vector<model::ReportRow>& rows() const { return rows_; }
 
  private:
-  outputs::Fate fate_of(const Outcome& outcome) const;
+  outputs::FinalState final_state_of(const Outcome& outcome) const;
 
   model::Extract& extract_;
   std::vector<model::ReportRow> rows_, earlier_;

@@ -21,7 +21,7 @@
 #include "pipeline/base/publish.h"
 #include "pipeline/base/text.h"
 #include "pipeline/context/ground.h"
-#include "pipeline/context/surroundings_finder.h"
+#include "pipeline/context/vicinity_finder.h"
 #include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/footprints/roof_lines.h"
 #include "pipeline/outputs/output.h"
@@ -134,7 +134,7 @@ TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenO
                              .shard = shard,
                              .name = outputs::tile_name(region.tile),
                              .has_parts = std::ranges::any_of(region.buildings, [](const model::Building& b) { return !b.parts.empty(); }),
-                             .fate = account.fates(result.outcomes.list),
+                             .final_state = account.final_states(result.outcomes.list),
                              .files = {}};
   for (const auto& output : open.list) result.products.push_back(output->write_tile(tile));
   result.files = std::move(tile.files);
@@ -153,7 +153,7 @@ struct Sums {
             BuildRecord& record) {
     account.take(tile.outcomes, std::move(tile.rows), record.summary);
     const outputs::FinishedTile taken{
-        .region = tile.region, .shard = shard, .name = {}, .has_parts = false, .fate = {}, .files = std::move(tile.files)};
+        .region = tile.region, .shard = shard, .name = {}, .has_parts = false, .final_state = {}, .files = std::move(tile.files)};
     for (std::size_t i = 0; i < open.list.size(); ++i) open.list[i]->take(taken, std::move(tile.products[i]));
     record.files.insert(record.files.end(), taken.files.begin(), taken.files.end());
     party_sides.insert(party_sides.end(), tile.statistics.party_sides.begin(), tile.statistics.party_sides.end());
@@ -224,7 +224,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   report.append(std::move(prepared.report));
   record.repair = repaired.totals;
   record.facts = located.facts;
-  const context::SurroundingsFinder surroundings(extract, repaired.footprints, context);
+  const context::VicinityFinder vicinity(extract, repaired.footprints, context);
   const footprints::RoofLineFinder roof_lines(extract, projection);
   const footprints::BuildingNumbers numbers(repaired.footprints);
   const context::TaggedNeighbours neighbours(attributes::tagged_buildings(extract, inputs.defaults, projection), options.generate.neighbour_reach);
@@ -257,7 +257,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const evidence::StyleInputs style_inputs{prepared.facts, prepared.tags, prepared.styles, inputs.tables};
   const TileInputs tile_inputs{
       .extract = extract, .shards = shards, .projection = projection, .defaults = inputs.defaults, .kept = prepared.kept, .repaired = repaired,
-      .context = context, .surroundings = surroundings, .roof_lines = roof_lines, .numbers = numbers, .neighbours = neighbours,
+      .context = context, .vicinity = vicinity, .roof_lines = roof_lines, .numbers = numbers, .neighbours = neighbours,
       .assigner = assigner, .overrides = inputs.overrides, .styles = style_inputs, .explain = options.outputs.explain,
       .repair = options.repair, .generate = options.generate, .seed = options.seed, .lod = options.lod,
       .grammars = inputs.grammars ? &*inputs.grammars : nullptr, .has_terrain = inputs.terrain.has_value(),

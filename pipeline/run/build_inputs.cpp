@@ -16,7 +16,7 @@ std::optional<importers::elevation::Terrain> open_terrain(const std::string& pat
 }
 
 attributes::Overrides open_overrides(const std::string& path, const attributes::Defaults& defaults,
-                                     const districts::RuleBook& book) {
+                                     const districts::RuleSets& book) {
   if (path.empty()) return {};
   attributes::OverrideNames names{{}, book.substyles};
   for (const districts::Preset& p : book.presets) names.presets.push_back(p.name);
@@ -39,13 +39,13 @@ BuildInputs::BuildInputs(const BuildOptions& options)
                                                options.ground_height.has_value())),
       tile(choose_tile(options)),
       tables(classify::Tables::read(options.configs)),
-      rules(attributes::read_rule_book(options.configs, options.districts)) {
+      rules(attributes::read_rule_sets(options.configs, options.districts)) {
   if (options.lod >= 3) grammars.emplace(facades::read_grammars(options.configs, rules.book.presets));
   overrides = open_overrides(options.overrides, defaults, rules.book);
 }
 
 std::string BuildInputs::rule_file(std::string_view preset) const {
-  const facades::GrammarBook::Entry* entry = grammars ? grammars->find(preset) : nullptr;
+  const facades::GrammarLibrary::Entry* entry = grammars ? grammars->find(preset) : nullptr;
   return entry ? entry->file : std::string();
 }
 

@@ -9,9 +9,9 @@
 #include "importers/elevation/terrain.h"
 #include "pipeline/attributes/defaults.h"
 #include "pipeline/attributes/overrides.h"
-#include "pipeline/attributes/rule_book.h"
+#include "pipeline/attributes/rule_sets.h"
 #include "pipeline/context/height_reference.h"
-#include "pipeline/facades/grammar_book.h"
+#include "pipeline/facades/grammar_library.h"
 #include "pipeline/run/documents.h"
 #include "pipeline/run/options.h"
 #include "pipeline/run/tile_choice.h"
@@ -29,8 +29,8 @@ struct BuildInputs {
   context::HeightReference heights;
   std::optional<TileChoice> tile;  ///< empty: the whole extract
   classify::Tables tables;
-  attributes::ReadRuleBook rules;
-  std::optional<facades::GrammarBook> grammars;  ///< of LoD3
+  attributes::ReadRuleSets rules;
+  std::optional<facades::GrammarLibrary> grammars;  ///< of LoD3
   attributes::Overrides overrides;
 
   /// The rule file of a preset; empty for one without, or where facades were not asked for.

@@ -25,7 +25,7 @@ namespace {
 namespace districts = districts;
 using districts::Assignment;
 using districts::Decision;
-using districts::RuleBook;
+using districts::RuleSets;
 
 constexpr int kMapPixels = 3000;  // a side
 constexpr double kFinest = 6;     // pixels per metre
@@ -39,13 +39,13 @@ constexpr model::Colour kColours[] = {{0xc2, 0x3b, 0x22}, {0x2f, 0x6d, 0xb3}, {0
                                       {0xa0, 0x60, 0x10}, {0x50, 0x70, 0x90}, {0x20, 0x30, 0x20}, {0xff, 0xc0, 0xa0}};
 constexpr model::Colour kNothing{0xc8, 0xc8, 0xc8};  // no preset, or one of the rarest
 
-std::string preset_of(const RuleBook& book, const Decision& d) {
+std::string preset_of(const RuleSets& book, const Decision& d) {
   return d.preset == Decision::kNone ? "" : book.presets[d.preset].name;
 }
-std::string set_of(const RuleBook& book, const Decision& d) {
-  return d.set == RuleBook::kNoSet ? "" : book.sets[d.set].name;
+std::string set_of(const RuleSets& book, const Decision& d) {
+  return d.set == RuleSets::kNoSet ? "" : book.sets[d.set].name;
 }
-std::string rule_of(const RuleBook& book, const Decision& d) {
+std::string rule_of(const RuleSets& book, const Decision& d) {
   return d.rule == Decision::kNone ? "" : book.sets[d.set].rules[d.rule].name;
 }
 
@@ -131,7 +131,7 @@ std::vector<std::uint32_t> DistrictSurvey::buildings() const {
   return out;
 }
 
-std::unique_ptr<DistrictSurvey> survey_districts(const BuildOptions& options, const attributes::ReadRuleBook& rules,
+std::unique_ptr<DistrictSurvey> survey_districts(const BuildOptions& options, const attributes::ReadRuleSets& rules,
                                                  base::Progress& progress) {
   attributes::Defaults defaults = attributes::read_defaults(options.configs);
   attributes::Overrides overrides;
@@ -159,7 +159,7 @@ std::unique_ptr<DistrictSurvey> survey_districts(const BuildOptions& options, co
   return survey;
 }
 
-DistrictView show_districts(const DistrictSurvey& survey, const RuleBook& book, bool by_rule,
+DistrictView show_districts(const DistrictSurvey& survey, const RuleSets& book, bool by_rule,
                             base::StagedFolder& folder, int workers, base::Progress& progress) {
   const attributes::DistrictAssigner assigner(book, survey.inputs(survey.prepared->styles));
   const std::vector<Decision> decisions = attributes::assign_extract(assigner, survey.positions, workers, progress);
@@ -181,7 +181,7 @@ DistrictView show_districts(const DistrictSurvey& survey, const RuleBook& book, 
   for (const std::uint32_t b : buildings) {
     const Decision& d = decisions[b];
     ++counts[{d.set, d.rule, d.preset}];
-    if (d.set != RuleBook::kNoSet) sets.insert(d.set);
+    if (d.set != RuleSets::kNoSet) sets.insert(d.set);
     if (d.rule != Decision::kNone) chosen.emplace(d.set, d.rule);
     view.without += d.preset == Decision::kNone;
     labels.push_back(by_rule ? rule_of(book, d) : preset_of(book, d));
@@ -191,9 +191,9 @@ DistrictView show_districts(const DistrictSurvey& survey, const RuleBook& book, 
       fired.emplace(d.set, r);
       all_fired += (all_fired.empty() ? "" : "; ") + book.sets[d.set].rules[r].name;
     }
-    std::string lost;
-    for (const model::Candidate& c : a.lost)
-      lost += fmt::format("{}{} ({:.2f})", lost.empty() ? "" : ", ", c.value, c.confidence);
+    std::string other_candidates;
+    for (const model::Candidate& c : a.other_candidates)
+      other_candidates += fmt::format("{}{} ({:.2f})", other_candidates.empty() ? "" : ", ", c.value, c.confidence);
     layer_file::RowWriter row(table, layer.columns.size());
     row.text(survey.prepared->repaired.footprints[b].id.text());
     row.text(set_of(book, d));
@@ -203,7 +203,7 @@ DistrictView show_districts(const DistrictSurvey& survey, const RuleBook& book, 
     row.text(model::name(d.source));
     row.real(static_cast<double>(d.confidence));
     row.text(a.why);
-    row.text(lost);
+    row.text(other_candidates);
     row.text(all_fired);
     layer_file::append_multi_polygon(row.geometry(), survey.prepared->repaired.footprints.polygons(b));
     row.end_row();
@@ -248,10 +248,10 @@ DistrictView show_districts(const DistrictSurvey& survey, const RuleBook& book, 
   return view;
 }
 
-std::vector<DistrictChange> diff_districts(const DistrictSurvey& survey, const RuleBook& a, const RuleBook& b,
+std::vector<DistrictChange> diff_districts(const DistrictSurvey& survey, const RuleSets& a, const RuleSets& b,
                                            int workers, base::Progress& progress) {
   const PreparedExtract& prepared = *survey.prepared;
-  const evidence::StyleExtract by_b = classify_by_book(survey.located.extract, prepared.repaired.footprints, prepared.facts,
+  const evidence::StyleExtract by_b = classify_by_rule_sets(survey.located.extract, prepared.repaired.footprints, prepared.facts,
                                              prepared.tags, survey.tables, b, workers, progress);
   const attributes::DistrictAssigner first(a, survey.inputs(prepared.styles)), second(b, survey.inputs(by_b));
   std::vector<DistrictChange> out;

@@ -13,7 +13,7 @@
 #include "pipeline/attributes/assign_extract.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/prepare_extract.h"
-#include "pipeline/attributes/rule_book.h"
+#include "pipeline/attributes/rule_sets.h"
 
 namespace blockrand::run {
 
@@ -37,7 +37,7 @@ struct DistrictSurvey {
 
 /// Reads, repairs, finds the context, classifies, and finds where in its block each building stands.
 /// \param options  input, configs, CRS, overrides, bbox, jobs, seed and tuning of a build
-std::unique_ptr<DistrictSurvey> survey_districts(const BuildOptions& options, const attributes::ReadRuleBook& rules,
+std::unique_ptr<DistrictSurvey> survey_districts(const BuildOptions& options, const attributes::ReadRuleSets& rules,
                                                  base::Progress& progress);
 
 /// How often something was chosen.
@@ -57,7 +57,7 @@ struct DistrictView {
 
 /// Writes districts.gpkg, districts.json and map.png into `folder`.
 /// \param by_rule  the map is coloured by rule instead of preset
-DistrictView show_districts(const DistrictSurvey& survey, const districts::RuleBook& book, bool by_rule,
+DistrictView show_districts(const DistrictSurvey& survey, const districts::RuleSets& book, bool by_rule,
                             base::StagedFolder& folder, int workers, base::Progress& progress);
 
 /// A building that two rule books treat differently. Parameters are written "key=value, key=value".
@@ -67,7 +67,7 @@ struct DistrictChange {
 };
 /// Each book is asked after a classification by its own priors, so that the difference is that of two calls of
 /// show_districts. \param a  the book of the survey
-std::vector<DistrictChange> diff_districts(const DistrictSurvey& survey, const districts::RuleBook& a,
-                                           const districts::RuleBook& b, int workers, base::Progress& progress);
+std::vector<DistrictChange> diff_districts(const DistrictSurvey& survey, const districts::RuleSets& a,
+                                           const districts::RuleSets& b, int workers, base::Progress& progress);
 
 }  // namespace blockrand::run

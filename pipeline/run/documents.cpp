@@ -127,7 +127,7 @@ Json statistics_json(const outputs::Statistics& t) {
   j["edges"] = Json::object();
   for (std::size_t k = 0; k < t.edges.size(); ++k)
     if (t.edges[k] > 0)
-      j["edges"][model::name(static_cast<model::EdgeKind>(k))] = {{"stretches", t.edges[k]},
+      j["edges"][model::name(static_cast<model::WallSegmentKind>(k))] = {{"stretches", t.edges[k]},
                                                                   {"length_m", rounded(t.edge_length[k])}};
   j["positions"] = Json::object();
   for (std::size_t k = 0; k < t.positions.size(); ++k)

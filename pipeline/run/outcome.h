@@ -1,4 +1,4 @@
-// What becomes of each object of a tile (DESIGN law 1).
+// What becomes of each object of a tile (ARCHITECTURE.md, law 1).
 #pragma once
 
 #include <cstdint>

@@ -44,7 +44,7 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
   return {std::move(extract), area, std::move(facts), crs, round_trip, std::move(projection)};
 }
 
-std::vector<classify::RegionPrior> region_priors(const districts::RuleBook& book,
+std::vector<classify::RegionPrior> region_priors(const districts::RuleSets& book,
                                                  const classify::Tables& tables) {
   std::vector<classify::RegionPrior> out;
   for (const districts::RuleSet& set : book.sets) {
@@ -65,20 +65,20 @@ std::vector<classify::RegionPrior> region_priors(const districts::RuleBook& book
   return out;
 }
 
-evidence::StyleExtract classify_by_book(const model::Extract& extract, const footprints::FootprintStore& footprints,
+evidence::StyleExtract classify_by_rule_sets(const model::Extract& extract, const footprints::FootprintStore& footprints,
                               const evidence::FactsExtract& facts, const evidence::TagFacts& tags, const classify::Tables& tables,
-                              const districts::RuleBook& book, int workers, base::Progress& progress) {
+                              const districts::RuleSets& book, int workers, base::Progress& progress) {
   const std::vector<classify::RegionPrior> priors = region_priors(book, tables);
   const evidence::PriorOf prior = [&](std::uint32_t building) -> const classify::RegionPrior* {
     const std::uint32_t set = book.choose(footprints::box_centre(extract, extract.buildings[footprints[building].lead]));
-    return set == districts::RuleBook::kNoSet ? nullptr : &priors[set];
+    return set == districts::RuleSets::kNoSet ? nullptr : &priors[set];
   };
   return evidence::classify_extract(facts, tags, tables, prior, {}, workers, progress);
 }
 
 PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& options,
                                 const std::optional<TileChoice>& tile, const classify::Tables& tables,
-                                const districts::RuleBook& book, base::Progress& progress) {
+                                const districts::RuleSets& book, base::Progress& progress) {
   const int workers = base::worker_count(options.jobs);
   const model::Extract& extract = located.extract;
   model::Report report;
@@ -96,10 +96,10 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
                                            workers, progress, use_of);
   malloc_trim(0);
   evidence::FactsExtract facts = evidence::facts_extract(extract, repaired.footprints, context,
-                                     context::SurroundingsFinder(extract, repaired.footprints, context), workers, progress);
+                                     context::VicinityFinder(extract, repaired.footprints, context), workers, progress);
   evidence::TagFacts tags = evidence::tag_facts(extract, repaired.footprints, context, tables, located.projection, facts);
   malloc_trim(0);
-  evidence::StyleExtract styles = classify_by_book(extract, repaired.footprints, facts, tags, tables, book, workers, progress);
+  evidence::StyleExtract styles = classify_by_rule_sets(extract, repaired.footprints, facts, tags, tables, book, workers, progress);
   return {std::move(shards),  std::move(report), std::move(kept), std::move(repaired),
           std::move(context), std::move(facts),  std::move(tags), std::move(styles)};
 }

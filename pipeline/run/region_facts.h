@@ -1,5 +1,5 @@
 // What a build knows of its extract as a whole, small and made once: so that a part of it can be built alone, with only
-// the data around it, and comes out the same (DESIGN law 4).
+// the data around it, and comes out the same (ARCHITECTURE.md, law 4).
 #pragma once
 
 #include <optional>

@@ -6,12 +6,12 @@
 #include <set>
 #include <utility>
 
-#include "pipeline/context/facade_edges.h"
+#include "pipeline/context/wall_segments.h"
 #include "pipeline/facades/facades.h"
 #include "pipeline/masses/mass.h"
 #include "pipeline/masses/part_overlaps.h"
 #include "pipeline/attributes/resolve.h"
-#include "pipeline/facades/roof_furniture.h"
+#include "pipeline/facades/roof_installations.h"
 #include "pipeline/footprints/load.h"
 #include "pipeline/footprints/repair/parts.h"
 #include "pipeline/footprints/repair/rings.h"
@@ -33,7 +33,7 @@ void copy_rows(const std::vector<model::ReportRow>& rows, model::OsmId id, model
 /// Buildings with their repaired outlines, parts and attributes. \param numbers  of the shard's seeds, in their order
 Region prepare(const footprints::Shard& shard, std::span<const std::uint32_t> numbers, const TileInputs& in) {
   Region region = footprints::load_region(in.extract, shard, in.projection);
-  for (const attributes::Material& m : in.defaults.materials) region.materials.push_back(m.looks);
+  for (const attributes::Material& m : in.defaults.materials) region.materials.push_back(m.material_class);
   for (std::size_t i = 0; i < region.buildings.size(); ++i) {
     Building& building = region.buildings[i];
     const footprints::StoredFootprint& stored = in.repaired.footprints[numbers[i]];
@@ -86,8 +86,8 @@ void cover_party_walls(Region& region, const TileInputs& in) {
     return place != r.buildings.end() && place->osm == id ? &*place : nullptr;
   };
   for (const Building& building : region.buildings)
-    for (const model::FacadeEdge& edge : building.edges)
-      if (edge.kind == model::EdgeKind::party_wall && edge.neighbour.number != 0 && find(region, edge.neighbour) == nullptr)
+    for (const model::WallSegment& edge : building.edges)
+      if (edge.kind == model::WallSegmentKind::party_wall && edge.neighbour.number != 0 && find(region, edge.neighbour) == nullptr)
         missing.insert(edge.neighbour);
   footprints::Shard beside;
   beside.tile = region.tile;
@@ -103,13 +103,13 @@ void cover_party_walls(Region& region, const TileInputs& in) {
   Region halo;
   if (!beside.seeds.empty()) {
     halo = prepare(beside, numbers, in);
-    in.surroundings.label_edges(halo, numbers);  // party walls turn ridges, and with them heights
+    in.vicinity.label_wall_segments(halo, numbers);  // party walls turn ridges, and with them heights
     evidence::put_styles(halo, numbers, in.styles, false);
     resolve(halo, in);
   }
   for (Building& building : region.buildings)
-    for (model::FacadeEdge& edge : building.edges) {
-      if (edge.kind != model::EdgeKind::party_wall || edge.neighbour.number == 0) continue;
+    for (model::WallSegment& edge : building.edges) {
+      if (edge.kind != model::WallSegmentKind::party_wall || edge.neighbour.number == 0) continue;
       const Building* other = find(region, edge.neighbour);
       if (other == nullptr) other = find(halo, edge.neighbour);
       if (other != nullptr)
@@ -124,7 +124,7 @@ Region run_tile(std::size_t shard, const TileInputs& in) {
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = in.repaired.first[shard] + static_cast<std::uint32_t>(i);
   const auto start = std::chrono::steady_clock::now();
   Region region = prepare(in.shards[shard], numbers, in);
-  in.surroundings.label_edges(region, numbers);
+  in.vicinity.label_wall_segments(region, numbers);
   in.context_time += std::chrono::nanoseconds(std::chrono::steady_clock::now() - start).count();
   evidence::put_styles(region, numbers, in.styles, in.explain);
   resolve(region, in);
@@ -139,7 +139,7 @@ Region run_tile(std::size_t shard, const TileInputs& in) {
   masses::build_masses(region, in.defaults, in.generate, std::min(in.lod, 2));
   if (in.lod >= 3 && in.grammars) {
     facades::build_facades(region, *in.grammars, in.defaults, {in.seed});
-    facades::furnish_roofs(region, in.defaults, {in.seed});
+    facades::add_roof_installations(region, in.defaults, {in.seed});
   }
   masses::tell_part_overlaps(region);
   return region;

@@ -9,7 +9,7 @@
 
 #include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/attributes/defaults.h"
-#include "pipeline/facades/grammar_book.h"
+#include "pipeline/facades/grammar_library.h"
 #include "pipeline/attributes/options.h"
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/georef/projection.h"
@@ -20,7 +20,7 @@
 #include "pipeline/footprints/roof_lines.h"
 #include "pipeline/footprints/shard.h"
 #include "pipeline/evidence/style_values.h"
-#include "pipeline/context/surroundings_finder.h"
+#include "pipeline/context/vicinity_finder.h"
 #include "pipeline/footprints/repair/kept_nodes.h"
 #include "pipeline/footprints/repair/options.h"
 
@@ -35,7 +35,7 @@ struct TileInputs {
   const repair::KeptNodes& kept;
   const footprints::RepairedExtract& repaired;
   const context::ContextExtract& context;
-  const context::SurroundingsFinder& surroundings;
+  const context::VicinityFinder& vicinity;
   const footprints::RoofLineFinder& roof_lines;
   const footprints::BuildingNumbers& numbers;
   const context::TaggedNeighbours& neighbours;
@@ -47,7 +47,7 @@ struct TileInputs {
   const attributes::GenerateOptions& generate;
   std::uint64_t seed = 1;
   int lod = 2;
-  const facades::GrammarBook* grammars = nullptr;  ///< of LoD3
+  const facades::GrammarLibrary* grammars = nullptr;  ///< of LoD3
   bool has_terrain = false;
   /// Ground under a building, above the build's height reference.
   std::function<context::BuildingGround(const model::Building&)> ground;

@@ -38,7 +38,7 @@ struct Settings {
   std::string map_by = "preset";             ///< of `districts show`: what the map is coloured by
   std::string id;                            ///< of the building that `explain` is asked about
   bool json = false;                         ///< print JSON
-  bool edges = false;                        ///< `explain` lists the stretches of the outline
+  bool edges = false;                        ///< `explain` lists the wall segments of the outline
   bool style = false;                        ///< `explain` lists all evidence for the style
   base::ProgressStyle progress = base::ProgressStyle::automatic;
   base::LogFormat log_format = base::LogFormat::text;

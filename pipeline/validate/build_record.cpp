@@ -8,7 +8,7 @@
 #include "pipeline/base/error.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/sha256.h"
-#include "pipeline/validate/file_bytes.h"
+#include "pipeline/validate/bytes_of_file.h"
 
 namespace blockrand::validate {
 namespace {

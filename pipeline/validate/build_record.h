@@ -10,7 +10,7 @@
 
 #include "pipeline/base/progress.h"
 #include "pipeline/validate/finding_log.h"
-#include "pipeline/validate/json_access.h"
+#include "pipeline/validate/checked_json.h"
 
 namespace blockrand::validate {
 

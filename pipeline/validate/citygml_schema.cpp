@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "pipeline/base/error.h"
-#include "pipeline/validate/citygml.h"
+#include "pipeline/validate/citygml_reader.h"
 
 namespace blockrand::validate {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "pipeline/validate/detail.h"
+#include "pipeline/validate/detail_check.h"
 
 namespace blockrand::validate {
 namespace {

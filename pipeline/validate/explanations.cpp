@@ -11,7 +11,7 @@
 #include "pipeline/base/text.h"
 #include "pipeline/validate/attribute_names.h"
 #include "pipeline/validate/ids.h"
-#include "pipeline/validate/json_access.h"
+#include "pipeline/validate/checked_json.h"
 
 namespace blockrand::validate {
 namespace {

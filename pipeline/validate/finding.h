@@ -22,7 +22,7 @@ namespace blockrand::validate {
   X(source_wrong, "SOURCE_WRONG", "an attribute's source or confidence is missing or out of range")           \
   X(solid_invalid, "SOLID_INVALID", "a solid is not closed, oriented and free of self-intersections")         \
   X(solids_overlap, "SOLIDS_OVERLAP", "601: parts of a building overlap, and the report does not say so")     \
-  X(judges_disagree, "JUDGES_DISAGREE", "the two judges of solids contradict each other")                     \
+  X(validators_disagree, "JUDGES_DISAGREE", "the two judges of solids contradict each other")                     \
   X(off_grid, "OFF_GRID", "a coordinate is not on the 1/1024 m grid")                                         \
   X(geometry_differs, "GEOMETRY_DIFFERS", "a body has different geometry in two formats")                     \
   X(colour_differs, "COLOUR_DIFFERS", "a face has different colours in two formats")                          \

@@ -35,9 +35,9 @@ bool is_one_of(std::string_view text, const Names& names) {
 constexpr std::string_view kBlockKinds[] = {"ordinary", "between_carriageways", "between_tracks", "street_space",
                                             "water"};
 
-bool is_edge_kind(std::string_view text) {
-  for (int k = 0; k < model::kEdgeKindCount; ++k)
-    if (model::name(static_cast<model::EdgeKind>(k)) == text) return true;
+bool is_wall_segment_kind(std::string_view text) {
+  for (int k = 0; k < model::kWallSegmentKindCount; ++k)
+    if (model::name(static_cast<model::WallSegmentKind>(k)) == text) return true;
   return false;
 }
 bool is_position(std::string_view text) {
@@ -103,7 +103,7 @@ class ContextRules {
     blocks();
     courtyards();
     buildings();
-    facade_edges();
+    wall_segments();
     cells();
   }
 
@@ -226,7 +226,7 @@ class ContextRules {
     std::size_t rows = 0;
   };
 
-  void facade_edges() {
+  void wall_segments() {
     std::vector<std::string> names = context_columns("facade_edges");
     std::string sql = "SELECT ";
     for (const std::string& name : names) sql += "e.\"" + name + "\", ";
@@ -283,7 +283,7 @@ class ContextRules {
       log_.add(Check::object_doubled, s_.name, id, "stands twice in the layer facade_edges");
     if (!id.starts_with(outline.building + ".e")) f.error("the id does not begin with that of its building");
     const std::string_view kind = f.text("kind");
-    if (!is_edge_kind(kind)) f.error(fmt::format("kind \"{}\" is unknown", kind));
+    if (!is_wall_segment_kind(kind)) f.error(fmt::format("kind \"{}\" is unknown", kind));
     f.number("confidence", 0, 1, false);
     f.number("visibility", 0, 1, false);
     f.number("orientation", 0, 360, false);
@@ -294,7 +294,7 @@ class ContextRules {
     for (const char* flag : {"front", "corner_start", "corner_end", "chamfer"}) f.flag(flag);
     f.count("entrances");
     f.count("trees");
-    edge_points(f);
+    points_on_walls(f);
     f.object("neighbour");
     f.object("street");
     if (kind != "party_wall" && (!f.null("neighbour") || !f.null("covered_height")))
@@ -323,7 +323,7 @@ class ContextRules {
   }
 
   /// Entrances and addresses: each at one stretch of one building.
-  void edge_points(Fields& f) {
+  void points_on_walls(Fields& f) {
     const auto ids = words(f.text("points"));
     if (f.integer("entrances") > static_cast<std::int64_t>(ids.size()))
       f.error(fmt::format("{} entrances among {} points", f.text("entrances"), ids.size()));

@@ -10,7 +10,7 @@
 
 #include "pipeline/model/vector.h"
 #include "pipeline/validate/glb_container.h"
-#include "pipeline/validate/property_table.h"
+#include "pipeline/validate/property_table_reader.h"
 
 namespace blockrand::validate {
 namespace {

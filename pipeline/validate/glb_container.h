@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "pipeline/validate/finding.h"
-#include "pipeline/validate/json_access.h"
+#include "pipeline/validate/checked_json.h"
 
 namespace blockrand::validate {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/validate/json_access.h"
+#include "pipeline/validate/checked_json.h"
 
 namespace blockrand::validate {
 

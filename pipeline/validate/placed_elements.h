@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/validate/compare.h"
+#include "pipeline/validate/format_agreement.h"
 #include "pipeline/validate/glb.h"
 
 namespace blockrand::validate {

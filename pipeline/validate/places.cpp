@@ -8,7 +8,7 @@ namespace blockrand::validate {
 using model::Point2;
 using model::Point3;
 
-std::vector<Point2> corners_on_earth(georef::Witness& witness, const Matrix& transform,
+std::vector<Point2> corners_on_earth(georef::ProjTransform& proj_transform, const Matrix& transform,
                                      const std::vector<GlbTriangle>& triangles) {
   std::vector<Point3> corners;
   for (const GlbTriangle& t : triangles) corners.insert(corners.end(), t.corners.begin(), t.corners.end());
@@ -16,7 +16,7 @@ std::vector<Point2> corners_on_earth(georef::Witness& witness, const Matrix& tra
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   std::vector<Point2> out;
   for (const Point3& p : corners) {
-    const georef::Geodetic g = witness.to_geodetic(apply(transform, p));
+    const georef::Geodetic g = proj_transform.to_geodetic(apply(transform, p));
     out.push_back({g.lon, g.lat});
   }
   return out;

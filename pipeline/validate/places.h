@@ -3,14 +3,14 @@
 
 #include <vector>
 
-#include "pipeline/georef/witness.h"
+#include "pipeline/georef/proj_transform.h"
 #include "pipeline/validate/contents.h"
 #include "pipeline/validate/glb.h"
 
 namespace blockrand::validate {
 
 /// Longitude and latitude in degrees of a mesh's corners, through the transform to earth-centred coordinates and PROJ.
-std::vector<model::Point2> corners_on_earth(georef::Witness& witness, const Matrix& transform,
+std::vector<model::Point2> corners_on_earth(georef::ProjTransform& proj_transform, const Matrix& transform,
                                             const std::vector<GlbTriangle>& triangles);
 
 /// All corners of footprint and solids, in the build CRS.

@@ -5,8 +5,8 @@
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/validate/earth.h"
-#include "pipeline/validate/file_bytes.h"
-#include "pipeline/validate/json_access.h"
+#include "pipeline/validate/bytes_of_file.h"
+#include "pipeline/validate/checked_json.h"
 
 namespace blockrand::validate {
 namespace {

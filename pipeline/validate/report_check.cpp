@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "pipeline/validate/file_bytes.h"
+#include "pipeline/validate/bytes_of_file.h"
 #include "pipeline/validate/ids.h"
 
 namespace blockrand::validate {

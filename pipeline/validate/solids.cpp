@@ -8,7 +8,7 @@
 #include <exception>
 
 #include "pipeline/geometry/check_solid.h"
-#include "pipeline/geometry/second_judge.h"
+#include "pipeline/geometry/cgal_validator.h"
 #include "pipeline/geometry/triangulate.h"
 
 namespace blockrand::validate {
@@ -16,10 +16,10 @@ namespace {
 
 using model::Point3;
 
-template <class Judge>
-auto said_by(const Judge& judge) -> decltype(judge()) {
+template <class SolidValidator>
+auto said_by(const SolidValidator& validator) -> decltype(validator()) {
   try {
-    return judge();
+    return validator();
   } catch (const std::exception& error) {
     return {std::string("the judge gave up: ") + error.what()};
   }
@@ -85,7 +85,7 @@ std::optional<model::Solid> solid_of(const ReadSolid& read) {
   return solid;
 }
 
-Own own_verdict(const ReadSolid& read) {
+Own own_validity(const ReadSolid& read) {
   if (std::all_of(read.polygons.begin(), read.polygons.end(), [](const ReadPolygon& p) { return p.rings.empty(); }))
     return own(geometry::SolidCheck{geometry::SolidDefect::empty});
   const auto solid = solid_of(read);
@@ -93,14 +93,14 @@ Own own_verdict(const ReadSolid& read) {
   return own(geometry::check_solid(*solid));
 }
 
-std::string cgal_verdict(const ReadSolid& read) {
+std::string cgal_validity(const ReadSolid& read) {
   std::vector<geometry::PolygonRings> polygons;
   polygons.reserve(read.polygons.size());
   for (const ReadPolygon& p : read.polygons) polygons.push_back(p.rings);
-  return geometry::judge_solid(polygons);
+  return geometry::validate_solid(polygons);
 }
 
-Own own_verdict(const std::vector<GlbTriangle>& read) {
+Own own_validity(const std::vector<GlbTriangle>& read) {
   constexpr double kSteps = 65536;  // per metre; positions are floats
   const auto mesh = read_mesh(read);
   if (!mesh) return {"a body of more than 30 km"};
@@ -112,22 +112,22 @@ Own own_verdict(const std::vector<GlbTriangle>& read) {
   return own(geometry::check_mesh(vertices, mesh->triangles));
 }
 
-std::string cgal_verdict(const std::vector<GlbTriangle>& read) {
+std::string cgal_validity(const std::vector<GlbTriangle>& read) {
   std::vector<std::vector<Point3>> triangles;
   triangles.reserve(read.size());
   for (const GlbTriangle& t : read) triangles.emplace_back(t.corners.begin(), t.corners.end());
-  return geometry::judge_triangles(triangles);
+  return geometry::validate_triangles(triangles);
 }
 
-template <class OwnJudge, class CgalJudge>
-Verdict verdict_by(const OwnJudge& own_judge, const CgalJudge& cgal_judge) {
-  Own said = said_by(own_judge);
-  return {std::move(said.text), said_by(cgal_judge), said.number};
+template <class OwnValidator, class CgalValidator>
+SolidValidity validity_by(const OwnValidator& own_validator, const CgalValidator& cgal_validator) {
+  Own said = said_by(own_validator);
+  return {std::move(said.text), said_by(cgal_validator), said.number};
 }
 
 }  // namespace
 
-std::string Verdict::text() const {
+std::string SolidValidity::text() const {
   return fmt::format("own checker: {}; CGAL: {}", own.empty() ? "valid" : own, cgal.empty() ? "valid" : cgal);
 }
 
@@ -153,21 +153,21 @@ std::optional<ReadMesh> read_mesh(const std::vector<GlbTriangle>& read) {
   return out;
 }
 
-Verdict judge(const ReadSolid& solid) {
-  return verdict_by([&] { return own_verdict(solid); }, [&] { return cgal_verdict(solid); });
+SolidValidity validator(const ReadSolid& solid) {
+  return validity_by([&] { return own_validity(solid); }, [&] { return cgal_validity(solid); });
 }
 
-Verdict judge(const std::vector<GlbTriangle>& triangles) {
+SolidValidity validator(const std::vector<GlbTriangle>& triangles) {
   if (triangles.empty()) return {own(geometry::SolidCheck{geometry::SolidDefect::empty}).text, "no faces", iso_code(geometry::SolidDefect::empty)};
-  return verdict_by([&] { return own_verdict(triangles); }, [&] { return cgal_verdict(triangles); });
+  return validity_by([&] { return own_validity(triangles); }, [&] { return cgal_validity(triangles); });
 }
 
-void note(const Verdict& verdict, const std::string& file, const std::string& object, const std::string& which,
+void note(const SolidValidity& validity, const std::string& file, const std::string& object, const std::string& which,
           std::vector<Finding>& findings) {
-  if (verdict.valid()) return;
+  if (validity.valid()) return;
   findings.push_back(
-      {verdict.agreed() ? Check::solid_invalid : Check::judges_disagree, file, object, which + ": " + verdict.text(),
-       verdict.number});
+      {validity.agreed() ? Check::solid_invalid : Check::validators_disagree, file, object, which + ": " + validity.text(),
+       validity.number});
 }
 
 }  // namespace blockrand::validate

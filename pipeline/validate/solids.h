@@ -13,7 +13,7 @@
 namespace blockrand::validate {
 
 /// Empty texts: valid.
-struct Verdict {
+struct SolidValidity {
   std::string own, cgal;
   int number = 0;  ///< of the defect that our own checker found (geometry/solid_defect.h); 0 where it found none
   bool valid() const { return own.empty() && cgal.empty(); }
@@ -22,10 +22,10 @@ struct Verdict {
 };
 
 /// Of a solid whose points lie on the 1/1024 m grid.
-Verdict judge(const ReadSolid& solid);
+SolidValidity validator(const ReadSolid& solid);
 
 /// Of a mesh of triangles, whose corners are equal only when their coordinates are.
-Verdict judge(const std::vector<GlbTriangle>& triangles);
+SolidValidity validator(const std::vector<GlbTriangle>& triangles);
 
 /// A surface of triangles, equal points being one vertex.
 struct ReadMesh {
@@ -37,7 +37,7 @@ std::optional<ReadMesh> read_mesh(const ReadSolid& solid);
 std::optional<ReadMesh> read_mesh(const std::vector<GlbTriangle>& triangles);
 
 /// The finding that a verdict makes, or nothing: SOLID_INVALID, or JUDGES_DISAGREE where only one of them objects.
-void note(const Verdict& verdict, const std::string& file, const std::string& object, const std::string& which,
+void note(const SolidValidity& validity, const std::string& file, const std::string& object, const std::string& which,
           std::vector<Finding>& findings);
 
 }  // namespace blockrand::validate

@@ -13,12 +13,12 @@
 
 #include "pipeline/geometry/solid_defect.h"
 #include "pipeline/validate/attribute_names.h"
-#include "pipeline/validate/cityjson.h"
-#include "pipeline/validate/detail.h"
-#include "pipeline/validate/file_bytes.h"
+#include "pipeline/validate/cityjson_reader.h"
+#include "pipeline/validate/detail_check.h"
+#include "pipeline/validate/bytes_of_file.h"
 #include "pipeline/validate/glb.h"
 #include "pipeline/validate/ids.h"
-#include "pipeline/validate/overlaps.h"
+#include "pipeline/validate/part_overlap_check.h"
 #include "pipeline/validate/placed_elements.h"
 #include "pipeline/validate/places.h"
 #include "pipeline/validate/solids.h"
@@ -54,7 +54,7 @@ class Checker {
     read_citygml_tile();
     read_cityjson_tile();
     check_bounds();
-    judge_solids();
+    validate_solids();
     check_overlaps();
     compare();
     check_levels();
@@ -71,7 +71,7 @@ class Checker {
       transform_ = glb_->georeference.local_to_ecef;
       find_doubles({glb_->contents, files_.path[kGltf]}, out_.findings);
       check_sources({glb_->contents, files_.path[kGltf]}, out_.findings);
-      judge_meshes();
+      validate_meshes();
       check_positions();
       count();
     }
@@ -233,14 +233,14 @@ class Checker {
       const Side level{glb.contents, path};
       compare_objects(finest, level, out_.findings);
       compare_attributes(finest, level, true, out_.findings);
-      judge_meshes(glb, path, lod);
+      validate_meshes(glb, path, lod);
       compare_level(glb, path, lod);
     }
   }
 
   void compare_level(const Glb& glb, const std::string& path, int lod) {
     const std::size_t f = contents_[kCityGml] ? kCityGml : kCityJson;
-    if (!contents_[f] || !context_.witness) return;
+    if (!contents_[f] || !context_.proj_transform) return;
     Contents coarse;
     for (const ReadBody& body : contents_[f]->bodies) {
       ReadBody& copy = coarse.bodies.emplace_back();
@@ -254,13 +254,13 @@ class Checker {
     });
   }
 
-  void judge_meshes() {
-    judge_meshes(*glb_, files_.path[kGltf], context_.record.lod);
+  void validate_meshes() {
+    validate_meshes(*glb_, files_.path[kGltf], context_.record.lod);
     if (context_.record.lod == 3 && !context_.record.baked) check_openings(*glb_, files_.path[kGltf], out_.findings);
   }
 
   /// \param level  of detail that the file shows; a mesh of LoD3 is several bodies with holes in their walls
-  void judge_meshes(const Glb& glb, const std::string& path, int level) {
+  void validate_meshes(const Glb& glb, const std::string& path, int level) {
     for (std::size_t i = 0; i < glb.triangles.size(); ++i) {
       const ReadBody& body = glb.contents.bodies[i];
       const auto lod = body.attributes.find("lod");
@@ -268,43 +268,43 @@ class Checker {
       // A footprint laid on the ground is no solid.
       if (glb.triangles[i].empty() || level == 0 || detailed || (lod != body.attributes.end() && lod->second == "0"))
         continue;
-      ++out_.judged;
-      const Verdict verdict = judge(glb.triangles[i]);
-      if (!verdict.valid()) unsound_.insert(body.id);
-      note(verdict, path, body.id, "mesh", out_.findings);
+      ++out_.validated;
+      const SolidValidity validity = validator(glb.triangles[i]);
+      if (!validity.valid()) unsound_.insert(body.id);
+      note(validity, path, body.id, "mesh", out_.findings);
     }
   }
 
-  void judge_solids() {
-    if (glb_) judge_meshes();
+  void validate_solids() {
+    if (glb_) validate_meshes();
     const Contents *gml = contents(kCityGml), *json = contents(kCityJson);
-    std::unordered_map<std::string_view, const ReadBody*> judged;
+    std::unordered_map<std::string_view, const ReadBody*> validated;
     if (gml)
       for (const ReadBody& body : gml->bodies) {
-        judged.emplace(body.id, &body);
-        judge_body(body, files_.path[kCityGml]);
+        validated.emplace(body.id, &body);
+        validate_body(body, files_.path[kCityGml]);
       }
     if (!json) return;
     for (const ReadBody& body : json->bodies) {
       // The same polygons in the same order have their verdict already.
-      const auto other = judged.find(body.id);
-      if (other != judged.end() && same_solids(*other->second, body))
-        out_.judged += body.solids.size();
+      const auto other = validated.find(body.id);
+      if (other != validated.end() && same_solids(*other->second, body))
+        out_.validated += body.solids.size();
       else
-        judge_body(body, files_.path[kCityJson]);
+        validate_body(body, files_.path[kCityJson]);
     }
   }
 
-  void judge_body(const ReadBody& body, const std::string& file) {
+  void validate_body(const ReadBody& body, const std::string& file) {
     for (const ReadSolid& solid : body.solids) {
-      ++out_.judged;
-      const Verdict verdict = judge(solid);
-      if (!verdict.valid()) unsound_.insert(body.id);
-      note(verdict, file, body.id, fmt::format("LoD {}", solid.lod), out_.findings);
+      ++out_.validated;
+      const SolidValidity validity = validator(solid);
+      if (!validity.valid()) unsound_.insert(body.id);
+      note(validity, file, body.id, fmt::format("LoD {}", solid.lod), out_.findings);
     }
     for (const ReadInstallation& installation : body.detail.installations) {
-      ++out_.judged;
-      note(judge({3, installation.polygons}), file, installation.id, installation.kind, out_.findings);
+      ++out_.validated;
+      note(validator({3, installation.polygons}), file, installation.id, installation.kind, out_.findings);
     }
   }
 
@@ -400,7 +400,7 @@ class Checker {
   }
 
   void compare_with_mesh(const Side& reference) {
-    if (!context_.witness) return;
+    if (!context_.proj_transform) return;
     compare_in_frame(*glb_, [&](const ToLocal& to_local, double tolerance) {
       compare_meshes(reference, *glb_, files_.path[kGltf], to_local, tolerance, context_.record.baked, out_.findings);
       if (!context_.record.baked)
@@ -412,12 +412,12 @@ class Checker {
   template <class Compare>
   void compare_in_frame(const Glb& glb, const Compare& compare) {
     const bool raised = glb.georeference.height_reference.find("raised to the ellipsoid") != std::string::npos;
-    context_.witness->with([&](georef::Witness& witness) {
+    context_.proj_transform->with([&](georef::ProjTransform& proj_transform) {
       const ToLocal to_local = [&](std::span<const Point3> in, std::span<Point3> out) {
         for (std::size_t i = 0; i < in.size(); ++i) {
-          const georef::LonLat at = witness.inverse(in[i].xy());
+          const georef::LonLat at = proj_transform.inverse(in[i].xy());
           const double undulation = raised ? context_.geoid.undulation(at.lon, at.lat).value_or(0) : 0;
-          out[i] = apply_inverse(transform_, witness.to_ecef({at.lon, at.lat, in[i].z + undulation}));
+          out[i] = apply_inverse(transform_, proj_transform.to_ecef({at.lon, at.lat, in[i].z + undulation}));
         }
       };
       compare(to_local, kMeshTolerance + glb.position_step * 0.87 + (raised ? kGeoidTolerance : 0));
@@ -534,12 +534,12 @@ class Checker {
           if (f == kGltf ? !glb_->triangles[i].empty() : has_geometry(body, context_.record.lod))
             bodies[body.id].emplace_back(f, &body);
         }
-    context_.positions->with([&](georef::Witness& witness) {
+    context_.positions->with([&](georef::ProjTransform& proj_transform) {
       for (const auto& [id, shown] : bodies) {
         std::vector<std::vector<Point2>> places(kTileFormats);  // of GLB in degrees
         for (const auto& [f, body] : shown)
           places[f] =
-              f == kGltf ? corners_on_earth(witness, transform_, glb_->triangles[rows.at(id)]) : plan_points(*body);
+              f == kGltf ? corners_on_earth(proj_transform, transform_, glb_->triangles[rows.at(id)]) : plan_points(*body);
         const auto moved = context_.sample.reach.find(id);
         const double reach = moved == context_.sample.reach.end() ? 0 : moved->second;
         for (const SampledCorner& corner : context_.sample.corners.at(id)) {
@@ -551,7 +551,7 @@ class Checker {
             result.file[f] = files_.path[f];
             result.offset[f] =
                 f == kGltf ? offset_on_earth(places[f], corner.at)
-                           : offset(places[f], witness.forward({corner.at.lon_degrees(), corner.at.lat_degrees()}));
+                           : offset(places[f], proj_transform.forward({corner.at.lon_degrees(), corner.at.lat_degrees()}));
             result.off[f] = std::hypot(result.offset[f].x, result.offset[f].y);
             result.tolerance[f] = kPositionTolerance + reach;
           }

@@ -15,7 +15,7 @@ namespace {
 using base::TomlTable;
 
 constexpr double kShareSlack = 0.001;  ///< of a sum of shares, for decimal fractions
-constexpr double kEavesSlack = 1.0;    ///< m; styles.md 6 checks its tables by it
+constexpr double kEavesSlack = 1.0;    ///< m; docs/style_measures.md 6 checks its tables by it
 constexpr int kFirstYear = 500, kLastYear = 2100;
 
 using Palettes = std::map<std::string, std::vector<model::Colour>, std::less<>>;

@@ -25,7 +25,7 @@ constexpr double kWrongQuarter = 0.25;          ///< a style outside the morphol
 constexpr double kOtherUse = 0.1, kOwnUse = 4;  ///< a style built for another use, for this one
 constexpr int kOutbuildingUse = 5;              ///< value of Feature::tag_use
 constexpr double kSmallestHouse =
-    60;  ///< m². What is larger, and no non-house by rule, is no garage or shed (styles.md 1.1)
+    60;  ///< m². What is larger, and no non-house by rule, is no garage or shed (docs/style_measures.md 1.1)
 constexpr double kStoreyMisfit = 0.5;  ///< per storey beyond a style's range
 
 VoteKernel read_votes(base::TomlTable& file, const char* name) {
@@ -184,7 +184,7 @@ std::vector<Substyle> substyles(const Tables& tables, const RegionPrior* region,
                                 std::size_t most) {
   std::vector<Substyle> all;
   const BuildingStyle& style = facts.style;
-  const Standing standing = standing_of(facts.position);
+  const Siting siting = siting_of(facts.position);
   for (std::size_t c = 0; c < static_cast<std::size_t>(model::kStyleClassCount); ++c) {
     const double share = static_cast<double>(style.style[c]);
     const std::size_t first = all.size();
@@ -201,8 +201,8 @@ std::vector<Substyle> substyles(const Tables& tables, const RegionPrior* region,
       if (tables.attached[index] && facts.neighbours == 0) w *= kWrongPlace;
       if (tables.use_of_style[index] == 1 << kOutbuildingUse && facts.area >= kSmallestHouse) w *= kRare;
       const bool behind = s.position == StylePosition::rear || s.position == StylePosition::wing;
-      if (s.position == StylePosition::front && standing == Standing::behind) w *= kWrongPlace;
-      if (behind && standing == Standing::front) w *= kWrongPlace;
+      if (s.position == StylePosition::front && siting == Siting::behind) w *= kWrongPlace;
+      if (behind && siting == Siting::front) w *= kWrongPlace;
       if (s.position == StylePosition::wing && facts.position != model::BuildingPosition::side_wing) w *= kWrongQuarter;
       if (s.position == StylePosition::rear && facts.position == model::BuildingPosition::side_wing) w *= kWrongQuarter;
       if (!s.morphologies.empty()) {

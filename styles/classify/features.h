@@ -91,9 +91,10 @@ inline constexpr std::size_t kFeatureCount = kFeatures.size();
 /// The features that tags give: left out when classification is to see geometry and context alone.
 inline constexpr bool is_tag(Feature f) { return f >= Feature::tag_storeys; }
 
-/// m². Smaller footprints are garages, sheds and kiosks: they say nothing of the houses around (styles.md 3.3).
+/// m². Smaller footprints are garages, sheds and kiosks: they say nothing of the houses around
+/// (docs/style_measures.md 3.3).
 inline constexpr double kHouseArea = 40;
-/// m. How far houses speak of the quarter; the age of neighbours is alike up to 128 m (styles.md 5.1).
+/// m. How far houses speak of the quarter; the age of neighbours is alike up to 128 m (docs/style_measures.md 5.1).
 inline constexpr double kNearReach = 100;
 
 /// Steps per unit to which measurements are rounded: 4 mm, 0.4 percent.

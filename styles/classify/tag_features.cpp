@@ -85,7 +85,7 @@ void fill_tag_features(FeatureVector& f, const model::MappedAttributes& a, std::
   if (a.roof_shape) f[Feature::tag_roof] = static_cast<float>(roof_kind(*a.roof_shape));
   if (a.roof_storeys) f[Feature::tag_roof_storeys] = *a.roof_storeys;
   f[Feature::tag_use] = static_cast<float>(tables.use_of(use));
-  // Style of appearance: what is named outranks the year in which something was rebuilt (styles.md 3.5).
+  // Style of appearance: what is named outranks the year in which something was rebuilt (docs/style_measures.md 3.5).
   if (const auto style = tables.architecture.find(tag(osm_key::kBuildingArchitecture));
       style != tables.architecture.end())
     f[Feature::tag_year] = static_cast<float>(style->second);

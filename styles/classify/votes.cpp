@@ -7,20 +7,20 @@
 
 namespace blockrand::classify {
 
-Standing standing_of(model::BuildingPosition position) {
+Siting siting_of(model::BuildingPosition position) {
   switch (position) {
     case model::BuildingPosition::unknown:
-      return Standing::unknown;
+      return Siting::unknown;
     case model::BuildingPosition::rear_building:
     case model::BuildingPosition::side_wing:
-      return Standing::behind;
+      return Siting::behind;
     case model::BuildingPosition::free_standing:
     case model::BuildingPosition::end_of_row:
     case model::BuildingPosition::mid_row:
     case model::BuildingPosition::corner_house:
       break;
   }
-  return Standing::front;
+  return Siting::front;
 }
 
 VoteKernel VoteKernel::read(base::TomlTable& table) {
@@ -46,7 +46,7 @@ double VoteKernel::weight(const Voter& asker, const Voter& asked, bool touches) 
   if (asker.area > 0 && asked.area > 0) log_weight -= area * std::fabs(base::log(asker.area / asked.area));
   double w = base::exp(log_weight);
   const bool stand_alike =
-      asker.standing == asked.standing || asker.standing == Standing::unknown || asked.standing == Standing::unknown;
+      asker.siting == asked.siting || asker.siting == Siting::unknown || asked.siting == Siting::unknown;
   if (!stand_alike) w *= other_standing;
   if (touches) w *= touching;
   if (asker.block == asked.block && asker.block != model::kNoIndex) w *= same_block;

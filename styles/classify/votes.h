@@ -12,14 +12,14 @@
 namespace blockrand::classify {
 
 /// How a house stands, as far as neighbours are alike by it.
-enum class Standing : std::uint8_t { unknown, front, behind };
-Standing standing_of(model::BuildingPosition position);
+enum class Siting : std::uint8_t { unknown, front, behind };
+Siting siting_of(model::BuildingPosition position);
 
 /// Who asks and who is asked.
 struct Voter {
   model::Point2 place;  ///< m
   double area = 0;      ///< m²
-  Standing standing = Standing::unknown;
+  Siting siting = Siting::unknown;
   std::uint64_t street = 0;  ///< 0: on none
   std::uint32_t block = model::kNoIndex;
   std::uint8_t use = 0;  ///< Feature::tag_use; 0: untold

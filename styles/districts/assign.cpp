@@ -23,7 +23,7 @@ constexpr std::array<float, model::kStyleClassCount> kAnyStyle = {0.25f, 0.25f, 
 constexpr std::array<float, model::kEraCount> kAnyEra = {0.25f, 0.25f, 0.25f, 0.25f};
 
 /// What is known of a building's looks, after overrides and tags.
-struct Looks {
+struct SubjectStyle {
   std::array<float, model::kStyleClassCount> style = kAnyStyle;
   std::array<float, model::kEraCount> era = kAnyEra;
   std::string_view substyle;
@@ -42,63 +42,63 @@ struct Given {
 std::string_view tag_of(const Subject& s, std::string_view key) { return s.tag ? s.tag(key) : std::string_view{}; }
 
 /// A class or sub-style by name; false where nobody knows the name.
-bool take_style(const RuleBook& book, std::string_view value, Looks& looks) {
+bool take_style(const RuleSets& book, std::string_view value, SubjectStyle& subject_style) {
   const auto only = [&](model::StyleClass c) {
-    looks.style.fill(0);
-    looks.style[static_cast<std::size_t>(c)] = 1;
-    looks.substyle_class = c;
-    looks.substyle_p = 1;
+    subject_style.style.fill(0);
+    subject_style.style[static_cast<std::size_t>(c)] = 1;
+    subject_style.substyle_class = c;
+    subject_style.substyle_p = 1;
   };
   for (int i = 0; i < model::kStyleClassCount; ++i)
     if (model::kStyleClassNames[static_cast<std::size_t>(i)] == value) {
       only(static_cast<model::StyleClass>(i));
-      looks.substyle = {};
+      subject_style.substyle = {};
       return true;
     }
   const bool known = std::find(book.substyles.begin(), book.substyles.end(), value) != book.substyles.end();
   for (const Preset& p : book.presets)
     if (std::find(p.substyles.begin(), p.substyles.end(), value) != p.substyles.end()) {
       only(p.style);
-      looks.substyle = value;
+      subject_style.substyle = value;
       return true;
     }
   if (known) {
-    looks.substyle = value;
-    looks.substyle_class = model::BuildingStyle::likeliest<model::StyleClass>(looks.style);
-    looks.substyle_p = 1;
+    subject_style.substyle = value;
+    subject_style.substyle_class = model::BuildingStyle::likeliest<model::StyleClass>(subject_style.style);
+    subject_style.substyle_p = 1;
   }
   return known;
 }
 
-Looks looks_of(const RuleBook& book, const Subject& s, std::vector<std::string>* unreadable) {
-  Looks looks;
+SubjectStyle style_of_subject(const RuleSets& book, const Subject& s, std::vector<std::string>* unreadable) {
+  SubjectStyle subject_style;
   if (s.style) {
-    looks.style = s.style->style;
-    looks.era = s.style->era;
-    looks.years = s.style->years;
-    looks.non_house = s.style->non_house;
+    subject_style.style = s.style->style;
+    subject_style.era = s.style->era;
+    subject_style.years = s.style->years;
+    subject_style.non_house = s.style->non_house;
     // Classification takes the sub-style from the likeliest class.
-    looks.substyle_class = s.style->style_class();
-    const double of_class = static_cast<double>(looks.style[static_cast<std::size_t>(looks.substyle_class)]);
-    looks.substyle_p = of_class > 0 ? std::min(1.0, static_cast<double>(s.style->substyle_p) / of_class) : 0;
+    subject_style.substyle_class = s.style->style_class();
+    const double of_class = static_cast<double>(subject_style.style[static_cast<std::size_t>(subject_style.substyle_class)]);
+    subject_style.substyle_p = of_class > 0 ? std::min(1.0, static_cast<double>(s.style->substyle_p) / of_class) : 0;
   }
-  looks.substyle = s.substyle;
-  if (!s.ordered_style.empty() && take_style(book, s.ordered_style, looks)) return looks;
+  subject_style.substyle = s.substyle;
+  if (!s.overridden_style.empty() && take_style(book, s.overridden_style, subject_style)) return subject_style;
   const auto try_tag = [&](std::string_view value) {
     if (value.empty()) return false;
-    if (take_style(book, value, looks)) return true;
+    if (take_style(book, value, subject_style)) return true;
     if (unreadable) unreadable->push_back(fmt::format("{}={}", kStyleTag, value));
     return false;
   };
-  if (try_tag(tag_of(s, kStyleTag))) return looks;
+  if (try_tag(tag_of(s, kStyleTag))) return subject_style;
   if (s.area_tag)
     if (const auto of_area = s.area_tag(kStyleTag)) try_tag(of_area->value);
-  return looks;
+  return subject_style;
 }
 
-double sum_of(const std::vector<model::Era>& eras, const Looks& looks) {
+double sum_of(const std::vector<model::Era>& eras, const SubjectStyle& subject_style) {
   double sum = 0;
-  for (const model::Era e : eras) sum += static_cast<double>(looks.era[static_cast<std::size_t>(e)]);
+  for (const model::Era e : eras) sum += static_cast<double>(subject_style.era[static_cast<std::size_t>(e)]);
   return sum;
 }
 
@@ -107,21 +107,21 @@ bool any(const std::vector<T>& of, const V& value) {
   return of.empty() || std::find(of.begin(), of.end(), value) != of.end();
 }
 
-bool fires(const Rule& rule, const Subject& s, const Looks& looks) {
+bool fires(const Rule& rule, const Subject& s, const SubjectStyle& subject_style) {
   const Which& w = rule.which;
   // What is at hand first, what has to be looked up last.
-  if (w.house && *w.house == looks.non_house) return false;
-  if (w.style && static_cast<double>(looks.style[static_cast<std::size_t>(*w.style)]) < w.probability - kMargin)
+  if (w.house && *w.house == subject_style.non_house) return false;
+  if (w.style && static_cast<double>(subject_style.style[static_cast<std::size_t>(*w.style)]) < w.probability - kMargin)
     return false;
-  if (!any(w.positions, s.position) || !any(w.substyles, looks.substyle) || !any(w.uses, s.use)) return false;
-  if (!w.substyles.empty() && looks.substyle_p < w.probability - kMargin) return false;
+  if (!any(w.positions, s.position) || !any(w.substyles, subject_style.substyle) || !any(w.uses, s.use)) return false;
+  if (!w.substyles.empty() && subject_style.substyle_p < w.probability - kMargin) return false;
   if (w.area && !w.area->holds(s.area)) return false;
   if (!w.eras.empty()) {
-    const bool in_eras = looks.years ? any(w.eras, model::era_of(looks.years->middle()))
-                                     : sum_of(w.eras, looks) >= w.probability - kMargin;
+    const bool in_eras = subject_style.years ? any(w.eras, model::era_of(subject_style.years->middle()))
+                                     : sum_of(w.eras, subject_style) >= w.probability - kMargin;
     if (!in_eras) return false;
   }
-  if (w.years && (!looks.years || looks.years->from > w.years->to || looks.years->to < w.years->from)) return false;
+  if (w.years && (!subject_style.years || subject_style.years->from > w.years->to || subject_style.years->to < w.years->from)) return false;
   if (const auto& box = rule.where.bbox) {
     const double lon = s.place.lon_degrees(), lat = s.place.lat_degrees();
     if (lon < (*box)[0] || lon > (*box)[2] || lat < (*box)[1] || lat > (*box)[3]) return false;
@@ -154,29 +154,29 @@ const WeightedPreset& draw(const Rule& rule, const Subject& s, std::uint64_t see
   return rule.presets.back();
 }
 
-float confidence_of(const Rule& rule, const Looks& looks, double weight) {
+float confidence_of(const Rule& rule, const SubjectStyle& subject_style, double weight) {
   double p = weight * kLevelConfidence[static_cast<std::size_t>(rule.level)];
   const auto of_class = [&](model::StyleClass c) {
-    return static_cast<double>(looks.style[static_cast<std::size_t>(c)]);
+    return static_cast<double>(subject_style.style[static_cast<std::size_t>(c)]);
   };
   const bool by_substyle = !rule.which.substyles.empty();
-  if (by_substyle) p *= of_class(looks.substyle_class) * looks.substyle_p;
-  if (rule.which.style && !(by_substyle && *rule.which.style == looks.substyle_class)) p *= of_class(*rule.which.style);
-  if (!rule.which.eras.empty() && !looks.years) p *= std::min(1.0, sum_of(rule.which.eras, looks));
+  if (by_substyle) p *= of_class(subject_style.substyle_class) * subject_style.substyle_p;
+  if (rule.which.style && !(by_substyle && *rule.which.style == subject_style.substyle_class)) p *= of_class(*rule.which.style);
+  if (!rule.which.eras.empty() && !subject_style.years) p *= std::min(1.0, sum_of(rule.which.eras, subject_style));
   // Rounded: what a sum of floats leaves in its last bits is nobody's confidence.
   return static_cast<float>(static_cast<int>(p * 1000 + 0.5)) / 1000.0f;
 }
 
 /// A preset that tags order, for the building or the area around it.
-struct Ordered {
+struct TaggedPreset {
   std::uint32_t preset = Decision::kNone;
   model::Source source = model::Source::tag;
   float confidence = 0;
   std::string why;
 };
-std::vector<Ordered> ordered_presets(const RuleBook& book, const Subject& s, bool in_words,
+std::vector<TaggedPreset> tagged_presets(const RuleSets& book, const Subject& s, bool in_words,
                                      std::vector<std::string>* unreadable) {
-  std::vector<Ordered> out;
+  std::vector<TaggedPreset> out;
   const auto take = [&](std::string_view value, model::Source source, float confidence, const model::OsmId* area) {
     if (value.empty()) return;
     const std::size_t preset = find_preset(book.presets, value);
@@ -204,20 +204,20 @@ std::string position_text(model::BuildingPosition p) {
 }
 
 /// Why a rule holds for a building, in its own conditions.
-std::string conditions(const RuleSet& set, const Rule& rule, const Subject& s, const Looks& looks) {
+std::string conditions(const RuleSet& set, const Rule& rule, const Subject& s, const SubjectStyle& subject_style) {
   std::vector<std::string> words;
   const Which& w = rule.which;
   if (w.style)
     words.push_back(
-        fmt::format("{} with {:.0f} %", model::name(*w.style), 100 * looks.style[static_cast<std::size_t>(*w.style)]));
+        fmt::format("{} with {:.0f} %", model::name(*w.style), 100 * subject_style.style[static_cast<std::size_t>(*w.style)]));
   if (!w.eras.empty()) {
     std::vector<std::string_view> names;
     for (const model::Era e : w.eras) names.push_back(model::name(e));
     words.push_back(fmt::format("built {}", fmt::join(names, " or ")));
   }
-  if (w.years) words.push_back(fmt::format("dated {} to {}", looks.years->from, looks.years->to));
+  if (w.years) words.push_back(fmt::format("dated {} to {}", subject_style.years->from, subject_style.years->to));
   if (!w.substyles.empty())
-    words.push_back(fmt::format("style {} with {:.0f} % of its class", looks.substyle, 100 * looks.substyle_p));
+    words.push_back(fmt::format("style {} with {:.0f} % of its class", subject_style.substyle, 100 * subject_style.substyle_p));
   if (!w.uses.empty()) words.push_back("building=" + std::string(s.use));
   if (w.area) words.push_back(fmt::format("{:.0f} m2", s.area));
   if (w.storeys) words.push_back(fmt::format("{:g} storeys", s.storeys().value_or(0)));
@@ -233,9 +233,9 @@ std::string conditions(const RuleSet& set, const Rule& rule, const Subject& s, c
 }
 
 std::string in_words(const RuleSet& set, const Rule& rule, const WeightedPreset& drawn, const Subject& s,
-                     const Looks& looks) {
+                     const SubjectStyle& subject_style) {
   std::string text =
-      fmt::format("rule '{}' of {} ({}): {}", rule.name, set.title, name(rule.level), conditions(set, rule, s, looks));
+      fmt::format("rule '{}' of {} ({}): {}", rule.name, set.title, name(rule.level), conditions(set, rule, s, subject_style));
   if (rule.presets.size() > 1) {
     text += fmt::format("; drawn with a chance of {:.0f} %", 100 * drawn.weight);
     if (rule.level == Level::block && !s.block.empty()) text += " for the whole block";
@@ -245,35 +245,35 @@ std::string in_words(const RuleSet& set, const Rule& rule, const WeightedPreset&
 
 }  // namespace
 
-Decision decide(const RuleBook& book, std::uint32_t set_index, const Subject& s, std::uint64_t seed) {
+Decision decide(const RuleSets& book, std::uint32_t set_index, const Subject& s, std::uint64_t seed) {
   Decision d;
   d.set = set_index;
-  for (const Ordered& o : ordered_presets(book, s, false, nullptr)) {
+  for (const TaggedPreset& o : tagged_presets(book, s, false, nullptr)) {
     d.preset = o.preset;
     d.source = o.source;
     d.confidence = o.confidence;
     return d;
   }
-  if (set_index == RuleBook::kNoSet) return d;
+  if (set_index == RuleSets::kNoSet) return d;
   const RuleSet& set = book.sets[set_index];
-  const Looks looks = looks_of(book, s, nullptr);
+  const SubjectStyle subject_style = style_of_subject(book, s, nullptr);
   for (std::uint32_t i = 0; i < set.rules.size(); ++i) {
     const Rule& rule = set.rules[i];
-    if (rule.presets.empty() || !fires(rule, s, looks)) continue;
+    if (rule.presets.empty() || !fires(rule, s, subject_style)) continue;
     const WeightedPreset& drawn = draw(rule, s, seed);
     d.preset = drawn.preset;
     d.rule = i;
     d.source = model::Source::district;
-    d.confidence = confidence_of(rule, looks, drawn.weight);
+    d.confidence = confidence_of(rule, subject_style, drawn.weight);
     return d;
   }
   return d;
 }
 
-Assignment assign(const RuleBook& book, std::uint32_t set_index, const Subject& s, std::uint64_t seed) {
+Assignment assign(const RuleSets& book, std::uint32_t set_index, const Subject& s, std::uint64_t seed) {
   Assignment a;
   a.decision.set = set_index;
-  const Looks looks = looks_of(book, s, &a.unreadable);
+  const SubjectStyle subject_style = style_of_subject(book, s, &a.unreadable);
   const auto take = [&](std::uint32_t preset, std::uint32_t rule, model::Source source, float confidence,
                         std::string why) {
     Decision& d = a.decision;
@@ -284,14 +284,14 @@ Assignment assign(const RuleBook& book, std::uint32_t set_index, const Subject& 
       d.confidence = confidence;
       a.why = std::move(why);
     } else {
-      a.lost.push_back({source, confidence, book.presets[preset].name, std::move(why)});
+      a.other_candidates.push_back({source, confidence, book.presets[preset].name, std::move(why)});
     }
   };
-  for (Ordered& o : ordered_presets(book, s, true, &a.unreadable))
+  for (TaggedPreset& o : tagged_presets(book, s, true, &a.unreadable))
     take(o.preset, Decision::kNone, o.source, o.confidence, std::move(o.why));
   std::sort(a.unreadable.begin(), a.unreadable.end());
   a.unreadable.erase(std::unique(a.unreadable.begin(), a.unreadable.end()), a.unreadable.end());
-  if (set_index == RuleBook::kNoSet) {
+  if (set_index == RuleSets::kNoSet) {
     if (a.why.empty()) a.why = "no rule set holds here";
     return a;
   }
@@ -299,18 +299,18 @@ Assignment assign(const RuleBook& book, std::uint32_t set_index, const Subject& 
   std::map<std::string, Parameter> parameters;
   for (std::uint32_t i = 0; i < set.rules.size(); ++i) {
     const Rule& rule = set.rules[i];
-    if (!fires(rule, s, looks)) continue;
+    if (!fires(rule, s, subject_style)) continue;
     a.fired.push_back(i);
     for (const auto& [key, value] : rule.parameters) parameters.emplace(key, Parameter{key, value, i});
     if (rule.presets.empty()) continue;
     const WeightedPreset& drawn = draw(rule, s, seed);
-    take(drawn.preset, i, model::Source::district, confidence_of(rule, looks, drawn.weight),
-         in_words(set, rule, drawn, s, looks));
+    take(drawn.preset, i, model::Source::district, confidence_of(rule, subject_style, drawn.weight),
+         in_words(set, rule, drawn, s, subject_style));
     // What else the deciding rule could have drawn.
     if (a.decision.rule == i)
       for (const WeightedPreset& other : rule.presets)
         if (other.preset != drawn.preset)
-          take(other.preset, i, model::Source::district, confidence_of(rule, looks, other.weight),
+          take(other.preset, i, model::Source::district, confidence_of(rule, subject_style, other.weight),
                fmt::format("rule '{}' draws it with a chance of {:.0f} %", rule.name, 100 * other.weight));
   }
   for (auto& [key, parameter] : parameters) a.parameters.push_back(std::move(parameter));

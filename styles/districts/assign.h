@@ -23,7 +23,7 @@ struct Subject {
   double area = 0;                              ///< m²
   model::BuildingPosition position = model::BuildingPosition::unknown;
   std::string_view block;          ///< id of its block; empty: none
-  std::string_view ordered_style;  ///< class or sub-style that an override gives
+  std::string_view overridden_style;  ///< class or sub-style that an override gives
   std::function<std::optional<double>()> storeys;
   std::function<std::optional<double>(CellStatistic)> cell;
   std::function<std::string_view(std::string_view)> tag;  ///< of the building; empty: absent
@@ -38,8 +38,8 @@ struct Subject {
 
 /// The answer in short: what a map or a table of counts needs. Sets and rules are indices into the book.
 struct Decision {
-  std::uint32_t set = RuleBook::kNoSet;
-  std::uint32_t preset = kNone;  ///< into RuleBook::presets
+  std::uint32_t set = RuleSets::kNoSet;
+  std::uint32_t preset = kNone;  ///< into RuleSets::presets
   std::uint32_t rule = kNone;    ///< into RuleSet::rules; kNone where a tag decided or nothing did
   model::Source source = model::Source::default_;
   float confidence = 0;
@@ -60,7 +60,7 @@ struct Assignment {
   std::vector<Parameter> parameters;    ///< by key
   std::vector<std::uint32_t> fired;     ///< rules whose conditions hold, strongest first
   std::string why;                      ///< a sentence
-  std::vector<model::Candidate> lost;   ///< weaker presets, strongest first
+  std::vector<model::Candidate> other_candidates;   ///< weaker presets, strongest first
   std::vector<std::string> unreadable;  ///< blockrand:* tags with values that nobody knows
 };
 
@@ -70,8 +70,8 @@ struct Assignment {
 /// says before rules are asked. A preset is drawn by (seed, building, "preset"), of rules of the level `block` by
 /// (seed, block, "preset"). Confidence: the probability of the class, of the sub-style among those of its class and of
 /// the eras that the rule asked for, times the weight of what was drawn, times a factor of the level.
-Decision decide(const RuleBook& book, std::uint32_t set, const Subject& subject, std::uint64_t seed);
+Decision decide(const RuleSets& book, std::uint32_t set, const Subject& subject, std::uint64_t seed);
 /// \returns what decide() does as `decision`
-Assignment assign(const RuleBook& book, std::uint32_t set, const Subject& subject, std::uint64_t seed);
+Assignment assign(const RuleSets& book, std::uint32_t set, const Subject& subject, std::uint64_t seed);
 
 }  // namespace blockrand::districts

@@ -105,7 +105,7 @@ std::vector<model::Location> ring(TomlTable& table, std::string_view key) {
 
 class Reader {
  public:
-  Reader(const std::string& path, RuleBook& book) : folder_(std::filesystem::path(path).parent_path()), book_(book) {
+  Reader(const std::string& path, RuleSets& book) : folder_(std::filesystem::path(path).parent_path()), book_(book) {
     set_.file = path;
     set_.name = std::filesystem::path(path).stem().string();
   }
@@ -372,19 +372,19 @@ class Reader {
   }
 
   std::filesystem::path folder_;
-  RuleBook& book_;
+  RuleSets& book_;
   RuleSet set_;
   std::vector<std::string> preset_names_;
 };
 
 }  // namespace
 
-void read_rule_set(const std::string& path, RuleBook& book) {
+void read_rule_set(const std::string& path, RuleSets& book) {
   TomlTable root = TomlTable::read(path);
   book.sets.push_back(Reader(path, book).read(std::move(root)));
 }
 
-void parse_rule_set(std::string_view text, const std::string& name, RuleBook& book) {
+void parse_rule_set(std::string_view text, const std::string& name, RuleSets& book) {
   TomlTable root = TomlTable::parse(text, name);
   book.sets.push_back(Reader(name, book).read(std::move(root)));
 }

@@ -19,9 +19,9 @@ inline constexpr double kMaxPlaceRadius = 30000;  ///< m; places are region data
 ///                           maximum, years outside of the eras, a box outside of the set's polygon), weights that are
 ///                           not positive or do not sum to 1, two rules of one name, a rule that can have no effect
 ///                           because stronger ones without conditions take all it gives
-void read_rule_set(const std::string& path, RuleBook& book);
+void read_rule_set(const std::string& path, RuleSets& book);
 
 /// The same from text; files that it names are relative to the folder of `name`.
-void parse_rule_set(std::string_view text, const std::string& name, RuleBook& book);
+void parse_rule_set(std::string_view text, const std::string& name, RuleSets& book);
 
 }  // namespace blockrand::districts

@@ -61,7 +61,7 @@ RingArea double_area(std::span<const model::Location> ring) {
   return static_cast<RingArea>(sum < 0 ? -sum : sum);
 }
 
-std::uint32_t RuleBook::choose(model::Location place) const {
+std::uint32_t RuleSets::choose(model::Location place) const {
   std::uint32_t best = kNoSet;
   RingArea smallest = 0;
   for (std::uint32_t i = 0; i < sets.size(); ++i) {

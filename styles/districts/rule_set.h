@@ -86,7 +86,7 @@ struct Which {
 };
 
 struct WeightedPreset {
-  std::uint32_t preset = 0;  ///< into RuleBook::presets
+  std::uint32_t preset = 0;  ///< into RuleSets::presets
   double weight = 1;         ///< in (0, 1]; they sum to 1
 };
 
@@ -124,7 +124,7 @@ struct RuleSet {
 };
 
 /// Every rule set that a run knows.
-struct RuleBook {
+struct RuleSets {
   std::vector<Preset> presets;
   std::vector<std::string> substyles;  ///< ids of the catalogue of styles; empty: names are not checked
   std::vector<RuleSet> sets;

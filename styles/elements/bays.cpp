@@ -104,7 +104,8 @@ std::vector<Outline> lights_of(const Outline& hole, int detail) {
   const double u0 = b.least.x + kBayFrame, u1 = b.most.x - kBayFrame;
   const double y0 = b.least.y + kBayFrame, y1 = b.most.y - kBayFrame;
   if (detail == 0 || u1 - u0 < 0.5) return {rectangle(u0, y0, u1, y1)};
-  const double middle = (u0 + u1) / 2, transom = y0 + (y1 - y0) * 0.68;  // styles.md 2.4: 0.62 to 0.70 of the height
+  const double middle = (u0 + u1) / 2, transom = y0 + (y1 - y0) * 0.68;  // docs/style_measures.md 2.4: 0.62 to 0.70 of
+                                                                         // the height
   return {rectangle(u0, y0, middle - kBayFrame / 2, transom - kBayFrame / 2),
           rectangle(middle + kBayFrame / 2, y0, u1, transom - kBayFrame / 2),
           rectangle(u0, transom + kBayFrame / 2, u1, y1)};

@@ -7,7 +7,7 @@
 namespace blockrand::elements {
 namespace {
 
-/// m. Margin and relief of bosses (references/styles.md 2.5: margin 4 cm).
+/// m. Margin and relief of bosses (docs/style_measures.md 2.5: margin 4 cm).
 constexpr double kMargin = 0.04, kBoss = 0.015;
 
 }  // namespace

@@ -420,7 +420,7 @@ ElementKind console_kind() {
   return k;
 }
 
-// Sizes and ranges of the following four: references/styles.md 2.6 (balconies, bays), 2.5 (quoins, pilasters).
+// Sizes and ranges of the following four: docs/style_measures.md 2.6 (balconies, bays), 2.5 (quoins, pilasters).
 ElementKind balcony() {
   ElementKind k{"balcony",
                 ElementClass::installation,

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "styles/elements/element.h"
+#include "styles/elements/built_element.h"
 #include "styles/elements/profile_library.h"
 
 namespace blockrand::elements {

@@ -4,7 +4,7 @@
 #include <map>
 #include <span>
 
-#include "styles/elements/element.h"
+#include "styles/elements/built_element.h"
 #include "styles/elements/flat_shapes.h"
 
 namespace blockrand::elements {

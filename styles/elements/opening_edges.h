@@ -1,5 +1,5 @@
-// Openings drawn edge by edge: a rough rectangle whose four edges are moved, shortened and shaped (finkenzeller.md
-// §3.11).
+// Openings drawn edge by edge: a rough rectangle whose four edges are moved, shortened and shaped
+// (docs/sources.md, Finkenzeller 3.11).
 #pragma once
 
 #include <array>
@@ -50,8 +50,8 @@ using OpeningEdges = std::array<OpeningEdge, 4>;
 ///
 /// A dominant edge spans the whole width (a straight one up to its neighbours' inner lines); its neighbours end at its
 /// inner line. Two dominant neighbours are an error;
-/// where neither of two neighbours is dominant, head and sill are (finkenzeller.md §4.7, 5). \param door  the lower
-/// edge is taken as it is: no strip, no shortening
+/// where neither of two neighbours is dominant, head and sill are (docs/sources.md, Finkenzeller 4.7, 5).
+/// \param door  the lower edge is taken as it is: no strip, no shortening
 tl::expected<Outline, std::string> opening_outline(const OpeningRectangle& rectangle, const OpeningEdges& edges,
                                                    bool door);
 

@@ -1,4 +1,5 @@
-// The profile language of mouldings: a little drawing program for the section of a cornice (finkenzeller.md §3.7.1).
+// The profile language of mouldings: a little drawing program for the section of a cornice
+// (docs/sources.md, Finkenzeller 3.7.1).
 //
 //   Modifications {
 //     line, rel, 90, 0.3;       turn from upright by 90 degrees towards the street, draw 0.3

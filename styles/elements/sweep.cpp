@@ -173,7 +173,7 @@ std::vector<Joint> joints_of(const std::vector<Corner>& corners, bool closed, do
 }
 
 /// The parts of a chain that no interruption covers, as paths of their own.
-struct Stretch {
+struct MouldingRun {
   std::vector<Point2> points;
   std::vector<std::size_t> index;  ///< of each point in the chain; of cut ends the next one
   bool closed = false;
@@ -181,7 +181,7 @@ struct Stretch {
   double length = 0;
 };
 
-std::vector<Stretch> stretches_of(std::span<const Point2> chain, bool closed,
+std::vector<MouldingRun> moulding_runs(std::span<const Point2> chain, bool closed,
                                   std::span<const std::pair<double, double>> interruptions) {
   const std::size_t edges = closed ? chain.size() : chain.size() - 1;
   std::vector<double> at{0};
@@ -202,9 +202,9 @@ std::vector<Stretch> stretches_of(std::span<const Point2> chain, bool closed,
   }
   if (whole - from >= kNoCorner) kept.emplace_back(from, whole);
   const bool round = closed && gaps.empty();
-  std::vector<Stretch> out;
+  std::vector<MouldingRun> out;
   for (const auto& [start, stop] : kept) {
-    Stretch s;
+    MouldingRun s;
     s.closed = round;
     s.length = stop - start;
     s.gap_before = closed || start > 0;
@@ -226,7 +226,7 @@ std::vector<Stretch> stretches_of(std::span<const Point2> chain, bool closed,
   }
   // A run over the seam of a closed chain is one run.
   if (closed && !round && out.size() > 1 && kept.front().first == 0 && kept.back().second == whole) {
-    Stretch last = std::move(out.back());
+    MouldingRun last = std::move(out.back());
     out.pop_back();
     last.points.insert(last.points.end(), out.front().points.begin() + 1, out.front().points.end());
     last.index.insert(last.index.end(), out.front().index.begin() + 1, out.front().index.end());
@@ -244,7 +244,7 @@ struct Ends {
   double first_slope = 0, last_slope = 0;
 };
 
-Ends ends_of(const SweepOptions& options, const Stretch& s, const std::vector<Corner>& corners, double out_of_wall) {
+Ends ends_of(const SweepOptions& options, const MouldingRun& s, const std::vector<Corner>& corners, double out_of_wall) {
   Ends out{options.ends, options.ends};
   const bool turned = options.wall == WallSide::right;
   const auto& first = turned ? options.last_end : options.start_end;
@@ -333,10 +333,10 @@ tl::expected<Sweep, std::string> sweep(const Profile& profile, std::span<const P
   if (points.size() < (closed ? 3u : 2u))
     return tl::unexpected<std::string>("a chain of walls wants two points, three when closed");
   std::vector<std::pair<double, double>> gaps(options.interruptions.begin(), options.interruptions.end());
-  std::vector<Stretch> stretches = stretches_of(points, closed, gaps);
+  std::vector<MouldingRun> stretches = moulding_runs(points, closed, gaps);
   Sweep out;
   MeshBuilder builder;
-  for (Stretch& s : stretches) {
+  for (MouldingRun& s : stretches) {
     if (turned) {
       std::reverse(s.points.begin(), s.points.end());
       std::reverse(s.index.begin(), s.index.end());

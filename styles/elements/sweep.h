@@ -24,7 +24,8 @@ enum class RunEnd : std::uint8_t {
   returned,
 };
 
-/// Brackets under a moulding (finkenzeller.md §3.7.4), equally spaced, the row centred on each straight wall.
+/// Brackets under a moulding (docs/sources.md, Finkenzeller 3.7.4), equally spaced, the row centred on each straight
+/// wall.
 struct ConsoleRow {
   double spacing = 0;       ///< m between middles; 0: no brackets
   double width = 0.16;      ///< m along the wall
@@ -78,8 +79,8 @@ struct ConsolePlace {
 };
 
 /// Where brackets of a row stand on a chain: floor((L - width) / spacing) + 1 of them on each wall of length L, less
-/// what re-entrant corners take and kApart at each end (finkenzeller.md §3.7.4). For instances of one "console"
-/// element.
+/// what re-entrant corners take and kApart at each end (docs/sources.md, Finkenzeller 3.7.4). For instances of one
+/// "console" element.
 std::vector<ConsolePlace> console_places(std::span<const model::Point2> chain, bool closed, WallSide wall,
                                          double spacing, double width, double projection);
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 #include "styles/roofs/shape_tables.h"
 

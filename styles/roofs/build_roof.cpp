@@ -3,7 +3,7 @@
 #include <cmath>
 #include <variant>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "styles/roofs/roof.h"
 #include "styles/roofs/shape_tables.h"
 #include "styles/roofs/skeleton_roofs.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "styles/roofs/chimneys.h"
 #include "styles/roofs/element_layout.h"
 #include "styles/roofs/roof_slopes.h"
@@ -166,7 +166,7 @@ std::vector<ChimneyPlace> slope_places(const Roof& roof, const ChimneyParameters
 
 std::vector<model::RoofInstallation> chimneys(const model::Polygon& plan, std::span<const model::RoofEdge> edges,
                                               const Roof& roof, double frontage, const ChimneyParameters& parameters,
-                                              const ChimneyLooks& looks) {
+                                              const ChimneyMaterials& materials) {
   std::vector<ChimneyPlace> wanted = party_wall_places(plan, edges, roof, parameters);
   for (const auto& more :
        {ridge_places(roof, parameters), flat_places(roof, parameters), slope_places(roof, parameters)})
@@ -184,7 +184,7 @@ std::vector<model::RoofInstallation> chimneys(const model::Polygon& plan, std::s
         return std::hypot(q.x - moved.middle.x, q.y - moved.middle.y) < parameters.step * 5 / 6;
       });
       if (near) continue;
-      auto built = chimney(roof, moved, parameters, looks);
+      auto built = chimney(roof, moved, parameters, materials);
       if (!built) continue;
       out.push_back(std::move(*built));
       taken.push_back(moved.middle);

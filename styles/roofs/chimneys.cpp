@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/solid_builder.h"
 #include "styles/roofs/element_layout.h"
 #include "styles/roofs/roof_slopes.h"
@@ -89,7 +89,7 @@ Outline chimney_outline(ChimneyPlace place, const ChimneyParameters& parameters)
 }
 
 std::optional<model::RoofInstallation> chimney(const Roof& roof, ChimneyPlace place, const ChimneyParameters& p,
-                                               const ChimneyLooks& looks) {
+                                               const ChimneyMaterials& materials) {
   if (!(p.width >= 2 * kLeastPart && p.length >= 2 * kLeastPart)) return std::nullopt;
   const Outline stack = chimney_outline(place, p), inner = grown(place, p, -kOverWall),
                 around = grown(place, p, p.clearance);
@@ -170,7 +170,7 @@ std::optional<model::RoofInstallation> chimney(const Roof& roof, ChimneyPlace pl
   if (top - highest > p.tallest) return std::nullopt;
   const auto upper = [&](Point2 q) { return Point3{q.x, q.y, top}; };
 
-  model::Face side = looks.stack, cover = looks.top, below = looks.stack;
+  model::Face side = materials.stack, cover = materials.top, below = materials.stack;
   side.kind = model::SurfaceKind::wall;
   cover.kind = model::SurfaceKind::roof;
   below.kind = model::SurfaceKind::closure;

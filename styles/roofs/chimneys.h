@@ -10,7 +10,8 @@
 
 namespace blockrand::roofs {
 
-/// Measures of chimneys and the distances between them (styles.md §2.7 unless another source stands there).
+/// Measures of chimneys and the distances between them (docs/style_measures.md §2.7 unless another source stands
+/// there).
 struct ChimneyParameters {
   double width = 0.58;        ///< m, the shorter side; 0.5 to 0.65
   double length = 1.20;       ///< m, the longer side, along ridge or party wall; 0.8 to 1.6
@@ -36,7 +37,7 @@ struct ChimneyPlace {
 };
 
 /// Looks of its faces: material and colour; kinds are set.
-struct ChimneyLooks {
+struct ChimneyMaterials {
   model::Face stack, top;
 };
 
@@ -50,7 +51,7 @@ int chimney_count(double frontage, const ChimneyParameters& parameters = {});
 /// than kLeastPart of it, or where it would be higher than `tallest`.
 std::optional<model::RoofInstallation> chimney(const Roof& roof, ChimneyPlace place,
                                                const ChimneyParameters& parameters = {},
-                                               const ChimneyLooks& looks = {});
+                                               const ChimneyMaterials& materials = {});
 
 /// The four corners of a stack on the plan, counter-clockwise: for occupy().
 std::vector<model::Point2> chimney_outline(ChimneyPlace place, const ChimneyParameters& parameters = {});
@@ -76,6 +77,6 @@ std::vector<ChimneyPlace> flat_places(const Roof& roof, const ChimneyParameters&
 /// 5-7 m").
 std::vector<model::RoofInstallation> chimneys(const model::Polygon& plan, std::span<const model::RoofEdge> edges,
                                               const Roof& roof, double frontage,
-                                              const ChimneyParameters& parameters = {}, const ChimneyLooks& looks = {});
+                                              const ChimneyParameters& parameters = {}, const ChimneyMaterials& materials = {});
 
 }  // namespace blockrand::roofs

@@ -12,9 +12,9 @@ using model::Point3;
 
 namespace {
 
-std::optional<StandingShape> shape_on(const RoofSlope& plane, const CrossGableParameters& p) {
+std::optional<DormerBody> shape_on(const RoofSlope& plane, const CrossGableParameters& p) {
   if (!takes_elements(plane) || p.width > kWidestElement || p.kind == DormerKind::eyebrow) return std::nullopt;
-  return standing_shape({p.kind, p.width, p.wall_height, p.rise, p.roof_pitch, p.chords}, plane.rise);
+  return dormer_body({p.kind, p.width, p.wall_height, p.rise, p.roof_pitch, p.chords}, plane.rise);
 }
 
 bool same(const Point3& a, const Point3& b) { return geometry::to_grid(a) == geometry::to_grid(b); }
@@ -89,7 +89,7 @@ bool add_cross_gable(Roof& roof, std::size_t surface, const CrossGableParameters
   auto& wall_top = roof.wall_tops[static_cast<std::size_t>(border.edge)];
   wall_top.insert(wall_top.begin() + in_wall + 1, front.begin(), front.end());
 
-  for (const StandingShape::Face& face : shape->faces)
+  for (const DormerBody::Face& face : shape->faces)
     roof.surfaces.push_back({-1, {built_loop(face.loop)}, face.upright, element});
   return true;
 }

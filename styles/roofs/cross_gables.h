@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "styles/roofs/element_layout.h"
-#include "styles/roofs/standing_shapes.h"
+#include "styles/roofs/dormer_bodies.h"
 
 namespace blockrand::roofs {
 
@@ -14,7 +14,8 @@ namespace blockrand::roofs {
 struct CrossGableParameters {
   /// The head; gabled is the Zwerchgiebel, others are Zwerchhäuser. Not eyebrow.
   DormerKind kind = DormerKind::gabled;
-  double width = 2.60;  ///< m. At most 3.00 (Holtmeier §5.3); two axes of windows need some 2.5 (own choice).
+  double width = 2.60;  ///< m. At most 3.00 (docs/sources.md, Holtmeier 5.3); two axes of windows need some 2.5 (own
+                        ///< choice).
   /// m from the eaves to the foot of the gable; 0: the gable's slopes start at the eaves (own choice).
   double wall_height = 1.00;
   double roof_pitch = 45;  ///< degrees, of gabled, hipped and shed heads; of shed ones below the slope's by kLeastFall

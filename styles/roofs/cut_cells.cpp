@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/geometry/planar_faces.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::roofs {
 

@@ -9,9 +9,9 @@ using model::Point3;
 
 namespace {
 
-std::optional<StandingShape> shape_on(const RoofSlope& plane, const DormerParameters& p) {
+std::optional<DormerBody> shape_on(const RoofSlope& plane, const DormerParameters& p) {
   if (!takes_elements(plane) || p.width > kWidestElement || p.wall_height < kLeastPart) return std::nullopt;
-  return standing_shape({p.kind, p.width, p.wall_height, p.rise, p.roof_pitch, p.chords}, plane.rise);
+  return dormer_body({p.kind, p.width, p.wall_height, p.rise, p.roof_pitch, p.chords}, plane.rise);
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ bool add_dormer(Roof& roof, std::size_t surface, const DormerParameters& paramet
   for (const Point3& p : shape->head)
     if (p != front.back() && p != front.front()) front.push_back(p);
   roof.surfaces.push_back({-1, {built_loop(front)}, true, element});
-  for (const StandingShape::Face& face : shape->faces)
+  for (const DormerBody::Face& face : shape->faces)
     roof.surfaces.push_back({-1, {built_loop(face.loop)}, face.upright, element});
   return true;
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "styles/roofs/element_layout.h"
-#include "styles/roofs/standing_shapes.h"
+#include "styles/roofs/dormer_bodies.h"
 
 namespace blockrand::roofs {
 
@@ -14,10 +14,10 @@ namespace blockrand::roofs {
 /// it.
 struct DormerParameters {
   DormerKind kind = DormerKind::gabled;
-  /// m, over the walls. Typical 1.0, 1.3, 1.8 (styles.md §2.7); at most 3.00 (kWidestElement).
+  /// m, over the walls. Typical 1.0, 1.3, 1.8 (docs/style_measures.md §2.7); at most 3.00 (kWidestElement).
   double width = 1.30;
-  /// m from the slope to where the front's roof begins. 1.2 to 1.5 (styles.md §2.7). Of eyebrows, which have no cheeks,
-  /// the height of their middle: 0.6 there.
+  /// m from the slope to where the front's roof begins. 1.2 to 1.5 (docs/style_measures.md §2.7). Of eyebrows, which
+  /// have no cheeks, the height of their middle: 0.6 there.
   double wall_height = 1.30;
   /// degrees. Gabled and hipped: 45, the main roof's usual pitch or steeper (own choice). Shed: 12 (own choice; tiles
   /// on battens of old Schleppgauben lie flatter than on the roof). Eyebrow: 12. Others do not read it.

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "pipeline/geometry/planar_faces.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/model/vector.h"
 #include "styles/roofs/roof_sides.h"

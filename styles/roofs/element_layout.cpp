@@ -15,7 +15,7 @@ namespace {
 constexpr double kFound = 1e-6;
 
 using Outline = std::vector<Point2>;
-using Stretches = std::vector<std::pair<double, double>>;
+using Intervals = std::vector<std::pair<double, double>>;
 
 Outline moved(std::span<const Point2> outline, Point2 by) {
   Outline out(outline.begin(), outline.end());
@@ -133,14 +133,14 @@ bool fits(const RoofSlope& plane, std::span<const Point2> outline, const Element
          });
 }
 
-Stretches free_stretches(const RoofSlope& plane, const LayoutWish& wish, const ElementDistances& distances) {
-  const auto own = geometry::extent_along(wish.outline, {1, 0});
-  const auto heights = geometry::extent_along(wish.outline, {0, 1});
+Intervals free_intervals(const RoofSlope& plane, const LayoutRequest& wanted_layout, const ElementDistances& distances) {
+  const auto own = geometry::extent_along(wanted_layout.outline, {1, 0});
+  const auto heights = geometry::extent_along(wanted_layout.outline, {0, 1});
   const auto along = plane.along_extent(), up = plane.up_extent();
-  if (own.maximum - own.minimum > along.maximum - along.minimum || heights.maximum + wish.up > up.maximum) return {};
+  if (own.maximum - own.minimum > along.maximum - along.minimum || heights.maximum + wanted_layout.up > up.maximum) return {};
   const double low = along.minimum - own.maximum - 1, high = along.maximum - own.minimum + 1;
 
-  Stretches taken;
+  Intervals taken;
   const auto take = [&](double limit, std::span<const Point2> points, const auto& value) {
     const auto near = geometry::extent_along(points, {1, 0});
     const double reach = limit + kLeastPart;
@@ -149,15 +149,15 @@ Stretches free_stretches(const RoofSlope& plane, const LayoutWish& wish, const E
       taken.push_back(*stretch);
   };
   // What lies near is moved instead of the outline.
-  const auto seen = [&](Point2 p, double x) { return Point2{p.x - x, p.y - wish.up}; };
+  const auto seen = [&](Point2 p, double x) { return Point2{p.x - x, p.y - wanted_layout.up}; };
   const auto far = [&](double limit, std::span<const Point2> points) {
     const auto other = geometry::extent_along(points, {0, 1});
-    return other.minimum - wish.up > heights.maximum + limit || other.maximum - wish.up < heights.minimum - limit;
+    return other.minimum - wanted_layout.up > heights.maximum + limit || other.maximum - wanted_layout.up < heights.minimum - limit;
   };
-  Stretches standing;  // of flush fronts
+  Intervals standing;  // of flush fronts
   for (const SlopeBorder& border : plane.borders) {
     const Point2 ends[] = {plane.in_plane(border.start), plane.in_plane(border.end)};
-    if (wish.flush && is_level_eaves(plane, border, wish.up)) {
+    if (wanted_layout.flush && is_level_eaves(plane, border, wanted_layout.up)) {
       standing.emplace_back(ends[0].x + kLeastPart - own.minimum, ends[1].x - kLeastPart - own.maximum);
       continue;
     }
@@ -165,16 +165,16 @@ Stretches free_stretches(const RoofSlope& plane, const LayoutWish& wish, const E
     const bool along_slope = border.kind == BorderKind::eaves || border.kind == BorderKind::top;
     const double limit = distances.from(border.kind) - (along_slope ? kDistanceSlack / 2 : 0);
     if (far(limit, ends)) continue;
-    take(limit, ends, [&](double x) { return distance(wish.outline, seen(ends[0], x), seen(ends[1], x)); });
+    take(limit, ends, [&](double x) { return distance(wanted_layout.outline, seen(ends[0], x), seen(ends[1], x)); });
   }
   for (const OccupiedPlace& place : plane.occupied) {
     if (far(place.distance, place.outline)) continue;
     take(place.distance, place.outline, [&](double x) {
-      return distance(moved(wish.outline, {x, wish.up}), place.outline);
+      return distance(moved(wanted_layout.outline, {x, wanted_layout.up}), place.outline);
     });
   }
 
-  if (wish.flush) {
+  if (wanted_layout.flush) {
     // What lies between the eaves is taken.
     std::sort(standing.begin(), standing.end());
     double end = low;
@@ -186,11 +186,11 @@ Stretches free_stretches(const RoofSlope& plane, const LayoutWish& wish, const E
     taken.emplace_back(end, high);
   }
   std::sort(taken.begin(), taken.end());
-  Stretches out;
+  Intervals out;
   double from = low;
   const auto add = [&](double to) {
     // Between two taken stretches no border comes near: all of it lies inside or all outside.
-    if (to >= from && inside(plane, middle_of(moved(wish.outline, {(from + to) / 2, wish.up}))))
+    if (to >= from && inside(plane, middle_of(moved(wanted_layout.outline, {(from + to) / 2, wanted_layout.up}))))
       out.emplace_back(from, to);
   };
   for (const auto& [first, last] : taken) {
@@ -204,7 +204,7 @@ Stretches free_stretches(const RoofSlope& plane, const LayoutWish& wish, const E
 namespace {
 
 /// The free place nearest to `wanted` within [low, high]; empty when there is none.
-std::optional<double> nearest(const Stretches& free, double wanted, double low, double high) {
+std::optional<double> nearest(const Intervals& free, double wanted, double low, double high) {
   std::optional<double> best;
   for (const auto& [first, last] : free) {
     const double a = std::max(first, low), b = std::min(last, high);
@@ -216,7 +216,7 @@ std::optional<double> nearest(const Stretches& free, double wanted, double low, 
 }
 
 /// The first free places from the left (or, mirrored, from the right) that lie `spacing` apart, at most `count`.
-std::vector<double> packed(const Stretches& free, double spacing, std::size_t count) {
+std::vector<double> packed(const Intervals& free, double spacing, std::size_t count) {
   std::vector<double> out;
   double next = -1e300;
   for (const auto& [first, last] : free)
@@ -227,8 +227,8 @@ std::vector<double> packed(const Stretches& free, double spacing, std::size_t co
   return out;
 }
 
-Stretches mirrored(const Stretches& free) {
-  Stretches out;
+Intervals mirrored(const Intervals& free) {
+  Intervals out;
   for (auto s = free.rbegin(); s != free.rend(); ++s) out.emplace_back(-s->second, -s->first);
   return out;
 }
@@ -236,7 +236,7 @@ Stretches mirrored(const Stretches& free) {
 /// m. More than any slope is long; beyond it, layouts of "as many as fit" stop.
 constexpr std::size_t kMostPlaces = 10000;
 
-std::vector<double> in_fields(const RoofSlope& plane, const Stretches& free, double spacing, std::size_t wanted) {
+std::vector<double> in_fields(const RoofSlope& plane, const Intervals& free, double spacing, std::size_t wanted) {
   const std::vector<double> earliest = packed(free, spacing, wanted);
   const std::size_t n = earliest.size();
   if (n == 0) return {};
@@ -258,7 +258,7 @@ std::vector<double> in_fields(const RoofSlope& plane, const Stretches& free, dou
   return out;
 }
 
-std::vector<double> on_axes(const RoofSlope& plane, const Stretches& free, double spacing, std::vector<double> axes,
+std::vector<double> on_axes(const RoofSlope& plane, const Intervals& free, double spacing, std::vector<double> axes,
                             std::size_t wanted) {
   std::sort(axes.begin(), axes.end());
   const auto is_free = [&](double x) { return nearest(free, x, x - kFound, x + kFound).has_value(); };
@@ -291,24 +291,24 @@ std::vector<double> on_axes(const RoofSlope& plane, const Stretches& free, doubl
 
 }  // namespace
 
-Layout lay_out(const RoofSlope& plane, const LayoutWish& wish, const ElementDistances& distances) {
+Layout lay_out(const RoofSlope& plane, const LayoutRequest& wanted_layout, const ElementDistances& distances) {
   Layout out;
-  if (wish.outline.size() < 3) return out;
-  const auto own = geometry::extent_along(wish.outline, {1, 0});
+  if (wanted_layout.outline.size() < 3) return out;
+  const auto own = geometry::extent_along(wanted_layout.outline, {1, 0});
   const double spacing = own.maximum - own.minimum + distances.between;
-  const Stretches free = free_stretches(plane, wish, distances);
-  std::vector<double> axes = wish.axes;
-  if (axes.empty() && wish.step > 0) {
+  const Intervals free = free_intervals(plane, wanted_layout, distances);
+  std::vector<double> axes = wanted_layout.axes;
+  if (axes.empty() && wanted_layout.step > 0) {
     const auto along = plane.along_extent();
     const double length = along.maximum - along.minimum;
-    const auto n = static_cast<std::size_t>(std::max(1.0, std::floor(length / wish.step)));
+    const auto n = static_cast<std::size_t>(std::max(1.0, std::floor(length / wanted_layout.step)));
     for (std::size_t i = 0; i < n; ++i)
       axes.push_back((along.minimum + along.maximum) / 2 +
-                     (static_cast<double>(i) - static_cast<double>(n - 1) / 2) * wish.step);
+                     (static_cast<double>(i) - static_cast<double>(n - 1) / 2) * wanted_layout.step);
   }
   std::size_t wanted = kMostPlaces;
-  if (wish.count)
-    wanted = static_cast<std::size_t>(std::max(0, *wish.count));
+  if (wanted_layout.count)
+    wanted = static_cast<std::size_t>(std::max(0, *wanted_layout.count));
   else if (!axes.empty())
     wanted = axes.size();
   out.along = axes.empty() ? in_fields(plane, free, spacing, wanted) : on_axes(plane, free, spacing, axes, wanted);

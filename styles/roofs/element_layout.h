@@ -10,8 +10,8 @@
 
 namespace blockrand::roofs {
 
-// ---- the rules, in metres. Holtmeier 2020 §5.3, from the design guide of Lübeck's Gründungsviertel, unless another
-// source stands there.
+// ---- the rules, in metres. docs/sources.md, Holtmeier 5.3, from the design guide of Lübeck's Gründungsviertel, unless
+// another source stands there.
 
 inline constexpr double kEavesDistance = 1.00;    ///< dormers and roof windows from the eaves
 inline constexpr double kBetweenElements = 1.50;  ///< dormers, roof windows and cross gables from each other
@@ -26,8 +26,8 @@ inline constexpr double kTopDistance = 0.30;
 inline constexpr double kLeastPart = 0.10;
 /// Distances that fall short by no more are kept: corners on the 1/1024 m grid move by up to 0.85 mm, those of both.
 inline constexpr double kDistanceSlack = 0.002;
-/// Roofs that take dormers and roof windows: flatter, tiles do not keep the rain out; steeper is a wall (styles.md §2.7
-/// has mansards of up to 80 degrees).
+/// Roofs that take dormers and roof windows: flatter, tiles do not keep the rain out; steeper is a wall
+/// (docs/style_measures.md §2.7 has mansards of up to 80 degrees).
 inline constexpr double kFlattestSlope = 15, kSteepestSlope = 80;  ///< degrees
 
 /// The distances that one element keeps, all in metres and in the plane of the roof.
@@ -58,7 +58,7 @@ bool fits(const RoofSlope& plane, std::span<const model::Point2> outline, const 
 bool is_level_eaves(const RoofSlope& plane, const SlopeBorder& border, double up);
 
 /// What is wanted on a slope.
-struct LayoutWish {
+struct LayoutRequest {
   std::vector<model::Point2>
       outline;                 ///< convex, counter-clockwise, in the plane, about the middle of its lower edge: (0, 0)
   double up = kEavesDistance;  ///< m up the slope to the lower edge
@@ -76,10 +76,10 @@ struct Layout {
 /// Puts as many of the wanted elements on a slope as fit, evenly: with axes on every first, second ... one (where the
 /// count falls short, on what leaves the most), else in equal fields, moved only where a border asks for it. Depends on
 /// nothing else.
-Layout lay_out(const RoofSlope& plane, const LayoutWish& wish, const ElementDistances& distances = {});
+Layout lay_out(const RoofSlope& plane, const LayoutRequest& wanted_layout, const ElementDistances& distances = {});
 
 /// Stretches along a slope where the middle of one element may stand, rising; a stretch may be a point.
-std::vector<std::pair<double, double>> free_stretches(const RoofSlope& plane, const LayoutWish& wish,
+std::vector<std::pair<double, double>> free_intervals(const RoofSlope& plane, const LayoutRequest& wanted_layout,
                                                       const ElementDistances& distances = {});
 
 }  // namespace blockrand::roofs

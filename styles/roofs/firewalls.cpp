@@ -28,13 +28,13 @@ double height_at(const HeightLine& line, double along) {
   return line.back().height;
 }
 
-struct Stretch {
+struct HigherInterval {
   std::uint32_t edge = 0;
   double start = 0, end = 0;  ///< m along the edge
 };
 
 /// Where the neighbour is lower.
-std::vector<Stretch> open_stretches(std::uint32_t edge, const HeightLine& own, const HeightLine& neighbour,
+std::vector<HigherInterval> open_intervals(std::uint32_t edge, const HeightLine& own, const HeightLine& neighbour,
                                     double length, const FirewallOptions& options) {
   if (neighbour.empty()) return {{edge, 0, length}};
   std::vector<double> places{0, length};
@@ -44,7 +44,7 @@ std::vector<Stretch> open_stretches(std::uint32_t edge, const HeightLine& own, c
   std::sort(places.begin(), places.end());
   constexpr double kSamePlace = 1e-6;  // m
   const auto over = [&](double s) { return height_at(own, s) - options.lower_by - height_at(neighbour, s); };
-  std::vector<Stretch> out;
+  std::vector<HigherInterval> out;
   const auto add = [&](double from, double to) {
     if (to - from < kSamePlace) return;
     if (!out.empty() && from - out.back().end < kSamePlace)
@@ -61,7 +61,7 @@ std::vector<Stretch> open_stretches(std::uint32_t edge, const HeightLine& own, c
     const double crossing = at_a * at_b < 0 ? a + (b - a) * at_a / (at_a - at_b) : 0;
     add(at_a > 0 ? a : crossing, at_b > 0 ? b : crossing);
   }
-  std::erase_if(out, [&](const Stretch& s) { return s.end - s.start < options.least_length; });
+  std::erase_if(out, [&](const HigherInterval& s) { return s.end - s.start < options.least_length; });
   return out;
 }
 
@@ -79,16 +79,16 @@ BuiltFirewalls firewalls(const model::Polygon& plan, const Roof& roof, std::span
       tops[s.edge].push_back({own[s.edge].back().along, p.xy()});
     }
   }
-  std::vector<Stretch> stretches;
+  std::vector<HigherInterval> stretches;
   for (std::uint32_t i = 0; i < edges.size() && i < sides.size(); ++i)
     if (sides[i].party_wall && !own[i].empty())
-      for (const Stretch& s : open_stretches(i, own[i], sides[i].neighbour, edges[i].length, options))
+      for (const HigherInterval& s : open_intervals(i, own[i], sides[i].neighbour, edges[i].length, options))
         stretches.push_back(s);
 
   BuiltFirewalls out;
   std::set<std::uint32_t> asked, built;
   std::vector<std::vector<Point2>> strips;
-  for (const Stretch& s : stretches) {
+  for (const HigherInterval& s : stretches) {
     asked.insert(s.edge);
     const PlanEdge& e = edges[s.edge];
     const Point2 in = e.inward();
@@ -98,7 +98,7 @@ BuiltFirewalls firewalls(const model::Polygon& plan, const Roof& roof, std::span
     };
     // At inner corners both walls go on to where their inner faces meet.
     const auto reaches = [&](std::uint32_t edge, bool its_end) {
-      return std::any_of(stretches.begin(), stretches.end(), [&](const Stretch& o) {
+      return std::any_of(stretches.begin(), stretches.end(), [&](const HigherInterval& o) {
         return o.edge == edge && (its_end ? o.end > edges[edge].length - 1e-6 : o.start < 1e-6);
       });
     };

@@ -12,7 +12,7 @@ namespace blockrand::roofs {
 
 /// Measures of firewalls.
 struct FirewallOptions {
-  double height = 0.30;  ///< m, upright, above the roof. Bavaria 1910 (styles section 2.2, S15).
+  double height = 0.30;  ///< m, upright, above the roof. Bavaria 1910 (docs/style_measures.md 2.1, S15).
   double thickness =
       0.25;  ///< m, inwards from the party wall. At least 0.25 m, the same law; a brick length of 0.24 to 0.25.
   double lower_by =

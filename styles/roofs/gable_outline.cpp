@@ -84,7 +84,7 @@ std::optional<std::vector<double>> flank(std::span<const OutlinePoint> silhouett
   return ends;
 }
 
-/// Point of a quadratic Bezier curve; t in [0, 1] (Holtmeier section 4.4).
+/// Point of a quadratic Bezier curve; t in [0, 1] (docs/sources.md, Holtmeier 4.4).
 OutlinePoint bezier(OutlinePoint c0, OutlinePoint c1, OutlinePoint c2, double t) {
   const auto at = [t](double a, double b, double c) { return (a - 2 * b + c) * t * t + (-2 * a + 2 * b) * t + a; };
   return {at(c0.along, c1.along, c2.along), at(c0.height, c1.height, c2.height)};

@@ -1,4 +1,5 @@
-// Ornamental gables: walls of the front that stand before the roof and hide it. Holtmeier sections 4.4, 4.5 and 5.2.
+// Ornamental gables: walls of the front that stand before the roof and hide it. docs/sources.md, Holtmeier 4.4, 4.5 and
+// 5.2.
 #pragma once
 
 #include <cstdint>
@@ -28,12 +29,12 @@ constexpr std::string_view name(GableForm form) {
 /// Measures of a gable.
 struct GableOptions {
   GableForm form = GableForm::stepped;
-  int steps = 4;                ///< 3 to 5, counted as levels with the middle one (Holtmeier section 5.2).
-  int curves = 1;               ///< 1 or 2 on each flank (Holtmeier section 5.2).
-  int segments = 9;             ///< pieces of each Bezier curve (Holtmeier section 4.4).
-  double overtop = 0.30;        ///< m above what it hides, everywhere (Holtmeier HD9).
+  int steps = 4;                ///< 3 to 5, counted as levels with the middle one (docs/sources.md, Holtmeier 5.2).
+  int curves = 1;               ///< 1 or 2 on each flank (docs/sources.md, Holtmeier 5.2).
+  int segments = 9;             ///< pieces of each Bezier curve (docs/sources.md, Holtmeier 4.4).
+  double overtop = 0.30;        ///< m above what it hides, everywhere (docs/sources.md, Holtmeier HD9).
   double thickness = 0.30;      ///< m, inwards from the wall's face: one and a quarter bricks, as firewalls [P].
-  double attic_height = 0.90;   ///< m above the eaves: 0.6 to 1.4 (styles section 2.5, S24).
+  double attic_height = 0.90;   ///< m above the eaves: 0.6 to 1.4 (docs/style_measures.md 2.5, S24).
   double pediment = 0;          ///< share of the width that a triangle on the attic takes; 0 for none
   double pediment_rise = 0.20;  ///< of the triangle, height over width: low, 22 degrees [P].
   double least_tread = 0.10;    ///< m. Steps narrower than that are none.
@@ -84,10 +85,10 @@ BuiltGable ornamental_gable(const model::Polygon& plan, const Roof& roof, std::u
 // ---- which gable
 
 /// May such a gable stand before such a roof? Stepped and curved ones before gables, half-hips and mansards, which they
-/// hide; attics before hips and flat roofs alone (Holtmeier section 5.2).
+/// hide; attics before hips and flat roofs alone (docs/sources.md, Holtmeier 5.2).
 bool may_stand_before(GableForm form, model::RoofShape roof);
 
-/// How often what is drawn (Holtmeier section 5.5, [P] there).
+/// How often what is drawn (docs/sources.md, Holtmeier 5.5, [P] there).
 struct GableWeights {
   double attic = 0.2;                                       ///< share of all houses with a gable to the street
   double stepped = 0.5, curved = 0.5;                       ///< of the others

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/model/vector.h"
 #include "styles/roofs/roof.h"

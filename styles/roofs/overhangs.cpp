@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 #include "styles/roofs/roof_outline.h"
 

@@ -11,10 +11,12 @@
 
 namespace blockrand::roofs {
 
-/// Measures of eaves and verges. A constant offset of the wall, never across party walls (seed003-part2 section 8.2).
+/// Measures of eaves and verges. A constant offset of the wall, never across party walls (docs/sources.md, Gunia 8.2).
 struct OverhangOptions {
-  double eaves = 0.40;      ///< m, horizontal. Eaves boards of houses after 1900: 0.3 to 0.6 (styles section 2.6, [K]).
-  double verge = 0.20;      ///< m, horizontal. Slight at the sides (Holtmeier section 5.3); half of the eaves [P].
+  double eaves = 0.40;      ///< m, horizontal. Eaves boards of houses after 1900: 0.3 to 0.6
+                            ///< (docs/style_measures.md 2.5, [K]).
+  double verge = 0.20;      ///< m, horizontal. Slight at the sides (docs/sources.md, Holtmeier 5.3); half of the eaves
+                            ///< [P].
   double thickness = 0.18;  ///< m, upright: the height of the fascia board, rafters and tiles above it [P].
   double most_drop = 0.45;  ///< m. Steep slopes (mansards) go out no farther than they come down by this [P].
   double least = 0.05;      ///< m. What is shorter than that is none: a row of tiles.

@@ -9,7 +9,7 @@
 
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/planar_faces.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/roof_surfaces.h"
 #include "pipeline/geometry/weighted_skeleton.h"
 #include "styles/roofs/cut_cells.h"

@@ -11,15 +11,16 @@
 
 namespace blockrand::roofs {
 
-/// Measures of parapets: a wall of height h and width b on all edges without a connection (Finkenzeller section 3.4.1).
+/// Measures of parapets: a wall of height h and width b on all edges without a connection
+/// (docs/sources.md, Finkenzeller 3.4.1).
 struct ParapetOptions {
-  double height = 0.50;  ///< m above the roof. 0.4 to 0.6 on houses of today (styles section 2.3, [K]).
-  double width = 0.30;   ///< m, inwards from the wall's face: a wall with its insulation [P].
-  double party_wall_height =
-      0;  ///< m, on party walls; 0 leaves them open: the edge where a neighbour attaches (Finkenzeller 3.4.1).
-  double least_length = 0.10;  ///< m. Shorter stretches between open ends have none.
-  bool on_gables = false;      ///< also where a deck ends in a gable: there the verge runs through [P]
-  bool around_decks = false;   ///< also where a deck's edge is the break of a sloped roof, not a wall
+  double height = 0.50;          ///< m above the roof. 0.4 to 0.6 on houses of today (docs/style_measures.md 2.3, [K]).
+  double width = 0.30;           ///< m, inwards from the wall's face: a wall with its insulation [P].
+  double party_wall_height = 0;  ///< m, on party walls; 0 leaves them open: the edge where a neighbour attaches
+                                 ///< (docs/sources.md, Finkenzeller 3.4.1).
+  double least_length = 0.10;    ///< m. Shorter stretches between open ends have none.
+  bool on_gables = false;        ///< also where a deck ends in a gable: there the verge runs through [P]
+  bool around_decks = false;     ///< also where a deck's edge is the break of a sloped roof, not a wall
 };
 
 /// Parapets on all level surfaces of a roof, along their borders on the walls: a closed ring body (with a hole) where

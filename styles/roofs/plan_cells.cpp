@@ -136,7 +136,7 @@ class Assembly {
           sides_[{at(c, l, i).place, at(c, l, i + 1).place}] = {c, l, i};
   }
 
-  CellBodies take(const BodyLooks& looks) {
+  CellBodies take(const BodySurfaceKinds& looks) {
     std::vector<std::uint32_t> parent(cells_.size());
     std::iota(parent.begin(), parent.end(), 0u);
     for (std::uint32_t c = 0; c < cells_.size(); ++c)
@@ -188,7 +188,7 @@ class Assembly {
   }
 
   /// The faces of the cells as one body.
-  std::vector<RawFace> faces(const std::vector<std::uint32_t>& members, const BodyLooks& looks) const {
+  std::vector<RawFace> faces(const std::vector<std::uint32_t>& members, const BodySurfaceKinds& looks) const {
     std::map<Grid2, std::set<std::int64_t>> heights;
     for (const std::uint32_t c : members)
       for (const auto& loop : cells_[c])
@@ -368,7 +368,7 @@ class Assembly {
     return solid;
   }
 
-  std::optional<model::Solid> body(const std::vector<std::uint32_t>& members, const BodyLooks& looks) const {
+  std::optional<model::Solid> body(const std::vector<std::uint32_t>& members, const BodySurfaceKinds& looks) const {
     for (const std::uint32_t c : members)
       if (cells_[c].empty()) return std::nullopt;
     const auto plain = faces(members, looks);
@@ -382,7 +382,7 @@ class Assembly {
 
 }  // namespace
 
-CellBodies bodies_of_cells(std::span<const PlanCell> cells, const BodyLooks& looks) {
+CellBodies bodies_of_cells(std::span<const PlanCell> cells, const BodySurfaceKinds& looks) {
   return Assembly(cells).take(looks);
 }
 

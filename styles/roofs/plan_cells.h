@@ -31,7 +31,7 @@ struct BuiltElements {
 };
 
 /// Kinds of a body's faces.
-struct BodyLooks {
+struct BodySurfaceKinds {
   model::SurfaceKind top = model::SurfaceKind::roof;
   model::SurfaceKind side = model::SurfaceKind::wall;
   model::SurfaceKind under = model::SurfaceKind::closure;
@@ -48,6 +48,6 @@ struct CellBodies {
   std::vector<model::Solid> solids;
   std::vector<std::uint32_t> lost;  ///< cells of which no valid body could be made, ascending
 };
-CellBodies bodies_of_cells(std::span<const PlanCell> cells, const BodyLooks& looks);
+CellBodies bodies_of_cells(std::span<const PlanCell> cells, const BodySurfaceKinds& looks);
 
 }  // namespace blockrand::roofs

@@ -14,7 +14,7 @@
 #include <limits>
 
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "styles/roofs/shape_tables.h"
 
 namespace blockrand::roofs {

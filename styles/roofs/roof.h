@@ -115,7 +115,7 @@ struct MainSlope {
 MainSlope main_slope(const model::Polygon& plan, const RoofRequest& request, bool steep);
 
 /// m. Height of a mansard over `run` m with an attic storey of `attic` m behind its steep slopes, at the usual pitches of
-/// 68 and 26 degrees (styles.md 2.7).
+/// 68 and 26 degrees (docs/style_measures.md 2.7).
 double mansard_height(double run, double attic);
 inline constexpr double kMansardSteep = 2.4750868534162964;   ///< tangent of 68 degrees
 inline constexpr double kMansardGentle = 0.48773258856586144; ///< tangent of 26 degrees

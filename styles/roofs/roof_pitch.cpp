@@ -3,7 +3,7 @@
 #include <cmath>
 #include <variant>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "styles/roofs/eaves_lines.h"
 #include "styles/roofs/roof.h"
 #include "styles/roofs/roof_sides.h"

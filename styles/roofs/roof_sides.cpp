@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 #include "styles/roofs/eaves_lines.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "styles/roofs/roof.h"
 
 namespace blockrand::roofs {

@@ -29,7 +29,7 @@ std::vector<Point2> roof_window_outline(const RoofWindowParameters& p) {
 }
 
 std::optional<model::RoofInstallation> roof_window(const RoofSlope& plane, const RoofWindowParameters& p, Point2 place,
-                                                   const RoofWindowLooks& looks, const ElementDistances& distances) {
+                                                   const RoofWindowMaterials& materials, const ElementDistances& distances) {
   auto outline = roof_window_outline(p);
   for (Point2& q : outline) q = {q.x + place.x, q.y + place.y};
   if (outline.empty() || !takes_elements(plane) || !fits(plane, outline, distances)) return std::nullopt;
@@ -53,7 +53,7 @@ std::optional<model::RoofInstallation> roof_window(const RoofSlope& plane, const
     return turned ? std::vector<Point3>{corners[3], corners[2], corners[1], corners[0]}
                   : std::vector<Point3>(corners.begin(), corners.end());
   };
-  model::Face frame_face = looks.frame, pane_face = looks.pane;
+  model::Face frame_face = materials.frame, pane_face = materials.pane;
   frame_face.kind = pane_face.kind = model::SurfaceKind::roof;
   frame_face.edge = pane_face.edge = -1;
   model::Face under = frame_face;

@@ -11,7 +11,8 @@ namespace blockrand::roofs {
 
 /// Measures of a roof window: a frame that stands out of the tiles, with a pane set into it.
 struct RoofWindowParameters {
-  double width = 0.78;   ///< m, over the frame. 0.78 x 1.18 is the usual one of loft conversions (styles.md §2.7).
+  double width = 0.78;   ///< m, over the frame. 0.78 x 1.18 is the usual one of loft conversions
+                         ///< (docs/style_measures.md §2.7).
   double height = 1.18;  ///< m up the slope, over the frame
   double raised = 0.06;  ///< m from the plane of the roof to the face of the frame: over battens and tiles (own choice)
   double frame = 0.08;   ///< m that the frame shows around the pane (own choice)
@@ -19,7 +20,7 @@ struct RoofWindowParameters {
 };
 
 /// Looks of its faces: material and colour; kinds are set.
-struct RoofWindowLooks {
+struct RoofWindowMaterials {
   model::Face frame, pane;
 };
 
@@ -33,7 +34,7 @@ std::vector<model::Point2> roof_window_outline(const RoofWindowParameters& param
 /// the lower edge of the frame Empty when the plane takes no elements (takes_elements) or it does not fit there with
 /// its distances.
 std::optional<model::RoofInstallation> roof_window(const RoofSlope& plane, const RoofWindowParameters& parameters,
-                                                   model::Point2 place, const RoofWindowLooks& looks = {},
+                                                   model::Point2 place, const RoofWindowMaterials& materials = {},
                                                    const ElementDistances& distances = {});
 
 }  // namespace blockrand::roofs

@@ -19,7 +19,8 @@ inline constexpr double kDeckRun = 0.6;         ///< of the largest run: the bor
 inline constexpr double kLeastBreak = 0.3, kMostBreak = 0.85;        ///< of H: where the break may lie
 inline constexpr double kLeastBreakRun = 0.1, kMostBreakRun = 0.45;  ///< of the largest run
 
-// The Berlin roof: tangents, styles.md 2.7 (street 45-60-65, deck 4-8-15; knee wall 0.5 to 1.2 m of 3 to 4 m).
+// The Berlin roof: tangents, docs/style_measures.md 2.7 (street 45-60-65, deck 4-8-15; knee wall 0.5 to 1.2 m of 3 to 4
+// m).
 inline constexpr double kBerlinSteep = 1.7320508075688772;   ///< 60 degrees
 inline constexpr double kBerlinGentle = 0.14054083470239145; ///< 8 degrees
 inline constexpr double kKneeWall = 0.4;  ///< of the height the roof has without it: about 0.7 m at a depth of 13 m

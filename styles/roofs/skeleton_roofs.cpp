@@ -7,7 +7,7 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/roof_surfaces.h"
 #include "pipeline/geometry/straight_skeleton.h"
 #include "pipeline/geometry/weighted_skeleton.h"
@@ -34,7 +34,8 @@ using model::WingEnds;
 // Shares of the roof's height and run; docs/roofs.md has them.
 constexpr double kGableShare = 0.6;        ///< of H: where a half-hip begins, a gablet as well
 constexpr int kVaultSteps = 5;             ///< pitches of a round roof
-/// Of the other slopes' rise: a wing of half depth under a roof of 35 degrees leans at 12 (styles.md 2.7: 5 to 20).
+/// Of the other slopes' rise: a wing of half depth under a roof of 35 degrees leans at 12
+/// (docs/style_measures.md 2.7: 5 to 20).
 constexpr double kLeanSlope = 0.3;
 
 EdgeProfile upright() { return {kUpright, {}}; }

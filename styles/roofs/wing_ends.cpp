@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/roof_surfaces.h"
 #include "pipeline/geometry/weighted_skeleton.h"
 

@@ -12,7 +12,7 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/masses/envelope.h"
 #include "pipeline/geometry/check_solid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/straight_skeleton.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"

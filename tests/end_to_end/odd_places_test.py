@@ -114,7 +114,7 @@ class OddShapes(OddExtracts):
         for shape in ('flat',):
             with self.subTest(shape):
                 source = write_xml(self.path('large.osm'), ring(1, 1, points, {'building': 'yes', 'roof:shape': shape}))
-                # A skeleton of n points must not need n x n memory (DESIGN, law 5). The limit only protects the machine
+                # A skeleton of n points must not need n x n memory (ARCHITECTURE.md, law 5). The limit only protects the machine
                 # that runs this test; a build that meets it and falls back would depend on the machine.
                 out = self.build(source, 'large', '--force', '--jobs', '1', timeout=300,
                                  preexec=lambda: resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30)))

@@ -1,6 +1,6 @@
 """Surveyed buildings as OSM: the input from which a build should come out like the survey, and ways to spoil it.
 
-After references/peers.md 4.6: ground surfaces become ways and multipolygons, height = ridge - ground, roof:height =
+After docs/sources.md, Other programs 4.6: ground surfaces become ways and multipolygons, height = ridge - ground, roof:height =
 ridge - eaves, levels from the eaves, roof:shape from the form of the roof. Outlines and the directions of roofs are read
 here, from the files themselves; heights, forms and volumes come from `blockrand compare REFERENCE REFERENCE`.
 """

@@ -1,5 +1,5 @@
 """One tile alone, in a process of its own that reads only the tile and what lies within its halo, is byte for byte the
-tile of the whole build; and the records of each building are the same at every tile level (DESIGN law 4)."""
+tile of the whole build; and the records of each building are the same at every tile level (ARCHITECTURE.md, law 4)."""
 import gzip
 import json
 import os

@@ -7,7 +7,7 @@
 
 #include "pipeline/base/random.h"
 #include "pipeline/geometry/grid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::repair {

@@ -30,7 +30,7 @@ constexpr double kMostTurn = 0.5;
 constexpr double kTurnSigmas = 3.5;
 /// Noise where nothing is known, m, per coordinate of the difference of two copies; and how many ends it weighs.
 constexpr double kPriorNoise = 0.10;
-constexpr double kRowPriorWeight = 1, kBuildingPriorWeight = 2;
+constexpr double kTerracePriorWeight = 1, kBuildingPriorWeight = 2;
 
 /// A pair of edges, before the noise of the row is known.
 struct Candidate {
@@ -52,7 +52,7 @@ Unit unit(Point2 a, Point2 b) {
 
 class Search {
  public:
-  Search(const RowVertices& vertices, const Row& row, const RepairOptions& options)
+  Search(const TerraceVertices& vertices, const TerraceRow& row, const RepairOptions& options)
       : vertices_(vertices), row_(row), options_(options) {
     units_.reserve(vertices.size());
     for (std::uint32_t e = 0; e < vertices.size(); ++e)
@@ -158,7 +158,7 @@ class Search {
         }
       }
     }
-    const double of_row = row.with_prior(kPriorNoise * kPriorNoise, kRowPriorWeight);
+    const double of_row = row.with_prior(kPriorNoise * kPriorNoise, kTerracePriorWeight);
     out_.noise.reserve(buildings.size());
     for (const Sum& s : buildings) out_.noise.push_back(std::sqrt(s.with_prior(of_row, kBuildingPriorWeight)));
   }
@@ -176,7 +176,7 @@ class Search {
     others.squares = std::max(0.0, others.squares) + (w.high.gap - w.low.gap) * (w.high.gap - w.low.gap) / 2;
     others.count += 1;
     const double noise =
-        std::min(kMostNoise, std::sqrt(others.with_prior(kPriorNoise * kPriorNoise, kRowPriorWeight)));
+        std::min(kMostNoise, std::sqrt(others.with_prior(kPriorNoise * kPriorNoise, kTerracePriorWeight)));
     return std::min(options_.snap_distance, kNarrowestAlley - kAlleySigmas * noise * std::sqrt(c.mean_weight));
   }
 
@@ -217,8 +217,8 @@ class Search {
     }
   }
 
-  const RowVertices& vertices_;
-  const Row& row_;
+  const TerraceVertices& vertices_;
+  const TerraceRow& row_;
   const RepairOptions& options_;
   std::vector<Unit> units_;
   std::vector<Candidate> candidates_;
@@ -228,7 +228,7 @@ class Search {
 
 }  // namespace
 
-Contacts find_contacts(const RowVertices& vertices, const Row& row, const RepairOptions& options) {
+Contacts find_contacts(const TerraceVertices& vertices, const TerraceRow& row, const RepairOptions& options) {
   return Search(vertices, row, options).run();
 }
 

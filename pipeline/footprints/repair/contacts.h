@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pipeline/footprints/repair/options.h"
-#include "pipeline/footprints/repair/row_vertices.h"
+#include "pipeline/footprints/repair/terrace_vertices.h"
 
 namespace blockrand::repair {
 
@@ -39,6 +39,6 @@ struct Contacts {
 /// common, lie no farther apart than `snap_distance` in the mean and `snap_reach` at the ends (less where the noise of
 /// the row would let alleys of 0.8 m close), and differ in direction by no more than `snap_angle` and the noise of their
 /// ends. Edges that run the same way qualify where the buildings overlap anyhow. Cost O(n log n) in edges.
-Contacts find_contacts(const RowVertices& vertices, const Row& row, const RepairOptions& options);
+Contacts find_contacts(const TerraceVertices& vertices, const TerraceRow& row, const RepairOptions& options);
 
 }  // namespace blockrand::repair

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "pipeline/base/portable_math.h"
-#include "pipeline/footprints/repair/frames.h"
-#include "pipeline/footprints/repair/row_noise.h"
+#include "pipeline/footprints/repair/ring_frames.h"
+#include "pipeline/footprints/repair/terrace_noise.h"
 
 namespace blockrand::repair {
 
@@ -37,12 +37,12 @@ constexpr double kBayCheek = 4;                  // m. Longer ones are wings
 
 class Reader {
  public:
-  explicit Reader(RowLines row) : lines_of_(row.buildings.size()) {
+  explicit Reader(TerraceLines row) : lines_of_(row.buildings.size()) {
     out_.row = std::move(row);
     out_.main_frame.assign(lines_of_.size(), kNoFrame);
   }
 
-  RowDirections read() {
+  TerraceDirections read() {
     for (std::uint32_t l = 0; l < lines().size(); ++l)
       if (!lines()[l].free && lines()[l].length > 0)
         for (const std::uint32_t b : lines()[l].buildings) lines_of_[b].push_back({l, 0});
@@ -113,9 +113,9 @@ class Reader {
   /// Frames and noise tell each other: found in turn, once from what a careful mapper does and once from what a
   /// careless one does. The likelier end counts.
   void estimate_noise() {
-    RowNoise best;
+    TerraceNoise best;
     for (const double start : {kLeastNoise, kUsualNoise, kLargestNoise / 2}) {
-      RowNoise told = noise_from(start);
+      TerraceNoise told = noise_from(start);
       if (best.share.empty() || told.likelihood > best.likelihood) best = std::move(told);
     }
     told_ = std::move(best);
@@ -143,7 +143,7 @@ class Reader {
         for (const Point2 axis : axes[b]) least = std::min(least, std::fabs(turn_off(axis, line.along)));
         if (line.length >= kTellingLength) off.push_back(deviation(line, least, b));
       }
-    const RowNoise all = fit_noise(off, lines_of_.size(), frames, told_.noise);
+    const TerraceNoise all = fit_noise(off, lines_of_.size(), frames, told_.noise);
     told_.noise = std::max(told_.noise, all.noise);
     told_.share = all.share;
     out_.noise = told_.noise;
@@ -160,9 +160,9 @@ class Reader {
     return z < most ? (1 - z / most) * (1 - z / most) : 0.0;
   }
 
-  RowNoise noise_from(double noise) {
+  TerraceNoise noise_from(double noise) {
     std::vector<Deviation> off;
-    RowNoise told;
+    TerraceNoise told;
     for (int round = 0; round < 2; ++round) {
       // Heavy tails: it is not known yet which walls belong to a frame.
       const double width = 2 * noise;
@@ -318,8 +318,8 @@ class Reader {
     for (const std::uint32_t l : cheeks) out_.row.lines[l].frame = kNoFrame;
   }
 
-  RowDirections out_;
-  RowNoise told_;
+  TerraceDirections out_;
+  TerraceNoise told_;
   std::vector<std::vector<Member>> lines_of_;                      // per building
   std::vector<Frame> frames_;                                      // by building; then of families, by building
   std::vector<Member> left_;                                       // lines of no building's frame
@@ -330,8 +330,8 @@ class Reader {
 
 }  // namespace
 
-RowDirections find_directions(const RowGraph& graph, std::span<const std::uint32_t> rings) {
-  return Reader(row_lines(graph, rings)).read();
+TerraceDirections find_directions(const TerraceGraph& graph, std::span<const std::uint32_t> rings) {
+  return Reader(terrace_lines(graph, rings)).read();
 }
 
 }  // namespace blockrand::repair

@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/footprints/repair/row.h"
-#include "pipeline/footprints/repair/row_lines.h"
+#include "pipeline/footprints/repair/terrace_row.h"
+#include "pipeline/footprints/repair/terrace_lines.h"
 
 namespace blockrand::repair {
 
-struct RowDirections {
-  RowLines row;
+struct TerraceDirections {
+  TerraceLines row;
   std::vector<model::Point2> frames;      ///< unit vectors, x > 0, y >= 0
   std::vector<std::uint32_t> main_frame;  ///< parallel to `row.buildings`; kNoFrame where one has none
   double noise = 0;                       ///< m, standard deviation of one footprint's corner in each coordinate
@@ -28,7 +28,7 @@ struct RowDirections {
 /// its sideways deviation is within kDeviations times the noise, it is not off by more than kLargestTurn, and, from 8 m
 /// of length on, not by 5 degrees less its own uncertainty. Curves and cheeks of bays get none. The result does not
 /// depend on the order of buildings or where rings start, and turns with the row.
-RowDirections find_directions(const RowGraph& graph, std::span<const std::uint32_t> rings);
+TerraceDirections find_directions(const TerraceGraph& graph, std::span<const std::uint32_t> rings);
 
 /// Unit vector of a frame's axis, or of the one across it.
 inline model::Point2 axis_of(model::Point2 frame, bool across) {

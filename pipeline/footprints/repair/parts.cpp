@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "pipeline/geometry/needles.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/slivers.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/footprints/repair/parts_bodies.h"
 #include "pipeline/footprints/repair/parts_follow.h"
@@ -138,7 +138,7 @@ void add_rest(Building& building, const std::vector<PartBody>& bodies, const Rep
   std::erase_if(rest.polygons,
                 [&](const Polygon& p) { return geometry::equivalent_width(p) < options.parts_free_width; });
   if (rest.polygons.empty()) return;
-  geometry::cut_needles(rest.polygons, options.spike_width);
+  geometry::cut_slivers(rest.polygons, options.spike_width);
   restore_nodes(rest.polygons, building.outline);
   restore_nodes(rest.polygons, covered);
   report.add(building.osm, IssueCode::parts_incomplete, square_metres(area_of(rest.polygons)));

@@ -3,8 +3,8 @@
 #include <string>
 #include <tuple>
 
-#include "pipeline/geometry/needles.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/slivers.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/footprints/repair/parts_bodies.h"
 #include "pipeline/footprints/repair/rings.h"
@@ -96,7 +96,7 @@ std::vector<Polygon> plan_without(std::span<const Polygon> plan, std::span<const
                                   const RepairOptions& options) {
   geometry::ValidPolygons rest = geometry::difference(plan, taken, kLeastPartArea, options.ring_clearance);
   std::erase_if(rest.polygons, [](const Polygon& p) { return geometry::equivalent_width(p) < kLeastPartWidth; });
-  geometry::cut_needles(rest.polygons, options.spike_width);
+  geometry::cut_slivers(rest.polygons, options.spike_width);
   restore_nodes(rest.polygons, plan);
   restore_nodes(rest.polygons, taken);
   return std::move(rest.polygons);

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "pipeline/footprints/repair/parts_bodies.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/model/vector.h"
 

@@ -8,7 +8,7 @@
 
 #include "pipeline/geometry/even_odd.h"
 #include "pipeline/geometry/footprint_overlap.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/footprints/repair/clean_ring.h"
 

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "pipeline/footprints/repair/contacts.h"
-#include "pipeline/footprints/repair/row_vertices.h"
+#include "pipeline/footprints/repair/terrace_vertices.h"
 #include "pipeline/footprints/repair/wall_lines.h"
 #include "pipeline/model/vector.h"
 
@@ -58,10 +58,10 @@ class Groups {
 
 class Builder {
  public:
-  Builder(const Row& row, const RepairOptions& options)
-      : row_(row), options_(options), vertices_(row_vertices(row, options.snap_reach)), groups_(vertices_.size()) {}
+  Builder(const TerraceRow& row, const RepairOptions& options)
+      : row_(row), options_(options), vertices_(terrace_vertices(row, options.snap_reach)), groups_(vertices_.size()) {}
 
-  RowGraph run() {
+  TerraceGraph run() {
     const bool share = options_.share_walls && row_.buildings.size() > 1;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> feet;
     if (share) {
@@ -237,7 +237,7 @@ class Builder {
     const std::vector<Foot> feet = find_feet(pairs);
     auto foot = feet.begin();
     for (const auto& r : vertices_.rings) {
-      RowRing ring{r.building, r.polygon, r.ring, {}, {}};
+      TerraceRing ring{r.building, r.polygon, r.ring, {}, {}};
       for (std::uint32_t i = 0; i < r.count; ++i) {
         ring.corners.push_back(corner_of_[r.first + i]);
         ring.wall.push_back(i);
@@ -250,18 +250,18 @@ class Builder {
     }
   }
 
-  const Row& row_;
+  const TerraceRow& row_;
   const RepairOptions& options_;
-  RowVertices vertices_;
+  TerraceVertices vertices_;
   Groups groups_;
   Contacts contacts_;
   std::vector<std::uint32_t> left_, right_;
   std::vector<std::uint32_t> corner_of_;  ///< by vertex
-  RowGraph graph_;
+  TerraceGraph graph_;
 };
 
 }  // namespace
 
-RowGraph build_row_graph(const Row& row, const RepairOptions& options) { return Builder(row, options).run(); }
+TerraceGraph build_terrace_graph(const TerraceRow& row, const RepairOptions& options) { return Builder(row, options).run(); }
 
 }  // namespace blockrand::repair

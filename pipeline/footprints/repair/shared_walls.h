@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pipeline/footprints/repair/options.h"
-#include "pipeline/footprints/repair/row.h"
+#include "pipeline/footprints/repair/terrace_row.h"
 
 namespace blockrand::repair {
 
@@ -18,6 +18,6 @@ namespace blockrand::repair {
 ///
 /// Requires buildings by id with strictly simple polygons. The result does not depend on where a ring starts.
 /// Cost O(n log n) in edges.
-RowGraph build_row_graph(const Row& row, const RepairOptions& options);
+TerraceGraph build_terrace_graph(const TerraceRow& row, const RepairOptions& options);
 
 }  // namespace blockrand::repair

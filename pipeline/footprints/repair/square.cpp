@@ -7,7 +7,7 @@
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/footprints/repair/directions.h"
-#include "pipeline/footprints/repair/frames.h"
+#include "pipeline/footprints/repair/ring_frames.h"
 #include "pipeline/footprints/repair/square_system.h"
 #include "pipeline/model/vector.h"
 
@@ -45,7 +45,7 @@ struct Incidence {
 /// One connected row.
 class Squaring {
  public:
-  Squaring(RowGraph& graph, std::span<const std::uint32_t> rings, const RepairOptions& options,
+  Squaring(TerraceGraph& graph, std::span<const std::uint32_t> rings, const RepairOptions& options,
            std::vector<std::uint32_t>& local)
       : graph_(graph), options_(options), local_(local), told_(find_directions(graph, rings)) {
     for (const std::uint32_t r : rings)
@@ -377,10 +377,10 @@ class Squaring {
     return any && (all ? !lines.empty() : true);
   }
 
-  RowGraph& graph_;
+  TerraceGraph& graph_;
   const RepairOptions& options_;
   std::vector<std::uint32_t>& local_;  // per corner of the graph: index into corners_
-  RowDirections told_;                 // lines' corners are indices into corners_
+  TerraceDirections told_;                 // lines' corners are indices into corners_
   std::vector<std::uint32_t> corners_;
   Point2 origin_;
   std::vector<Point2> start_, evidence_, position_;  // m, relative to origin_
@@ -397,7 +397,7 @@ class Squaring {
 
 }  // namespace
 
-void square_row(RowGraph& graph, const Row& row, const RepairOptions& options, std::vector<double>& direction) {
+void square_terrace_row(TerraceGraph& graph, const TerraceRow& row, const RepairOptions& options, std::vector<double>& direction) {
   direction.assign(row.buildings.size(), -1);
   std::vector<std::uint32_t> local(graph.corners.size(), 0);
   for (const auto& rings : connected_rings(graph, row.buildings.size())) {

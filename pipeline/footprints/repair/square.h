@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pipeline/footprints/repair/options.h"
-#include "pipeline/footprints/repair/row.h"
+#include "pipeline/footprints/repair/terrace_row.h"
 
 namespace blockrand::repair {
 
@@ -24,6 +24,6 @@ namespace blockrand::repair {
 ///
 /// `direction`, one per building of the row: degrees [0, 90) clockwise from north of its main walls; -1 where no wall
 /// was given a direction.
-void square_row(RowGraph& graph, const Row& row, const RepairOptions& options, std::vector<double>& direction);
+void square_terrace_row(TerraceGraph& graph, const TerraceRow& row, const RepairOptions& options, std::vector<double>& direction);
 
 }  // namespace blockrand::repair

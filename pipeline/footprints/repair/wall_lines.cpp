@@ -22,9 +22,9 @@ struct Wall {
   std::span<const std::uint32_t> between;
 };
 
-std::vector<Wall> walls_with_feet(const RowGraph& graph) {
+std::vector<Wall> walls_with_feet(const TerraceGraph& graph) {
   std::vector<Wall> out;
-  for (const RowRing& ring : graph.rings) {
+  for (const TerraceRing& ring : graph.rings) {
     const std::size_t n = ring.corners.size();
     for (std::size_t i = 0; i < n;) {
       std::size_t end = i + 1;
@@ -61,7 +61,7 @@ struct Pull {
   }
 };
 
-void fit_ends(const std::vector<Wall>& walls, RowGraph& graph, double bound) {
+void fit_ends(const std::vector<Wall>& walls, TerraceGraph& graph, double bound) {
   std::vector<Pull> pulls(graph.corners.size());
   for (const Wall& w : walls) {
     const Corner &a = graph.corners[w.from], &b = graph.corners[w.to];
@@ -98,7 +98,7 @@ void fit_ends(const std::vector<Wall>& walls, RowGraph& graph, double bound) {
 
 }  // namespace
 
-void straighten_walls(RowGraph& graph, double bound) {
+void straighten_walls(TerraceGraph& graph, double bound) {
   const std::vector<Wall> walls = walls_with_feet(graph);
   if (walls.empty()) return;
   fit_ends(walls, graph, bound);

@@ -11,9 +11,9 @@
 
 #include "pipeline/outputs/citygml/codes.h"
 #include "pipeline/outputs/citygml/geometry_text.h"
-#include "pipeline/outputs/materials.h"
+#include "pipeline/outputs/material_classes.h"
 #include "pipeline/outputs/placed_element.h"
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -80,7 +80,7 @@ bool is_year(std::string_view text) {
 }
 
 /// Which polygons have which material. Kept until all buildings are written: about 40 bytes a face.
-class Looks {
+class AppearanceText {
  public:
   void add(const model::Solid& solid, std::string_view id) {
     for (std::size_t f = 0; f < solid.faces.size(); ++f) {
@@ -100,7 +100,7 @@ class Looks {
   void add(const model::ColouredElement& element, std::string_view id) {
     const auto& faces = element.element->mesh.faces;
     for (std::size_t f = 0; f < faces.size(); ++f) {
-      const model::PartLook& look = element.looks[static_cast<std::size_t>(faces[f].part)];
+      const model::PartMaterial& look = element.materials[static_cast<std::size_t>(faces[f].part)];
       append_polygon_id(target(look.material, look.colour), id, f);
       close();
     }
@@ -152,7 +152,7 @@ class Looks {
 /// a time through the XML library costs several times as much.
 class BuildingText {
  public:
-  BuildingText(const model::Region& region, const CityGmlOptions& options, Looks& looks)
+  BuildingText(const model::Region& region, const CityGmlOptions& options, AppearanceText& looks)
       : region_(region), options_(options), tags_(region.extract), geometry_(out_), looks_(looks) {}
 
   /// The text of one cityObjectMember; valid until the next call.
@@ -498,7 +498,7 @@ class BuildingText {
   TagReader tags_;
   std::string out_;
   GeometryText geometry_;
-  Looks& looks_;
+  AppearanceText& looks_;
   std::vector<bool> written_;  ///< elements whose geometry stands in the file
 };
 
@@ -608,7 +608,7 @@ void write_citygml(const model::Region& region, const CityGmlOptions& options, c
   const auto write_raw = [&](std::string_view piece) {
     if (!state.error) xmlTextWriterWriteRawLen(writer, xml(piece.data()), static_cast<int>(piece.size()));
   };
-  Looks looks;
+  AppearanceText looks;
   BuildingText text(region, options, looks);
   for (const model::Building& building : region.buildings) {
     if (!is_written(building)) continue;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 namespace {

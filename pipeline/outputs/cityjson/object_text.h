@@ -9,8 +9,8 @@
 #include "pipeline/outputs/cityjson/cityjson_writer.h"
 #include "pipeline/outputs/cityjson/template_table.h"
 #include "pipeline/outputs/cityjson/vertex_table.h"
-#include "pipeline/outputs/materials.h"
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/material_classes.h"
+#include "pipeline/outputs/number_text.h"
 #include "pipeline/model/region.h"
 
 namespace blockrand::outputs {

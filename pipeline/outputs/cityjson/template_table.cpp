@@ -3,7 +3,7 @@
 #include <map>
 
 #include "pipeline/outputs/placed_element.h"
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -54,7 +54,7 @@ std::uint32_t TemplateTable::number(const model::ColouredElement& coloured, cons
     }
     while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
     if (ring.size() < 3) continue;  // narrower than the last decimal
-    const model::PartLook& look = coloured.looks[static_cast<std::size_t>(face.part)];
+    const model::PartMaterial& look = coloured.materials[static_cast<std::size_t>(face.part)];
     looks.push_back(materials_.number(MaterialNumbers::key(class_of.at(look.material), look.colour)));
     append_index(key, looks.back());
     for (const std::size_t v : ring) {

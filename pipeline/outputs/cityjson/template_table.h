@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "pipeline/outputs/materials.h"
+#include "pipeline/outputs/material_classes.h"
 #include "pipeline/model/region.h"
 
 namespace blockrand::outputs {

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <set>
 
-#include "pipeline/outputs/explain/detail.h"
+#include "pipeline/outputs/explain/detail_text.h"
 #include "pipeline/outputs/explain/json_text.h"
-#include "pipeline/outputs/explain/situation.h"
-#include "pipeline/outputs/explain/style.h"
-#include "pipeline/outputs/text.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/outputs/explain/situation_text.h"
+#include "pipeline/outputs/explain/style_text.h"
+#include "pipeline/outputs/number_text.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -42,14 +42,14 @@ class Writer {
   void line(const Building& building, Explanations& out) {
     text_ = &out.lines;
     json_ = JsonText(out.lines);
-    const Fate fate = options_.fate(building.mapped_index);
+    const FinalState final_state = options_.final_state(building.mapped_index);
     json_.open('{');
     json_.string("id", building.id());
     json_.string("tile", options_.tile);
-    json_.string("state", model::name(fate.state));
-    if (fate.state == ObjectState::reported) {
-      json_.string("code", model::info(fate.code).text);
-      json_.string("meaning", model::info(fate.code).meaning);
+    json_.string("state", model::name(final_state.state));
+    if (final_state.state == ObjectState::reported) {
+      json_.string("code", model::info(final_state.code).text);
+      json_.string("meaning", model::info(final_state.code).meaning);
     }
     int lod = -1;
     for (const BuildingPart& part : building.parts)
@@ -57,7 +57,7 @@ class Writer {
     if (lod >= 0) json_.number("lod", lod);
     identity(building);
     outline(building.mapped_index);
-    stages(building, fate);
+    stages(building, final_state);
     append_style(json_, building);
     attributes(building.attributes);
     bodies(building);
@@ -150,7 +150,7 @@ class Writer {
     return text;
   }
 
-  void stages(const Building& building, const Fate& fate) {
+  void stages(const Building& building, const FinalState& final_state) {
     json_.key("stages");
     json_.open('[');
     stage("read", read_text(building));
@@ -160,7 +160,7 @@ class Writer {
       stage("resolve", resolve_text(building));
       if (const std::string text = assign_text(building); !text.empty()) stage("assign", text);
     }
-    stage("build", build_text(building, fate));
+    stage("build", build_text(building, final_state));
     if (const std::string text = facade_text(building); !text.empty()) stage("facades", text);
     if (!building.parts.empty()) stage("check", check_text(building));
     json_.close(']');
@@ -230,7 +230,7 @@ class Writer {
   std::string context_text(const Building& building) {
     const bool looked_at = building.situation.position != model::BuildingPosition::unknown ||
                            std::any_of(building.edges.begin(), building.edges.end(),
-                                       [](const model::FacadeEdge& e) { return e.end > e.start; });
+                                       [](const model::WallSegment& e) { return e.end > e.start; });
     return looked_at ? situation_text(building, options_.courtyard) : "its surroundings were not looked at";
   }
 
@@ -272,9 +272,9 @@ class Writer {
     return text;
   }
 
-  std::string build_text(const Building& building, const Fate& fate) {
+  std::string build_text(const Building& building, const FinalState& final_state) {
     if (building.parts.empty())
-      return fmt::format("nothing was built: {}", model::info(fate.code).meaning);
+      return fmt::format("nothing was built: {}", model::info(final_state.code).meaning);
     if (building.parts.size() == 1) return body_text(building.parts.front());
     // Bodies that became the same are named together, in the order of the first of them.
     std::vector<std::pair<std::string, std::vector<std::string>>> groups;
@@ -368,10 +368,10 @@ class Writer {
           append_number(*text_, sourced.confidence);
           const model::Evidence& evidence = region_.evidence[sourced.evidence];
           if (!evidence.text.empty()) json_.string("why", evidence.text);
-          if (!evidence.lost.empty()) {
+          if (!evidence.other_candidates.empty()) {
             json_.key("lost");
             json_.open('[');
-            for (const model::Candidate& c : evidence.lost) {
+            for (const model::Candidate& c : evidence.other_candidates) {
               json_.open('{');
               json_.string("value", c.value);
               json_.string("source", model::name(c.source));

@@ -40,7 +40,7 @@
 namespace blockrand::outputs {
 
 /// What became of an object of the extract.
-struct Fate {
+struct FinalState {
   model::ObjectState state = model::ObjectState::pending;
   model::IssueCode code = model::IssueCode::none;
   model::OsmId related;
@@ -59,7 +59,7 @@ struct ExplainOptions {
   std::vector<std::string> files;  ///< of the tile, relative to the build
   int lod = 2;                     ///< asked for
   /// What becomes of object `mapped_index` of the extract.
-  std::function<Fate(std::uint32_t)> fate;
+  std::function<FinalState(std::uint32_t)> final_state;
   /// Rows about the tile's objects from before the tile was worked on, sorted by object.
   std::span<const model::ReportRow> earlier;
   /// Of BuildingSituation::courtyards; may be empty.

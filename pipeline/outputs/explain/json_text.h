@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "pipeline/outputs/geopackage/geopackage_rows.h"
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 #include "pipeline/layer_file/well_known_binary.h"
 #include "pipeline/model/building.h"
 

@@ -50,7 +50,7 @@ std::vector<Column> repair_columns() {
   };
 }
 
-std::vector<Column> facade_edge_columns() {
+std::vector<Column> wall_segment_columns() {
   return {
       {"id", kText, "", "Building and the OpenStreetMap nodes at both ends of the edge; .1, .2 for its further stretches"},
       {"building", kText, "", "Id of the building it belongs to"},

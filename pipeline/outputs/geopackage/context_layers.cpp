@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::outputs {
 

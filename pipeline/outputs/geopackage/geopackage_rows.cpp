@@ -5,11 +5,11 @@
 
 #include "pipeline/outputs/geopackage/cell_writer.h"
 #include "pipeline/outputs/geopackage/columns.h"
-#include "pipeline/outputs/geopackage/edge_rows.h"
+#include "pipeline/outputs/geopackage/wall_segment_rows.h"
 #include "pipeline/outputs/style_basis.h"
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 #include "pipeline/geometry/check_solid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -117,9 +117,9 @@ class Builder {
     }
     rows_.buildings.cells.reserve(buildings * building_width);
     rows_.parts.cells.reserve(parts * part_width);
-    static const std::size_t edge_width = facade_edge_columns().size();
+    static const std::size_t edge_width = wall_segment_columns().size();
     RowWriter building_row(rows_.buildings, building_width), part_row(rows_.parts, part_width),
-        edge_row(rows_.facade_edges, edge_width);
+        edge_row(rows_.wall_segments, edge_width);
     for (const model::Building& b : region.buildings) {
       if (!b.owned || b.parts.empty()) continue;
       write(building_row, b);

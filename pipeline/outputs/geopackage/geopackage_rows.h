@@ -11,11 +11,11 @@ using layer_file::CellTable;
 
 /// The rows of a tile.
 struct GeoPackageRows {
-  CellTable buildings, parts, facade_edges;
+  CellTable buildings, parts, wall_segments;
 };
 
 /// Prepares the rows of the owned buildings of `region` that have at least one part, in their order; of parts and of
-/// stretches of the outline in the order of their buildings. Pure: safe on any thread, the same region gives the same rows. This is the expensive half
+/// wall segments of the outline in the order of their buildings. Pure: safe on any thread, the same region gives the same rows. This is the expensive half
 /// of the work, GeoPackageWriter::add the cheap one.
 ///
 /// Parts have the ids of all other outputs: a part that has its building's id beside other parts becomes "<id>.1". The

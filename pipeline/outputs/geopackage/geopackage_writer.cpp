@@ -27,7 +27,7 @@ std::vector<layer_file::LayerSpec> layers(const GeoPackageOptions& options) {
   return {{"buildings", GeometryKind::multi_polygon, building_columns(),
            text("Buildings with every attribute, its source and its confidence")},
           {"parts", GeometryKind::polygon, part_columns(), text("Bodies of the buildings")},
-          {"facade_edges", GeometryKind::line, facade_edge_columns(),
+          {"facade_edges", GeometryKind::line, wall_segment_columns(),
            text("Outlines of the buildings, cut where what they face changes")},
           {"blocks", GeometryKind::polygon, block_columns(), text("Land between streets, railways and water")},
           {"courtyards", GeometryKind::polygon, courtyard_columns(), text("Open space that buildings surround")},
@@ -65,7 +65,7 @@ GeoPackageWriter::~GeoPackageWriter() = default;
 void GeoPackageWriter::add(const GeoPackageRows& rows) {
   impl_->file.put(kBuildings, rows.buildings);
   impl_->file.put(kParts, rows.parts);
-  impl_->file.put(kFacadeEdges, rows.facade_edges);
+  impl_->file.put(kFacadeEdges, rows.wall_segments);
 }
 
 void GeoPackageWriter::add_block(const BlockRow& block) { impl_->put_one(kBlocks, block); }

@@ -60,7 +60,7 @@ class GeoPackageWriter {
   GeoPackageWriter(const GeoPackageWriter&) = delete;
   GeoPackageWriter& operator=(const GeoPackageWriter&) = delete;
 
-  /// Appends a tile's buildings, bodies and stretches of outlines.
+  /// Appends a tile's buildings, bodies and wall segments of outlines.
   void add(const GeoPackageRows& rows);
   void add_reported(const GeoPackageReported& object);
   void add_tile(const GeoPackageTile& tile);

@@ -7,7 +7,7 @@
 
 #include "pipeline/outputs/geopackage/qml.h"
 #include "pipeline/model/building.h"
-#include "pipeline/model/edge_colours.h"
+#include "pipeline/model/wall_segment_colours.h"
 #include "pipeline/model/issue_codes.h"
 
 namespace blockrand::outputs {
@@ -140,15 +140,15 @@ std::string outlines() {
   return std::move(qml).done();
 }
 
-std::string edge_kinds() {
+std::string wall_segment_kinds() {
   Qml qml(Shape::line);
   qml.categories("kind");
-  for (int k = 1; k < model::kEdgeKindCount; ++k) {
-    const auto kind = static_cast<model::EdgeKind>(k);
+  for (int k = 1; k < model::kWallSegmentKindCount; ++k) {
+    const auto kind = static_cast<model::WallSegmentKind>(k);
     qml.category(model::name(kind), spaced(model::name(kind)) + ": " + std::string(model::meaning(kind)),
                  model::colour_of(kind));
   }
-  qml.category("", "not known", model::colour_of(model::EdgeKind::unknown));
+  qml.category("", "not known", model::colour_of(model::WallSegmentKind::unknown));
   return std::move(qml).done();
 }
 
@@ -266,7 +266,7 @@ std::vector<QgisStyle> qgis_styles() {
       {"buildings", "Era", "When it was built", eras(), false},
       {"parts", "Roofs", "The roof that was built", built_roof(), true},
       {"parts", "Level of detail", "Where less than asked was built", level_of_detail(), false},
-      {"facade_edges", "Kinds", "What each stretch of an outline faces", edge_kinds(), true},
+      {"facade_edges", "Kinds", "What each stretch of an outline faces", wall_segment_kinds(), true},
       {"blocks", "Floor area ratio", "Floor area by area of the block", floor_area_ratio(), true},
       {"blocks", "Closure", "Share of the street front that is built", shares("closure"), false},
       {"courtyards", "Closed and open", "Whether an open way leads out", closed_or_open(), true},

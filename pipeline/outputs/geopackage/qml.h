@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 #include "pipeline/model/colour.h"
 
 namespace blockrand::outputs {

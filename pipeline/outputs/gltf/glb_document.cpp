@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "pipeline/outputs/gltf/meshopt.h"
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 

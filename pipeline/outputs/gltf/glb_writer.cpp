@@ -12,9 +12,9 @@
 #include "pipeline/outputs/gltf/glb_document.h"
 #include "pipeline/outputs/gltf/linear_light.h"
 #include "pipeline/outputs/gltf/material.h"
-#include "pipeline/outputs/gltf/mesh.h"
+#include "pipeline/outputs/gltf/mesh_buffers.h"
 #include "pipeline/outputs/gltf/property_table.h"
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 namespace {

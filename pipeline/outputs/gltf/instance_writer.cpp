@@ -12,7 +12,7 @@
 #include "pipeline/outputs/gltf/glb_document.h"
 #include "pipeline/outputs/gltf/material.h"
 #include "pipeline/outputs/gltf/stored_element.h"
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -61,7 +61,7 @@ class InstanceWriter {
     const StoredElement& stored = elements_[form.stored];
     std::vector<int> key{form.stored};
     for (const StoredElement::Part& part : stored.parts) {
-      const model::PartLook& look = element.looks[static_cast<std::size_t>(part.part)];
+      const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part.part)];
       key.insert(key.end(), {look.material, look.colour.r, look.colour.g, look.colour.b});
     }
     const auto [place, added] = known_.try_emplace(std::move(key), meshes_.size());
@@ -93,8 +93,8 @@ class InstanceWriter {
   int add_mesh(const PlacedMesh& placed) {
     const StoredElement& stored = elements_[placed.stored];
     const model::ColouredElement& element = *placed.element;
-    const auto look = [&](std::size_t i) -> const model::PartLook& {
-      return element.looks[static_cast<std::size_t>(stored.parts[i].part)];
+    const auto look = [&](std::size_t i) -> const model::PartMaterial& {
+      return element.materials[static_cast<std::size_t>(stored.parts[i].part)];
     };
     std::string json = "{\"name\":";
     append_json(json, stored.stretched ? element.element->kind : element.element->name);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "pipeline/outputs/gltf/linear_light.h"
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 namespace {

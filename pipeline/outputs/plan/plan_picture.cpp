@@ -42,7 +42,7 @@ double street_width(context::LineClass kind) {
 }
 
 /// What buildings do not say: blocks, courtyards and streets in the box.
-picture::PlanTile surroundings(const context::ContextExtract& context, const picture::PlanBox& box) {
+picture::PlanTile vicinity(const context::ContextExtract& context, const picture::PlanBox& box) {
   picture::PlanTile tile;
   for (const context::NetworkLine& line : context.lines)
     if (context::is_street(line.kind) && !line.tunnel && !line.area && meets(box, line.points))
@@ -82,7 +82,7 @@ PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::Context
   const picture::PlanBox all = picture::box_of(tiles);
   if (!(all.width() > 0 && all.height() > 0)) return out;
   const picture::PlanBox box = cropped(all, choice.middle);
-  tiles.push_back(surroundings(context, box));
+  tiles.push_back(vicinity(context, box));
   out.png = picture::png(sheet(tiles, box, kFilePixels));
   const picture::Image small = sheet(tiles, box, kReportPixels);
   out.in_report = {picture::png(small), small.width, small.height,

@@ -7,7 +7,7 @@
 
 #include "pipeline/base/markup.h"
 #include "pipeline/base/text.h"
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 #include "pipeline/model/osm_id.h"
 
 namespace blockrand::outputs {

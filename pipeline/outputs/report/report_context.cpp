@@ -4,7 +4,7 @@
 #include "pipeline/base/text.h"
 #include "pipeline/outputs/report/html_text.h"
 #include "pipeline/outputs/report/report_sections.h"
-#include "pipeline/model/edge_colours.h"
+#include "pipeline/model/wall_segment_colours.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -44,9 +44,9 @@ std::string plan_figure(const ContextFacts& c) {
          "\" alt=\"" + escaped(c.plan->caption) + "\" src=\"data:image/png;base64,";
   append_base64(out, c.plan->png);
   out += "\"/><figcaption>" + escaped(c.plan->caption) + "</figcaption></figure>\n<ul class=\"key\">";
-  for (int k = 0; k < model::kEdgeKindCount; ++k) {
-    const auto kind = static_cast<model::EdgeKind>((k + 1) % model::kEdgeKindCount);  // unknown last
-    if (kind == model::EdgeKind::unknown && c.edges[0] == 0) continue;
+  for (int k = 0; k < model::kWallSegmentKindCount; ++k) {
+    const auto kind = static_cast<model::WallSegmentKind>((k + 1) % model::kWallSegmentKindCount);  // unknown last
+    if (kind == model::WallSegmentKind::unknown && c.edges[0] == 0) continue;
     out += "<li>" + swatch(model::colour_of(kind)) + spaced(model::name(kind)) + "</li>";
   }
   return out + "</ul>\n";
@@ -66,7 +66,7 @@ std::string edge_table(const ContextFacts& c) {
   for (std::size_t i = 0; i < c.edges.size(); ++i) {
     const std::size_t k = (i + 1) % c.edges.size();
     if (c.edges[k] == 0) continue;
-    const auto kind = static_cast<model::EdgeKind>(k);
+    const auto kind = static_cast<model::WallSegmentKind>(k);
     out += "<tr><td><span class=\"key\">" + swatch(model::colour_of(kind)) + "</span>" + spaced(model::name(kind)) +
            " <span class=\"soft\">" + std::string(model::meaning(kind)) + "</span></td><td class=\"n\">" +
            with_thousands(c.edges[k]) + "</td><td class=\"n\">" + rounded(c.edge_length[k]) +

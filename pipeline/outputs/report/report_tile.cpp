@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "pipeline/outputs/text.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/outputs/number_text.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::outputs {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "pipeline/outputs/text.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 namespace {

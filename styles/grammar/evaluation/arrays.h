@@ -1,4 +1,5 @@
-// Arrays: literals, ranges, indexing, and operators of single values and element by element (cga.md §1.2, §3.2).
+// Arrays: literals, ranges, indexing, and operators of single values and element by element
+// (docs/rule_language.md §1.2, §3.2).
 #pragma once
 
 #include <span>

@@ -1,4 +1,5 @@
-// The derivation: shapes wait for their rules level by level; what no rule takes is a leaf (cga.md §4.1, §4.2).
+// The derivation: shapes wait for their rules level by level; what no rule takes is a leaf
+// (docs/rule_language.md §4.1, §4.2).
 #include "styles/grammar/evaluation/derive.h"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ std::vector<RuleFacts> facts_of(const Program& program) {
 
 }  // namespace
 
-/// Whether a file asks about what stands around (cga.md §4.6): then there are two derivations.
+/// Whether a file asks about what stands around (docs/rule_language.md §4.6): then there are two derivations.
 bool asks_around(const Program& program) {
   for (const Module& module : program.modules)
     for (const Target& target : module.targets)
@@ -56,13 +57,13 @@ Deriver::Deriver(Deriver&&) noexcept = default;
 
 Derivation Deriver::run(const Shape& initial, const DeriveOptions& options) const {
   if (!prepared_->asks_around) return Run(prepared_->program, prepared_->facts, initial, options).go();
-  Surroundings surroundings;
+  Surroundings seen_around;
   Run first(prepared_->program, prepared_->facts, initial, options);
-  first.record(surroundings);
+  first.record(seen_around);
   Derivation out = first.go();
-  if (!surroundings.asked || surroundings.occluders.empty()) return out;
+  if (!seen_around.asked || seen_around.occluders.empty()) return out;
   Run second(prepared_->program, prepared_->facts, initial, options);
-  second.answer_from(surroundings);
+  second.answer_from(seen_around);
   return second.go();
 }
 
@@ -220,7 +221,7 @@ void Run::apply(Node node) {
 }
 
 void Run::leave_leaf(std::string symbol, Shape shape, const Location& location, std::uint32_t node,
-                     std::uint32_t lineage, std::shared_ptr<const Order> order) {
+                     std::uint32_t lineage, std::shared_ptr<const ElementRequest> order) {
   keep_occluder(shape, lineage);
   out_.leaves.push_back({std::move(symbol), std::move(shape), std::move(order), node, location});
 }

@@ -1,4 +1,5 @@
-// Runs a program on a shape: attributes first, then rules level by level, until only leaves are left (cga.md §4).
+// Runs a program on a shape: attributes first, then rules level by level, until only leaves are left
+// (docs/rule_language.md §4).
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,8 @@
 
 namespace blockrand::grammar {
 
-/// Where a derivation stops (cga.md §4.2). What is beyond is told with its place and left out; the rest is kept.
+/// Where a derivation stops (docs/rule_language.md §4.2). What is beyond is told with its place and left out; the rest
+/// is kept.
 struct DeriveLimits {
   std::size_t shapes = 100000;          ///< shapes with a symbol, of all levels
   std::uint32_t depth = 1024;           ///< from the start rule down
@@ -39,12 +41,12 @@ using AttributeSource = std::function<std::optional<Value>(std::string_view name
 struct DeriveOptions {
   std::string start_rule;  ///< without parameters; empty: the program's
   std::uint64_t seed = 0;
-  /// What `@Consistent("building")` and `@Consistent("row")` draw from (cga.md §4.3): equal in all derivations of a
-  /// building and of a row of houses.
+  /// What `@Consistent("building")` and `@Consistent("row")` draw from (docs/rule_language.md §4.3): equal in all
+  /// derivations of a building and of a row of houses.
   std::uint64_t building_seed = 0, row_seed = 0;
-  /// Attribute values from outside, by qualified name ("h", "roof.h"); ":" in a name counts as "__" (cga.md §4.1).
-  /// Texts are turned into the attribute's type. Values that the program gives ("building.storeys") may stand here,
-  /// too.
+  /// Attribute values from outside, by qualified name ("h", "roof.h"); ":" in a name counts as "__"
+  /// (docs/rule_language.md §4.1). Texts are turned into the attribute's type. Values that the program gives
+  /// ("building.storeys") may stand here, too.
   std::vector<std::pair<std::string, Value>> attributes;
   AttributeSource source;
   const FileAccess* files = nullptr;
@@ -58,7 +60,7 @@ struct DeriveOptions {
 };
 
 /// `blockrand.NAME(arguments…)`: what to put where the leaf's shape is.
-struct Order {
+struct ElementRequest {
   std::string name;  ///< without the prefix
   std::vector<Value> arguments;
   Location location;
@@ -68,7 +70,7 @@ struct Order {
 struct Leaf {
   std::string symbol;
   Shape shape;
-  std::shared_ptr<const Order> order;  ///< of blockrand.* operations; else null
+  std::shared_ptr<const ElementRequest> order;  ///< of blockrand.* operations; else null
   std::uint32_t node = 0;  ///< in Derivation::tree: itself when it has a symbol of its own, else the rule's shape
   Location location;       ///< of the step that made it; of the rule for shapes that are left over
 };
@@ -122,7 +124,7 @@ class Deriver {
 /// For a single derivation.
 Derivation derive(const Program& program, const Shape& initial, const DeriveOptions& options = {});
 
-/// "0;1;3;": the way from the root to a node (cga.md §3.2, getTreeKey).
+/// "0;1;3;": the way from the root to a node (docs/rule_language.md §3.2, getTreeKey).
 std::string tree_key(const Derivation& derivation, std::uint32_t node);
 
 }  // namespace blockrand::grammar

@@ -1,4 +1,5 @@
-// Values of attributes: from outside, from the importing file, or by their expression (cga.md §1.4, §1.5, §4.1).
+// Values of attributes: from outside, from the importing file, or by their expression
+// (docs/rule_language.md §1.4, §1.5, §4.1).
 #include <algorithm>
 
 #include "pipeline/base/random.h"
@@ -8,7 +9,8 @@
 namespace blockrand::grammar {
 namespace {
 
-/// Names of tags hold ":", names of attributes cannot: building:levels is building__levels (cga.md §4.1, 4).
+/// Names of tags hold ":", names of attributes cannot: building:levels is building__levels
+/// (docs/rule_language.md §4.1, 4).
 std::string attribute_name(std::string_view name) {
   std::string out;
   for (const char c : name) c == ':' ? out.append("__") : out.append(1, c);
@@ -93,7 +95,8 @@ void Run::evaluate_slot(std::uint32_t index) {
     found = true;
   }
   if (!found && slot.value != kNone && !too_deep(declaration.location)) {
-    // A stream of random numbers of its own: no attribute disturbs another, nor the shape (cga.md §4.1, 3).
+    // A stream of random numbers of its own: no attribute disturbs another, nor the shape
+    // (docs/rule_language.md §4.1, 3).
     Shape shape = *phase.shape;
     // @Consistent before an attribute: one value in all derivations of a building, or of a row.
     const Consistency consistency = facts_[slot.definition].consistency;

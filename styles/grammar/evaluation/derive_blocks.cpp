@@ -1,4 +1,5 @@
-// Operations with blocks: each item runs on pieces or components of the current shape (cga.md §2.3 - §2.5).
+// Operations with blocks: each item runs on pieces or components of the current shape (docs/rule_language.md §2.3 -
+// §2.5).
 #include <algorithm>
 #include <cmath>
 
@@ -57,7 +58,8 @@ std::vector<SplitItem> Run::split_items(Range range, Place& place, std::vector<N
     }
     made.mark = item.mark;
     made.size = item.value == kNone ? 1 : number(item.value, place);
-    if (item.value == kNone) made.mark = Mark::floating;  // before 2015.0 a size could be left out (cga.md §1.2)
+    if (item.value == kNone) made.mark = Mark::floating;  // before 2015.0 a size could be left out
+                                                          // (docs/rule_language.md §1.2)
     if (!std::isfinite(made.size)) {
       tell(Severity::warning, "not_finite", item.location, "this size is not a finite number; 0 is taken instead");
       made.size = 0;
@@ -433,7 +435,7 @@ void Run::step_scatter(const Call& call, Work& work, Place& place) {
   const auto* count = std::get_if<double>(&operands_[1].value);
   const bool gaussian = operands_[2].word == "gaussian";
   std::string mean = "center";
-  // Default deviation: 0.16 of the scope (cga.md §2.5).
+  // Default deviation: 0.16 of the scope (docs/rule_language.md §2.5).
   constexpr double kDefaultDeviation = 0.16;
   const Vector3 size = work.shape.size;
   Vector3 deviation{size.x * kDefaultDeviation, size.y * kDefaultDeviation, size.z * kDefaultDeviation};

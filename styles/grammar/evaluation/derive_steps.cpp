@@ -1,4 +1,5 @@
-// The steps of a successor: symbols, operations, brackets, cases, and steps that only tell or set (cga.md §1.2, §2.0).
+// The steps of a successor: symbols, operations, brackets, cases, and steps that only tell or set
+// (docs/rule_language.md §1.2, §2.0).
 #include <cmath>
 
 #include "styles/grammar/evaluation/run.h"
@@ -64,7 +65,7 @@ void Run::execute_call(const Call& call, Work& work, Place& place, bool last) {
   if (found.kind == TargetKind::operation) {
     execute_operation(call, found.index, work, place);
   } else if (found.kind == TargetKind::extension) {
-    execute_order(call, work, place);
+    execute_request(call, work, place);
   } else {
     execute_symbol(call, found, work, place, last);
   }
@@ -132,9 +133,9 @@ void Run::execute_symbol(const Call& call, const Target& found, Work& work, Plac
     leave_leaf(std::move(child.symbol), std::move(child.shape), location, number, child.lineage);
 }
 
-void Run::execute_order(const Call& call, Work& work, Place& place) {
+void Run::execute_request(const Call& call, Work& work, Place& place) {
   const std::size_t first = push_arguments(call.arguments, place);
-  auto order = std::make_shared<Order>();
+  auto order = std::make_shared<ElementRequest>();
   const std::string& name = program_.unit(place.module).name(call.name);
   order->name = name.substr(name.find('.') == std::string::npos ? 0 : name.find('.') + 1);
   order->arguments.assign(locals_.begin() + static_cast<std::ptrdiff_t>(first), locals_.end());
@@ -188,7 +189,7 @@ void Run::execute_operation(const Call& call, std::uint32_t number, Work& work, 
                 "the shape has more than " + std::to_string(options_.limits.faces) + " faces; it stays as it is",
                 std::string(entry.name));
   evaluate_operation_arguments(call, place);
-  // offset(d, inside) takes a part: what was there before stays for context queries (cga.md §4.6).
+  // offset(d, inside) takes a part: what was there before stays for context queries (docs/rule_language.md §4.6).
   if (recorded_ != nullptr && entry.name == "offset" && operands_.size() > 1) keep_occluder(work.shape, work.lineage);
   const auto given = static_cast<int>(operands_.size());
   if (given < entry.least || given > entry.most)

@@ -1,4 +1,4 @@
-// Expressions: names, operators, cases, chances, arrays (cga.md §1.2, §1.4).
+// Expressions: names, operators, cases, chances, arrays (docs/rule_language.md §1.2, §1.4).
 #include <cmath>
 #include <limits>
 #include <utility>

@@ -1,4 +1,5 @@
-// Functions that ask about the current shape, its components, its surroundings and its place in the tree (cga.md §3.2).
+// Functions that ask about the current shape, its components, its surroundings and its place in the tree
+// (docs/rule_language.md §3.2).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -109,8 +110,9 @@ Value Run::geometry_uv(const Expression& e, Place& place) {
   return name.ends_with("Min") ? geometry_uv_minimum(*place.shape, v, set) : geometry_uv_maximum(*place.shape, v, set);
 }
 
-/// inside, overlaps, touches, minimumDistance, contextCount: from what the first derivation left (cga.md §4.6). Shapes
-/// do not ask about their ancestors and descendants. There are no neighbours in a derivation: `inter` finds nothing.
+/// inside, overlaps, touches, minimumDistance, contextCount: from what the first derivation left
+/// (docs/rule_language.md §4.6). Shapes do not ask about their ancestors and descendants. There are no neighbours in a
+/// derivation: `inter` finds nothing.
 Value Run::context_query(const Expression& e, Place& place) {
   const std::string_view name = built_ins()[target(place.module, e.use).index].name;
   std::string goal = "all", label;
@@ -162,7 +164,7 @@ Value Run::context_query(const Expression& e, Place& place) {
   return by_count ? Value(count) : by_distance ? Value(nearest) : Value(found);
 }
 
-/// As if nothing stood near (cga.md §4.6, first pass).
+/// As if nothing stood near (docs/rule_language.md §4.6, first pass).
 Value Run::context_default(const Expression& e, Place& place) {
   const std::string_view name = built_ins()[target(place.module, e.use).index].name;
   if (name == "minimumDistance") return std::numeric_limits<double>::infinity();

@@ -10,12 +10,12 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "styles/grammar/shapes/mesh.h"
+#include "styles/grammar/shapes/shape_mesh.h"
 #include "styles/grammar/language/value.h"
 
 namespace blockrand::grammar {
 
-/// Most elements of an array (cga.md §4.2).
+/// Most elements of an array (docs/rule_language.md §4.2).
 inline constexpr std::size_t kMostArrayItems = 100000;
 
 /// Most bytes of a text, and of all texts of an array together: beyond, joining is told as an error.
@@ -28,7 +28,7 @@ struct AssetBox {
 };
 
 /// The way to a rule file's assets. What is not set answers as if no file existed; then the placeholder policy of
-/// cga.md §2.2 holds.
+/// docs/rule_language.md §2.2 holds.
 struct FileAccess {
   std::function<bool(const std::string& path)> exists;
   /// The error says why the query is none.
@@ -45,7 +45,7 @@ struct FunctionContext {
   const FileAccess* files = nullptr;
   std::vector<std::string>* warnings = nullptr;  ///< the caller knows the place
 
-  /// Uniform in [0, 1): a function of (seed, number of the draw) alone (cga.md §4.3).
+  /// Uniform in [0, 1): a function of (seed, number of the draw) alone (docs/rule_language.md §4.3).
   double draw();
   void warn(std::string message) const;
 };
@@ -61,7 +61,8 @@ struct FunctionEntry {
   /// "a+": one value or more, of any type.
   std::string_view parameters;
   Function run = nullptr;
-  bool takes_nan = false;  ///< sees nan and inf as they are; otherwise they become 0 with a warning (cga.md §4.7)
+  bool takes_nan = false;  ///< sees nan and inf as they are; otherwise they become 0 with a warning
+                           ///< (docs/rule_language.md §4.7)
 };
 
 /// Every function, sorted by name.
@@ -73,7 +74,7 @@ std::span<const FunctionEntry> find_functions(std::string_view name);
 /// \returns nullptr where no overload takes these arguments
 const FunctionEntry* choose_overload(std::span<const FunctionEntry> overloads, std::span<const Value> arguments);
 
-/// Calls `entry`, with nan and inf among the arguments replaced as cga.md §4.7 says.
+/// Calls `entry`, with nan and inf among the arguments replaced as docs/rule_language.md §4.7 says.
 FunctionResult call(const FunctionEntry& entry, std::span<const Value> arguments, FunctionContext& context);
 
 /// Finds the overload and calls it. For tests and tools; evaluation resolves names once.

@@ -1,4 +1,4 @@
-// Functions of arrays (cga.md §3.2, arrays).
+// Functions of arrays (docs/rule_language.md §3.2, arrays).
 #include <algorithm>
 #include <numeric>
 

@@ -1,4 +1,4 @@
-// Colours as texts, "#rrggbb" or "#rrggbboo", and their parts (cga.md §3.3).
+// Colours as texts, "#rrggbb" or "#rrggbboo", and their parts (docs/rule_language.md §3.3).
 #include <algorithm>
 #include <array>
 #include <optional>

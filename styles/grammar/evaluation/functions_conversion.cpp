@@ -1,4 +1,4 @@
-// From one type to another (cga.md §3.2, conversion).
+// From one type to another (docs/rule_language.md §3.2, conversion).
 #include "styles/grammar/evaluation/function_groups.h"
 #include "styles/grammar/language/value_text.h"
 

@@ -1,4 +1,5 @@
-// Files and assets. Where there are none, answers are placeholders that let rule files run (cga.md §2.2).
+// Files and assets. Where there are none, answers are placeholders that let rule files run
+// (docs/rule_language.md §2.2).
 #include <algorithm>
 
 #include "styles/grammar/evaluation/function_groups.h"

@@ -1,4 +1,4 @@
-// The utility library's lists, which are texts: "a;b;c;" (cga.md §3.3).
+// The utility library's lists, which are texts: "a;b;c;" (docs/rule_language.md §3.3).
 #include <algorithm>
 
 #include "styles/grammar/evaluation/function_groups.h"
@@ -46,7 +46,7 @@ std::string filtered(const std::string& list, const Keep& keep) {
   return list_of(out);
 }
 
-/// "" for what is not there (cga.md §7.2, 16).
+/// "" for what is not there (docs/rule_language.md §7.2, 16).
 std::string item_at(const std::string& list, long long index) {
   const auto items = list_items(list);
   if (index < 0 || index >= static_cast<long long>(items.size())) return {};

@@ -1,4 +1,4 @@
-// Functions of numbers: angles in degrees, rounding, random numbers (cga.md §3.2).
+// Functions of numbers: angles in degrees, rounding, random numbers (docs/rule_language.md §3.2).
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -70,7 +70,7 @@ FunctionResult test_array(Arguments a, FunctionContext&) {
 double absolute(double value) { return std::abs(value); }
 double ceiling(double value) { return std::ceil(value); }
 double floor_of(double value) { return std::floor(value); }
-/// Ties go to the even neighbour (cga.md §3.2, inferred).
+/// Ties go to the even neighbour (docs/rule_language.md §3.2, inferred).
 double nearest(double value) { return std::nearbyint(value); }
 double tangent(double degrees) { return sine(degrees) / cosine(degrees); }
 double arc_tangent(double value) { return base::atan(value) * base::kDegreesPerRadian; }

@@ -13,7 +13,7 @@
 #include "styles/grammar/evaluation/derive.h"
 #include "styles/grammar/shapes/operations.h"
 #include "styles/grammar/shapes/split.h"
-#include "styles/grammar/shapes/surroundings.h"
+#include "styles/grammar/shapes/occlusion.h"
 
 namespace blockrand::grammar {
 
@@ -80,7 +80,7 @@ struct BuiltInActions {
 };
 const BuiltInActions& built_in_actions();
 
-/// What the first of two derivations leaves for context queries of the second (cga.md §4.6).
+/// What the first of two derivations leaves for context queries of the second (docs/rule_language.md §4.6).
 struct Surroundings {
   std::vector<Occluder> occluders;
   bool asked = false;  ///< a query was made that the occluders answer
@@ -190,11 +190,11 @@ class Run {
   void execute(NodeId successor, Work& work, Place& place, bool last);
   void execute_call(const Call& call, Work& work, Place& place, bool last);
   void execute_symbol(const Call& call, const Target& target, Work& work, Place& place, bool last);
-  void execute_order(const Call& call, Work& work, Place& place);
+  void execute_request(const Call& call, Work& work, Place& place);
   void execute_operation(const Call& call, std::uint32_t number, Work& work, Place& place);
   void run_item(NodeId successor, Shape piece, Work& parent, Place& place);
   void leave_leaf(std::string symbol, Shape shape, const Location& location, std::uint32_t node, std::uint32_t lineage,
-                  std::shared_ptr<const Order> order = nullptr);
+                  std::shared_ptr<const ElementRequest> order = nullptr);
   std::uint64_t child_seed(Work& work) const;
   /// The lineage of the next child or piece of `work`; before child_seed().
   std::uint32_t child_lineage(const Work& work);

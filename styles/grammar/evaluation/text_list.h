@@ -1,4 +1,4 @@
-// Lists written as one text, each item followed by ";" (cga.md §3.3).
+// Lists written as one text, each item followed by ";" (docs/rule_language.md §3.3).
 #pragma once
 
 #include <string>

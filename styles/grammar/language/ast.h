@@ -30,7 +30,7 @@ struct Range {
   bool empty() const { return count == 0; }
 };
 
-/// A prefix of a whole argument or size (cga.md §1.3, 4).
+/// A prefix of a whole argument or size (docs/rule_language.md §1.3, 4).
 enum class Mark : std::uint8_t { plain, relative /* ' */, floating /* ~ */ };
 
 enum class ExpressionKind : std::uint8_t {
@@ -115,7 +115,7 @@ struct Branch {
   NodeId result = kNone;     ///< a successor or an expression, as the owner says
 };
 
-/// How a selector's components become shapes (cga.md §2.4).
+/// How a selector's components become shapes (docs/rule_language.md §2.4).
 enum class ItemOperator : std::uint8_t { each /* : */, all /* = */, connected /* =: */ };
 
 /// An item of the comp function's block.
@@ -243,7 +243,7 @@ struct Style {
 
 enum class OverrideKind : std::uint8_t { protect, attribute, rule };
 
-/// What stands in the parentheses of an import (cga.md §1.5).
+/// What stands in the parentheses of an import (docs/rule_language.md §1.5).
 struct Override {
   Location location;
   OverrideKind kind = OverrideKind::protect;

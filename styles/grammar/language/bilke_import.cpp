@@ -10,7 +10,7 @@
 #include <set>
 
 #include "pipeline/base/text.h"
-#include "styles/grammar/language/names.h"
+#include "styles/grammar/language/known_names.h"
 
 namespace blockrand::grammar {
 
@@ -45,7 +45,8 @@ struct Default {
   double value;
   bool from_thesis;
 };
-/// Ours keep the constraints of bilke.md §5.5: cellar windows under ground-floor windows, doors inside their tiles.
+/// Ours keep the constraints of docs/sources.md, Bilke 5.5: cellar windows under ground-floor windows, doors inside
+/// their tiles.
 constexpr Default kDefaults[] = {
     {"BuildingHeight", 15, true},
     {"FloorHeight", 3, true},

@@ -1,4 +1,4 @@
-// Facade rules of Bilke's CityGenerator (2009) as text of the rule language (references/bilke.md §3.6 to §3.7, §4.7 to
+// Facade rules of Bilke's CityGenerator (2009) as text of the rule language (docs/sources.md, Bilke 3.6 to 3.7, 4.7 to
 // §4.9, §9).
 #pragma once
 

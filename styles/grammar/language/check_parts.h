@@ -34,9 +34,9 @@ void check_choices(const Checked& c);
 void check_sizes(const Checked& c);
 void check_types(const Checked& c);
 void check_calls(const Checked& c, const CheckOptions& options);
-/// All styles of the file, in force or not (cga.md §1.6).
+/// All styles of the file, in force or not (docs/rule_language.md §1.6).
 void check_styles(const Checked& c);
-/// Values that imports give to attributes (cga.md §1.5).
+/// Values that imports give to attributes (docs/rule_language.md §1.5).
 void check_overrides(const Program& program, std::vector<Diagnostic>& told);
 void check_rules(const Program& program, std::vector<Diagnostic>& told);
 

@@ -12,7 +12,7 @@ namespace {
 
 /// Sums of percentages as people write them: 3 × 33.3333.
 constexpr double kPercentTolerance = 1e-3;
-/// Of the whole: the splits' own tolerance (references/cga.md §7.2, 8).
+/// Of the whole: the splits' own tolerance (docs/rule_language.md §7.2, 8).
 constexpr double kLengthTolerance = 1e-6;
 
 /// Bounds of folding: constants that refer to one another could make it endless.

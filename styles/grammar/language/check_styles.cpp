@@ -1,4 +1,4 @@
-// Styles: what may stand after the first `style` (references/cga.md §1.6), also in styles that are not in force.
+// Styles: what may stand after the first `style` (docs/rule_language.md §1.6), also in styles that are not in force.
 #include <algorithm>
 
 #include "styles/grammar/language/check_parts.h"

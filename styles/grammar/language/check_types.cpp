@@ -1,4 +1,4 @@
-// Values of the wrong type, where types are known without running (references/cga.md §1.3, 9).
+// Values of the wrong type, where types are known without running (docs/rule_language.md §1.3, 9).
 #include <array>
 
 #include "styles/grammar/language/check_parts.h"

@@ -1,4 +1,4 @@
-// Where the files that rule files name are found (references/cga.md §1.5, §7.2 number 21).
+// Where the files that rule files name are found (docs/rule_language.md §1.5, §7.2 number 21).
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// The functions of the language and of its utility library (references/cga.md §3.2, §3.3).
+// The functions of the language and of its utility library (docs/rule_language.md §3.2, §3.3).
 #include "styles/grammar/language/name_tables.h"
 
 namespace blockrand::grammar::tables {
@@ -117,7 +117,7 @@ constexpr BuiltIn kRows[] = {
     function("sortIndices", "V -> N", g),
     function("sortRowIndices", "V n? -> N", g),
     function("setElems", "V a a? a? -> V", g),
-    // Files, and assets, which placeholders stand in for (cga.md §2.2).
+    // Files, and assets, which placeholders stand in for (docs/rule_language.md §2.2).
     function("fileExists", "s -> b", c, 9),
     function("fileSearch", "s -> s", c, 8),
     function("filesSearch", "s -> S", g),
@@ -158,7 +158,7 @@ constexpr BuiltIn kRows[] = {
     function("colorHSVToHex", "n n n -> s", c, 2),
     function("colorHSVOToHex", "n n n n -> s", c),
     function("colorRamp", "s n -> s", c, 7),
-    // The surroundings: shapes of the same derivation; there are no neighbours (cga.md §4.6).
+    // The surroundings: shapes of the same derivation; there are no neighbours (docs/rule_language.md §4.6).
     function("inside", "-> b | <context> s? -> b | s -> b", f, 11),
     function("overlaps", "-> b | <context> s? -> b | s -> b", f, 20),
     function("touches", "-> b | <context> s? -> b | s -> b", f, 18),

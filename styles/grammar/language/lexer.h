@@ -1,4 +1,4 @@
-// Rule text into tokens (references/cga.md §1.1).
+// Rule text into tokens (docs/rule_language.md §1.1).
 #pragma once
 
 #include <cstdint>

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "styles/grammar/language/names.h"
+#include "styles/grammar/language/known_names.h"
 
 namespace blockrand::grammar::tables {
 

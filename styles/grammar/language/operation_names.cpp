@@ -1,4 +1,4 @@
-// The operations of the language: names, arguments, blocks (references/cga.md §2).
+// The operations of the language: names, arguments, blocks (docs/rule_language.md §2).
 #include "styles/grammar/language/name_tables.h"
 
 namespace blockrand::grammar::tables {

@@ -1,5 +1,5 @@
-// Attributes of shapes, selectors, words, annotations, keywords and forms of syntax (references/cga.md §1, §2.4, §3.1,
-// §6.2).
+// Attributes of shapes, selectors, words, annotations, keywords and forms of syntax
+// (docs/rule_language.md §1, §2.4, §3.1, §6.2).
 #include <array>
 #include <deque>
 #include <string>
@@ -167,7 +167,7 @@ constexpr BuiltIn kRows[] = {
     annotation("InCurve"),
     annotation("In"),
     annotation("Out"),
-    // Ours: the rule takes the same branch in all of a building, or in all of a row (references/bilke.md §4.7).
+    // Ours: the rule takes the same branch in all of a building, or in all of a row (docs/sources.md, Bilke 4.7).
     annotation("Consistent"),
 
     keyword("version"),

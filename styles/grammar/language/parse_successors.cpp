@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <string>
 
-#include "styles/grammar/language/names.h"
+#include "styles/grammar/language/known_names.h"
 #include "styles/grammar/language/parser_state.h"
 
 namespace blockrand::grammar::detail {

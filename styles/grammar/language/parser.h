@@ -1,4 +1,4 @@
-// Rule text into a tree (references/cga.md §1.2, §1.3).
+// Rule text into a tree (docs/rule_language.md §1.2, §1.3).
 #pragma once
 
 #include <cstdint>

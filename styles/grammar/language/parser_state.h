@@ -41,7 +41,7 @@ class Parser {
   std::uint32_t add_text(std::string text);
   NameId plain_name(const char* what);
 
-  // Look-ahead (cga.md §1.3, 1 and 3); all take an index into tokens_.
+  // Look-ahead (docs/rule_language.md §1.3, 1 and 3); all take an index into tokens_.
   std::size_t after_parameters(std::size_t index) const;
   bool arrow_follows(std::size_t index) const;
   bool begins_declaration(std::size_t index) const;

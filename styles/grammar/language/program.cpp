@@ -354,7 +354,7 @@ class Loader {
     entry.rules.insert(entry.rules.begin(), add_definition(importer, d));
   }
 
-  /// Where the values of a module's attributes come from (cga.md §1.5).
+  /// Where the values of a module's attributes come from (docs/rule_language.md §1.5).
   void connect_slots(std::uint32_t m) {
     const Scope& scope = building_.scopes[m];
     const std::uint32_t parent = program_.modules[m].parent;

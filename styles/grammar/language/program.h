@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "styles/grammar/language/ast.h"
-#include "styles/grammar/language/names.h"
+#include "styles/grammar/language/known_names.h"
 #include "styles/grammar/language/source.h"
 #include "styles/grammar/language/value.h"
 
@@ -115,7 +115,7 @@ using FolderLister = std::function<std::vector<std::string>(const std::string& f
 
 struct LoadOptions {
   /// Where imports are looked for: a path that begins with "/" below each root, others beside the importing file first,
-  /// then below each root, its `rules` and its `assets` (cga.md §1.5).
+  /// then below each root, its `rules` and its `assets` (docs/rule_language.md §1.5).
   std::vector<std::string> roots;
   /// Prefixes of workspace paths with the folder that holds them: {"/ESRI.lib", "/home/me/esri"}. The longest one that
   /// fits wins.

@@ -1,4 +1,4 @@
-// Types as far as they are known without running (references/cga.md §1.3, 9), and the order in which attributes are
+// Types as far as they are known without running (docs/rule_language.md §1.3, 9), and the order in which attributes are
 // evaluated.
 #include <algorithm>
 
@@ -417,7 +417,7 @@ class SlotOrder {
   void tell_cycle(const std::vector<Step>& path, std::uint32_t slot) {
     Slot& s = program_.slots[slot];
     const Definition& d = program_.definitions[s.definition];
-    // An override may read the default that it replaces (cga.md §1.5, 3).
+    // An override may read the default that it replaces (docs/rule_language.md §1.5, 3).
     if (path.back().slot && path.back().id == slot && s.module != d.module) {
       s.reads_itself = true;
       return;

@@ -9,7 +9,7 @@
 
 namespace blockrand::grammar {
 
-/// A two-dimensional array, row by row (references/cga.md §1.2, §3.2); one-dimensional ones have one row.
+/// A two-dimensional array, row by row (docs/rule_language.md §1.2, §3.2); one-dimensional ones have one row.
 /// Truth values are stored as bytes, so that elements have addresses.
 template <typename T>
 struct Array {

@@ -18,10 +18,10 @@ std::string number_text(double value);
 /// rows than one as "(2x2)[1,2;3,4]".
 std::string value_text(const Value& value);
 
-/// The number that a text starts with; nan where it starts with none (cga.md §3.2, `float`).
+/// The number that a text starts with; nan where it starts with none (docs/rule_language.md §3.2, `float`).
 double leading_number(std::string_view text);
 
-/// false for "f", "false", "0", "0.0" and the like (cga.md §3.2, `bool`).
+/// false for "f", "false", "0", "0.0" and the like (docs/rule_language.md §3.2, `bool`).
 bool truth_of(std::string_view text);
 
 /// "number", "number array" ... for messages.

@@ -16,7 +16,7 @@ using Arguments = std::span<const Argument>;
 
 inline tl::unexpected<std::string> failure(std::string text) { return tl::unexpected<std::string>(std::move(text)); }
 
-/// NaN and infinity count as 0 (references/cga.md §4.7).
+/// NaN and infinity count as 0 (docs/rule_language.md §4.7).
 inline double finite(double value) { return std::isfinite(value) ? value : 0; }
 
 inline bool is_word(Arguments arguments, std::size_t i) { return i < arguments.size() && !arguments[i].word.empty(); }

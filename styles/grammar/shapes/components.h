@@ -12,7 +12,7 @@
 
 namespace blockrand::grammar {
 
-/// f, e, fe, v, fv, g, m, h (references/cga.md §2.4).
+/// f, e, fe, v, fv, g, m, h (docs/rule_language.md §2.4).
 enum class ComponentKind : std::uint8_t { faces, edges, face_edges, vertices, face_vertices, groups, materials, holes };
 std::optional<ComponentKind> component_kind(std::string_view word);  ///< of "f" … "h"
 
@@ -105,7 +105,7 @@ std::optional<Shape> component_group(const ComponentSplit& split, std::span<cons
 /// first.
 std::vector<std::vector<std::size_t>> connected_sets(const ComponentSplit& split, std::span<const std::size_t> chosen);
 
-/// True when a tag query (with ? and *) matches a tag, or a tag below it (cga.md §2.6).
+/// True when a tag query (with ? and *) matches a tag, or a tag below it (docs/rule_language.md §2.6).
 bool tag_matches(std::string_view query, std::string_view tag);
 
 }  // namespace blockrand::grammar

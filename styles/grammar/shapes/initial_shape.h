@@ -19,8 +19,8 @@ struct InitialPolygon {
 /// Points nearer than this are one point, in metres: a tenth of a grid step, far below what a survey can tell.
 inline constexpr double kSamePoint = 1e-4;
 
-/// Makes the initial shape (references/cga.md §0, §4.1,2): object coordinates with the origin at the first point of the
-/// first edge, x along it, y along the normal of the first face; the pivot at the object's origin; the scope is the
+/// Makes the initial shape (docs/rule_language.md §0, §4.1,2): object coordinates with the origin at the first point of
+/// the first edge, x along it, y along the normal of the first face; the pivot at the object's origin; the scope is the
 /// bounding box in that frame, not turned. Edges without length are dropped and the first edge stays first. Polygons
 /// with less than three points or without area are dropped; the result may be empty, with size 0. Vertices at the same
 /// place are shared.

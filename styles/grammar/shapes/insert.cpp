@@ -252,7 +252,7 @@ Result run_i(Shape& shape, const OperationInput&, Arguments arguments) {
     else
       return failure(unknown_word(w, "yUp, zUp, alignSizeAndPosition, keepSizeAndPosition, keepSizeAlignPosition"));
   }
-  // No assets are read: a box stands in for each (references/cga.md §2.2, placeholder policy). builtin:cube is one.
+  // No assets are read: a box stands in for each (docs/rule_language.md §2.2, placeholder policy). builtin:cube is one.
   Mesh box = cube_mesh();
   if (!file->starts_with("builtin:")) box.asset = stem(*file);
   insert_asset(shape, std::move(box), mode);

@@ -7,8 +7,8 @@ namespace blockrand::grammar {
 
 enum class InsertMode : std::uint8_t { align_size_and_position, keep_size_and_position, keep_size_align_position };
 
-/// Replaces the geometry by `asset` (in the asset's own coordinates, y up) by the size rules of references/cga.md §2.2,
-/// then cuts it with the active trim planes. The scope is that of the uncut asset.
+/// Replaces the geometry by `asset` (in the asset's own coordinates, y up) by the size rules of
+/// docs/rule_language.md §2.2, then cuts it with the active trim planes. The scope is that of the uncut asset.
 void insert_asset(Shape& shape, Mesh asset, InsertMode mode = InsertMode::align_size_and_position);
 
 /// Cuts the geometry with the shape's active trim planes.

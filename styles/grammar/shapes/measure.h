@@ -12,7 +12,7 @@
 
 namespace blockrand::grammar {
 
-/// Every function works on the geometry as it is (references/cga.md §3.2); shapes without geometry give 0, false or
+/// Every function works on the geometry as it is (docs/rule_language.md §3.2); shapes without geometry give 0, false or
 /// nothing. `selector` is a word such as top, side, world.south, vertical: only faces that it takes count.
 
 double geometry_area(const Shape& shape);  ///< m², holes taken off

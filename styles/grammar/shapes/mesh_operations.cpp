@@ -1,4 +1,4 @@
-// Mending and changing meshes (references/cga.md §2.6).
+// Mending and changing meshes (docs/rule_language.md §2.6).
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "styles/grammar/shapes/mesh.h"
+#include "styles/grammar/shapes/shape_mesh.h"
 #include "styles/grammar/shapes/scope.h"
 #include "styles/grammar/shapes/shape.h"
 
@@ -59,7 +59,8 @@ struct LooseEdge {
 std::vector<MeshFace> faces_of_edges(const std::vector<Vector3>& vertices, std::vector<LooseEdge> edges,
                                      Vector3 normal);
 
-/// The face looking the other way; its first edge is the same one (cga.md §2.6). `uv`, when given, follows.
+/// The face looking the other way; its first edge is the same one (docs/rule_language.md §2.6). `uv`, when given,
+/// follows.
 void reverse_face(MeshFace& face, std::vector<std::vector<Vector2>>* uv = nullptr);
 void reverse_faces(Mesh& mesh);
 

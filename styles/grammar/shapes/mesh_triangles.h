@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "styles/grammar/shapes/mesh.h"
+#include "styles/grammar/shapes/shape_mesh.h"
 
 namespace blockrand::grammar {
 

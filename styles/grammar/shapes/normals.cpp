@@ -1,4 +1,4 @@
-// setNormals: which way faces look (references/cga.md §2.6).
+// setNormals: which way faces look (docs/rule_language.md §2.6).
 #include <vector>
 
 #include "styles/grammar/shapes/mesh_tools.h"

@@ -1,4 +1,4 @@
-// offset: a face moved in or out, and the ring between (references/cga.md §2.2).
+// offset: a face moved in or out, and the ring between (docs/rule_language.md §2.2).
 #include "styles/grammar/shapes/offset.h"
 
 #include <algorithm>

@@ -24,14 +24,15 @@ struct Argument {
 
 /// What an operation may look at besides the shape it changes.
 struct OperationInput {
-  const Shape& base;     ///< the previous shape on the stack: relative sizes and center() refer to it (cga.md §2.0)
+  const Shape& base;     ///< the previous shape on the stack: relative sizes and center() refer to it
+                         ///< (docs/rule_language.md §2.0)
   const Shape& initial;  ///< the initial shape, for resetGeometry()
 };
 
 /// Runs an operation that changes the shape in place. An error's text says what is wrong with the call, without place
-/// and without the operation's name; the shape is then unchanged. Numbers that are NaN or infinite count as 0 (cga.md
-/// §4.7). Geometry that cannot take the operation (a roof on nothing, a face without area) is no error: what cannot be
-/// done is left as it was.
+/// and without the operation's name; the shape is then unchanged. Numbers that are NaN or infinite count as 0
+/// (docs/rule_language.md §4.7). Geometry that cannot take the operation (a roof on nothing, a face without area) is no
+/// error: what cannot be done is left as it was.
 using Operation = tl::expected<void, std::string> (*)(Shape&, const OperationInput&, std::span<const Argument>);
 
 struct OperationEntry {
@@ -49,13 +50,13 @@ std::span<const OperationEntry> operations();
 /// Null for names that are not in the table.
 const OperationEntry* find_operation(std::string_view name);
 
-/// `set(name, value)` for scope.{tx…sz}, trim.{vertical,horizontal}, seedian and material.* (cga.md §3.1). Errors:
-/// attributes that cannot be set (pivot.*, split.*, comp.*, initialShape.*, scope.elevation), values of a wrong type,
-/// names that are none of those.
+/// `set(name, value)` for scope.{tx…sz}, trim.{vertical,horizontal}, seedian and material.*
+/// (docs/rule_language.md §3.1). Errors: attributes that cannot be set (pivot.*, split.*, comp.*, initialShape.*,
+/// scope.elevation), values of a wrong type, names that are none of those.
 tl::expected<void, std::string> set_attribute(Shape& shape, std::string_view name, const Value& value);
 
-/// Reads scope.*, pivot.*, split.*, comp.*, trim.*, seedian and material.* (with the defaults of cga.md §3.1). Nothing
-/// for other names (initialShape.* is the evaluator's).
+/// Reads scope.*, pivot.*, split.*, comp.*, trim.*, seedian and material.* (with the defaults of
+/// docs/rule_language.md §3.1). Nothing for other names (initialShape.* is the evaluator's).
 std::optional<Value> read_attribute(const Shape& shape, std::string_view name);
 
 }  // namespace blockrand::grammar

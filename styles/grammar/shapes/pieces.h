@@ -26,8 +26,9 @@ struct SetbackPieces {
   std::optional<Shape> remainder;  ///< what is left in the middle; its first edge is that of the face
 };
 
-/// Moves edges inwards (references/cga.md §2.5). Strips start with their outline edge; together with the remainder they
-/// cover the face once. \param distances  m, by item of setback_edges(); 0 or less: the edge stays and has no strip
+/// Moves edges inwards (docs/rule_language.md §2.5). Strips start with their outline edge; together with the remainder
+/// they cover the face once.
+/// \param distances  m, by item of setback_edges(); 0 or less: the edge stays and has no strip
 SetbackPieces setback_pieces(const Shape& shape, std::span<const double> distances);
 
 /// setbackToArea: the distances (by item of setback_edges()) that leave `area` m²: minimum + one common increment, at

@@ -1,4 +1,4 @@
-// Roofs over faces (references/cga.md §2.2).
+// Roofs over faces (docs/rule_language.md §2.2).
 #include <algorithm>
 #include <cmath>
 

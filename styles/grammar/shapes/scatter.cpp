@@ -1,4 +1,4 @@
-// scatter: points on, in or around a shape (references/cga.md §2.5).
+// scatter: points on, in or around a shape (docs/rule_language.md §2.5).
 #include <algorithm>
 #include <cmath>
 

@@ -40,8 +40,8 @@ Frame compose(const Frame& outer, const Frame& inner);
 /// `frame` (in the frame above `outer`) as seen in `outer`.
 Frame relative_to(const Frame& outer, const Frame& frame);
 
-/// Rotation matrix of Euler angles in degrees: about x, then y, then z, about fixed axes (cga.md §2.0). Its columns are
-/// the axes.
+/// Rotation matrix of Euler angles in degrees: about x, then y, then z, about fixed axes (docs/rule_language.md §2.0).
+/// Its columns are the axes.
 std::array<Vector3, 3> axes_of_angles(Vector3 degrees);
 /// The angles of axes, in degrees; ry in [-90, 90]. Inverse of axes_of_angles() up to equal rotations.
 Vector3 angles_of_axes(const std::array<Vector3, 3>& axes);
@@ -52,7 +52,7 @@ Frame scope_in_world(const Shape& shape);
 Frame object_in_world(const Shape& shape);
 
 enum class CoordinateSystem : std::uint8_t { scope, pivot, object, world };
-/// The named frame in world coordinates: `convert(…)` (cga.md §3.2).
+/// The named frame in world coordinates: `convert(…)` (docs/rule_language.md §3.2).
 Frame system_in_world(const Shape& shape, CoordinateSystem system);
 
 /// convert(from, to, pos|orient, xyz): a position or Euler angles (degrees) given in one system, in the other. All

@@ -1,4 +1,4 @@
-// Moving, turning and refitting the scope (references/cga.md §2.1).
+// Moving, turning and refitting the scope (docs/rule_language.md §2.1).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -346,7 +346,7 @@ Result run_set_pivot(Shape& shape, const OperationInput&, Arguments arguments) {
   if (map != "xyz" && map != "yzx" && map != "zxy") return failure(unknown_word(map, "xyz, yzx, zxy"));
   const double index = number(arguments, 1, -1);
   if (!(index >= 0 && index < 8)) return failure("the corner must be 0 to 7");
-  // The new x, y, z as the old axis and its sign (references/cga.md §2.1).
+  // The new x, y, z as the old axis and its sign (docs/rule_language.md §2.1).
   struct Axes {
     std::array<std::int8_t, 3> axis, sign;
   };

@@ -1,4 +1,4 @@
-// Which component a selector takes (references/cga.md §2.4).
+// Which component a selector takes (docs/rule_language.md §2.4).
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-// setback, setbackToArea, shapeL, shapeU, shapeO (references/cga.md §2.5).
+// setback, setbackToArea, shapeL, shapeU, shapeO (docs/rule_language.md §2.5).
 #include <algorithm>
 #include <cmath>
 

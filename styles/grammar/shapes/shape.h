@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "styles/grammar/shapes/mesh.h"
+#include "styles/grammar/shapes/shape_mesh.h"
 #include "styles/grammar/language/value.h"
 
 namespace blockrand::grammar {
@@ -19,14 +19,14 @@ struct Frame {
   std::array<Vector3, 3> axes{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
 };
 
-/// A plane that cuts what is inserted later (cga.md §2.4, §4.5), in object coordinates; what lies on the side that the
-/// normal points to is cut away.
+/// A plane that cuts what is inserted later (docs/rule_language.md §2.4, §4.5), in object coordinates; what lies on the
+/// side that the normal points to is cut away.
 struct TrimPlane {
   Vector3 point, normal;
   bool horizontal = false;
 };
 
-/// A texture projection set up for one UV set (cga.md §2.7), in object coordinates.
+/// A texture projection set up for one UV set (docs/rule_language.md §2.7), in object coordinates.
 struct Projection {
   Vector3 origin, u_axis, v_axis, w_axis;  ///< axes have length one
   double width = 1, height = 1;            ///< m, of one tile; negative ones mirror
@@ -34,7 +34,8 @@ struct Projection {
   double u_along_w = 0;
 };
 
-/// Looks of a shape (cga.md §3.1, `material.*`). The common ones are fields; the others keep their names.
+/// Looks of a shape (docs/rule_language.md §3.1, `material.*`). The common ones are fields; the others keep their
+/// names.
 struct Material {
   std::array<double, 4> colour{1, 1, 1, 1};  ///< sRGB and opacity, 0 to 1
   double roughness = 1, metallic = 0;
@@ -58,8 +59,8 @@ struct Origin {
   std::vector<Vector3> edge_normals;  ///< outward, by edge of the first face, in object coordinates
 };
 
-/// Everything that a rule sees and changes (cga.md §2.0). Copying is cheap: what is large is shared and replaced, never
-/// changed in place.
+/// Everything that a rule sees and changes (docs/rule_language.md §2.0). Copying is cheap: what is large is shared and
+/// replaced, never changed in place.
 struct Shape {
   Frame pivot;   ///< in object coordinates, the frame of the initial shape
   Frame scope;   ///< in the pivot's frame: scope.t and scope.r

@@ -30,14 +30,15 @@ struct SplitPiece {
   double from = 0, to = 0;
 };
 
-/// More pieces than this are cut off (cga.md §4.2: width 100000).
+/// More pieces than this are cut off (docs/rule_language.md §4.2: width 100000).
 inline constexpr std::size_t kMostPieces = 100000;
-/// Relative to the length: what is smaller than this is no room for a piece (cga.md §7.2, 8).
+/// Relative to the length: what is smaller than this is no room for a piece (docs/rule_language.md §7.2, 8).
 inline constexpr double kSplitTolerance = 1e-6;
 
-/// The size solver (cga.md §2.3): pieces in order, each longer than nothing; their position in the result is
-/// `split.index`, their number `split.total`. Pure: nothing but the arguments counts. \param repeat  the whole block is
-/// followed by * \param length  m, of the scope along the axis; 0 or less gives no pieces
+/// The size solver (docs/rule_language.md §2.3): pieces in order, each longer than nothing; their position in the
+/// result is `split.index`, their number `split.total`. Pure: nothing but the arguments counts.
+/// \param repeat  the whole block is followed by *
+/// \param length  m, of the scope along the axis; 0 or less gives no pieces
 std::vector<SplitPiece> split_sizes(std::span<const SplitItem> items, bool repeat, double length);
 
 /// `split(axis, adjust|noAdjust)`: one shape per piece, closed meshes capped, `split` records set, everything else

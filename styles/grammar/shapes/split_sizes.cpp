@@ -1,4 +1,4 @@
-// The size solver of split(): which pieces a pattern makes of a length (references/cga.md §2.3).
+// The size solver of split(): which pieces a pattern makes of a length (docs/rule_language.md §2.3).
 #include <algorithm>
 #include <cmath>
 

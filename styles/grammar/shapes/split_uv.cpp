@@ -1,4 +1,4 @@
-// split(u|v): cutting along lines of equal texture coordinates (references/cga.md §2.3).
+// split(u|v): cutting along lines of equal texture coordinates (docs/rule_language.md §2.3).
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Tags on faces and edges (references/cga.md §2.6), and the stand-in for assets bent along texture coordinates.
+// Tags on faces and edges (docs/rule_language.md §2.6), and the stand-in for assets bent along texture coordinates.
 #include "styles/grammar/shapes/components.h"
 #include "styles/grammar/shapes/mesh_tools.h"
 #include "styles/grammar/shapes/operation_list.h"

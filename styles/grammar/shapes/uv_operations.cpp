@@ -1,4 +1,4 @@
-// Texture coordinates (references/cga.md §2.7).
+// Texture coordinates (docs/rule_language.md §2.7).
 #include <algorithm>
 #include <cmath>
 

@@ -222,8 +222,8 @@ class Evaluation:
         areas = sorted({name for name, _, _, _ in rows})
         each = {n: np.mean([a == t for (name, _, _, _), a, t in zip(rows, answer, truth) if name == n]) for n in areas}
         print(f"| ours, mean over circles | {len(areas)} | {np.mean(list(each.values())):.3f} | | |")
-        print("| hand score of styles.md 3.3 on 14 unseen areas (published) | 2898 | 0.725 | 0.681 | |")
-        print("| random forest of styles.md 5.4 (published) | 2898 | 0.770 | 0.721 | |")
+        print("| hand score of docs/style_measures.md 3.3 on 14 unseen areas (published) | 2898 | 0.725 | 0.681 | |")
+        print("| random forest of docs/style_measures.md 5.4 (published) | 2898 | 0.770 | 0.721 | |")
         gz = truth == 0
         said = answer == 0
         both = (gz & said).sum()

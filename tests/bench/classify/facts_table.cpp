@@ -25,7 +25,7 @@
 #include "pipeline/footprints/load.h"
 #include "pipeline/run/prepare_extract.h"
 #include "pipeline/footprints/repair_extract.h"
-#include "pipeline/attributes/rule_book.h"
+#include "pipeline/attributes/rule_sets.h"
 #include "pipeline/footprints/shard.h"
 #include "pipeline/footprints/repair/kept_nodes.h"
 
@@ -101,18 +101,18 @@ void write_table(const std::string& input, const std::string& configs, const std
   const auto repaired = footprints::repair_extract(extract, shards, projection, kept, {}, kWorkers, progress);
   const auto& store = repaired.footprints;
   const auto context = context::context_extract(extract, store, coverage, projection, kWorkers, progress);
-  const context::SurroundingsFinder surroundings(extract, store, context);
-  evidence::FactsExtract facts = evidence::facts_extract(extract, store, context, surroundings, kWorkers, progress);
+  const context::VicinityFinder vicinity(extract, store, context);
+  evidence::FactsExtract facts = evidence::facts_extract(extract, store, context, vicinity, kWorkers, progress);
   classify::Tables tables = answers ? classify::Tables::read(configs) : classify::Tables::read_without_weights(configs);
   const evidence::TagFacts tags = evidence::tag_facts(extract, store, context, tables, projection, facts);
 
   Answers a;
   if (answers) {
-    const auto rules = attributes::read_rule_book(configs, "");
+    const auto rules = attributes::read_rule_sets(configs, "");
     const std::vector<classify::RegionPrior> priors = run::region_priors(rules.book, tables);
     const evidence::PriorOf prior = [&](std::uint32_t b) -> const classify::RegionPrior* {
       const std::uint32_t set = rules.book.choose(footprints::box_centre(extract, extract.buildings[store[b].lead]));
-      return set == districts::RuleBook::kNoSet ? nullptr : &priors[set];
+      return set == districts::RuleSets::kNoSet ? nullptr : &priors[set];
     };
     constexpr evidence::ClassifyOptions kUntagged{.tags = false, .dates = false, .smooth = true},
         kAlone{.tags = false, .dates = false, .smooth = false};

@@ -26,7 +26,7 @@ TAGS = {"tag_storeys", "tag_roof", "tag_roof_storeys", "tag_use", "tag_year", "t
 EDGES = {"tag_roof": [1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5], "tag_use": [v + 0.5 for v in range(12)],
          "tag_storeys": [1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 8.5], "tag_year": [1840, 1919, 1946], "tag_roof_storeys": [0.5, 1.5],
          "tag_heritage": [], "tag_shop": [], "tag_number": [0.5], "position": [1.5, 2.5, 3.5, 4.5, 5.5],
-         # Where styles.md 3.3 and 1.2 see the borders of morphologies: quantiles of the data cut elsewhere.
+         # Where docs/style_measures.md 3.3 and 1.2 see the borders of morphologies: quantiles of the data cut elsewhere.
          "around_area": [60, 80, 110, 160, 230, 300, 480, 800], "around_frontage": [7.5, 9.5, 12, 15, 20, 24],
          "around_count": [10, 20, 30, 42, 60], "around_party_share": [0.06, 0.12, 0.22, 0.4, 0.55],
          "around_built": [0.12, 0.18, 0.24, 0.3, 0.36, 0.5, 0.62], "around_elongation": [1.2, 1.4, 1.7, 2.2],
@@ -226,7 +226,7 @@ def fit_all(tables, shared, leave=(), labels=None, areas=None, only=None):
     return models
 
 
-# Ranges in which the hand score of references/styles.md 3.3 is full, and block shares of its 2.2: houses drawn from them stand
+# Ranges in which the hand score of docs/style_measures.md 3.3 is full, and block shares of its 2.2: houses drawn from them stand
 # for the morphologies that few circles show (terraces: one).
 HAND_SCORE = {
     "perimeter_block": {"around_party_share": (.22, .55), "around_area": (230, 480), "around_frontage": (15, 24), "around_depth": (12, 16),

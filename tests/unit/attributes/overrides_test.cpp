@@ -40,7 +40,7 @@ std::string error_of(const std::string& text) {
 /// One house of 10 by 10 m, way 1, with tags and orders.
 class House {
  public:
-  explicit House(const std::string& orders) : overrides(parse(orders)) {
+  explicit House(const std::string& applicable) : overrides(parse(applicable)) {
     model::MappedBuilding b;
     b.id = {OsmType::way, 1};
     b.attributes.use = extract.strings.intern("apartments");
@@ -77,7 +77,7 @@ class House {
       part.mapped = extract.buildings[i].attributes;
       building.parts.push_back(part);
     }
-    model::FacadeEdge edge;
+    model::WallSegment edge;
     edge.from_node = 11, edge.to_node = 12;
     building.edges.push_back(edge);
     region.extract = &extract;
@@ -161,9 +161,9 @@ TEST(Overrides, HeightsStayConsistentAndTheTagIsAmongWhatLost) {
   EXPECT_EQ(a.storeys.value, 5);
   EXPECT_EQ(a.storeys.source, Source::override_);
   EXPECT_NEAR(a.storey_height.value, 4, 0.01) << "the tagged height stays";
-  ASSERT_FALSE(house.why(a.storeys.evidence).lost.empty());
-  EXPECT_EQ(house.why(a.storeys.evidence).lost[0].value, "3");
-  EXPECT_EQ(house.why(a.storeys.evidence).lost[0].source, Source::tag);
+  ASSERT_FALSE(house.why(a.storeys.evidence).other_candidates.empty());
+  EXPECT_EQ(house.why(a.storeys.evidence).other_candidates[0].value, "3");
+  EXPECT_EQ(house.why(a.storeys.evidence).other_candidates[0].source, Source::tag);
   EXPECT_EQ(house.region.buildings[0].parts[0].attributes.storeys.source, Source::override_);
 }
 

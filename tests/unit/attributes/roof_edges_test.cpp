@@ -8,7 +8,7 @@
 namespace blockrand::attributes {
 namespace {
 
-using model::EdgeKind;
+using model::WallSegmentKind;
 using model::Point2;
 using model::RoofEdge;
 using testing_shapes::ring;
@@ -16,11 +16,11 @@ using testing_shapes::ring;
 /// A house 6 m wide and 10 m deep: south, east, north, west.
 const model::Polygon kHouse{ring({{0, 0}, {6, 0}, {6, 10}, {0, 10}}), {}};
 
-model::Building building(const std::vector<std::tuple<std::uint32_t, EdgeKind, double, double, bool>>& stretches) {
+model::Building building(const std::vector<std::tuple<std::uint32_t, WallSegmentKind, double, double, bool>>& segments) {
   model::Building b;
   b.outline = {kHouse};
-  for (const auto& [edge, kind, start, end, outbuilding] : stretches) {
-    model::FacadeEdge e;
+  for (const auto& [edge, kind, start, end, outbuilding] : segments) {
+    model::WallSegment e;
     e.edge = edge;
     e.kind = kind;
     e.start = start;
@@ -32,14 +32,14 @@ model::Building building(const std::vector<std::tuple<std::uint32_t, EdgeKind, d
 }
 
 TEST(RoofEdges, AreWhatMostOfTheirStretchesAre) {
-  const auto b = building({{0, EdgeKind::street, 0, 4, false},
-                           {0, EdgeKind::passage, 4, 6, false},
-                           {1, EdgeKind::party_wall, 0, 5, false},
-                           {1, EdgeKind::side, 5, 10, false},
-                           {2, EdgeKind::courtyard, 0, 4, false},
-                           {2, EdgeKind::party_wall, 4, 6, false},
-                           {3, EdgeKind::party_wall, 0, 4.9, false},
-                           {3, EdgeKind::side, 4.9, 10, false}});
+  const auto b = building({{0, WallSegmentKind::street, 0, 4, false},
+                           {0, WallSegmentKind::passage, 4, 6, false},
+                           {1, WallSegmentKind::party_wall, 0, 5, false},
+                           {1, WallSegmentKind::side, 5, 10, false},
+                           {2, WallSegmentKind::courtyard, 0, 4, false},
+                           {2, WallSegmentKind::party_wall, 4, 6, false},
+                           {3, WallSegmentKind::party_wall, 0, 4.9, false},
+                           {3, WallSegmentKind::side, 4.9, 10, false}});
   EXPECT_EQ(roof_edges(b, kHouse),
             (std::vector<RoofEdge>{RoofEdge::street, RoofEdge::party_wall, RoofEdge::courtyard, RoofEdge::open}));
   EXPECT_TRUE(roof_edges(model::Building{}, kHouse).empty());
@@ -48,33 +48,33 @@ TEST(RoofEdges, AreWhatMostOfTheirStretchesAre) {
 TEST(RoofEdges, RearsTakeMoreOfANeighbour) {
   // A wing stands against 55 % of the rear: eaves run on above it; against 80 %, the wall is its own.
   for (const double covered : {3.3, 4.8}) {
-    const auto b = building({{0, EdgeKind::street, 0, 6, false},
-                             {2, EdgeKind::party_wall, 0, covered, false},
-                             {2, EdgeKind::courtyard, covered, 6, false}});
+    const auto b = building({{0, WallSegmentKind::street, 0, 6, false},
+                             {2, WallSegmentKind::party_wall, 0, covered, false},
+                             {2, WallSegmentKind::courtyard, covered, 6, false}});
     EXPECT_EQ(roof_edges(b, kHouse)[2], covered < 4 ? RoofEdge::courtyard : RoofEdge::party_wall);
   }
 }
 
 TEST(RoofEdges, OutbuildingsAreNoNeighbours) {
-  const auto b = building({{0, EdgeKind::street, 0, 6, false}, {1, EdgeKind::party_wall, 0, 10, true}});
+  const auto b = building({{0, WallSegmentKind::street, 0, 6, false}, {1, WallSegmentKind::party_wall, 0, 10, true}});
   EXPECT_EQ(roof_edges(b, kHouse)[1], RoofEdge::open);
 }
 
 TEST(RoofEdges, OfAPartAreThoseOfTheOutlineItStandsAt) {
-  const auto b = building({{0, EdgeKind::street, 0, 6, false},
-                           {1, EdgeKind::party_wall, 0, 10, false},
-                           {3, EdgeKind::party_wall, 0, 10, false}});
+  const auto b = building({{0, WallSegmentKind::street, 0, 6, false},
+                           {1, WallSegmentKind::party_wall, 0, 10, false},
+                           {3, WallSegmentKind::party_wall, 0, 10, false}});
   // The western half, 4 cm off: repair moves parts and outline together, but not to the millimetre.
   const model::Polygon half{ring({{0.04, 0}, {3, 0}, {3, 10}, {0.04, 10}}), {}};
   EXPECT_EQ(roof_edges(b, half),
             (std::vector<RoofEdge>{RoofEdge::street, RoofEdge::open, RoofEdge::open, RoofEdge::party_wall}));
-  // Inside, no stretch lies on it.
+  // Inside, no wall segment lies on it.
   const model::Polygon inside{ring({{2, 2}, {4, 2}, {4, 8}, {2, 8}}), {}};
   EXPECT_EQ(roof_edges(b, inside), std::vector<RoofEdge>(4, RoofEdge::open));
 }
 
 TEST(RoofPlans, LosePointsThatBendNoWall) {
-  auto b = building({{0, EdgeKind::street, 0, 6, false}});
+  auto b = building({{0, WallSegmentKind::street, 0, 6, false}});
   b.parts.emplace_back();
   b.parts[0].plan = {ring({{0, 0}, {3, 0.005}, {6, 0}, {6, 10}, {0, 10}}), {}};
   prepare_roof_plans(b, 0.01);

@@ -16,7 +16,7 @@ const std::string kConfigs = std::string(BLOCKRAND_SOURCE_DIR) + "/configs";
 
 TEST(Catalogue, HoldsEveryStyleOfTheReference) {
   const Catalogue catalogue = read_catalogue(kConfigs);
-  // references/styles.md 1.1, with detached_*, pb_* and office spelled out.
+  // docs/style_measures.md 1.1, with detached_*, pb_* and office spelled out.
   for (const char* id : {"burgher_gable",
                          "burgher_eaves",
                          "halftimber",

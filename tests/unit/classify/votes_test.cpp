@@ -57,19 +57,19 @@ TEST(Votes, FallWithTheRatioOfFootprintsBothWays) {
 
 TEST(Votes, FrontAndBehindSpeakLessOfEachOther) {
   Pair p;
-  p.asker.standing = Standing::front;
+  p.asker.siting = Siting::front;
   EXPECT_DOUBLE_EQ(p.weight(), 1) << "not known";
-  p.asked.standing = Standing::front;
+  p.asked.siting = Siting::front;
   EXPECT_DOUBLE_EQ(p.weight(), 1);
-  p.asked.standing = Standing::behind;
+  p.asked.siting = Siting::behind;
   EXPECT_DOUBLE_EQ(p.weight(), 0.25);
   using model::BuildingPosition;
-  EXPECT_EQ(standing_of(BuildingPosition::unknown), Standing::unknown);
+  EXPECT_EQ(siting_of(BuildingPosition::unknown), Siting::unknown);
   for (const auto front : {BuildingPosition::free_standing, BuildingPosition::end_of_row, BuildingPosition::mid_row,
                            BuildingPosition::corner_house})
-    EXPECT_EQ(standing_of(front), Standing::front);
+    EXPECT_EQ(siting_of(front), Siting::front);
   for (const auto behind : {BuildingPosition::rear_building, BuildingPosition::side_wing})
-    EXPECT_EQ(standing_of(behind), Standing::behind);
+    EXPECT_EQ(siting_of(behind), Siting::behind);
 }
 
 TEST(Votes, ACommonWallTheBlockAndTheStreetCountMore) {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "pipeline/cli/explain.h"
+#include "pipeline/cli/explain_command.h"
 #include "styles/classify/features.h"
 
 namespace blockrand::cli {

@@ -10,7 +10,7 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/cli/exit_codes.h"
-#include "pipeline/cli/grammar.h"
+#include "pipeline/cli/grammar_command.h"
 
 namespace blockrand::cli {
 namespace {

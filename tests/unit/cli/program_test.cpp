@@ -13,12 +13,12 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/publish.h"
-#include "pipeline/cli/build.h"
+#include "pipeline/cli/build_command.h"
 #include "pipeline/cli/command.h"
 #include "pipeline/cli/configs_folder.h"
 #include "pipeline/cli/errors.h"
 #include "pipeline/cli/help.h"
-#include "pipeline/cli/info.h"
+#include "pipeline/cli/info_command.h"
 #include "pipeline/cli/signals.h"
 
 namespace blockrand::cli {

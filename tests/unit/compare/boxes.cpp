@@ -5,7 +5,7 @@
 
 #include "pipeline/compare/area_vector.h"
 #include "pipeline/compare/read_city.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::compare::test {
 

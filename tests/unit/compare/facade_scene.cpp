@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::compare::test {
 namespace {

@@ -46,31 +46,31 @@ Comparison measured(double degraded_by = 0, std::optional<Measure> degraded = {}
   return c;
 }
 
-BaselineVerdict against(const Comparison& now, const Comparison& before, double allowed) {
+BaselineResult against(const Comparison& now, const Comparison& before, double allowed) {
   return compare_with_baseline(now, comparison_json(before, {}), "before.json", allowed);
 }
 
 TEST(Baseline, TheSameIsNotWorse) {
-  const BaselineVerdict v = against(measured(), measured(), 0);
+  const BaselineResult v = against(measured(), measured(), 0);
   EXPECT_FALSE(v.worse());
   EXPECT_TRUE(v.lost.empty());
-  std::size_t judged = 0;
-  for (const MeasureInfo& m : kMeasures) judged += m.better != Better::none ? 1 : 0;
-  EXPECT_EQ(v.lines.size(), judged + 2) << "missing and extra area";
+  std::size_t validated = 0;
+  for (const MeasureInfo& m : kMeasures) validated += m.better != Better::none ? 1 : 0;
+  EXPECT_EQ(v.lines.size(), validated + 2) << "missing and extra area";
   for (const auto& line : v.lines) EXPECT_EQ(line.worse_by, 0) << line.measure;
-  EXPECT_THAT(verdict_text(v), HasSubstr("not worse than the baseline"));
+  EXPECT_THAT(baseline_text(v), HasSubstr("not worse than the baseline"));
 }
 
 TEST(Baseline, EachMeasureThreePercentWorseFailsAtTwoAndPassesAtFive) {
   for (std::size_t m = 0; m < kMeasureCount; ++m) {
     if (kMeasures[m].better == Better::none) continue;
     const Comparison now = measured(0.03, static_cast<Measure>(m));
-    const BaselineVerdict strict = against(now, measured(), 0.02);
+    const BaselineResult strict = against(now, measured(), 0.02);
     EXPECT_TRUE(strict.worse()) << kMeasures[m].id;
     for (const auto& line : strict.lines) EXPECT_EQ(line.fails, line.measure == kMeasures[m].id) << line.measure;
     EXPECT_FALSE(against(now, measured(), 0.05).worse()) << kMeasures[m].id;
     EXPECT_FALSE(against(measured(), now, 0).worse()) << kMeasures[m].id << ": better is not worse";
-    EXPECT_THAT(verdict_text(strict), HasSubstr("WORSE"));
+    EXPECT_THAT(baseline_text(strict), HasSubstr("WORSE"));
   }
 }
 
@@ -114,12 +114,12 @@ TEST(Baseline, WhatIsLostFails) {
   now.matches.pop_back();
   for (MatchResult& match : now.matches) match.values[static_cast<std::size_t>(Measure::opening_recall)] = {};
   sum_up(now);
-  const BaselineVerdict v = against(now, measured(), 0.02);
+  const BaselineResult v = against(now, measured(), 0.02);
   EXPECT_TRUE(v.worse());
   EXPECT_THAT(v.lost, testing::Contains("measure opening_recall"));
   EXPECT_THAT(v.lost, testing::Contains("measure eaves_error (in 2 matches, was in 3)"));
   EXPECT_THAT(v.lost_buildings, ElementsAre("r2"));
-  EXPECT_THAT(verdict_text(v), HasSubstr("LOST: building r2\n"));
+  EXPECT_THAT(baseline_text(v), HasSubstr("LOST: building r2\n"));
   EXPECT_THAT(failed_text(v), HasSubstr("lost measure opening_recall"));
   EXPECT_THAT(failed_text(v), testing::EndsWith(", 1 building lost"));
   EXPECT_FALSE(against(measured(), now, 0.02).worse()) << "a measure more is no loss";
@@ -132,7 +132,7 @@ TEST(Baseline, AnotherGroupingIsNoLossButALostHalfIs) {
   block.matches[1].reference.buildings = block.matches[1].model.buildings = {0, 1};
   block.matches.erase(block.matches.begin());
   sum_up(block);
-  EXPECT_FALSE(against(block, measured(), 0.02).worse()) << verdict_text(against(block, measured(), 0.02));
+  EXPECT_FALSE(against(block, measured(), 0.02).worse()) << baseline_text(against(block, measured(), 0.02));
   EXPECT_FALSE(against(measured(), block, 0.02).worse());
   Comparison half = block;
   half.matches[0].reference.buildings = {0};
@@ -150,7 +150,7 @@ TEST(Baseline, AValueInFewerMatchesIsLost) {
 TEST(Baseline, MissingAndExtraAreaAreJudged) {
   Comparison now = measured();
   now.extra.push_back(0);
-  const BaselineVerdict v = against(now, measured(), 0.02);
+  const BaselineResult v = against(now, measured(), 0.02);
   EXPECT_EQ(failed_text(v), "extra_area");
   EXPECT_FALSE(against(measured(), now, 0.02).worse());
   now.missing.push_back(0);
@@ -179,14 +179,14 @@ TEST(Baseline, WhatWasComparedOtherwiseIsTold) {
   Comparison now = measured();
   now.absolute_heights = true;
   now.reference.crs = "EPSG:25833";
-  const BaselineVerdict v = compare_with_baseline(now, comparison_json(measured(), {{"align", "none"}, {"seed", "1"}}),
+  const BaselineResult v = compare_with_baseline(now, comparison_json(measured(), {{"align", "none"}, {"seed", "1"}}),
                                                   "before.json", 0.02, {{"align", "both"}, {"lod", "2"}});
   EXPECT_FALSE(v.worse());
   EXPECT_THAT(v.differs,
               ElementsAre("CRS was EPSG:25832 and is EPSG:25833", "heights was above own ground and is absolute",
                           "option align was none and is both", "option lod was not set and is 2",
                           "option seed was 1 and is not set"));
-  EXPECT_THAT(verdict_text(v), HasSubstr("warning: CRS was EPSG:25832 and is EPSG:25833\n"));
+  EXPECT_THAT(baseline_text(v), HasSubstr("warning: CRS was EPSG:25832 and is EPSG:25833\n"));
 }
 
 TEST(Baseline, IdsWithBrokenCharactersAreFoundAgain) {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::context {
 namespace {

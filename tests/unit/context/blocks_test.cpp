@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::context {
 namespace {

@@ -17,10 +17,10 @@ const OsmId kNobody{OsmType::way, 999};
 
 TEST(TaggedNeighbours, MedianWithinTheReachOnly) {
   const TaggedNeighbours n({tagged(1, 0, 0, 3), tagged(2, 50, 0, 5), tagged(3, -60, 20, 4), tagged(4, 101, 0, 20)}, 100);
-  const auto opinion = n.storeys({0, 0}, 0, kNobody, 3);
-  ASSERT_TRUE(opinion);
-  EXPECT_DOUBLE_EQ(opinion->value, 4);
-  EXPECT_EQ(opinion->voices, 3);
+  const auto vote = n.storeys({0, 0}, 0, kNobody, 3);
+  ASSERT_TRUE(vote);
+  EXPECT_DOUBLE_EQ(vote->value, 4);
+  EXPECT_EQ(vote->voices, 3);
 }
 
 TEST(TaggedNeighbours, AnEvenNumberGivesAMappedValue) {
@@ -47,10 +47,10 @@ TEST(TaggedNeighbours, MajorityOfRoofs) {
     b.push_back({{OsmType::way, i}, {i * 1.0, 0}, 0, std::nullopt, i < 3 ? RoofShape::hipped : RoofShape::flat});
   }
   const TaggedNeighbours n(b, 100);
-  const auto opinion = n.roof_shape({0, 0}, 0, kNobody, 3);
-  ASSERT_TRUE(opinion);
-  EXPECT_EQ(opinion->value, RoofShape::hipped);
-  EXPECT_DOUBLE_EQ(opinion->share, 0.6);
+  const auto vote = n.roof_shape({0, 0}, 0, kNobody, 3);
+  ASSERT_TRUE(vote);
+  EXPECT_EQ(vote->value, RoofShape::hipped);
+  EXPECT_DOUBLE_EQ(vote->share, 0.6);
   EXPECT_FALSE(n.storeys({0, 0}, 0, kNobody, 1)) << "nobody tagged storeys";
 }
 

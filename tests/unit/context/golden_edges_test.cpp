@@ -15,7 +15,7 @@
 namespace blockrand::context {
 namespace {
 
-using model::EdgeKind;
+using model::WallSegmentKind;
 using model::Point2;
 
 struct GoldenEdge {
@@ -57,12 +57,12 @@ std::map<std::int64_t, Point2> nodes_of(const Town& town, const model::Building&
 }
 
 /// What most of the stretch from p to q is, by the stretches of edges that run along it.
-EdgeKind majority(const model::Building& b, Point2 p, Point2 q) {
+WallSegmentKind majority(const model::Building& b, Point2 p, Point2 q) {
   constexpr double kBeside = 0.75;  // m; how far repair may have moved a wall
   const double length = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
   const Point2 along{(q.x - p.x) / length, (q.y - p.y) / length};
-  std::array<double, model::kEdgeKindCount> common{};
-  for (const model::FacadeEdge& f : b.edges) {
+  std::array<double, model::kWallSegmentKindCount> common{};
+  for (const model::WallSegment& f : b.edges) {
     const model::Polygon& polygon = b.outline[f.polygon];
     const model::Ring& ring = f.ring == 0 ? polygon.outer : polygon.holes[f.ring - 1];
     const Point2 a = ring.points[f.edge], e = ring.points[(f.edge + 1) % ring.size()];
@@ -75,7 +75,7 @@ EdgeKind majority(const model::Building& b, Point2 p, Point2 q) {
     const bool parallel = (e.x - a.x) * along.x + (e.y - a.y) * along.y > 0.9 * edge;
     if (beside < kBeside && overlap > 0 && parallel) common[static_cast<std::size_t>(f.kind)] += overlap;
   }
-  return static_cast<EdgeKind>(std::max_element(common.begin(), common.end()) - common.begin());
+  return static_cast<WallSegmentKind>(std::max_element(common.begin(), common.end()) - common.begin());
 }
 
 struct Count {

@@ -9,7 +9,7 @@ namespace blockrand::context {
 namespace {
 
 using model::BuildingPosition;
-using model::EdgeKind;
+using model::WallSegmentKind;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -20,7 +20,7 @@ TEST(Situation, HouseInTheMiddleOfARow) {
   const model::BuildingSituation& s = t[12].situation;
   EXPECT_EQ(s.position, BuildingPosition::mid_row);
   ASSERT_THAT(s.fronts, SizeIs(1));
-  EXPECT_EQ(t[12].edges[s.fronts[0]].kind, EdgeKind::street);
+  EXPECT_EQ(t[12].edges[s.fronts[0]].kind, WallSegmentKind::street);
   EXPECT_NEAR(s.orientation.value(), 180, 0.01);
   EXPECT_NEAR(s.depth.value(), 12, 0.01);
   EXPECT_NEAR(s.width.value(), 12, 0.01);
@@ -121,7 +121,7 @@ TEST(Situation, RoundedCornerIsAStreetCorner) {
   t.label();
   EXPECT_EQ(t[1].situation.position, BuildingPosition::corner_house);
   int corners = 0;
-  for (const model::FacadeEdge& f : t[1].edges) corners += f.corner_start + f.corner_end;
+  for (const model::WallSegment& f : t[1].edges) corners += f.corner_start + f.corner_end;
   EXPECT_GE(corners, 2);
 }
 

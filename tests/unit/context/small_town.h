@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/context/facade_edges.h"
+#include "pipeline/context/wall_segments.h"
 
 namespace blockrand::context {
 
@@ -71,8 +71,8 @@ class SmallTown {
     blocks = find_blocks(lines, {});
     figures = measure_blocks(blocks, footprints, lines);
     std::sort(addresses.begin(), addresses.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-    const SurroundingsIndex index({footprints, lines, blocks, figures, passages, points, addresses});
-    for (model::Building& b : buildings) label_edges(b, index, address);
+    const VicinityIndex index({footprints, lines, blocks, figures, passages, points, addresses});
+    for (model::Building& b : buildings) label_wall_segments(b, index, address);
   }
 
   const model::Building& operator[](std::int64_t id) const {
@@ -80,12 +80,12 @@ class SmallTown {
   }
 
   /// The stretch of a building that holds the point nearest to (x, y).
-  const model::FacadeEdge& edge(std::int64_t id, double x, double y) const {
+  const model::WallSegment& edge(std::int64_t id, double x, double y) const {
     const model::Building& b = (*this)[id];
     const model::Point2 p = at(x, y);
-    const model::FacadeEdge* best = nullptr;
+    const model::WallSegment* best = nullptr;
     double least = 1e9;
-    for (const model::FacadeEdge& f : b.edges) {
+    for (const model::WallSegment& f : b.edges) {
       const model::Polygon& polygon = b.outline[f.polygon];
       const model::Ring& r = f.ring == 0 ? polygon.outer : polygon.holes[f.ring - 1];
       const model::Point2 a = r.points[f.edge], e = r.points[(f.edge + 1) % r.size()];
@@ -99,7 +99,7 @@ class SmallTown {
     }
     return *best;
   }
-  model::EdgeKind kind(std::int64_t id, double x, double y) const { return edge(id, x, y).kind; }
+  model::WallSegmentKind kind(std::int64_t id, double x, double y) const { return edge(id, x, y).kind; }
 
   std::vector<model::Building> buildings;
   std::vector<Footprint> footprints;

@@ -45,8 +45,8 @@ Town read_town(const std::string& path) {
 }
 
 void label_town(Town& town) {
-  const SurroundingsIndex index(town.surroundings());
-  for (model::Building& b : town.buildings) label_edges(b, index, address_street(town.extract, b.tags));
+  const VicinityIndex index(town.vicinity());
+  for (model::Building& b : town.buildings) label_wall_segments(b, index, address_street(town.extract, b.tags));
 }
 
 }  // namespace blockrand::context

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/context/facade_edges.h"
+#include "pipeline/context/wall_segments.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/region.h"
 
@@ -21,7 +21,7 @@ struct Town {
   std::vector<BlockFigures> figures;
   std::vector<PassageWay> passages;
   std::vector<SitePoint> points;
-  Surroundings surroundings() const { return {footprints, lines, blocks, figures, passages, points}; }
+  Vicinity vicinity() const { return {footprints, lines, blocks, figures, passages, points}; }
 };
 
 /// Reads a file of ../shared/data/osm through import, projection, repair, blocks. Throws when the file is not there.

@@ -18,8 +18,8 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-RuleBook book_of(const std::string& text) {
-  RuleBook book;
+RuleSets book_of(const std::string& text) {
+  RuleSets book;
   for (const char* name : {"a", "b", "c"}) book.presets.push_back({name, "one", model::StyleClass::gruenderzeit, {}});
   book.presets[1].style = model::StyleClass::modern;
   book.presets[1].substyles = {"reform_block"};
@@ -46,14 +46,14 @@ Subject house(std::int64_t id = 1) {
   return s;
 }
 
-std::string preset_of(const RuleBook& book, const Subject& s) {
+std::string preset_of(const RuleSets& book, const Subject& s) {
   const Decision d = decide(book, 0, s, 1);
   EXPECT_EQ(d, assign(book, 0, s, 1).decision);
   return d.preset == Decision::kNone ? "" : book.presets[d.preset].name;
 }
 
 TEST(Inheritance, FinerLevelsOverrideAndInheritParameters) {
-  const RuleBook book = book_of(R"(
+  const RuleSets book = book_of(R"(
 [[rule]]
 name = "city"
 level = "city"
@@ -82,8 +82,8 @@ parameters = { ornament = 0.9 }
   EXPECT_EQ(book.sets[0].rules[a.parameters[1].rule].name, "building");
   EXPECT_EQ(a.fired.size(), 4u);
   EXPECT_THAT(a.why, AllOf(HasSubstr("rule 'block'"), HasSubstr("mid row")));
-  ASSERT_EQ(a.lost.size(), 1u);
-  EXPECT_EQ(a.lost[0].value, "a");
+  ASSERT_EQ(a.other_candidates.size(), 1u);
+  EXPECT_EQ(a.other_candidates[0].value, "a");
   Subject corner = house();
   corner.position = model::BuildingPosition::corner_house;
   EXPECT_EQ(preset_of(book, corner), "a");
@@ -111,7 +111,7 @@ preset = "b"
 }
 
 TEST(Draw, FollowsTheWeightsAndTheBuildingAlone) {
-  const RuleBook book = book_of("[[rule]]\nname = \"r\"\npreset = { a = 0.7, b = 0.3 }\n");
+  const RuleSets book = book_of("[[rule]]\nname = \"r\"\npreset = { a = 0.7, b = 0.3 }\n");
   int a = 0;
   for (int i = 0; i < 20000; ++i) {
     const std::string drawn = preset_of(book, house(i + 1));
@@ -126,7 +126,7 @@ TEST(Draw, FollowsTheWeightsAndTheBuildingAlone) {
 }
 
 TEST(Draw, BlockRulesDrawOncePerBlock) {
-  const RuleBook book = book_of("[[rule]]\nname = \"r\"\nlevel = \"block\"\npreset = { a = 0.5, b = 0.5 }\n");
+  const RuleSets book = book_of("[[rule]]\nname = \"r\"\nlevel = \"block\"\npreset = { a = 0.5, b = 0.5 }\n");
   std::set<std::string> over_blocks;
   for (int block = 0; block < 40; ++block) {
     const std::string id = "w" + std::to_string(block) + ".n1.l";
@@ -143,7 +143,7 @@ TEST(Draw, BlockRulesDrawOncePerBlock) {
 }
 
 TEST(Predicates, ClassNeedsItsProbabilityAndUnknownIsUniform) {
-  const RuleBook book = book_of(R"(
+  const RuleSets book = book_of(R"(
 [[rule]]
 name = "sure"
 which.style = "modern"
@@ -182,12 +182,12 @@ TEST(Predicates, ASubStyleNeedsItsProbabilityAmongThoseOfItsClass) {
   style.substyle_p = 0.32f;  // 0.4 of its class: another is likelier than not
   EXPECT_EQ(preset_of(with(""), s), "a");
   EXPECT_EQ(preset_of(with("which.probability = 0.3\n"), s), "b");
-  s.ordered_style = "gz_high";
+  s.overridden_style = "gz_high";
   EXPECT_EQ(preset_of(with("which.probability = 0.9\n"), s), "b") << "what is ordered is certain";
 }
 
 TEST(Predicates, AskOnlyWhatARuleNeedsAndAllMustHold) {
-  const RuleBook book = book_of(R"(
+  const RuleSets book = book_of(R"(
 [[rule]]
 name = "r"
 where.built_share = [0.4, 1]
@@ -222,7 +222,7 @@ preset = "a"
 }
 
 TEST(Tags, OfTheBuildingBeatThoseOfTheAreaAndBothBeatRules) {
-  const RuleBook book = book_of("[[rule]]\nname = \"r\"\npreset = \"a\"\n");
+  const RuleSets book = book_of("[[rule]]\nname = \"r\"\npreset = \"a\"\n");
   Subject s = house();
   s.area_tag = [](std::string_view key) -> std::optional<Subject::AreaTag> {
     if (key != "blockrand:preset") return std::nullopt;
@@ -236,9 +236,9 @@ TEST(Tags, OfTheBuildingBeatThoseOfTheAreaAndBothBeatRules) {
   a = assign(book, 0, s, 1);
   EXPECT_EQ(book.presets[a.decision.preset].name, "c");
   EXPECT_EQ(a.decision.source, model::Source::tag);
-  ASSERT_EQ(a.lost.size(), 2u);
-  EXPECT_EQ(a.lost[0].value, "b");
-  EXPECT_EQ(a.lost[1].value, "a");
+  ASSERT_EQ(a.other_candidates.size(), 2u);
+  EXPECT_EQ(a.other_candidates[0].value, "b");
+  EXPECT_EQ(a.other_candidates[1].value, "a");
   s.tag = [](std::string_view key) -> std::string_view { return key == "blockrand:preset" ? "nobody" : ""; };
   a = assign(book, 0, s, 1);
   EXPECT_EQ(book.presets[a.decision.preset].name, "b");
@@ -246,7 +246,7 @@ TEST(Tags, OfTheBuildingBeatThoseOfTheAreaAndBothBeatRules) {
 }
 
 TEST(Tags, AStyleReplacesWhatClassificationSays) {
-  const RuleBook book = book_of(R"(
+  const RuleSets book = book_of(R"(
 [[rule]]
 name = "m"
 which.style = "modern"
@@ -270,12 +270,12 @@ preset = "a"
   style = "rococo";
   EXPECT_EQ(preset_of(book, s), "a");
   EXPECT_THAT(assign(book, 0, s, 1).unreadable, ElementsAre("blockrand:style=rococo"));
-  s.ordered_style = "modern";
+  s.overridden_style = "modern";
   EXPECT_EQ(preset_of(book, s), "b") << "an override beats the tag";
 }
 
 TEST(Choice, TheSmallestPolygonThatHoldsTheBuildingWins) {
-  RuleBook book;
+  RuleSets book;
   book.presets.push_back({"a", "one", model::StyleClass::other, {}});
   const std::string rule = "[[rule]]\nname = \"r\"\npreset = \"a\"\n";
   parse_rule_set("polygon = [[10, 50], [11, 50], [11, 51], [10, 51]]\n" + rule, "town.toml", book);
@@ -288,8 +288,8 @@ TEST(Choice, TheSmallestPolygonThatHoldsTheBuildingWins) {
   EXPECT_EQ(at(10.4, 50.5), "old_town") << "the boundary belongs to it";
   EXPECT_EQ(at(10.2, 50.2), "town");
   EXPECT_EQ(at(13.4, 52.5), "anywhere");
-  RuleBook none;
-  EXPECT_EQ(none.choose({0, 0}), RuleBook::kNoSet);
+  RuleSets none;
+  EXPECT_EQ(none.choose({0, 0}), RuleSets::kNoSet);
 }
 
 TEST(Choice, PolygonsAreExact) {
@@ -393,7 +393,7 @@ TEST(Errors, RulesThatCanStillActAreNone) {
 }
 
 TEST(Priors, AreReadAndPresetsOfASetCount) {
-  const RuleBook book = book_of(R"(
+  const RuleSets book = book_of(R"(
 [presets.mine]
 description = "of this town"
 class = "gruenderzeit"
@@ -417,7 +417,7 @@ storeys = { slab = 6 }
 
 TEST(Shipped, EveryRuleSetIsReadAndGivesEveryBuildingAPreset) {
   const std::filesystem::path configs = std::filesystem::path(BLOCKRAND_SOURCE_DIR) / "configs";
-  RuleBook book;
+  RuleSets book;
   book.presets = read_presets((configs / "styles" / "presets.toml").string());
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(configs / "districts"))

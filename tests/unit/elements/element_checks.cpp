@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "pipeline/geometry/check_solid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/solid_builder.h"
 #include "styles/elements/flat_shapes.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "styles/elements/element.h"
+#include "styles/elements/built_element.h"
 #include "styles/elements/make_element.h"
 
 namespace blockrand::elements::checks {

@@ -1,4 +1,4 @@
-// The edge language of openings (finkenzeller.md §3.11.1 and 2).
+// The edge language of openings (docs/sources.md, Finkenzeller 3.11.1 and 2).
 #include "styles/elements/opening_edges.h"
 
 #include <gmock/gmock.h>

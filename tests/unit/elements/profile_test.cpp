@@ -1,5 +1,5 @@
-// The profile language: golden program G1 of finkenzeller.md §3.14, errors with their places, scaling, sections,
-// presets.
+// The profile language: golden program G1 of docs/sources.md, Finkenzeller 3.14, errors with their places, scaling,
+// sections, presets.
 #include "styles/elements/profile.h"
 
 #include <gmock/gmock.h>
@@ -181,7 +181,7 @@ TEST(Profile, SilhouettesAreAsHighAndAsFarOut) {
 }
 
 TEST(ProfileLibrary, PresetsKeepTheNumbersOfStyles) {
-  // styles.md §2.5: projection in metres at the typical height.
+  // docs/style_measures.md §2.5: projection in metres at the typical height.
   const std::map<std::string, std::pair<double, double>> projections{
       {"plinth", {0.03, 0.10}},    {"plinth_cornice", {0.05, 0.08}}, {"string_course", {0.08, 0.12}},
       {"sill_band", {0.06, 0.10}}, {"sill", {0.04, 0.10}},           {"hood", {0.15, 0.25}},

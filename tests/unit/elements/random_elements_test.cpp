@@ -80,7 +80,7 @@ class RandomElements : public testing::TestWithParam<std::string> {};
 
 TEST_P(RandomElements, KeepTheirPromises) {
   const ElementKind& kind = *find_element_kind(GetParam());
-  int built = 0, refused = 0, sound = 0, judged = 0;
+  int built = 0, refused = 0, sound = 0, validated = 0;
   std::map<std::string, int> reasons;
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     Draws draws(seed + 1);
@@ -108,7 +108,7 @@ TEST_P(RandomElements, KeepTheirPromises) {
       if (!body.closed) continue;
       ASSERT_GT(checks::volume(mesh, body), 0) << what;
       if (seed % 20 == 0 && body.faces.size() < 400) {
-        ++judged;
+        ++validated;
         const std::string defect = checks::solid_defect(mesh, body);
         sound += defect == "none";
         if (defect != "none" && std::getenv("ELEMENTS_REASONS")) fmt::print("  {}: {}\n", defect, what);
@@ -161,9 +161,9 @@ TEST_P(RandomElements, KeepTheirPromises) {
   for (const auto& [reason, count] : reasons)
     if (std::getenv("ELEMENTS_REASONS")) fmt::print("  {} {} {}\n", kind.name, count, reason);
   EXPECT_GE(built, 450) << refused << " refused";
-  EXPECT_GE(sound, judged * 97 / 100) << judged << " closed bodies judged";
+  EXPECT_GE(sound, validated * 97 / 100) << validated << " closed bodies judged";
   fmt::print("{}: {} built, {} refused; {} of {} closed bodies sound on the grid\n", kind.name, built, refused, sound,
-             judged);
+             validated);
 }
 
 std::vector<std::string> names() {

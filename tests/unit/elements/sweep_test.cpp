@@ -274,7 +274,7 @@ TEST(Sweep, RefusesWhatIsNoChain) {
 }
 
 TEST(Consoles, StandEquallySpacedInTheMiddleOfEachWall) {
-  // finkenzeller.md §3.7.4 [R]: floor((L - w) / s) + 1 of them.
+  // docs/sources.md, Finkenzeller 3.7.4 [R]: floor((L - w) / s) + 1 of them.
   const std::vector<Point2> chain{{0, 0}, {3.2, 0}};
   const auto places = console_places(chain, false, WallSide::left, 0.5, 0.2, 0.3);
   ASSERT_EQ(places.size(), 6u);

@@ -28,7 +28,7 @@
 namespace blockrand::facades {
 namespace {
 
-using model::EdgeKind;
+using model::WallSegmentKind;
 using model::Point2;
 using testing_shapes::Random;
 
@@ -37,7 +37,7 @@ const std::filesystem::path kSource = BLOCKRAND_SOURCE_DIR;
 struct House {
   double width = 18, depth = 12, storey_height = 3.8, plinth = 0.8;
   int storeys = 5;
-  std::vector<EdgeKind> edges{EdgeKind::street, EdgeKind::party_wall, EdgeKind::courtyard, EdgeKind::party_wall};
+  std::vector<WallSegmentKind> edges{WallSegmentKind::street, WallSegmentKind::party_wall, WallSegmentKind::courtyard, WallSegmentKind::party_wall};
   double angle_x = 1, angle_y = 0;  ///< direction of the front
 };
 
@@ -55,7 +55,7 @@ model::Region region_of(const House& house, const std::string& preset, std::int6
       testing_shapes::polygon({at(0, 0), at(house.width, 0), at(house.width, house.depth), at(0, house.depth)});
   b.outline = {plan};
   for (std::uint32_t e = 0; e < 4; ++e) {
-    model::FacadeEdge edge;
+    model::WallSegment edge;
     edge.edge = e;
     const Point2 p = plan.outer.points[e], q = plan.outer.points[(e + 1) % 4];
     edge.end = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y));
@@ -80,7 +80,7 @@ model::Region region_of(const House& house, const std::string& preset, std::int6
   part.osm = b.osm;
   part.plan = part.roof_plan = plan;
   part.attributes = a;
-  masses::EnvelopeLooks looks;
+  masses::EnvelopeMaterials looks;
   looks.wall.kind = model::SurfaceKind::wall;
   looks.wall.colour = a.wall_colour.value;
   looks.roof.kind = model::SurfaceKind::roof;
@@ -93,7 +93,7 @@ model::Region region_of(const House& house, const std::string& preset, std::int6
   return region;
 }
 
-const GrammarBook& shipped() {
+const GrammarLibrary& shipped() {
   static const std::vector<PresetGrammar> presets{
       {"gruenderzeit", "gruenderzeit.cga", {{"ornament", "0.7"}, {"stripped", "0"}}},
       {"late",
@@ -105,7 +105,7 @@ const GrammarBook& shipped() {
       {"tenement", "workers_tenement.cga", {}},
       {"slab", "slab.cga", {}},
       {"plain", "plain.cga", {}}};
-  static const GrammarBook book((kSource / "configs/grammars").string(), presets);
+  static const GrammarLibrary book((kSource / "configs/grammars").string(), presets);
   return book;
 }
 
@@ -160,7 +160,7 @@ struct Quantiles {
 
 class Preset : public testing::TestWithParam<std::pair<const char*, std::array<double, 8>>> {};
 
-/// Proportions that references/styles.md 2.4 and its appendix give: distance of axes, width of windows, height over
+/// Proportions that docs/style_measures.md 2.4 and its appendix give: distance of axes, width of windows, height over
 /// width, sill over the floor; asserted on a thousand houses each.
 TEST_P(Preset, KeepsTheProportionsOfItsStyle) {
   const auto& [name, range] = GetParam();
@@ -200,7 +200,7 @@ TEST_P(Preset, KeepsTheProportionsOfItsStyle) {
       signature += p.name + " " + std::to_string(std::lround(p.u * 100)) + ";";
     }
     for (const model::ColouredElement& e : region.elements)
-      for (const model::PartLook& look : e.looks) signature += model::text(look.colour);
+      for (const model::PartMaterial& look : e.materials) signature += model::text(look.colour);
     fronts.insert(signature);
     with_door += modern ? doors >= 1 : doors == 1;  // slabs have one for each stair
     if (by_level.empty()) {
@@ -260,7 +260,7 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair("slab", std::array<double, 8>{2.2, 3.0, 4.0, 1.05, 2.15, 0.6, 0.95, 1.4})),
     [](const auto& tested) { return std::string(tested.param.first); });
 
-/// What breaks the rows, on a thousand houses: in the shares of references/styles.md 2.6, clear of the neighbours'
+/// What breaks the rows, on a thousand houses: in the shares of docs/style_measures.md 2.6, clear of the neighbours'
 /// lots, and nowhere in the way of who walks by.
 TEST(Facades, BaysAndBalconiesKeepTheirDistance) {
   // m. From a party wall to the element, its eaves and brackets included: gruenderzeit.cga keeps 0.9 m to a bay's
@@ -336,7 +336,7 @@ TEST(Facades, ShopsAndOrdersAreKept) {
   for (const char* preset : {"gruenderzeit", "tenement", "slab", "plain"}) {
     model::Region region = region_of(house, preset, 77);
     model::Building& b = region.buildings[0];
-    model::EdgePoint shop;
+    model::WallPoint shop;
     shop.id = {model::OsmType::node, 9};
     shop.use = "gastronomy";
     const Point2 from = b.outline[0].outer.points[0];
@@ -487,7 +487,7 @@ TEST(Facades, RevealsLookLikeTheirWall) {
       const model::ColouredElement& element = region.elements[p.element];
       if (!(element.element->opening.reveal > 0)) continue;
       ++reveals;
-      EXPECT_EQ(element.looks[static_cast<std::size_t>(model::ElementPart::wall)].colour,
+      EXPECT_EQ(element.materials[static_cast<std::size_t>(model::ElementPart::wall)].colour,
                 (model::Colour{220, 210, 180}))
           << preset << ": " << element.element->name;
     }
@@ -502,24 +502,24 @@ TEST(Facades, WithoutGrammarWallsStayAsTheyAre) {
   EXPECT_TRUE(region.elements.empty());
 }
 
-TEST(FacadeStretches, PartyWallsAndFreePiecesAreTold) {
+TEST(FacadeSegments, PartyWallsAndFreePiecesAreTold) {
   House house;
   model::Region region = region_of(house, "plain", 5);
   model::Building& b = region.buildings[0];
   // The street front's first 6 m are a neighbour's.
-  model::FacadeEdge rest = b.edges[0];
-  b.edges[0].kind = EdgeKind::party_wall;
+  model::WallSegment rest = b.edges[0];
+  b.edges[0].kind = WallSegmentKind::party_wall;
   b.edges[0].end = 6;
   rest.start = 6;
   b.edges.insert(b.edges.begin() + 1, rest);
   std::vector<WallFrame> walls;
   for (std::uint32_t f = 0; f < b.parts[0].lod2.faces.size(); ++f)
     if (auto wall = wall_frame(b.parts[0].lod2, f)) walls.push_back(*wall);
-  const auto stretches = facade_stretches(b, walls);
-  ASSERT_EQ(stretches.size(), 5u);
+  const auto segments = facade_segments(b, walls);
+  ASSERT_EQ(segments.size(), 5u);
   int found = 0;
-  for (const FacadeStretch& s : stretches) {
-    if (s.kind != EdgeKind::street) continue;
+  for (const FacadeSegment& s : segments) {
+    if (s.kind != WallSegmentKind::street) continue;
     ++found;
     EXPECT_NEAR(s.from, 6, 1e-6);
     EXPECT_NEAR(s.length(), 12, 1e-3);
@@ -529,25 +529,25 @@ TEST(FacadeStretches, PartyWallsAndFreePiecesAreTold) {
   EXPECT_EQ(found, 1);
 }
 
-/// Edges of a house in a row with a way through it: mouths in the middle of front and back.
+/// Edges of a house in a row with a way through it: portals in the middle of front and back.
 struct HouseWithPassage {
   model::Region region;
   std::vector<WallFrame> walls;
   explicit HouseWithPassage(bool both) {
     region = region_of(House{}, "gruenderzeit", 5);
     model::Building& b = region.buildings[0];
-    std::vector<model::FacadeEdge> edges;
-    for (const model::FacadeEdge& e : b.edges) {
-      if (e.kind != EdgeKind::street && !(both && e.kind == EdgeKind::courtyard)) {
+    std::vector<model::WallSegment> edges;
+    for (const model::WallSegment& e : b.edges) {
+      if (e.kind != WallSegmentKind::street && !(both && e.kind == WallSegmentKind::courtyard)) {
         edges.push_back(e);
         continue;
       }
       const double middle = (e.start + e.end) / 2;
       for (int piece = 0; piece < 3; ++piece) {
-        model::FacadeEdge part = e;
+        model::WallSegment part = e;
         part.start = piece == 0 ? e.start : piece == 1 ? middle - 1.5 : middle + 1.5;
         part.end = piece == 0 ? middle - 1.5 : piece == 1 ? middle + 1.5 : e.end;
-        if (piece == 1) part.kind = EdgeKind::passage;
+        if (piece == 1) part.kind = WallSegmentKind::passage;
         edges.push_back(part);
       }
     }
@@ -560,20 +560,20 @@ struct HouseWithPassage {
 TEST(Passages, MouthsLieInTheirFront) {
   HouseWithPassage house(true);
   const model::Building& b = house.region.buildings[0];
-  auto stretches = facade_stretches(b, house.walls);
-  const std::size_t pieces = stretches.size();
-  const auto mouths = take_mouths(b.parts[0], house.walls, stretches);
-  EXPECT_EQ(stretches.size(), pieces - 4) << "three pieces each of front and back are one";
-  ASSERT_EQ(mouths.size(), 2u);
-  for (const PassageMouth& m : mouths) {
-    EXPECT_EQ(m.state, MouthState::open);
+  auto segments = facade_segments(b, house.walls);
+  const std::size_t pieces = segments.size();
+  const auto portals = take_portals(b.parts[0], house.walls, segments);
+  EXPECT_EQ(segments.size(), pieces - 4) << "three pieces each of front and back are one";
+  ASSERT_EQ(portals.size(), 2u);
+  for (const PassagePortal& m : portals) {
+    EXPECT_EQ(m.state, PortalState::open);
     EXPECT_NEAR(m.right - m.left, 3, 0.01);
     EXPECT_GE(m.high - m.low, 2.7);
     EXPECT_LE(m.high,
               b.parts[0].attributes.plinth_height.value + b.parts[0].attributes.storey_height.value - kLintel + 1e-9);
   }
-  EXPECT_NE(mouths[0].front, mouths[1].front);
-  for (const FacadeStretch& s : stretches) EXPECT_NE(s.kind, EdgeKind::passage);
+  EXPECT_NE(portals[0].front, portals[1].front);
+  for (const FacadeSegment& s : segments) EXPECT_NE(s.kind, WallSegmentKind::passage);
 }
 
 TEST(Passages, AreCutAndNothingStandsInThem) {
@@ -581,20 +581,20 @@ TEST(Passages, AreCutAndNothingStandsInThem) {
   build_facades(house.region, shipped(), attributes::Defaults{}, {42});
   const model::BuildingPart& part = house.region.buildings[0].parts[0];
   ASSERT_EQ(part.lod, 3);
-  int mouths = 0, above = 0;
-  for (const model::Opening& o : part.lod3.openings) mouths += o.kind == model::OpeningKind::passage;
-  EXPECT_EQ(mouths, 2);
+  int portals = 0, above = 0;
+  for (const model::Opening& o : part.lod3.openings) portals += o.kind == model::OpeningKind::passage;
+  EXPECT_EQ(portals, 2);
   EXPECT_EQ(geometry::check_solid(part.lod3.solid, part.lod3.triangles).text(), "none");
   EXPECT_TRUE(part.fallbacks.empty()) << "windows that yield to a mouth are no failure";
-  auto stretches = facade_stretches(house.region.buildings[0], house.walls);
-  for (const PassageMouth& m : take_mouths(part, house.walls, stretches)) {
+  auto segments = facade_segments(house.region.buildings[0], house.walls);
+  for (const PassagePortal& m : take_portals(part, house.walls, segments)) {
     const WallFrame& wall = house.walls[m.wall];
     for (const model::Placement& p : part.lod3.placements) {
       if (p.wall != wall.face) continue;
       const double u = (p.origin.x - wall.start.x) * wall.along.x + (p.origin.y - wall.start.y) * wall.along.y,
                    v = p.origin.z - wall.base;
       const model::Element& e = *house.region.elements[p.element].element;
-      if (e.kind == "surround") continue;  // the mouth's own
+      if (e.kind == "surround") continue;  // the portal's own
       double least = 1e9, most = -1e9;
       for (const model::Point3& x : e.mesh.vertices) {
         least = std::min(least, u + x.x);
@@ -627,35 +627,35 @@ TEST(WallCorners, StretchesKnowTheirNeighbours) {
   std::vector<WallFrame> walls;
   for (std::uint32_t f = 0; f < b.parts[0].lod2.faces.size(); ++f)
     if (auto wall = wall_frame(b.parts[0].lod2, f)) walls.push_back(*wall);
-  auto stretches = facade_stretches(b, walls);
-  link_corners(stretches, walls, eaves_level(b.parts[0]));
-  ASSERT_EQ(stretches.size(), 4u);
-  for (const FacadeStretch& s : stretches) {
+  auto segments = facade_segments(b, walls);
+  link_corners(segments, walls, eaves_level(b.parts[0]));
+  ASSERT_EQ(segments.size(), 4u);
+  for (const FacadeSegment& s : segments) {
     EXPECT_NEAR(s.turn_left, 90, 0.1);
     EXPECT_NEAR(s.turn_right, 90, 0.1);
-    const auto after = std::find_if(stretches.begin(), stretches.end(), [&](const FacadeStretch& t) {
+    const auto after = std::find_if(segments.begin(), segments.end(), [&](const FacadeSegment& t) {
       return model::snap(walls[t.wall].start) == model::snap(walls[s.wall].at({walls[s.wall].length, 0}).xy());
     });
-    ASSERT_NE(after, stretches.end());
+    ASSERT_NE(after, segments.end());
     EXPECT_EQ(s.kind_right, after->kind);
     EXPECT_EQ(after->kind_left, s.kind);
   }
   // One wall stands higher: its courses lie elsewhere.
-  walls[stretches[0].wall].base += 1;
-  for (FacadeStretch& s : stretches) s.turn_left = s.turn_right = 0, s.kind_left = s.kind_right = {};
-  link_corners(stretches, walls, eaves_level(b.parts[0]));
-  EXPECT_EQ(stretches[0].turn_left, 0);
-  EXPECT_FALSE(stretches[0].kind_right);
+  walls[segments[0].wall].base += 1;
+  for (FacadeSegment& s : segments) s.turn_left = s.turn_right = 0, s.kind_left = s.kind_right = {};
+  link_corners(segments, walls, eaves_level(b.parts[0]));
+  EXPECT_EQ(segments[0].turn_left, 0);
+  EXPECT_FALSE(segments[0].kind_right);
 }
 
 /// A book with one preset "own" that runs `rules`.
-GrammarBook own_book(const std::string& rules) {
+GrammarLibrary own_book(const std::string& rules) {
   const auto folder = std::filesystem::temp_directory_path() /
                       ("blockrand_own_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "own.cga") << "version \"2025.1\"\n@StartRule\n" << rules;
   const std::vector<PresetGrammar> presets{{"own", "own.cga", {}}};
-  GrammarBook book(folder.string(), presets);
+  GrammarLibrary book(folder.string(), presets);
   std::filesystem::remove_all(folder);
   return book;
 }
@@ -666,13 +666,13 @@ const std::string kOneWindow =
 
 TEST(Passages, StretchesBeyondKnowTheFrontThatTookTheMouthIn) {
   House house;
-  house.edges = {EdgeKind::street, EdgeKind::side, EdgeKind::courtyard, EdgeKind::party_wall};
+  house.edges = {WallSegmentKind::street, WallSegmentKind::side, WallSegmentKind::courtyard, WallSegmentKind::party_wall};
   model::Region region = region_of(house, "own", 5);
   model::Building& b = region.buildings[0];
-  model::FacadeEdge mouth = b.edges[0];
-  mouth.kind = EdgeKind::passage;
-  mouth.start = b.edges[0].end = 15;
-  b.edges.insert(b.edges.begin() + 1, mouth);
+  model::WallSegment portal = b.edges[0];
+  portal.kind = WallSegmentKind::passage;
+  portal.start = b.edges[0].end = 15;
+  b.edges.insert(b.edges.begin() + 1, portal);
   build_facades(region, own_book("Facade --> case edge.kind_left == \"street\" : Marked else : Wall.\n" + kOneWindow),
                 attributes::Defaults{}, {42});
   EXPECT_EQ(on_wall(region, b.parts[0], 1).size(), 1u) << "the side follows the street front, not its passage";
@@ -683,15 +683,15 @@ TEST(Passages, AreNoLowerThanAPersonBetweenWallsOfTwoLevels) {
   model::BuildingPart& part = house.region.buildings[0].parts[0];
   part.attributes.storey_height.value = 2.5;
   part.attributes.plinth_height.value = 0;
-  auto stretches = facade_stretches(house.region.buildings[0], house.walls);
-  auto level = stretches;
-  for (const PassageMouth& m : take_mouths(part, house.walls, level)) EXPECT_EQ(m.state, MouthState::open);
-  for (const FacadeStretch& s : stretches)
-    if (s.kind == EdgeKind::courtyard) house.walls[s.wall].base = part.attributes.ground_height.value + 0.3;
-  const auto mouths = take_mouths(part, house.walls, stretches);
-  ASSERT_EQ(mouths.size(), 2u);
-  for (const PassageMouth& m : mouths) {
-    EXPECT_EQ(m.state, MouthState::no_partner);
+  auto segments = facade_segments(house.region.buildings[0], house.walls);
+  auto level = segments;
+  for (const PassagePortal& m : take_portals(part, house.walls, level)) EXPECT_EQ(m.state, PortalState::open);
+  for (const FacadeSegment& s : segments)
+    if (s.kind == WallSegmentKind::courtyard) house.walls[s.wall].base = part.attributes.ground_height.value + 0.3;
+  const auto portals = take_portals(part, house.walls, segments);
+  ASSERT_EQ(portals.size(), 2u);
+  for (const PassagePortal& m : portals) {
+    EXPECT_EQ(m.state, PortalState::no_partner);
     EXPECT_GE(m.high - m.low, kLeastHeadroom);
   }
 }
@@ -702,7 +702,7 @@ void break_solid(model::BuildingPart& part) {
   for (auto& surface : roof.surfaces)
     for (auto& loop : surface.loops)
       for (model::Point3& p : loop) p.z = 40;
-  masses::EnvelopeLooks looks;
+  masses::EnvelopeMaterials looks;
   looks.wall = part.lod2.faces[1];
   looks.roof.kind = model::SurfaceKind::roof;
   looks.under.kind = model::SurfaceKind::ground;
@@ -715,7 +715,7 @@ TEST(Facades, WallsOfASolidThatTakesNoOpeningsStayClosedAndEverythingIsTold) {
   house.region.buildings[0].attributes.preset.value = "own";
   model::BuildingPart& part = house.region.buildings[0].parts[0];
   break_solid(part);
-  const GrammarBook book =
+  const GrammarLibrary book =
       own_book("Facade --> split(x){ ~1 : Marked | ~1 : Odd }\n" + kOneWindow +
                "Odd --> split(y){ 8.75 : Wall. | 2.5 : split(x){ 2 : Wall. | 1 : Pane | ~1 : Odder } | ~1 : "
                "Wall. }\nOdder --> blockrand.element(\"no\" + building.preset)\n");
@@ -738,9 +738,9 @@ TEST(Passages, DoorsAtMappedEntrancesThatYieldAreTold) {
   for (const bool mapped : {true, false}) {
     HouseWithPassage house(true);
     model::Building& b = house.region.buildings[0];
-    for (model::FacadeEdge& e : b.edges)
-      if (mapped && e.kind == EdgeKind::passage && e.edge == 0) {
-        model::EdgePoint p;
+    for (model::WallSegment& e : b.edges)
+      if (mapped && e.kind == WallSegmentKind::passage && e.edge == 0) {
+        model::WallPoint p;
         p.entrance = true;
         p.place = {391000 + (e.start + e.end) / 2, 5819000};
         e.points = {p};
@@ -771,7 +771,7 @@ TEST(WallCorners, EavesAreThoseThatWereBuilt) {
     part.attributes.roof_shape.value = asked;
     part.attributes.height.value = height;
     part.attributes.roof_height.value = roof_height;
-    masses::EnvelopeLooks looks;
+    masses::EnvelopeMaterials looks;
     looks.wall.kind = model::SurfaceKind::wall;
     looks.roof.kind = model::SurfaceKind::roof;
     looks.under.kind = model::SurfaceKind::ground;
@@ -806,18 +806,18 @@ TEST(Facades, CornicesLieUnderTheEavesThatWereBuilt) {
   EXPECT_GT(highest, part.attributes.height.value - 1.5);
 }
 
-TEST(GrammarBooks, MistakesAreLocated) {
+TEST(GrammarLibraries, MistakesAreLocated) {
   const auto folder = std::filesystem::temp_directory_path() / "blockrand_grammar_book";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "bad.cga") << "Lot -->\n  split(x){ ~1 : A | \n";
   const std::vector<PresetGrammar> bad{{"p", "bad.cga", {}}}, none{{"p", "nowhere.cga", {}}};
   try {
-    GrammarBook book(folder.string(), bad);
+    GrammarLibrary book(folder.string(), bad);
     ADD_FAILURE();
   } catch (const base::InputError& e) {
     EXPECT_THAT(e.what(), testing::ContainsRegex("bad.cga:[0-9]+:[0-9]+"));
   }
-  EXPECT_THROW(GrammarBook(folder.string(), none), base::InputError);
+  EXPECT_THROW(GrammarLibrary(folder.string(), none), base::InputError);
   std::filesystem::remove_all(folder);
 }
 

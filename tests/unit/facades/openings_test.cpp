@@ -10,7 +10,7 @@
 #include "pipeline/masses/envelope.h"
 #include "pipeline/facades/opening_proof.h"
 #include "pipeline/geometry/check_solid.h"
-#include "pipeline/geometry/second_judge.h"
+#include "pipeline/geometry/cgal_validator.h"
 #include "pipeline/geometry/triangulate.h"
 #include "styles/roofs/roof.h"
 #include "tests/unit/geometry/random_plans.h"
@@ -38,7 +38,7 @@ Solid house(const Polygon& plan, model::RoofShape shape = model::RoofShape::flat
   request.measures = {kBase + eaves, shape == model::RoofShape::flat ? 0 : roof};
   const auto built = roofs::build_roof(plan, request);
   EXPECT_TRUE(built);
-  masses::EnvelopeLooks looks;
+  masses::EnvelopeMaterials looks;
   looks.wall.kind = SurfaceKind::wall;
   looks.roof.kind = SurfaceKind::roof;
   looks.under.kind = SurfaceKind::ground;
@@ -71,7 +71,7 @@ WallOpening window(std::uint32_t wall, std::vector<Point2> outline, double revea
   return {wall, OpeningKind::window, std::move(outline), reveal, 0, model::kNoOpening};
 }
 
-std::string verdict(const Solid& solid) {
+std::string validity(const Solid& solid) {
   const auto triangles = geometry::triangulate(solid);
   if (!triangles) return "a face is no simple polygon";
   return geometry::check_solid(solid, *triangles).text();
@@ -79,7 +79,7 @@ std::string verdict(const Solid& solid) {
 
 double volume(const Solid& solid) { return geometry::volume(solid, *geometry::triangulate(solid)); }
 
-std::string second_verdict(const Solid& solid) {
+std::string cgal_validity(const Solid& solid) {
   std::vector<geometry::PolygonRings> polygons;
   for (const model::Face& face : solid.faces) {
     auto& rings = polygons.emplace_back();
@@ -88,7 +88,7 @@ std::string second_verdict(const Solid& solid) {
       for (const std::uint32_t i : solid.indices_of(loop)) ring.push_back(solid.vertices[i]);
     }
   }
-  return geometry::judge_solid(polygons);
+  return geometry::validate_solid(polygons);
 }
 
 int count(const Solid& solid, SurfaceKind kind) {
@@ -139,8 +139,8 @@ TEST(Openings, RowsOfWindowsOnEveryWall) {
         }
     const OpenedSolid opened = cut_openings(solid, walls, wanted);
     EXPECT_EQ(opened.openings.size(), wanted.size());
-    EXPECT_EQ(verdict(opened.solid), "none");
-    EXPECT_EQ(second_verdict(opened.solid), "");
+    EXPECT_EQ(validity(opened.solid), "none");
+    EXPECT_EQ(cgal_validity(opened.solid), "");
     EXPECT_EQ(count(opened.solid, SurfaceKind::window), static_cast<int>(wanted.size()));
     EXPECT_NEAR(volume(solid) - volume(opened.solid), carved, carved * 0.01);
     for (std::size_t f = 0; f < solid.faces.size(); ++f) EXPECT_EQ(opened.solid.faces[f].edge, solid.faces[f].edge);
@@ -160,8 +160,8 @@ TEST(Openings, ArchedAndFlushOnes) {
   ASSERT_EQ(opened.openings.size(), 2u);
   EXPECT_EQ(opened.openings[0].reveal_count, 7u);
   EXPECT_EQ(opened.openings[1].reveal_count, 0u);
-  EXPECT_EQ(verdict(opened.solid), "none");
-  EXPECT_EQ(second_verdict(opened.solid), "");
+  EXPECT_EQ(validity(opened.solid), "none");
+  EXPECT_EQ(cgal_validity(opened.solid), "");
 }
 
 TEST(Openings, WhatDoesNotFitIsLeftOut) {
@@ -195,7 +195,7 @@ TEST(Openings, WhatDoesNotFitIsLeftOut) {
   wanted[0].reveal = 0.3;
   const OpenedSolid opened = cut_openings(solid, walls, wanted);
   for (std::size_t i = 0; i < cases.size(); ++i) EXPECT_EQ(name(opened.refusals[i]), name(cases[i].second)) << i;
-  EXPECT_EQ(verdict(opened.solid), "none");
+  EXPECT_EQ(validity(opened.solid), "none");
   EXPECT_EQ(opened.openings.size(), opened.given.size());
 }
 
@@ -209,7 +209,7 @@ TEST(Openings, GableWindowsStayUnderTheSlope) {
   const OpenedSolid opened = cut_openings(solid, walls, wanted);
   EXPECT_EQ(opened.refusals[0], OpeningRefusal::none);
   EXPECT_EQ(opened.refusals[1], OpeningRefusal::beyond_wall);
-  EXPECT_EQ(verdict(opened.solid), "none");
+  EXPECT_EQ(validity(opened.solid), "none");
 }
 
 TEST(Openings, ThinWingsKeepTheirWalls) {
@@ -224,7 +224,7 @@ TEST(Openings, ThinWingsKeepTheirWalls) {
   EXPECT_EQ(opened.refusals[1], OpeningRefusal::meets_opening) << "back to back with the first";
   EXPECT_EQ(opened.refusals[2], OpeningRefusal::wall_too_thin);
   EXPECT_EQ(opened.refusals[3], OpeningRefusal::none);
-  EXPECT_EQ(verdict(opened.solid), "none");
+  EXPECT_EQ(validity(opened.solid), "none");
 }
 
 TEST(Openings, APassageLeadsThrough) {
@@ -238,7 +238,7 @@ TEST(Openings, APassageLeadsThrough) {
     wanted[0] = {front, OpeningKind::passage, rectangle(8, 0.05, 3, 3.4), 0, 0, 1};
     wanted[1] = {back, OpeningKind::passage, rectangle(walls[back].length - 11.2, 0.05, 3, 3.4), 0, 0, 0};
     wanted.push_back(window(front, rectangle(9, 4, 1, 2)));  // above the passage
-    wanted.push_back(window(front, rectangle(9, 1, 1, 1)));  // in its mouth
+    wanted.push_back(window(front, rectangle(9, 1, 1, 1)));  // in its portal
     wanted.push_back(
         {1, OpeningKind::door, rectangle(4, 0.05, 1, 2), 12.5, 0, model::kNoOpening});  // from the side into the tunnel
     const OpenedSolid opened = cut_openings(solid, walls, wanted);
@@ -247,8 +247,8 @@ TEST(Openings, APassageLeadsThrough) {
     EXPECT_EQ(opened.refusals[2], OpeningRefusal::none);
     EXPECT_EQ(opened.refusals[3], OpeningRefusal::meets_opening);
     EXPECT_EQ(opened.refusals[4], OpeningRefusal::meets_opening);
-    EXPECT_EQ(verdict(opened.solid), "none");
-    EXPECT_EQ(second_verdict(opened.solid), "");
+    EXPECT_EQ(validity(opened.solid), "none");
+    EXPECT_EQ(cgal_validity(opened.solid), "");
     EXPECT_EQ(count(opened.solid, SurfaceKind::outer_floor), 1);
     EXPECT_EQ(count(opened.solid, SurfaceKind::outer_ceiling), 1);
     EXPECT_NEAR(volume(solid) - volume(opened.solid) - 1 * 2 * 0.15, 3 * 3.4 * 10.9, 1.5);
@@ -268,7 +268,7 @@ TEST(Openings, PassagesThatDoNotFit) {
   EXPECT_EQ(opened.refusals[0], OpeningRefusal::none) << "long, but free";
   EXPECT_EQ(opened.refusals[2], OpeningRefusal::passage_blocked);
   EXPECT_EQ(opened.refusals[3], OpeningRefusal::passage_blocked);
-  EXPECT_EQ(verdict(opened.solid), "none");
+  EXPECT_EQ(validity(opened.solid), "none");
 }
 
 /// The proof refuses what the judge refuses.
@@ -283,8 +283,8 @@ TEST(OpeningProof, FailsWhereTheSolidDoes) {
   ASSERT_TRUE(triangles);
   ASSERT_EQ(geometry::check_solid(sound.solid, *triangles).text(), "none");
   EXPECT_TRUE(proved_valid(sound, *triangles));
-  const auto mouth = sound.solid.loops_of(sound.solid.faces[walls[0].face])[1];
-  const std::uint32_t corner = sound.solid.indices_of(mouth)[0];
+  const auto portal = sound.solid.loops_of(sound.solid.faces[walls[0].face])[1];
+  const std::uint32_t corner = sound.solid.indices_of(portal)[0];
   const auto with = [&](std::uint32_t vertex, Point2 in_wall, double depth) {
     OpenedSolid out = sound;
     Point3& p = out.solid.vertices[vertex];
@@ -312,7 +312,7 @@ TEST(OpeningProof, FailsWhereTheSolidDoes) {
 TEST(Openings, RandomHousesStayValid) {
   constexpr model::RoofShape kShapes[] = {model::RoofShape::flat, model::RoofShape::gabled, model::RoofShape::hipped,
                                           model::RoofShape::skillion, model::RoofShape::mansard};
-  int cut = 0, houses = 0, judged = 0, proved = 0, with_passage = 0;
+  int cut = 0, houses = 0, validated = 0, proved = 0, with_passage = 0;
   std::map<OpeningRefusal, int> refused;
   for (std::uint64_t number = 0; number < 800; ++number) {
     const Polygon plan = random_plan(77, number);
@@ -322,11 +322,11 @@ TEST(Openings, RandomHousesStayValid) {
     request.measures = {kBase + 9, 3};
     const auto built = roofs::build_roof(plan, request);
     if (!built) continue;
-    masses::EnvelopeLooks looks;
+    masses::EnvelopeMaterials looks;
     looks.wall.kind = SurfaceKind::wall;
     looks.roof.kind = SurfaceKind::roof;
     const Solid solid = masses::envelope(plan, kBase, built->roof, looks);
-    if (verdict(solid) != "none") continue;
+    if (validity(solid) != "none") continue;
     ++houses;
     const auto walls = walls_of(solid);
     std::vector<WallOpening> wanted;
@@ -347,7 +347,7 @@ TEST(Openings, RandomHousesStayValid) {
         }
       }
     const OpenedSolid opened = cut_openings(solid, walls, wanted);
-    ASSERT_EQ(verdict(opened.solid), "none") << number;
+    ASSERT_EQ(validity(opened.solid), "none") << number;
     const auto triangles = geometry::triangulate(opened.solid, solid, *geometry::triangulate(solid));
     ASSERT_TRUE(triangles) << number;
     ASSERT_EQ(triangles->triangles, geometry::triangulate(opened.solid)->triangles) << number;
@@ -356,13 +356,13 @@ TEST(Openings, RandomHousesStayValid) {
     with_passage += has_passage;
     proved += proved_valid(opened, *triangles);
     if (number % 10 == 0) {
-      ++judged;
-      ASSERT_EQ(second_verdict(opened.solid), "") << number;
+      ++validated;
+      ASSERT_EQ(cgal_validity(opened.solid), "") << number;
     }
     cut += static_cast<int>(opened.openings.size());
     for (const OpeningRefusal r : opened.refusals) ++refused[r];
   }
-  std::printf("%d houses (%d judged twice), %d openings cut", houses, judged, cut);
+  std::printf("%d houses (%d judged twice), %d openings cut", houses, validated, cut);
   for (const auto& [refusal, n] : refused) std::printf(", %s %d", std::string(name(refusal)).c_str(), n);
   std::printf("\n");
   // What is no prism is left to the judge; nearly everything else is proved.

@@ -11,35 +11,35 @@
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/base/parallel.h"
-#include "pipeline/geometry/needles.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/slivers.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/footprints/area.h"
 #include "pipeline/footprints/repair_extract.h"
-#include "pipeline/footprints/rows.h"
+#include "pipeline/footprints/terrace_rows.h"
 
 namespace blockrand::footprints {
 namespace {
 
 using model::Polygon;
 
-struct Judged {
-  std::size_t invalid = 0, unreported_overlaps = 0, reported = 0, missing = 0, needles = 0;
+struct Validated {
+  std::size_t invalid = 0, unreported_overlaps = 0, reported = 0, missing = 0, slivers = 0;
   double worst = 0;
 };
 
-/// m. Shorter needles are corners that rounding to the grid has bent.
+/// m. Shorter slivers are corners that rounding to the grid has bent.
 constexpr double kLeastNeedle = 0.1;
 
-std::size_t needles_of(const Polygon& polygon, const repair::RepairOptions& options, const std::string& id) {
+std::size_t slivers_of(const Polygon& polygon, const repair::RepairOptions& options, const std::string& id) {
   std::size_t count = 0;
   const auto look = [&](const model::Ring& ring) {
-    for (const geometry::Needle& needle : geometry::find_needles(ring, options.spike_width)) {
-      if (needle.length <= kLeastNeedle) continue;
+    for (const geometry::Sliver& sliver : geometry::find_slivers(ring, options.spike_width)) {
+      if (sliver.length <= kLeastNeedle) continue;
       ++count;
-      std::printf("    %s at a corner of %s, %.2f m\n", needle.outward ? "needle" : "crack", id.c_str(), needle.length);
+      std::printf("    %s at a corner of %s, %.2f m\n", sliver.outward ? "needle" : "crack", id.c_str(), sliver.length);
     }
   };
   look(polygon.outer);
@@ -47,8 +47,8 @@ std::size_t needles_of(const Polygon& polygon, const repair::RepairOptions& opti
   return count;
 }
 
-Judged judge(const RepairedExtract& repaired, const repair::RepairOptions& options) {
-  Judged out;
+Validated judge(const RepairedExtract& repaired, const repair::RepairOptions& options) {
+  Validated out;
   const FootprintStore& store = repaired.footprints;
   std::set<model::OsmId> said;
   for (const model::ReportRow& row : repaired.rows)
@@ -60,7 +60,7 @@ Judged judge(const RepairedExtract& repaired, const repair::RepairOptions& optio
     }
     for (const Polygon& p : store.polygons(b)) {
       out.invalid += !geometry::strictly_simple(p);
-      out.needles += needles_of(p, options, store[b].id.text());
+      out.slivers += slivers_of(p, options, store[b].id.text());
     }
   }
   std::set<std::uint32_t> reported;
@@ -101,21 +101,21 @@ TEST_P(RealExtracts, AreRepaired) {
   const RepairedExtract repaired = repair_extract(extract, shards, projection, kept, options, base::worker_count(0), progress);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const RepairTotals& t = repaired.totals;
-  const Judged judged = judge(repaired, options);
+  const Validated validated = judge(repaired, options);
   std::printf("| %s | %llu | moved %llu of %llu, mean %.3f m, max %.3f m | area changed %llu, median %.4f %%, max %.2f %% | "
               "shared walls %llu | gaps closed %llu | overlaps resolved %llu, left %zu | cut %llu | squared %llu | arcs %llu | %.2f s |\n",
               GetParam(), static_cast<unsigned long long>(t.outlines), static_cast<unsigned long long>(t.moved),
               static_cast<unsigned long long>(t.vertices), t.mean_shift, t.max_shift,
               static_cast<unsigned long long>(t.area_changed), 100 * t.median_area_change, 100 * t.max_area_change,
               static_cast<unsigned long long>(t.shared_walls), static_cast<unsigned long long>(t.gaps_closed),
-              static_cast<unsigned long long>(t.overlaps_resolved), judged.reported,
+              static_cast<unsigned long long>(t.overlaps_resolved), validated.reported,
               static_cast<unsigned long long>(t.at_cuts), static_cast<unsigned long long>(t.squared),
               static_cast<unsigned long long>(t.arcs), seconds);
-  EXPECT_EQ(judged.invalid, 0u);
-  EXPECT_EQ(judged.needles, 0u);
-  EXPECT_EQ(judged.missing, 0u) << "buildings without an outline and without a reason";
-  EXPECT_EQ(judged.unreported_overlaps, 0u) << "largest " << judged.worst << " m2";
-  EXPECT_LE(static_cast<double>(judged.reported), std::max(2.0, 0.001 * static_cast<double>(t.outlines)));
+  EXPECT_EQ(validated.invalid, 0u);
+  EXPECT_EQ(validated.slivers, 0u);
+  EXPECT_EQ(validated.missing, 0u) << "buildings without an outline and without a reason";
+  EXPECT_EQ(validated.unreported_overlaps, 0u) << "largest " << validated.worst << " m2";
+  EXPECT_LE(static_cast<double>(validated.reported), std::max(2.0, 0.001 * static_cast<double>(t.outlines)));
   EXPECT_LE(t.max_shift, options.max_shift + 0.002);
 }
 

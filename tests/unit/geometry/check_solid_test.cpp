@@ -136,7 +136,7 @@ TEST(CheckSolid, SelfIntersectionThatTopologyCannotSee) {
 }
 
 TEST(Triangulate, ConcaveOutlineWithThreeHoles) {
-  // seed003-part2 P2-06: the triangles' area is the outline's minus the holes'.
+  // docs/internal/seeds.md P2-06: the triangles' area is the outline's minus the holes'.
   std::vector<Grid2> points;
   std::vector<std::vector<std::uint32_t>> loops;
   const auto add = [&](std::initializer_list<Grid2> loop) {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/segment_grid.h"
 
 namespace blockrand::geometry {

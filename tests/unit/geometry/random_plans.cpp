@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "tests/unit/geometry/shapes.h"
 

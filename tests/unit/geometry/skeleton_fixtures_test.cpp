@@ -1,4 +1,4 @@
-// The seed's regression fixtures of the weighted skeleton: references/seed003-part2.md, appendix C, C4 to C11.
+// The seed's regression fixtures of the weighted skeleton: docs/sources.md, Gunia C4 to C11.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/weighted_skeleton.h"
 #include "tests/unit/geometry/shapes.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/straight_skeleton.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "tests/unit/geometry/random_plans.h"

@@ -28,19 +28,19 @@ double metres_between(LonLat a, LonLat b) {
 }
 
 /// PROJ, called without any of our code.
-class JudgedByProj {
+class CheckedByProj {
  public:
-  explicit JudgedByProj(const std::string& code) : context_(proj_context_create()) {
+  explicit CheckedByProj(const std::string& code) : context_(proj_context_create()) {
     PJ* raw = proj_create_crs_to_crs(context_, "EPSG:4326", code.c_str(), nullptr);
     pj_ = proj_normalize_for_visualization(context_, raw);
     proj_destroy(raw);
   }
-  ~JudgedByProj() {
+  ~CheckedByProj() {
     proj_destroy(pj_);
     proj_context_destroy(context_);
   }
-  JudgedByProj(const JudgedByProj&) = delete;
-  JudgedByProj& operator=(const JudgedByProj&) = delete;
+  CheckedByProj(const CheckedByProj&) = delete;
+  CheckedByProj& operator=(const CheckedByProj&) = delete;
   model::Point2 forward(double lon, double lat) const {
     const PJ_COORD out = proj_trans(pj_, PJ_FWD, proj_coord(lon, lat, 0, 0));
     return {out.xy.x, out.xy.y};
@@ -60,7 +60,7 @@ TEST(Projection, AgreesWithProjInUtmZonesWorldwide) {
           base == 32600 ? GeoBox{centre - 3, 0, centre + 3, 84} : GeoBox{centre - 3, -80, centre + 3, 0};
       const Projection projection(open_crs(code, extent), extent);
       ASSERT_TRUE(projection.portable()) << code;
-      const JudgedByProj judge(code);
+      const CheckedByProj judge(code);
       double worst = 0, worst_back = 0;
       for (int i = 0; i < 500; ++i) {
         const auto key = static_cast<std::uint64_t>(zone * 1000 + i);

@@ -1,11 +1,11 @@
-// The 246 features that were counted in 508 published rule files (references/cga.md §6.2), and our names for them.
+// The 246 features that were counted in 508 published rule files (docs/rule_language.md §6.2), and our names for them.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "styles/grammar/language/names.h"
+#include "styles/grammar/language/known_names.h"
 
 namespace blockrand::grammar {
 

@@ -7,7 +7,7 @@
 #include "pipeline/masses/mass.h"
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/geometry/check_solid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "tests/unit/geometry/shapes.h"
 #include "tests/unit/footprints/repair/repair_alone.h"
 
@@ -53,7 +53,7 @@ class Town {
   }
   void build(int lod = 2) {
     region.extract = &extract;
-    for (const attributes::Material& m : defaults.materials) region.materials.push_back(m.looks);
+    for (const attributes::Material& m : defaults.materials) region.materials.push_back(m.material_class);
     repair::test::repair_alone(region);
     const context::TaggedNeighbours index(neighbours, 100);
     attributes::resolve_attributes(region, {defaults, index, seed, [this](const model::Building&) { return ground; }}, {});
@@ -90,7 +90,7 @@ TEST(Defaults, ReadsTheShippedTables) {
   const attributes::Defaults d = attributes::read_defaults(kConfigs);
   EXPECT_EQ(d.use("bungalow").storeys, 1);
   EXPECT_EQ(d.use("no such use").name, "default");
-  EXPECT_EQ(d.materials[static_cast<std::size_t>(d.material("sandstone"))].looks.name, "stone");
+  EXPECT_EQ(d.materials[static_cast<std::size_t>(d.material("sandstone"))].material_class.name, "stone");
   EXPECT_EQ(d.material("unobtainium"), -1);
 }
 
@@ -158,8 +158,8 @@ TEST(Resolve, NeighboursBeatPresetsAndTagsBeatNeighbours) {
   EXPECT_EQ(t.part(0).attributes.storeys.source, Source::neighbours);
   const auto& evidence = t.region.evidence[t.part(0).attributes.storeys.evidence];
   EXPECT_EQ(evidence.text, "median of 3 neighbours within 100 m");
-  ASSERT_EQ(evidence.lost.size(), 1u);
-  EXPECT_EQ(evidence.lost[0].value, "3");
+  ASSERT_EQ(evidence.other_candidates.size(), 1u);
+  EXPECT_EQ(evidence.other_candidates[0].value, "3");
   EXPECT_EQ(t.part(1).attributes.storeys.source, Source::tag);
 }
 
@@ -205,9 +205,9 @@ TEST(Resolve, ADeepRowHouseHasItsRidgeFromPartyWallToPartyWall) {
     tags.roof_orientation = tagged;
     for (const std::uint32_t number : {1u, 3u}) {
       if (!in_row) break;
-      model::FacadeEdge e;
+      model::WallSegment e;
       e.edge = number;
-      e.kind = model::EdgeKind::party_wall;
+      e.kind = model::WallSegmentKind::party_wall;
       e.end = 10;
       t.region.buildings.back().edges.push_back(e);
     }
@@ -240,7 +240,7 @@ TEST(Resolve, ColoursAreDrawnPerBuildingNotPerRun) {
 }
 
 TEST(Mass, FootprintAndHeightGiveAClosedBodyOfTheRightVolume) {
-  // seed003-part1 S3A-01: volume = area times height.
+  // docs/internal/seeds.md S3A-01: volume = area times height.
   Town t;
   auto& tags = t.add({{0, 0}, {20, 0}, {20, 8}, {8, 8}, {8, 18}, {0, 18}});
   tags.height = 12;

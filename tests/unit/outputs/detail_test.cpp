@@ -14,7 +14,7 @@
 #include "pipeline/outputs/citygml/citygml_writer.h"
 #include "pipeline/outputs/gltf/glb_writer.h"
 #include "pipeline/geometry/check_solid.h"
-#include "pipeline/geometry/second_judge.h"
+#include "pipeline/geometry/cgal_validator.h"
 #include "pipeline/picture/camera.h"
 #include "pipeline/picture/render.h"
 #include "tests/unit/outputs/facade_region.h"
@@ -354,7 +354,7 @@ TEST(DetailGlb, EveryWayOfWritingGivesTheSamePicture) {
   const auto wall = std::find_if(house.faces.begin(), house.faces.end(),
                                  [](const model::Face& f) { return f.kind == model::SurfaceKind::wall; });
   for (model::ColouredElement& e : s.region().elements)
-    e.looks[static_cast<std::size_t>(model::ElementPart::wall)] = {wall->material, wall->colour};
+    e.materials[static_cast<std::size_t>(model::ElementPart::wall)] = {wall->material, wall->colour};
   GlbOptions packed = options(Instancing::ext);
   packed.compression = Compression::meshopt;
   for (const picture::Direction from : {picture::Direction{215, 25}, picture::Direction{40, 8}}) {
@@ -483,10 +483,10 @@ CityGmlOptions gml_options() {
   return o;
 }
 
-std::string verdict(const validators::GmlSolid& solid) {
+std::string validity(const validators::GmlSolid& solid) {
   std::vector<geometry::PolygonRings> polygons;
   for (const auto& p : solid.polygons) polygons.push_back(p.rings);
-  return geometry::judge_solid(polygons);
+  return geometry::validate_solid(polygons);
 }
 
 TEST(DetailCityGml, SolidsOfBothLevelsAreClosed) {
@@ -496,7 +496,7 @@ TEST(DetailCityGml, SolidsOfBothLevelsAreClosed) {
   std::map<int, int> levels;
   for (const auto& solid : file.solids) {
     ++levels[solid.lod];
-    EXPECT_EQ(verdict(solid), "") << solid.id;
+    EXPECT_EQ(validity(solid), "") << solid.id;
   }
   EXPECT_EQ(levels, (std::map<int, int>{{1, 4}, {2, 4}, {3, 3}}));
   for (const auto& b : s.region().buildings)

@@ -5,7 +5,7 @@
 #include "pipeline/outputs/cityjson/cityjson_writer.h"
 #include "pipeline/outputs/gltf/building_table.h"
 #include "pipeline/outputs/gltf/glb_writer.h"
-#include "pipeline/outputs/gltf/mesh.h"
+#include "pipeline/outputs/gltf/mesh_buffers.h"
 #include "tests/unit/outputs/sample_region.h"
 
 namespace {

@@ -64,7 +64,7 @@ inline SampleRegion facade_region() {
       model::ColouredElement c;
       c.element = e;
       for (int p = 0; p < model::kElementPartCount; ++p)
-        c.looks[static_cast<std::size_t>(p)] = {
+        c.materials[static_cast<std::size_t>(p)] = {
             0, {static_cast<std::uint8_t>(40 + 100 * colour), static_cast<std::uint8_t>(30 * p), 90}};
       region.elements.push_back(c);
     }

@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "pipeline/base/sha256.h"
-#include "pipeline/geometry/polygon.h"
-#include "pipeline/model/edge_colours.h"
+#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/model/wall_segment_colours.h"
 #include "pipeline/picture/building_plan.h"
 #include "tests/unit/outputs/row_sample.h"
 
@@ -18,7 +18,7 @@ namespace {
 using outputs::test::kRowX;
 using outputs::test::kRowY;
 using model::Colour;
-using model::EdgeKind;
+using model::WallSegmentKind;
 using model::Point2;
 
 constexpr Colour kWhite{255, 255, 255}, kBlack{0, 0, 0};
@@ -140,12 +140,12 @@ Plan row_plan() {
 TEST(BuildingPlan, EdgesHaveTheColourOfTheirKind) {
   const Plan plan = row_plan();
   if (const char* path = std::getenv("BLOCKRAND_PLAN")) std::ofstream(path, std::ios::binary) << png(plan.image());
-  const auto edge = [](EdgeKind kind) { return model::colour_of(kind); };
-  EXPECT_EQ(at(plan, kRowX + 6, kRowY + 8.5), edge(EdgeKind::street));
-  EXPECT_EQ(at(plan, kRowX + 20.5, kRowY + 8.5), edge(EdgeKind::passage));
-  EXPECT_EQ(at(plan, kRowX + 20, kRowY + 21.5), edge(EdgeKind::courtyard));
-  EXPECT_EQ(at(plan, kRowX + 44.5, kRowY + 15), edge(EdgeKind::side));
-  for (const double x : {11.6, 12.4}) EXPECT_EQ(at(plan, kRowX + x, kRowY + 15), edge(EdgeKind::party_wall)) << "of both";
+  const auto edge = [](WallSegmentKind kind) { return model::colour_of(kind); };
+  EXPECT_EQ(at(plan, kRowX + 6, kRowY + 8.5), edge(WallSegmentKind::street));
+  EXPECT_EQ(at(plan, kRowX + 20.5, kRowY + 8.5), edge(WallSegmentKind::passage));
+  EXPECT_EQ(at(plan, kRowX + 20, kRowY + 21.5), edge(WallSegmentKind::courtyard));
+  EXPECT_EQ(at(plan, kRowX + 44.5, kRowY + 15), edge(WallSegmentKind::side));
+  for (const double x : {11.6, 12.4}) EXPECT_EQ(at(plan, kRowX + x, kRowY + 15), edge(WallSegmentKind::party_wall)) << "of both";
   EXPECT_EQ(at(plan, kRowX + 20, kRowY + 15), kPlanBuilding);
   EXPECT_EQ(at(plan, kRowX + 20, kRowY + 30), kPlanCourtyard);
   EXPECT_EQ(at(plan, kRowX + 50, kRowY + 2), kPlanStreet);
@@ -199,7 +199,7 @@ TEST(EdgeColours, StayApartForColourBlindPeople) {
       {{1.255528, -0.076749, -0.178779}, {-0.078411, 0.930809, 0.147602}, {0.004733, 0.691367, 0.303900}},
       {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   std::vector<Colour> colours{kPlanBuilding};
-  for (int k = 0; k < model::kEdgeKindCount; ++k) colours.push_back(model::colour_of(static_cast<EdgeKind>(k)));
+  for (int k = 0; k < model::kWallSegmentKindCount; ++k) colours.push_back(model::colour_of(static_cast<WallSegmentKind>(k)));
   for (int eye = 0; eye < 4; ++eye) {
     std::vector<Lab> seen;
     for (const Colour c : colours) {

@@ -66,7 +66,7 @@ TEST(ApexRoof, LeavesOutRingsFinerThanTheGridCanShow) {
   const auto roof = apex_roof(regular(24, 0.4), {36, 1}, apex_rings(RoofShape::onion));
   ASSERT_TRUE(roof);
   EXPECT_EQ(roof->surfaces.size(), 8u * 24) << "the ring of 0.08, with edges of 8 mm, is missing";
-  EXPECT_EQ(verdict(regular(24, 0.4), *roof), "none");
+  EXPECT_EQ(validity(regular(24, 0.4), *roof), "none");
   EXPECT_DOUBLE_EQ(highest(*roof), 37);
 }
 
@@ -88,7 +88,7 @@ TEST(ApexRoof, EveryPlanClosesAtEveryAngleOrIsRefused) {
           if (!roof) continue;
           ++built;
           const std::string what = name + ", " + std::string(model::name(shape)) + ", turned " + std::to_string(turn);
-          EXPECT_EQ(verdict(p, *roof), "none") << what;
+          EXPECT_EQ(validity(p, *roof), "none") << what;
           EXPECT_NEAR(covered_area(*roof), geometry::area(p), 1e-6) << what;
           EXPECT_EQ(highest(*roof), 40) << what;
         }
@@ -100,7 +100,7 @@ TEST(CrossedRoof, FacesOnConvexPlans) {
   const auto faces = [&](const char* name, double gable) {
     const auto roof = crossed_roof(p.at(name), {36, 6}, gable);
     EXPECT_TRUE(roof) << name;
-    EXPECT_EQ(verdict(p.at(name), *roof), "none") << name;
+    EXPECT_EQ(validity(p.at(name), *roof), "none") << name;
     EXPECT_EQ(roof->wall_tops[0].size(), 3u);
     EXPECT_DOUBLE_EQ(roof->wall_tops[0][1].z, 36 + 6 * gable);
     return roof->surfaces.size();
@@ -127,7 +127,7 @@ TEST(CrossedRoof, EveryConvexPlanClosesAtEveryAngle) {
             continue;
           }
           ++built;
-          EXPECT_EQ(verdict(p, *roof), "none") << name << ' ' << turn;
+          EXPECT_EQ(validity(p, *roof), "none") << name << ' ' << turn;
           EXPECT_NEAR(covered_area(*roof), geometry::area(p), 0.05) << name << ' ' << turn;
           EXPECT_EQ(highest(*roof), 40) << name;
         }
@@ -149,7 +149,7 @@ TEST(ApexRoof, RandomPlansClose) {
     const auto judge = [&](const std::optional<Roof>& roof, int& count, std::string_view what) {
       if (!roof) return;
       ++count;
-      const std::string found = verdict(plan, *roof);
+      const std::string found = validity(plan, *roof);
       if (found != "none") {
         ++invalid;
         std::cout << round << ' ' << what << ", " << n << " corners, size " << size << ", height " << measures.height

@@ -48,7 +48,7 @@ TEST(Chimney, RidesOnARidge) {
   const auto stack = chimney(house.roof, {{10, 5}, {1, 0}});
   ASSERT_TRUE(stack);
   EXPECT_EQ(stack->kind, RoofElementKind::chimney);
-  EXPECT_EQ(installations_verdict({*stack}), "none");
+  EXPECT_EQ(installations_validity({*stack}), "none");
   EXPECT_EQ(kinds(*stack), (Kinds{{SurfaceKind::closure, 2}, {SurfaceKind::wall, 4}, {SurfaceKind::roof, 1}}));
   EXPECT_NEAR(top_of(*stack), kEaves + 5 + 0.75, 0.001);
   // Below the ridge hangs a wedge of 0.58 x 0.29 / 2; all of it is 2 cm deeper.
@@ -60,18 +60,18 @@ TEST(Chimney, StandsAcrossARidgeAndInASlope) {
   const GabledHouse house(1);
   const auto across = chimney(house.roof, {{10, 5}, {0, 1}});
   ASSERT_TRUE(across);
-  EXPECT_EQ(installations_verdict({*across}), "none");
+  EXPECT_EQ(installations_validity({*across}), "none");
   EXPECT_NEAR(volume_of(*across), 0.58 * (1.2 * (0.75 + 0.02) + 1.2 * 0.6 / 2), 0.003);
   const auto inside = chimney(house.roof, {{10, 4}, {1, 0}});
   ASSERT_TRUE(inside);
-  EXPECT_EQ(installations_verdict({*inside}), "none");
+  EXPECT_EQ(installations_validity({*inside}), "none");
   EXPECT_EQ(kinds(*inside), (Kinds{{SurfaceKind::closure, 1}, {SurfaceKind::wall, 4}, {SurfaceKind::roof, 1}}));
   EXPECT_NEAR(top_of(*inside), kEaves + 5.75, 0.001);  // above the ridge, wherever it stands
   EXPECT_NEAR(volume_of(*inside), 1.2 * 0.58 * (1 + 0.75 + 0.02), 0.003);
   // Oblique, over the ridge.
   const auto oblique = chimney(house.roof, {{10, 5}, {0.8, 0.6}});
   ASSERT_TRUE(oblique);
-  EXPECT_EQ(installations_verdict({*oblique}), "none");
+  EXPECT_EQ(installations_validity({*oblique}), "none");
   EXPECT_EQ(broken_rules(house.roof, {*across, *inside, *oblique}), std::vector<std::string>{});
 }
 
@@ -82,7 +82,7 @@ TEST(Chimney, StandsOnFlatRoofs) {
   ASSERT_TRUE(stack);
   EXPECT_NEAR(top_of(*stack), kEaves + 1, 0.001);
   EXPECT_NEAR(volume_of(*stack), 1.2 * 0.58 * 1.02, 0.002);
-  EXPECT_EQ(installations_verdict({*stack}), "none");
+  EXPECT_EQ(installations_validity({*stack}), "none");
 }
 
 TEST(Chimney, RefusesWhatItCannotStandOn) {
@@ -117,7 +117,7 @@ TEST(Chimney, EndsAboveTheRidgeOfAMansard) {
     if (!stack) continue;
     in_lower += p.z < kEaves + 2.6;
     EXPECT_NEAR(top_of(*stack), kEaves + 4.75, 0.002);
-    EXPECT_EQ(installations_verdict({*stack}), "none");
+    EXPECT_EQ(installations_validity({*stack}), "none");
   }
   EXPECT_GT(in_lower, 0);
 }
@@ -179,7 +179,7 @@ TEST(Chimneys, StandInRowsWithinTheirOwnHouse) {
       const Roof roof = build_roof(plan, request).value().roof;
       const auto stacks = chimneys(plan, edges, roof, 11);
       ASSERT_EQ(stacks.size(), 2u) << model::name(shape);
-      EXPECT_EQ(installations_verdict(stacks), "none") << model::name(shape);
+      EXPECT_EQ(installations_validity(stacks), "none") << model::name(shape);
       EXPECT_EQ(broken_rules(roof, stacks), std::vector<std::string>{}) << model::name(shape);
       for (const RoofInstallation& stack : stacks) {
         for (const Point3& p : stack.solid.vertices) EXPECT_TRUE(geometry::contains(plan, p.xy()));
@@ -201,7 +201,7 @@ TEST(Chimneys, StandOnEveryKindOfRoof) {
       const Roof roof = roof_on(plan, shape, 3);
       const auto stacks = chimneys(plan, {}, roof, 12);
       EXPECT_EQ(stacks.size(), 2u) << model::name(shape) << " on " << name;
-      EXPECT_EQ(installations_verdict(stacks), "none");
+      EXPECT_EQ(installations_validity(stacks), "none");
       EXPECT_EQ(broken_rules(roof, stacks), std::vector<std::string>{});
       for (std::size_t i = 0; i + 1 < stacks.size(); ++i) {
         const Point2 a = middle_of(stacks[i]), b = middle_of(stacks[i + 1]);

@@ -39,7 +39,7 @@ void expect_near(const std::vector<Point2>& found, const std::vector<Point2>& wa
 TEST(CrossGable, CutsWallEavesAndSlopeInOneOperation) {
   GabledHouse house(1);
   ASSERT_TRUE(add_cross_gable(house.roof, house.south(), gable(), {10, 0}));
-  EXPECT_EQ(verdict(house.plan, house.roof), "none");
+  EXPECT_EQ(validity(house.plan, house.roof), "none");
   EXPECT_EQ(house.roof.elements, std::vector<RoofElementKind>{RoofElementKind::cross_gable});
   // The wall goes up and down again; other walls stay.
   expect_near(wall_top(house.roof, 0), {{20, 0}, {11.3, 0}, {11.3, 1}, {10, 2.3}, {8.7, 1}, {8.7, 0}, {0, 0}});
@@ -63,7 +63,7 @@ TEST(CrossGable, CutsWallEavesAndSlopeInOneOperation) {
 TEST(CrossGable, WithoutCheeksItsSlopesStartAtTheEaves) {
   GabledHouse house(1);
   ASSERT_TRUE(add_cross_gable(house.roof, house.south(), gable(DormerKind::gabled, 0), {10, 0}));
-  EXPECT_EQ(verdict(house.plan, house.roof), "none");
+  EXPECT_EQ(validity(house.plan, house.roof), "none");
   expect_near(wall_top(house.roof, 0), {{20, 0}, {11.3, 0}, {10, 1.3}, {8.7, 0}, {0, 0}});
   const ElementMeasures m = measures_of(house.roof, 0);
   EXPECT_EQ(m.upright, 0);
@@ -93,7 +93,7 @@ TEST(CrossGable, AddsItsVolume) {
       GabledHouse house(rise);
       const double before = volume_under(house.plan, house.roof);
       ASSERT_TRUE(add_cross_gable(house.roof, house.south(), gable(kind), {7, 0})) << degrees;
-      EXPECT_EQ(verdict(house.plan, house.roof), "none");
+      EXPECT_EQ(validity(house.plan, house.roof), "none");
       EXPECT_NEAR(volume_under(house.plan, house.roof) - before, volume, 0.02) << degrees;
     }
   }
@@ -111,15 +111,15 @@ TEST(CrossGable, StandsOnEveryKindOfRoofAnywhere) {
         for (std::size_t s = 0; s < surfaces; ++s) {
           const auto plane = roof_slope(roof, s);
           if (!plane) continue;
-          LayoutWish wish;
-          wish.outline = cross_gable_outline(*plane, gable());
-          wish.flush = true;
-          wish.up = 0;
-          wish.count = 1;
-          for (const double along : lay_out(*plane, wish).along) built += add_cross_gable(roof, s, gable(), {along, 0});
+          LayoutRequest wanted_layout;
+          wanted_layout.outline = cross_gable_outline(*plane, gable());
+          wanted_layout.flush = true;
+          wanted_layout.up = 0;
+          wanted_layout.count = 1;
+          for (const double along : lay_out(*plane, wanted_layout).along) built += add_cross_gable(roof, s, gable(), {along, 0});
         }
         EXPECT_GE(built, 2u) << model::name(shape) << " on " << name;
-        EXPECT_EQ(verdict(p, roof), "none") << model::name(shape) << " on " << name;
+        EXPECT_EQ(validity(p, roof), "none") << model::name(shape) << " on " << name;
         EXPECT_EQ(broken_rules(roof, {}), std::vector<std::string>{}) << model::name(shape) << " on " << name;
       }
     }
@@ -156,7 +156,7 @@ TEST(CrossGable, KeepsItsDistances) {
   EXPECT_TRUE(add_dormer(house.roof, house.south(), dormer, {12.6, 1}));
   EXPECT_FALSE(add_cross_gable(house.roof, house.south(), gable(), {14, 0}));
   EXPECT_TRUE(add_cross_gable(house.roof, house.south(), gable(), {17, 0}));
-  EXPECT_EQ(verdict(house.plan, house.roof), "none");
+  EXPECT_EQ(validity(house.plan, house.roof), "none");
   EXPECT_EQ(broken_rules(house.roof, {}), std::vector<std::string>{});
 }
 
@@ -191,11 +191,11 @@ TEST(CrossGable, StandsBesideABayInTheEaves) {
   for (const Polygon& plan : turned_about(bay))
     for (const RoofShape shape : {RoofShape::gabled, RoofShape::hipped}) {
       Roof roof = roof_on(plan, shape, 5);
-      Furnishing with;
-      const Furnished furnished = furnish(plan, {}, roof, with);
-      EXPECT_EQ(verdict(plan, furnished.roof), "none");
-      EXPECT_EQ(broken_rules(furnished.roof, furnished.installations), std::vector<std::string>{});
-      EXPECT_GE(furnished.built.at(RoofElementKind::cross_gable), 2);
+      Fitting with;
+      const Fitted fitted = fit_out(plan, {}, roof, with);
+      EXPECT_EQ(validity(plan, fitted.roof), "none");
+      EXPECT_EQ(broken_rules(fitted.roof, fitted.installations), std::vector<std::string>{});
+      EXPECT_GE(fitted.built.at(RoofElementKind::cross_gable), 2);
     }
 }
 

@@ -72,7 +72,7 @@ TEST_P(Dormer, IsAsWorkedOutByHand) {
     const double before = volume_under(house.plan, house.roof), plan_area = covered_area(house.roof);
     const DormerParameters p = usual_dormer(GetParam());
     ASSERT_TRUE(add_dormer(house.roof, house.south(), p, {10, 1})) << degrees;
-    EXPECT_EQ(verdict(house.plan, house.roof), "none");
+    EXPECT_EQ(validity(house.plan, house.roof), "none");
     EXPECT_EQ(house.roof.elements, std::vector<RoofElementKind>{RoofElementKind::dormer});
     // Corners half a millimetre off the slope bend all of its 100 m².
     EXPECT_NEAR(volume_under(house.plan, house.roof) - before, volume_of(p, rise), 0.04) << degrees;
@@ -114,14 +114,14 @@ TEST_P(Dormer, StandsOnEveryKindOfSlope) {
       if (name != "rectangle" && name != "L" && name != "U" && name != "courtyard" && name != "trapezoid") continue;
       for (const Polygon& p : {plan, moved(plan, 33, kPlaces[1]), moved(plan, 133.7, kPlaces[2])}) {
         const Roof bare = roof_on(p, shape, 5);
-        Furnishing with;
+        Fitting with;
         with.dormer = usual_dormer(GetParam());
         with.cross_gables = with.roof_windows = with.chimneys = false;
-        const Furnished furnished = furnish(p, {}, bare, with);
-        EXPECT_EQ(verdict(p, furnished.roof), "none") << model::name(shape) << " on " << name;
-        EXPECT_EQ(broken_rules(furnished.roof, {}), std::vector<std::string>{}) << model::name(shape) << " on " << name;
-        EXPECT_GT(furnished.roof.elements.size(), 0u) << model::name(shape) << " on " << name;
-        built += static_cast<int>(furnished.roof.elements.size());
+        const Fitted fitted = fit_out(p, {}, bare, with);
+        EXPECT_EQ(validity(p, fitted.roof), "none") << model::name(shape) << " on " << name;
+        EXPECT_EQ(broken_rules(fitted.roof, {}), std::vector<std::string>{}) << model::name(shape) << " on " << name;
+        EXPECT_GT(fitted.roof.elements.size(), 0u) << model::name(shape) << " on " << name;
+        built += static_cast<int>(fitted.roof.elements.size());
       }
     }
   EXPECT_GT(built, 500);
@@ -189,9 +189,9 @@ TEST(DormerDistances, BetweenTwoAndOverAHip) {
   EXPECT_TRUE(same_roof(house.roof, one));
   EXPECT_TRUE(add_dormer(house.roof, house.south(), flat_dormer(), {7.8, 1}));
   EXPECT_EQ(house.roof.elements.size(), 2u);
-  EXPECT_EQ(verdict(house.plan, house.roof), "none");
-  // Other rules than Holtmeier's: Westensee's code wants 1.60 m to the gable and takes 0.60 to the eaves (styles.md
-  // S28).
+  EXPECT_EQ(validity(house.plan, house.roof), "none");
+  // Other rules than Holtmeier's: Westensee's code wants 1.60 m to the gable and takes 0.60 to the eaves
+  // (docs/style_measures.md S28).
   ElementDistances westensee;
   westensee.side = 1.6;
   westensee.eaves = 0.6;
@@ -215,7 +215,7 @@ TEST(DormerParametersTest, RefusesWhatMakesNoBody) {
     const Roof bare = house.roof;
     const bool taken = add_dormer(house.roof, house.south(), p, {10, 1});
     EXPECT_TRUE(taken || same_roof(house.roof, bare));
-    EXPECT_TRUE(!taken || verdict(house.plan, house.roof) == "none");
+    EXPECT_TRUE(!taken || validity(house.plan, house.roof) == "none");
     return taken;
   };
   const auto with = [](DormerKind kind, auto change) {
@@ -255,14 +255,14 @@ TEST(DormerGeometry, IsTheSameOnEveryPlaceOfTheGrid) {
       DormerParameters p = usual_dormer(kind);
       p.width = std::min(p.width, 2.3);
       for (std::size_t s = 0; s < 2; ++s) {
-        LayoutWish wish;
-        wish.outline = dormer_outline(roof_slope(roof, s).value(), p);
-        for (const double along : lay_out(roof_slope(roof, s).value(), wish).along)
-          EXPECT_TRUE(add_dormer(roof, s, p, {along, wish.up}));
+        LayoutRequest wanted_layout;
+        wanted_layout.outline = dormer_outline(roof_slope(roof, s).value(), p);
+        for (const double along : lay_out(roof_slope(roof, s).value(), wanted_layout).along)
+          EXPECT_TRUE(add_dormer(roof, s, p, {along, wanted_layout.up}));
       }
       const std::size_t count = kind == DormerKind::eyebrow ? 10 : 12;  // (20 - 2 + 1.5) / (2.3 + 1.5) = 5.13
       EXPECT_EQ(roof.elements.size(), count);
-      EXPECT_EQ(verdict(plan, roof), "none");
+      EXPECT_EQ(validity(plan, roof), "none");
       EXPECT_NEAR(volume_under(plan, roof) - before, static_cast<double>(count) * volume_of(p, 1), 0.1);
     }
 }

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "pipeline/outputs/gltf/glb_writer.h"
-#include "tests/unit/roofs/dressed_roof.h"
+#include "tests/unit/roofs/roof_with_edges.h"
 #include "tests/unit/roofs/element_checks.h"
 #include "tests/unit/roofs/roof_checks.h"
 
@@ -66,22 +66,22 @@ TEST_P(DressedRoofs, BodiesAreValidAndTouchOnly) {
         const auto roof = roof_on(place, GetParam());
         ASSERT_TRUE(roof) << name;
         const model::Solid house = masses::envelope(place, 0, *roof, {});
-        if (verdict(house) != "none") continue;
+        if (validity(house) != "none") continue;
         const auto around = around_of(place, *roof, row);
         std::optional<std::pair<std::uint32_t, roofs::GableOptions>> gable;
         if (const auto drawn = roofs::draw_gable(1, static_cast<std::uint64_t>(angle), GetParam()))
           if (const auto edge = gable_edge(place, *roof, around)) gable.emplace(*edge, *drawn);
-        const DressedRoof dressed = dress(place, *roof, around, gable);
-        ASSERT_EQ(fault(house, dressed.bodies), "") << name << " at " << angle << ", row " << static_cast<int>(row);
-        bodies += static_cast<int>(dressed.bodies.size());
+        const RoofWithEdges with_edges = dress(place, *roof, around, gable);
+        ASSERT_EQ(fault(house, with_edges.bodies), "") << name << " at " << angle << ", row " << static_cast<int>(row);
+        bodies += static_cast<int>(with_edges.bodies.size());
         for (const auto* e :
-             {&dressed.gables, &dressed.firewalls, &dressed.parapets, &dressed.overhangs, &dressed.caps}) {
+             {&with_edges.gables, &with_edges.firewalls, &with_edges.parapets, &with_edges.overhangs, &with_edges.caps}) {
           asked += e->asked;
           refused += e->refused;
         }
         // Nothing hangs over a party wall: no body but those within the plan comes beyond its line there.
         const auto edges = roofs::plan_edges(place);
-        for (const auto& body : dressed.bodies) {
+        for (const auto& body : with_edges.bodies) {
           if (body.kind != RoofElementKind::eaves && body.kind != RoofElementKind::verge) continue;
           for (std::size_t i = 0; i < around.size(); ++i) {
             if (!around[i].party_wall) continue;
@@ -121,15 +121,15 @@ TEST(DressedRoofsOnRandomPlans, BodiesAreValidAndTouchOnly) {
     const auto roof = roof_on(plan, shape, 2 + 4 * random.unit());
     if (!roof) continue;
     const model::Solid house = masses::envelope(plan, 0, *roof, {});
-    if (verdict(house) != "none") continue;
+    if (validity(house) != "none") continue;
     const auto around = around_of(plan, *roof, static_cast<Row>(random.next(3)));
     std::optional<std::pair<std::uint32_t, roofs::GableOptions>> gable;
     if (const auto drawn = roofs::draw_gable(2, static_cast<std::uint64_t>(i), shape))
       if (const auto edge = gable_edge(plan, *roof, around)) gable.emplace(*edge, *drawn);
-    const DressedRoof dressed = dress(plan, *roof, around, gable);
-    ASSERT_EQ(fault(house, dressed.bodies), "") << "plan " << i << ' ' << model::name(shape);
-    bodies += static_cast<int>(dressed.bodies.size());
-    for (const auto* e : {&dressed.gables, &dressed.firewalls, &dressed.parapets, &dressed.overhangs, &dressed.caps}) {
+    const RoofWithEdges with_edges = dress(plan, *roof, around, gable);
+    ASSERT_EQ(fault(house, with_edges.bodies), "") << "plan " << i << ' ' << model::name(shape);
+    bodies += static_cast<int>(with_edges.bodies.size());
+    for (const auto* e : {&with_edges.gables, &with_edges.firewalls, &with_edges.parapets, &with_edges.overhangs, &with_edges.caps}) {
       asked += e->asked;
       refused += e->refused;
     }
@@ -148,11 +148,11 @@ TEST(DressedRoofsOnRings, SixHundredCorners) {
     const auto roof = roof_on(plan, shape);
     ASSERT_TRUE(roof);
     const model::Solid house = masses::envelope(plan, 0, *roof, {});
-    if (verdict(house) != "none") continue;
-    const DressedRoof dressed = dress(plan, *roof, {}, std::nullopt);
-    EXPECT_EQ(fault(house, dressed.bodies), "") << model::name(shape);
-    EXPECT_FALSE(dressed.bodies.empty());
-    EXPECT_EQ(dressed.overhangs.refused + dressed.parapets.refused, 0);
+    if (validity(house) != "none") continue;
+    const RoofWithEdges with_edges = dress(plan, *roof, {}, std::nullopt);
+    EXPECT_EQ(fault(house, with_edges.bodies), "") << model::name(shape);
+    EXPECT_FALSE(with_edges.bodies.empty());
+    EXPECT_EQ(with_edges.overhangs.refused + with_edges.parapets.refused, 0);
   }
 }
 
@@ -215,7 +215,7 @@ struct Sheet {
     parts.push_back(std::move(p));
   }
 
-  void add(const Polygon& plan, const Roof& roof, const DressedRoof& dressed, Point2 by) {
+  void add(const Polygon& plan, const Roof& roof, const RoofWithEdges& with_edges, Point2 by) {
     model::Face wall, top, under;
     wall.kind = SurfaceKind::wall;
     wall.colour = {222, 214, 196};
@@ -223,7 +223,7 @@ struct Sheet {
     top.colour = {168, 80, 60};
     under.kind = SurfaceKind::ground;
     add(masses::envelope(plan, 0, roof, {wall, top, under}), by);
-    for (model::RoofInstallation body : dressed.bodies) {
+    for (model::RoofInstallation body : with_edges.bodies) {
       for (model::Face& f : body.solid.faces) f.colour = colour_of(body.kind, f.kind);
       add(std::move(body.solid), by);
     }

@@ -20,7 +20,7 @@ namespace blockrand::roof_checks {
 using Bodies = std::vector<model::RoofInstallation>;
 
 /// "none" for a valid solid.
-inline std::string verdict(const model::Solid& solid) {
+inline std::string validity(const model::Solid& solid) {
   const auto triangles = geometry::triangulate(solid);
   if (!triangles) return "a face is no simple polygon";
   return geometry::check_solid(solid, *triangles).text();

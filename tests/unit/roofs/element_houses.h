@@ -1,7 +1,7 @@
 // A plain house with a roof of known pitch, for tests that work elements out by hand.
 #pragma once
 
-#include "tests/unit/roofs/furnished_roof.h"
+#include "tests/unit/roofs/fitted_roof.h"
 
 namespace blockrand::roof_checks {
 

@@ -14,10 +14,10 @@ std::vector<Point2> box(double width, double height) {
   return {{-width / 2, 0}, {width / 2, 0}, {width / 2, height}, {-width / 2, height}};
 }
 
-LayoutWish wish_of(double width, double height = 1) {
-  LayoutWish wish;
-  wish.outline = box(width, height);
-  return wish;
+LayoutRequest layout_request_of(double width, double height = 1) {
+  LayoutRequest wanted_layout;
+  wanted_layout.outline = box(width, height);
+  return wanted_layout;
 }
 
 std::vector<double> rounded(std::vector<double> values) {
@@ -46,7 +46,7 @@ TEST(Layout, TakesAsManyAsTheFormulaOnRectangles) {
     // On short houses the ridge runs the other way.
     const auto along = plane.along_extent();
     if (std::fabs(along.maximum - along.minimum - length) > 0.01 || plane.loops[0].size() != 4) continue;
-    const Layout layout = lay_out(plane, wish_of(width));
+    const Layout layout = lay_out(plane, layout_request_of(width));
     EXPECT_EQ(static_cast<int>(layout.along.size()), most_elements(length, width)) << length << " " << width;
     EXPECT_EQ(layout.did_not_fit, 0);
   }
@@ -57,7 +57,7 @@ TEST(Layout, TakesWhatFitsToTheMillimetre) {
     const double length = 2 + n * 1.25 + (n - 1) * 1.5;  // on the grid
     if (length < 11) continue;
     const GabledHouse house(1, length);
-    const Layout layout = lay_out(house.plane(), wish_of(1.25));
+    const Layout layout = lay_out(house.plane(), layout_request_of(1.25));
     ASSERT_EQ(static_cast<int>(layout.along.size()), n);
     for (int i = 0; i < n; ++i) EXPECT_NEAR(layout.along[static_cast<std::size_t>(i)], 1.625 + 2.75 * i, 1e-4);
     for (const double x : layout.along) {
@@ -70,15 +70,15 @@ TEST(Layout, TakesWhatFitsToTheMillimetre) {
 
 TEST(Layout, SpreadsTheWantedInEqualFields) {
   const GabledHouse house(1);
-  LayoutWish wish = wish_of(1.3);
-  wish.count = 4;
-  EXPECT_EQ(rounded(lay_out(house.plane(), wish).along), (Places{2.5, 7.5, 12.5, 17.5}));
-  wish.count = 1;
-  EXPECT_EQ(rounded(lay_out(house.plane(), wish).along), (Places{10}));
-  wish.count = 0;
-  EXPECT_TRUE(lay_out(house.plane(), wish).along.empty());
-  wish.count = 9;
-  const Layout layout = lay_out(house.plane(), wish);
+  LayoutRequest wanted_layout = layout_request_of(1.3);
+  wanted_layout.count = 4;
+  EXPECT_EQ(rounded(lay_out(house.plane(), wanted_layout).along), (Places{2.5, 7.5, 12.5, 17.5}));
+  wanted_layout.count = 1;
+  EXPECT_EQ(rounded(lay_out(house.plane(), wanted_layout).along), (Places{10}));
+  wanted_layout.count = 0;
+  EXPECT_TRUE(lay_out(house.plane(), wanted_layout).along.empty());
+  wanted_layout.count = 9;
+  const Layout layout = lay_out(house.plane(), wanted_layout);
   EXPECT_EQ(layout.along.size(), 6u);  // (20 - 2 + 1.5) / 2.8 = 6.96
   EXPECT_EQ(layout.did_not_fit, 3);
   EXPECT_NEAR(layout.along.front(), 20.0 / 12, 1e-6);
@@ -86,45 +86,45 @@ TEST(Layout, SpreadsTheWantedInEqualFields) {
 
 TEST(Layout, StandsOnWindowAxes) {
   const GabledHouse house(1);
-  LayoutWish wish = wish_of(1.3);
-  wish.axes = {2, 5, 8, 11, 14, 17};  // 3 m apart: each takes one
-  EXPECT_EQ(lay_out(house.plane(), wish).along, wish.axes);
-  wish.axes = {2, 4, 6, 8, 10, 12, 14, 16, 18};  // 2 m apart: every second one
-  const Layout layout = lay_out(house.plane(), wish);
+  LayoutRequest wanted_layout = layout_request_of(1.3);
+  wanted_layout.axes = {2, 5, 8, 11, 14, 17};  // 3 m apart: each takes one
+  EXPECT_EQ(lay_out(house.plane(), wanted_layout).along, wanted_layout.axes);
+  wanted_layout.axes = {2, 4, 6, 8, 10, 12, 14, 16, 18};  // 2 m apart: every second one
+  const Layout layout = lay_out(house.plane(), wanted_layout);
   EXPECT_EQ(layout.along, (Places{2, 6, 10, 14, 18}));
   EXPECT_EQ(layout.did_not_fit, 4);
-  wish.count = 2;
-  EXPECT_EQ(lay_out(house.plane(), wish).along.size(), 2u);
-  wish.count.reset();
-  wish.axes = {0.5, 10, 19.9};  // the outer ones are nearer than 1 m to the verges
-  EXPECT_EQ(lay_out(house.plane(), wish).along, (Places{10}));
-  EXPECT_EQ(lay_out(house.plane(), wish).did_not_fit, 2);
-  wish.axes = {18, 2, 10};  // in any order
-  EXPECT_EQ(lay_out(house.plane(), wish).along, (Places{2, 10, 18}));
+  wanted_layout.count = 2;
+  EXPECT_EQ(lay_out(house.plane(), wanted_layout).along.size(), 2u);
+  wanted_layout.count.reset();
+  wanted_layout.axes = {0.5, 10, 19.9};  // the outer ones are nearer than 1 m to the verges
+  EXPECT_EQ(lay_out(house.plane(), wanted_layout).along, (Places{10}));
+  EXPECT_EQ(lay_out(house.plane(), wanted_layout).did_not_fit, 2);
+  wanted_layout.axes = {18, 2, 10};  // in any order
+  EXPECT_EQ(lay_out(house.plane(), wanted_layout).along, (Places{2, 10, 18}));
 }
 
 TEST(Layout, StandsEveryStepAboutTheMiddle) {
   const GabledHouse house(1);
-  LayoutWish wish = wish_of(1.3);
-  wish.step = 4.8;
-  EXPECT_EQ(rounded(lay_out(house.plane(), wish).along), (Places{2.8, 7.6, 12.4, 17.2}));
-  wish.step = 30;
-  EXPECT_EQ(rounded(lay_out(house.plane(), wish).along), (Places{10}));
+  LayoutRequest wanted_layout = layout_request_of(1.3);
+  wanted_layout.step = 4.8;
+  EXPECT_EQ(rounded(lay_out(house.plane(), wanted_layout).along), (Places{2.8, 7.6, 12.4, 17.2}));
+  wanted_layout.step = 30;
+  EXPECT_EQ(rounded(lay_out(house.plane(), wanted_layout).along), (Places{10}));
 }
 
 TEST(Layout, GoesRoundWhatStandsThere) {
   GabledHouse house(1);
   RoofSlope plane = house.plane();
   plane.occupied.push_back({{{9, 1}, {11, 1}, {11, 3}, {9, 3}}, 1.5});
-  const Layout layout = lay_out(plane, wish_of(1.3));
+  const Layout layout = lay_out(plane, layout_request_of(1.3));
   // 9 m less 1 and 1.5 to each side: (9 - 2.5 + 1.5) / 2.8 = 2.86.
   ASSERT_EQ(layout.along.size(), 4u);
   EXPECT_LE(layout.along[1], 9 - 1.5 - 0.65 + 1e-4);
   EXPECT_GE(layout.along[2], 11 + 1.5 + 0.65 - 1e-4);
-  EXPECT_EQ(free_stretches(plane, wish_of(1.3)).size(), 2u);
+  EXPECT_EQ(free_intervals(plane, layout_request_of(1.3)).size(), 2u);
   // What stands higher up the slope than that is not in the way.
   plane.occupied[0].outline = {{9, 4}, {11, 4}, {11, 5}, {9, 5}};
-  EXPECT_EQ(lay_out(plane, wish_of(1.3)).along.size(), 6u);
+  EXPECT_EQ(lay_out(plane, layout_request_of(1.3)).along.size(), 6u);
 }
 
 TEST(Layout, KeepsOffHipsAndNarrowsWithThem) {
@@ -132,9 +132,9 @@ TEST(Layout, KeepsOffHipsAndNarrowsWithThem) {
   const Roof hipped = roof_on(plan, RoofShape::hipped, 5);
   const auto plane = roof_slope(hipped, 0).value();
   for (const double up : {1.0, 3.0, 5.0}) {
-    LayoutWish wish = wish_of(0.8);
-    wish.up = up;
-    const auto free = free_stretches(plane, wish);
+    LayoutRequest wanted_layout = layout_request_of(0.8);
+    wanted_layout.up = up;
+    const auto free = free_intervals(plane, wanted_layout);
     if (plane.loops[0].size() == 3 && up > 3) {
       EXPECT_TRUE(free.empty());
       continue;
@@ -149,13 +149,13 @@ TEST(Layout, KeepsOffHipsAndNarrowsWithThem) {
 
 TEST(Layout, PlacesNothingWhereNothingFits) {
   const GabledHouse low(0.1);  // 5 m of slope: 1 m to the eaves, 0.3 to the ridge
-  EXPECT_TRUE(lay_out(low.plane(), wish_of(1.3, 4)).along.empty());
-  EXPECT_EQ(lay_out(low.plane(), wish_of(1.3, 3.7)).along.size(), 6u);
-  LayoutWish wish = wish_of(1.3);
-  wish.up = 0.5;
-  EXPECT_TRUE(lay_out(low.plane(), wish).along.empty());
-  wish.outline.clear();
-  EXPECT_TRUE(lay_out(low.plane(), wish).along.empty());
+  EXPECT_TRUE(lay_out(low.plane(), layout_request_of(1.3, 4)).along.empty());
+  EXPECT_EQ(lay_out(low.plane(), layout_request_of(1.3, 3.7)).along.size(), 6u);
+  LayoutRequest wanted_layout = layout_request_of(1.3);
+  wanted_layout.up = 0.5;
+  EXPECT_TRUE(lay_out(low.plane(), wanted_layout).along.empty());
+  wanted_layout.outline.clear();
+  EXPECT_TRUE(lay_out(low.plane(), wanted_layout).along.empty());
 }
 
 TEST(TakesElements, FromFifteenToEightyDegrees) {

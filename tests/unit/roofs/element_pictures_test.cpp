@@ -6,7 +6,7 @@
 
 #include "pipeline/outputs/gltf/glb_writer.h"
 #include "pipeline/attributes/defaults.h"
-#include "tests/unit/roofs/furnished_roof.h"
+#include "tests/unit/roofs/fitted_roof.h"
 
 namespace blockrand::roofs {
 namespace {
@@ -22,11 +22,11 @@ class Street {
  public:
   Street() : defaults_(attributes::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs")) {
     region_.extract = &no_tags_;
-    for (const attributes::Material& m : defaults_.materials) region_.materials.push_back(m.looks);
+    for (const attributes::Material& m : defaults_.materials) region_.materials.push_back(m.material_class);
   }
 
   void add(const Polygon& plan, const Roof& roof, const std::vector<model::RoofInstallation>& installations) {
-    masses::EnvelopeLooks looks;
+    masses::EnvelopeMaterials looks;
     looks.wall = face(model::SurfaceKind::wall, "plaster", {222, 214, 196});
     looks.roof = face(model::SurfaceKind::roof, "roof_tiles", {168, 80, 60});
     looks.under = face(model::SurfaceKind::ground, "plaster", {120, 120, 120});
@@ -39,12 +39,12 @@ class Street {
       for (model::Face& f : solid.faces) {
         const auto kind = f.kind;
         f = [&] {
-          model::Face dressed = installation.kind == model::RoofElementKind::chimney
+          model::Face with_edges = installation.kind == model::RoofElementKind::chimney
                                     ? face(kind, "plaster", {140, 70, 55})
                                     : face(kind, "plaster", {70, 80, 90});
-          dressed.first_loop = f.first_loop;
-          dressed.loop_count = f.loop_count;
-          return dressed;
+          with_edges.first_loop = f.first_loop;
+          with_edges.loop_count = f.loop_count;
+          return with_edges;
         }();
       }
       if (installation.kind == model::RoofElementKind::roof_window) solid.faces.back().colour = {120, 170, 210};
@@ -102,17 +102,17 @@ TEST(RoofElementPictures, WritesModels) {
       const double x = 18.0 * static_cast<double>(column), y = -16.0 * static_cast<double>(row);
       const Polygon plan = polygon({{x, y}, {x + 13, y}, {x + 13, y + 10}, {x, y + 10}});
       const BuiltRoof bare = roof_of(kShapes[column], plan, 6);
-      Furnishing with;
+      Fitting with;
       with.dormer = usual_dormer(kDormerKinds[row]);
       with.cross_gables = with.roof_windows = with.chimneys = false;
-      const Furnished only_dormers = furnish(plan, {}, bare.roof, with);
+      const Fitted only_dormers = fit_out(plan, {}, bare.roof, with);
       dormers.add(plan, only_dormers.roof, only_dormers.installations);
       with.cross_gables = with.roof_windows = with.chimneys = true;
       with.cross_gable.kind = kDormerKinds[row] == DormerKind::eyebrow ? DormerKind::gabled : kDormerKinds[row];
       if (with.cross_gable.kind == DormerKind::shed) with.cross_gable.roof_pitch = 10;
       if (row == 5) with.cross_gable.wall_height = 0;
       with.most_dormers = row % 2 == 0 ? 2 : 0;
-      const Furnished all = furnish(plan, {}, bare.roof, with);
+      const Fitted all = fit_out(plan, {}, bare.roof, with);
       elements.add(plan, all.roof, all.installations);
     }
   double x = 0;
@@ -123,7 +123,7 @@ TEST(RoofElementPictures, WritesModels) {
       static std::map<RoofShape, double> next;
       const Polygon plan = moved(shown, 0, {next[shape] - across.minimum, -38.0 * x});
       next[shape] += across.maximum - across.minimum + 6;
-      const Furnished all = furnish(plan, {}, roof_of(shape, plan, 4).roof, {});
+      const Fitted all = fit_out(plan, {}, roof_of(shape, plan, 4).roof, {});
       plans.add(plan, all.roof, all.installations);
       if (name == "courtyard") continue;
       if (name == "U") x += 1;
@@ -132,11 +132,11 @@ TEST(RoofElementPictures, WritesModels) {
     const double left = 11.0 * house, top = 4.5 + 0.4 * (house % 3);
     const Polygon plan = polygon({{left, -175}, {left + 11, -175}, {left + 11, -164}, {left, -164}});
     const BuiltRoof bare = roof_of(RoofShape::gabled, plan, top);
-    Furnishing with;
+    Fitting with;
     with.dormer = usual_dormer(kDormerKinds[house % 6]);
     with.cross_gables = house % 3 == 0;
     with.roof_windows = house % 2 == 1;
-    const Furnished all = furnish(plan, gables_as_party_walls(bare.roof), bare.roof, with);
+    const Fitted all = fit_out(plan, gables_as_party_walls(bare.roof), bare.roof, with);
     plans.add(plan, all.roof, all.installations);
   }
   dormers.write(std::string(folder) + "/dormers.glb");

@@ -58,7 +58,7 @@ std::vector<std::string> complaints(const Polygon& plan, RoofShape shape, std::i
   for (const Point2 place : places)
     EXPECT_TRUE(
         add_dormer(roof, 0, flat_dormer(), place, {}, {.eaves = 0.2, .between = 0.2, .side = 0.2, .fold = 0.1}));
-  EXPECT_EQ(verdict(plan, roof), "none");
+  EXPECT_EQ(validity(plan, roof), "none");
   return broken_rules(roof, {});
 }
 
@@ -99,7 +99,7 @@ TEST(ElementRules, HoldOnGeneratedRoofs) {
     request.shape = kShapes[random.next(std::size(kShapes))];
     const double height = random.next(8) == 0 ? 0.5 : 1.5 + 6.5 * random.unit();
     request.measures = {40, height};
-    Furnishing with;
+    Fitting with;
     with.dormer = usual_dormer(kDormerKinds[random.next(6)]);
     if (random.next(2) == 0) with.dormer.width = 0.8 + 2.2 * random.unit();
     with.cross_gable.kind = kDormerKinds[random.next(5)];
@@ -113,20 +113,20 @@ TEST(ElementRules, HoldOnGeneratedRoofs) {
     for (const double coarseness : kCoarseness) {
       request.coarseness = coarseness;
       bare = build_roof(plan, request);
-      if (bare && verdict(plan, bare->roof) == "none") break;
+      if (bare && validity(plan, bare->roof) == "none") break;
       bare.reset();
     }
     if (!bare) continue;
     ++roofs;
     const auto edges = random.next(2) == 0 ? gables_as_party_walls(bare->roof) : std::vector<model::RoofEdge>{};
-    const Furnished furnished = furnish(plan, edges, bare->roof, with);
+    const Fitted fitted = fit_out(plan, edges, bare->roof, with);
     const std::string where = "roof " + std::to_string(i) + ", " + std::string(model::name(request.shape));
-    ASSERT_EQ(verdict(plan, furnished.roof), "none") << where;
-    ASSERT_EQ(installations_verdict(furnished.installations), "none") << where;
-    ASSERT_EQ(broken_rules(furnished.roof, furnished.installations), std::vector<std::string>{}) << where;
-    ASSERT_EQ(furnished.faults, std::vector<std::string>{}) << where;
-    ASSERT_NEAR(covered_area(furnished.roof), covered_area(bare->roof), 0.02) << where;
-    for (const auto& [kind, n] : furnished.built) built[kind] += n;
+    ASSERT_EQ(validity(plan, fitted.roof), "none") << where;
+    ASSERT_EQ(installations_validity(fitted.installations), "none") << where;
+    ASSERT_EQ(broken_rules(fitted.roof, fitted.installations), std::vector<std::string>{}) << where;
+    ASSERT_EQ(fitted.faults, std::vector<std::string>{}) << where;
+    ASSERT_NEAR(covered_area(fitted.roof), covered_area(bare->roof), 0.02) << where;
+    for (const auto& [kind, n] : fitted.built) built[kind] += n;
   }
   EXPECT_GE(roofs, 1000);
   // The rules are not kept by building nothing.
@@ -157,15 +157,15 @@ TEST(ElementRules, HoldInRows) {
       const Roof bare = roof_on(plan, shape, 3 + 3 * random.unit());
       const std::vector<model::RoofEdge> edges{model::RoofEdge::street, model::RoofEdge::party_wall,
                                                model::RoofEdge::courtyard, model::RoofEdge::party_wall};
-      Furnishing with;
+      Fitting with;
       with.dormer = usual_dormer(kDormerKinds[random.next(6)]);
       with.frontage = width;
       with.cross_gables = random.next(2) == 0;
       with.most_dormers = 1 + static_cast<int>(random.next(3));
-      const Furnished furnished = furnish(plan, edges, bare, with);
-      ASSERT_EQ(verdict(plan, furnished.roof), "none") << row;
-      ASSERT_EQ(installations_verdict(furnished.installations), "none") << row;
-      ASSERT_EQ(broken_rules(furnished.roof, furnished.installations), std::vector<std::string>{}) << row;
+      const Fitted fitted = fit_out(plan, edges, bare, with);
+      ASSERT_EQ(validity(plan, fitted.roof), "none") << row;
+      ASSERT_EQ(installations_validity(fitted.installations), "none") << row;
+      ASSERT_EQ(broken_rules(fitted.roof, fitted.installations), std::vector<std::string>{}) << row;
       // Off the party walls on the plan: 1 m, chimneys 5 cm.
       const auto off_party_walls = [&](Point2 p) {
         double least = 1e9;
@@ -174,19 +174,19 @@ TEST(ElementRules, HoldInRows) {
               std::min(least, geometry::distance_to_segment(p, plan.outer.points[e], plan.outer.points[(e + 1) % 4]));
         return least;
       };
-      for (const auto& surface : furnished.roof.surfaces) {
+      for (const auto& surface : fitted.roof.surfaces) {
         if (surface.element == -1) continue;
         for (const Point3& p : surface.loops[0]) ASSERT_GE(off_party_walls(p.xy()), 1 - 0.003);
       }
-      for (const auto& body : furnished.installations)
+      for (const auto& body : fitted.installations)
         for (const Point3& p : body.solid.vertices) {
           const bool chimney = body.kind == RoofElementKind::chimney;
           ASSERT_GE(off_party_walls(p.xy()), (chimney ? 0.05 : 1) - 0.003);
           ASSERT_TRUE(geometry::contains(plan, p.xy()));
         }
       const auto built = [&](RoofElementKind kind) {
-        const auto found = furnished.built.find(kind);
-        return found == furnished.built.end() ? 0 : found->second;
+        const auto found = fitted.built.find(kind);
+        return found == fitted.built.end() ? 0 : found->second;
       };
       dormers += built(RoofElementKind::dormer);
       cross_gables += built(RoofElementKind::cross_gable);

@@ -441,7 +441,7 @@ TEST_P(GablesOn, EveryEdgeOfEveryPlanIsValidOrRefused) {
       const Polygon place = roof_checks::moved(plan, angle, angle == 0 ? Point2{} : Point2{395000.123, 5818000.456});
       const Roof roof = roof_on(place, GetParam(), 4);
       const model::Solid house = masses::envelope(place, 0, roof, {});
-      if (roof_checks::verdict(house) != "none" || roof.wall_tops.size() > 30) continue;
+      if (roof_checks::validity(house) != "none" || roof.wall_tops.size() > 30) continue;
       for (std::uint32_t edge = 0; edge < roof.wall_tops.size(); ++edge)
         for (const GableForm form : {GableForm::stepped, GableForm::curved, GableForm::attic}) {
           ++asked;

@@ -47,7 +47,7 @@ double height_at(const Roof& roof, Point2 p) {
 
 void judge(const Polygon& plan, const std::optional<Roof>& roof, std::size_t faces, double height = 4) {
   ASSERT_TRUE(roof);
-  EXPECT_EQ(verdict(plan, *roof), "none");
+  EXPECT_EQ(validity(plan, *roof), "none");
   EXPECT_EQ(roof->surfaces.size(), faces);
   EXPECT_NEAR(covered_area(*roof), geometry::area(plan), 0.05);
   EXPECT_DOUBLE_EQ(highest(*roof), 36 + height);
@@ -122,7 +122,7 @@ TEST(LinedRoof, RidgeOnAWallIsALeanTo) {
 TEST(LinedRoof, ApexIsAtFullHeight) {
   const auto roof = lined_roof(kHouse, {36, 4}, std::vector{ridge({{0, 5}, {8, 5}}), apex({16, 5})});
   ASSERT_TRUE(roof);
-  EXPECT_EQ(verdict(kHouse, *roof), "none");
+  EXPECT_EQ(validity(kHouse, *roof), "none");
   EXPECT_NEAR(height_at(*roof, {16, 5}), 4, 1e-3);
 }
 
@@ -138,7 +138,7 @@ TEST(LinedRoof, NothingLiesFlatAtTheEavesThatASlopeCanTake) {
                                 {3.6875, 4.3125}});
   const auto roof = lined_roof(plan, {36, 2}, std::vector{ridge({{4.0625, 7.734375}, {13.125, 6.65625}})});
   ASSERT_TRUE(roof);
-  EXPECT_EQ(verdict(plan, *roof), "none");
+  EXPECT_EQ(validity(plan, *roof), "none");
   EXPECT_GT(height_at(*roof, {7, 10}), 0.5);
   EXPECT_GT(height_at(*roof, {8, 3}), 0.5);
 }
@@ -186,7 +186,7 @@ TEST(LinedRoof, EveryRoofOfTheGridCanBeDrawn) {
     const auto roof = lined_roof(plan, {36, 1 + 6 * random.unit()}, lines);
     if (!roof) continue;
     ++drawn;
-    const std::string said = verdict(plan, *roof);
+    const std::string said = validity(plan, *roof);
     EXPECT_EQ(said, "none") << i;
     valid += said == "none";
   }

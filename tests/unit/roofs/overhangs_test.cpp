@@ -269,7 +269,7 @@ TEST_P(OverhangsAndCaps, AreValidAndTouchOnly) {
       const auto built = build_roof(place, request);
       ASSERT_TRUE(built) << name;
       const model::Solid house = masses::envelope(place, 0, built->roof, {});
-      if (roof_checks::verdict(house) != "none") continue;
+      if (roof_checks::validity(house) != "none") continue;
       const auto eaves = overhangs(place, built->roof, {});
       const auto caps = ridge_and_hip_caps(built->roof, eaves.corners, {});
       auto all = eaves.elements.bodies;

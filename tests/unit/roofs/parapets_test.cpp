@@ -256,7 +256,7 @@ TEST_P(FirewallsAndParapets, AreValidAndTouchOnly) {
       const auto built = build_roof(place, request);
       ASSERT_TRUE(built) << name;
       const model::Solid house = masses::envelope(place, 0, built->roof, {});
-      if (roof_checks::verdict(house) != "none") continue;
+      if (roof_checks::validity(house) != "none") continue;
       const std::size_t count = built->roof.wall_tops.size();
       std::vector<FirewallSide> party(count);
       std::vector<RoofEdge> edges(count);

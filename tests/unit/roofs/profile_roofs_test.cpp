@@ -67,7 +67,7 @@ TEST(ProfileRoof, StepAtAReflexCornerSharesItsFootWithTheHigherWall) {
   const auto roof = built(plan, RoofShape::gabled_height_moved, {0, 1}, {36, 5});
   ASSERT_TRUE(roof);
   EXPECT_EQ(face_counts(*roof), (std::pair<std::size_t, std::size_t>(2, 1)));
-  EXPECT_EQ(verdict(plan, *roof), "none");
+  EXPECT_EQ(validity(plan, *roof), "none");
   EXPECT_EQ(roof->wall_tops[2], (std::vector<Point3>{{8, 8, 39.5}, {20, 8, 39.5}}));
   EXPECT_EQ(roof->wall_tops[3], (std::vector<Point3>{{8, 16, 37.5}, {8, 8, 41}, {8, 8, 39.5}}));
 }
@@ -91,7 +91,7 @@ TEST(ProfileRoof, EveryPlanClosesAtEveryAngle) {
             const std::string what = name + ", " + std::string(model::name(shape)) + ", turned " +
                                      std::to_string(turn) + ", up " + std::to_string(direction);
             ASSERT_TRUE(roof) << what;
-            EXPECT_EQ(verdict(p, *roof), "none") << what;
+            EXPECT_EQ(validity(p, *roof), "none") << what;
             EXPECT_NEAR(covered_area(*roof), geometry::area(p), 0.1) << what;
             EXPECT_NEAR(highest(*roof), 40, 1e-9) << what;
           }
@@ -118,7 +118,7 @@ TEST(ProfileRoof, RandomPlansClose) {
         ++none;
         continue;
       }
-      const std::string found = verdict(plan, *roof);
+      const std::string found = validity(plan, *roof);
       if (found != "none") {
         ++invalid;
         std::cout << round << ' ' << model::name(shape) << ": " << found << '\n';

@@ -11,7 +11,7 @@
 
 #include "pipeline/masses/envelope.h"
 #include "pipeline/geometry/check_solid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "styles/roofs/roof.h"
@@ -27,7 +27,7 @@ using testing_shapes::Random;
 using testing_shapes::ring;
 
 /// What the checker says of the solid from z = 30 to the roof; "none" for valid ones.
-inline std::string verdict(const Polygon& plan, const roofs::Roof& roof) {
+inline std::string validity(const Polygon& plan, const roofs::Roof& roof) {
   const model::Solid solid = masses::envelope(plan, 30, roof, {});
   const auto triangles = geometry::triangulate(solid);
   if (!triangles) return "a face is no simple polygon";

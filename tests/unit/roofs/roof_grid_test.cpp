@@ -15,7 +15,7 @@
 #include "pipeline/attributes/defaults.h"
 #include "pipeline/masses/mass.h"
 #include "pipeline/geometry/check_solid.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "tests/unit/geometry/shapes.h"
 
 namespace blockrand::roofs {
@@ -137,7 +137,7 @@ model::Region built(const std::vector<Polygon>& plans, RoofShape shape) {
   static const model::Extract no_tags;
   model::Region region;
   region.extract = &no_tags;
-  for (const attributes::Material& m : defaults().materials) region.materials.push_back(m.looks);
+  for (const attributes::Material& m : defaults().materials) region.materials.push_back(m.material_class);
   for (const Polygon& plan : plans) {
     model::Building b;
     b.osm = {model::OsmType::way, static_cast<std::int64_t>(region.buildings.size()) + 1};

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "pipeline/geometry/needles.h"
+#include "pipeline/geometry/slivers.h"
 #include "styles/roofs/skeleton_roofs.h"
 #include "styles/roofs/wing_ends.h"
 #include "tests/unit/geometry/random_plans.h"
@@ -64,7 +64,7 @@ std::set<int> slope_directions(const Roof& roof) {
 }
 
 TEST(HippedRoof, RidgeOfATenBySixPlan) {
-  // seed003-part2 P2-59: 10 x 6 at 45 degrees has its ridge at (3,3,3) to (7,3,3).
+  // docs/internal/seeds.md P2-59: 10 x 6 at 45 degrees has its ridge at (3,3,3) to (7,3,3).
   const auto built = build_roof(polygon({{0, 0}, {10, 0}, {10, 6}, {0, 6}}), request(RoofShape::hipped, {0, 3}));
   ASSERT_TRUE(built);
   std::set<Point3> high;
@@ -81,7 +81,7 @@ TEST(GabledRoof, OneRidgePerWing) {
       EXPECT_EQ(wing_ends(p, request(RoofShape::gabled)).size(), expected.at(name)) << name;
       const auto built = build_roof(p, request(RoofShape::gabled));
       ASSERT_TRUE(built) << name;
-      EXPECT_EQ(verdict(p, built->roof), "none") << name;
+      EXPECT_EQ(validity(p, built->roof), "none") << name;
       EXPECT_EQ(built->note, model::IssueCode::none) << name;
     }
     const auto gabled = build_roof(plan, request(RoofShape::gabled));
@@ -113,7 +113,7 @@ TEST(SkillionRoof, OnePlaneDownTheGivenDirection) {
     const auto built = build_roof(p, r);
     ASSERT_TRUE(built) << name;
     EXPECT_EQ(built->roof.surfaces.size(), 1u);
-    EXPECT_EQ(verdict(p, built->roof), "none") << name;
+    EXPECT_EQ(validity(p, built->roof), "none") << name;
     EXPECT_EQ(slope_directions(built->roof), std::set<int>{45}) << name;
   }
   const auto east = compass_vector(90);
@@ -122,7 +122,7 @@ TEST(SkillionRoof, OnePlaneDownTheGivenDirection) {
 }
 
 TEST(SkillionRoof, ShedHasOneHighWall) {
-  // finkenzeller FK-23: the wall on the high side reaches the top, the opposite one the eaves.
+  // docs/internal/seeds.md FK-23: the wall on the high side reaches the top, the opposite one the eaves.
   RoofRequest r = request(RoofShape::skillion, {36, 3});
   r.down = Point2{0, -1};
   const auto built = build_roof(some_plans().at("rectangle"), r);
@@ -150,7 +150,7 @@ TEST(HippedRoof, RegularPlansAtThePrecisionOfTheMap) {
           RoofRequest asked = request(RoofShape::hipped);
           asked.coarseness = coarseness;
           const auto roof = build_roof(plan, asked);
-          valid = valid || (roof && verdict(plan, roof->roof) == "none");
+          valid = valid || (roof && validity(plan, roof->roof) == "none");
         }
         ++built;
         refused += !valid;
@@ -166,12 +166,12 @@ TEST(RandomRoofs, AreValidOrCounted) {
   const RoofShape shapes[] = {RoofShape::hipped,  RoofShape::gabled,  RoofShape::half_hipped,    RoofShape::mansard,
                               RoofShape::gambrel, RoofShape::round,   RoofShape::side_hipped,    RoofShape::hipped_and_gabled,
                               RoofShape::double_saltbox, RoofShape::quadruple_saltbox};
-  std::map<std::string, std::uint64_t> verdicts;
+  std::map<std::string, std::uint64_t> validities;
   std::uint64_t built = 0, fallbacks = 0, invalid = 0;
   for (std::uint64_t i = 0; i < rounds; ++i) {
     // As repair leaves plans: without needles.
     Polygon plan = random_plan(23, i);
-    geometry::cut_needles(plan, 0.1);
+    geometry::cut_slivers(plan, 0.1);
     const RoofShape shape = shapes[(i / 4) % std::size(shapes)];
     RoofRequest asked = request(shape);
     std::string v;
@@ -182,7 +182,7 @@ TEST(RandomRoofs, AreValidOrCounted) {
         v = "skeleton given up";
         break;
       }
-      v = verdict(plan, roof->roof);
+      v = validity(plan, roof->roof);
       if (v == "none") {
         EXPECT_NEAR(covered_area(roof->roof), geometry::area(plan), 0.005 * geometry::perimeter(plan)) << i;
         break;
@@ -192,11 +192,11 @@ TEST(RandomRoofs, AreValidOrCounted) {
     built += v == "none";
     if (v == "none") continue;
     ++invalid;
-    ++verdicts[v.substr(0, v.find(" at"))];
-    ++verdicts[std::string(model::name(shape))];
+    ++validities[v.substr(0, v.find(" at"))];
+    ++validities[std::string(model::name(shape))];
     if (invalid < 12) std::printf("polygon %lu, %s: %s\n", i, std::string(model::name(shape)).c_str(), v.c_str());
   }
-  for (const auto& [v, n] : verdicts) std::printf("  %s: %lu\n", v.c_str(), n);
+  for (const auto& [v, n] : validities) std::printf("  %s: %lu\n", v.c_str(), n);
   std::printf("%lu random polygons: %lu roofs, %lu skeletons given up, %lu solids refused by the checker (%.3f %%)\n", rounds, built,
               fallbacks, invalid, 100.0 * static_cast<double>(invalid) / static_cast<double>(rounds));
   EXPECT_LT(fallbacks + invalid, 1 + rounds / 1000);

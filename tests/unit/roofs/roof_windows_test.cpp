@@ -19,7 +19,7 @@ TEST(RoofWindow, IsAFrameWithAPaneSetIntoIt) {
     const auto window = roof_window(house.plane(), {}, {10, 1});
     ASSERT_TRUE(window) << degrees;
     EXPECT_EQ(window->kind, RoofElementKind::roof_window);
-    EXPECT_EQ(installations_verdict({*window}), "none") << degrees;
+    EXPECT_EQ(installations_validity({*window}), "none") << degrees;
     EXPECT_EQ(window->solid.faces.size(), 11u);
     // 0.78 x 1.18 x 0.06, less a pane of 0.62 x 1.02 that lies 0.02 deep.
     EXPECT_NEAR(volume_of(window->solid), 0.78 * 1.18 * 0.06 - 0.62 * 1.02 * 0.02, 0.0015) << degrees;
@@ -42,12 +42,12 @@ TEST(RoofWindow, IsValidOnEverySlopeAndPlace) {
   for (const RoofShape shape : {RoofShape::gabled, RoofShape::hipped, RoofShape::mansard, RoofShape::gambrel,
                                 RoofShape::half_hipped, RoofShape::double_saltbox})
     for (const Polygon& plan : turned_about(plans().at("L"))) {
-      Furnishing with;
+      Fitting with;
       with.cross_gables = with.dormers = with.chimneys = false;
-      const Furnished furnished = furnish(plan, {}, roof_on(plan, shape, 5), with);
-      EXPECT_GT(furnished.installations.size(), 8u);
-      EXPECT_EQ(installations_verdict(furnished.installations), "none");
-      EXPECT_EQ(broken_rules(furnished.roof, furnished.installations), std::vector<std::string>{});
+      const Fitted fitted = fit_out(plan, {}, roof_on(plan, shape, 5), with);
+      EXPECT_GT(fitted.installations.size(), 8u);
+      EXPECT_EQ(installations_validity(fitted.installations), "none");
+      EXPECT_EQ(broken_rules(fitted.roof, fitted.installations), std::vector<std::string>{});
     }
 }
 

@@ -17,7 +17,7 @@ using model::Polygon;
 using model::RoofEdge;
 using model::RoofShape;
 using roof_checks::moved;
-using roof_checks::verdict;
+using roof_checks::validity;
 using testing_shapes::polygon;
 using testing_shapes::Random;
 using testing_shapes::ring;
@@ -74,7 +74,7 @@ TEST(MidRowHouse, RidgeRunsFromPartyWallToPartyWall) {
       r.shape_is_mapped = mapped;
       const auto built = build_roof(plan, r);
       ASSERT_TRUE(built) << model::name(shape);
-      EXPECT_EQ(verdict(plan, built->roof), "none");
+      EXPECT_EQ(validity(plan, built->roof), "none");
       EXPECT_EQ(built->roof.surfaces.size(), 2u) << model::name(shape);
       EXPECT_EQ(wall_rise(built->roof, 0), 0);
       EXPECT_EQ(wall_rise(built->roof, 1), 6);
@@ -91,7 +91,7 @@ TEST(MidRowHouse, BrokenRoofsEndAtThePartyWallsToo) {
                                 RoofShape::quadruple_saltbox, RoofShape::round, RoofShape::berlin}) {
     const auto built = build_roof(plan, in_row(shape, 5, {kStreet, kParty, kYard, kParty}));
     ASSERT_TRUE(built) << model::name(shape);
-    EXPECT_EQ(verdict(plan, built->roof), "none") << model::name(shape);
+    EXPECT_EQ(validity(plan, built->roof), "none") << model::name(shape);
     EXPECT_NEAR(wall_rise(built->roof, 1), 5, 0.002) << model::name(shape);
     EXPECT_EQ(wall_rise(built->roof, 0), 0) << model::name(shape);
   }
@@ -164,7 +164,7 @@ TEST(CornerHouse, TurnsTheRidgeThoughItsPlanIsFull) {
     EXPECT_FALSE(sides.leans);
     const auto built = build_roof(p, r);
     ASSERT_TRUE(built);
-    EXPECT_EQ(verdict(p, built->roof), "none");
+    EXPECT_EQ(validity(p, built->roof), "none");
     EXPECT_EQ(built->roof.surfaces.size(), 4u);
     EXPECT_EQ(wall_rise(built->roof, 0), 0);
     EXPECT_EQ(wall_rise(built->roof, 1), 0);
@@ -183,7 +183,7 @@ TEST(CornerHouse, WithAYardOfItsOwnHasAValleyThere) {
   const Polygon plan = polygon({{0, 0}, {20, 0}, {20, 20}, {9, 20}, {9, 11}, {0, 11}});
   const auto built = build_roof(plan, in_row(RoofShape::gabled, 5, {kStreet, kStreet, kParty, kYard, kYard, kParty}));
   ASSERT_TRUE(built);
-  EXPECT_EQ(verdict(plan, built->roof), "none");
+  EXPECT_EQ(validity(plan, built->roof), "none");
   for (const std::size_t eaves : {0u, 1u, 3u, 4u}) EXPECT_EQ(wall_rise(built->roof, eaves), 0) << eaves;
   for (const std::size_t upright : {2u, 5u}) EXPECT_NEAR(wall_rise(built->roof, upright), 5, 0.003) << upright;
 }
@@ -194,7 +194,7 @@ TEST(SideWing, LeansOnTheNeighbourAndFallsToTheYard) {
   EXPECT_TRUE(main_slope(plan, r, true).leans);
   const auto built = build_roof(plan, r);
   ASSERT_TRUE(built);
-  EXPECT_EQ(verdict(plan, built->roof), "none");
+  EXPECT_EQ(validity(plan, built->roof), "none");
   EXPECT_EQ(built->shape, RoofShape::skillion);
   EXPECT_EQ(built->roof.surfaces.size(), 1u);
   EXPECT_EQ(wall_rise(built->roof, 1), 0);
@@ -214,7 +214,7 @@ TEST(SideWing, OfAFrontHouseIsGentlerThanIt) {
   const Polygon plan = polygon({{0, 0}, {18, 0}, {18, 12}, {6, 12}, {6, 26}, {0, 26}});
   const auto built = build_roof(plan, in_row(RoofShape::gabled, 6, {kStreet, kParty, kYard, kYard, kYard, kParty}));
   ASSERT_TRUE(built);
-  EXPECT_EQ(verdict(plan, built->roof), "none");
+  EXPECT_EQ(validity(plan, built->roof), "none");
   EXPECT_NEAR(height_at(built->roof, {12, 5.5}), 5.5, 0.01);
   EXPECT_NEAR(height_at(built->roof, {1, 22}), 5 * 0.3, 0.01);
   EXPECT_NEAR(wall_rise(built->roof, 4), 1.8, 0.01) << "the wing ends upright";
@@ -261,7 +261,7 @@ TEST(PerimeterBlock, MappedAsOnePolygonHasARidgeAllAround) {
   for (const RoofShape shape : {RoofShape::gabled, RoofShape::hipped, RoofShape::mansard}) {
     const auto built = build_roof(plan, in_row(shape, 5, edges));
     ASSERT_TRUE(built);
-    EXPECT_EQ(verdict(plan, built->roof), "none");
+    EXPECT_EQ(validity(plan, built->roof), "none");
     for (std::size_t e = 0; e < edges.size(); ++e) EXPECT_EQ(wall_rise(built->roof, e), 0) << e;
     for (const Point2 ridge : {Point2{30, 6}, Point2{54, 20}, Point2{20, 39}, Point2{6, 30}})
       EXPECT_NEAR(height_at(built->roof, ridge), 5, 0.01) << model::name(shape);
@@ -273,10 +273,10 @@ TEST(BerlinRoof, IsSteepToTheStreetAndLowToTheYard) {
   RoofRequest r = in_row(RoofShape::berlin, 0, {kStreet, kParty, kYard, kParty});
   r.measures.height = main_slope(plan, r, true).run;
   EXPECT_GT(r.measures.height, 2.0);
-  EXPECT_LT(r.measures.height, 5.0);  // styles.md 2.7: the steep strip is 2 to 5 m high
+  EXPECT_LT(r.measures.height, 5.0);  // docs/style_measures.md 2.7: the steep strip is 2 to 5 m high
   const auto built = build_roof(plan, r);
   ASSERT_TRUE(built);
-  EXPECT_EQ(verdict(plan, built->roof), "none");
+  EXPECT_EQ(validity(plan, built->roof), "none");
   EXPECT_EQ(built->roof.surfaces.size(), 2u);
   EXPECT_EQ(built->shape, RoofShape::berlin);
   EXPECT_NEAR(height_at(built->roof, {9, 0.5}), 0.5 * std::sqrt(3), 0.003);
@@ -332,7 +332,7 @@ TEST(EavesLines, TheRoofRunsOnOverRecessesAndDownOverBays) {
     r.along_eaves_lines = true;
     const auto built = build_roof(plan, r);
     ASSERT_TRUE(built);
-    EXPECT_EQ(verdict(plan, built->roof), "none");
+    EXPECT_EQ(validity(plan, built->roof), "none");
     EXPECT_EQ(built->roof.surfaces.size(), 2u);
     EXPECT_NEAR(roof_checks::covered_area(built->roof), geometry::area(plan), 0.01);
     EXPECT_NEAR(wall_rise(built->roof, 2), 1, 0.003) << "the recess's wall goes up to the roof";
@@ -418,7 +418,7 @@ TEST(EavesLines, HousesWithAnyBaysGetValidRoofs) {
       if (!built) continue;  // counted below: callers give every bay its slopes
       ++roofs;
       // A hip that leaves a corner a grid step beside a bay's wall has a tip that is too narrow: callers see it.
-      invalid += verdict(plan, built->roof) != "none";
+      invalid += validity(plan, built->roof) != "none";
       EXPECT_NEAR(roof_checks::covered_area(built->roof), geometry::area(plan), 0.02) << k;
       if (shape == RoofShape::gabled) along += built->roof.surfaces.size() <= 3;
     }
@@ -450,7 +450,7 @@ TEST(RowRoofs, AreValidOnRandomPlansWithRandomNeighbours) {
       continue;
     }
     ++built;
-    invalid += verdict(plan, roof->roof) != "none";
+    invalid += validity(plan, roof->roof) != "none";
   }
   EXPECT_GE(built, 1300);
   EXPECT_LE(invalid, 15) << "of " << built << ", " << refused << " refused";

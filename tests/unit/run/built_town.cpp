@@ -13,10 +13,10 @@
 #include "pipeline/context/context_extract.h"
 #include "pipeline/footprints/load.h"
 #include "pipeline/run/prepare_extract.h"
-#include "pipeline/attributes/rule_book.h"
+#include "pipeline/attributes/rule_sets.h"
 #include "pipeline/attributes/tagged_buildings.h"
 #include "pipeline/evidence/style_values.h"
-#include "pipeline/context/surroundings_finder.h"
+#include "pipeline/context/vicinity_finder.h"
 #include "pipeline/run/tile_stages.h"
 
 namespace blockrand::run::test {
@@ -51,12 +51,12 @@ struct BuiltTown::State {
   repair::KeptNodes kept;
   footprints::RepairedExtract repaired;
   context::ContextExtract context;
-  context::SurroundingsFinder surroundings;
+  context::VicinityFinder vicinity;
   footprints::RoofLineFinder roof_lines;
   footprints::BuildingNumbers numbers;
   context::TaggedNeighbours neighbours;
   classify::Tables tables = classify::Tables::read(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
-  attributes::ReadRuleBook rules = attributes::read_rule_book(std::string(BLOCKRAND_SOURCE_DIR) + "/configs", "");
+  attributes::ReadRuleSets rules = attributes::read_rule_sets(std::string(BLOCKRAND_SOURCE_DIR) + "/configs", "");
   attributes::Overrides overrides;
   evidence::FactsExtract facts;
   evidence::TagFacts tags;
@@ -73,11 +73,11 @@ struct BuiltTown::State {
         context(context::context_extract(extract, repaired.footprints,
                                 context::coverage_of(footprints::building_places(extract, projection)), projection, workers,
                                 progress)),
-        surroundings(extract, repaired.footprints, context),
+        vicinity(extract, repaired.footprints, context),
         roof_lines(extract, projection),
         numbers(repaired.footprints),
         neighbours(attributes::tagged_buildings(extract, defaults, projection), usual_generation().neighbour_reach),
-        facts(evidence::facts_extract(extract, repaired.footprints, context, surroundings, workers, progress)),
+        facts(evidence::facts_extract(extract, repaired.footprints, context, vicinity, workers, progress)),
         tags(evidence::tag_facts(extract, repaired.footprints, context, tables, projection, facts)),
         style_extract(classified()) {
     assigner.emplace(rules.book, attributes::AssignInputs{.extract = extract,
@@ -98,7 +98,7 @@ struct BuiltTown::State {
         facts, tags, tables,
         [&](std::uint32_t b) -> const classify::RegionPrior* {
           const std::uint32_t set = rules.book.choose(footprints::box_centre(extract, extract.buildings[repaired.footprints[b].lead]));
-          return set == blockrand::districts::RuleBook::kNoSet ? nullptr : &priors[set];
+          return set == blockrand::districts::RuleSets::kNoSet ? nullptr : &priors[set];
         },
         {}, workers, progress);
   }
@@ -128,7 +128,7 @@ model::Region BuiltTown::tile(std::size_t shard, int lod) const {
                           .kept = s.kept,
                           .repaired = s.repaired,
                           .context = s.context,
-                          .surroundings = s.surroundings,
+                          .vicinity = s.vicinity,
                           .roof_lines = s.roof_lines,
                           .numbers = s.numbers,
                           .neighbours = s.neighbours,

@@ -13,7 +13,7 @@
 #include "pipeline/base/random.h"
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/attributes/tagged_buildings.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/footprints/load.h"
 #include "tests/unit/run/built_town.h"
 

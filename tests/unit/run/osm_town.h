@@ -107,8 +107,8 @@ struct MeasuredTown {
         std::make_unique<footprints::RepairedExtract>(footprints::repair_extract(extract, shards, *projection, kept, {}, workers, quiet));
     context = context::context_extract(extract, repaired->footprints,
                               context::coverage_of(footprints::building_places(extract, *projection)), *projection, workers, quiet);
-    const context::SurroundingsFinder surroundings(extract, repaired->footprints, context);
-    facts = evidence::facts_extract(extract, repaired->footprints, context, surroundings, workers, quiet);
+    const context::VicinityFinder vicinity(extract, repaired->footprints, context);
+    facts = evidence::facts_extract(extract, repaired->footprints, context, vicinity, workers, quiet);
   }
   std::uint32_t number(std::int64_t id, model::OsmType type = model::OsmType::way) const {
     for (std::uint32_t b = 0; b < repaired->footprints.size(); ++b)

@@ -12,7 +12,7 @@
 #include <functional>
 #include <map>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "styles/roofs/roof.h"
 #include "tests/unit/run/built_town.h"
 #include "tests/unit/run/roof_survey.h"

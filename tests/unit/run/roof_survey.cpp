@@ -7,7 +7,7 @@
 
 #include "importers/reference/citygml.h"
 #include "importers/reference/footprints.h"
-#include "importers/reference/transform.h"
+#include "importers/reference/affine_transform.h"
 #include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::run::test {

@@ -5,7 +5,7 @@
 
 #include "importers/reference/citygml.h"
 #include "importers/reference/footprints.h"
-#include "importers/reference/transform.h"
+#include "importers/reference/affine_transform.h"
 
 namespace blockrand::run::test {
 

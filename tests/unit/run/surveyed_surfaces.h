@@ -1,7 +1,7 @@
 // Built roofs as pipeline/compare measures them.
 #pragma once
 
-#include "pipeline/compare/roof_surfaces.h"
+#include "pipeline/compare/roofs_from_above.h"
 #include "pipeline/model/solid.h"
 #include "styles/roofs/roof.h"
 

@@ -12,9 +12,9 @@
 #include <map>
 
 #include "pipeline/outputs/gltf/glb_writer.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "tests/unit/run/built_town.h"
-#include "tests/unit/roofs/dressed_roof.h"
+#include "tests/unit/roofs/roof_with_edges.h"
 #include "tests/unit/roofs/element_checks.h"
 
 namespace blockrand::run::test {
@@ -27,11 +27,11 @@ using model::Point3;
 using model::Polygon;
 using model::Solid;
 using model::SurfaceKind;
-using roof_checks::DressedRoof;
+using roof_checks::RoofWithEdges;
 using roof_checks::Neighbourhood;
 
 /// A part that stands, read back from its solid: its plan, its roof, and what neighbours see of it.
-struct Standing {
+struct Siting {
   const model::Building* building = nullptr;
   const BuildingPart* part = nullptr;
   Polygon plan;
@@ -49,10 +49,10 @@ model::Ring ring_of(const Solid& solid, const Solid::Loop& loop) {
 }
 
 /// Plan and roof of a solid that masses::envelope() made. Empty where walls have no height: they are no faces then.
-std::optional<Standing> read_back(const model::Building& building, const BuildingPart& part) {
+std::optional<Siting> read_back(const model::Building& building, const BuildingPart& part) {
   const Solid& solid = part.lod2;
   if (part.lod != 2 || solid.empty() || part.canopy) return std::nullopt;
-  Standing out;
+  Siting out;
   out.building = &building;
   out.part = &part;
   const model::Face& under = solid.faces[0];
@@ -105,7 +105,7 @@ std::optional<Standing> read_back(const model::Building& building, const Buildin
   return out;
 }
 
-std::optional<double> height_over(const Standing& s, Point2 p) {
+std::optional<double> height_over(const Siting& s, Point2 p) {
   for (const auto& [a, b, c] : s.above) {
     const double det = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     if (std::fabs(det) < 1e-9) continue;
@@ -118,11 +118,11 @@ std::optional<double> height_over(const Standing& s, Point2 p) {
 
 /// What stands before each edge of a plan, felt for with points every half metre, and 0.4 m beyond its free corners,
 /// where a mitre goes.
-std::vector<Neighbourhood> neighbourhoods(const Standing& self, const std::vector<const Standing*>& others) {
+std::vector<Neighbourhood> neighbourhoods(const Siting& self, const std::vector<const Siting*>& others) {
   constexpr double kTouching = 0.05, kFarthest = 0.6, kEvery = 0.5;  // m
   const auto edges = roofs::plan_edges(self.plan);
-  const auto holder = [&](Point2 p) -> const Standing* {
-    for (const Standing* o : others)
+  const auto holder = [&](Point2 p) -> const Siting* {
+    for (const Siting* o : others)
       if (p.x >= o->low.x && p.x <= o->high.x && p.y >= o->low.y && p.y <= o->high.y && geometry::contains(o->plan, p))
         return o;
     return nullptr;
@@ -145,7 +145,7 @@ std::vector<Neighbourhood> neighbourhoods(const Standing& self, const std::vecto
     int touching = 0;
     for (int i = 0; i <= samples; ++i) {
       const double along = std::clamp(e.length * i / samples, inset, e.length - inset);
-      const Standing* const beside = holder(before(e, along, kTouching));
+      const Siting* const beside = holder(before(e, along, kTouching));
       touching += beside != nullptr;
       n.neighbour.push_back({along, beside ? height_over(*beside, before(e, along, kTouching)).value_or(-1e9) : -1e9});
       feel(e, along, n);
@@ -200,7 +200,7 @@ TEST_P(RoofEdges, AllBodiesAreValid) {
   Point2 origin;
   for (std::size_t shard = 0; shard < town.shards().size(); ++shard) {
     const model::Region region = town.tile(shard, 2);
-    std::vector<Standing> standing;
+    std::vector<Siting> standing;
     for (const model::Building& b : region.buildings)
       for (const BuildingPart& p : b.parts) {
         if (auto s = read_back(b, p))
@@ -208,11 +208,11 @@ TEST_P(RoofEdges, AllBodiesAreValid) {
         else if (b.owned && p.lod == 2 && !p.canopy)
           ++unread;
       }
-    for (const Standing& s : standing) {
+    for (const Siting& s : standing) {
       if (!s.building->owned) continue;
       ++parts;
-      std::vector<const Standing*> near;
-      for (const Standing& o : standing)
+      std::vector<const Siting*> near;
+      for (const Siting& o : standing)
         if (&o != &s && o.low.x < s.high.x + 1 && s.low.x < o.high.x + 1 && o.low.y < s.high.y + 1 &&
             s.low.y < o.high.y + 1)
           near.push_back(&o);
@@ -220,33 +220,33 @@ TEST_P(RoofEdges, AllBodiesAreValid) {
       std::optional<std::pair<std::uint32_t, roofs::GableOptions>> gable;
       if (const auto drawn = roofs::draw_gable(1, s.part->osm.key(), s.part->built_roof))
         if (const auto edge = roof_checks::gable_edge(s.plan, s.roof, around)) gable.emplace(*edge, *drawn);
-      const DressedRoof dressed = roof_checks::dress(s.plan, s.roof, around, gable);
+      const RoofWithEdges with_edges = roof_checks::dress(s.plan, s.roof, around, gable);
       constexpr const char* reasons[] = {"", ": no such outline", ": no room", ": no body"};
-      if (gable) ++by_gable[std::string(roofs::name(gable->second.form)) + reasons[static_cast<int>(dressed.refusal)]];
-      gables.add(dressed.gables);
-      firewalls.add(dressed.firewalls);
-      parapets.add(dressed.parapets);
-      overhangs.add(dressed.overhangs);
-      caps.add(dressed.caps);
-      if (cases && dressed.gables.refused)
+      if (gable) ++by_gable[std::string(roofs::name(gable->second.form)) + reasons[static_cast<int>(with_edges.refusal)]];
+      gables.add(with_edges.gables);
+      firewalls.add(with_edges.firewalls);
+      parapets.add(with_edges.parapets);
+      overhangs.add(with_edges.overhangs);
+      caps.add(with_edges.caps);
+      if (cases && with_edges.gables.refused)
         std::printf("%s: no %s gable, %s\n", s.part->id.c_str(), std::string(roofs::name(gable->second.form)).c_str(),
                     std::string(model::name(s.part->built_roof)).c_str());
-      bodies += static_cast<int>(dressed.bodies.size());
-      for (const auto& body : dressed.bodies) {
+      bodies += static_cast<int>(with_edges.bodies.size());
+      for (const auto& body : with_edges.bodies) {
         ++by_kind[body.kind];
-        if (const std::string v = roof_checks::verdict(body.solid); v != "none") {
+        if (const std::string v = roof_checks::validity(body.solid); v != "none") {
           ++invalid;
           std::printf("%s: %s %s\n", s.part->id.c_str(), std::string(model::name(body.kind)).c_str(), v.c_str());
         }
       }
-      if (const std::string fault = roof_checks::fault(s.part->lod2, dressed.bodies); !fault.empty()) {
+      if (const std::string fault = roof_checks::fault(s.part->lod2, with_edges.bodies); !fault.empty()) {
         ++reaching;
         std::printf("%s (%s): %s\n", s.part->id.c_str(), std::string(model::name(s.part->built_roof)).c_str(),
                     fault.c_str());
       }
-      for (const auto& body : dressed.bodies) {
+      for (const auto& body : with_edges.bodies) {
         const roof_checks::Measured mine(body.solid);
-        for (const Standing* o : near)
+        for (const Siting* o : near)
           if (mine.overlap(roof_checks::Measured(o->part->lod2)) > 1e-3) {
             ++in_neighbour[body.kind];
             if (cases)
@@ -283,7 +283,7 @@ TEST_P(RoofEdges, AllBodiesAreValid) {
                                              {214, 196, 170},
                                              {110, 46, 36},
                                              {110, 46, 36}};
-        for (const auto& body : dressed.bodies) add(body.solid, false, colours[static_cast<int>(body.kind)]);
+        for (const auto& body : with_edges.bodies) add(body.solid, false, colours[static_cast<int>(body.kind)]);
       }
     }
   }

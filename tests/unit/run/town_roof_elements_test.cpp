@@ -9,7 +9,7 @@
 #include <map>
 
 #include "tests/unit/run/built_town.h"
-#include "tests/unit/roofs/furnished_roof.h"
+#include "tests/unit/roofs/fitted_roof.h"
 
 namespace blockrand::run::test {
 namespace {
@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 using model::BuildingPart;
 using model::RoofElementKind;
 using model::RoofShape;
-using roof_checks::Furnished;
-using roof_checks::Furnishing;
+using roof_checks::Fitted;
+using roof_checks::Fitting;
 
 /// What was tried on roofs of one shape.
 struct Tally {
@@ -28,7 +28,7 @@ struct Tally {
   std::map<RoofElementKind, int> built, slopes_with;
 };
 
-std::string verdict(const model::Polygon& plan, double bottom, const roofs::Roof& roof) {
+std::string validity(const model::Polygon& plan, double bottom, const roofs::Roof& roof) {
   const model::Solid solid = masses::envelope(plan, bottom, roof, {});
   const auto triangles = geometry::triangulate(solid);
   return triangles ? geometry::check_solid(solid, *triangles).text() : "a face is no simple polygon";
@@ -46,14 +46,14 @@ std::optional<roofs::BuiltRoof> bare_roof(const BuildingPart& part, const model:
   for (const double coarseness : roofs::kCoarseness) {
     request.coarseness = coarseness;
     auto built = roofs::build_roof(plan, request);
-    if (built && verdict(plan, bottom, built->roof) == "none") return built;
+    if (built && validity(plan, bottom, built->roof) == "none") return built;
   }
   return std::nullopt;
 }
 
 /// Elements by turns, so that each kind meets every kind of roof.
-Furnishing turn(std::size_t count) {
-  Furnishing with;
+Fitting turn(std::size_t count) {
+  Fitting with;
   with.dormer = roofs::usual_dormer(roofs::kDormerKinds[count % 6]);
   with.cross_gable.kind = roofs::kDormerKinds[count / 6 % 5];
   if (with.cross_gable.kind == roofs::DormerKind::shed) with.cross_gable.roof_pitch = 10;
@@ -88,26 +88,26 @@ TEST_P(TownRoofElements, AreValidOnEveryRoof) {
         }
         Tally& tally = tallies[bare->shape];
         const auto edges = roof_checks::gables_as_party_walls(bare->roof);
-        Furnishing with = turn(count++);
+        Fitting with = turn(count++);
         const auto extent = geometry::extent_along(plan.outer.points, geometry::long_axis(plan.outer.points));
         with.frontage = extent.maximum - extent.minimum;
-        const Furnished furnished = roof_checks::furnish(plan, edges, bare->roof, with);
+        const Fitted fitted = roof_checks::fit_out(plan, edges, bare->roof, with);
         ++tally.roofs;
-        tally.slopes += furnished.slopes_asked;
-        for (const auto& [kind, n] : furnished.built) tally.built[kind] += n;
-        for (const auto& [kind, n] : furnished.slopes) tally.slopes_with[kind] += n;
-        tally.roofs_with_chimney += furnished.built.contains(RoofElementKind::chimney);
-        const std::string body = verdict(plan, bottom, furnished.roof),
-                          bodies = roof_checks::installations_verdict(furnished.installations);
+        tally.slopes += fitted.slopes_asked;
+        for (const auto& [kind, n] : fitted.built) tally.built[kind] += n;
+        for (const auto& [kind, n] : fitted.slopes) tally.slopes_with[kind] += n;
+        tally.roofs_with_chimney += fitted.built.contains(RoofElementKind::chimney);
+        const std::string body = validity(plan, bottom, fitted.roof),
+                          bodies = roof_checks::installations_validity(fitted.installations);
         if (body != "none" || bodies != "none") {
           ++tally.invalid;
           ADD_FAILURE() << part.id << " (" << model::name(bare->shape) << "): " << body << "; " << bodies;
         }
-        for (const auto* complaints : {&furnished.faults}) {
+        for (const auto* complaints : {&fitted.faults}) {
           tally.broken += !complaints->empty();
           for (const std::string& complaint : *complaints) ADD_FAILURE() << part.id << ": " << complaint;
         }
-        const auto rules = roof_checks::broken_rules(furnished.roof, furnished.installations);
+        const auto rules = roof_checks::broken_rules(fitted.roof, fitted.installations);
         tally.broken += !rules.empty();
         for (const std::string& rule : rules)
           ADD_FAILURE() << part.id << " (" << model::name(bare->shape) << "): " << rule;

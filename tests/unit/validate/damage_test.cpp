@@ -8,7 +8,7 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/run/build.h"
-#include "pipeline/validate/validate.h"
+#include "pipeline/validate/validate_build.h"
 
 namespace blockrand::validate {
 namespace {

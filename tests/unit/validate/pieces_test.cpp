@@ -13,16 +13,16 @@
 #include "pipeline/geometry/solid_defect.h"
 #include "pipeline/georef/frames.h"
 #include "pipeline/georef/projection.h"
-#include "pipeline/georef/witness.h"
-#include "pipeline/validate/compare.h"
+#include "pipeline/georef/proj_transform.h"
+#include "pipeline/validate/format_agreement.h"
 #include "pipeline/validate/earth.h"
-#include "pipeline/validate/file_bytes.h"
+#include "pipeline/validate/bytes_of_file.h"
 #include "pipeline/validate/finding_log.h"
 #include "pipeline/validate/ids.h"
-#include "pipeline/validate/overlaps.h"
+#include "pipeline/validate/part_overlap_check.h"
 #include "pipeline/validate/positions.h"
 #include "pipeline/validate/solids.h"
-#include "pipeline/validate/tileset.h"
+#include "pipeline/validate/tileset_reader.h"
 
 namespace blockrand::validate {
 namespace {
@@ -61,11 +61,11 @@ TEST(Gunzip, MembersAndDamage) {
 }
 
 TEST(Earth, AgreesWithPROJAndGeoref) {
-  georef::Witness witness("EPSG:25832", {10, 50, 12, 52});
+  georef::ProjTransform proj_transform("EPSG:25832", {10, 50, 12, 52});
   for (const double lat : {-89.9, -45.0, 0.0, 0.001, 51.47, 89.999})
     for (const double height : {-100.0, 0.0, 9000.0}) {
       const Point3 p = earth_centred({11.03 * kRadians, lat * kRadians, height});
-      const Point3 q = witness.to_ecef({11.03, lat, height});
+      const Point3 q = proj_transform.to_ecef({11.03, lat, height});
       EXPECT_LT(std::hypot(p.x - q.x, p.y - q.y, p.z - q.z), 1e-7);
       const Place back = geodetic(p);
       EXPECT_NEAR(back.lat / kRadians, lat, 1e-10);
@@ -78,14 +78,14 @@ TEST(Earth, AgreesWithPROJAndGeoref) {
   EXPECT_LT(std::hypot(p.x - q.x, p.y - q.y, p.z - q.z), 1e-8);
 }
 
-TEST(Witness, IsIndependentOfTheSeriesAndAgrees) {
+TEST(ProjTransform, IsIndependentOfTheSeriesAndAgrees) {
   const georef::GeoBox area{10.9, 51.3, 11.2, 51.6};
   const georef::Projection projection(georef::open_crs("EPSG:25832", area), area);
-  georef::Witness own("EPSG:25832", area), pinned(projection.crs().pipeline);
+  georef::ProjTransform own("EPSG:25832", area), pinned(projection.crs().pipeline);
   for (const double lon : {10.9, 11.03, 11.2})
     for (const double lat : {51.3, 51.47, 51.6}) {
       const model::Point2 expected = projection.forward(lon, lat);
-      for (georef::Witness* w : {&own, &pinned}) {
+      for (georef::ProjTransform* w : {&own, &pinned}) {
         const model::Point2 p = w->forward({lon, lat});
         EXPECT_LT(std::hypot(p.x - expected.x, p.y - expected.y), 1e-6);
         const georef::LonLat back = w->inverse(p);
@@ -93,13 +93,13 @@ TEST(Witness, IsIndependentOfTheSeriesAndAgrees) {
         EXPECT_NEAR(back.lat, lat, 1e-11);
       }
     }
-  EXPECT_THROW(georef::Witness("EPSG:999999", area), base::UsageError);
-  EXPECT_THROW(georef::Witness("+proj=nonsense"), base::UsageError);
+  EXPECT_THROW(georef::ProjTransform("EPSG:999999", area), base::UsageError);
+  EXPECT_THROW(georef::ProjTransform("+proj=nonsense"), base::UsageError);
 }
 
-TEST(Witness, ComesHomeFromADatumShift) {
+TEST(ProjTransform, ComesHomeFromADatumShift) {
   const georef::GeoBox area{6.9, 46.9, 7.1, 47.1};
-  georef::Witness w("EPSG:21781", area);  // CH1903 / LV03
+  georef::ProjTransform w("EPSG:21781", area);  // CH1903 / LV03
   const georef::LonLat back = w.inverse(w.forward({7, 47}));
   EXPECT_NEAR(back.lon, 7, 1e-9);
   EXPECT_NEAR(back.lat, 47, 1e-9);
@@ -143,37 +143,37 @@ std::vector<std::string> codes(const std::vector<Finding>& findings) {
   return out;
 }
 
-TEST(Judges, AgreeOnACube) {
-  EXPECT_TRUE(judge(cube()).valid());
+TEST(Validators, AgreeOnACube) {
+  EXPECT_TRUE(validator(cube()).valid());
   ReadSolid open = cube();
   open.polygons.pop_back();
-  EXPECT_FALSE(judge(open).valid());
-  EXPECT_TRUE(judge(open).agreed());
+  EXPECT_FALSE(validator(open).valid());
+  EXPECT_TRUE(validator(open).agreed());
   ReadSolid flipped = cube();
   std::reverse(flipped.polygons[1].rings[0].begin(), flipped.polygons[1].rings[0].end());
-  EXPECT_FALSE(judge(flipped).valid());
-  EXPECT_TRUE(judge(flipped).agreed());
+  EXPECT_FALSE(validator(flipped).valid());
+  EXPECT_TRUE(validator(flipped).agreed());
   ReadSolid far = cube();
   far.polygons[1].rings[0][0] = {1e8, 0, 10};
-  EXPECT_FALSE(judge(far).own.empty());
-  EXPECT_FALSE(judge(ReadSolid{}).valid());
+  EXPECT_FALSE(validator(far).own.empty());
+  EXPECT_FALSE(validator(ReadSolid{}).valid());
 }
 
-TEST(Judges, GiveTheNumberOfTheDefect) {
+TEST(Validators, GiveTheNumberOfTheDefect) {
   ReadSolid open = cube();
   open.polygons.pop_back();
-  EXPECT_EQ(judge(open).number, 302);
-  EXPECT_THAT(judge(open).text(), testing::HasSubstr("302 shell not closed"));
+  EXPECT_EQ(validator(open).number, 302);
+  EXPECT_THAT(validator(open).text(), testing::HasSubstr("302 shell not closed"));
   ReadSolid bent = cube();
   std::swap(bent.polygons[0].rings[0][0], bent.polygons[0].rings[0][1]);
-  EXPECT_EQ(judge(bent).number, 104);
-  EXPECT_EQ(judge(cube()).number, 0);
-  EXPECT_EQ(judge(ReadSolid{}).number, 902);
+  EXPECT_EQ(validator(bent).number, 104);
+  EXPECT_EQ(validator(cube()).number, 0);
+  EXPECT_EQ(validator(ReadSolid{}).number, 902);
   ReadSolid hollow = cube();
   hollow.polygons[0].rings.clear();
-  EXPECT_EQ(judge(hollow).number, 101);
+  EXPECT_EQ(validator(hollow).number, 101);
   std::vector<Finding> findings;
-  note(judge(open), "a.gml", "w1", "LoD 2", findings);
+  note(validator(open), "a.gml", "w1", "LoD 2", findings);
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].number, 302);
 }

@@ -8,9 +8,9 @@
 
 #include "importers/reference/citygml.h"
 #include "importers/reference/footprints.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
-#include "pipeline/footprints/repair/repair_row.h"
+#include "pipeline/footprints/repair/repair_terrace_row.h"
 #include "pipeline/footprints/repair/rings.h"
 #include "tests/unit/footprints/repair/noise_scene.h"
 
@@ -78,12 +78,12 @@ TEST_P(BerlinNoise, VerticesComeNearerToTheSurvey) {
   for (const bool square : {false, true}) {
     RepairOptions options;
     options.square = square;
-    Row all = row_of(noisy);
+    TerraceRow all = row_of(noisy);
     model::Report report;
     for (const auto& members : rows_of(noisy, 1)) {
-      Row row;
+      TerraceRow row;
       for (const std::size_t i : members) row.buildings.push_back(all.buildings[i]);
-      repair_row(row, options, report);
+      repair_terrace_row(row, options, report);
       for (std::size_t k = 0; k < members.size(); ++k) all.buildings[members[k]] = row.buildings[k];
     }
     const Score s = score(truth, noisy, all);

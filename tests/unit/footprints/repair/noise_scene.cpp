@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::repair::test {
@@ -322,10 +322,10 @@ Footprints with_noise(const Footprints& truth, double radius, std::uint32_t seed
   return out;
 }
 
-Row row_of(const Footprints& footprints) {
-  Row row;
+TerraceRow row_of(const Footprints& footprints) {
+  TerraceRow row;
   for (std::size_t i = 0; i < footprints.size(); ++i) {
-    RowBuilding b;
+    TerraceBuilding b;
     b.id = {model::OsmType::way, static_cast<std::int64_t>(i + 1)};
     b.polygons = footprints[i];
     row.buildings.push_back(std::move(b));
@@ -364,7 +364,7 @@ std::string Score::text() const {
   return line;
 }
 
-Score score(const Footprints& truth, const Footprints& noisy, const Row& repaired) {
+Score score(const Footprints& truth, const Footprints& noisy, const TerraceRow& repaired) {
   Score s;
   std::vector<Box> boxes;
   for (const auto& f : truth) boxes.push_back(box_of(f));
@@ -430,7 +430,7 @@ Score score(const Footprints& truth, const Footprints& noisy, const Row& repaire
     }
   double before = 0, after = 0, count = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    const RowBuilding& b = repaired.buildings[i];
+    const TerraceBuilding& b = repaired.buildings[i];
     s.largest_shift = std::max(s.largest_shift, b.record.max_shift);
     for (const Polygon& p : b.polygons) s.invalid += geometry::strictly_simple(p) ? 0 : 1;
     for (std::size_t k = 0; k < truth[i].size(); ++k) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pipeline/footprints/repair/options.h"
-#include "pipeline/footprints/repair/row.h"
+#include "pipeline/footprints/repair/terrace_row.h"
 
 namespace blockrand::repair::test {
 
@@ -23,7 +23,7 @@ Footprints true_houses(std::uint32_t seed, int blocks);
 /// rounded to the grid. A footprint that is not simple afterwards is drawn again. Every vertex gets a node of its own.
 Footprints with_noise(const Footprints& truth, double radius, std::uint32_t seed);
 
-Row row_of(const Footprints& footprints);
+TerraceRow row_of(const Footprints& footprints);
 
 /// The footprints cut into rows of those nearer than `reach` metres to each other (by bounding boxes), repaired apart.
 std::vector<std::vector<std::size_t>> rows_of(const Footprints& footprints, double reach);
@@ -42,6 +42,6 @@ struct Score {
 };
 
 /// Compares a repaired row with the truth. `noisy` is what repair was given.
-Score score(const Footprints& truth, const Footprints& noisy, const Row& repaired);
+Score score(const Footprints& truth, const Footprints& noisy, const TerraceRow& repaired);
 
 }  // namespace blockrand::repair::test

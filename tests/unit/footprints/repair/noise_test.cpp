@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "pipeline/footprints/repair/repair_row.h"
+#include "pipeline/footprints/repair/repair_terrace_row.h"
 #include "tests/unit/footprints/repair/noise_scene.h"
 
 namespace blockrand::repair::test {
@@ -22,18 +22,18 @@ Score experiment(double radius, bool square, bool cut) {
   const Footprints truth = true_houses(7, kBlocks), noisy = with_noise(truth, radius, 11);
   RepairOptions options;
   options.square = square;
-  Row row = row_of(noisy);
+  TerraceRow row = row_of(noisy);
   model::Report report;
   const auto start = std::chrono::steady_clock::now();
   if (cut) {
     for (const auto& members : rows_of(noisy, 3)) {
-      Row piece;
+      TerraceRow piece;
       for (const std::size_t i : members) piece.buildings.push_back(row.buildings[i]);
-      repair_row(piece, options, report);
+      repair_terrace_row(piece, options, report);
       for (std::size_t k = 0; k < members.size(); ++k) row.buildings[members[k]] = piece.buildings[k];
     }
   } else {
-    repair_row(row, options, report);
+    repair_terrace_row(row, options, report);
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Score s = score(truth, noisy, row);

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/geometry/needles.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/slivers.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/footprints/repair/parts_bodies.h"
 #include "pipeline/footprints/repair/parts_follow.h"
@@ -104,9 +104,9 @@ struct Scene {
 
 using Ids = std::vector<std::string>;
 
-// ---- needles --------------------------------------------------------------------------------------------------------
+// ---- slivers --------------------------------------------------------------------------------------------------------
 
-TEST(PartsNeedles, NeitherRestsNorPartsThatYieldKeepThem) {
+TEST(PartsSlivers, NeitherRestsNorPartsThatYieldKeepThem) {
   // A wing and a tower in a house, at many angles: their fronts are the house's but for rounding.
   for (int turn = 1; turn <= 20; ++turn) {
     SCOPED_TRACE(turn);
@@ -122,8 +122,8 @@ TEST(PartsNeedles, NeitherRestsNorPartsThatYieldKeepThem) {
     EXPECT_NEAR(s.area("w1.w2"), 13.8 * 12 - 3.4 * 9, 0.1);
     EXPECT_GE(s.ids().size(), 3u);
     for (const BuildingPart& p : s.building.parts)
-      for (const geometry::Needle& needle : geometry::find_needles(p.plan.outer, 0.02))
-        ADD_FAILURE() << p.id << (needle.outward ? " needle " : " crack ") << needle.length << " m";
+      for (const geometry::Sliver& sliver : geometry::find_slivers(p.plan.outer, 0.02))
+        ADD_FAILURE() << p.id << (sliver.outward ? " needle " : " crack ") << sliver.length << " m";
   }
 }
 

@@ -11,7 +11,7 @@
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/base/random.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/projection.h"

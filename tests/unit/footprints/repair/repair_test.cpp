@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/footprints/repair/clean_ring.h"
 #include "tests/unit/geometry/shapes.h"

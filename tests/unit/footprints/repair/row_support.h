@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
-#include "pipeline/footprints/repair/repair_row.h"
+#include "pipeline/footprints/repair/repair_terrace_row.h"
 
 namespace blockrand::repair::test {
 
@@ -36,10 +36,10 @@ inline model::Polygon polygon(const Points& outer, const std::vector<Points>& ho
 }
 
 /// Buildings w1, w2, ... with these polygons.
-inline Row row_of_polygons(const std::vector<model::Polygon>& polygons) {
-  Row row;
+inline TerraceRow row_of_polygons(const std::vector<model::Polygon>& polygons) {
+  TerraceRow row;
   for (std::size_t i = 0; i < polygons.size(); ++i) {
-    RowBuilding b;
+    TerraceBuilding b;
     b.id = {model::OsmType::way, static_cast<std::int64_t>(i + 1)};
     b.polygons = {polygons[i]};
     row.buildings.push_back(std::move(b));
@@ -59,7 +59,7 @@ inline double length(model::Point2 a, model::Point2 b) {
   return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
 }
 
-inline std::vector<model::Ring> rings(const RowBuilding& b) {
+inline std::vector<model::Ring> rings(const TerraceBuilding& b) {
   std::vector<model::Ring> out;
   for (const model::Polygon& p : b.polygons) {
     out.push_back(p.outer);
@@ -69,7 +69,7 @@ inline std::vector<model::Ring> rings(const RowBuilding& b) {
 }
 
 /// m of edges that both have, run through in opposite directions.
-inline double shared_length(const RowBuilding& a, const RowBuilding& b) {
+inline double shared_length(const TerraceBuilding& a, const TerraceBuilding& b) {
   double sum = 0;
   for (const model::Ring& r : rings(a))
     for (const model::Ring& s : rings(b))
@@ -80,24 +80,24 @@ inline double shared_length(const RowBuilding& a, const RowBuilding& b) {
   return sum;
 }
 
-inline bool has_point(const RowBuilding& b, model::Point2 p) {
+inline bool has_point(const TerraceBuilding& b, model::Point2 p) {
   for (const model::Ring& r : rings(b))
     if (std::find(r.points.begin(), r.points.end(), p) != r.points.end()) return true;
   return false;
 }
 
-inline double area(const RowBuilding& b) {
+inline double area(const TerraceBuilding& b) {
   double sum = 0;
   for (const model::Polygon& p : b.polygons) sum += geometry::area(p);
   return sum;
 }
 
-inline double common_area(const RowBuilding& a, const RowBuilding& b) {
+inline double common_area(const TerraceBuilding& a, const TerraceBuilding& b) {
   return geometry::common_area(a.polygons, b.polygons);
 }
 
-inline bool all_valid(const Row& row) {
-  for (const RowBuilding& b : row.buildings) {
+inline bool all_valid(const TerraceRow& row) {
+  for (const TerraceBuilding& b : row.buildings) {
     if (b.polygons.empty()) return false;
     for (const model::Polygon& p : b.polygons)
       if (!geometry::strictly_simple(p)) return false;
@@ -105,7 +105,7 @@ inline bool all_valid(const Row& row) {
   return true;
 }
 
-inline bool same_points(const RowBuilding& a, const RowBuilding& b) {
+inline bool same_points(const TerraceBuilding& a, const TerraceBuilding& b) {
   const auto r = rings(a), s = rings(b);
   if (r.size() != s.size()) return false;
   for (std::size_t i = 0; i < r.size(); ++i)

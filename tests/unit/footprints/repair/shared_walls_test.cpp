@@ -18,18 +18,18 @@ using testing::ElementsAre;
 using testing::Field;
 using testing::Not;
 
-Row repaired(Row row, model::Report& report) {
-  repair_row(row, without_squaring(), report);
+TerraceRow repaired(TerraceRow row, model::Report& report) {
+  repair_terrace_row(row, without_squaring(), report);
   return row;
 }
-Row repaired(Row row) {
+TerraceRow repaired(TerraceRow row) {
   model::Report report;
   return repaired(std::move(row), report);
 }
 
 TEST(SharedWalls, GapBetweenRowHousesIsClosed) {
   model::Report report;
-  const Row row = repaired(
+  const TerraceRow row = repaired(
       row_of_polygons({polygon(box(0, 0, 10, 8)), polygon({{10.2, 0.1}, {20, 0}, {20, 8}, {10.2, 8.1}})}), report);
   ASSERT_TRUE(all_valid(row));
   EXPECT_THAT(shared_length(row.buildings[0], row.buildings[1]), DoubleNear(8.0, 0.2));
@@ -44,7 +44,7 @@ TEST(SharedWalls, GapBetweenRowHousesIsClosed) {
 }
 
 TEST(SharedWalls, OverlapOfDrawingNoiseIsHalved) {
-  const Row row = repaired(row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(9.7, 0, 20, 8))}));
+  const TerraceRow row = repaired(row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(9.7, 0, 20, 8))}));
   ASSERT_TRUE(all_valid(row));
   EXPECT_THAT(shared_length(row.buildings[0], row.buildings[1]), DoubleNear(8.0, 0.01));
   EXPECT_EQ(common_area(row.buildings[0], row.buildings[1]), 0);
@@ -53,8 +53,8 @@ TEST(SharedWalls, OverlapOfDrawingNoiseIsHalved) {
 
 TEST(SharedWalls, WallOnTheSameNodesStaysAsItIsAndIsNoClosedGap) {
   model::Report report;
-  const Row before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10, 0, 20, 8))});
-  const Row row = repaired(before, report);
+  const TerraceRow before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10, 0, 20, 8))});
+  const TerraceRow row = repaired(before, report);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(same_points(row.buildings[i], before.buildings[i]));
   EXPECT_EQ(row.buildings[0].record.shared_walls, 1u);
   EXPECT_EQ(row.buildings[0].record.gaps_closed, 0u);
@@ -63,9 +63,9 @@ TEST(SharedWalls, WallOnTheSameNodesStaysAsItIsAndIsNoClosedGap) {
 
 TEST(SharedWalls, CornerInTheMiddleOfAWallIsPutIntoIt) {
   // The second house is 3 m less deep.
-  Row before = row_of_polygons({polygon(box(0, 0, 10, 12)), polygon(box(10.2, 0, 20, 9))});
+  TerraceRow before = row_of_polygons({polygon(box(0, 0, 10, 12)), polygon(box(10.2, 0, 20, 9))});
   before.buildings[0].polygons[0].outer.nodes = {11, 12, 13, 14};
-  const Row row = repaired(before);
+  const TerraceRow row = repaired(before);
   ASSERT_TRUE(all_valid(row));
   EXPECT_THAT(shared_length(row.buildings[0], row.buildings[1]), DoubleNear(9.0, 0.02));
   ASSERT_EQ(row.buildings[0].polygons[0].outer.size(), 5u);
@@ -74,7 +74,7 @@ TEST(SharedWalls, CornerInTheMiddleOfAWallIsPutIntoIt) {
 }
 
 TEST(SharedWalls, PiecesOfAWallLieInLine) {
-  const Row row = repaired(row_of_polygons({polygon(box(0, 0, 10, 30)), polygon({{10.3, 0}, {20, 0}, {20, 9}, {10.1, 9}}),
+  const TerraceRow row = repaired(row_of_polygons({polygon(box(0, 0, 10, 30)), polygon({{10.3, 0}, {20, 0}, {20, 9}, {10.1, 9}}),
                                             polygon({{9.9, 9}, {20, 9}, {20, 19}, {10.2, 19}}),
                                             polygon({{10, 19}, {20, 19}, {20, 30}, {10.1, 30}})}));
   ASSERT_TRUE(all_valid(row));
@@ -95,7 +95,7 @@ TEST(SharedWalls, PiecesOfAWallLieInLine) {
 }
 
 TEST(SharedWalls, ThreeHousesMeetInOneCorner) {
-  const Row row = repaired(row_of_polygons({polygon({{0, 0}, {10, 0}, {10.1, 10}, {0, 10}}),
+  const TerraceRow row = repaired(row_of_polygons({polygon({{0, 0}, {10, 0}, {10.1, 10}, {0, 10}}),
                                             polygon({{10.2, 0}, {20, 0}, {20, 10}, {10.2, 9.9}}),
                                             polygon({{0, 10.2}, {10, 10.15}, {20, 10.2}, {20, 20}, {0, 20}})}));
   ASSERT_TRUE(all_valid(row));
@@ -113,15 +113,15 @@ TEST(SharedWalls, ThreeHousesMeetInOneCorner) {
 
 TEST(SharedWalls, AlleyOf80CentimetresStaysOpen) {
   model::Report report;
-  const Row before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.8, 0, 20, 8))});
-  const Row row = repaired(before, report);
+  const TerraceRow before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.8, 0, 20, 8))});
+  const TerraceRow row = repaired(before, report);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(same_points(row.buildings[i], before.buildings[i]));
   EXPECT_THAT(report.rows, ElementsAre());
 }
 
 TEST(SharedWalls, MouthOfAnAlleyStaysOpenWhereAThirdHouseHasACornerThere) {
   // The corner of the house behind is nearer to both than snap_reach.
-  const Row row = repaired(row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.8, 0, 20, 8)),
+  const TerraceRow row = repaired(row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.8, 0, 20, 8)),
                                             polygon({{0, 8.1}, {10.4, 8.1}, {20, 8.1}, {20, 16}, {0, 16}})}));
   ASSERT_TRUE(all_valid(row));
   for (const Point2 p : row.buildings[0].polygons[0].outer.points) EXPECT_FALSE(has_point(row.buildings[1], p));
@@ -131,30 +131,30 @@ TEST(SharedWalls, MouthOfAnAlleyStaysOpenWhereAThirdHouseHasACornerThere) {
 
 TEST(SharedWalls, WedgeBetweenTwoHousesIsNotClosed) {
   // They meet in a corner and go apart by 15 degrees.
-  const Row before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon({{10, 0}, {20, 0}, {20, 8}, {12.14, 8}})});
-  const Row row = repaired(before);
+  const TerraceRow before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon({{10, 0}, {20, 0}, {20, 8}, {12.14, 8}})});
+  const TerraceRow row = repaired(before);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(same_points(row.buildings[i], before.buildings[i]));
 }
 
 TEST(SharedWalls, WallUnderACanopyIsUntouched) {
-  Row before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.2, 0, 20, 8)), polygon(box(-3, -3, 10.1, 9))});
+  TerraceRow before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.2, 0, 20, 8)), polygon(box(-3, -3, 10.1, 9))});
   before.buildings[1].level.canopy = true;
   before.buildings[2].level.layer = 1;
-  const Row row = repaired(before);
+  const TerraceRow row = repaired(before);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(same_points(row.buildings[i], before.buildings[i]));
 }
 
 TEST(SharedWalls, BridgeAboveSharesNothing) {
-  Row before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.2, 0, 20, 8))});
+  TerraceRow before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.2, 0, 20, 8))});
   before.buildings[0].level.high = 6;
   before.buildings[1].level.low = 6;
-  const Row row = repaired(before);
+  const TerraceRow row = repaired(before);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(same_points(row.buildings[i], before.buildings[i]));
 }
 
 TEST(SharedWalls, HouseInACourtyardTouchesItsWalls) {
   // A hole of 10 x 10 m, nearly filled.
-  const Row row = repaired(row_of_polygons(
+  const TerraceRow row = repaired(row_of_polygons(
       {polygon(box(0, 0, 30, 30), {box(10, 10, 20, 20)}), polygon({{10.2, 10.1}, {19.8, 10.2}, {19.9, 19.9}, {10.1, 19.8}})}));
   ASSERT_TRUE(all_valid(row));
   EXPECT_THAT(shared_length(row.buildings[0], row.buildings[1]), DoubleNear(40, 0.8));
@@ -162,7 +162,7 @@ TEST(SharedWalls, HouseInACourtyardTouchesItsWalls) {
 }
 
 TEST(SharedWalls, HouseWithinAnUFillsIt) {
-  const Row row = repaired(row_of_polygons(
+  const TerraceRow row = repaired(row_of_polygons(
       {polygon({{0, 0}, {30, 0}, {30, 20}, {20, 20}, {20, 10}, {10, 10}, {10, 20}, {0, 20}}),
        polygon({{10.2, 10.2}, {19.8, 10.1}, {19.9, 20}, {10.1, 20}})}));
   ASSERT_TRUE(all_valid(row));
@@ -171,16 +171,16 @@ TEST(SharedWalls, HouseWithinAnUFillsIt) {
 
 TEST(SharedWalls, CourtyardsOfNeighboursThatTouchStayApart) {
   // Two L-shaped halves around a court: what is shared are the walls where they meet.
-  const Row row = repaired(row_of_polygons({polygon({{0, 0}, {20, 0}, {20, 6}, {6, 6}, {6, 20}, {0, 20}}),
+  const TerraceRow row = repaired(row_of_polygons({polygon({{0, 0}, {20, 0}, {20, 6}, {6, 6}, {6, 20}, {0, 20}}),
                                             polygon({{20.2, 6.2}, {20.1, 20}, {6.2, 20.2}, {6.1, 14}, {14, 14}, {14, 6.1}})}));
   ASSERT_TRUE(all_valid(row));
   EXPECT_THAT(shared_length(row.buildings[0], row.buildings[1]), DoubleNear(12, 0.5));
 }
 
 TEST(SharedWalls, CornersNearTheCutStayWhereTheyAre) {
-  Row before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.2, 0, 20, 8))});
+  TerraceRow before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.2, 0, 20, 8))});
   before.beyond_cut = {polygon(box(0, 8.3, 10.05, 16))};
-  const Row row = repaired(before);
+  const TerraceRow row = repaired(before);
   ASSERT_TRUE(all_valid(row));
   // The rear corners of both lie near the house beyond; they differ, so they stay apart. The front corners are joined.
   for (const Point2 p : {at(10, 8), at(0, 8)}) EXPECT_TRUE(has_point(row.buildings[0], p));
@@ -191,16 +191,16 @@ TEST(SharedWalls, CornersNearTheCutStayWhereTheyAre) {
 TEST(SharedWalls, SwitchedOffEveryCornerIsItsOwn) {
   RepairOptions options = without_squaring();
   options.share_walls = false;
-  const RowGraph graph = build_row_graph(row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10, 0, 20, 8))}), options);
+  const TerraceGraph graph = build_terrace_graph(row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10, 0, 20, 8))}), options);
   EXPECT_EQ(graph.corners.size(), 8u);
   for (const Corner& c : graph.corners) EXPECT_EQ(c.said.size(), 1u);
 }
 
-TEST(RowGraph, CornersKnowWhatWasSaidAndRingsTheirWalls) {
-  Row row = row_of_polygons({polygon(box(0, 0, 10, 12)), polygon(box(10.2, 0, 20, 9))});
+TEST(TerraceGraph, CornersKnowWhatWasSaidAndRingsTheirWalls) {
+  TerraceRow row = row_of_polygons({polygon(box(0, 0, 10, 12)), polygon(box(10.2, 0, 20, 9))});
   row.buildings[0].polygons[0].outer.nodes = {5, 6, 7, 8};
   row.buildings[1].polygons[0].outer.nodes = {4, 3, 2, 1};
-  const RowGraph graph = build_row_graph(row, without_squaring());
+  const TerraceGraph graph = build_terrace_graph(row, without_squaring());
   ASSERT_EQ(graph.rings.size(), 2u);
   EXPECT_EQ(graph.corners.size(), 7u);
   EXPECT_THAT(graph.rings[0].wall, ElementsAre(0u, 1u, 1u, 2u, 3u));

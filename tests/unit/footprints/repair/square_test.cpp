@@ -205,7 +205,7 @@ TEST(SquareRow, WallsOfObliqueLotsBecomeParallel) {
   town.square();
   // The end walls, which only one house tells of, may be too far off.
   std::vector<double> slopes;
-  for (const RowRing& ring : town.graph.rings) {
+  for (const TerraceRing& ring : town.graph.rings) {
     const Point2 a = town.position(ring.corners[0]), b = town.position(ring.corners[3]);
     slopes.push_back(std::atan2(b.y - a.y, b.x - a.x) * 180 / kPi);
   }
@@ -221,7 +221,7 @@ TEST(SquareRow, PiecesOfAWallStayInLine) {
     add_row(town, {0, 0}, 9);
     town.disturb(0.2, 5.0 * seed);
     town.square();
-    for (const RowRing& ring : town.graph.rings) {
+    for (const TerraceRing& ring : town.graph.rings) {
       const std::size_t n = ring.corners.size();
       for (std::size_t i = 0; i < n; ++i) {
         if (ring.wall[i] != ring.wall[(i + n - 1) % n]) continue;
@@ -240,7 +240,7 @@ TEST(SquareRow, FixedCornersStay) {
   town.disturb(0.2, 17);
   for (std::size_t i = 0; i < town.graph.corners.size(); i += 5) town.graph.corners[i].fixed = true;
   std::vector<double> direction;
-  square_row(town.graph, town.row, {}, direction);
+  square_terrace_row(town.graph, town.row, {}, direction);
   int moved = 0;
   for (const Corner& c : town.graph.corners) {
     if (c.fixed) {
@@ -261,7 +261,7 @@ TEST(SquareRow, NeverMovesFartherThanTheBound) {
       RepairOptions options;
       options.max_shift = 0.25;
       std::vector<double> direction;
-      square_row(town.graph, town.row, options, direction);
+      square_terrace_row(town.graph, town.row, options, direction);
       for (const Corner& c : town.graph.corners) {
         if (c.said.empty()) {
           EXPECT_LE(distance(c.position, c.start), 0.25);
@@ -294,8 +294,8 @@ TEST(SquareRow, DependsNeitherOnTheOrderNorOnWhereRingsStart) {
   add_row(town, {0, 0}, 9);
   town.disturb(0.2, 40);
   // Corners, buildings and rings in another order.
-  RowGraph other;
-  Row row;
+  TerraceGraph other;
+  TerraceRow row;
   const auto corners = static_cast<std::uint32_t>(town.graph.corners.size());
   const auto place = [&](std::uint32_t c) { return (c * 7 + 3) % corners; };
   ASSERT_NE(corners % 7, 0u);
@@ -305,7 +305,7 @@ TEST(SquareRow, DependsNeitherOnTheOrderNorOnWhereRingsStart) {
     std::reverse(other.corners[place(c)].said.begin(), other.corners[place(c)].said.end());
   }
   for (std::size_t r = town.graph.rings.size(); r-- > 0;) {
-    RowRing ring = town.graph.rings[r];
+    TerraceRing ring = town.graph.rings[r];
     ring.building = static_cast<std::uint32_t>(row.buildings.size());
     row.buildings.push_back(town.row.buildings[r]);
     for (std::uint32_t& c : ring.corners) c = place(c);
@@ -314,7 +314,7 @@ TEST(SquareRow, DependsNeitherOnTheOrderNorOnWhereRingsStart) {
     other.rings.push_back(ring);
   }
   std::vector<double> direction;
-  square_row(other, row, {}, direction);
+  square_terrace_row(other, row, {}, direction);
   town.square();
   for (std::uint32_t c = 0; c < corners; ++c)
     EXPECT_EQ(model::snap(other.corners[place(c)].position), town.position(c));

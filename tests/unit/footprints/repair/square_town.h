@@ -36,7 +36,7 @@ class Town {
     Point(double x, double y, bool on = false) : p{x, y}, on_wall(on) {}
   };
   void add(const std::vector<Point>& ring) {
-    RowRing r;
+    TerraceRing r;
     r.building = static_cast<std::uint32_t>(row.buildings.size());
     row.buildings.emplace_back();
     row.buildings.back().id = {model::OsmType::way, static_cast<std::int64_t>(row.buildings.size())};
@@ -71,7 +71,7 @@ class Town {
       truth[i] = turned(truth[i], degrees);
     }
     // A corner on a neighbour's wall lies on it.
-    for (const RowRing& ring : graph.rings)
+    for (const TerraceRing& ring : graph.rings)
       for (std::size_t i = 0; i < ring.corners.size(); ++i) {
         const std::size_t n = ring.corners.size();
         if (ring.wall[(i + n - 1) % n] != ring.wall[i]) continue;
@@ -87,13 +87,13 @@ class Town {
   }
 
   void square() {
-    square_row(graph, row, {}, direction);
+    square_terrace_row(graph, row, {}, direction);
     for (Corner& c : graph.corners) c.position = model::snap(c.position);
   }
 
   /// Corners of walls of a ring: (before, corner, after) with the walls' far ends.
   void for_each_angle(const std::function<void(std::uint32_t, std::uint32_t, std::uint32_t)>& visit) const {
-    for (const RowRing& ring : graph.rings) {
+    for (const TerraceRing& ring : graph.rings) {
       std::vector<std::uint32_t> ends;
       for (std::size_t i = 0; i < ring.corners.size(); ++i)
         if (ring.wall[i] != ring.wall[(i + ring.corners.size() - 1) % ring.corners.size()])
@@ -145,8 +145,8 @@ class Town {
     return s;
   }
 
-  Row row;
-  RowGraph graph;
+  TerraceRow row;
+  TerraceGraph graph;
   std::vector<Point2> truth;
   std::vector<double> direction;
   std::mt19937& random() { return random_; }

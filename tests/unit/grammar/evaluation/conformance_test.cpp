@@ -1,4 +1,4 @@
-// The conformance tests of references/cga.md §7.4, by their numbers: rule text and what must come out.
+// The conformance tests of docs/rule_language.md §7.4, by their numbers: rule text and what must come out.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -45,7 +45,7 @@ inline Derivation derive_text(const std::string& rules, const Shape& lot, const 
   return derive(program, lot, options);
 }
 
-/// R(w, d) of cga.md §7.4: first edge along x at z = 0.
+/// R(w, d) of docs/rule_language.md §7.4: first edge along x at z = 0.
 inline Shape rectangle(double width, double depth) {
   return initial_shape({{0, 0, 0}, {width, 0, 0}, {width, 0, -depth}, {0, 0, -depth}});
 }

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "styles/grammar/evaluation/arrays.h"
-#include "styles/grammar/language/names.h"
+#include "styles/grammar/language/known_names.h"
 #include "styles/grammar/language/value_text.h"
 
 namespace blockrand::grammar {

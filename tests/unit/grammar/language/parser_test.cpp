@@ -1,4 +1,5 @@
-// The parser: every form of the language, every decision of cga.md §1.3, and what it says about mistakes.
+// The parser: every form of the language, every decision of docs/rule_language.md §1.3, and what it says about
+// mistakes.
 #include "styles/grammar/language/parser.h"
 
 #include <gmock/gmock.h>

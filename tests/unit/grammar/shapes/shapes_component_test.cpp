@@ -9,7 +9,7 @@ Shape cube() {
   return x;
 }
 
-TEST(Extrude, MakesAClosedPrism) {  // cga.md §7.4, 2
+TEST(Extrude, MakesAClosedPrism) {  // docs/rule_language.md §7.4, 2
   const Shape house = after(rectangle(10, 20), "extrude", {plain(5)});
   EXPECT_EQ(house.size, (Vector3{10, 5, 20}));
   EXPECT_EQ(geometry_face_count(house), 6);

@@ -10,7 +10,7 @@ Mesh asset() {  // 3 x 6 x 2 with its lowest corner at (1, 1, 1)
   return mesh;
 }
 
-TEST(Insert, SizeRules) {  // cga.md §7.4, 34
+TEST(Insert, SizeRules) {  // docs/rule_language.md §7.4, 34
   const Shape start = rectangle(10, 20);
   const auto inserted = [&](double a, double b, double c) {
     Shape x = after(start, "s", {plain(a), plain(b), plain(c)});

@@ -5,7 +5,7 @@
 namespace blockrand::grammar {
 namespace {
 
-TEST(Roofs, HipIsSteepOrFlat) {  // cga.md §7.4, 24
+TEST(Roofs, HipIsSteepOrFlat) {  // docs/rule_language.md §7.4, 24
   const std::pair<double, std::size_t> cases[]{{10, 0}, {30, 1}, {80, 2}};
   for (const auto& [angle, where] : cases) {
     const auto parts = taken(after(rectangle(10, 10), "roofHip", {plain(angle)}), ComponentKind::faces,

@@ -12,7 +12,7 @@ void expect_near(Vector3 a, Vector3 b, double tolerance = 1e-9) {
   EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-TEST(InitialShape, LiesBehindItsFirstEdge) {  // cga.md §7.4, 1
+TEST(InitialShape, LiesBehindItsFirstEdge) {  // docs/rule_language.md §7.4, 1
   const Shape lot = rectangle(10, 20);
   EXPECT_EQ(lot.size, (Vector3{10, 0, 20}));
   EXPECT_EQ(lot.scope.origin, (Vector3{0, 0, -20}));
@@ -50,7 +50,7 @@ TEST(Scope, AnglesAndAxesAgree) {
     for (int i = 0; i < 3; ++i) expect_near(axes[i], again[i], 1e-9);
     expect_near(cross(axes[0], axes[1]), axes[2], 1e-12);
   }
-  // R[1][0] = cos b sin c, R[2][0] = -sin b (cga.md §2.0)
+  // R[1][0] = cos b sin c, R[2][0] = -sin b (docs/rule_language.md §2.0)
   const auto axes = axes_of_angles({0, 30, 60});
   EXPECT_NEAR(axes[0].y, std::cos(M_PI / 6) * std::sin(M_PI / 3), 1e-12);
   EXPECT_NEAR(axes[0].z, -0.5, 1e-12);

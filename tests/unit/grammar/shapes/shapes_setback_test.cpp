@@ -25,7 +25,7 @@ double total(const std::vector<Shape>& shapes) {
   return sum;
 }
 
-TEST(Offset, InsideAndBorder) {  // cga.md §7.4, 25
+TEST(Offset, InsideAndBorder) {  // docs/rule_language.md §7.4, 25
   const Shape ring = after(rectangle(10, 20), "offset", {plain(-1)});
   const ComponentSplit parts = components(ring, ComponentKind::faces);
   double inner = 0, border = 0;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Mark relative = Mark::relative, floating = Mark::floating;
 
-TEST(SplitSizes, AbsoluteSizesFillUp) {  // cga.md §7.4, 7
+TEST(SplitSizes, AbsoluteSizesFillUp) {  // docs/rule_language.md §7.4, 7
   EXPECT_EQ(pieces_text({item('A', 2), item('B', 1), item('C', 1), item('D', 2), item('E', 1)}, false, 5),
             "A 2 B 1 C 1 D 1");
 }

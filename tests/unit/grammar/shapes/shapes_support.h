@@ -1,4 +1,4 @@
-// The initial shapes of the conformance table (cga.md §7.4), and running operations by name as rules do.
+// The initial shapes of the conformance table (docs/rule_language.md §7.4), and running operations by name as rules do.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Every state in which a building object can end (DESIGN law 1), each from a file of a few lines.
+// Every state in which a building object can end (ARCHITECTURE.md, law 1), each from a file of a few lines.
 #include <gtest/gtest.h>
 
 #include "tests/unit/importers/osm/support.h"

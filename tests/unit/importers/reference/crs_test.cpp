@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "importers/reference/reference_crs.h"
-#include "importers/reference/transform.h"
+#include "importers/reference/affine_transform.h"
 #include "pipeline/base/error.h"
 #include "pipeline/georef/crs_facts.h"
-#include "pipeline/georef/witness.h"
+#include "pipeline/georef/proj_transform.h"
 #include "tests/unit/importers/reference/support.h"
 
 namespace blockrand::importers::reference::test {
@@ -159,7 +159,7 @@ TEST(Crs, SeveralInOneFile) {
 TEST(Transform, MatchesProjAndKeepsHeights) {
   auto m = triangle("EPSG:25832", 678145.778, 5403919.12);
   const georef::GeoBox area{11.3, 48.6, 11.6, 48.9};
-  georef::Witness from("EPSG:25832", area), to("EPSG:25833", area);
+  georef::ProjTransform from("EPSG:25832", area), to("EPSG:25833", area);
   const model::Point2 expected = to.forward(from.inverse({678145.778, 5403919.12}));
   const TransformFacts facts = transform_to(m, "EPSG:25833");
   EXPECT_EQ(facts.accuracy_m, 0);
@@ -171,8 +171,8 @@ TEST(Transform, MatchesProjAndKeepsHeights) {
 
 TEST(Transform, FromDegreesAndAcrossDatums) {
   auto degrees = triangle("urn:ogc:def:crs:EPSG::4258", 48.75, 11.5, 1e-4);
-  georef::Witness witness("EPSG:25832", {11.4, 48.6, 11.6, 48.9});
-  const model::Point2 expected = witness.forward({11.5, 48.75});
+  georef::ProjTransform proj_transform("EPSG:25832", {11.4, 48.6, 11.6, 48.9});
+  const model::Point2 expected = proj_transform.forward({11.5, 48.75});
   transform_to(degrees, "EPSG:25832");
   EXPECT_NEAR(degrees.polygons[0].outer[0].x, expected.x, 1e-3);
   EXPECT_NEAR(degrees.polygons[0].outer[0].y, expected.y, 1e-3);

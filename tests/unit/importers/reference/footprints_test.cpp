@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "pipeline/base/error.h"
-#include "pipeline/geometry/polygon.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "tests/unit/importers/reference/support.h"
 

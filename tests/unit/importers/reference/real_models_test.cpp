@@ -17,7 +17,7 @@
 #include "importers/osm/read_extract.h"
 #include "importers/reference/footprints.h"
 #include "importers/reference/read_model.h"
-#include "importers/reference/transform.h"
+#include "importers/reference/affine_transform.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/georef/projection.h"
 #include "tests/unit/importers/reference/support.h"

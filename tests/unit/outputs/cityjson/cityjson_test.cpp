@@ -9,7 +9,7 @@
 #include "pipeline/outputs/citygml/citygml_writer.h"
 #include "pipeline/outputs/cityjson/cityjson_writer.h"
 #include "pipeline/outputs/cityjson/vertex_table.h"
-#include "pipeline/outputs/materials.h"
+#include "pipeline/outputs/material_classes.h"
 #include "tests/unit/outputs/closed.h"
 #include "tests/unit/outputs/sample_region.h"
 

@@ -16,7 +16,7 @@ std::vector<json> explained(const model::Region& region, const std::string& file
   ExplainOptions o;
   o.tile = "15_1_2";
   o.lod = 3;
-  o.fate = [](std::uint32_t) { return Fate{}; };
+  o.final_state = [](std::uint32_t) { return FinalState{}; };
   o.rule_file = [&](std::string_view preset) { return preset == "gz" ? file : std::string(); };
   std::vector<json> out;
   std::istringstream lines(explain(region, o).lines);

@@ -22,7 +22,7 @@ ExplainOptions plain_options() {
   ExplainOptions o;
   o.tile = "15_1_2";
   o.files = {"tiles/15/1/2.glb"};
-  o.fate = [](std::uint32_t) { return Fate{model::ObjectState::modelled, model::IssueCode::none, {}}; };
+  o.final_state = [](std::uint32_t) { return FinalState{model::ObjectState::modelled, model::IssueCode::none, {}}; };
   return o;
 }
 
@@ -198,7 +198,7 @@ TEST(Explain, WhatWasNotBuiltSaysWhy) {
   test::SampleRegion sample;
   sample.add_building(7, {{"building", "yes"}});
   ExplainOptions options = plain_options();
-  options.fate = [](std::uint32_t) { return Fate{model::ObjectState::reported, model::IssueCode::zero_area, {}}; };
+  options.final_state = [](std::uint32_t) { return FinalState{model::ObjectState::reported, model::IssueCode::zero_area, {}}; };
   const json line = lines_of(explain(sample.region(), options).lines).at("w7");
   EXPECT_EQ(line.at("state"), "reported");
   EXPECT_EQ(line.at("code"), "ZERO_AREA");

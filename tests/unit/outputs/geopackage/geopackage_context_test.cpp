@@ -8,11 +8,11 @@
 #include <fstream>
 #include <iterator>
 
-#include "pipeline/outputs/facade_edges.h"
+#include "pipeline/outputs/wall_segment_ids.h"
 #include "pipeline/outputs/geopackage/columns.h"
 #include "pipeline/outputs/geopackage/geopackage_writer.h"
 #include "pipeline/outputs/geopackage/qgis_styles.h"
-#include "pipeline/model/edge_colours.h"
+#include "pipeline/model/wall_segment_colours.h"
 #include "tests/unit/outputs/row_sample.h"
 
 namespace blockrand::outputs {
@@ -204,7 +204,7 @@ TEST_F(ContextLayers, TheSameCallsGiveTheSameBytes) {
 }
 
 TEST(ContextColumns, LengthsAndAreasSayTheirUnit) {
-  for (const auto& columns : {facade_edge_columns(), block_columns(), courtyard_columns(), cell_columns(),
+  for (const auto& columns : {wall_segment_columns(), block_columns(), courtyard_columns(), cell_columns(),
                               situation_columns(), repair_columns()})
     for (const Column& c : columns) {
       EXPECT_FALSE(c.description.empty()) << c.name;
@@ -221,8 +221,8 @@ TEST(ContextStyles, EdgesHaveTheColoursOfThePlan) {
     if (style.layer != "facade_edges") continue;
     EXPECT_THAT(style.qml, HasSubstr("<layerGeometryType>1</layerGeometryType>"));
     EXPECT_THAT(style.qml, HasSubstr("class=\"SimpleLine\""));
-    for (int k = 1; k < model::kEdgeKindCount; ++k) {
-      const auto kind = static_cast<model::EdgeKind>(k);
+    for (int k = 1; k < model::kWallSegmentKindCount; ++k) {
+      const auto kind = static_cast<model::WallSegmentKind>(k);
       const model::Colour c = model::colour_of(kind);
       EXPECT_THAT(style.qml, HasSubstr("value=\"" + std::string(model::name(kind)) + "\""));
       EXPECT_THAT(style.qml, HasSubstr("name=\"line_color\" value=\"" + std::to_string(c.r) + ',' + std::to_string(c.g) +
@@ -249,20 +249,20 @@ TEST(ContextRows, WithoutContextEverythingIsEmpty) {
     EXPECT_THAT(query(folder / "a.gpkg", "SELECT * FROM " + layer), IsEmpty());
 }
 
-// ---- where stretches lie
+// ---- where wall segments lie
 // -----------------------------------------------------------------------------------------------
 
-TEST(Stretches, PointsThatRepairMadeAreNamedByTheirPlace) {
+TEST(WallSegmentIds, PointsThatRepairMadeAreNamedByTheirPlace) {
   SampleRegion sample = row_sample();
   model::Building& b = sample.region().buildings.at(2);
   b.outline[0].outer.nodes[1] = 0;
   b.edges[0].to_node = b.edges[1].from_node = 0;
-  const auto found = stretches(b);
+  const auto found = wall_segments(b);
   EXPECT_EQ(found.at(0).id, "w3.e30_p400430080x5958664192");
   EXPECT_EQ(found.at(1).id, "w3.ep400430080x5958664192_32");
 }
 
-TEST(Stretches, TwoEdgesBetweenTheSameNodesHaveDifferentIds) {
+TEST(WallSegmentIds, TwoEdgesBetweenTheSameNodesHaveDifferentIds) {
   SampleRegion sample = row_sample();
   model::Building& b = sample.region().buildings.at(3);
   b.outline.push_back(b.outline[0]);
@@ -272,38 +272,38 @@ TEST(Stretches, TwoEdgesBetweenTheSameNodesHaveDifferentIds) {
     b.edges.push_back(b.edges[i]);
     b.edges.back().polygon = 1;
   }
-  const auto found = stretches(b);
+  const auto found = wall_segments(b);
   ASSERT_EQ(found.size(), 8u);
   EXPECT_EQ(found[0].id, "w4.e40_41");
   EXPECT_EQ(found[4].id, "w4.e40_41~2");
   EXPECT_EQ(found[4].from.x, found[0].from.x + 100);
 }
 
-TEST(Stretches, NeighboursMeetOnTheGridAndWholeEdgesEndAtCorners) {
+TEST(WallSegmentIds, NeighboursMeetOnTheGridAndWholeEdgesEndAtCorners) {
   SampleRegion sample = row_sample();
   model::Building& b = sample.region().buildings.at(1);
   b.outline[0].outer.points[1] = model::snap(model::Point2{test::kRowX + 29.9, test::kRowY + 9.7});
   const model::Point2 p = b.outline[0].outer.points[0], q = b.outline[0].outer.points[1];
   b.edges[2].end = std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y)) + 1e-7;  // rounding of a sum
-  const auto found = stretches(b);
+  const auto found = wall_segments(b);
   EXPECT_EQ(found.at(0).from, p);
   EXPECT_EQ(found.at(0).to, found.at(1).from);
   EXPECT_EQ(found.at(1).to, found.at(2).from);
   EXPECT_EQ(found.at(2).to, q);
-  for (const Stretch& s : found) EXPECT_EQ(s.to, model::snap(s.to));
+  for (const IdentifiedWallSegment& s : found) EXPECT_EQ(s.to, model::snap(s.to));
 }
 
-TEST(Stretches, WhatHasNoPlaceIsLeftOut) {
+TEST(WallSegmentIds, WhatHasNoPlaceIsLeftOut) {
   SampleRegion sample = row_sample();
   model::Building& b = sample.region().buildings.at(3);
   b.edges[0].polygon = 7;
   b.edges[1].ring = 1;
   b.edges[2].edge = 4;
   b.edges[3].end = 0.0003;
-  EXPECT_THAT(stretches(b), IsEmpty());
+  EXPECT_THAT(wall_segments(b), IsEmpty());
 }
 
-TEST(Stretches, WallsLookAwayFromTheBuilding) {
+TEST(WallSegmentIds, WallsLookAwayFromTheBuilding) {
   EXPECT_EQ(outward({0, 0}, {1, 0}), 180);
   EXPECT_EQ(outward({0, 0}, {0, 1}), 90);
   EXPECT_EQ(outward({1, 0}, {0, 0}), 0);

@@ -479,7 +479,7 @@ TEST(QgisStyles, AttributesAreColumns) {
   std::map<std::string, std::set<std::string>> columns;
   for (const Column& c : building_columns()) columns["buildings"].insert(c.name);
   for (const Column& c : part_columns()) columns["parts"].insert(c.name);
-  for (const Column& c : facade_edge_columns()) columns["facade_edges"].insert(c.name);
+  for (const Column& c : wall_segment_columns()) columns["facade_edges"].insert(c.name);
   for (const Column& c : block_columns()) columns["blocks"].insert(c.name);
   for (const Column& c : courtyard_columns()) columns["courtyards"].insert(c.name);
   for (const Column& c : cell_columns()) columns["cells"].insert(c.name);

@@ -1,0 +1,72 @@
+#include "pipeline/cli/build_command.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/progress.h"
+#include "pipeline/cli/build_report.h"
+#include "pipeline/cli/configs_folder.h"
+#include "pipeline/cli/errors.h"
+#include "pipeline/cli/exit_codes.h"
+#include "pipeline/cli/signals.h"
+#include "pipeline/run/build.h"
+#include "pipeline/settings/command_line.h"
+
+namespace blockrand::cli {
+
+settings::CommandText build_text() {
+  return {.name = "build",
+          .summary = "an extract in; georeferenced 3D Tiles, CityGML, CityJSON and GeoPackage out",
+          .usage = "INPUT -o FOLDER [options]",
+          .description =
+              "Rebuilds the buildings of an OpenStreetMap extract in 3D: georeferenced 3D Tiles (GLB), CityGML, CityJSON "
+              "and GeoPackage, with a report. Missing heights, storeys and roofs are inferred, and every value says where "
+              "it came from.\n"
+              "The output folder appears, or is replaced, when everything in it is complete; never before.",
+          .options = settings::kBuild,
+          .examples = {{"blockrand build leipzig.osm.pbf -o out/leipzig", "everything, in all formats, with roofs (LoD 2)"},
+                       {"blockrand build berlin.osm.pbf -o out/mitte --bbox 13.37,52.51,13.41,52.53 --formats gltf",
+                        "one quarter of a city, 3D Tiles only"},
+                       {"blockrand build town.osm -o out --terrain dem.tif --terrain-height-reference EPSG:7837 --force",
+                        "on real ground, whose heights the raster does not explain, in place of an earlier build"},
+                       {"blockrand build --config town.toml --lod 1",
+                        "options from a file; blocks instead of roofs"}},
+          .exit_codes = {{"0", "all well"},
+                         {"1", "wrong usage"},
+                         {"2", "unreadable or invalid input"},
+                         {"3", "buildings below the asked quality (only with --strict)"},
+                         {"4", "output could not be written or internal error"},
+                         {"128 + N", "ended by signal N"}}};
+}
+
+int run_build(const std::vector<std::string>& arguments) {
+  settings::CommandLine line = settings::read_command_line(settings::kBuild, arguments);
+  if (line.help) {
+    std::fputs(settings::command_help(build_text()).c_str(), stdout);
+    return kSuccess;
+  }
+  settings::Settings& s = line.settings;
+  s.build.configs = configs_folder(s.build.configs, program_file());
+  clean_up_on_signals(s.log_format);
+  base::Progress progress(s.progress, s.log_format, s.quiet);
+  const run::BuildSummary summary = run::build(s.build, progress);
+  progress.end();
+  if (s.log_format == base::LogFormat::json)
+    std::fputs(build_report_json(s.build, summary).c_str(), stdout);
+  else if (!s.quiet)
+    std::fputs(build_report(s.build, summary).c_str(), stdout);
+  if (const std::int64_t lost = unaccounted(summary); lost != 0) {
+    progress.error(fmt::format(
+        "internal error: {} objects of the extract are in no state. This is a bug: please report it.", lost));
+    return kInternalError;
+  }
+  if (summary.below_quality && s.build.strict) {
+    progress.error("some buildings are below the asked quality (--strict); report.json lists them");
+    return kBelowQuality;
+  }
+  return kSuccess;
+}
+
+}  // namespace blockrand::cli

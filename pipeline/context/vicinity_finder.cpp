@@ -1,0 +1,80 @@
+#include "pipeline/context/vicinity_finder.h"
+
+#include <algorithm>
+#include <map>
+
+#include "pipeline/context/wall_segments.h"
+
+namespace blockrand::context {
+
+VicinityFinder::VicinityFinder(const model::Extract& extract, const footprints::FootprintStore& footprints,
+                                       const ContextExtract& context)
+    : extract_(extract), footprints_(footprints), context_(context), buildings_(footprints::index_of(footprints)) {
+  std::vector<geometry::PlanBox> boxes;
+  for (const context::NetworkLine& line : context.lines) boxes.push_back(geometry::box_of(line.points));
+  lines_ = geometry::BoxIndex(std::move(boxes));
+  boxes.clear();
+  for (const context::PassageWay& passage : context.passages) boxes.push_back(geometry::box_of(passage.points));
+  passages_ = geometry::BoxIndex(std::move(boxes));
+  boxes.clear();
+  for (const context::SitePoint& point : context.points) boxes.push_back(geometry::box_of({&point.place, 1}));
+  points_ = geometry::BoxIndex(std::move(boxes));
+  boxes.clear();
+  for (const context::Block& block : context.blocks)
+    boxes.push_back(block.too_large ? geometry::PlanBox{} : geometry::box_of(block.polygon.outer.points));
+  blocks_ = geometry::BoxIndex(std::move(boxes));
+  boxes.clear();
+  for (const ExtractCourtyard& yard : context.courtyards) boxes.push_back(geometry::box_of(yard.courtyard.polygon.outer.points));
+  courtyards_ = geometry::BoxIndex(std::move(boxes));
+}
+
+void VicinityFinder::label_wall_segments(model::Region& region, std::span<const std::uint32_t> numbers) const {
+  geometry::PlanBox box;
+  for (const std::uint32_t n : numbers) box.include(footprints_[n].box);
+  if (box.empty()) return;
+  constexpr double kReach = context::kWallSegmentReach;
+
+  std::vector<context::Footprint> footprints;
+  std::vector<context::BuildingAddress> addresses;
+  for (const std::uint32_t n : buildings_.near(box, kReach)) {
+    const model::Range tags = extract_.buildings[footprints_[n].lead].tags;
+    addresses.push_back(context::building_address(extract_, footprints_[n].id, tags));
+    for (model::Polygon& polygon : footprints_.polygons(n))
+      footprints.push_back({footprints_[n].id, std::move(polygon), std::nullopt, footprints_[n].level.canopy});
+  }
+  std::erase_if(addresses, [](const auto& a) { return a.street.empty() && a.house_number.empty(); });
+  std::sort(addresses.begin(), addresses.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  std::stable_sort(footprints.begin(), footprints.end(),
+                   [](const context::Footprint& a, const context::Footprint& b) { return a.id < b.id; });
+  std::vector<context::NetworkLine> lines;
+  for (const std::uint32_t i : lines_.near(box, kReach)) lines.push_back(context_.lines[i]);
+  std::vector<context::PassageWay> passages;
+  for (const std::uint32_t i : passages_.near(box, kReach)) passages.push_back(context_.passages[i]);
+  std::vector<context::SitePoint> points;
+  for (const std::uint32_t i : points_.near(box, kReach)) points.push_back(context_.points[i]);
+
+  std::vector<context::Block> blocks;
+  std::vector<context::BlockFigures> figures;
+  std::map<std::uint32_t, std::size_t> place;  // of a block of the extract among those here
+  const std::vector<std::uint32_t> near = blocks_.near(box, kReach);
+  for (const std::uint32_t b : near) {
+    place[b] = blocks.size();
+    blocks.push_back(context_.blocks[b]);
+    figures.emplace_back();
+  }
+  // Courtyards that lie in no block stand with a block of no extent.
+  place[model::kNoIndex] = blocks.size();
+  blocks.emplace_back();
+  figures.emplace_back();
+  for (const std::uint32_t i : courtyards_.near(box, kReach)) {
+    const ExtractCourtyard& yard = context_.courtyards[i];
+    if (const auto found = place.find(yard.block); found != place.end())
+      figures[found->second].courtyards.push_back(yard.courtyard);
+  }
+
+  const context::VicinityIndex index({footprints, lines, blocks, figures, passages, points, addresses});
+  for (model::Building& building : region.buildings)
+    context::label_wall_segments(building, index, context::address_street(extract_, building.tags));
+}
+
+}  // namespace blockrand::context

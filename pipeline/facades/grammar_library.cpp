@@ -1,0 +1,140 @@
+#include "pipeline/facades/grammar_library.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "pipeline/base/error.h"
+#include "pipeline/facades/facade_context.h"
+#include "pipeline/model/element.h"
+#include "styles/elements/make_element.h"
+
+namespace blockrand::facades {
+namespace {
+
+/// Characters; the rest of the errors would not be read.
+constexpr std::size_t kMostErrorText = 2000;
+
+std::optional<std::string> read_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return std::nullopt;
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> list_folder(const std::string& folder) {
+  std::vector<std::string> out;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    out.push_back(entry.path().filename().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace
+
+std::vector<grammar::ExtensionOperation> extension_operations() {
+  // The first three take all kinds of their class; the others those that are named after what they make
+  // (docs/rule_language.md §7.1).
+  struct Named {
+    const char* name;
+    std::vector<std::string> kinds;
+  };
+  const std::vector<Named> named{{"window", {}},
+                                 {"door", {}},
+                                 {"element", {}},
+                                 {"balcony", {"balcony"}},
+                                 {"bay", {"bay"}},
+                                 {"cornice", {"main_cornice", "string_course", "plinth", "sill"}},
+                                 {"opening", {"reveal", "cellar_window"}},
+                                 {"quoin", {"quoin", "pilaster"}}};
+  std::vector<grammar::ExtensionOperation> out(named.size());
+  for (std::size_t i = 0; i < named.size(); ++i) out[i].name = named[i].name;
+  std::vector<std::set<std::string>> parameters(named.size());
+  for (const elements::ElementKind& kind : elements::element_kinds()) {
+    const std::size_t which = kind.semantic == model::ElementClass::window ? 0
+                              : kind.semantic == model::ElementClass::door ? 1
+                                                                           : 2;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      if (i != which && std::find(named[i].kinds.begin(), named[i].kinds.end(), kind.name) == named[i].kinds.end())
+        continue;
+      out[i].kinds.push_back(kind.name);
+      for (const elements::ParameterInfo& p : kind.parameters) parameters[i].insert(p.name);
+      for (const std::string_view part : model::kElementPartNames) parameters[i].insert(std::string(part) + "_colour");
+    }
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].parameters.assign(parameters[i].begin(), parameters[i].end());
+  return out;
+}
+
+struct GrammarLibrary::File {
+  std::string path;
+  grammar::Program program;
+  std::optional<grammar::Deriver> deriver;
+};
+
+GrammarLibrary::GrammarLibrary(const std::string& folder, std::span<const PresetGrammar> presets) {
+  grammar::LoadOptions options;
+  options.roots = {folder};
+  options.read = read_file;
+  options.list = list_folder;
+  grammar::CheckOptions check_options;
+  check_options.extensions = extension_operations();
+  for (const ContextAttribute& attribute : context_attributes()) check_options.context.emplace_back(attribute.name);
+  for (const PresetGrammar& preset : presets) {
+    const std::string path = (std::filesystem::path(folder) / preset.file).string();
+    auto file = std::find_if(files_.begin(), files_.end(), [&](const auto& f) { return f->path == path; });
+    if (file == files_.end()) {
+      auto read = std::make_unique<File>();
+      read->path = path;
+      read->program = grammar::load(path, options);
+      std::string errors;
+      std::vector<grammar::Diagnostic> told = read->program.diagnostics;
+      if (!grammar::has_errors(told)) told = grammar::check(read->program, check_options);
+      for (const grammar::Diagnostic& d : told)
+        if (d.severity == grammar::Severity::error && errors.size() < kMostErrorText)
+          errors += (errors.empty() ? "" : "\n  ") + grammar::format(d, read->program.files);
+      if (read->program.modules.empty() && errors.empty()) errors = "it is not there, or cannot be read";
+      if (!errors.empty()) throw base::InputError(path, "", errors, "`blockrand grammar check` tells more");
+      read->deriver.emplace(read->program);
+      files_.push_back(std::move(read));
+      file = files_.end() - 1;
+    }
+    Entry entry;
+    entry.preset = preset.preset;
+    entry.file = preset.file;
+    entry.deriver = &*(*file)->deriver;
+    for (const auto& [name, value] : preset.attributes) entry.attributes.emplace_back(name, value);
+    entries_.push_back(std::move(entry));
+  }
+  std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.preset < b.preset; });
+}
+
+GrammarLibrary::~GrammarLibrary() = default;
+GrammarLibrary::GrammarLibrary(GrammarLibrary&&) noexcept = default;
+
+std::vector<std::string> GrammarLibrary::files() const {
+  std::set<std::string> out;
+  for (const auto& file : files_)
+    for (const grammar::SourceFile& source : file->program.files) out.insert(source.path);
+  return {out.begin(), out.end()};
+}
+
+const GrammarLibrary::Entry* GrammarLibrary::find(std::string_view preset) const {
+  const auto place = std::lower_bound(entries_.begin(), entries_.end(), preset,
+                                      [](const Entry& e, std::string_view name) { return e.preset < name; });
+  return place != entries_.end() && place->preset == preset ? &*place : nullptr;
+}
+
+GrammarLibrary read_grammars(const std::string& configs, std::span<const districts::Preset> presets) {
+  std::vector<PresetGrammar> grammars;
+  for (const districts::Preset& preset : presets)
+    if (!preset.grammar.empty()) grammars.push_back({preset.name, preset.grammar, preset.attributes});
+  return {(std::filesystem::path(configs) / "grammars").string(), grammars};
+}
+
+}  // namespace blockrand::facades

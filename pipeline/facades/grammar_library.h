@@ -1,0 +1,63 @@
+// The rule files of the presets, read once before anything is built.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "styles/districts/rule_set.h"
+#include "styles/grammar/language/check.h"
+#include "styles/grammar/evaluation/derive.h"
+
+namespace blockrand::facades {
+
+/// What our own operations are called in rule files: `blockrand.window("double_casement", "head", "segmental")`. The
+/// first argument is a kind of elements::element_kinds(), pairs of parameter and value follow: those of the kind, and
+/// colours of parts ("frame_colour", "#f6f6f6"; see model::ElementPart).
+///
+/// `window` and `door` stand in an opening of the shape's size; `element` stands on the wall.
+std::vector<grammar::ExtensionOperation> extension_operations();
+
+/// Which rule file a preset runs, and with which attribute values.
+struct PresetGrammar {
+  std::string preset;
+  std::string file;  ///< below the folder of grammars
+  std::vector<std::pair<std::string, std::string>> attributes;
+};
+
+/// The grammars of all presets. Immutable once made; used by all threads.
+class GrammarLibrary {
+ public:
+  struct Entry {
+    std::string preset;
+    std::string file;  ///< below the folder of grammars
+    const grammar::Deriver* deriver = nullptr;
+    std::vector<std::pair<std::string, grammar::Value>> attributes;
+  };
+
+  /// Reads each file once. \param folder  of the rule files; imports are looked for there as well
+  /// \throws base::InputError  with all errors of the first file that has some, each with file, line and column
+  GrammarLibrary(const std::string& folder, std::span<const PresetGrammar> presets);
+  ~GrammarLibrary();
+  GrammarLibrary(GrammarLibrary&&) noexcept;
+
+  /// Null when the preset has no grammar.
+  const Entry* find(std::string_view preset) const;
+  bool empty() const { return entries_.empty(); }
+  /// Paths of all files that were read, imports included, by name.
+  std::vector<std::string> files() const;
+
+ private:
+  struct File;
+  std::vector<std::unique_ptr<File>> files_;
+  std::vector<Entry> entries_;  ///< by name
+};
+
+/// The rule files of a rule book's presets, from configs/grammars.
+/// \throws base::InputError  with the errors of a file
+GrammarLibrary read_grammars(const std::string& configs, std::span<const districts::Preset> presets);
+
+}  // namespace blockrand::facades

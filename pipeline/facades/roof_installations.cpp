@@ -1,0 +1,329 @@
+#include "pipeline/facades/roof_installations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pipeline/base/random.h"
+#include "pipeline/attributes/roof_edges.h"
+#include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/plan_shape.h"
+#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/geometry/triangulate.h"
+#include "styles/roofs/chimneys.h"
+#include "styles/roofs/element_layout.h"
+#include "styles/roofs/roof_slopes.h"
+#include "styles/roofs/roof_windows.h"
+
+namespace blockrand::facades {
+namespace {
+
+using model::BuildingPart;
+using model::Point2;
+using model::Point3;
+
+/// m². Smaller bodies are sheds, porches and stair heads.
+constexpr double kLeastPlan = 30;
+/// Share of a body's plan under higher bodies from which on its roof is theirs to stand on (own choice).
+constexpr double kCovered = 0.5;
+/// m of frontage for each chimney: with a stove in every room; with one for each flat; with one for each house.
+constexpr double kStoves = 6, kStovesOfFlats = 12, kBoilers = 18;
+/// Share of detached houses of after 1945 that have a chimney (docs/style_measures.md §6).
+constexpr double kDetachedWithChimney = 0.85;
+/// Share of old houses without a mapped attic storey whose loft was converted (own choice).
+constexpr double kConvertedLofts = 1.0 / 3;
+/// m between roof windows: every second window axis (docs/style_measures.md §2.7: dormer_step).
+constexpr double kRoofWindowStep = 4.8;
+/// m that roof windows keep from a chimney: rafters on both sides of a trimmer (own choice).
+constexpr double kFromChimney = 0.5;
+
+bool is_old(const model::Attributes& a) {
+  const std::string& style = a.style.value;
+  return style == model::name(model::StyleClass::gruenderzeit) || style == model::name(model::StyleClass::tenement) ||
+         a.era.value == model::name(model::Era::pre1840) || a.era.value == model::name(model::Era::from1840);
+}
+
+double within(double low, double high, double share) { return low + (high - low) * share; }
+
+class RoofInstaller {
+ public:
+  RoofInstaller(const attributes::Defaults& defaults, const RoofInstallationOptions& options) : defaults_(defaults), options_(options) {
+    const auto face = [&](const char* material, model::Colour or_else) {
+      model::Face f;
+      const int number = defaults.material(material);
+      f.material = static_cast<std::uint8_t>(std::max(number, 0));
+      f.colour = number < 0 ? or_else : defaults.materials[static_cast<std::size_t>(number)].colour;
+      return f;
+    };
+    constexpr model::Colour kBrick{0x9A, 0x5B, 0x47}, kConcrete{0xB8, 0xB6, 0xB0}, kSheet{0x4A, 0x4F, 0x52},
+        kPane{0x51, 0x62, 0x6E};
+    stack_.stack = face("brick", kBrick);
+    stack_.top = face("concrete", kConcrete);
+    window_.frame = face("metal", kSheet);
+    window_.frame.colour = kSheet;
+    window_.pane = face("glass", kPane);
+    window_.pane.colour = kPane;
+  }
+
+  void furnish(model::Building& building) {
+    BuildingPart* const body = main_body(building);
+    if (!body) return;
+    if (!has_hearths(building.attributes)) return;
+    const double area = geometry::area(body->roof_plan.outer.size() >= 3 ? body->roof_plan : body->plan);
+    if (!(area >= kLeastPlan)) return;
+    const auto standing = solid_roof(body->lod2);
+    if (!standing) return;
+    const std::vector<model::RoofEdge> edges = edges_of(building, *body, standing->plan);
+    const double width = building.situation.width.value_or(0);
+    const double frontage = width > 0 ? width : std::sqrt(area);
+    const std::vector<Point2> stacks = put_chimneys(building, *body, *standing, edges, frontage);
+    put_roof_windows(building, *body, *standing, edges, stacks, is_old(building.attributes));
+  }
+
+ private:
+  double share(const model::Building& building, std::string_view choice) const {
+    return base::random_unit(options_.seed, building.osm.key(), choice);
+  }
+
+  /// Houses of people, and old houses of shops and offices; no churches, halls and sheds.
+  bool has_hearths(const model::Attributes& a) const {
+    const std::string& group = defaults_.groups[defaults_.use(a.use.value).group];
+    return group == "residential" || ((group == "commercial" || group == "public" || group == "other") && is_old(a) &&
+                                      a.style.value != model::name(model::StyleClass::other));
+  }
+
+  /// m above the height reference.
+  struct Extent {
+    double low = 0, high = 0;
+  };
+  static Extent extent_of(const model::Solid& solid) {
+    Extent out{1e300, -1e300};
+    for (const Point3& p : solid.vertices) out = {std::min(out.low, p.z), std::max(out.high, p.z)};
+    return out;
+  }
+  /// Of what was built; as its tags say where nothing was.
+  static Extent extent_of(const BuildingPart& part) {
+    if (!part.lod2.empty()) return extent_of(part.lod2);
+    if (!part.lod1.empty()) return extent_of(part.lod1);
+    const model::Attributes& a = part.attributes;
+    return {a.ground_height.value + a.min_height.value, a.ground_height.value + a.height.value};
+  }
+
+  /// Whether higher bodies of the building cover half of it: a podium under a tower.
+  static bool covered(const model::Building& building, const BuildingPart& part, double area) {
+    if (building.parts.size() < 2) return false;
+    const double top = extent_of(part).high;
+    std::vector<model::Polygon> higher;
+    for (const BuildingPart& other : building.parts)
+      if (&other != &part && !other.canopy && !other.lod2.empty() && extent_of(other).high > top)
+        higher.push_back(other.plan);
+    if (higher.empty()) return false;
+    const double common = geometry::PlanShape({part.plan}).common_area(geometry::PlanShape(higher));
+    return common >= kCovered * area;
+  }
+
+  /// The largest body that is not covered from above, where it has LoD3; null for canopies and the like.
+  static BuildingPart* main_body(model::Building& building) {
+    BuildingPart* best = nullptr;
+    double largest = 0;
+    for (BuildingPart& part : building.parts) {
+      if (part.lod2.empty() || part.canopy) continue;
+      const double area = geometry::area(part.plan);
+      if (area > largest && !covered(building, part, area)) best = &part, largest = area;
+    }
+    return best && best->lod >= 3 && !best->lod3.solid.empty() ? best : nullptr;
+  }
+
+  static std::vector<model::RoofEdge> edges_of(const model::Building& building, const BuildingPart& body,
+                                               const model::Polygon& plan) {
+    std::size_t count = plan.outer.size();
+    for (const model::Ring& hole : plan.holes) count += hole.size();
+    if (body.roof_edges.size() == count && plan.outer.points == body.roof_plan.outer.points) return body.roof_edges;
+    auto edges = attributes::roof_edges(building, plan);
+    edges.resize(count, model::RoofEdge::open);
+    return edges;
+  }
+
+  /// Whether another body of the building is where it would stand.
+  static bool in_another(const model::Building& building, const BuildingPart& body, const model::Solid& solid) {
+    const Extent mine = extent_of(solid);
+    for (const BuildingPart& other : building.parts) {
+      if (&other == &body || other.plan.outer.size() < 3) continue;
+      const Extent its = extent_of(other);
+      if (its.high <= mine.low || its.low >= mine.high) continue;
+      for (const Point3& p : solid.vertices)
+        if (geometry::contains(other.plan, p.xy())) return true;
+    }
+    return false;
+  }
+
+  /// \return false where it is left out
+  bool add(const model::Building& building, BuildingPart& body, model::RoofInstallation installation) const {
+    auto triangles = geometry::triangulate(installation.solid);
+    if (!triangles || !geometry::check_solid(installation.solid, *triangles).valid()) return false;
+    if (in_another(building, body, installation.solid)) return false;
+    installation.triangles = std::move(*triangles);
+    body.lod3.roof_installations.push_back(std::move(installation));
+    return true;
+  }
+
+  /// \return the corners of the stacks on the plan, four each
+  std::vector<Point2> put_chimneys(const model::Building& building, BuildingPart& body, const SolidRoof& standing,
+                                   const std::vector<model::RoofEdge>& edges, double frontage) const {
+    const bool flat = body.built_roof == model::RoofShape::flat;
+    const int count = wanted_chimneys(building.attributes, building.situation.position, flat, frontage,
+                                      share(building, "has a chimney"));
+    std::vector<Point2> out;
+    if (count == 0) return out;
+    roofs::ChimneyParameters p;  // in whole centimetres, as masons have it
+    const auto drawn = [&](double low, double high, std::string_view choice) {
+      return std::nearbyint(within(low, high, share(building, choice)) * 100) / 100;
+    };
+    p.width = drawn(0.50, 0.65, "chimney width");
+    p.length = drawn(0.80, 1.60, "chimney length");
+    p.above_ridge = drawn(0.50, 1.00, "chimney height");
+    p.step = drawn(5.0, 7.0, "chimney step");
+    p.frontage = frontage / count;
+    for (model::RoofInstallation& stack : roofs::chimneys(standing.plan, edges, standing.roof, frontage, p, stack_)) {
+      std::vector<Point2> corners;
+      double top = -1e300;
+      for (const Point3& v : stack.solid.vertices) top = std::max(top, v.z);
+      for (const Point3& v : stack.solid.vertices)
+        if (v.z == top) corners.push_back(v.xy());
+      if (add(building, body, std::move(stack)) && corners.size() == 4)
+        out.insert(out.end(), corners.begin(), corners.end());
+    }
+    return out;
+  }
+
+  void put_roof_windows(const model::Building& building, BuildingPart& body, const SolidRoof& standing,
+                        const std::vector<model::RoofEdge>& edges, const std::vector<Point2>& stacks, bool old) const {
+    const bool attic = body.attributes.roof_storeys.value >= 1;
+    if (!attic && !(old && share(building, "converted loft") < kConvertedLofts)) return;
+    const roofs::RoofWindowParameters window;
+    const roofs::RoofBorders borders(standing.roof, edges);
+    for (std::size_t s = 0; s < standing.roof.surfaces.size(); ++s) {
+      auto slope = borders.slope(s);
+      if (!slope || !roofs::takes_elements(*slope)) continue;
+      const std::int32_t edge = standing.roof.surfaces[s].edge;
+      const bool street = edge >= 0 && static_cast<std::size_t>(edge) < edges.size() &&
+                          edges[static_cast<std::size_t>(edge)] == model::RoofEdge::street;
+      if (street && !attic) continue;  // lofts are lit from the yard
+      for (std::size_t i = 0; i + 4 <= stacks.size(); i += 4) occupy_stack(*slope, {&stacks[i], 4});
+      roofs::LayoutRequest wanted_layout;
+      wanted_layout.outline = roofs::roof_window_outline(window);
+      wanted_layout.step = kRoofWindowStep;
+      for (const double along : roofs::lay_out(*slope, wanted_layout).along)
+        if (auto made = roofs::roof_window(*slope, window, {along, wanted_layout.up}, window_))
+          add(building, body, std::move(*made));
+    }
+  }
+
+  static void occupy_stack(roofs::RoofSlope& slope, std::span<const Point2> corners) {
+    std::vector<Point2> ring(corners.begin(), corners.end());
+    const Point2 middle{(ring[0].x + ring[2].x) / 2, (ring[0].y + ring[2].y) / 2};
+    const auto half = [&](Point2 p) { return p.y < middle.y || (p.y == middle.y && p.x < middle.x); };
+    std::sort(ring.begin(), ring.end(), [&](Point2 a, Point2 b) {  // about the middle, counter-clockwise
+      if (half(a) != half(b)) return half(a);
+      return (a.x - middle.x) * (b.y - middle.y) - (a.y - middle.y) * (b.x - middle.x) > 0;
+    });
+    roofs::occupy(slope, ring, kFromChimney);
+  }
+
+  const attributes::Defaults& defaults_;
+  const RoofInstallationOptions& options_;
+  roofs::ChimneyMaterials stack_;
+  roofs::RoofWindowMaterials window_;
+};
+
+}  // namespace
+
+std::optional<SolidRoof> solid_roof(const model::Solid& solid) {
+  if (solid.faces.empty()) return std::nullopt;
+  SolidRoof out;
+  const auto points = [&](const model::Solid::Loop& loop) {
+    std::vector<Point3> p;
+    for (const std::uint32_t v : solid.indices_of(loop)) p.push_back(solid.vertices[v]);
+    return p;
+  };
+  // The underside comes first: the plan's rings, turned round.
+  double bottom = 0;
+  bool outer = true;
+  for (const auto& loop : solid.loops_of(solid.faces[0])) {
+    model::Ring ring;
+    for (const Point3& p : points(loop)) {
+      if (outer && ring.points.empty()) bottom = p.z;
+      if (p.z != bottom) return std::nullopt;
+      ring.points.push_back(p.xy());
+    }
+    std::reverse(ring.points.begin(), ring.points.end());
+    (outer ? out.plan.outer : out.plan.holes.emplace_back()) = std::move(ring);
+    outer = false;
+  }
+  std::vector<std::pair<Point2, Point2>> sides;
+  const auto add_sides = [&](const model::Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      sides.emplace_back(ring.points[i], ring.points[(i + 1) % ring.size()]);
+  };
+  add_sides(out.plan.outer);
+  for (const model::Ring& hole : out.plan.holes) add_sides(hole);
+
+  out.roof.wall_tops.resize(sides.size());
+  std::size_t f = 1;
+  for (; f < solid.faces.size(); ++f) {
+    const model::Face& face = solid.faces[f];
+    if (face.kind != model::SurfaceKind::wall || face.edge < 0) break;
+    const auto edge = static_cast<std::size_t>(face.edge);
+    if (edge >= sides.size() || face.loop_count != 1 || !out.roof.wall_tops[edge].empty()) return std::nullopt;
+    const auto& [a, b] = sides[edge];
+    const std::vector<Point3> loop = points(solid.loops[face.first_loop]);
+    if (loop[0] != Point3{a.x, a.y, bottom} || loop[1] != Point3{b.x, b.y, bottom}) return std::nullopt;
+    auto& top = out.roof.wall_tops[edge];
+    // A wall without height at one end has but one point there.
+    if (loop[2].xy() != b) top.push_back(loop[1]);
+    top.insert(top.end(), loop.begin() + 2, loop.end());
+    if (top.back().xy() != a) top.push_back(loop[0]);
+  }
+  for (std::size_t e = 0; e < sides.size(); ++e)
+    if (out.roof.wall_tops[e].empty()) {  // without any height: the roof comes down to the underside
+      const auto& [a, b] = sides[e];
+      out.roof.wall_tops[e] = {{b.x, b.y, bottom}, {a.x, a.y, bottom}};
+    }
+  for (; f < solid.faces.size(); ++f) {
+    const model::Face& face = solid.faces[f];
+    if (face.kind != model::SurfaceKind::roof && face.kind != model::SurfaceKind::wall) return std::nullopt;
+    roofs::Roof::Surface surface;
+    surface.edge = face.edge;
+    surface.upright = face.kind == model::SurfaceKind::wall;
+    for (const auto& loop : solid.loops_of(face)) surface.loops.push_back(points(loop));
+    out.roof.surfaces.push_back(std::move(surface));
+  }
+  if (out.roof.surfaces.empty()) return std::nullopt;
+  return out;
+}
+
+int wanted_chimneys(const model::Attributes& attributes, model::BuildingPosition position, bool flat, double frontage,
+                    double lot) {
+  roofs::ChimneyParameters each;
+  each.frontage = kStoves;
+  if (is_old(attributes)) return roofs::chimney_count(frontage, each);
+  if (attributes.era.value == model::name(model::Era::from1919)) {
+    each.frontage = kStovesOfFlats;
+    return roofs::chimney_count(frontage, each);
+  }
+  if (flat) return 0;
+  if (position == model::BuildingPosition::free_standing && frontage < kBoilers)
+    return lot < kDetachedWithChimney ? 1 : 0;
+  each.frontage = kBoilers;
+  return roofs::chimney_count(frontage, each);
+}
+
+void add_roof_installations(model::Region& region, const attributes::Defaults& defaults, const RoofInstallationOptions& options) {
+  RoofInstaller installer(defaults, options);
+  for (model::Building& building : region.buildings)
+    if (building.owned) installer.furnish(building);
+}
+
+}  // namespace blockrand::facades

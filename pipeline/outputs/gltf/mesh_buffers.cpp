@@ -1,0 +1,333 @@
+#include "pipeline/outputs/gltf/mesh_buffers.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <deque>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "pipeline/outputs/gltf/element_geometry.h"
+#include "pipeline/outputs/placed_element.h"
+#include "pipeline/geometry/solid_builder.h"
+#include "pipeline/geometry/triangulate.h"
+
+namespace blockrand::outputs {
+namespace {
+
+struct SolidRef {
+  const model::Solid* solid = nullptr;
+  const model::SolidTriangles* triangles = nullptr;
+  std::uint32_t feature = 0;
+  std::uint32_t first_position = 0;
+  std::vector<bool> hidden;  ///< faces that elements stand for; empty: none
+};
+
+/// Faces of a LoD3 solid that are left to elements.
+std::vector<bool> hidden_faces(const model::Region& region, const model::Detail& detail, bool bake) {
+  std::vector<bool> hidden(detail.solid.faces.size(), false);
+  for (const model::Placement& p : detail.placements) {
+    if (p.opening == model::kNoOpening) continue;
+    const model::Opening& o = detail.openings[p.opening];
+    if (o.kind == model::OpeningKind::passage) continue;
+    if (!has_shape(*region.elements.at(p.element).element)) continue;  // nothing would close the wall
+    hidden[o.polygon] = true;
+    for (std::uint32_t i = 0; i < o.reveal_count && !bake; ++i) hidden[o.first_reveal + i] = true;
+  }
+  return hidden;
+}
+
+/// The best solid of the part at or below `lod`, or nullptr.
+std::pair<const model::Solid*, const model::SolidTriangles*> solid_of(const model::BuildingPart& part, int lod) {
+  if (lod >= 3 && part.lod >= 3 && !part.lod3.solid.empty()) return {&part.lod3.solid, &part.lod3.triangles};
+  if (lod >= 2 && part.lod >= 2 && !part.lod2.empty()) return {&part.lod2, &part.lod2_triangles};
+  if (lod >= 1 && part.lod >= 1 && !part.lod1.empty()) return {&part.lod1, &part.lod1_triangles};
+  return {nullptr, nullptr};
+}
+
+/// A footprint as a mesh: one horizontal face on the ground in the roof's looks. No solid, only what LoD0 shows.
+struct Footprint {
+  model::Solid surface;
+  model::SolidTriangles triangles;
+};
+
+std::optional<Footprint> footprint_of(const model::BuildingPart& part, const model::Region& region) {
+  if (part.lod < 0 || part.plan.outer.size() < 3) return std::nullopt;
+  const double z = part.attributes.ground_height.value;
+  std::vector<std::vector<model::Point3>> loops;
+  const auto add = [&](const model::Ring& ring) {
+    auto& loop = loops.emplace_back();
+    for (const model::Point2& p : ring.points) loop.push_back({p.x, p.y, z});
+  };
+  add(part.plan.outer);
+  for (const model::Ring& hole : part.plan.holes) add(hole);
+  model::Face looks;
+  looks.kind = model::SurfaceKind::roof;
+  looks.colour = part.attributes.roof_colour.value;
+  for (std::size_t m = 0; m < region.materials.size(); ++m)
+    if (region.materials[m].name == part.attributes.roof_material.value) looks.material = static_cast<std::uint8_t>(m);
+  geometry::SolidBuilder builder;
+  builder.add_face(loops, looks);
+  Footprint out{builder.take(), {}};
+  auto triangles = geometry::triangulate(out.surface);
+  if (out.surface.empty() || !triangles) return std::nullopt;
+  out.triangles = std::move(*triangles);
+  return out;
+}
+
+std::array<std::int8_t, 3> face_normal(const model::Solid& solid, const model::Face& face,
+                                       const model::Point3* positions) {
+  const model::Solid::Loop& outer = solid.loops[face.first_loop];
+  const std::span<const std::uint32_t> indices = solid.indices_of(outer);
+  // Relative to a corner of the face: products of coordinates far from the origin would cancel badly.
+  const model::Point3 origin = positions[indices[0]];
+  double x = 0, y = 0, z = 0;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const model::Point3& p = positions[indices[i]];
+    const model::Point3& q = positions[indices[i + 1 == indices.size() ? 0 : i + 1]];
+    const double px = p.x - origin.x, py = p.y - origin.y, pz = p.z - origin.z;
+    const double qx = q.x - origin.x, qy = q.y - origin.y, qz = q.z - origin.z;
+    x += py * qz - pz * qy;
+    y += pz * qx - px * qz;
+    z += px * qy - py * qx;
+  }
+  const double length = std::sqrt(x * x + y * y + z * z);
+  if (!(length > 0)) return {0, 0, 127};
+  const auto quantise = [&](double v) { return static_cast<std::int8_t>(std::nearbyint(v / length * 127)); };
+  return {quantise(x), quantise(y), quantise(z)};
+}
+
+/// The primitives of a mesh while faces come in: one for each material and colour, another when one is full.
+class Primitives {
+ public:
+  /// The one for a face with `corners` more vertices at most.
+  MeshPrimitive& with_room(const model::PartMaterial& look, std::size_t corners) {
+    Bucket& bucket = buckets_[{look.material, look.colour.r, look.colour.g, look.colour.b}];
+    if (bucket.pieces.empty() || bucket.pieces.back().vertices.size() + corners > MeshPrimitive::kMostVertices) {
+      MeshPrimitive& fresh = bucket.pieces.emplace_back();
+      fresh.material = look.material;
+      fresh.colour = look.colour;
+    }
+    return bucket.pieces.back();
+  }
+
+  /// Colours of few vertices share the primitives of their material.
+  std::vector<MeshPrimitive> take() {
+    std::vector<MeshPrimitive> out, mixed;
+    std::optional<std::uint8_t> material;
+    const auto end_material = [&] {
+      std::move(mixed.begin(), mixed.end(), std::back_inserter(out));
+      mixed.clear();
+    };
+    for (auto& [look, bucket] : buckets_) {
+      if (material != look[0]) end_material();
+      material = look[0];
+      std::size_t vertices = 0;
+      for (const MeshPrimitive& piece : bucket.pieces) vertices += piece.vertices.size();
+      for (MeshPrimitive& piece : bucket.pieces)
+        if (vertices >= MeshPrimitive::kOwnColour)
+          out.push_back(std::move(piece));
+        else
+          mix(std::move(piece), mixed);
+    }
+    end_material();
+    return out;
+  }
+
+ private:
+  struct Bucket {
+    std::deque<MeshPrimitive> pieces;  // a deque keeps its elements in place
+  };
+
+  static void mix(MeshPrimitive&& piece, std::vector<MeshPrimitive>& mixed) {
+    if (mixed.empty()) return mixed.push_back(std::move(piece));
+    MeshPrimitive& to = mixed.back();
+    if (to.vertices.size() + piece.vertices.size() > MeshPrimitive::kMostVertices)
+      return mixed.push_back(std::move(piece));
+    if (to.colour) to.colours.assign(to.vertices.size(), *to.colour);
+    to.colour.reset();
+    to.colours.insert(to.colours.end(), piece.vertices.size(), *piece.colour);
+    const auto first = static_cast<std::uint16_t>(to.vertices.size());
+    to.vertices.insert(to.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+    for (const std::uint16_t i : piece.indices) to.indices.push_back(static_cast<std::uint16_t>(first + i));
+  }
+
+  std::map<std::array<std::uint8_t, 4>, Bucket> buckets_;  ///< by material and colour
+};
+
+/// Finds equal vertices of one part: open addressing, cleared by a stamp.
+class Welder {
+ public:
+  void start(std::size_t corners) {
+    std::size_t size = 64;
+    while (size < corners * 2) size *= 2;
+    if (size > slots_.size()) slots_.assign(size, {});
+    mask_ = slots_.size() - 1;
+    ++stamp_;
+  }
+  std::uint16_t index(MeshPrimitive& primitive, const MeshVertex& vertex) {
+    std::uint64_t h = vertex.position * 0x9E3779B97F4A7C15u;
+    h ^= (static_cast<std::uint64_t>(static_cast<std::uint8_t>(vertex.normal[0])) << 16 |
+          static_cast<std::uint64_t>(static_cast<std::uint8_t>(vertex.normal[1])) << 8 |
+          static_cast<std::uint8_t>(vertex.normal[2])) *
+         0xC2B2AE3D27D4EB4Fu;
+    h ^= h >> 29;
+    for (std::size_t i = h & mask_;; i = (i + 1) & mask_) {
+      Slot& slot = slots_[i];
+      if (slot.stamp != stamp_) {
+        slot = {stamp_, static_cast<std::uint16_t>(primitive.vertices.size()), &primitive};
+        primitive.vertices.push_back(vertex);
+        return slot.index;
+      }
+      if (slot.primitive == &primitive && primitive.vertices[slot.index] == vertex) return slot.index;
+    }
+  }
+
+ private:
+  struct Slot {
+    std::uint32_t stamp = 0;
+    std::uint16_t index = 0;
+    const MeshPrimitive* primitive = nullptr;
+  };
+  std::vector<Slot> slots_;
+  std::size_t mask_ = 0;
+  std::uint32_t stamp_ = 0;
+};
+
+/// Makes positions that are equal within a solid one index, so that welding by index is welding by position.
+void unify_equal_points(const std::vector<model::Point3>& points, std::uint32_t first, std::uint32_t count,
+                        std::vector<std::uint32_t>& representative, std::vector<std::uint32_t>& order) {
+  order.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) order[i] = first + i;
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return points[a] < points[b] || (points[a] == points[b] && a < b);
+  });
+  for (std::uint32_t i = 0; i < count; ++i)
+    representative[order[i]] =
+        i > 0 && points[order[i]] == points[order[i - 1]] ? representative[order[i - 1]] : order[i];
+}
+
+/// Puts every placed element's triangles into the mesh.
+void bake_elements(const model::Region& region, const Frame& frame, Mesh& mesh, Primitives& primitives) {
+  for (const InstanceGroup& group : element_instances(region, frame)) {
+    const model::ColouredElement& element = region.elements[group.element];
+    const ElementGeometry geometry = element_geometry(*element.element, false);
+    for (const ElementInstance& at : group.instances) {
+      const model::Point2 out{at.along.y, -at.along.x};
+      const auto turn = [&](double x, double y, double z) {
+        return model::Point3{at.along.x * x + out.x * z, at.along.y * x + out.y * z, y};
+      };
+      for (const ElementGeometry::PartTriangles& part : geometry.parts) {
+        const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part.part)];
+        MeshPrimitive& primitive = primitives.with_room(look, part.vertices.size());
+        const std::size_t first = primitive.vertices.size();
+        for (const ElementVertex& v : part.vertices) {
+          const model::Point3 d = turn(v.position.x, v.position.y, v.position.z);
+          const model::Point3 n = turn(v.exact_normal.x, v.exact_normal.y, v.exact_normal.z);
+          MeshVertex vertex;
+          vertex.position = static_cast<std::uint32_t>(mesh.positions.size());
+          mesh.positions.push_back({at.origin.x + d.x, at.origin.y + d.y, at.origin.z + d.z});
+          vertex.feature = at.feature;
+          const auto quantise = [](double c) { return static_cast<std::int8_t>(std::nearbyint(c * 127)); };
+          vertex.normal = {quantise(n.x), quantise(n.y), quantise(n.z)};
+          primitive.vertices.push_back(vertex);
+        }
+        for (const std::uint32_t i : part.indices) primitive.indices.push_back(static_cast<std::uint16_t>(first + i));
+        mesh.triangles += part.indices.size() / 3;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake) {
+  std::vector<SolidRef> solids;
+  std::deque<Footprint> footprints;  // a deque keeps its elements in place
+  std::vector<model::Point3> source;
+  std::uint32_t feature = 0;
+  for (const model::Building& building : region.buildings) {
+    if (!building.owned) continue;
+    for (const model::BuildingPart& part : building.parts) {
+      auto [solid, triangles] = solid_of(part, lod);
+      if (lod == 0) {
+        if (auto footprint = footprint_of(part, region)) {
+          solid = &footprints.emplace_back(std::move(*footprint)).surface;
+          triangles = &footprints.back().triangles;
+        }
+      }
+      if (solid) {
+        const bool detailed = solid == &part.lod3.solid;
+        solids.push_back({solid, triangles, feature, static_cast<std::uint32_t>(source.size()),
+                          detailed ? hidden_faces(region, part.lod3, bake) : std::vector<bool>{}});
+        source.insert(source.end(), solid->vertices.begin(), solid->vertices.end());
+        if (detailed) {
+          const auto add_body = [&](const auto& body) {
+            solids.push_back({&body.solid, &body.triangles, feature, static_cast<std::uint32_t>(source.size()), {}});
+            source.insert(source.end(), body.solid.vertices.begin(), body.solid.vertices.end());
+          };
+          for (const model::WallInstallation& body : part.lod3.installations) add_body(body);
+          for (const model::RoofInstallation& body : part.lod3.roof_installations) add_body(body);
+        }
+      }
+      ++feature;
+    }
+  }
+
+  Mesh mesh;
+  mesh.positions.resize(source.size());
+  if (frame.to_enu)
+    frame.to_enu(source, mesh.positions);
+  else
+    mesh.positions = source;
+
+  Primitives primitives;
+  std::vector<std::uint32_t> representative(source.size()), order;
+  Welder welder;
+  for (const SolidRef& ref : solids) {
+    const model::Solid& solid = *ref.solid;
+    assert(ref.triangles->first.size() == solid.faces.size() + 1);
+    const auto count = static_cast<std::uint32_t>(solid.vertices.size());
+    unify_equal_points(source, ref.first_position, count, representative, order);
+    welder.start(ref.triangles->triangles.size() * 3);
+    for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+      if (!ref.hidden.empty() && ref.hidden[f]) continue;
+      const model::Face& face = solid.faces[f];
+      const std::uint32_t begin = ref.triangles->first[f], end = ref.triangles->first[f + 1];
+      if (begin == end) continue;
+      MeshPrimitive* primitive = nullptr;
+      MeshVertex vertex;
+      vertex.feature = ref.feature;
+      vertex.normal = face_normal(solid, face, mesh.positions.data() + ref.first_position);
+      const model::PartMaterial look{face.material, face.colour};
+      for (std::uint32_t t = begin; t < end; ++t) {
+        if (!primitive || primitive->vertices.size() + 3 > MeshPrimitive::kMostVertices)
+          primitive = &primitives.with_room(look, 3);
+        for (const std::uint32_t corner : ref.triangles->triangles[t]) {
+          vertex.position = representative[ref.first_position + corner];
+          primitive->indices.push_back(welder.index(*primitive, vertex));
+        }
+        ++mesh.triangles;
+      }
+    }
+  }
+
+  if (bake && lod >= 3) bake_elements(region, frame, mesh, primitives);
+
+  mesh.primitives = primitives.take();
+  bool first = true;
+  for (const MeshPrimitive& primitive : mesh.primitives) {
+    for (const MeshVertex& v : primitive.vertices) {
+      const model::Point3& p = mesh.positions[v.position];
+      if (first) mesh.min = mesh.max = p;
+      first = false;
+      mesh.min = {std::min(mesh.min.x, p.x), std::min(mesh.min.y, p.y), std::min(mesh.min.z, p.z)};
+      mesh.max = {std::max(mesh.max.x, p.x), std::max(mesh.max.y, p.y), std::max(mesh.max.z, p.z)};
+    }
+  }
+  return mesh;
+}
+
+}  // namespace blockrand::outputs

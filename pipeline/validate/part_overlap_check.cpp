@@ -1,0 +1,129 @@
+#include "pipeline/validate/part_overlap_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "pipeline/geometry/solid_defect.h"
+#include "pipeline/geometry/solid_overlap.h"
+#include "pipeline/validate/solids.h"
+
+namespace blockrand::validate {
+namespace {
+
+using model::Point3;
+
+struct Box {
+  Point3 min, max;
+};
+
+/// What a body stands as at one level of detail; the mesh is made when it is first asked for.
+struct Shape {
+  std::string lod;
+  Box box;
+  const ReadSolid* solid = nullptr;
+  const std::vector<GlbTriangle>* triangles = nullptr;
+  std::optional<ReadMesh> mesh = std::nullopt;
+  bool tried = false;
+
+  const ReadMesh* get() {
+    if (!tried) mesh = solid ? read_mesh(*solid) : read_mesh(*triangles);
+    tried = true;
+    return mesh ? &*mesh : nullptr;
+  }
+};
+
+struct Body {
+  std::string_view id;
+  std::vector<Shape> shapes;
+};
+
+class BoxMaker {
+ public:
+  void add(const Point3& p) {
+    if (empty_) box_ = {p, p};
+    empty_ = false;
+    box_.min = {std::min(box_.min.x, p.x), std::min(box_.min.y, p.y), std::min(box_.min.z, p.z)};
+    box_.max = {std::max(box_.max.x, p.x), std::max(box_.max.y, p.y), std::max(box_.max.z, p.z)};
+  }
+  bool empty() const { return empty_; }
+  const Box& box() const { return box_; }
+
+ private:
+  Box box_;
+  bool empty_ = true;
+};
+
+bool meet(const Box& a, const Box& b, double depth) {
+  return std::min(a.max.x, b.max.x) - std::max(a.min.x, b.min.x) > depth &&
+         std::min(a.max.y, b.max.y) - std::max(a.min.y, b.min.y) > depth &&
+         std::min(a.max.z, b.max.z) - std::max(a.min.z, b.min.z) > depth;
+}
+
+geometry::ClosedMesh view(const ReadMesh& mesh) { return {mesh.vertices, mesh.triangles}; }
+
+std::vector<PartsOverlap> compare(std::map<std::string_view, std::vector<Body>>& buildings, std::uint64_t& pairs) {
+  const geometry::OverlapOptions options;
+  std::vector<PartsOverlap> out;
+  for (auto& [building, bodies] : buildings)
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+        if (bodies[i].id == bodies[j].id) continue;  // one body twice, which is a finding already
+        std::string where;
+        bool compared = false;
+        for (Shape& a : bodies[i].shapes)
+          for (Shape& b : bodies[j].shapes) {
+            if (a.lod != b.lod || !meet(a.box, b.box, options.depth)) continue;
+            const ReadMesh *one = a.get(), *other = b.get();
+            if (!one || !other) continue;
+            compared = true;
+            const geometry::SolidOverlap found = geometry::overlap_of(view(*one), view(*other), options);
+            if (found.overlap)
+              where += fmt::format("{} {:.2f} m³ in {}", where.empty() ? ":" : ",", found.volume, a.lod);
+          }
+        pairs += compared;
+        if (!where.empty())
+          out.push_back({std::string(bodies[i].id), std::string(bodies[j].id),
+                         fmt::format("{} overlaps {}{}", geometry::kPartsOverlapCode, bodies[j].id, where)});
+      }
+  return out;
+}
+
+}  // namespace
+
+std::vector<PartsOverlap> find_overlaps(const Contents& contents, std::uint64_t& pairs) {
+  std::map<std::string_view, std::vector<Body>> buildings;
+  for (const ReadBody& body : contents.bodies) {
+    Body& made = buildings[body.building].emplace_back(Body{body.id, {}});
+    for (const ReadSolid& solid : body.solids) {
+      BoxMaker box;
+      for (const ReadPolygon& polygon : solid.polygons)
+        for (const auto& ring : polygon.rings)
+          for (const Point3& p : ring) box.add(p);
+      if (!box.empty()) made.shapes.push_back({fmt::format("LoD {}", solid.lod), box.box(), &solid});
+    }
+  }
+  return compare(buildings, pairs);
+}
+
+std::vector<PartsOverlap> find_overlaps(const Glb& glb, std::uint64_t& pairs) {
+  std::map<std::string_view, std::vector<Body>> buildings;
+  for (std::size_t i = 0; i < glb.triangles.size(); ++i) {
+    const ReadBody& body = glb.contents.bodies[i];
+    BoxMaker box;
+    for (const GlbTriangle& t : glb.triangles[i])
+      for (const Point3& p : t.corners) box.add(p);
+    const auto lod = body.attributes.find("lod");
+    // A footprint laid on the ground is no solid.
+    if (box.empty() || (lod != body.attributes.end() && lod->second == "0")) continue;
+    Body& made = buildings[body.building].emplace_back(Body{body.id, {}});
+    made.shapes.push_back({"the mesh", box.box(), nullptr, &glb.triangles[i]});
+  }
+  return compare(buildings, pairs);
+}
+
+}  // namespace blockrand::validate

@@ -1,0 +1,261 @@
+// Chimneys and roof windows on roofs that are read back from their solids.
+#include "pipeline/facades/roof_installations.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/masses/envelope.h"
+#include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/geometry/triangulate.h"
+#include "tests/unit/geometry/shapes.h"
+
+namespace blockrand::facades {
+namespace {
+
+using model::Point2;
+using model::RoofEdge;
+using model::RoofShape;
+using testing_shapes::polygon;
+
+const attributes::Defaults& defaults() {
+  static const attributes::Defaults d = attributes::read_defaults(std::string(BLOCKRAND_SOURCE_DIR) + "/configs");
+  return d;
+}
+
+struct House {
+  model::Polygon plan = polygon({{0, 0}, {18, 0}, {18, 12}, {0, 12}});
+  std::vector<RoofEdge> edges{RoofEdge::street, RoofEdge::party_wall, RoofEdge::courtyard, RoofEdge::party_wall};
+  RoofShape shape = RoofShape::gabled;
+  double eaves = 18, height = 5;
+  std::string use = "apartments", style = "gruenderzeit", era = "1840_1918";
+  double roof_storeys = 0;
+};
+
+roofs::Roof roof_of(const House& h) {
+  roofs::RoofRequest request;
+  request.shape = h.shape;
+  request.measures = {h.eaves, h.height};
+  request.edges = h.edges;
+  if (h.shape == RoofShape::flat) return roofs::flat_roof(h.plan, h.eaves);
+  return roofs::build_roof(h.plan, request)->roof;
+}
+
+model::Region region_of(const House& h, std::int64_t id = 1) {
+  model::Region region;
+  model::Building b;
+  b.osm = {model::OsmType::way, id};
+  b.situation.width = 18;
+  b.attributes.use.value = h.use;
+  b.attributes.style.value = h.style;
+  b.attributes.era.value = h.era;
+  model::BuildingPart part;
+  part.id = b.id();
+  part.osm = b.osm;
+  part.attributes = b.attributes;
+  part.attributes.roof_storeys.value = h.roof_storeys;
+  part.plan = part.roof_plan = h.plan;
+  part.roof_edges = h.edges;
+  part.built_roof = h.shape;
+  masses::EnvelopeMaterials looks;
+  looks.wall.kind = model::SurfaceKind::wall;
+  looks.roof.kind = model::SurfaceKind::roof;
+  looks.under.kind = model::SurfaceKind::ground;
+  part.lod2 = masses::envelope(h.plan, 0, roof_of(h), looks);
+  part.lod2_triangles = *geometry::triangulate(part.lod2);
+  part.lod3.solid = part.lod2;
+  part.lod3.triangles = part.lod2_triangles;
+  part.lod = 3;
+  b.parts.push_back(std::move(part));
+  region.buildings.push_back(std::move(b));
+  return region;
+}
+
+int count(const model::Region& region, model::RoofElementKind kind) {
+  const auto& all = region.buildings[0].parts[0].lod3.roof_installations;
+  return static_cast<int>(std::count_if(all.begin(), all.end(), [&](const auto& i) { return i.kind == kind; }));
+}
+
+model::Region fitted(const House& h, std::int64_t id = 1) {
+  model::Region region = region_of(h, id);
+  add_roof_installations(region, defaults(), {});
+  return region;
+}
+
+TEST(SolidRoof, IsTheRoofThatTheSolidCloses) {
+  House court;
+  court.plan.holes = {testing_shapes::ring({{6, 4}, {6, 8}, {12, 8}, {12, 4}})};
+  court.edges.resize(8, RoofEdge::open);
+  for (const RoofShape shape : {RoofShape::flat, RoofShape::gabled, RoofShape::hipped, RoofShape::mansard,
+                                RoofShape::skillion, RoofShape::half_hipped, RoofShape::saltbox})
+    for (const bool holes : {false, true}) {
+      House h = holes ? court : House{};
+      h.shape = shape;
+      if (holes && shape != RoofShape::flat && shape != RoofShape::hipped) continue;
+      const roofs::Roof roof = roof_of(h);
+      const auto read = solid_roof(region_of(h).buildings[0].parts[0].lod2);
+      ASSERT_TRUE(read) << model::name(shape);
+      EXPECT_EQ(read->plan.outer.points, h.plan.outer.points);
+      ASSERT_EQ(read->plan.holes.size(), h.plan.holes.size());
+      ASSERT_EQ(read->roof.surfaces.size(), roof.surfaces.size());
+      for (std::size_t s = 0; s < roof.surfaces.size(); ++s) {
+        EXPECT_EQ(read->roof.surfaces[s].upright, roof.surfaces[s].upright);
+        EXPECT_EQ(read->roof.surfaces[s].loops.size(), roof.surfaces[s].loops.size());
+        for (std::size_t l = 0; l < roof.surfaces[s].loops.size(); ++l)
+          EXPECT_EQ(read->roof.surfaces[s].loops[l].size(), roof.surfaces[s].loops[l].size());
+      }
+      EXPECT_EQ(read->roof.wall_tops.size(), roof.wall_tops.size());
+      for (std::size_t e = 0; e < roof.wall_tops.size(); ++e) {
+        ASSERT_EQ(read->roof.wall_tops[e].size(), roof.wall_tops[e].size()) << model::name(shape) << e;
+        for (std::size_t i = 0; i < roof.wall_tops[e].size(); ++i)
+          EXPECT_EQ(read->roof.wall_tops[e][i], model::snap(roof.wall_tops[e][i]));
+      }
+    }
+  EXPECT_FALSE(solid_roof(model::Solid{}));
+}
+
+TEST(RoofInstallations, AnOldHouseHasAStackForEverySixMetresOfFrontage) {
+  for (const RoofShape shape : {RoofShape::gabled, RoofShape::mansard, RoofShape::flat}) {
+    House h;
+    h.shape = shape;
+    const model::Region region = fitted(h);
+    EXPECT_EQ(count(region, model::RoofElementKind::chimney), 3) << model::name(shape);
+    double ridge = 0;
+    for (const auto& v : region.buildings[0].parts[0].lod2.vertices) ridge = std::max(ridge, v.z);
+    for (const auto& i : region.buildings[0].parts[0].lod3.roof_installations) {
+      if (i.kind != model::RoofElementKind::chimney) continue;
+      EXPECT_TRUE(geometry::check_solid(i.solid, i.triangles).valid());
+      double top = 0, low = 1e9;
+      for (const auto& v : i.solid.vertices) {
+        top = std::max(top, v.z);
+        low = std::min(low, v.z);
+        EXPECT_TRUE(geometry::contains(h.plan, v.xy()));
+      }
+      EXPECT_GE(top, ridge + 0.49) << "above the ridge";
+      EXPECT_LE(top, ridge + 1.01);
+      EXPECT_LT(low, ridge) << "it stands on the roof";
+    }
+  }
+}
+
+TEST(RoofInstallations, CountsFollowEraRoofAndUse) {
+  model::Attributes a;
+  a.style.value = "modern";
+  a.era.value = "1919_1945";
+  const auto row = model::BuildingPosition::mid_row, free = model::BuildingPosition::free_standing;
+  EXPECT_EQ(wanted_chimneys(a, row, false, 24, 0), 2);
+  a.era.value = "post1945";
+  EXPECT_EQ(wanted_chimneys(a, row, true, 60, 0), 0) << "shafts, no stacks";
+  EXPECT_EQ(wanted_chimneys(a, row, false, 54, 0), 3);
+  EXPECT_EQ(wanted_chimneys(a, free, false, 12, 0.84), 1);
+  EXPECT_EQ(wanted_chimneys(a, free, false, 12, 0.86), 0);
+  a.era.value = "pre1840";
+  EXPECT_EQ(wanted_chimneys(a, free, false, 8, 0.9), 1);
+  a.style.value = "tenement";
+  EXPECT_EQ(wanted_chimneys(a, row, true, 24, 0.9), 4);
+
+  House church;
+  church.use = "church";
+  church.style = "other";
+  EXPECT_TRUE(fitted(church).buildings[0].parts[0].lod3.roof_installations.empty());
+  House shed;
+  shed.plan = polygon({{0, 0}, {5, 0}, {5, 5}, {0, 5}});
+  shed.height = 2;
+  EXPECT_TRUE(fitted(shed).buildings[0].parts[0].lod3.roof_installations.empty());
+  model::Region below = region_of({});
+  below.buildings[0].parts[0].lod = 2;
+  add_roof_installations(below, defaults(), {});
+  EXPECT_TRUE(below.buildings[0].parts[0].lod3.roof_installations.empty());
+}
+
+TEST(RoofInstallations, AtticStoreysHaveRoofWindowsOnBothSidesAndConvertedLoftsToTheYard) {
+  House attic;
+  attic.roof_storeys = 1;
+  attic.height = 7;
+  EXPECT_GE(count(fitted(attic), model::RoofElementKind::roof_window), 4);
+  int converted = 0;
+  for (std::int64_t id = 1; id <= 300; ++id) {
+    House loft;
+    loft.height = 7;
+    const model::Region region = fitted(loft, id);
+    const int windows = count(region, model::RoofElementKind::roof_window);
+    converted += windows > 0;
+    for (const auto& i : region.buildings[0].parts[0].lod3.roof_installations) {
+      if (i.kind != model::RoofElementKind::roof_window) continue;
+      for (const auto& v : i.solid.vertices) EXPECT_GT(v.y, 6) << "behind the ridge";
+    }
+  }
+  EXPECT_NEAR(converted, 100, 30);
+}
+
+TEST(RoofInstallations, DependsOnNothingButTheBuilding) {
+  House h;
+  const auto alone = fitted(h, 7).buildings[0].parts[0].lod3.roof_installations;
+  model::Region two = region_of(h, 5);
+  two.buildings.push_back(region_of(h, 7).buildings[0]);
+  add_roof_installations(two, defaults(), {});
+  const auto& beside = two.buildings[1].parts[0].lod3.roof_installations;
+  ASSERT_EQ(alone.size(), beside.size());
+  for (std::size_t i = 0; i < alone.size(); ++i) EXPECT_EQ(alone[i].solid.vertices, beside[i].solid.vertices);
+  const auto& first = two.buildings[0].parts[0].lod3.roof_installations;
+  EXPECT_TRUE(first.size() != beside.size() || first[0].solid.vertices != beside[0].solid.vertices)
+      << "houses have their own measures";
+}
+
+TEST(RoofInstallations, NothingStandsWhereAnotherBodyOfTheHouseDoes) {
+  model::Region region = region_of({});
+  model::BuildingPart tower = region.buildings[0].parts[0];
+  tower.id = "w1.tower";
+  tower.plan = polygon({{-1, -1}, {17, -1}, {17, 11}, {-1, 11}});
+  region.buildings[0].parts.push_back(tower);
+  add_roof_installations(region, defaults(), {});
+  for (const auto& i : region.buildings[0].parts[0].lod3.roof_installations)
+    for (const auto& v : i.solid.vertices) EXPECT_FALSE(geometry::contains(tower.plan, v.xy()));
+  EXPECT_TRUE(region.buildings[0].parts[1].lod3.roof_installations.empty()) << "the largest body has them";
+}
+
+model::BuildingPart body(const model::Polygon& plan, double bottom, double top, const std::string& id) {
+  House h;
+  h.plan = plan;
+  h.shape = RoofShape::flat;
+  model::BuildingPart part = region_of(h).buildings[0].parts[0];
+  part.id = id;
+  masses::EnvelopeMaterials looks;
+  looks.wall.kind = model::SurfaceKind::wall;
+  looks.roof.kind = model::SurfaceKind::roof;
+  looks.under.kind = model::SurfaceKind::ground;
+  part.lod2 = part.lod3.solid = masses::envelope(plan, bottom, roofs::flat_roof(plan, top), looks);
+  part.lod2_triangles = part.lod3.triangles = *geometry::triangulate(part.lod2);
+  return part;
+}
+
+TEST(RoofInstallations, TowersOverAPodiumHaveTheChimneys) {
+  const model::Polygon plan = polygon({{0, 0}, {18, 0}, {18, 12}, {0, 12}}),
+                       wide = polygon({{-2, -2}, {20, -2}, {20, 14}, {-2, 14}});
+  for (const bool wider : {false, true}) {
+    model::Region region = region_of({});
+    region.buildings[0].parts = {body(wider ? wide : plan, 0, 6, "w1.podium"), body(plan, 6, 24, "w1.tower")};
+    add_roof_installations(region, defaults(), {});
+    EXPECT_TRUE(region.buildings[0].parts[0].lod3.roof_installations.empty()) << "the podium is covered";
+    EXPECT_EQ(region.buildings[0].parts[1].lod3.roof_installations.size(), 3u) << "what is below is not in the way";
+  }
+  // A lantern does not cover the house under it.
+  model::Region region = region_of({});
+  region.buildings[0].parts = {body(plan, 0, 24, "w1.house"),
+                               body(polygon({{8, 4}, {14, 4}, {14, 10}, {8, 10}}), 24, 27, "w1.lantern")};
+  add_roof_installations(region, defaults(), {});
+  EXPECT_FALSE(region.buildings[0].parts[0].lod3.roof_installations.empty());
+  EXPECT_TRUE(region.buildings[0].parts[1].lod3.roof_installations.empty());
+}
+
+TEST(RoofInstallations, WithoutAFrontageThePlanTellsIt) {
+  model::Region region = region_of({});
+  region.buildings[0].situation.width = 0;
+  add_roof_installations(region, defaults(), {});
+  EXPECT_EQ(count(region, model::RoofElementKind::chimney), 2) << "sqrt(18 m * 12 m) / 6 m";
+}
+
+}  // namespace
+}  // namespace blockrand::facades
