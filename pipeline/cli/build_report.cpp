@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pipeline/base/text.h"
+#include "pipeline/outputs/output.h"
 #include "pipeline/model/issue_codes.h"
 
 namespace blockrand::cli {
@@ -92,28 +93,22 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
                       base::with_time_unit(s.seconds), with_thousands(static_cast<std::uint64_t>(rate(s))),
                       with_byte_unit(s.peak_rss_bytes), with_byte_unit(s.store_bytes), s.tiles_in_flight);
   text += fmt::format("{} in {} files:\n", with_byte_unit(s.bytes), with_thousands(s.files));
-  std::vector<std::pair<std::string, const char*>> places;
-  const auto place = [&](const char* name, const char* what) {
+  std::vector<std::pair<std::string, std::string_view>> places;
+  const auto place = [&](std::string_view name, std::string_view what) {
     places.emplace_back((std::filesystem::path(options.output) / name).string(), what);
   };
-  std::string text_of_explain;
-  if (options.gltf)
-    place("tileset.json", "3D Tiles, for CesiumJS, QGIS 3.34+, Unreal, ...; single tiles are in tiles/");
-  if (options.single_glb) place("model.glb", "the whole build in one file, for Blender and other editors");
-  if (options.citygml) place("citygml/", "CityGML 2.0, one file per tile");
-  if (options.cityjson) place("cityjson/", "CityJSON 2.0, one text sequence per tile");
-  if (options.single_cityjson) place("model.city.json", "the whole build as one CityJSON object");
-  if (options.geopackage) place("buildings.gpkg", "footprints with every value and its source, coloured, for QGIS");
-  if (options.report) place("report.html", "what was built, where values come from, a map and pictures");
-  if (options.report && s.models > 0) place("plan.png", "seen from above, walls in the colours of what they face");
-  if (options.explain)
-    text_of_explain = fmt::format("  why a building looks as it does: blockrand explain {} w123\n", options.output);
-  place("report.json", "every object that is not modelled as asked, with its reason");
+  for (const outputs::OutputFormat& format : outputs::all_outputs()) {
+    if (!format.asked(options.outputs)) continue;
+    for (const outputs::OutputPlace& p : format.places)
+      if (!p.written || p.written(options.outputs, s.models)) place(p.path, p.about);
+  }
   place("build.json", "inputs, coordinate system, counts, hashes");
   std::size_t width = 0;
   for (const auto& [path, what] : places) width = std::max(width, path.size());
   for (const auto& [path, what] : places) text += fmt::format("  {:<{}}  {}\n", path, width, what);
-  return text + text_of_explain;
+  if (options.outputs.explain)
+    text += fmt::format("  why a building looks as it does: blockrand explain {} w123\n", options.output);
+  return text;
 }
 
 std::string build_report_json(const run::BuildOptions& options, const run::BuildSummary& s) {

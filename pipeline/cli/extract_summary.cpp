@@ -11,6 +11,7 @@
 #include "pipeline/base/text.h"
 #include "pipeline/footprints/shard.h"
 #include "pipeline/model/osm_keys.h"
+#include "pipeline/outputs/output.h"
 
 namespace blockrand::cli {
 namespace {
@@ -148,7 +149,7 @@ ExtractSummary summarise(const model::Extract& extract) {
   std::unordered_map<base::StringId, std::size_t> key_index;
   for (const std::string_view key : kKeys) {
     if (const base::StringId id = extract.strings.find(key); id != 0) key_index.emplace(id, s.keys.size());
-    s.keys.push_back({key});
+    s.keys.push_back({std::string(key)});
   }
   const base::StringId roof_shape = extract.strings.find(osm_key::kRoofShape);
   IdCounts building_values, part_values, roof_shapes;
@@ -189,15 +190,13 @@ BuildEstimate estimate(const ExtractSummary& summary, const run::BuildOptions& o
   // Measured on Monaco, Helsinki, Liechtenstein and Berlin; right within a factor of two on other machines and towns.
   constexpr double kObjectsPerSecondAndCore[3] = {20'000, 8'000, 2'500};
   constexpr double kFixedSeconds = 0.2, kFixedBytes = 5e6, kBytesPerJob = 10e6;
-  constexpr double kGmlBytes[3] = {5'700, 9'100, 17'000}, kGlbBytes[3] = {10, 2'300, 2'900};  // per object
-  const auto lod = static_cast<std::size_t>(std::clamp(options.lod, 0, 2));
+  const auto lod = static_cast<std::size_t>(std::clamp(options.lod, 0, 2));  // facades were not measured yet
   const double objects = static_cast<double>(summary.to_build);
   const int jobs = base::worker_count(options.jobs);
   BuildEstimate e;
   e.seconds = kFixedSeconds + read_seconds + objects / (kObjectsPerSecondAndCore[lod] * jobs);
   e.memory_bytes = static_cast<std::uint64_t>(static_cast<double>(store_bytes) + kFixedBytes + kBytesPerJob * jobs);
-  e.disk_bytes = static_cast<std::uint64_t>(
-      objects * ((options.citygml ? kGmlBytes[lod] : 0) + (options.gltf ? kGlbBytes[lod] : 0)));
+  e.disk_bytes = static_cast<std::uint64_t>(objects * outputs::bytes_per_building(options.outputs, options.lod));
   return e;
 }
 

@@ -11,6 +11,7 @@
 #include "pipeline/cli/command.h"
 #include "pipeline/cli/exit_codes.h"
 #include "pipeline/model/issue_codes.h"
+#include "pipeline/outputs/output.h"
 #include "pipeline/settings/completion.h"
 #include "pipeline/settings/config_file.h"
 #include "pipeline/settings/manual.h"
@@ -32,21 +33,18 @@ std::string codes_text() {
   return text;
 }
 
-/// What stands in a build's folder, and what the program reads by itself: for the manual.
-const std::vector<std::pair<std::string, std::string>> kOutputs = {
-    {"tileset.json, tiles/", "3D Tiles 1.1: one GLB per tile, with every attribute and its source as feature metadata"},
-    {"citygml/", "CityGML 2.0, LoD0 to LoD2 with boundary surfaces, one file per tile"},
-    {"cityjson/", "the same content as CityJSON 2.0 text sequences"},
-    {"buildings.gpkg", "GeoPackage for QGIS: footprints with every attribute, its source and its confidence"},
-    {"report.html", "what was built, where values come from, what fell back and why, with a map and pictures"},
-    {"plan.png", "the neighbourhood from above: blocks, courtyards, walls in the colours of what they face"},
-    {"report.json", "every object that was not modelled, and why; every fallback"},
-    {"explain/", "what 'blockrand explain' reads"},
-    {"model.glb, model.city.json", "the whole build in one file, with --single-glb and --single-cityjson"},
-    {"build.json", "inputs and hashes, configuration, coordinate system, counts, hashes of all files: the same bytes "
-                   "each time"},
-    {"run.json", "time, memory and threads of this run"},
-};
+/// What stands in a build's folder, for the manual.
+std::vector<std::pair<std::string, std::string>> output_rows() {
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const outputs::OutputFormat& format : outputs::all_outputs()) rows.insert(rows.end(), format.manual.begin(), format.manual.end());
+  rows.emplace_back("model.glb, model.city.json", "the whole build in one file, with --single-glb and --single-cityjson");
+  rows.emplace_back("build.json",
+                    "inputs and hashes, configuration, coordinate system, counts, hashes of all files: the same bytes each time");
+  rows.emplace_back("run.json", "time, memory and threads of this run");
+  return rows;
+}
+
+/// What the program reads by itself, for the manual.
 const std::vector<std::pair<std::string, std::string>> kFiles = {
     {"../share/blockrand/configs", "from the program's folder: defaults and materials, where --configs names no others; "
                                    "in a build tree the source tree's configs"},
@@ -64,7 +62,7 @@ std::string manual_text() {
            "Each building of the extract ends in exactly one state: modelled, represented by its parts or by the object it "
            "duplicates, or reported with a coded reason; 'blockrand help codes' lists the reasons. The same input gives "
            "the same bytes, whatever the number of threads.",
-       .outputs = kOutputs,
+       .outputs = output_rows(),
        .files = kFiles},
       command_texts());
 }

@@ -1,5 +1,7 @@
 #include "pipeline/context/height_reference.h"
 
+#include "importers/elevation/terrain.h"
+
 #include <fmt/format.h>
 
 #include <cctype>

@@ -5,8 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "importers/elevation/terrain.h"
 #include "pipeline/georef/heights.h"
+
+namespace blockrand::importers::elevation {
+struct TerrainDescription;
+}
 
 namespace blockrand::context {
 

@@ -1,22 +1,19 @@
 // The main job: one extract in, a published build out.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
 
 #include "pipeline/base/progress.h"
 #include "pipeline/masses/roofscape.h"
+#include "pipeline/outputs/object_counts.h"
 #include "pipeline/run/options.h"
 
 namespace blockrand::run {
 
 /// What a build ended with.
-struct BuildSummary {
-  std::uint64_t buildings_in = 0, parts_in = 0;
-  std::uint64_t models = 0, represented = 0, duplicates = 0, reported = 0;
-  std::array<std::uint64_t, 4> models_by_lod{};   ///< objects whose best solid is LoD 0, 1, 2, 3
+struct BuildSummary : outputs::ObjectCounts {
   std::map<std::string, std::uint64_t> issues;    ///< rows by code
   masses::Roofscape roofscape;                  ///< how roofs stand in their rows
   std::uint64_t files = 0, bytes = 0;             ///< written

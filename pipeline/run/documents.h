@@ -1,4 +1,4 @@
-// build.json, run.json and report.json: what a build tells about itself.
+// build.json and run.json: what a build tells about itself.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "importers/elevation/terrain.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/base/publish.h"
 #include "pipeline/georef/crs.h"
@@ -58,7 +59,5 @@ struct RunRecord {
 
 std::string build_json(const BuildOptions& options, const BuildRecord& record);
 std::string run_json(const RunRecord& run, const BuildSummary& summary);
-/// Every object that is not modelled itself, every fallback and every notice, sorted by object; and what codes mean.
-std::string report_json(const model::Extract& extract, const std::vector<model::ReportRow>& rows);
 
 }  // namespace blockrand::run

@@ -7,7 +7,6 @@
 namespace blockrand::run {
 namespace {
 
-using base::choice;
 using base::custom;
 using base::flag;
 using base::integer;
@@ -50,27 +49,6 @@ std::optional<RecordValue> record_bbox(const B& b) {
   return b.bbox ? RecordValue(std::vector<double>(b.bbox->begin(), b.bbox->end())) : RecordValue();
 }
 
-/// The formats in the order of all listings.
-const base::Choices<bool B::*> kFormats = {
-    {"gltf", &B::gltf}, {"citygml", &B::citygml}, {"cityjson", &B::cityjson}, {"gpkg", &B::geopackage}};
-
-void set_formats(B& b, const std::string& text) {
-  base::Choices<bool B::*> names = kFormats;
-  for (const char* other : {"tileset", "3dtiles"}) names.emplace_back(other, &B::gltf);
-  names.emplace_back("geopackage", &B::geopackage);
-  std::vector<bool B::*> wanted;
-  for (const std::string& part : base::split(text, ',')) wanted.push_back(base::choose(part, names));
-  for (const auto& [name, member] : kFormats) b.*member = false;
-  for (const auto member : wanted) b.*member = true;
-}
-
-std::vector<std::string> formats_of(const B& b) {
-  std::vector<std::string> names;
-  for (const auto& [name, member] : kFormats)
-    if (b.*member) names.push_back(name);
-  return names;
-}
-
 void set_crs(B& b, const std::string& text) {
   // Whether the code exists and suits the place is for georef to say; here only what cannot be one.
   std::string_view code = text;
@@ -80,15 +58,9 @@ void set_crs(B& b, const std::string& text) {
   b.crs = "EPSG:" + std::string(code);
 }
 
-const base::Choices<outputs::Instancing> kInstancings = {
-    {"ext", outputs::Instancing::ext}, {"nodes", outputs::Instancing::nodes}, {"baked", outputs::Instancing::baked}};
-
-const base::Choices<outputs::Compression> kCompressions = {{"none", outputs::Compression::none},
-                                                           {"meshopt", outputs::Compression::meshopt}};
-
 // ---- The table. Places in the record: build.json keeps the order of its first versions.
 
-base::OptionTable<B> places_and_formats() {
+base::OptionTable<B> places_and_detail() {
   return {
       text({.name = "INPUT",
             .key = "input",
@@ -111,43 +83,15 @@ base::OptionTable<B> places_and_formats() {
             .optional_for = kCompare | kDistricts | kGrammar,
             .record = OptionRecord::none},
            &B::output),
-      custom<B>(
-          {.name = "formats",
-           .key = "formats",
-           .argument = "LIST",
-           .type = OptionType::list,
-           .help = "what is written, separated by commas: gltf (3D Tiles with GLB; also called tileset, "
-                   "3dtiles), citygml, cityjson, gpkg (GeoPackage; also called geopackage)",
-           .choices = base::words_of(kFormats),
-           .record = OptionRecord::yes,
-           .record_place = 2},
-          set_formats, [](const B& b) { return base::joined(formats_of(b), ","); },
-          [](const B& b) { return RecordValue(formats_of(b)); }),
       integer({.name = "lod",
                .key = "lod",
                .argument = "N",
+               .commands = kBuild | kInfo,
                .minimum = 0,
                .maximum = 3,
                .help = "highest level of detail: 0 footprints, 1 blocks, 2 roofs, 3 facades with windows and doors",
                .record_place = 1},
-              &B::lod),
-      choice({.name = "instancing",
-              .key = "instancing",
-              .argument = "HOW",
-              .help = "how GLBs of level 3 hold windows and ornaments: ext stores each once and places it "
-                      "(EXT_mesh_gpu_instancing), nodes makes a node of each place for programs without that, baked "
-                      "makes triangles of all",
-              .record = OptionRecord::yes,
-              .record_place = 7},
-             kInstancings, &B::instancing),
-      choice({.name = "compress",
-              .key = "compress",
-              .argument = "HOW",
-              .help = "how GLBs are compressed: none, or meshopt (EXT_meshopt_compression), a third of the size, for "
-                      "viewers that can decompress it",
-              .record = OptionRecord::yes,
-              .record_place = 8},
-             kCompressions, &B::compression)};
+              &B::lod)};
 }
 
 base::OptionTable<B> place_and_ground() {
@@ -223,49 +167,6 @@ base::OptionTable<B> place_and_ground() {
              &B::ground_height)};
 }
 
-base::OptionTable<B> what_files_hold() {
-  return {
-      flag({.name = "evidence",
-            .key = "evidence",
-            .help = "GLB, CityGML and CityJSON also say why each attribute has its value (explain/ always does)",
-            .record = OptionRecord::yes,
-            .record_place = 5},
-           &B::evidence),
-      flag({.name = "gzip",
-            .key = "gzip",
-            .help = "compress the CityGML and CityJSON files (.gml.gz, .city.jsonl.gz)",
-            .record = OptionRecord::yes,
-            .record_place = 6},
-           &B::gzip),
-      flag({.name = "single-glb",
-            .key = "single_glb",
-            .help = "also write model.glb: the whole build in one frame",
-            .record = OptionRecord::yes,
-            .record_place = 9},
-           &B::single_glb),
-      flag({.name = "single-cityjson",
-            .key = "single_cityjson",
-            .help = "also write model.city.json: the whole build as one CityJSON object",
-            .record = OptionRecord::yes,
-            .record_place = 10},
-           &B::single_cityjson),
-      flag({.name = "report",
-            .key = "report",
-            .help = "write report.html: what was built, where values come from, a map and pictures",
-            .without = "no report.html, the page with what was built, where values come from, a map and pictures; no "
-                       "plan.png",
-            .record = OptionRecord::yes,
-            .record_place = 3},
-           &B::report),
-      flag({.name = "explain",
-            .key = "explain",
-            .help = "write explain/, from which 'blockrand explain' tells why a building looks as it does",
-            .without = "no explain/: 'blockrand explain' cannot tell why a building of this build looks as it does",
-            .record = OptionRecord::yes,
-            .record_place = 4},
-           &B::explain)};
-}
-
 base::OptionTable<B> how_it_runs() {
   constexpr double most = 9223372036854774784.0;  // the largest double below 2^63: TOML's integers end there
   return {integer({.name = "seed",
@@ -311,7 +212,8 @@ base::OptionTable<B> how_it_runs() {
 }  // namespace
 
 base::OptionTable<BuildOptions> build_options() {
-  return base::concatenated({places_and_formats(), place_and_ground(), what_files_hold(), how_it_runs(),
+  return base::concatenated({places_and_detail(), place_and_ground(), how_it_runs(),
+                             base::of_member(outputs::output_options(), &B::outputs),
                              base::of_member(repair::repair_options(), &B::repair),
                              base::of_member(attributes::generate_options(), &B::generate)});
 }

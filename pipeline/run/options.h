@@ -9,8 +9,7 @@
 #include "pipeline/attributes/options.h"
 #include "pipeline/base/option_table.h"
 #include "pipeline/footprints/repair/options.h"
-#include "pipeline/outputs/gltf/compression.h"
-#include "pipeline/outputs/gltf/instance_writer.h"
+#include "pipeline/outputs/options.h"
 
 namespace blockrand::run {
 
@@ -24,18 +23,6 @@ struct BuildOptions {
   std::string pinned;                         ///< build.json of an earlier build of the extract: its CRS, its coverage
   std::string crs;                            ///< "EPSG:…"; empty: chosen from the extent
   int lod = 2;                                ///< highest level of detail, 0 to 3
-  outputs::Compression compression = outputs::Compression::none;  ///< of vertices, indices and places in GLBs
-  outputs::Instancing instancing = outputs::Instancing::ext;      ///< how GLBs hold what stands in facades
-  bool gltf = true;                                               ///< tileset.json and tiles/
-  bool citygml = true;                                            ///< citygml/
-  bool cityjson = true;                                           ///< cityjson/
-  bool geopackage = true;                                         ///< buildings.gpkg
-  bool report = true;                                             ///< report.html
-  bool explain = true;                                            ///< explain/: what `blockrand explain` reads
-  bool evidence = false;                 ///< GLB, CityGML and CityJSON also say why each attribute has its value
-  bool gzip = false;                     ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
-  bool single_glb = false;               ///< also model.glb: the whole build in one frame
-  bool single_cityjson = false;          ///< also model.city.json: the whole build as one CityJSON object
   bool force = false;                    ///< replace an existing build
   bool strict = false;                   ///< exit code 3 when a building is below the asked quality
   int jobs = 0;                          ///< worker threads; 0: one per core
@@ -45,6 +32,7 @@ struct BuildOptions {
   std::string districts;                 ///< rule set by name or file; empty: chosen by place from configs/districts/
   std::string overrides;                 ///< overrides.toml, or empty
   std::optional<double> ground_height;   ///< m above sea level for every base where there is no terrain
+  outputs::OutputOptions outputs;
   repair::RepairOptions repair;
   attributes::GenerateOptions generate;
 };

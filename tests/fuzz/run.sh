@@ -17,8 +17,8 @@ for value in "12 m" "40'6\"" "3;4" "NNE" "#a33" "1,5"; do printf '%s' "$value" >
 awk -v folder="$corpus/grammar" '/R"\(/ { n++; sub(/.*R"\(/, ""); on = 1 } on && /^\)",?$/ { on = 0 } on { print > (folder "/sample" n ".cga") }' tests/unit/grammar/sample_rules.h
 # Small models of every format behind the byte that chooses its reader.
 sh tests/fuzz/reference_seeds.sh "$corpus/reference"
-build/fuzz/tests/fuzz/fuzz_tag_values -max_total_time="$seconds" -print_final_stats=1 "$corpus/tags"
-build/fuzz/tests/fuzz/fuzz_osm_import -max_total_time="$seconds" -max_len=200000 -rss_limit_mb=4096 -print_final_stats=1 "$corpus/osm"
-build/fuzz/tests/fuzz/fuzz_reference -max_total_time="$seconds" -max_len=20000 -rss_limit_mb=4096 -print_final_stats=1 "$corpus/reference"
-build/fuzz/tests/fuzz/fuzz_grammar -max_total_time="$seconds" -max_len=20000 -timeout=10 -rss_limit_mb=4096 -print_final_stats=1 "$corpus/grammar"
+build/fuzz/tests/fuzz_tag_values -max_total_time="$seconds" -print_final_stats=1 "$corpus/tags"
+build/fuzz/tests/fuzz_osm_import -max_total_time="$seconds" -max_len=200000 -rss_limit_mb=4096 -print_final_stats=1 "$corpus/osm"
+build/fuzz/tests/fuzz_reference -max_total_time="$seconds" -max_len=20000 -rss_limit_mb=4096 -print_final_stats=1 "$corpus/reference"
+build/fuzz/tests/fuzz_grammar -max_total_time="$seconds" -max_len=20000 -timeout=10 -rss_limit_mb=4096 -print_final_stats=1 "$corpus/grammar"
 echo "fuzz: no crash in $seconds s each"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How well classification does on places that it was not fitted on: hide, classify, compare with what was hidden.
 
-    evaluate.py --program build/ci/tests/facts_table --tables DIR --shared ../shared --work DIR [--folds NAME ...] > table.md
+    evaluate.py --program build/release/tests/facts_table --tables DIR --shared ../shared --work DIR [--folds NAME ...] > table.md
 
 Folds are places, never buildings. `place` folds leave one extract or one circle of labels/areas.csv out (style, morphology);
 `city` folds leave all that shows a town out, all Berlin files together (era, storeys, roof). Weights are fitted anew for each

@@ -69,8 +69,8 @@ TEST(BuildReport, GroupsCodesByWhatTheyMean) {
 
 TEST(BuildReport, NamesTheFilesThatWereAskedFor) {
   run::BuildOptions o = options();
-  o.citygml = false;
-  o.single_glb = true;
+  o.outputs.formats = {"gltf", "cityjson", "gpkg"};
+  o.outputs.single_glb = true;
   const std::string text = build_report(o, summary());
   EXPECT_THAT(text, HasSubstr("out/leipzig/tileset.json"));
   EXPECT_THAT(text, HasSubstr("out/leipzig/model.glb"));

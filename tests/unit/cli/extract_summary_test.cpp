@@ -197,6 +197,8 @@ TEST(BuildEstimate, GrowsWithObjectsAndShrinksWithJobs) {
   EXPECT_GT(a.memory_bytes, 100'000'000u);
   one.lod = 1;
   EXPECT_LT(estimate(s, one, 1, 0).disk_bytes, a.disk_bytes);
+  one.lod = 3;
+  EXPECT_GT(estimate(s, one, 1, 0).disk_bytes, 2 * a.disk_bytes) << "facades with windows and doors";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // The figures of docs/elements.md, drawn by the program itself.
-//   ELEMENTS_PICTURES=docs/pictures/elements build/ci/tests/test_elements --gtest_filter='ElementPictures.*'
+//   ELEMENTS_PICTURES=docs/pictures/elements build/release/tests/test_elements --gtest_filter='ElementPictures.*'
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // docs/elements.md says of every kind what the code says, and has a figure of it.
-//   ELEMENTS_PAGE=1 build/ci/tests/test_elements --gtest_filter='ElementsPage.*'   writes the tables into the page.
+//   ELEMENTS_PAGE=1 build/release/tests/test_elements --gtest_filter='ElementsPage.*'   writes the tables into the page.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -299,7 +299,7 @@ constexpr std::string_view kHead =
     "is taken out of the file). A *default answer* does not depend on what stands around or on\nfiles; "
     "`grammar check` tells it as a note. What is *not yet* there is told by name wherever a file uses it, and the "
     "shape stays as it is.\n\n"
-    "How this page is written: `GRAMMAR_FEATURES=1 build/ci/tests/test_grammar_features`.\n\n";
+    "How this page is written: `GRAMMAR_FEATURES=1 build/release/tests/test_grammar_features`.\n\n";
 
 TEST(Features, TheTableIsWritten) {
   const std::filesystem::path path = kSource / "docs/grammar_features.md";

@@ -48,9 +48,9 @@ TEST(CommandLine, FillsTheOptions) {
   EXPECT_EQ((*s.build.bbox)[0], -0.5) << "a value may start with a minus";
   EXPECT_EQ(s.build.jobs, 4);
   EXPECT_EQ(s.build.ground_height, -3.5);
-  EXPECT_TRUE(s.build.gzip);
+  EXPECT_TRUE(s.build.outputs.gzip);
   EXPECT_TRUE(s.quiet);
-  EXPECT_FALSE(s.build.gltf);
+  EXPECT_FALSE(s.build.outputs.writes("gltf"));
   EXPECT_EQ(s.build.repair.spike_width, 0.1);
   EXPECT_EQ(s.progress, base::ProgressStyle::plain);
 }
@@ -152,10 +152,10 @@ neighbour_minimum = 5
 )");
   const Settings s = build({"--config", path, "--lod", "0", "--no-gzip"});
   EXPECT_EQ(s.build.lod, 0);
-  EXPECT_FALSE(s.build.gzip);
+  EXPECT_FALSE(s.build.outputs.gzip);
   EXPECT_EQ(s.build.jobs, 7);
-  EXPECT_TRUE(s.build.citygml);
-  EXPECT_FALSE(s.build.gltf);
+  EXPECT_TRUE(s.build.outputs.writes("citygml"));
+  EXPECT_FALSE(s.build.outputs.writes("gltf"));
   EXPECT_EQ((*s.build.bbox)[3], 51.4);
   EXPECT_EQ(s.build.terrain, folder / "dem/a.tif") << "relative paths start at the file's folder";
   EXPECT_EQ(s.build.repair.spike_width, 0.125);

@@ -26,17 +26,18 @@ TEST(DeclaredOptions, EveryMemberOfRepairAndGenerationIsOne) {
 }
 
 TEST(DeclaredOptions, EveryMemberOfABuildIsOne) {
-  std::size_t own = 0, formats = 0;
+  std::size_t own = 0;
   std::set<std::string_view> stages;
   for (const auto& option : run::build_options()) {
     if (option.section == base::kMainSection)
       ++own;
     else
       stages.insert(option.section.name);
-    if (option.name == "formats") formats = option.choices.size();
   }
-  EXPECT_EQ(own - 1 + formats + stages.size(), member_count<run::BuildOptions>())
-      << "each format is a member, and so are the options of each stage";
+  const std::size_t of_outputs = outputs::output_options().size();
+  EXPECT_EQ(of_outputs, member_count<outputs::OutputOptions>());
+  EXPECT_EQ(own - of_outputs + 1 + stages.size(), member_count<run::BuildOptions>())
+      << "the options of the outputs are one member, and so are those of each stage";
 }
 
 TEST(DeclaredOptions, EveryMemberOfValidationIsOne) {

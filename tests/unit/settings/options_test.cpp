@@ -118,11 +118,11 @@ TEST(Options, FormatsAreAListWithAliases) {
   for (const std::string text : {"gltf", "tileset", "3dtiles", "gltf, tileset"}) {
     Settings s;
     option("formats").set(s, text);
-    EXPECT_TRUE(s.build.gltf && !s.build.citygml) << text;
+    EXPECT_TRUE(s.build.outputs.writes("gltf") && !s.build.outputs.writes("citygml")) << text;
   }
   Settings s;
   option("formats").set(s, "citygml,gltf");
-  EXPECT_TRUE(s.build.gltf && s.build.citygml);
+  EXPECT_TRUE(s.build.outputs.writes("gltf") && s.build.outputs.writes("citygml"));
   EXPECT_THAT(error_of("formats", "cityglm"), HasSubstr("Did you mean citygml?"));
   EXPECT_THAT(error_of("formats", ""), HasSubstr("Known: gltf, citygml"));
   EXPECT_THAT(error_of("formats", "gltf,"), HasSubstr("'' is unknown"));

@@ -48,7 +48,7 @@ class Damage : public testing::Test {
     options.input = (folder_ / "town.osm").string();
     options.output = out().string();
     options.configs = BLOCKRAND_SOURCE_DIR "/configs";
-    options.single_glb = options.single_cityjson = true;
+    options.outputs.single_glb = options.outputs.single_cityjson = true;
     options.jobs = 1;
     base::Progress quiet;
     run::build(options, quiet);

@@ -130,9 +130,10 @@ void expect_same_in_all_formats(const fs::path& input, std::size_t least, bool g
   options.input = input.string();
   options.output = folder.string();
   options.configs = BLOCKRAND_SOURCE_DIR "/configs";
-  options.geopackage = options.report = options.explain = false;
-  options.single_glb = options.single_cityjson = true;
-  options.gzip = gzip;
+  options.outputs.formats = {"gltf", "citygml", "cityjson"};
+  options.outputs.report = options.outputs.explain = false;
+  options.outputs.single_glb = options.outputs.single_cityjson = true;
+  options.outputs.gzip = gzip;
   options.bbox = bbox;
   options.jobs = 2;
   options.force = true;

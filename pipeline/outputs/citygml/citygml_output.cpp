@@ -1,0 +1,62 @@
+#include "pipeline/outputs/citygml/citygml_output.h"
+
+#include "pipeline/outputs/citygml/citygml_writer.h"
+
+namespace blockrand::outputs {
+namespace {
+
+CityGmlOptions citygml_options(const model::Region& region, const OutputContext& context) {
+  CityGmlOptions o;
+  o.lod = context.lod;
+  const std::string& code = context.crs.authority_code;
+  const std::string number = code.substr(code.find(':') + 1);
+  const std::string& vertical = context.heights.vertical_crs;
+  o.srs_name = vertical.empty() ? "urn:ogc:def:crs:EPSG::" + number
+                                : "urn:ogc:def:crs,crs:EPSG::" + number +
+                                      ",crs:EPSG::" + vertical.substr(vertical.find(':') + 1);
+  o.height_reference = context.heights.words;
+  o.attribution = kAttribution;
+  o.name = model_name(region.tile);
+  o.evidence = context.options.evidence;
+  return o;
+}
+
+class CityGmlOutput : public Output {
+ public:
+  explicit CityGmlOutput(const OutputContext& context) : context_(context) {}
+
+  std::any write_tile(FinishedTile& tile) const override {
+    if (tile.has_parts) tile.files.push_back(write(tile.region, tile.name));
+    return tile.has_parts;
+  }
+  void take(const FinishedTile&, std::any product) override { empty_ = empty_ && !std::any_cast<bool>(product); }
+  void finish(const FinishedBuild& build) override {
+    // A file without city objects is a valid city model and says more than no file.
+    if (empty_) build.files.push_back(write(model::Region{}, "empty"));
+  }
+
+ private:
+  base::PublishedFile write(const model::Region& region, const std::string& name) const {
+    return write_text_file("citygml/" + name + ".gml", write_citygml(region, citygml_options(region, context_)),
+                           context_);
+  }
+
+  const OutputContext& context_;
+  bool empty_ = true;
+};
+
+}  // namespace
+
+OutputFormat citygml_output() {
+  return {.name = "citygml",
+          .places = {{"citygml/", "CityGML 2.0, one file per tile"}},
+          .manual = {{"citygml/", "CityGML 2.0, LoD0 to LoD2 with boundary surfaces, one file per tile"}},
+          .asked = [](const OutputOptions& o) { return o.writes("citygml"); },
+          .bytes_per_building = [](const OutputOptions& o, std::size_t lod) {
+            constexpr double kBytes[] = {2500, 5500, 12500, 120000};
+            return o.gzip ? kBytes[lod] / 7 : kBytes[lod];
+          },
+          .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<CityGmlOutput>(c); }};
+}
+
+}  // namespace blockrand::outputs

@@ -1,0 +1,84 @@
+#include "pipeline/outputs/cityjson/cityjson_output.h"
+
+#include "pipeline/outputs/cityjson/cityjson_writer.h"
+
+namespace blockrand::outputs {
+namespace {
+
+CityJsonOptions cityjson_options(const OutputContext& context, std::string name) {
+  CityJsonOptions o;
+  o.lod = context.lod;
+  o.crs_code = context.crs.authority_code;
+  o.vertical_crs = context.heights.vertical_crs;
+  o.height_reference = context.heights.words;
+  o.attribution = kAttribution;
+  o.name = std::move(name);
+  o.generator = generator();
+  o.data_time = context.data_time;
+  o.evidence = context.options.evidence;
+  return o;
+}
+
+/// model.city.json, which grows with every tile.
+struct WholeFile {
+  explicit WholeFile(const OutputContext& context)
+      : file(context.folder.create("model.city.json")),
+        model(cityjson_options(context, "Blockrand"), [this](std::string_view bytes) { file.append(bytes); }) {}
+  base::StagedFile file;
+  SingleCityJson model;
+};
+
+class CityJsonOutput : public Output {
+ public:
+  explicit CityJsonOutput(const OutputContext& context) : context_(context), sequences_(context.options.writes("cityjson")) {
+    if (context.options.single_cityjson) whole_ = std::make_unique<WholeFile>(context);
+  }
+
+  std::any write_tile(FinishedTile& tile) const override {
+    const bool written = sequences_ && tile.has_parts;
+    if (written) tile.files.push_back(write(tile.region, tile.name));
+    return written;
+  }
+  void take(const FinishedTile& tile, std::any product) override {
+    empty_ = empty_ && !std::any_cast<bool>(product);
+    if (whole_) whole_->model.add(tile.region);
+  }
+  void finish(const FinishedBuild& build) override {
+    // A file without city objects is a valid city model and says more than no file.
+    if (sequences_ && empty_) build.files.push_back(write(model::Region{}, "empty"));
+    if (!whole_) return;
+    whole_->model.finish();
+    build.files.push_back(whole_->file.close());
+  }
+
+ private:
+  base::PublishedFile write(const model::Region& region, const std::string& name) const {
+    return write_text_file("cityjson/" + name + ".city.jsonl",
+                           write_cityjson_sequence(region, cityjson_options(context_, model_name(region.tile))), context_);
+  }
+
+  const OutputContext& context_;
+  bool sequences_ = true, empty_ = true;
+  std::unique_ptr<WholeFile> whole_;  ///< the sink of its model knows its place
+};
+
+}  // namespace
+
+OutputFormat cityjson_output() {
+  return {.name = "cityjson",
+          .places = {{"cityjson/", "CityJSON 2.0, one text sequence per tile",
+                      [](const OutputOptions& o, std::uint64_t) { return o.writes("cityjson"); }},
+                     {"model.city.json", "the whole build as one CityJSON object",
+                      [](const OutputOptions& o, std::uint64_t) { return o.single_cityjson; }}},
+          .manual = {{"cityjson/", "the same content as CityJSON 2.0 text sequences"}},
+          .asked = [](const OutputOptions& o) { return o.writes("cityjson") || o.single_cityjson; },
+          .bytes_per_building = [](const OutputOptions& o, std::size_t lod) {
+            constexpr double kBytes[] = {1500, 2000, 3500, 3500};
+            const double sequence = o.gzip ? kBytes[lod] / 5 : kBytes[lod];
+            return (o.writes("cityjson") ? sequence : 0) + (o.single_cityjson ? kBytes[lod] : 0);
+          },
+          .takes_regions = [](const OutputOptions& o) { return o.single_cityjson; },
+          .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<CityJsonOutput>(c); }};
+}
+
+}  // namespace blockrand::outputs

@@ -1,0 +1,83 @@
+#include "pipeline/outputs/explain/explain_output.h"
+
+#include <algorithm>
+
+#include "pipeline/outputs/explain/explanation.h"
+#include "pipeline/outputs/gzip.h"
+
+namespace blockrand::outputs {
+namespace {
+
+/// Fast; explanations repeat themselves so much that the highest level gains a tenth.
+constexpr int kGzipLevel = 4;
+
+/// Object, building whose line explains it.
+using ExplainedObjects = std::vector<std::pair<model::OsmId, model::OsmId>>;
+
+/// Where the line stands that explains an object.
+struct ExplainedObject {
+  model::OsmId object, building;
+  model::TileId tile;
+  friend auto operator<=>(const ExplainedObject&, const ExplainedObject&) = default;
+};
+
+std::string explain_index(std::vector<ExplainedObject> objects) {
+  std::sort(objects.begin(), objects.end());
+  std::string text;
+  for (const ExplainedObject& o : objects) text += index_line(o.object, tile_name(o.tile), o.building);
+  return text;
+}
+
+class ExplainOutput : public Output {
+ public:
+  explicit ExplainOutput(const OutputContext& context) : context_(context) {}
+
+  std::any write_tile(FinishedTile& tile) const override {
+    if (tile.region.buildings.empty()) return ExplainedObjects();
+    ExplainOptions options;
+    options.lod = context_.lod;
+    options.earlier = context_.earlier;
+    options.rule_file = context_.rule_file;
+    options.courtyard = [this](std::string_view id) { return courtyard(id); };
+    options.fate = tile.fate;
+    options.tile = tile.name;
+    for (const base::PublishedFile& file : tile.files) options.files.push_back(file.path);
+    Explanations explanations = explain(tile.region, options);
+    tile.files.push_back(
+        context_.folder.write("explain/" + tile.name + ".jsonl.gz", gzip(explanations.lines, kGzipLevel)));
+    return std::move(explanations.objects);
+  }
+  void take(const FinishedTile& tile, std::any product) override {
+    for (const auto& [object, building] : *std::any_cast<ExplainedObjects>(&product))
+      explained_.push_back({object, building, context_.shards[tile.shard].tile});
+  }
+  void finish(const FinishedBuild& build) override {
+    build.files.push_back(context_.folder.write("explain/index.txt", explain_index(std::move(explained_))));
+  }
+
+ private:
+  std::optional<CourtyardFacts> courtyard(std::string_view id) const {
+    const std::vector<context::ExtractCourtyard>& all = context_.context.courtyards;
+    const auto found = std::lower_bound(all.begin(), all.end(), id, [](const context::ExtractCourtyard& y, std::string_view i) {
+      return y.courtyard.id < i;
+    });
+    if (found == all.end() || found->courtyard.id != id) return std::nullopt;
+    return CourtyardFacts{found->courtyard.area, found->courtyard.closed};
+  }
+
+  const OutputContext& context_;
+  std::vector<ExplainedObject> explained_;
+};
+
+}  // namespace
+
+OutputFormat explain_output() {
+  return {.name = "explain",
+          .in_formats = false,
+          .manual = {{"explain/", "what 'blockrand explain' reads"}},
+          .asked = [](const OutputOptions& o) { return o.explain; },
+          .bytes_per_building = [](const OutputOptions&, std::size_t) { return 2100.0; },
+          .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ExplainOutput>(c); }};
+}
+
+}  // namespace blockrand::outputs

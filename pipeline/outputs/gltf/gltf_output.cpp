@@ -1,0 +1,222 @@
+#include "pipeline/outputs/gltf/gltf_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/georef/frames.h"
+#include "pipeline/georef/tile_frame.h"
+#include "pipeline/georef/tiles.h"
+#include "pipeline/outputs/gltf/glb_writer.h"
+#include "pipeline/outputs/tileset/tileset.h"
+
+namespace blockrand::outputs {
+namespace {
+
+using model::Point3;
+
+/// m. Farther from its origin, the single-precision vertices of model.glb are coarser than 4 mm.
+constexpr double kFineModelRadius = 65'536;
+
+/// Ellipsoid minus sea level as a plane in the build CRS: the geoid's grid is so wide that over a tile it is plane to
+/// well below a millimetre, and a plane gives neighbouring tiles the same height at their border to a fraction of that.
+struct GeoidPlane {
+  double x0 = 0, y0 = 0, at = 0, per_x = 0, per_y = 0;
+  double operator()(double x, double y) const { return at + (x - x0) * per_x + (y - y0) * per_y; }
+};
+
+GeoidPlane geoid_plane(const OutputContext& context, georef::LonLat centre) {
+  GeoidPlane plane;
+  if (!context.heights.raised_by) return plane;
+  const model::Point2 o = context.projection.forward(centre.lon, centre.lat);
+  constexpr double kStep = 1000;  // m
+  const auto undulation = [&](double x, double y) {
+    const georef::LonLat p = context.projection.inverse({x, y});
+    return context.heights.raised_by->undulation(p.lon, p.lat).value_or(0);
+  };
+  plane.x0 = o.x;
+  plane.y0 = o.y;
+  plane.at = undulation(o.x, o.y);
+  plane.per_x = (undulation(o.x + kStep, o.y) - undulation(o.x - kStep, o.y)) / (2 * kStep);
+  plane.per_y = (undulation(o.x, o.y + kStep) - undulation(o.x, o.y - kStep)) / (2 * kStep);
+  return plane;
+}
+
+GlbOptions glb_options(const OutputContext& context, const georef::EnuFrame& frame) {
+  GlbOptions o;
+  o.lod = context.lod;
+  o.instancing = context.options.instancing;
+  o.compression = context.options.compression;
+  o.crs = context.crs.authority_code;
+  o.height_reference = context.heights.in_tiles;
+  o.generator = generator();
+  o.attribution = kAttribution;
+  o.evidence = context.options.evidence;
+  o.frame.longitude = frame.origin().lon;
+  o.frame.latitude = frame.origin().lat;
+  o.frame.height = frame.origin().height;
+  o.frame.enu_to_ecef = frame.local_to_ecef();
+  return o;
+}
+
+/// What viewers show from farther away than facades: blocks, then roofs (tileset.h says from how far).
+void write_coarser_levels(const model::Region& region, GlbOptions options, const std::string& place,
+                          TileEntry& entry, base::StagedFolder& folder,
+                          std::vector<base::PublishedFile>& files) {
+  for (const auto& [lod, error] : {std::pair(1, kBlockError), std::pair(2, kRoofError)}) {
+    options.lod = lod;
+    const Glb glb = write_glb(region, options);
+    if (glb.triangles == 0) continue;
+    entry.coarser.push_back({fmt::format("{}_lod{}.glb", place, lod), error});
+    files.push_back(folder.write(entry.coarser.back().uri, glb.bytes));
+    entry.min = {std::min(entry.min.x, glb.min.x), std::min(entry.min.y, glb.min.y), std::min(entry.min.z, glb.min.z)};
+    entry.max = {std::max(entry.max.x, glb.max.x), std::max(entry.max.y, glb.max.y), std::max(entry.max.z, glb.max.z)};
+  }
+}
+
+/// Geodetic bounds of a box in a local frame, from its corners and the middle of its underside, which lies deepest.
+void set_bounds(TileEntry& entry, const georef::EnuFrame& frame) {
+  bool first = true;
+  const double reference = frame.origin().lon;
+  double west = 0, east = 0;
+  for (int i = 0; i < 9; ++i) {
+    const model::Point3 p = i == 8 ? model::Point3{(entry.min.x + entry.max.x) / 2, (entry.min.y + entry.max.y) / 2, entry.min.z}
+                            : model::Point3{i & 1 ? entry.max.x : entry.min.x, i & 2 ? entry.max.y : entry.min.y,
+                                     i & 4 ? entry.max.z : entry.min.z};
+    const georef::Geodetic g = georef::from_ecef(frame.to_ecef(p));
+    double lon = g.lon;
+    if (lon - reference > 180) lon -= 360;
+    if (reference - lon > 180) lon += 360;
+    if (first) {
+      west = east = lon;
+      entry.south = entry.north = g.lat;
+      entry.min_height = entry.max_height = g.height;
+      first = false;
+    }
+    west = std::min(west, lon);
+    east = std::max(east, lon);
+    entry.south = std::min(entry.south, g.lat);
+    entry.north = std::max(entry.north, g.lat);
+    entry.min_height = std::min(entry.min_height, g.height);
+    entry.max_height = std::max(entry.max_height, g.height);
+  }
+  entry.west = west < -180 ? west + 360 : west;
+  entry.east = east > 180 ? east - 360 : east;
+}
+
+/// Height of the frame's origin: the lowest ground of the buildings, so that meshes start near zero.
+double lowest_ground(const model::Region& region) {
+  double lowest = 0;
+  bool first = true;
+  for (const model::Building& b : region.buildings) {
+    const double z = b.attributes.ground_height.value;
+    lowest = first ? z : std::min(lowest, z);
+    first = false;
+  }
+  return lowest;
+}
+
+/// Writes a tile's GLBs. \returns its entry in the tileset; none where its GLB would show nothing
+std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& context) {
+  const model::Region& region = tile.region;
+  const model::TileId id = region.tile;
+  const GeoidPlane plane = geoid_plane(context, georef::centre(id));
+  const double origin_height = model::snap(lowest_ground(region) + plane.at);
+  const georef::TileFrame frame(context.projection, id, origin_height);
+  GlbOptions options = glb_options(context, frame.frame());
+  options.frame.to_enu = [&](std::span<const Point3> in, std::span<Point3> out) {
+    for (std::size_t i = 0; i < in.size(); ++i)
+      out[i] = frame.to_local({in[i].x, in[i].y, in[i].z + plane(in[i].x, in[i].y)});
+  };
+  const Glb glb = write_glb(region, options);
+  if (glb.triangles == 0) return std::nullopt;
+  TileEntry entry;
+  entry.id = id;
+  entry.uri = tile_glb_path(id);
+  tile.files.push_back(context.folder.write(entry.uri, glb.bytes));
+  entry.enu_to_ecef = options.frame.enu_to_ecef;
+  entry.min = glb.min;
+  entry.max = glb.max;
+  const std::string place = entry.uri.substr(0, entry.uri.size() - std::string_view(".glb").size());
+  if (context.lod >= 3) write_coarser_levels(region, options, place, entry, context.folder, tile.files);
+  set_bounds(entry, frame.frame());
+  return entry;
+}
+
+/// Writes model.glb. \returns m, how far it reaches from its origin
+double write_model(const model::Region& whole, const OutputContext& context, std::vector<base::PublishedFile>& files) {
+  const double origin_height = model::snap(lowest_ground(whole));
+  const GeoidPlane plane = geoid_plane(context, context.centre);
+  const georef::EnuFrame frame({context.centre.lon, context.centre.lat, origin_height + plane.at});
+  GlbOptions o = glb_options(context, frame);
+  // One frame for a whole city: every point takes the exact way, and the geoid is asked for each.
+  o.frame.to_enu = [&](std::span<const Point3> in, std::span<Point3> out) {
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      const georef::LonLat g = context.projection.inverse(in[i].xy());
+      const auto& geoid = context.heights.raised_by;
+      const double n = geoid ? geoid->undulation(g.lon, g.lat).value_or(0) : 0;
+      out[i] = frame.to_local(g.lon, g.lat, in[i].z + n);
+    }
+  };
+  const Glb glb = write_glb(whole, o);
+  double reach = 0;
+  for (const double v : {glb.min.x, glb.min.y, glb.max.x, glb.max.y}) reach = std::max(reach, std::fabs(v));
+  files.push_back(context.folder.write("model.glb", glb.bytes));
+  return reach;
+}
+
+class GltfOutput : public Output {
+ public:
+  explicit GltfOutput(const OutputContext& context) : context_(context), tiled_(context.options.writes("gltf")) {}
+
+  std::any write_tile(FinishedTile& tile) const override {
+    return tiled_ && tile.has_parts ? write_glbs(tile, context_) : std::nullopt;
+  }
+  void take(const FinishedTile&, std::any product) override {
+    if (auto& entry = *std::any_cast<std::optional<TileEntry>>(&product)) tiles_.push_back(std::move(*entry));
+  }
+  void finish(const FinishedBuild& build) override {
+    if (tiled_) {
+      TilesetOptions options;
+      options.crs = context_.crs.authority_code;
+      options.height_reference = context_.heights.words;
+      options.generator = generator();
+      options.attribution = kAttribution;
+      build.files.push_back(context_.folder.write("tileset.json", write_tileset(tiles_, options)));
+    }
+    if (!context_.options.single_glb) return;
+    if (const double reach = write_model(build.whole, context_, build.files); reach > kFineModelRadius)
+      build.warn(fmt::format("model.glb reaches {:.0f} km from its origin: far from there its vertices are more than 4 mm coarse. "
+                             "Use tileset.json, or a --bbox",
+                             reach / 1000));
+  }
+
+ private:
+  const OutputContext& context_;
+  bool tiled_ = true;
+  std::vector<TileEntry> tiles_;
+};
+
+}  // namespace
+
+OutputFormat gltf_output() {
+  return {.name = "gltf",
+          .title = "3D Tiles with GLB",
+          .other_names = {"tileset", "3dtiles"},
+          .places = {{"tileset.json", "3D Tiles, for CesiumJS, QGIS 3.34+, Unreal, ...; single tiles are in tiles/",
+                      [](const OutputOptions& o, std::uint64_t) { return o.writes("gltf"); }},
+                     {"model.glb", "the whole build in one file, for Blender and other editors",
+                      [](const OutputOptions& o, std::uint64_t) { return o.single_glb; }}},
+          .manual = {{"tileset.json, tiles/",
+                      "3D Tiles 1.1: one GLB per tile, with every attribute and its source as feature metadata"}},
+          .asked = [](const OutputOptions& o) { return o.writes("gltf") || o.single_glb; },
+          .bytes_per_building = [](const OutputOptions& o, std::size_t) {
+            constexpr double kBytes = 3000;
+            return (o.writes("gltf") ? kBytes : 0) + (o.single_glb ? kBytes : 0);
+          },
+          .keeps_whole = [](const OutputOptions& o) { return o.single_glb; },
+          .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<GltfOutput>(c); }};
+}
+
+}  // namespace blockrand::outputs

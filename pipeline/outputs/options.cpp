@@ -1,0 +1,150 @@
+#include "pipeline/outputs/options.h"
+
+#include <algorithm>
+
+#include "pipeline/base/option.h"
+#include "pipeline/outputs/output.h"
+
+namespace blockrand::outputs {
+namespace {
+
+using base::choice;
+using base::custom;
+using base::flag;
+using base::OptionRecord;
+using base::OptionType;
+using base::RecordValue;
+using O = OutputOptions;
+
+/// Every word for a format and the name it stands for; other words stand behind all names.
+base::Choices<std::string> format_words() {
+  base::Choices<std::string> words;
+  for (const std::string& name : format_names()) words.emplace_back(name, name);
+  for (const OutputFormat& format : all_outputs())
+    for (const std::string_view other : format.other_names) words.emplace_back(other, format.name);
+  return words;
+}
+
+void set_formats(O& o, const std::string& text) {
+  const base::Choices<std::string> words = format_words();
+  std::vector<std::string> wanted;
+  for (const std::string& part : base::split(text, ',')) wanted.push_back(base::choose(part, words));
+  o.formats = format_names();
+  std::erase_if(o.formats, [&](const std::string& name) { return std::ranges::find(wanted, name) == wanted.end(); });
+}
+
+/// "gltf (3D Tiles with GLB; also called tileset, 3dtiles), citygml"
+std::string listed_formats() {
+  std::vector<std::string> listed;
+  for (const OutputFormat& format : all_outputs()) {
+    if (!format.in_formats) continue;
+    std::vector<std::string> about;
+    if (!format.title.empty()) about.emplace_back(format.title);
+    const std::vector<std::string> others(format.other_names.begin(), format.other_names.end());
+    if (!others.empty()) about.push_back("also called " + base::joined(others, ", "));
+    listed.push_back(std::string(format.name) + (about.empty() ? "" : " (" + base::joined(about, "; ") + ")"));
+  }
+  return base::joined(listed, ", ");
+}
+
+const base::Choices<Instancing> kInstancings = {
+    {"ext", Instancing::ext}, {"nodes", Instancing::nodes}, {"baked", Instancing::baked}};
+
+const base::Choices<Compression> kCompressions = {{"none", Compression::none}, {"meshopt", Compression::meshopt}};
+
+// Places in the record: build.json keeps the order of its first versions.
+
+base::OptionTable<O> which_files() {
+  static const std::string formats_help = "what is written, separated by commas: " + listed_formats();
+  return {custom<O>(
+              {.name = "formats",
+               .key = "formats",
+               .argument = "LIST",
+               .type = OptionType::list,
+               .help = formats_help,
+               .choices = format_names(),
+               .after = "output",
+               .record = OptionRecord::yes,
+               .record_place = 2},
+              set_formats, [](const O& o) { return base::joined(o.formats, ","); },
+              [](const O& o) { return RecordValue(o.formats); }),
+          choice({.name = "instancing",
+                  .key = "instancing",
+                  .argument = "HOW",
+                  .help = "how GLBs of level 3 hold windows and ornaments: ext stores each once and places it "
+                          "(EXT_mesh_gpu_instancing), nodes makes a node of each place for programs without that, "
+                          "baked makes triangles of all",
+                  .after = "lod",
+                  .record = OptionRecord::yes,
+                  .record_place = 7},
+                 kInstancings, &O::instancing),
+          choice({.name = "compress",
+                  .key = "compress",
+                  .argument = "HOW",
+                  .help = "how GLBs are compressed: none, or meshopt (EXT_meshopt_compression), a third of the size, "
+                          "for viewers that can decompress it",
+                  .record = OptionRecord::yes,
+                  .record_place = 8},
+                 kCompressions, &O::compression)};
+}
+
+base::OptionTable<O> what_files_hold() {
+  return {
+      flag({.name = "evidence",
+            .key = "evidence",
+            .help = "GLB, CityGML and CityJSON also say why each attribute has its value (explain/ always does)",
+            .after = "ground-height",
+            .record = OptionRecord::yes,
+            .record_place = 5},
+           &O::evidence),
+      flag({.name = "gzip",
+            .key = "gzip",
+            .help = "compress the CityGML and CityJSON files (.gml.gz, .city.jsonl.gz)",
+            .record = OptionRecord::yes,
+            .record_place = 6},
+           &O::gzip),
+      flag({.name = "single-glb",
+            .key = "single_glb",
+            .help = "also write model.glb: the whole build in one frame",
+            .record = OptionRecord::yes,
+            .record_place = 9},
+           &O::single_glb),
+      flag({.name = "single-cityjson",
+            .key = "single_cityjson",
+            .help = "also write model.city.json: the whole build as one CityJSON object",
+            .record = OptionRecord::yes,
+            .record_place = 10},
+           &O::single_cityjson),
+      flag({.name = "report",
+            .key = "report",
+            .help = "write report.html: what was built, where values come from, a map and pictures",
+            .without = "no report.html, the page with what was built, where values come from, a map and pictures; no "
+                       "plan.png",
+            .record = OptionRecord::yes,
+            .record_place = 3},
+           &O::report),
+      flag({.name = "explain",
+            .key = "explain",
+            .help = "write explain/, from which 'blockrand explain' tells why a building looks as it does",
+            .without = "no explain/: 'blockrand explain' cannot tell why a building of this build looks as it does",
+            .record = OptionRecord::yes,
+            .record_place = 4},
+           &O::explain)};
+}
+
+}  // namespace
+
+std::vector<std::string> format_names() {
+  std::vector<std::string> names;
+  for (const OutputFormat& format : all_outputs())
+    if (format.in_formats) names.emplace_back(format.name);
+  return names;
+}
+
+bool OutputOptions::writes(std::string_view format) const {
+  return std::ranges::find(formats, format) != formats.end();
+}
+
+base::OptionTable<OutputOptions> output_options() { return base::concatenated({which_files(), what_files_hold()}); }
+
+}  // namespace blockrand::outputs

@@ -1,0 +1,35 @@
+// Which files a build leaves behind, and what they hold.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/base/option_table.h"
+#include "pipeline/outputs/gltf/compression.h"
+#include "pipeline/outputs/gltf/instance_writer.h"
+
+namespace blockrand::outputs {
+
+/// What --formats chooses among, in the order of all_outputs().
+std::vector<std::string> format_names();
+
+struct OutputOptions {
+  std::vector<std::string> formats = format_names();     ///< in the order of format_names
+  Instancing instancing = Instancing::ext;               ///< how GLBs hold what stands in facades
+  Compression compression = Compression::none;           ///< of vertices, indices and places in GLBs
+  bool evidence = false;         ///< GLB, CityGML and CityJSON also say why each attribute has its value
+  bool gzip = false;             ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
+  bool single_glb = false;       ///< also model.glb: the whole build in one frame
+  bool single_cityjson = false;  ///< also model.city.json: the whole build as one CityJSON object
+  bool report = true;            ///< report.html
+  bool explain = true;           ///< explain/: what `blockrand explain` reads
+
+  /// \param format  one of format_names
+  bool writes(std::string_view format) const;
+};
+
+/// How users set them: in the main section of a build's options.
+base::OptionTable<OutputOptions> output_options();
+
+}  // namespace blockrand::outputs

@@ -1,0 +1,32 @@
+#include "pipeline/outputs/output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pipeline/base/version.h"
+#include "pipeline/outputs/gzip.h"
+
+namespace blockrand::outputs {
+
+double bytes_per_building(const OutputOptions& options, int lod) {
+  const auto level = static_cast<std::size_t>(std::clamp(lod, 0, 3));
+  double each = 0;
+  for (const OutputFormat& format : all_outputs())
+    if (format.asked(options)) each += format.bytes_per_building(options, level);
+  return each;
+}
+
+std::string generator() { return "Blockrand " + std::string(base::kVersion); }
+
+std::string model_name(model::TileId id) { return fmt::format("Blockrand {}/{}/{}", id.level, id.x, id.y); }
+
+std::string tile_name(model::TileId id) { return fmt::format("{}_{}_{}", id.level, id.x, id.y); }
+
+std::string tile_glb_path(model::TileId id) { return fmt::format("tiles/{}/{}/{}.glb", id.level, id.x, id.y); }
+
+base::PublishedFile write_text_file(const std::string& path, const std::string& bytes, const OutputContext& context) {
+  return context.options.gzip ? context.folder.write(path + ".gz", gzip(bytes)) : context.folder.write(path, bytes);
+}
+
+}  // namespace blockrand::outputs

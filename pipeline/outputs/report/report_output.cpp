@@ -1,0 +1,149 @@
+#include "pipeline/outputs/report/report_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pipeline/base/text.h"
+#include "pipeline/base/version.h"
+#include "pipeline/outputs/plan/plan_picture.h"
+#include "pipeline/outputs/report/pictures.h"
+#include "pipeline/outputs/report/report_facts.h"
+#include "pipeline/outputs/report/report_page.h"
+
+namespace blockrand::outputs {
+namespace {
+
+/// What repair did, in words for the report.
+std::vector<std::pair<std::string, std::string>> repair_lines(const footprints::RepairTotals& t) {
+  using base::with_thousands;
+  const auto of = [](std::uint64_t part, std::uint64_t whole) {
+    return with_thousands(part) + " of " + with_thousands(whole);
+  };
+  const auto share = [](double ratio) { return fmt::format("{:.2f} %", 100 * ratio); };
+  std::vector<std::pair<std::string, std::string>> out = {
+      {"Outlines", with_thousands(t.outlines)},
+      {"Rows of touching buildings", with_thousands(t.rows)},
+      {"Corners moved", of(t.moved, t.vertices)},
+      {"Mean, largest shift of those", fmt::format("{:.3f} m, {:.2f} m", t.mean_shift, t.max_shift)},
+      {"Median, largest change of area", share(t.median_area_change) + ", " + share(t.max_area_change)},
+      {"Shared walls", with_thousands(t.shared_walls)},
+      {"Gaps closed", with_thousands(t.gaps_closed)},
+      {"Overlaps resolved", with_thousands(t.overlaps_resolved)},
+      {"Outlines with an overlap left", with_thousands(t.overlaps_left)},
+      {"Outlines with a main direction", with_thousands(t.squared)},
+      {"Curved walls", with_thousands(t.arcs)}};
+  if (t.at_cuts > 0) out.emplace_back("Buildings at cuts of long rows", with_thousands(t.at_cuts));
+  return out;
+}
+
+/// Everything but the pictures.
+ReportFacts report_facts(const OutputContext& context, const FinishedBuild& build, const ReportBuilder& page) {
+  ReportFacts f;
+  f.input = context.input;
+  f.data_time = context.data_time;
+  f.program_version = base::kVersion;
+  f.crs_code = context.crs.authority_code;
+  f.crs_name = context.crs.name;
+  f.crs_accuracy = context.crs.accuracy_m;
+  f.height_reference = context.heights.words;
+  f.vertical_crs = context.heights.vertical_crs;
+  f.lod = context.lod;
+  f.centre_longitude = context.centre.lon;
+  f.centre_latitude = context.centre.lat;
+  const ObjectCounts& s = build.counts;
+  f.buildings_in = s.buildings_in;
+  f.parts_in = s.parts_in;
+  f.models = s.models;
+  f.represented = s.represented;
+  f.duplicates = s.duplicates;
+  f.reported = s.reported;
+  f.models_by_lod = s.models_by_lod;
+  f.buildings_built = page.buildings_built();
+  f.bodies = page.bodies();
+  const Statistics& t = build.statistics;
+  f.sources = t.sources;
+  f.roofs = t.roofs;
+  f.footprint_area = t.footprint_area;
+  f.outer_wall_area = t.outer_wall_area;
+  f.party_wall_area = t.party_wall_area;
+  f.party_wall_length = t.party_wall_length;
+  f.volume = t.volume;
+  f.party_walls = t.party_walls;
+  if (context.repaired.totals.outlines > 0) f.context.repair = repair_lines(context.repaired.totals);
+  f.context.edges = t.edges;
+  f.context.edge_length = t.edge_length;
+  f.context.positions = t.positions;
+  f.rows = build.rows;
+  for (const model::MappedBuilding& b : context.extract.buildings)
+    if (b.state != model::ObjectState::modelled) f.objects.push_back({b.id, b.kind, b.state, b.code, b.related});
+  for (const base::PublishedFile& file : build.files) f.files.push_back({file.path, file.bytes});
+  return f;
+}
+
+/// What a tile gives to the page.
+struct TileShare {
+  ReportTile page;
+  PictureTile picture;
+  picture::PlanTile plan;
+};
+
+class ReportOutput : public Output {
+ public:
+  explicit ReportOutput(const OutputContext& context)
+      : context_(context),
+        picture_plan_(plan_pictures(context.shards, context.projection)),
+        pictures_(picture_plan_),
+        plan_choice_(choose_plan(context.shards, context.projection, picture_plan_)) {}
+
+  std::any write_tile(FinishedTile& tile) const override {
+    TileShare share;
+    share.page = report_tile(tile.region);
+    share.picture = picture_tile(tile.region, picture_plan_, tile.shard);
+    if (plan_choice_.chosen[tile.shard]) share.plan = picture::plan_tile(tile.region);
+    return share;
+  }
+  void take(const FinishedTile&, std::any product) override {
+    TileShare& share = *std::any_cast<TileShare>(&product);
+    page_.add(std::move(share.page));
+    pictures_.add(std::move(share.picture));
+    if (!share.plan.buildings.empty()) plans_.push_back(std::move(share.plan));
+  }
+  /// The page lists the files of all outputs.
+  void conclude(const FinishedBuild& build) override {
+    PlanSheet plan = draw_plan(std::move(plans_), context_.context, plan_choice_);
+    if (!plan.png.empty()) build.files.push_back(context_.folder.write("plan.png", plan.png));
+    std::ranges::sort(build.files, {}, &base::PublishedFile::path);
+    ReportFacts facts = report_facts(context_, build, page_);
+    if (!plan.png.empty()) facts.context.plan = std::move(plan.in_report);
+    facts.context.plan_note = std::move(plan.note);
+    facts.pictures_note = pictures_.note();
+    facts.pictures = pictures_.take(context_.workers);
+    build.files.push_back(context_.folder.write("report.html", page_.html(facts)));
+  }
+
+ private:
+  const OutputContext& context_;
+  PicturePlan picture_plan_;
+  Pictures pictures_;
+  PlanChoice plan_choice_;
+  std::vector<picture::PlanTile> plans_;
+  ReportBuilder page_;
+};
+
+}  // namespace
+
+OutputFormat report_output() {
+  return {.name = "report",
+          .in_formats = false,
+          .places = {{"report.html", "what was built, where values come from, a map and pictures"},
+                     {"plan.png", "seen from above, walls in the colours of what they face",
+                      [](const OutputOptions&, std::uint64_t models) { return models > 0; }}},
+          .manual = {{"report.html", "what was built, where values come from, what fell back and why, with a map and pictures"},
+                     {"plan.png", "the neighbourhood from above: blocks, courtyards, walls in the colours of what they face"}},
+          .asked = [](const OutputOptions& o) { return o.report; },
+          .bytes_per_building = [](const OutputOptions&, std::size_t) { return 150.0; },
+          .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ReportOutput>(c); }};
+}
+
+}  // namespace blockrand::outputs

@@ -1,0 +1,71 @@
+#include "pipeline/run/account.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace blockrand::run {
+
+using model::IssueCode;
+using model::MappedBuilding;
+using model::ObjectState;
+
+Account::Account(model::Extract& extract, std::vector<model::ReportRow> rows) : extract_(extract), rows_(std::move(rows)) {
+  std::vector<model::ReportRow>& read = extract.report.rows;
+  rows_.insert(rows_.end(), std::make_move_iterator(read.begin()), std::make_move_iterator(read.end()));
+  for (const model::ReportRow& row : rows_)
+    if (row.code == IssueCode::members_missing) incomplete_.insert(row.object);
+  std::sort(rows_.begin(), rows_.end());
+  earlier_ = rows_;
+}
+
+outputs::Fate Account::fate_of(const Outcome& o) const {
+  // Where members of a relation are missing, that is why nothing is enclosed.
+  const bool no_area = o.code == IssueCode::zero_area || o.code == IssueCode::too_few_points;
+  const bool lacks_members = no_area && incomplete_.contains(extract_.buildings[o.index].id);
+  return {o.state, lacks_members ? IssueCode::missing_members : o.code, o.related};
+}
+
+std::function<outputs::Fate(std::uint32_t)> Account::fates(const std::vector<Outcome>& outcomes) const {
+  std::map<std::uint32_t, outputs::Fate> fates;
+  for (const Outcome& o : outcomes) fates[o.index] = fate_of(o);
+  return [fates = std::move(fates)](std::uint32_t index) {
+    const auto found = fates.find(index);
+    return found == fates.end() ? outputs::Fate{} : found->second;
+  };
+}
+
+void Account::take(const Outcomes& outcomes, std::vector<model::ReportRow> rows, BuildSummary& summary) {
+  for (const Outcome& o : outcomes.list) {
+    MappedBuilding& object = extract_.buildings[o.index];
+    const outputs::Fate fate = fate_of(o);
+    object.state = fate.state;
+    object.code = fate.code;
+    object.related = fate.related;
+    if (o.state == ObjectState::modelled) ++summary.models_by_lod[static_cast<std::size_t>(std::clamp(o.lod, 0, 3))];
+  }
+  std::move(rows.begin(), rows.end(), std::back_inserter(rows_));
+  summary.below_quality = summary.below_quality || outcomes.below_quality;
+}
+
+void Account::close(const std::optional<TileChoice>& tile, BuildSummary& summary) {
+  if (tile) forget_others(extract_, tile->id, rows_);
+  for (const MappedBuilding& b : extract_.buildings) {
+    ++(b.kind == model::ObjectKind::building ? summary.buildings_in : summary.parts_in);
+    switch (b.state) {
+      case ObjectState::modelled: ++summary.models; break;
+      case ObjectState::duplicate: ++summary.duplicates; break;
+      case ObjectState::represented: ++summary.represented; break;
+      case ObjectState::pending:
+      case ObjectState::reported: ++summary.reported; break;
+    }
+    if (b.state == ObjectState::reported) ++summary.issues[std::string(info(b.code).text)];
+  }
+  std::sort(rows_.begin(), rows_.end());
+  for (const model::ReportRow& row : rows_)
+    if (info(row.code).issue_class != model::IssueClass::reported) ++summary.issues[std::string(info(row.code).text)];
+}
+
+}  // namespace blockrand::run

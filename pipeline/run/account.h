@@ -1,0 +1,44 @@
+// The account of a build: in which state each object of the extract ends, and what is reported of it (DESIGN law 1).
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "pipeline/model/extract.h"
+#include "pipeline/outputs/explain/explanation.h"
+#include "pipeline/run/build.h"
+#include "pipeline/run/outcome.h"
+#include "pipeline/run/tile_choice.h"
+
+namespace blockrand::run {
+
+class Account {
+ public:
+  /// \param extract  outlives the account, which sets the states of its objects and takes over its report
+  /// \param rows     of what came before the tiles
+  Account(model::Extract& extract, std::vector<model::ReportRow> rows);
+
+  /// Rows from before the tiles, sorted.
+  std::span<const model::ReportRow> earlier() const { return earlier_; }
+  /// What becomes of an object, looked up by its index: of a tile's objects. Safe from several threads.
+  std::function<outputs::Fate(std::uint32_t)> fates(const std::vector<Outcome>& outcomes) const;
+
+  /// Takes over what a tile decided, in tile order.
+  void take(const Outcomes& outcomes, std::vector<model::ReportRow> rows, BuildSummary& summary);
+  /// Counts states and rows. \param tile  built alone: objects of other tiles were read as surroundings only
+  void close(const std::optional<TileChoice>& tile, BuildSummary& summary);
+
+  /// Of all objects; sorted once the account is closed.
+  const std::vector<model::ReportRow>& rows() const { return rows_; }
+
+ private:
+  outputs::Fate fate_of(const Outcome& outcome) const;
+
+  model::Extract& extract_;
+  std::vector<model::ReportRow> rows_, earlier_;
+  std::set<model::OsmId> incomplete_;  ///< objects whose outline lacks members
+};
+
+}  // namespace blockrand::run

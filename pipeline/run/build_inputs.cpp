@@ -1,0 +1,72 @@
+#include "pipeline/run/build_inputs.h"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "pipeline/base/sha256.h"
+
+namespace blockrand::run {
+
+namespace {
+
+std::optional<importers::elevation::Terrain> open_terrain(const std::string& path, const context::AskedReference& asked) {
+  if (path.empty()) return std::nullopt;
+  return std::optional<importers::elevation::Terrain>(std::in_place, path, asked.metres_per_unit);
+}
+
+attributes::Overrides open_overrides(const std::string& path, const attributes::Defaults& defaults,
+                                     const districts::RuleBook& book) {
+  if (path.empty()) return {};
+  attributes::OverrideNames names{{}, book.substyles};
+  for (const districts::Preset& p : book.presets) names.presets.push_back(p.name);
+  return attributes::read_overrides(path, defaults, names);
+}
+
+InputFile input_file(std::string role, const std::string& path) {
+  InputFile f{std::move(role), path, 0, base::sha256_file(path)};
+  f.bytes = std::filesystem::file_size(path);
+  return f;
+}
+
+}  // namespace
+
+BuildInputs::BuildInputs(const BuildOptions& options)
+    : defaults(attributes::read_defaults(options.configs)),
+      asked(context::read_height_reference(options.terrain_height_reference)),
+      terrain(open_terrain(options.terrain, asked)),
+      heights(context::choose_height_reference(terrain ? &terrain->describe() : nullptr, asked,
+                                               options.ground_height.has_value())),
+      tile(choose_tile(options)),
+      tables(classify::Tables::read(options.configs)),
+      rules(attributes::read_rule_book(options.configs, options.districts)) {
+  if (options.lod >= 3) grammars.emplace(facades::read_grammars(options.configs, rules.book.presets));
+  overrides = open_overrides(options.overrides, defaults, rules.book);
+}
+
+std::string BuildInputs::rule_file(std::string_view preset) const {
+  const facades::GrammarBook::Entry* entry = grammars ? grammars->find(preset) : nullptr;
+  return entry ? entry->file : std::string();
+}
+
+std::vector<InputFile> input_files(const BuildOptions& options, const BuildInputs& inputs) {
+  std::vector<InputFile> files = {input_file("extract", options.input)};
+  if (inputs.terrain) files.push_back(input_file("terrain", options.terrain));
+  std::vector<std::pair<std::string, std::string>> configs = {
+      {"defaults/uses.toml", options.configs + "/defaults/uses.toml"},
+      {"materials/materials.toml", options.configs + "/materials/materials.toml"}};
+  for (const char* name : classify::kTableFiles)
+    configs.emplace_back(std::string("styles/") + name, options.configs + "/styles/" + name);
+  configs.insert(configs.end(), inputs.rules.files.begin(), inputs.rules.files.end());
+  if (inputs.grammars)
+    for (const std::string& path : inputs.grammars->files())
+      configs.emplace_back("grammars/" + std::filesystem::path(path).filename().string(), path);
+  for (const auto& [name, path] : configs) {
+    files.push_back(input_file("config", path));
+    files.back().path = name;
+  }
+  if (!options.overrides.empty()) files.push_back(input_file("overrides", options.overrides));
+  return files;
+}
+
+}  // namespace blockrand::run
