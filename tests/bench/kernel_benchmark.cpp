@@ -1,12 +1,20 @@
 // Kernels of a build on typical plans: skeletons, roofs, triangulation, the solid check.
 #include <benchmark/benchmark.h>
 
-#include "pipeline/masses/envelope.h"
+#include <algorithm>
+#include <boost/geometry.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/straight_skeleton.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/geometry/weighted_skeleton.h"
+#include "pipeline/masses/envelope.h"
 #include "styles/roofs/roof.h"
 #include "tests/unit/geometry/shapes.h"
 
@@ -69,8 +77,73 @@ void strictly_simple(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(geometry::strictly_simple(p));
 }
 
+// ---- what stands near a house: BoxIndex against an R-tree, both with the answer in ascending order ----------------
+
+/// Houses of 8 to 23 m on a lattice of 20 m, each moved within it.
+std::vector<geometry::PlanBox> town(std::int64_t houses) {
+  std::vector<geometry::PlanBox> out;
+  std::uint32_t dice = 12345;
+  const auto roll = [&](double most) { return most * ((dice = dice * 1664525u + 1013904223u) >> 8) / 16777216.0; };
+  for (std::int64_t i = 0; i < houses; ++i) {
+    const model::Point2 low{5e5 + static_cast<double>(i % 300) * 20 + roll(10),
+                            5e6 + static_cast<double>(i / 300) * 20 + roll(10)};
+    out.push_back({low, {low.x + 8 + roll(15), low.y + 8 + roll(15)}});
+  }
+  return out;
+}
+
+namespace bg = boost::geometry;
+using Corner = bg::model::point<double, 2, bg::cs::cartesian>;
+using TreeBox = bg::model::box<Corner>;
+using Tree = bg::index::rtree<std::pair<TreeBox, std::uint32_t>, bg::index::rstar<16>>;
+
+TreeBox tree_box(const geometry::PlanBox& b, double grown) {
+  return {{b.minimum.x - grown, b.minimum.y - grown}, {b.maximum.x + grown, b.maximum.y + grown}};
+}
+Tree tree_of(const std::vector<geometry::PlanBox>& boxes) {
+  std::vector<std::pair<TreeBox, std::uint32_t>> entries;
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) entries.emplace_back(tree_box(boxes[i], 0), i);
+  return Tree(entries);  // packed: the best an R-tree can be
+}
+
+void near_by_box_index(benchmark::State& state) {
+  const auto boxes = town(state.range(0));
+  const geometry::BoxIndex index(boxes, geometry::BoxIndex::kHouseCell);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(index.near(boxes[i], static_cast<double>(state.range(1))));
+    i = (i + 7919) % boxes.size();
+  }
+}
+void near_by_rtree(benchmark::State& state) {
+  const auto boxes = town(state.range(0));
+  const Tree tree = tree_of(boxes);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    std::vector<std::uint32_t> out;
+    const auto around = bg::index::intersects(tree_box(boxes[i], static_cast<double>(state.range(1))));
+    for (auto found = tree.qbegin(around); found != tree.qend(); ++found) out.push_back(found->second);
+    std::sort(out.begin(), out.end());
+    benchmark::DoNotOptimize(out);
+    i = (i + 7919) % boxes.size();
+  }
+}
+void make_box_index(benchmark::State& state) {
+  const auto boxes = town(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(geometry::BoxIndex(boxes, geometry::BoxIndex::kHouseCell));
+}
+void make_rtree(benchmark::State& state) {
+  const auto boxes = town(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(tree_of(boxes));
+}
+
 }  // namespace
 
+// Houses; metres around one of them.
+BENCHMARK(near_by_box_index)->ArgsProduct({{1000, 100000}, {1, 40, 250}});
+BENCHMARK(near_by_rtree)->ArgsProduct({{1000, 100000}, {1, 40, 250}});
+BENCHMARK(make_box_index)->Arg(100000);
+BENCHMARK(make_rtree)->Arg(100000);
 // 0: four corners, 1: L, 2: courtyard.
 BENCHMARK(weighted_skeleton)->DenseRange(0, 2);
 BENCHMARK(hipped_roof)->DenseRange(0, 2);
