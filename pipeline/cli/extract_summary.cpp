@@ -149,7 +149,7 @@ ExtractSummary summarise(const model::Extract& extract) {
   std::unordered_map<base::StringId, std::size_t> key_index;
   for (const std::string_view key : kKeys) {
     if (const base::StringId id = extract.strings.find(key); id != 0) key_index.emplace(id, s.keys.size());
-    s.keys.push_back({key});
+    s.keys.push_back({std::string(key)});
   }
   const base::StringId roof_shape = extract.strings.find(osm_key::kRoofShape);
   IdCounts building_values, part_values, roof_shapes;
