@@ -9,9 +9,10 @@
 # Bit-for-bit reproducible floating point on every x86-64 (DESIGN law 3): no contraction, no fast-math, no -march.
 add_library(blockrand_options INTERFACE)
 target_compile_definitions(blockrand_options INTERFACE BLOCKRAND_VERSION="${PROJECT_VERSION}")
+# -Wswitch-enum: who adds an enumerator is told of every switch that forgets it, one with `default:` too.
 # -Wrestrict, -Wstringop-overflow: g++ 12 sees overlaps and overflows in std::string that are not there (GCC bug 105651 and
 # its kin).
-target_compile_options(blockrand_options INTERFACE -Wall -Wextra -ffp-contract=off
+target_compile_options(blockrand_options INTERFACE -Wall -Wextra -Wswitch-enum -ffp-contract=off
                        "$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-stringop-overflow>"
                        $<$<BOOL:${BLOCKRAND_WERROR}>:-Werror>)
 if(BLOCKRAND_SANITIZE)
@@ -76,4 +77,40 @@ function(blockrand_library)
     target_link_libraries(${target} INTERFACE ${ARG_LINKS})
   endif()
   add_library(blockrand::${ARG_NAME} ALIAS ${target})
+  set_property(GLOBAL APPEND PROPERTY blockrand_table "${ARG_FOLDER}|${ARG_LINKS};${ARG_PRIVATE_LINKS}")
+endfunction()
+
+# Writes the table of targets, in the order of the build, as ARCHITECTURE.md has it: a test compares the two.
+function(blockrand_write_target_table file)
+  get_property(rows GLOBAL PROPERTY blockrand_table)
+  set(text "| folder | knows | and of others |\n|---|---|---|\n")
+  set(ours "")
+  set(others "")
+  set(folder "")
+  foreach(item IN LISTS rows ITEMS "|")
+    if(item MATCHES "^([^|]*)\\|(.*)$")
+      if(folder)
+        list(SORT ours)
+        list(SORT others)
+        list(REMOVE_DUPLICATES ours)
+        list(REMOVE_DUPLICATES others)
+        list(JOIN ours "`, `" ours_text)
+        list(JOIN others ", " others_text)
+        if(ours_text)
+          set(ours_text "`${ours_text}`")
+        endif()
+        string(APPEND text "| `${folder}` | ${ours_text} | ${others_text} |\n")
+      endif()
+      set(folder "${CMAKE_MATCH_1}")
+      set(ours "")
+      set(others "")
+      set(item "${CMAKE_MATCH_2}")
+    endif()
+    if(item MATCHES "^blockrand::(.*)$")
+      list(APPEND ours "${CMAKE_MATCH_1}")
+    elseif(item MATCHES "^([A-Za-z_0-9]+)")
+      list(APPEND others "${CMAKE_MATCH_1}")
+    endif()
+  endforeach()
+  file(WRITE ${file} "${text}")
 endfunction()

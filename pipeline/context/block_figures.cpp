@@ -1,11 +1,13 @@
 #include "pipeline/context/block_figures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/polygon.h"
 #include "pipeline/geometry/segment_grid.h"
 #include "pipeline/geometry/valid_polygon.h"
@@ -37,72 +39,39 @@ void append_segments(const Polygon& polygon, std::vector<Segment>& out) {
 
 // ---- which building in which block ----------------------------------------------------------------------------------
 
-/// Blocks by the cells of a coarse grid that their boxes touch.
+/// Blocks by their boxes, and the segments of their borders.
 class BlockIndex {
  public:
   explicit BlockIndex(std::span<const Block> blocks) {
-    for (std::uint32_t b = 0; b < blocks.size(); ++b) {
-      Point2 low, high;
-      box_of(blocks[b].polygon.outer.points, low, high);
-      boxes_.push_back({low, high});
-      for (std::int64_t x = cell(low.x); x <= cell(high.x); ++x)
-        for (std::int64_t y = cell(low.y); y <= cell(high.y); ++y) entries_.push_back({x, y, b});
+    std::vector<geometry::PlanBox> boxes;
+    for (const Block& block : blocks) {
+      boxes.push_back(geometry::box_of(block.polygon.outer.points));
+      append_segments(block.polygon, borders_);
     }
-    std::sort(entries_.begin(), entries_.end());
-    for (const Block& block : blocks) append_segments(block.polygon, borders_);
+    boxes_ = geometry::BoxIndex(std::move(boxes));
     border_grid_.emplace(borders_, kIndexCell);
   }
 
   /// Whether the box of a border segment meets that of the polygon. Where none does, all its corners are in one block.
   bool meets_border(const Polygon& polygon) const {
-    Point2 low, high;
-    box_of(polygon.outer.points, low, high);
+    const geometry::PlanBox box = geometry::box_of(polygon.outer.points);
     std::vector<std::uint32_t> near;
-    border_grid_->near(low, high, near);
+    border_grid_->near(box.minimum, box.maximum, near);
     return std::any_of(near.begin(), near.end(), [&](std::uint32_t i) {
-      const Segment& s = borders_[i];
-      return std::min(s.a.x, s.b.x) <= high.x && low.x <= std::max(s.a.x, s.b.x) && std::min(s.a.y, s.b.y) <= high.y &&
-             low.y <= std::max(s.a.y, s.b.y);
+      const std::array<Point2, 2> ends{borders_[i].a, borders_[i].b};
+      return geometry::box_of(ends).near(box, 0);
     });
   }
 
   /// Blocks whose box meets that of the polygon, ascending.
   std::vector<std::uint32_t> near(const Polygon& polygon) const {
-    Point2 low, high;
-    box_of(polygon.outer.points, low, high);
-    std::vector<std::uint32_t> out;
-    for (std::int64_t x = cell(low.x); x <= cell(high.x); ++x)
-      for (auto e = std::lower_bound(entries_.begin(), entries_.end(), Entry{x, cell(low.y), 0});
-           e != entries_.end() && e->x == x && e->y <= cell(high.y); ++e) {
-        const Segment& box = boxes_[e->block];
-        if (box.a.x <= high.x && low.x <= box.b.x && box.a.y <= high.y && low.y <= box.b.y) out.push_back(e->block);
-      }
-    std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
-    return out;
+    return boxes_.near(geometry::box_of(polygon.outer.points), 0);
   }
 
-  /// From the low to the high corner.
-  Segment box(std::size_t block) const { return boxes_[block]; }
+  const geometry::PlanBox& box(std::uint32_t block) const { return boxes_.box(block); }
 
  private:
-  static constexpr double kCell = 128;  ///< m; the size of a small block
-  struct Entry {
-    std::int64_t x = 0, y = 0;
-    std::uint32_t block = 0;
-    friend auto operator<=>(const Entry&, const Entry&) = default;
-  };
-  static std::int64_t cell(double metres) { return static_cast<std::int64_t>(std::floor(metres / kCell)); }
-  static void box_of(std::span<const Point2> points, Point2& low, Point2& high) {
-    low = high = points[0];
-    for (const Point2 p : points) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
-  }
-
-  std::vector<Segment> boxes_;  ///< from the low to the high corner
-  std::vector<Entry> entries_;  ///< sorted
+  geometry::BoxIndex boxes_;
   std::vector<Segment> borders_;
   std::optional<geometry::SegmentGrid> border_grid_;
 };
@@ -342,8 +311,8 @@ std::vector<BlockFigures> measure_blocks(std::span<const Block> blocks, std::spa
   std::vector<std::uint32_t> near;
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     BlockFigures& figures = out[b];
-    const Segment box = index.box(b);
-    street_grid.near(box.a, box.b, near);
+    const geometry::PlanBox& box = index.box(static_cast<std::uint32_t>(b));
+    street_grid.near(box.minimum, box.maximum, near);
     std::vector<Polyline> streets_here;
     for (const std::uint32_t s : near) streets_here.push_back({streets[s].a, streets[s].b});
     std::vector<Footprint> members;

@@ -53,8 +53,8 @@ void renumber(std::vector<std::uint32_t>& indices, const std::vector<std::uint32
 }
 
 /// Figures of all blocks, batch by batch.
-void measure_all(const Extract& extract, const footprints::FootprintStore& store, const footprints::FootprintIndex& index, const geometry::BoxIndex& lines,
-                 int workers, ContextExtract& out) {
+void measure_all(const Extract& extract, const footprints::FootprintStore& store, const geometry::BoxIndex& index,
+                 const geometry::BoxIndex& lines, int workers, ContextExtract& out) {
   std::map<std::pair<std::int64_t, std::int64_t>, std::vector<std::uint32_t>> cells;
   std::vector<geometry::PlanBox> boxes;
   for (std::uint32_t b = 0; b < out.blocks.size(); ++b) {
@@ -195,7 +195,7 @@ ContextExtract context_extract(const Extract& extract, const footprints::Footpri
   std::vector<geometry::PlanBox> line_boxes;
   for (const NetworkLine& line : out.lines) line_boxes.push_back(geometry::box_of(line.points));
   const geometry::BoxIndex lines(std::move(line_boxes));
-  const footprints::FootprintIndex index(footprints);
+  const geometry::BoxIndex index = footprints::index_of(footprints);
   measure_all(extract, footprints, index, lines, workers, out);
   find_loose_courtyards(extract, footprints, lines, workers, out);
   // A building that stands in two blocks has its courtyards in both: the one of the lower id keeps them.

@@ -13,6 +13,7 @@
 #include "pipeline/context/courtyards.h"
 #include "pipeline/context/edge_view.h"
 #include "pipeline/context/street_network.h"
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/model/building.h"
 
 namespace blockrand::context {
@@ -100,20 +101,12 @@ class SurroundingsIndex {
   const Box& block_box(std::size_t block) const { return block_boxes_[block]; }
 
  private:
-  /// A point, or a footprint whose box comes into the cell.
-  struct CellEntry {
-    std::int64_t x = 0, y = 0;  ///< cell
-    std::uint32_t index = 0;
-    friend auto operator<=>(const CellEntry&, const CellEntry&) = default;
-  };
-  template <class Visit>
-  static void for_each_in(const std::vector<CellEntry>& entries, const Box& box, Visit&& visit);
   Surroundings all_;
   Scene scene_;
   std::vector<Yard> yards_;
   std::vector<Square> squares_;
-  std::vector<Box> passage_boxes_, block_boxes_, footprint_boxes_;
-  std::vector<CellEntry> points_, footprints_;  ///< sorted
+  std::vector<Box> passage_boxes_, block_boxes_;
+  geometry::BoxIndex points_, footprints_;
 };
 
 /// The box of a building's outline grown by `margin` metres.

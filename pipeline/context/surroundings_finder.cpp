@@ -9,7 +9,7 @@ namespace blockrand::context {
 
 SurroundingsFinder::SurroundingsFinder(const model::Extract& extract, const footprints::FootprintStore& footprints,
                                        const ContextExtract& context)
-    : extract_(extract), footprints_(footprints), context_(context), buildings_(footprints) {
+    : extract_(extract), footprints_(footprints), context_(context), buildings_(footprints::index_of(footprints)) {
   std::vector<geometry::PlanBox> boxes;
   for (const context::NetworkLine& line : context.lines) boxes.push_back(geometry::box_of(line.points));
   lines_ = geometry::BoxIndex(std::move(boxes));

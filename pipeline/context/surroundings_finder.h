@@ -25,8 +25,7 @@ class SurroundingsFinder {
   const model::Extract& extract_;
   const footprints::FootprintStore& footprints_;
   const ContextExtract& context_;
-  footprints::FootprintIndex buildings_;
-  geometry::BoxIndex lines_, passages_, points_, blocks_, courtyards_;
+  geometry::BoxIndex buildings_, lines_, passages_, points_, blocks_, courtyards_;
 };
 
 }  // namespace blockrand::context

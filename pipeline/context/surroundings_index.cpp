@@ -1,6 +1,7 @@
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <map>
+#include <utility>
 
 #include "pipeline/context/facade_edges.h"
 #include "pipeline/geometry/polygon.h"
@@ -12,9 +13,7 @@ namespace {
 using model::Point2;
 using Box = SurroundingsIndex::Box;
 
-constexpr double kCell = 16;  ///< m. The size of a house
-
-std::int64_t cell_of(double metres) { return static_cast<std::int64_t>(std::floor(metres / kCell)); }
+constexpr double kCell = 16;  ///< m. The size of a house: places are looked for, not boxes
 
 void grow(Box& box, std::span<const Point2> points) {
   for (const Point2 p : points) {
@@ -69,16 +68,11 @@ SurroundingsIndex::SurroundingsIndex(const Surroundings& surroundings)
   }
   for (auto& [id, square] : squares) squares_.push_back(std::move(square));
   for (const PassageWay& way : all_.passages) passage_boxes_.push_back(box_around(way.points));
-  for (std::uint32_t p = 0; p < all_.points.size(); ++p)
-    points_.push_back({cell_of(all_.points[p].place.x), cell_of(all_.points[p].place.y), p});
-  std::sort(points_.begin(), points_.end());
-  for (std::uint32_t f = 0; f < all_.footprints.size(); ++f) {
-    const Box& box = footprint_boxes_.emplace_back(box_around(all_.footprints[f].polygon.outer.points));
-    if (all_.footprints[f].polygon.outer.size() == 0) continue;
-    for (std::int64_t x = cell_of(box.low.x); x <= cell_of(box.high.x); ++x)
-      for (std::int64_t y = cell_of(box.low.y); y <= cell_of(box.high.y); ++y) footprints_.push_back({x, y, f});
-  }
-  std::sort(footprints_.begin(), footprints_.end());
+  std::vector<geometry::PlanBox> places, footprints;
+  for (const auto& point : all_.points) places.push_back({point.place, point.place});
+  for (const Footprint& f : all_.footprints) footprints.push_back(geometry::box_of(f.polygon.outer.points));
+  points_ = geometry::BoxIndex(std::move(places), kCell);
+  footprints_ = geometry::BoxIndex(std::move(footprints), kCell);
 }
 
 bool SurroundingsIndex::contains(const Square& square, Point2 p) const {
@@ -98,34 +92,12 @@ std::vector<std::uint32_t> SurroundingsIndex::passages_near(const Box& box) cons
   return meeting(passage_boxes_, box, [](const Box& b) { return b; });
 }
 
-/// Calls `visit(index)` for the entries of the cells that a box meets.
-template <class Visit>
-void SurroundingsIndex::for_each_in(const std::vector<CellEntry>& entries, const Box& box, Visit&& visit) {
-  for (std::int64_t x = cell_of(box.low.x); x <= cell_of(box.high.x); ++x)
-    for (auto e = std::lower_bound(entries.begin(), entries.end(), CellEntry{x, cell_of(box.low.y), 0});
-         e != entries.end() && e->x == x && e->y <= cell_of(box.high.y); ++e)
-      visit(e->index);
-}
-
 std::vector<std::uint32_t> SurroundingsIndex::points_near(const Box& box) const {
-  std::vector<std::uint32_t> out;
-  for_each_in(points_, box, [&](std::uint32_t p) {
-    const Point2 place = all_.points[p].place;
-    if (box.meets({place, place})) out.push_back(p);
-  });
-  std::sort(out.begin(), out.end());
-  return out;
+  return points_.near({box.low, box.high}, 0);
 }
 
 std::vector<std::uint32_t> SurroundingsIndex::footprints_at(Point2 place, double margin) const {
-  const Box box{{place.x - margin, place.y - margin}, {place.x + margin, place.y + margin}};
-  std::vector<std::uint32_t> out;
-  for_each_in(footprints_, box, [&](std::uint32_t f) {
-    if (box.meets(footprint_boxes_[f])) out.push_back(f);
-  });
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
+  return footprints_.near({{place.x - margin, place.y - margin}, {place.x + margin, place.y + margin}}, 0);
 }
 
 }  // namespace blockrand::context

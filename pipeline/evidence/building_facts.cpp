@@ -490,28 +490,18 @@ std::vector<std::size_t> runs_of(const footprints::FootprintStore& store) {
 }  // namespace
 
 PlaceIndex::PlaceIndex(const FactsExtract& facts, std::span<const std::uint32_t> chosen, double size)
-    : facts_(facts), size_(size) {
-  entries_.reserve(chosen.size());
-  for (const std::uint32_t b : chosen) {
-    const Point2 p = facts.places[b].place;
-    entries_.push_back(
-        {static_cast<std::int32_t>(std::floor(p.x / size_)), static_cast<std::int32_t>(std::floor(p.y / size_)), b});
-  }
-  std::sort(entries_.begin(), entries_.end());
+    : chosen_(chosen.begin(), chosen.end()) {
+  std::vector<geometry::PlanBox> places;
+  places.reserve(chosen.size());
+  for (const std::uint32_t b : chosen) places.push_back({facts.places[b].place, facts.places[b].place});
+  places_ = geometry::BoxIndex(std::move(places), size);
 }
 
 void PlaceIndex::near(Point2 place, double distance, std::vector<std::uint32_t>& out) const {
   out.clear();
-  const auto cell = [&](double v) { return static_cast<std::int32_t>(std::floor(v / size_)); };
-  for (std::int32_t x = cell(place.x - distance); x <= cell(place.x + distance); ++x) {
-    const Entry first{x, cell(place.y - distance), 0};
-    for (auto e = std::lower_bound(entries_.begin(), entries_.end(), first);
-         e != entries_.end() && e->x == x && e->y <= cell(place.y + distance); ++e) {
-      const Point2 d = facts_.places[e->building].place - place;
-      if (dot(d, d) <= distance * distance) out.push_back(e->building);
-    }
-  }
-  std::sort(out.begin(), out.end());
+  constexpr double kMargin = 0.001;  // m: the circle alone decides
+  for (const std::uint32_t i : places_.near({place, place}, distance + kMargin))
+    if (squared_distance(places_.box(i).minimum, place) <= distance * distance) out.push_back(chosen_[i]);
 }
 
 FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& store, const context::ContextExtract& context,

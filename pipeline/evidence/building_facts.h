@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "pipeline/base/progress.h"
-#include "pipeline/model/building.h"
 #include "pipeline/context/context_extract.h"
-#include "pipeline/footprints/footprint_store.h"
 #include "pipeline/context/surroundings_finder.h"
+#include "pipeline/footprints/footprint_store.h"
+#include "pipeline/geometry/box_index.h"
+#include "pipeline/model/building.h"
 #include "styles/classify/features.h"
 
 namespace blockrand::evidence {
@@ -41,7 +42,7 @@ struct FactsExtract {
   }
 };
 
-/// Buildings whose middle lies within a distance of a place. Cells of a fixed grid; read-only after construction.
+/// Buildings whose middle lies within a distance of a place; read-only after construction.
 class PlaceIndex {
  public:
   /// \param chosen  the buildings to file, ascending
@@ -51,14 +52,8 @@ class PlaceIndex {
   void near(model::Point2 place, double distance, std::vector<std::uint32_t>& out) const;
 
  private:
-  struct Entry {
-    std::int32_t x = 0, y = 0;
-    std::uint32_t building = 0;
-    friend auto operator<=>(const Entry&, const Entry&) = default;
-  };
-  const FactsExtract& facts_;
-  double size_;
-  std::vector<Entry> entries_;  ///< sorted
+  std::vector<std::uint32_t> chosen_;
+  geometry::BoxIndex places_;  ///< by place in `chosen_`
 };
 
 /// Measures all buildings. Deterministic for any number of workers. What a building gets depends on data within

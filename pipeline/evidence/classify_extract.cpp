@@ -151,7 +151,7 @@ TagFacts tag_facts(const model::Extract& extract, const footprints::FootprintSto
   // House numbers inside: a node with an address makes a shed a house. Shops inside: what the ground floor is used for.
   std::vector<std::uint8_t> addressed(n, 0);
   {
-    const footprints::FootprintIndex index(store);
+    const geometry::BoxIndex index = footprints::index_of(store);
     const auto for_each_around = [&](model::Point2 place, auto&& visit) {
       for (const std::uint32_t b : index.near({place, place}, 0)) {
         const std::vector<model::Polygon> polygons = store.polygons(b);

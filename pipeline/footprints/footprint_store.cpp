@@ -1,26 +1,9 @@
 #include "pipeline/footprints/footprint_store.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace blockrand::footprints {
-
-namespace {
-
-constexpr double kCell = 64;  // m, two to four houses wide: few boxes lie in more than four cells
-
-/// A building over more cells stands in a list of its own.
-constexpr std::int64_t kManyCells = 4096;
-
-std::int32_t cell_of(double metres) { return static_cast<std::int32_t>(std::floor(metres / kCell)); }
-
-std::int64_t cells_of(const PlanBox& box) {
-  const std::int64_t columns = cell_of(box.maximum.x) - cell_of(box.minimum.x) + 1,
-                     rows = cell_of(box.maximum.y) - cell_of(box.minimum.y) + 1;
-  return columns * rows;
-}
-
-}  // namespace
 
 void FootprintStore::set(std::uint32_t building, StoredFootprint footprint, std::span<const model::Polygon> polygons,
                          std::span<const model::Arc> arcs) {
@@ -74,60 +57,11 @@ void FootprintStore::shrink_to_fit() {
 
 void FootprintStore::add_overlap(std::uint32_t building, double area) { entries_[building].record.overlap_left += area; }
 
-FootprintIndex::FootprintIndex(const FootprintStore& store) : store_(store) {
-  for (std::uint32_t b = 0; b < store.size(); ++b) {
-    const PlanBox& box = store[b].box;
-    if (box.empty()) continue;
-    if (cells_of(box) > kManyCells) {
-      large_.push_back(b);
-      continue;
-    }
-    for (std::int32_t x = cell_of(box.minimum.x); x <= cell_of(box.maximum.x); ++x)
-      for (std::int32_t y = cell_of(box.minimum.y); y <= cell_of(box.maximum.y); ++y) entries_.push_back({x, y, b});
-  }
-  std::sort(entries_.begin(), entries_.end());
-}
-
-std::vector<std::uint32_t> FootprintIndex::near(const PlanBox& box, double distance) const {
-  std::vector<std::uint32_t> out;
-  if (box.empty()) return out;
-  const std::int32_t y0 = cell_of(box.minimum.y - distance), y1 = cell_of(box.maximum.y + distance);
-  for (std::int32_t x = cell_of(box.minimum.x - distance); x <= cell_of(box.maximum.x + distance); ++x) {
-    auto entry = std::lower_bound(entries_.begin(), entries_.end(), Entry{x, y0, 0});
-    for (; entry != entries_.end() && entry->x == x && entry->y <= y1; ++entry)
-      if (store_[entry->building].box.near(box, distance)) out.push_back(entry->building);
-  }
-  for (const std::uint32_t b : large_)
-    if (store_[b].box.near(box, distance)) out.push_back(b);
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
-std::vector<std::pair<std::uint32_t, std::uint32_t>> FootprintIndex::pairs(double distance) const {
-  // Boxes that are near each other share a cell, or lie in cells that touch: the lower one's cell and its neighbours to
-  // the north and east, and the diagonals, are asked.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
-  constexpr std::pair<std::int32_t, std::int32_t> kSteps[] = {{0, 1}, {1, -1}, {1, 0}, {1, 1}};
-  const auto add = [&](std::uint32_t a, std::uint32_t b) {
-    if (a != b && store_[a].box.near(store_[b].box, distance)) out.emplace_back(std::min(a, b), std::max(a, b));
-  };
-  for (auto first = entries_.begin(); first != entries_.end();) {
-    auto last = first;
-    for (; last != entries_.end() && last->x == first->x && last->y == first->y; ++last)
-      for (auto e = first; e != last; ++e) add(e->building, last->building);
-    for (const auto& [dx, dy] : kSteps) {
-      auto other = std::lower_bound(last, entries_.end(), Entry{first->x + dx, first->y + dy, 0});
-      for (; other != entries_.end() && other->x == first->x + dx && other->y == first->y + dy; ++other)
-        for (auto e = first; e != last; ++e) add(e->building, other->building);
-    }
-    first = last;
-  }
-  for (const std::uint32_t large : large_)
-    for (const std::uint32_t b : near(store_[large].box, distance)) add(large, b);
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
+BoxIndex index_of(const FootprintStore& store) {
+  std::vector<PlanBox> boxes;
+  boxes.reserve(store.size());
+  for (std::uint32_t b = 0; b < store.size(); ++b) boxes.push_back(store[b].box);
+  return BoxIndex(std::move(boxes), BoxIndex::kHouseCell);
 }
 
 BuildingNumbers::BuildingNumbers(const FootprintStore& store) {

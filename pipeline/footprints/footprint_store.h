@@ -78,24 +78,7 @@ class BuildingNumbers {
   std::vector<std::pair<model::OsmId, std::uint32_t>> numbers_;  ///< sorted
 };
 
-/// Finds the buildings near a place. Cells of a fixed grid; read-only after construction.
-class FootprintIndex {
- public:
-  explicit FootprintIndex(const FootprintStore& store);
-  /// Buildings whose boxes come within `distance` metres of `box`, ascending.
-  std::vector<std::uint32_t> near(const PlanBox& box, double distance) const;
-  /// All pairs a < b of buildings whose boxes are at most `distance` metres apart, ascending.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs(double distance) const;
-
- private:
-  struct Entry {
-    std::int32_t x = 0, y = 0;
-    std::uint32_t building = 0;
-    friend auto operator<=>(const Entry&, const Entry&) = default;
-  };
-  const FootprintStore& store_;
-  std::vector<Entry> entries_;        ///< sorted
-  std::vector<std::uint32_t> large_;  ///< buildings over so many cells that all are asked for them
-};
+/// The boxes of all buildings, by building.
+BoxIndex index_of(const FootprintStore& store);
 
 }  // namespace blockrand::footprints

@@ -97,7 +97,7 @@ std::pair<std::int64_t, std::int64_t> row_cell(const PlanBox& box) {
 
 std::vector<RowPlan> find_rows(const FootprintStore& store, double link_distance) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
-  for (const auto& [a, b] : FootprintIndex(store).pairs(link_distance))
+  for (const auto& [a, b] : index_of(store).pairs(link_distance))
     if (near(store, a, b, link_distance)) links.emplace_back(a, b);
 
   const std::size_t n = store.size();

@@ -99,7 +99,7 @@ double held_share(const Extract& extract, const MappedBuilding& outline, const M
   return asked == 0 ? 0 : static_cast<double>(held) / asked;
 }
 
-/// Cells of a coarse grid over raw coordinates.
+/// Cells of a coarse grid over raw coordinates. No BoxIndex: it asks for integers before anything is projected.
 class OutlineIndex {
  public:
   explicit OutlineIndex(const Extract& extract) {

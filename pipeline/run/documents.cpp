@@ -15,6 +15,146 @@ using Json = nlohmann::ordered_json;
 /// Rounded for people; also keeps the last bits of long sums out of the file.
 double rounded(double value, double steps = 100) { return std::nearbyint(value * steps) / steps; }
 
+Json crs_json(const BuildRecord& r) {
+  Json j = {{"code", r.crs.authority_code},
+            {"name", r.crs.name},
+            {"operation", r.crs.operation},
+            {"pipeline", r.crs.pipeline},
+            {"accuracy_m", r.crs.accuracy_m},
+            {"portable", r.portable},
+            // Rounded up to 10 nm: the last bits of an error say nothing.
+            {"round_trip_error_m", std::ceil(r.round_trip.projection_m * 1e8) / 1e8},
+            {"frame_round_trip_error_m", std::ceil(r.round_trip.frame_m * 1e8) / 1e8},
+            {"height_reference", r.heights.words},
+            {"vertical_crs", r.heights.vertical_crs},
+            {"height_reference_of_tiles", r.heights.in_tiles}};
+  // How heights reach the ellipsoid in 3D Tiles; null: as they are.
+  const context::HeightReference& h = r.heights;
+  j["to_ellipsoid"] = nullptr;
+  if (h.raised_by)
+    j["to_ellipsoid"] = {
+        {"by", h.raised_by->words()},
+        {"from", h.raised_from},
+        {"accuracy_m", h.raised_by->accuracy_m() < 0 ? Json(nullptr) : Json(h.raised_by->accuracy_m())}};
+  return j;
+}
+
+Json terrain_json(const importers::elevation::TerrainDescription& t) {
+  return {{"crs", t.crs_code.empty() ? t.crs_name : t.crs_code},
+          {"vertical_crs", t.vertical_code.empty() ? t.vertical_name : t.vertical_code},
+          {"operation", t.operation},
+          {"accuracy_m", t.accuracy_m < 0 ? Json(nullptr) : Json(t.accuracy_m)},
+          {"pixel", {t.pixel_width, t.pixel_height}},
+          {"size", {t.columns, t.rows}}};
+}
+
+/// What a build of one tile alone takes from here (--pinned).
+Json region_json(const RegionFacts& facts) {
+  Json j = {{"box", {facts.box.west, facts.box.south, facts.box.east, facts.box.north}},
+            {"centre", {facts.centre.lon, facts.centre.lat}},
+            {"coverage", Json::array()}};
+  for (const model::Point2 p : facts.coverage) j["coverage"].push_back({p.x, p.y});
+  j["areas"] = Json::array();
+  for (const attributes::PinnedArea& area : facts.areas) {
+    Json rings = Json::array();
+    for (const auto& ring : area.rings) {
+      Json numbers = Json::array();  // 1e-7 degrees: longitude, latitude, longitude, ...
+      for (const model::Location p : ring) {
+        numbers.push_back(p.lon);
+        numbers.push_back(p.lat);
+      }
+      rings.push_back(std::move(numbers));
+    }
+    j["areas"].push_back(
+        {{"question", area.question}, {"value", area.value}, {"id", area.id.text()}, {"rings", std::move(rings)}});
+  }
+  return j;
+}
+
+Json repair_json(const footprints::RepairTotals& m) {
+  return {{"outlines", m.outlines},
+          {"rows", m.rows},
+          {"buildings_at_cuts", m.at_cuts},
+          {"vertices", m.vertices},
+          {"vertices_moved", m.moved},
+          {"mean_shift_m", rounded(m.mean_shift, 1000)},
+          {"max_shift_m", rounded(m.max_shift, 1000)},
+          {"outlines_squared", m.squared},
+          {"outlines_area_changed", m.area_changed},
+          {"median_area_change", rounded(m.median_area_change, 1e6)},
+          {"max_area_change", rounded(m.max_area_change, 1e6)},
+          {"shared_walls", m.shared_walls},
+          {"party_wall_length_m", rounded(m.party_wall_length)},
+          {"gaps_closed", m.gaps_closed},
+          {"overlaps_resolved", m.overlaps_resolved},
+          {"outlines_with_overlap_left", m.overlaps_left},
+          {"arcs", m.arcs}};
+}
+
+Json counts_json(const BuildRecord& r) {
+  const BuildSummary& s = r.summary;
+  return {{"buildings_in", s.buildings_in},
+          {"parts_in", s.parts_in},
+          {"models", s.models},
+          // Represented by its parts or by the object it duplicates.
+          {"represented", s.represented + s.duplicates},
+          {"reported", s.reported},
+          {"represented_as_duplicates", s.duplicates},
+          {"models_lod0", s.models_by_lod[0]},
+          {"models_lod1", s.models_by_lod[1]},
+          {"models_lod2", s.models_by_lod[2]},
+          {"models_lod3", s.models_by_lod[3]},
+          // What every format holds, to the last one.
+          {"buildings", r.statistics.buildings},
+          {"bodies", r.statistics.bodies},
+          {"solids_lod1", r.statistics.solids_lod1},
+          {"solids_lod2", r.statistics.solids_lod2},
+          {"solids_lod3", r.statistics.solids_lod3},
+          {"windows", r.statistics.windows},
+          {"doors", r.statistics.doors},
+          {"placements", r.statistics.placements},
+          {"installations", r.statistics.installations},
+          {"old_style_multipolygons", r.counts.old_style_multipolygons},
+          {"areas_with_holes", r.counts.areas_with_holes},
+          {"missing_nodes", r.counts.missing_nodes},
+          {"missing_ways", r.counts.missing_ways}};
+}
+
+Json statistics_json(const outputs::Statistics& t) {
+  Json j = {{"footprint_area_m2", rounded(t.footprint_area)},      {"volume_m3", rounded(t.volume)},
+            {"outer_wall_area_m2", rounded(t.outer_wall_area)},    {"party_walls", t.party_walls},
+            {"party_wall_length_m", rounded(t.party_wall_length)}, {"party_wall_area_m2", rounded(t.party_wall_area)}};
+  j["edges"] = Json::object();
+  for (std::size_t k = 0; k < t.edges.size(); ++k)
+    if (t.edges[k] > 0)
+      j["edges"][model::name(static_cast<model::EdgeKind>(k))] = {{"stretches", t.edges[k]},
+                                                                  {"length_m", rounded(t.edge_length[k])}};
+  j["positions"] = Json::object();
+  for (std::size_t k = 0; k < t.positions.size(); ++k)
+    if (t.positions[k] > 0) j["positions"][model::name(static_cast<model::BuildingPosition>(k))] = t.positions[k];
+  j["roofs"] = Json::object();
+  for (const auto& [shape, count] : t.roofs) j["roofs"][shape] = count;
+  const masses::Roofscape& roofs = t.roofscape;
+  j["roofscape"] = {{"mid_row", roofs.mid_row},
+                    {"eaves_to_street", roofs.eaves_to_street},
+                    {"with_rear", roofs.with_rear},
+                    {"eaves_to_rear", roofs.eaves_to_rear},
+                    {"corner_houses", roofs.corner_houses},
+                    {"corner_houses_turned", roofs.turned},
+                    {"eaves_at_party_walls", roofs.party_eaves},
+                    {"eaves_at_party_walls_as_mapped", roofs.party_eaves_mapped},
+                    {"eaves_at_party_walls_m", rounded(roofs.party_eaves_length)},
+                    {"slopes_that_should_meet", roofs.meetings},
+                    {"slopes_apart", roofs.apart},
+                    {"slopes_apart_most_m", roofs.widest}};
+  j["sources"] = Json::object();
+  for (const auto& [attribute, sources] : t.sources) {
+    Json& row = j["sources"][attribute] = Json::object();
+    for (const auto& [source, count] : sources) row[source] = count;
+  }
+  return j;
+}
+
 }  // namespace
 
 std::string build_json(const BuildOptions& options, const BuildRecord& r) {
@@ -25,134 +165,14 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
     j["inputs"].push_back({{"role", f.role}, {"path", f.path}, {"bytes", f.bytes}, {"sha256", f.sha256}});
   j["data_time"] = r.data_time;
   j["configuration"] = configuration(options);
-  j["crs"] = {{"code", r.crs.authority_code},
-              {"name", r.crs.name},
-              {"operation", r.crs.operation},
-              {"pipeline", r.crs.pipeline},
-              {"accuracy_m", r.crs.accuracy_m},
-              {"portable", r.portable},
-              // Rounded up to 10 nm: the last bits of an error say nothing.
-              {"round_trip_error_m", std::ceil(r.round_trip.projection_m * 1e8) / 1e8},
-              {"frame_round_trip_error_m", std::ceil(r.round_trip.frame_m * 1e8) / 1e8},
-              {"height_reference", r.heights.words},
-              {"vertical_crs", r.heights.vertical_crs},
-              {"height_reference_of_tiles", r.heights.in_tiles}};
-  // How heights reach the ellipsoid in 3D Tiles; null: as they are.
-  const context::HeightReference& h = r.heights;
-  j["crs"]["to_ellipsoid"] = nullptr;
-  if (h.raised_by)
-    j["crs"]["to_ellipsoid"] = {{"by", h.raised_by->words()},
-                                {"from", h.raised_from},
-                                {"accuracy_m", h.raised_by->accuracy_m() < 0 ? Json(nullptr) : Json(h.raised_by->accuracy_m())}};
-  if (r.terrain) {
-    const importers::elevation::TerrainDescription& t = *r.terrain;
-    j["terrain"] = {{"crs", t.crs_code.empty() ? t.crs_name : t.crs_code},
-                    {"vertical_crs", t.vertical_code.empty() ? t.vertical_name : t.vertical_code},
-                    {"operation", t.operation},
-                    {"accuracy_m", t.accuracy_m < 0 ? Json(nullptr) : Json(t.accuracy_m)},
-                    {"pixel", {t.pixel_width, t.pixel_height}},
-                    {"size", {t.columns, t.rows}}};
-  }
-  // What a build of one tile alone takes from here (--pinned).
-  j["region"] = {{"box", {r.facts.box.west, r.facts.box.south, r.facts.box.east, r.facts.box.north}},
-                 {"centre", {r.facts.centre.lon, r.facts.centre.lat}},
-                 {"coverage", Json::array()}};
-  for (const model::Point2 p : r.facts.coverage) j["region"]["coverage"].push_back({p.x, p.y});
-  j["region"]["areas"] = Json::array();
-  for (const attributes::PinnedArea& area : r.facts.areas) {
-    Json rings = Json::array();
-    for (const auto& ring : area.rings) {
-      Json numbers = Json::array();  // 1e-7 degrees: longitude, latitude, longitude, ...
-      for (const model::Location p : ring) {
-        numbers.push_back(p.lon);
-        numbers.push_back(p.lat);
-      }
-      rings.push_back(std::move(numbers));
-    }
-    j["region"]["areas"].push_back({{"question", area.question}, {"value", area.value}, {"id", area.id.text()}, {"rings", std::move(rings)}});
-  }
-  const footprints::RepairTotals& m = r.repair;
-  j["repair"] = {{"outlines", m.outlines},
-                 {"rows", m.rows},
-                 {"buildings_at_cuts", m.at_cuts},
-                 {"vertices", m.vertices},
-                 {"vertices_moved", m.moved},
-                 {"mean_shift_m", rounded(m.mean_shift, 1000)},
-                 {"max_shift_m", rounded(m.max_shift, 1000)},
-                 {"outlines_squared", m.squared},
-                 {"outlines_area_changed", m.area_changed},
-                 {"median_area_change", rounded(m.median_area_change, 1e6)},
-                 {"max_area_change", rounded(m.max_area_change, 1e6)},
-                 {"shared_walls", m.shared_walls},
-                 {"party_wall_length_m", rounded(m.party_wall_length)},
-                 {"gaps_closed", m.gaps_closed},
-                 {"overlaps_resolved", m.overlaps_resolved},
-                 {"outlines_with_overlap_left", m.overlaps_left},
-                 {"arcs", m.arcs}};
-  const BuildSummary& s = r.summary;
-  j["counts"] = {{"buildings_in", s.buildings_in},
-                 {"parts_in", s.parts_in},
-                 {"models", s.models},
-                 // Represented by its parts or by the object it duplicates.
-                 {"represented", s.represented + s.duplicates},
-                 {"reported", s.reported},
-                 {"represented_as_duplicates", s.duplicates},
-                 {"models_lod0", s.models_by_lod[0]},
-                 {"models_lod1", s.models_by_lod[1]},
-                 {"models_lod2", s.models_by_lod[2]},
-                 {"models_lod3", s.models_by_lod[3]},
-                 // What every format holds, to the last one.
-                 {"buildings", r.statistics.buildings},
-                 {"bodies", r.statistics.bodies},
-                 {"solids_lod1", r.statistics.solids_lod1},
-                 {"solids_lod2", r.statistics.solids_lod2},
-                 {"solids_lod3", r.statistics.solids_lod3},
-                 {"windows", r.statistics.windows},
-                 {"doors", r.statistics.doors},
-                 {"placements", r.statistics.placements},
-                 {"installations", r.statistics.installations},
-                 {"old_style_multipolygons", r.counts.old_style_multipolygons},
-                 {"areas_with_holes", r.counts.areas_with_holes},
-                 {"missing_nodes", r.counts.missing_nodes},
-                 {"missing_ways", r.counts.missing_ways}};
+  j["crs"] = crs_json(r);
+  if (r.terrain) j["terrain"] = terrain_json(*r.terrain);
+  j["region"] = region_json(r.facts);
+  j["repair"] = repair_json(r.repair);
+  j["counts"] = counts_json(r);
   j["issues"] = Json::object();
-  for (const auto& [code, count] : s.issues) j["issues"][code] = count;
-  const outputs::Statistics& t = r.statistics;
-  j["statistics"] = {{"footprint_area_m2", rounded(t.footprint_area)},
-                     {"volume_m3", rounded(t.volume)},
-                     {"outer_wall_area_m2", rounded(t.outer_wall_area)},
-                     {"party_walls", t.party_walls},
-                     {"party_wall_length_m", rounded(t.party_wall_length)},
-                     {"party_wall_area_m2", rounded(t.party_wall_area)}};
-  j["statistics"]["edges"] = Json::object();
-  for (std::size_t k = 0; k < t.edges.size(); ++k)
-    if (t.edges[k] > 0)
-      j["statistics"]["edges"][model::name(static_cast<model::EdgeKind>(k))] = {{"stretches", t.edges[k]},
-                                                                                 {"length_m", rounded(t.edge_length[k])}};
-  j["statistics"]["positions"] = Json::object();
-  for (std::size_t k = 0; k < t.positions.size(); ++k)
-    if (t.positions[k] > 0)
-      j["statistics"]["positions"][model::name(static_cast<model::BuildingPosition>(k))] = t.positions[k];
-  j["statistics"]["roofs"] = Json::object();
-  for (const auto& [shape, count] : t.roofs) j["statistics"]["roofs"][shape] = count;
-  const masses::Roofscape& roofs = t.roofscape;
-  j["statistics"]["roofscape"] = {{"mid_row", roofs.mid_row},
-                                  {"eaves_to_street", roofs.eaves_to_street},
-                                  {"with_rear", roofs.with_rear},
-                                  {"eaves_to_rear", roofs.eaves_to_rear},
-                                  {"corner_houses", roofs.corner_houses},
-                                  {"corner_houses_turned", roofs.turned},
-                                  {"eaves_at_party_walls", roofs.party_eaves},
-                                  {"eaves_at_party_walls_as_mapped", roofs.party_eaves_mapped},
-                                  {"eaves_at_party_walls_m", rounded(roofs.party_eaves_length)},
-                                  {"slopes_that_should_meet", roofs.meetings},
-                                  {"slopes_apart", roofs.apart},
-                                  {"slopes_apart_most_m", roofs.widest}};
-  j["statistics"]["sources"] = Json::object();
-  for (const auto& [attribute, sources] : t.sources) {
-    Json& row = j["statistics"]["sources"][attribute] = Json::object();
-    for (const auto& [source, count] : sources) row[source] = count;
-  }
+  for (const auto& [code, count] : r.summary.issues) j["issues"][code] = count;
+  j["statistics"] = statistics_json(r.statistics);
   j["files"] = Json::object();
   for (const base::PublishedFile& f : r.files) j["files"][f.path] = {{"bytes", f.bytes}, {"sha256", f.sha256}};
   return j.dump(1) + "\n";

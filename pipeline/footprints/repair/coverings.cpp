@@ -48,7 +48,8 @@ double area_of(const RowBuilding& b) {
   return area;
 }
 
-/// Buildings by the cells of a grid that their boxes meet; the few that meet very many are asked each time.
+/// Buildings by the cells of a grid that their boxes meet. No BoxIndex: it grows while it is asked. The few that meet
+/// very many are asked each time.
 class ExtentGrid {
  public:
   void add(std::uint32_t building, const Extent& e) {

@@ -31,7 +31,7 @@ std::string lower(std::string_view text) {
 
 bool is_piece(std::string_view name) { return lower(name).ends_with(".wrl"); }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -90,7 +90,7 @@ class Translation {
     if (!undefined_.empty()) body += "\n";
     for (const std::string& piece : pieces_)
       body += fmt::format("{} --> s('1, '1, pieceDepth({})) i({}) scaleUV(0, 1 / uvRight, 1 / uvUp)\n",
-                          identifier(piece), quoted(piece), quoted(piece));
+                          identifier(piece), in_quotes(piece), in_quotes(piece));
     return {header() + body, std::move(notes_)};
   }
 
@@ -122,7 +122,7 @@ class Translation {
       const char* end = setting.value.data() + setting.value.size();
       const auto read = std::from_chars(setting.value.data(), end, value);
       const bool number = read.ec == std::errc{} && read.ptr == end && std::isfinite(value);
-      variables_[key] = {setting.name, number ? base::shortest(value) : quoted(setting.value), number};
+      variables_[key] = {setting.name, number ? base::shortest(value) : in_quotes(setting.value), number};
     }
     for (const FacadeRule& rule : rules_.rules)
       for (const FacadeRuleBranch& branch : rule.branches) collect_branch(branch);
@@ -269,8 +269,8 @@ class Translation {
       steps += fmt::format("t({}, {}, {}) ", base::shortest((*symbol.translate)[0]),
                            base::shortest((*symbol.translate)[1]), base::shortest((*symbol.translate)[2]));
     if (scale[2] != 1) steps += fmt::format("set(depthScale, depthScale * {}) ", base::shortest(scale[2]));
-    if (!symbol.depth_scale.empty()) steps += fmt::format("set(zScale, {}) ", quoted(symbol.depth_scale));
-    if (!symbol.texture.empty()) steps += fmt::format("texture({}) ", quoted(symbol.texture));
+    if (!symbol.depth_scale.empty()) steps += fmt::format("set(zScale, {}) ", in_quotes(symbol.depth_scale));
+    if (!symbol.texture.empty()) steps += fmt::format("texture({}) ", in_quotes(symbol.texture));
     // (1, 1) means inherited (§4.8).
     if (symbol.uv && *symbol.uv != std::array<double, 2>{1, 1})
       steps += fmt::format("set(uvRight, {}) set(uvUp, {}) ", base::shortest((*symbol.uv)[0]),

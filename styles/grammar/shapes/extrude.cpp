@@ -49,6 +49,33 @@ std::vector<Vector3> vertex_ways(const Mesh& mesh) {
   return out;
 }
 
+/// Least and most of the vertices of faces along a direction.
+std::pair<double, double> extent_along(const Mesh& mesh, Vector3 direction) {
+  double low = 1e300, high = -1e300;
+  for (const MeshFace& face : mesh.faces)
+    for (const Loop& loop : face.loops)
+      for (const Corner c : loop) {
+        low = std::min(low, dot(direction, mesh.vertices[c.vertex]));
+        high = std::max(high, dot(direction, mesh.vertices[c.vertex]));
+      }
+  return {low, high};
+}
+
+/// Sides on edges that one face has, in the order of the faces.
+std::vector<EdgeSide> border_of(const std::vector<EdgeSide>& sides) {
+  std::vector<EdgeSide> border;
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i;
+    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
+    if (end - i == 1) border.push_back(sides[i]);
+    i = end;
+  }
+  std::sort(border.begin(), border.end(), [](const EdgeSide& a, const EdgeSide& b) {
+    return std::tie(a.face, a.loop, a.corner) < std::tie(b.face, b.loop, b.corner);
+  });
+  return border;
+}
+
 }  // namespace
 
 void extrude(Shape& shape, ExtrudeWay way, double distance) {
@@ -73,13 +100,7 @@ void extrude(Shape& shape, ExtrudeWay way, double distance) {
   }
   double flat_level = 0;
   if (way == ExtrudeWay::flat_top) {
-    double low = 1e300, high = -1e300;
-    for (const MeshFace& face : old.faces)
-      for (const Loop& loop : face.loops)
-        for (const Corner c : loop) {
-          low = std::min(low, dot(up, old.vertices[c.vertex]));
-          high = std::max(high, dot(up, old.vertices[c.vertex]));
-        }
+    const auto [low, high] = extent_along(old, up);
     // From the lowest vertex upwards, from the highest downwards; never inside the face's own extent.
     flat_level = distance >= 0 ? std::max(low + distance, high) : std::min(high + distance, low);
     if (flat_level == low && flat_level == high) return;
@@ -116,7 +137,6 @@ void extrude(Shape& shape, ExtrudeWay way, double distance) {
     solid.tag_sets = base.tag_sets;
     solid.vertices = base.vertices;
     solid.vertices.insert(solid.vertices.end(), moved.begin(), moved.end());
-    const auto sides = edge_sides(base);
     const std::size_t count = base.faces.size();
     for (auto& set : base.uv)
       if (!set.empty()) set.resize(count);
@@ -143,18 +163,7 @@ void extrude(Shape& shape, ExtrudeWay way, double distance) {
         for (std::size_t s = 0; s < uv.size(); ++s)
           if (!base.uv[s].empty()) solid.uv[s].push_back(std::move(uv[s]));
       }
-    // Sides on edges that one face has, in the order of the faces.
-    std::vector<EdgeSide> border;
-    for (std::size_t i = 0; i < sides.size();) {
-      std::size_t end = i;
-      while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
-      if (end - i == 1) border.push_back(sides[i]);
-      i = end;
-    }
-    std::sort(border.begin(), border.end(), [](const EdgeSide& a, const EdgeSide& b) {
-      return std::tie(a.face, a.loop, a.corner) < std::tie(b.face, b.loop, b.corner);
-    });
-    for (const EdgeSide& side : border) {
+    for (const EdgeSide& side : border_of(edge_sides(base))) {
       const std::uint32_t a = side.forward ? side.low : side.high, b = side.forward ? side.high : side.low;
       const MeshFace& face = base.faces[side.face];
       MeshFace wall;

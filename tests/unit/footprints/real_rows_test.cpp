@@ -64,7 +64,7 @@ Judged judge(const RepairedExtract& repaired, const repair::RepairOptions& optio
     }
   }
   std::set<std::uint32_t> reported;
-  for (const auto& [a, b] : FootprintIndex(store).pairs(0)) {
+  for (const auto& [a, b] : index_of(store).pairs(0)) {
     if (!repair::same_level(store[a].level, store[b].level)) continue;
     const double common = geometry::common_area(store.polygons(a), store.polygons(b));
     if (common <= options.min_overlap_area) continue;

@@ -41,11 +41,11 @@ TEST(FootprintStore, GivesBackWhatItGot) {
   EXPECT_EQ(store[1].box.maximum, (Point2{30, 30}));
 }
 
-TEST(FootprintIndex, PairsAreThoseWhoseBoxesAreNear) {
+TEST(IndexOfFootprints, PairsAreThoseWhoseBoxesAreNear) {
   // Cells are 64 m: neighbours across their lines, and across a corner of four.
   const FootprintStore store = store_of({box(0, 0, 63.8, 63.8), box(64.2, 0, 10, 10), box(64.2, 64.2, 10, 10),
                                          box(0, 64.2, 10, 10), box(-10.3, -10.3, 10, 10), box(40, 66, 5, 5)});
-  const FootprintIndex index(store);
+  const BoxIndex index = index_of(store);
   EXPECT_THAT(index.pairs(1), ElementsAre(std::pair(0u, 1u), std::pair(0u, 2u), std::pair(0u, 3u), std::pair(0u, 4u)));
   EXPECT_TRUE(index.pairs(0.1).empty());
   EXPECT_THAT(index.near(store[2].box, 1), ElementsAre(0u, 2u));

@@ -75,7 +75,7 @@ PlanShape shape_of(const footprints::FootprintStore& store, const std::vector<st
 }
 
 std::vector<SurveyMatch> match_survey(const footprints::FootprintStore& mapped, const std::vector<SurveyedBuilding>& survey) {
-  const footprints::FootprintIndex index(mapped);
+  const geometry::BoxIndex index = footprints::index_of(mapped);
   const std::size_t n = survey.size();
   Groups groups(n + mapped.size());
   std::vector<bool> linked(n + mapped.size(), false);
