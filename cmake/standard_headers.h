@@ -1,6 +1,8 @@
 // What nearly every source includes, compiled once (cmake/BlockrandTargets.cmake).
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,5 +23,3 @@
 #include <utility>
 #include <variant>
 #include <vector>
-
-#include <fmt/format.h>

@@ -193,9 +193,12 @@ void OsmFile::for_each(osmium::osm_entity_bits::type type, const Visit& visit, c
   } catch (const osmium::xml_error& error) {
     // expat's text without its place, which stands where all places stand.
     std::string what = error.what();
-    if (const std::size_t place = what.find(" at line "); place != std::string::npos && what.find(": ", place) != std::string::npos)
+    if (const std::size_t place = what.find(" at line ");
+        place != std::string::npos && what.find(": ", place) != std::string::npos)
       what.erase(place, what.find(": ", place) - place);
-    throw base::InputError(path_, error.line > 0 ? "line " + std::to_string(error.line) + ", column " + std::to_string(error.column) : "", what, kFetchAgain);
+    throw base::InputError(
+        path_, error.line > 0 ? "line " + std::to_string(error.line) + ", column " + std::to_string(error.column) : "",
+        what, kFetchAgain);
   } catch (const osmium::io_error& error) {
     throw unreadable(error);
   } catch (const osmium::invalid_location& error) {

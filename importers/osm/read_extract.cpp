@@ -138,7 +138,8 @@ class ExtractWriter {
     if (b.rings.count == 0)
       // What spans half the globe crosses 180 degrees: its middle is not there.
       if (const Box box = box_of(accounts, account); !box.empty() && box.east - box.west < 1'800'000'000)
-        b.place = model::Location{static_cast<std::int32_t>((box.west + box.east) / 2), static_cast<std::int32_t>((box.south + box.north) / 2)};
+        b.place = model::Location{static_cast<std::int32_t>((box.west + box.east) / 2),
+                                  static_cast<std::int32_t>((box.south + box.north) / 2)};
     b.tags = write_tags(account.id, *account.raw, account.tags_also_from);
     // `pairs_` holds the tags just written.
     b.attributes = read_attributes(b.id, b.kind, pairs_, out_.strings, out_.report);

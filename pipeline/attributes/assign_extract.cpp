@@ -386,7 +386,8 @@ districts::Assignment DistrictAssigner::assign(std::uint32_t building, model::Bu
   if (preset == districts::Decision::kNone) return a;
   districts::Decision& d = a.decision;
   if (d.preset != districts::Decision::kNone && d.preset != preset)
-    a.other_candidates.insert(a.other_candidates.begin(), {d.source, d.confidence, impl_->book.presets[d.preset].name, std::move(a.why)});
+    a.other_candidates.insert(a.other_candidates.begin(),
+                              {d.source, d.confidence, impl_->book.presets[d.preset].name, std::move(a.why)});
   Impl::order(d, preset);
   a.why = std::move(place);
   return a;

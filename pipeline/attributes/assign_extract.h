@@ -7,19 +7,19 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/base/progress.h"
-#include "pipeline/context/tagged_neighbours.h"
+#include "pipeline/attributes/area_set.h"
 #include "pipeline/attributes/defaults.h"
 #include "pipeline/attributes/overrides.h"
-#include "pipeline/georef/projection.h"
-#include "pipeline/model/region.h"
-#include "pipeline/attributes/area_set.h"
-#include "pipeline/evidence/classify_extract.h"
+#include "pipeline/base/progress.h"
 #include "pipeline/context/context_extract.h"
+#include "pipeline/context/tagged_neighbours.h"
+#include "pipeline/context/vicinity_finder.h"
+#include "pipeline/evidence/classify_extract.h"
 #include "pipeline/footprints/footprint_store.h"
 #include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/shard.h"
-#include "pipeline/context/vicinity_finder.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/model/region.h"
 #include "styles/districts/assign.h"
 
 namespace blockrand::attributes {
@@ -76,7 +76,7 @@ void assign_region(model::Region& region, std::span<const std::uint32_t> numbers
 
 /// The answers for all buildings, by number.
 std::vector<districts::Decision> assign_extract(const DistrictAssigner& assigner,
-                                                        std::span<const model::BuildingPosition> positions, int workers,
-                                                        base::Progress& progress);
+                                                std::span<const model::BuildingPosition> positions, int workers,
+                                                base::Progress& progress);
 
 }  // namespace blockrand::attributes

@@ -34,7 +34,8 @@ std::optional<model::Colour> parse_hex(const std::string& text) {
   return model::Colour{channel[0], channel[1], channel[2]};
 }
 
-std::vector<model::Colour> palette(const TomlTable& table, std::string_view key, const std::vector<std::string>& texts) {
+std::vector<model::Colour> palette(const TomlTable& table, std::string_view key,
+                                   const std::vector<std::string>& texts) {
   std::vector<model::Colour> out;
   for (const std::string& text : texts) {
     const auto colour = parse_hex(text);
@@ -45,7 +46,8 @@ std::vector<model::Colour> palette(const TomlTable& table, std::string_view key,
   return out;
 }
 
-constexpr const char* kGroups[] = {"commercial", "industrial", "other", "outbuilding", "public", "religious", "residential"};
+constexpr const char* kGroups[] = {"commercial", "industrial", "other",      "outbuilding",
+                                   "public",     "religious",  "residential"};
 
 /// Overwrites in `use` what the table says. `like` was applied before.
 void read_use(TomlTable& table, UseDefaults& use, const Defaults& defaults) {
@@ -67,7 +69,8 @@ void read_use(TomlTable& table, UseDefaults& use, const Defaults& defaults) {
     if (!known) {
       const std::vector<std::string> names(std::begin(model::kRoofShapeNames), std::end(model::kRoofShapeNames));
       const std::string near = base::nearest(*shape, names);
-      table.fail("roof_shape", "unknown roof shape `" + *shape + "`", near.empty() ? "" : "Did you mean `" + near + "`?");
+      table.fail("roof_shape", "unknown roof shape `" + *shape + "`",
+                 near.empty() ? "" : "Did you mean `" + near + "`?");
     }
     use.roof_shape = *known;
   }

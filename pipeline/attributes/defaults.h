@@ -15,10 +15,10 @@ namespace blockrand::attributes {
 
 /// What is assumed of a building of one use. Lengths in metres, angles in degrees.
 struct UseDefaults {
-  std::string name;           ///< value of building=*, or "default"
-  std::string style;          ///< id of the style in the catalogue whose measures and colours these are; empty for none
-  double plinth = 0;          ///< m, from the ground to the ground floor
-  std::uint8_t group = 0;     ///< index into Defaults::groups
+  std::string name;        ///< value of building=*, or "default"
+  std::string style;       ///< id of the style in the catalogue whose measures and colours these are; empty for none
+  double plinth = 0;       ///< m, from the ground to the ground floor
+  std::uint8_t group = 0;  ///< index into Defaults::groups
   double storeys = 2;
   double storey_height = 3.0;
   model::RoofShape roof_shape = model::RoofShape::flat;
@@ -37,10 +37,10 @@ struct Material {
 struct Defaults {
   std::vector<std::string> groups;
   std::map<std::string, UseDefaults, std::less<>> uses;
-  UseDefaults fallback;            ///< for uses in no list
-  UseDefaults small;               ///< for plans that are too small for a house
-  double small_area = 30;          ///< m²
-  std::vector<Material> materials; ///< Face::material indexes these, in file order of names (alphabetical)
+  UseDefaults fallback;             ///< for uses in no list
+  UseDefaults small;                ///< for plans that are too small for a house
+  double small_area = 30;           ///< m²
+  std::vector<Material> materials;  ///< Face::material indexes these, in file order of names (alphabetical)
   std::map<std::string, std::uint8_t, std::less<>> material_by_value;  ///< OSM value or class name → index
 
   const UseDefaults& use(std::string_view building_value) const;

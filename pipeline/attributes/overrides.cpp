@@ -82,8 +82,8 @@ std::vector<std::string> drop_contradicted(const OverrideEntry& e, MappedAttribu
   const auto overridden = [&](const char* key) { return e.number(key) != nullptr; };
   const bool height = overridden("height") || overridden("eaves_height"), under = overridden("min_height"),
              storeys = overridden("storeys");
-  const bool roof =
-      overridden("roof_height") || overridden("roof_pitch") || overridden("eaves_height") || e.values.contains("roof_shape");
+  const bool roof = overridden("roof_height") || overridden("roof_pitch") || overridden("eaves_height") ||
+                    e.values.contains("roof_shape");
   const auto drop = [&](std::optional<float>& value, const char* tag, const std::string& why) {
     told.push_back(fmt::format("{}={:g} is left aside: {}", tag, *value, why));
     value.reset();
@@ -264,8 +264,10 @@ class Marker {
     if (!met && !stands_alone(attribute)) {
       // It could not be met: the value is that of what was stronger.
       evidence.text = found.text;
-      evidence.other_candidates.insert(evidence.other_candidates.begin(), {model::Source::override_, 1, text_of(wanted), place});
-      evidence.other_candidates.insert(evidence.other_candidates.end(), found.other_candidates.begin(), found.other_candidates.end());
+      evidence.other_candidates.insert(evidence.other_candidates.begin(),
+                                       {model::Source::override_, 1, text_of(wanted), place});
+      evidence.other_candidates.insert(evidence.other_candidates.end(), found.other_candidates.begin(),
+                                       found.other_candidates.end());
       if (sourced.source == model::Source::tag) sourced.source = model::Source::implied;
       sourced.evidence = region_.evidence.add(std::move(evidence));
       tell(entry.object, order.line,
@@ -280,7 +282,8 @@ class Marker {
       sourced.value = wanted;
     }
     // Where it acted as a tag, what else was considered lost against it.
-    evidence.other_candidates.insert(evidence.other_candidates.end(), found.other_candidates.begin(), found.other_candidates.end());
+    evidence.other_candidates.insert(evidence.other_candidates.end(), found.other_candidates.begin(),
+                                     found.other_candidates.end());
     sourced.source = model::Source::override_;
     sourced.confidence = 1;
     sourced.evidence = region_.evidence.add(std::move(evidence));

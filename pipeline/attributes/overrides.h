@@ -22,7 +22,6 @@ struct BuildingGround;
 
 namespace blockrand::attributes {
 
-
 struct OverrideValue {
   std::variant<double, std::string, model::RoofShape, model::RoofOrientation, model::Colour> value;
   int line = 0;

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/base/portable_math.h"
-#include "pipeline/base/random.h"
 #include "pipeline/attributes/roof_edges.h"
 #include "pipeline/attributes/tag_conflicts.h"
+#include "pipeline/base/portable_math.h"
+#include "pipeline/base/random.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "styles/roofs/roof_sides.h"
 
@@ -80,21 +80,22 @@ struct Resolver {
   const ResolveInputs& in;
   const GenerateOptions& options;
   const Building& building;
-  const BuildingPart* part;             ///< null when the building as a whole is resolved
-  const MappedAttributes& own;          ///< tags of the part, or of the building
-  const MappedAttributes* outline;      ///< tags of the outline when a part is resolved
+  const BuildingPart* part;         ///< null when the building as a whole is resolved
+  const MappedAttributes& own;      ///< tags of the part, or of the building
+  const MappedAttributes* outline;  ///< tags of the outline when a part is resolved
   const UseDefaults& preset;
   std::uint8_t group;
   const std::vector<model::Polygon>& plans;
   model::OsmId id;
   const context::BuildingGround& ground;
-  double rise = 0;                      ///< m: highest ground under this body above the building's lowest
-  std::optional<double> floor = {};     ///< m above the lowest ground: level of the building's ground floor, once known
+  double rise = 0;                   ///< m: highest ground under this body above the building's lowest
+  std::optional<double> floor = {};  ///< m above the lowest ground: level of the building's ground floor, once known
   std::vector<TagConflict> against_terrain = {};  ///< what tags and terrain do not agree about
-  double usual_pitch_asked = 0;         ///< degrees, of usual_height()
+  double usual_pitch_asked = 0;                   ///< degrees, of usual_height()
 
   template <class T>
-  Sourced<T> make(T value, Source source, double confidence, std::string why, std::vector<model::Candidate> other_candidates = {}) {
+  Sourced<T> make(T value, Source source, double confidence, std::string why,
+                  std::vector<model::Candidate> other_candidates = {}) {
     return {std::move(value), source, static_cast<float>(confidence),
             region.evidence.add({std::move(why), std::move(other_candidates)})};
   }
@@ -113,11 +114,16 @@ struct Resolver {
   }
   std::string_view text(base::StringId id_) const { return region.extract->strings.view(id_); }
 
-  model::Point2 place() const { return plans.empty() || plans[0].outer.points.empty() ? model::Point2{} : plans[0].outer.points[0]; }
+  model::Point2 place() const {
+    return plans.empty() || plans[0].outer.points.empty() ? model::Point2{} : plans[0].outer.points[0];
+  }
 
-  Source preset_source() const { return preset.name == "default" && preset.style.empty() ? Source::default_ : Source::preset; }
+  Source preset_source() const {
+    return preset.name == "default" && preset.style.empty() ? Source::default_ : Source::preset;
+  }
   double preset_confidence() const {
-    if (!preset.style.empty()) return std::max<double>(kDefaultConfidence, 0.6 * static_cast<double>(building.inferred.style_confidence));
+    if (!preset.style.empty())
+      return std::max<double>(kDefaultConfidence, 0.6 * static_cast<double>(building.inferred.style_confidence));
     return preset.name == "default" ? kDefaultConfidence : kPresetConfidence;
   }
   std::string preset_name() const {
@@ -140,8 +146,10 @@ struct Resolver {
     if (outline && !own.height && outline->storeys)
       choices.push_back({*outline->storeys, Source::implied, kOutlineConfidence, "the outline's storeys"});
     if (const auto& inferred_candidate = building.inferred.storeys; inferred_candidate.confidence > 0)
-      choices.push_back({static_cast<double>(inferred_candidate.value), inferred_candidate.source, static_cast<double>(inferred_candidate.confidence), inferred_candidate.why});
-    else if (const auto vote = in.neighbours.storeys(place(), group, id, options.neighbour_minimum); vote && !is_non_house())
+      choices.push_back({static_cast<double>(inferred_candidate.value), inferred_candidate.source,
+                         static_cast<double>(inferred_candidate.confidence), inferred_candidate.why});
+    else if (const auto vote = in.neighbours.storeys(place(), group, id, options.neighbour_minimum);
+             vote && !is_non_house())
       choices.push_back({vote->value, Source::neighbours, 0.3 + 0.4 * vote->share,
                          fmt::format("median of {} neighbours within {:.0f} m", vote->voices, in.neighbours.reach())});
     choices.push_back({preset.storeys, preset_source(), preset_confidence(), preset_name()});
@@ -173,37 +181,48 @@ struct Resolver {
     std::string vote_why;
     Source vote_source = Source::neighbours;
     if (inferred_candidate.confidence > 0) {
-      vote = context::NeighbourVote<RoofShape>{inferred_candidate.value, 0, static_cast<double>(inferred_candidate.confidence)};
+      vote = context::NeighbourVote<RoofShape>{inferred_candidate.value, 0,
+                                               static_cast<double>(inferred_candidate.confidence)};
       vote_why = inferred_candidate.why;
       vote_source = inferred_candidate.source;
     } else if (vote) {
-      vote_why = fmt::format("{:.0f} % of {} neighbours within {:.0f} m", 100 * vote->share, vote->voices, in.neighbours.reach());
+      vote_why = fmt::format("{:.0f} % of {} neighbours within {:.0f} m", 100 * vote->share, vote->voices,
+                             in.neighbours.reach());
     }
     const bool agreed = vote && (inferred_candidate.confidence > 0 || vote->share >= 0.5);
     if (part && !part->roof_lines.empty())
       choices.push_back({RoofShape::gabled, Source::implied, kImpliedConfidence, "ridges are mapped"});
     if ((own.roof_height && *own.roof_height < kNoRoofHeight) || (own.roof_angle && *own.roof_angle < kNoRoofAngle))
-      choices.push_back({RoofShape::flat, Source::implied, kImpliedConfidence, "the roof's tagged height or angle is 0"});
+      choices.push_back(
+          {RoofShape::flat, Source::implied, kImpliedConfidence, "the roof's tagged height or angle is 0"});
     if (own.roof_orientation || own.roof_direction || tags_speak_of_slope()) {
       // A direction alone means one slope, storeys or an angle mean two, or what sloped roof is usual here.
       const bool one_slope = own.roof_direction && !own.roof_orientation && !tags_speak_of_slope();
       const bool as_usual = agreed && vote->value != RoofShape::flat && vote->value != RoofShape::other;
-      choices.push_back({one_slope ? RoofShape::skillion : as_usual ? vote->value : RoofShape::gabled, Source::implied,
-                         kImpliedConfidence,
-                         as_usual && !one_slope ? "other roof tags speak of a slope, neighbours of this one" : "other roof tags speak of a slope"});
+      choices.push_back({one_slope  ? RoofShape::skillion
+                         : as_usual ? vote->value
+                                    : RoofShape::gabled,
+                         Source::implied, kImpliedConfidence,
+                         as_usual && !one_slope ? "other roof tags speak of a slope, neighbours of this one"
+                                                : "other roof tags speak of a slope"});
     }
     if (outline && outline->roof_shape && !has_own_height())
       choices.push_back({*outline->roof_shape, Source::implied, kOutlineConfidence, "the outline's roof"});
     if (outline && has_own_height())
-      choices.push_back({RoofShape::flat, Source::implied, kGeometryConfidence, "a part with a height and no roof tags ends flat"});
+      choices.push_back(
+          {RoofShape::flat, Source::implied, kGeometryConfidence, "a part with a height and no roof tags ends flat"});
     const bool wide = width() > preset.pitched_width;
     const auto& counted = own.storeys || !outline || has_own_height() ? own.storeys : outline->storeys;
     if (preset.roof_shape != RoofShape::flat && counted && *counted > kMostStoreysUnderRafters)
-      choices.push_back({RoofShape::flat, Source::geometry, kImpliedConfidence, fmt::format("{:g} storeys are too many for rafters", *counted)});
+      choices.push_back({RoofShape::flat, Source::geometry, kImpliedConfidence,
+                         fmt::format("{:g} storeys are too many for rafters", *counted)});
     if (preset.roof_shape != RoofShape::flat && part && roofs::is_enclosed(plan(), part->roof_edges))
-      choices.push_back({RoofShape::flat, Source::geometry, kImpliedConfidence, "neighbours stand at all sides: no side for eaves"});
+      choices.push_back(
+          {RoofShape::flat, Source::geometry, kImpliedConfidence, "neighbours stand at all sides: no side for eaves"});
     if (agreed && (vote->value == RoofShape::flat || !wide))
-      choices.push_back({vote->value, vote_source, inferred_candidate.confidence > 0 ? static_cast<double>(inferred_candidate.confidence) : 0.2 + 0.5 * vote->share,
+      choices.push_back({vote->value, vote_source,
+                         inferred_candidate.confidence > 0 ? static_cast<double>(inferred_candidate.confidence)
+                                                           : 0.2 + 0.5 * vote->share,
                          std::move(vote_why)});
     if (preset.roof_shape != RoofShape::flat && wide)
       choices.push_back({RoofShape::flat, Source::geometry, kGeometryConfidence,
@@ -218,9 +237,10 @@ struct Resolver {
     if (shape != RoofShape::flat && !own.roof_direction && part && plan().outer.size() >= 3) {
       if (const auto axis = roofs::row_axis(plan(), tagged_request(own, shape, part->roof_edges))) {
         const model::Point2 longer = geometry::long_axis(plan().outer.points);
-        const bool across = std::fabs(axis->x * longer.x + axis->y * longer.y) < std::fabs(axis->x * longer.y - axis->y * longer.x);
-        choices.push_back({across ? RoofOrientation::across : RoofOrientation::along, Source::geometry, kPartyWallConfidence,
-                           "the ridge follows the row"});
+        const bool across =
+            std::fabs(axis->x * longer.x + axis->y * longer.y) < std::fabs(axis->x * longer.y - axis->y * longer.x);
+        choices.push_back({across ? RoofOrientation::across : RoofOrientation::along, Source::geometry,
+                           kPartyWallConfidence, "the ridge follows the row"});
       }
     }
     choices.push_back({RoofOrientation::along, Source::default_, kDefaultConfidence, "along the longer side"});
@@ -230,9 +250,11 @@ struct Resolver {
   Sourced<double> roof_height(RoofShape shape, RoofOrientation orientation, double storey_height) {
     if (shape == RoofShape::flat) return make<double>(0, Source::implied, kImpliedConfidence, "flat roof");
     std::vector<Choice<double>> choices;
-    if (const auto tagged = useful_roof_height(own, shape)) choices.push_back({*tagged, Source::tag, kTagConfidence, "tagged"});
+    if (const auto tagged = useful_roof_height(own, shape))
+      choices.push_back({*tagged, Source::tag, kTagConfidence, "tagged"});
     if (const auto given = height_of_angle(own, shape, plan(), row()))
-      choices.push_back({*given, Source::implied, kImpliedConfidence, fmt::format("a tagged pitch of {:g} degrees", *own.roof_angle)});
+      choices.push_back({*given, Source::implied, kImpliedConfidence,
+                         fmt::format("a tagged pitch of {:g} degrees", *own.roof_angle)});
     if (own.roof_storeys && *own.roof_storeys > 0)
       choices.push_back({*own.roof_storeys * storey_height, Source::implied, kImpliedConfidence,
                          fmt::format("{:g} tagged storeys in the roof", *own.roof_storeys)});
@@ -244,16 +266,19 @@ struct Resolver {
   Choice<double> usual_height(RoofShape shape, RoofOrientation orientation) {
     roofs::RoofRequest request = tagged_request(own, shape, row());
     request.across = orientation == RoofOrientation::across;
-    const roofs::MainSlope slope = plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
+    const roofs::MainSlope slope =
+        plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
     const auto* edges = model::constructed_as<model::EdgeRoof>(shape);
     if (edges && edges->eaves == model::EavesProfile::berlin)
-      return {slope.run, preset_source(), preset_confidence(), "60 degrees to the street, 8 to the yard, a knee wall there"};
+      return {slope.run, preset_source(), preset_confidence(),
+              "60 degrees to the street, 8 to the yard, a knee wall there"};
     if (edges && edges->eaves == model::EavesProfile::broken) {
       const double run = roofs::main_slope(plan(), request, false).run, attic = attic_height(preset.storey_height);
       // Below an attic's height there is no storey in it: the pitch alone counts.
       if (run * roofs::kMansardSteep > 2 * attic)
-        return {roofs::mansard_height(run, attic), preset_source(), preset_confidence(),
-                fmt::format("an attic storey of {:.1f} m behind 68 degrees, 26 above, over a run of {:.1f} m", attic, run)};
+        return {
+            roofs::mansard_height(run, attic), preset_source(), preset_confidence(),
+            fmt::format("an attic storey of {:.1f} m behind 68 degrees, 26 above, over a run of {:.1f} m", attic, run)};
     }
     double pitch = std::min(usual_pitch(shape, preset.roof_pitch), options.max_roof_pitch);
     if (slope.leans && pitch <= preset.roof_pitch) pitch = std::min(pitch, kLeanPitch);
@@ -277,7 +302,8 @@ struct Resolver {
     double roof = wanted;
     std::string why = "what height and storeys leave";
     if (useful_roof_height(own, a.roof_shape.value)) {
-      if (wanted <= whole + kNoRoofHeight) return;  // the part may be all roof; walls take their minimum when it is built
+      if (wanted <= whole + kNoRoofHeight)
+        return;  // the part may be all roof; walls take their minimum when it is built
       roof = whole;
       why = "what the height leaves";
     } else {
@@ -321,14 +347,22 @@ struct Resolver {
     if (why.empty() && terrain) {
       why = ground.entrance_reason;
       if (height > ground.entrance) why = "so that the ground floor does not lie below the terrain";
-      if (leaves_common_floor()) why = fmt::format("highest ground under this part; the building's ground floor lies {:.1f} m higher", *floor - rise);
+      if (leaves_common_floor())
+        why = fmt::format("highest ground under this part; the building's ground floor lies {:.1f} m higher",
+                          *floor - rise);
       if (floor && height == *floor && part) why = "the building's ground floor; " + why;
     }
     const bool usual = preset.plinth > 0 && height > 0;
     if (usual && terrain) why += fmt::format("; {:.1f} m up to the ground floor, {}", preset.plinth, preset_name());
     if (!terrain) why = usual ? "no terrain; " + preset_name() : "no terrain";
-    a.plinth_height = make<double>(height, terrain ? Source::terrain : usual ? Source::preset : Source::default_,
-                                   terrain ? kPlinthConfidence : usual ? preset_confidence() : kDefaultConfidence, std::move(why));
+    a.plinth_height = make<double>(height,
+                                   terrain ? Source::terrain
+                                   : usual ? Source::preset
+                                           : Source::default_,
+                                   terrain ? kPlinthConfidence
+                                   : usual ? preset_confidence()
+                                           : kDefaultConfidence,
+                                   std::move(why));
   }
 
   /// What remains of a body under its roof. One that is all roof has its storeys in there.
@@ -362,19 +396,22 @@ struct Resolver {
     const double counted = storeys_known ? a.storeys.value : 0;
     if (a.roof_shape.value != RoofShape::flat) {
       const double least = std::max(counted, 1.0) * kLowestStorey;
-      const double beside = in_terrain ? std::clamp(a.height.value - a.roof_height.value * 2 / 3 - least, 0.0, wished_plinth()) : 0;
+      const double beside =
+          in_terrain ? std::clamp(a.height.value - a.roof_height.value * 2 / 3 - least, 0.0, wished_plinth()) : 0;
       fit_roof_height(a, storeys_known, beside, in_terrain && context::stands_on_ground(own) ? rise : 0);
     }
     const double above = std::max(a.height.value - a.roof_height.value, 0.0);
     const double plinth = in_terrain ? fitted_plinth(inhabited(a.height.value, a.roof_height.value), counted) : 0;
     const double walls = std::max(above - plinth, 0.0);
     if (counted > 0) {
-      a.storey_height = first<double>({{walls / a.storeys.value, Source::implied, kImpliedConfidence, "height over storeys"},
-                                       {preset.storey_height, preset_source(), preset_confidence(), preset_name()}});
+      a.storey_height =
+          first<double>({{walls / a.storeys.value, Source::implied, kImpliedConfidence, "height over storeys"},
+                         {preset.storey_height, preset_source(), preset_confidence(), preset_name()}});
     } else {
       double whole = std::max(1.0, std::floor(walls / preset.storey_height + 0.5));
       while (whole > 1 && in_terrain && context::stands_on_ground(own) && plinth + walls / whole < rise) --whole;
-      a.storeys = make<double>(whole, Source::implied, 0.6, fmt::format("{:.1f} m of wall at {:.1f} m a storey", walls, preset.storey_height),
+      a.storeys = make<double>(whole, Source::implied, 0.6,
+                               fmt::format("{:.1f} m of wall at {:.1f} m a storey", walls, preset.storey_height),
                                {{a.storeys.source, a.storeys.confidence, text_of(a.storeys.value),
                                  region.evidence[a.storeys.evidence].text}});
       a.storey_height = first<double>({{walls / whole, Source::implied, 0.6, "height over storeys"},
@@ -383,14 +420,17 @@ struct Resolver {
     if (!in_terrain) return;
     const double wished = wished_plinth();
     set_plinth(a, plinth,
-               plinth < wished ? fmt::format("{:.1f} m wished, less so that storeys fit below the tagged height", wished) : "");
+               plinth < wished
+                   ? fmt::format("{:.1f} m wished, less so that storeys fit below the tagged height", wished)
+                   : "");
   }
 
   /// A tagged height against the terrain.
   void tagged_height(Attributes& a, bool storeys_known) {
     const auto measured = useful_roof_height(own, a.roof_shape.value);
     const double least_roof = a.roof_shape.value == RoofShape::flat ? 0 : measured ? *measured : 0.1 * a.height.value;
-    if (rise <= 0 || !context::stands_on_ground(own) || leaves_storeys(a.height.value, least_roof, storeys_known ? a.storeys.value : 0)) {
+    if (rise <= 0 || !context::stands_on_ground(own) ||
+        leaves_storeys(a.height.value, least_roof, storeys_known ? a.storeys.value : 0)) {
       divide_height(a, storeys_known, true);
       return;
     }
@@ -398,12 +438,16 @@ struct Resolver {
     divide_height(a, storeys_known, false);
     const double plinth = std::max(wished_plinth(), rise - a.storey_height.value);
     set_plinth(a, plinth);
-    std::string why = fmt::format("{:g} m as tagged, from the ground floor: the terrain rises by {:.1f} m under it", tagged.value, rise);
-    a.height = make<double>(tagged.value + plinth, Source::implied, kImpliedConfidence, std::move(why),
-                            {{tagged.source, tagged.confidence, text_of(tagged.value), region.evidence[tagged.evidence].text}});
-    against_terrain.push_back({model::IssueCode::values_conflict,
-                               fmt::format("height={:g} leaves no storey above terrain that rises by {:.1f} m: measured from the ground floor",
-                                           tagged.value, rise)});
+    std::string why = fmt::format("{:g} m as tagged, from the ground floor: the terrain rises by {:.1f} m under it",
+                                  tagged.value, rise);
+    a.height = make<double>(
+        tagged.value + plinth, Source::implied, kImpliedConfidence, std::move(why),
+        {{tagged.source, tagged.confidence, text_of(tagged.value), region.evidence[tagged.evidence].text}});
+    against_terrain.push_back(
+        {model::IssueCode::values_conflict,
+         fmt::format(
+             "height={:g} leaves no storey above terrain that rises by {:.1f} m: measured from the ground floor",
+             tagged.value, rise)});
   }
 
   /// Storeys, heights, plinth and roof, which hang together.
@@ -415,19 +459,22 @@ struct Resolver {
     a.roof_storeys = own.roof_storeys ? make<double>(*own.roof_storeys, Source::tag, kTagConfidence, "tagged")
                                       : make<double>(0, Source::default_, kDefaultConfidence, "none tagged");
     a.roof_height = roof_height(a.roof_shape.value, a.roof_orientation.value, std::min(preset.storey_height, 3.0));
-    const MappedAttributes* height_from = own.height ? &own : outline && !has_own_height() && outline->height ? outline : nullptr;
+    const MappedAttributes* height_from = own.height                                        ? &own
+                                          : outline && !has_own_height() && outline->height ? outline
+                                                                                            : nullptr;
     if (height_from) {
       const Choice<double> from_storeys{wished_plinth() + a.storeys.value * a.storey_height.value + a.roof_height.value,
-                                        a.storeys.source, a.storeys.confidence,
-                                        height_in_words(wished_plinth(), a)};
+                                        a.storeys.source, a.storeys.confidence, height_in_words(wished_plinth(), a)};
       a.height = height_from == &own
                      ? first<double>({{*own.height, Source::tag, kTagConfidence, "tagged"}, from_storeys})
-                     : first<double>({{*outline->height, Source::implied, kOutlineConfidence, "the outline's height"}, from_storeys});
+                     : first<double>({{*outline->height, Source::implied, kOutlineConfidence, "the outline's height"},
+                                      from_storeys});
       tagged_height(a, a.storeys.source == Source::tag || a.storeys.source == Source::implied);
     } else {
-      const double plinth = wished_plinth() + a.storey_height.value < rise && context::stands_on_ground(own) && !is_canopy()
-                                ? rise - a.storey_height.value
-                                : wished_plinth();
+      const double plinth =
+          wished_plinth() + a.storey_height.value < rise && context::stands_on_ground(own) && !is_canopy()
+              ? rise - a.storey_height.value
+              : wished_plinth();
       set_plinth(a, plinth);
       double walls = a.storeys.value * a.storey_height.value;
       // On a flat roof the tagged roof storeys stand as a set-back upper floor; until set-backs are built they add to
@@ -438,11 +485,13 @@ struct Resolver {
       const bool from_tags = a.storeys.source == Source::tag;
       std::string why = height_in_words(plinth, a);
       // Assumed storeys stand above the tagged underside, at least one of them; of a canopy, its slab.
-      const double under = own.min_height.value_or(own.min_storey.value_or(0) > 0 ? plinth + *own.min_storey * a.storey_height.value : 0);
+      const double under = own.min_height.value_or(
+          own.min_storey.value_or(0) > 0 ? plinth + *own.min_storey * a.storey_height.value : 0);
       const double least = is_canopy() ? options.canopy_thickness : a.storey_height.value;
       if (!own.storeys && under > 0 && walls < under + least) {
         walls = under + least;
-        why = fmt::format("{:.1f} m above an underside at {:.1f} m, and a roof of {:.1f} m", least, under, a.roof_height.value);
+        why = fmt::format("{:.1f} m above an underside at {:.1f} m, and a roof of {:.1f} m", least, under,
+                          a.roof_height.value);
       }
       a.height = make<double>(walls + a.roof_height.value, from_tags ? Source::implied : a.storeys.source,
                               from_tags ? 0.6 : a.storeys.confidence, std::move(why));
@@ -451,8 +500,8 @@ struct Resolver {
     if (own.min_height) {
       a.min_height = make<double>(*own.min_height, Source::tag, kTagConfidence, "tagged");
     } else if (own.min_storey && *own.min_storey > 0) {
-      a.min_height = make<double>(a.plinth_height.value + *own.min_storey * a.storey_height.value, Source::implied, kImpliedConfidence,
-                                  fmt::format("{:g} storeys skipped", *own.min_storey));
+      a.min_height = make<double>(a.plinth_height.value + *own.min_storey * a.storey_height.value, Source::implied,
+                                  kImpliedConfidence, fmt::format("{:g} storeys skipped", *own.min_storey));
     } else {
       a.min_height = make<double>(0, Source::default_, 0.9, "stands on the ground");
     }
@@ -460,30 +509,35 @@ struct Resolver {
 
   std::string height_in_words(double plinth, const Attributes& a) const {
     const std::string below = plinth > 0 ? fmt::format("a plinth of {:.1f} m, ", plinth) : std::string();
-    return below + fmt::format("{:g} storeys of {:.1f} m and a roof of {:.1f} m", a.storeys.value, a.storey_height.value,
-                               a.roof_height.value);
+    return below + fmt::format("{:g} storeys of {:.1f} m and a roof of {:.1f} m", a.storeys.value,
+                               a.storey_height.value, a.roof_height.value);
   }
 
   template <class Pick>
-  Sourced<Colour> colour(std::optional<Colour> tagged, std::optional<Colour> outline_tagged, const Sourced<std::string>& material,
-                         const std::vector<Colour>& palette, const char* choice, Pick&& preset_applies) {
+  Sourced<Colour> colour(std::optional<Colour> tagged, std::optional<Colour> outline_tagged,
+                         const Sourced<std::string>& material, const std::vector<Colour>& palette, const char* choice,
+                         Pick&& preset_applies) {
     std::vector<Choice<Colour>> choices;
     if (tagged) choices.push_back({*tagged, Source::tag, kTagConfidence, "tagged"});
-    if (outline_tagged) choices.push_back({*outline_tagged, Source::implied, kOutlineConfidence, "the outline's colour"});
+    if (outline_tagged)
+      choices.push_back({*outline_tagged, Source::implied, kOutlineConfidence, "the outline's colour"});
     const int index = in.defaults.material(material.value);
     if (!preset_applies() && index >= 0)
-      choices.push_back({in.defaults.materials[static_cast<std::size_t>(index)].colour, Source::implied, 0.5, "colour of " + material.value});
+      choices.push_back({in.defaults.materials[static_cast<std::size_t>(index)].colour, Source::implied, 0.5,
+                         "colour of " + material.value});
     // All parts of a building are painted alike: the key is the building's.
     const std::uint64_t bits = base::random_bits(in.seed, building.osm.key(), choice);
-    choices.push_back({palette[bits % palette.size()], preset_source(), kDefaultConfidence, "drawn from the palette, " + preset_name()});
+    choices.push_back({palette[bits % palette.size()], preset_source(), kDefaultConfidence,
+                       "drawn from the palette, " + preset_name()});
     return first(std::move(choices));
   }
 
-  Sourced<std::string> material(base::StringId tagged, base::StringId outline_tagged, const std::string& preset_material) {
-    const auto known = [&](base::StringId value) -> int {
-      return value == 0 ? -1 : in.defaults.material(text(value));
+  Sourced<std::string> material(base::StringId tagged, base::StringId outline_tagged,
+                                const std::string& preset_material) {
+    const auto known = [&](base::StringId value) -> int { return value == 0 ? -1 : in.defaults.material(text(value)); };
+    const auto class_name = [&](int index) {
+      return in.defaults.materials[static_cast<std::size_t>(index)].material_class.name;
     };
-    const auto class_name = [&](int index) { return in.defaults.materials[static_cast<std::size_t>(index)].material_class.name; };
     std::vector<Choice<std::string>> choices;
     if (const int m = known(tagged); m >= 0)
       choices.push_back({class_name(m), Source::tag, kTagConfidence, "tagged " + std::string(text(tagged))});
@@ -494,14 +548,20 @@ struct Resolver {
   }
 
   void looks(Attributes& a) {
-    const base::StringId outline_wall = outline ? outline->wall_material : 0, outline_roof = outline ? outline->roof_material : 0;
+    const base::StringId outline_wall = outline ? outline->wall_material : 0,
+                         outline_roof = outline ? outline->roof_material : 0;
     a.wall_material = material(own.wall_material, outline_wall, preset.wall_material);
     const bool flat = a.roof_shape.value == RoofShape::flat;
-    a.roof_material = material(own.roof_material, outline_roof, flat ? preset.flat_roof_material : preset.roof_material);
-    a.wall_colour = colour(own.wall_colour, outline ? outline->wall_colour : std::nullopt, a.wall_material, preset.wall_colours,
-                           "wall_colour", [&] { return a.wall_material.source != Source::tag && a.wall_material.source != Source::implied; });
-    a.roof_colour = colour(own.roof_colour, outline ? outline->roof_colour : std::nullopt, a.roof_material, preset.roof_colours,
-                           "roof_colour", [&] { return !flat && a.roof_material.source != Source::tag && a.roof_material.source != Source::implied; });
+    a.roof_material =
+        material(own.roof_material, outline_roof, flat ? preset.flat_roof_material : preset.roof_material);
+    a.wall_colour = colour(own.wall_colour, outline ? outline->wall_colour : std::nullopt, a.wall_material,
+                           preset.wall_colours, "wall_colour", [&] {
+                             return a.wall_material.source != Source::tag && a.wall_material.source != Source::implied;
+                           });
+    a.roof_colour = colour(
+        own.roof_colour, outline ? outline->roof_colour : std::nullopt, a.roof_material, preset.roof_colours,
+        "roof_colour",
+        [&] { return !flat && a.roof_material.source != Source::tag && a.roof_material.source != Source::implied; });
   }
 
   Attributes resolve(Sourced<double> lowest) {
@@ -519,8 +579,9 @@ struct Resolver {
   /// What follows from the other values: eaves, pitch, direction of the ridge.
   void derived(Attributes& a) {
     const bool weaker = a.roof_height.confidence < a.height.confidence;
-    a.eaves_height = make<double>(std::max(a.height.value - a.roof_height.value, 0.0), weaker ? a.roof_height.source : a.height.source,
-                                  std::min(a.height.confidence, a.roof_height.confidence), "height less that of the roof");
+    a.eaves_height = make<double>(
+        std::max(a.height.value - a.roof_height.value, 0.0), weaker ? a.roof_height.source : a.height.source,
+        std::min(a.height.confidence, a.roof_height.confidence), "height less that of the roof");
     if (a.roof_shape.value == RoofShape::flat) {
       a.roof_pitch = make<double>(0, a.roof_shape.source, a.roof_shape.confidence, "flat roof");
       return;
@@ -530,8 +591,10 @@ struct Resolver {
     if (const auto angle = useful_roof_angle(own, a.roof_shape.value)) {
       a.roof_pitch = make<double>(*angle, Source::tag, kTagConfidence, "tagged");
     } else {
-      const roofs::MainSlope slope = plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
-      const double pitch = slope.run > 0 ? base::atan2(a.roof_height.value * slope.rise, slope.run) / base::kRadiansPerDegree : 0;
+      const roofs::MainSlope slope =
+          plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
+      const double pitch =
+          slope.run > 0 ? base::atan2(a.roof_height.value * slope.rise, slope.run) / base::kRadiansPerDegree : 0;
       a.roof_pitch = make<double>(pitch, a.roof_height.source, a.roof_height.confidence,
                                   fmt::format("{:.1f} m over a run of {:.1f} m", a.roof_height.value, slope.run));
     }
@@ -544,7 +607,9 @@ struct Resolver {
     a.ridge_direction = make<double>(north >= 180 ? 0 : north, a.roof_orientation.source, a.roof_orientation.confidence,
                                      text(a.roof_orientation));
   }
-  std::string text(const Sourced<RoofOrientation>& orientation) const { return region.evidence[orientation.evidence].text; }
+  std::string text(const Sourced<RoofOrientation>& orientation) const {
+    return region.evidence[orientation.evidence].text;
+  }
 
   /// Whether outputs state the direction of a ridge.
   static bool has_ridge(RoofShape shape) {
@@ -575,8 +640,10 @@ bool follows_style(const Defaults& defaults, const UseDefaults& use) {
 }
 
 /// The measures and colours of the style that a building is thought to have. \param storage  holds them
-const UseDefaults& with_style(const Building& building, const ResolveInputs& in, const UseDefaults& usual, UseDefaults& storage) {
-  if (in.catalogue == nullptr || building.inferred.style_confidence <= 0 || !follows_style(in.defaults, usual)) return usual;
+const UseDefaults& with_style(const Building& building, const ResolveInputs& in, const UseDefaults& usual,
+                              UseDefaults& storage) {
+  if (in.catalogue == nullptr || building.inferred.style_confidence <= 0 || !follows_style(in.defaults, usual))
+    return usual;
   const classify::Style& style = (*in.catalogue)[building.inferred.style];
   if (style.style_class == model::StyleClass::other && !style.eaves) return usual;
   // What is no house has the measures of its kind only where its use has none.
@@ -630,7 +697,8 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
     // An outline of a few square metres that says nothing but `yes` is no house.
     const bool small = use == "yes" && !building.outline.empty() && area < in.defaults.small_area;
     UseDefaults styled, changed;
-    const UseDefaults& preset = with_overrides(entry_of_building, with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled), changed);
+    const UseDefaults& preset = with_overrides(
+        entry_of_building, with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled), changed);
     const std::uint8_t group = neighbour_group(in.defaults, use, area);
 
     std::vector<model::ReportRow> conflicts;
@@ -641,8 +709,8 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
         if (std::find(conflicts.begin(), conflicts.end(), row) == conflicts.end()) conflicts.push_back(std::move(row));
       }
     };
-    Resolver whole{region, in, options, building, nullptr, building.mapped, nullptr, preset, group, building.outline, building.osm,
-                   ground, ground.rise};
+    Resolver whole{region, in,    options,          building,     nullptr, building.mapped, nullptr,
+                   preset, group, building.outline, building.osm, ground,  ground.rise};
     const bool one_body = building.parts.size() == 1 && !building.has_mapped_parts;
     if (!one_body) building.attributes = whole.resolve(lowest);
     for (BuildingPart& part : building.parts) {
@@ -652,18 +720,29 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
       // building:part=yes says nothing; a use of its own does.
       const bool own_use = own_tags && in.defaults.uses.contains(part_use) && part_use != "yes";
       UseDefaults part_styled, part_changed;
-      const UseDefaults& part_preset = with_overrides(own_tags && in.overrides ? in.overrides->find(part.osm) : nullptr,
-                                                      own_use ? with_style(building, in, in.defaults.use(part_use), part_styled) : preset, part_changed);
+      const UseDefaults& part_preset = with_overrides(
+          own_tags && in.overrides ? in.overrides->find(part.osm) : nullptr,
+          own_use ? with_style(building, in, in.defaults.use(part_use), part_styled) : preset, part_changed);
       const std::vector<model::Polygon> plan{part.roof_plan};
-      Resolver r{region, in, options, building, &part, part.mapped,
-                 own_tags && building.osm != part.osm ? &building.mapped : nullptr, part_preset,
-                 group, plan, building.osm, ground, index < ground.part_rise.size() ? ground.part_rise[index] : ground.rise,
+      Resolver r{region,
+                 in,
+                 options,
+                 building,
+                 &part,
+                 part.mapped,
+                 own_tags && building.osm != part.osm ? &building.mapped : nullptr,
+                 part_preset,
+                 group,
+                 plan,
+                 building.osm,
+                 ground,
+                 index < ground.part_rise.size() ? ground.part_rise[index] : ground.rise,
                  one_body ? std::nullopt : std::optional(building.attributes.plinth_height.value)};
       part.attributes = r.resolve(lowest);
       const Source measured = part.attributes.roof_height.source;
       if (measured == Source::preset || measured == Source::default_) part.usual_pitch = r.usual_pitch_asked;
-      tell(part.osm, tag_conflicts(part.mapped, {part.attributes.roof_shape.value, part.roof_plan, r.preset.storey_height,
-                                                 !part.roof_lines.empty(), part.roof_edges}));
+      tell(part.osm, tag_conflicts(part.mapped, {part.attributes.roof_shape.value, part.roof_plan,
+                                                 r.preset.storey_height, !part.roof_lines.empty(), part.roof_edges}));
       tell(part.osm, std::move(r.against_terrain));
       part.canopy = part_use == "roof" || (own_tags && part_use == "yes" && use == "roof");
     }

@@ -11,11 +11,11 @@
 
 namespace blockrand::attributes {
 
-using model::WallSegmentKind;
 using model::Point2;
 using model::Polygon;
 using model::Ring;
 using model::RoofEdge;
+using model::WallSegmentKind;
 
 namespace {
 

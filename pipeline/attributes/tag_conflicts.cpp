@@ -225,7 +225,8 @@ std::optional<double> useful_roof_angle(const MappedAttributes& tags, RoofShape 
   return std::min<double>(*tags.roof_angle, is_pointed(shape) ? kSteepestSpire : kSteepestRoof);
 }
 
-roofs::RoofRequest tagged_request(const MappedAttributes& tags, RoofShape shape, const std::vector<model::RoofEdge>& edges) {
+roofs::RoofRequest tagged_request(const MappedAttributes& tags, RoofShape shape,
+                                  const std::vector<model::RoofEdge>& edges) {
   roofs::RoofRequest request;
   request.shape = shape;
   request.edges = edges;

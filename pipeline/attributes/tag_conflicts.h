@@ -52,8 +52,8 @@ inline const std::vector<model::RoofEdge> kNoRoofEdges;
 struct TaggedRoof {
   model::RoofShape shape = model::RoofShape::flat;  ///< that is asked for
   const model::Polygon& plan;
-  double storey_height = 3;  ///< m
-  bool ridges = false;       ///< roof:ridge ways lie on the plan
+  double storey_height = 3;                                  ///< m
+  bool ridges = false;                                       ///< roof:ridge ways lie on the plan
   const std::vector<model::RoofEdge>& edges = kNoRoofEdges;  ///< of the plan
 };
 

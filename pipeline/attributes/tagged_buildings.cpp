@@ -19,8 +19,7 @@ std::vector<context::TaggedBuilding> tagged_buildings(const model::Extract& extr
     context::TaggedBuilding t;
     t.id = b.id;
     t.place = ring.front();
-    t.group = neighbour_group(defaults, extract.strings.view(b.attributes.use),
-                                        std::fabs(geometry::signed_area(ring)));
+    t.group = neighbour_group(defaults, extract.strings.view(b.attributes.use), std::fabs(geometry::signed_area(ring)));
     t.storeys = b.attributes.storeys;
     t.roof_shape = b.attributes.roof_shape;
     out.push_back(t);

@@ -190,7 +190,9 @@ void check_target(const std::string& target, bool force, const FolderKind& kind)
   if (!fs::exists(fs::path(target) / kind.marker, error))
     throw UsageError(target + " is not empty and is no earlier " + kind.name + " (it has no " + kind.marker + ")" +
                      (force ? "; --force does not replace such a folder" : "") + ". Choose another output folder.");
-  if (!force) throw UsageError(target + " holds a " + kind.name + " already. Add --force to replace it, or choose another folder.");
+  if (!force)
+    throw UsageError(target + " holds a " + kind.name +
+                     " already. Add --force to replace it, or choose another folder.");
 }
 
 }  // namespace

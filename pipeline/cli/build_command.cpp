@@ -17,28 +17,28 @@
 namespace blockrand::cli {
 
 settings::CommandText build_text() {
-  return {.name = "build",
-          .summary = "an extract in; georeferenced 3D Tiles, CityGML, CityJSON and GeoPackage out",
-          .usage = "INPUT -o FOLDER [options]",
-          .description =
-              "Rebuilds the buildings of an OpenStreetMap extract in 3D: georeferenced 3D Tiles (GLB), CityGML, CityJSON "
-              "and GeoPackage, with a report. Missing heights, storeys and roofs are inferred, and every value says where "
-              "it came from.\n"
-              "The output folder appears, or is replaced, when everything in it is complete; never before.",
-          .options = settings::kBuild,
-          .examples = {{"blockrand build leipzig.osm.pbf -o out/leipzig", "everything, in all formats, with roofs (LoD 2)"},
-                       {"blockrand build berlin.osm.pbf -o out/mitte --bbox 13.37,52.51,13.41,52.53 --formats gltf",
-                        "one quarter of a city, 3D Tiles only"},
-                       {"blockrand build town.osm -o out --terrain dem.tif --terrain-height-reference EPSG:7837 --force",
-                        "on real ground, whose heights the raster does not explain, in place of an earlier build"},
-                       {"blockrand build --config town.toml --lod 1",
-                        "options from a file; blocks instead of roofs"}},
-          .exit_codes = {{"0", "all well"},
-                         {"1", "wrong usage"},
-                         {"2", "unreadable or invalid input"},
-                         {"3", "buildings below the asked quality (only with --strict)"},
-                         {"4", "output could not be written or internal error"},
-                         {"128 + N", "ended by signal N"}}};
+  return {
+      .name = "build",
+      .summary = "an extract in; georeferenced 3D Tiles, CityGML, CityJSON and GeoPackage out",
+      .usage = "INPUT -o FOLDER [options]",
+      .description =
+          "Rebuilds the buildings of an OpenStreetMap extract in 3D: georeferenced 3D Tiles (GLB), CityGML, CityJSON "
+          "and GeoPackage, with a report. Missing heights, storeys and roofs are inferred, and every value says where "
+          "it came from.\n"
+          "The output folder appears, or is replaced, when everything in it is complete; never before.",
+      .options = settings::kBuild,
+      .examples = {{"blockrand build leipzig.osm.pbf -o out/leipzig", "everything, in all formats, with roofs (LoD 2)"},
+                   {"blockrand build berlin.osm.pbf -o out/mitte --bbox 13.37,52.51,13.41,52.53 --formats gltf",
+                    "one quarter of a city, 3D Tiles only"},
+                   {"blockrand build town.osm -o out --terrain dem.tif --terrain-height-reference EPSG:7837 --force",
+                    "on real ground, whose heights the raster does not explain, in place of an earlier build"},
+                   {"blockrand build --config town.toml --lod 1", "options from a file; blocks instead of roofs"}},
+      .exit_codes = {{"0", "all well"},
+                     {"1", "wrong usage"},
+                     {"2", "unreadable or invalid input"},
+                     {"3", "buildings below the asked quality (only with --strict)"},
+                     {"4", "output could not be written or internal error"},
+                     {"128 + N", "ended by signal N"}}};
 }
 
 int run_build(const std::vector<std::string>& arguments) {

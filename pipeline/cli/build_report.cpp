@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "pipeline/base/text.h"
-#include "pipeline/outputs/output.h"
 #include "pipeline/model/issue_codes.h"
+#include "pipeline/outputs/output.h"
 
 namespace blockrand::cli {
 namespace {
@@ -52,12 +52,15 @@ std::string roofscape_rows(const masses::Roofscape& r) {
   if (r.mid_row + r.corner_houses + r.meetings + r.party_eaves == 0) return {};
   std::string text = "\nSloped roofs in rows\n";
   const auto share = [](std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? std::string("-") : fmt::format("{:.1f} %", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+    return whole == 0 ? std::string("-")
+                      : fmt::format("{:.1f} %", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
   };
   text += row("mid-row houses", r.mid_row,
-              fmt::format("eaves to the street {}, to the rear {}", share(r.eaves_to_street, r.mid_row), share(r.eaves_to_rear, r.with_rear)));
+              fmt::format("eaves to the street {}, to the rear {}", share(r.eaves_to_street, r.mid_row),
+                          share(r.eaves_to_rear, r.with_rear)));
   text += row("corner houses", r.corner_houses, fmt::format("the ridge turns in {}", share(r.turned, r.corner_houses)));
-  text += row("eaves at neighbours", r.party_eaves, fmt::format("{} of them as mapped", with_thousands(r.party_eaves_mapped)));
+  text += row("eaves at neighbours", r.party_eaves,
+              fmt::format("{} of them as mapped", with_thousands(r.party_eaves_mapped)));
   text += row("slopes that meet", r.meetings, fmt::format("{} of them more than 1 cm apart", with_thousands(r.apart)));
   return text;
 }

@@ -15,14 +15,9 @@ namespace blockrand::cli {
 
 const std::vector<Command>& commands() {
   static const std::vector<Command> all = {
-      {build_text(), run_build},
-      {explain_text(), run_explain},
-      {compare_text(), run_compare},
-      {districts_text(), run_districts},
-      {grammar_text(), run_grammar},
-      {validate_text(), run_validate},
-      {info_text(), run_info},
-      {help_text(), run_help},
+      {build_text(), run_build},         {explain_text(), run_explain}, {compare_text(), run_compare},
+      {districts_text(), run_districts}, {grammar_text(), run_grammar}, {validate_text(), run_validate},
+      {info_text(), run_info},           {help_text(), run_help},
   };
   return all;
 }

@@ -18,8 +18,9 @@ bool holds_configs(const fs::path& folder) {
 std::string configs_folder(const std::string& given, const fs::path& program) {
   if (!given.empty()) {
     if (holds_configs(given)) return given;
-    throw base::UsageError("--configs: " + given +
-                           " lacks defaults/uses.toml or materials/materials.toml. Name a folder like the program's configs/.");
+    throw base::UsageError(
+        "--configs: " + given +
+        " lacks defaults/uses.toml or materials/materials.toml. Name a folder like the program's configs/.");
   }
   const fs::path bin = program.parent_path();
   std::string tried;

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "pipeline/attributes/rule_sets.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/progress.h"
@@ -20,7 +21,6 @@
 #include "pipeline/cli/signals.h"
 #include "pipeline/cli/staged_file.h"
 #include "pipeline/run/district_survey.h"
-#include "pipeline/attributes/rule_sets.h"
 #include "pipeline/settings/command_line.h"
 #include "styles/classify/catalogue.h"
 #include "styles/districts/presets.h"
@@ -125,8 +125,8 @@ int show(Settings& s) {
   base::Progress progress(s.progress, s.log_format, s.quiet);
   const attributes::ReadRuleSets book = attributes::read_rule_sets(s.build.configs, s.build.districts);
   const auto survey = run::survey_districts(s.build, book, progress);
-  const run::DistrictView view = run::show_districts(*survey, book.book, s.map_by == "rule", folder,
-                                                           base::worker_count(s.build.jobs), progress);
+  const run::DistrictView view =
+      run::show_districts(*survey, book.book, s.map_by == "rule", folder, base::worker_count(s.build.jobs), progress);
   for (const std::string& what : view.unanswered) progress.warn(what);
   if (const std::string left = folder.publish(); !left.empty())
     progress.warn("the earlier map could not be removed: " + left);
@@ -157,7 +157,7 @@ int diff(Settings& s) {
   s.build.input = s.files[2];
   base::Progress progress(s.progress, s.log_format, s.quiet);
   const attributes::ReadRuleSets a = attributes::read_rule_sets(s.build.configs, s.files[0]),
-                             b = attributes::read_rule_sets(s.build.configs, s.files[1]);
+                                 b = attributes::read_rule_sets(s.build.configs, s.files[1]);
   const auto survey = run::survey_districts(s.build, a, progress);
   const std::vector<run::DistrictChange> changes =
       run::diff_districts(*survey, a.book, b.book, base::worker_count(s.build.jobs), progress);

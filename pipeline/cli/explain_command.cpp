@@ -67,7 +67,8 @@ std::string attribute_rows(const Json& attributes) {
     line.resize(std::max(line.size() + 1, kValueColumn), ' ');
     line += value_text(a);
     // Degree signs and other multi-byte characters take one column.
-    const std::size_t extra = static_cast<std::size_t>(std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) == 0x80; }));
+    const std::size_t extra =
+        static_cast<std::size_t>(std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) == 0x80; }));
     line.resize(std::max(line.size() + 1, kReasonColumn + extra), ' ');
     const std::string source = a.value("source", ""), why = a.value("why", "");
     // "usual for houses" and "tagged brick" say by themselves where they come from.
@@ -112,7 +113,8 @@ std::string storeys_text(const Json& attributes) {
 /// "5 storeys, 18.02 m high, gabled roof"
 std::string looks(const Json& attributes, const std::string& built_roof) {
   std::string text = storeys_text(attributes);
-  if (const Json* height = attribute(attributes, "height")) text += (text.empty() ? "" : ", ") + value_text(*height) + " high";
+  if (const Json* height = attribute(attributes, "height"))
+    text += (text.empty() ? "" : ", ") + value_text(*height) + " high";
   if (!built_roof.empty()) text += ", " + spaced(built_roof) + " roof";
   return text;
 }
@@ -162,13 +164,15 @@ std::string link(const std::string& id) {
 std::string tag_rows(const Json& tags) {
   std::string text;
   for (const auto& [key, value] : tags.items())
-    text += row(key, std::max<std::size_t>(24, key.size() + 4), value.is_string() ? value.get<std::string>() : value.dump());
+    text += row(key, std::max<std::size_t>(24, key.size() + 4),
+                value.is_string() ? value.get<std::string>() : value.dump());
   return text.empty() ? "  no tags\n" : text;
 }
 
 std::string not_modelled(const Json& j, const outputs::FoundExplanation& found) {
   const std::string id = found.asked.text();
-  std::string text = fmt::format("{}: a {}\n  {}\n\n", id, j.value("kind", "") == "building" ? "building" : "building part", link(id));
+  std::string text =
+      fmt::format("{}: a {}\n  {}\n\n", id, j.value("kind", "") == "building" ? "building" : "building part", link(id));
   const std::string state = j.value("state", "");
   const std::string related = j.value("related", "");
   if (state == "duplicate")
@@ -191,14 +195,16 @@ std::string body_rows(const Json& j, const std::string& asked, const std::string
   text += fmt::format("\nIts {} bodies\n", bodies.size());
   for (const Json& body : bodies) {
     const std::string id = body.value("id", "");
-    std::string what = body.contains("attributes") ? looks(body["attributes"], body.value("built_roof", "")) : body.value("built_roof", "") + " roof";
+    std::string what = body.contains("attributes") ? looks(body["attributes"], body.value("built_roof", ""))
+                                                   : body.value("built_roof", "") + " roof";
     if (body.contains("fallbacks"))
       for (const Json& code : body["fallbacks"]) what += " (" + code.get<std::string>() + ")";
     text += row(id, 28, what);
   }
   for (const Json& body : bodies) {
     const std::string id = body.value("id", "");
-    const bool is_asked = asked_body.empty() ? asked != j.value("id", "") && has_component(id, asked) : id == asked_body;
+    const bool is_asked =
+        asked_body.empty() ? asked != j.value("id", "") && has_component(id, asked) : id == asked_body;
     if (!is_asked || !body.contains("attributes")) continue;
     text += fmt::format("\nThe values of {}\n", id);
     if (body.contains("tags")) text += tag_rows(body["tags"]);
@@ -244,9 +250,9 @@ std::string edge_rows(const Json& j) {
   for (const Json& e : j["edges"]) {
     std::string id = e.value("id", "");
     if (const std::string prefix = j.value("id", "") + ".e"; id.starts_with(prefix)) id = id.substr(prefix.size());
-    text += row(id, 28, fmt::format("{:<11} {:>6.1f} m  {:<2}  {:>3.0f}%  {}", spaced(e.value("kind", "")),
-                                    e.value("length", 0.0), e.value("looks", ""), 100 * e.value("confidence", 0.0),
-                                    faces(e)));
+    text += row(id, 28,
+                fmt::format("{:<11} {:>6.1f} m  {:<2}  {:>3.0f}%  {}", spaced(e.value("kind", "")),
+                            e.value("length", 0.0), e.value("looks", ""), 100 * e.value("confidence", 0.0), faces(e)));
   }
   return text;
 }
@@ -255,7 +261,8 @@ std::string edge_rows(const Json& j) {
 
 namespace {
 
-std::string text_of(const Json& j, const outputs::FoundExplanation& found, const std::string& asked_body, bool edges, bool style) {
+std::string text_of(const Json& j, const outputs::FoundExplanation& found, const std::string& asked_body, bool edges,
+                    bool style) {
   if (!found.in_model) return not_modelled(j, found);
 
   const std::string id = j.at("id"), asked = found.asked.text();
@@ -265,7 +272,8 @@ std::string text_of(const Json& j, const outputs::FoundExplanation& found, const
   const std::string kind = use && use->at("value") != "yes" ? spaced(use->at("value").get<std::string>()) : "building";
   std::string text;
   if (asked != id) {
-    const bool is_part = std::any_of(bodies.begin(), bodies.end(), [&](const Json& b) { return has_component(b.value("id", ""), asked); });
+    const bool is_part = std::any_of(bodies.begin(), bodies.end(),
+                                     [&](const Json& b) { return has_component(b.value("id", ""), asked); });
     text += fmt::format("{} {} {}.\n\n", asked, is_part ? "is a part of" : "duplicates", id);
   }
   const std::string roof = bodies.size() == 1 ? bodies[0].value("built_roof", "") : "";
@@ -275,14 +283,19 @@ std::string text_of(const Json& j, const outputs::FoundExplanation& found, const
     if (j.contains(name)) text += "  " + j[name].get<std::string>() + "\n";
   text += "  " + link(id);
   if (j.contains("place"))
-    text += fmt::format("   {:.5f}, {:.5f} (latitude, longitude)", j["place"].value("lat", 0.0), j["place"].value("lon", 0.0));
+    text += fmt::format("   {:.5f}, {:.5f} (latitude, longitude)", j["place"].value("lat", 0.0),
+                        j["place"].value("lon", 0.0));
   text += "\n";
   if (j.value("state", "") == "reported")
-    text += "\n  " + wrapped(fmt::format("It is not in the model. {}: {}", j.value("code", ""), j.value("meaning", "")), 2) + "\n";
+    text += "\n  " +
+            wrapped(fmt::format("It is not in the model. {}: {}", j.value("code", ""), j.value("meaning", "")), 2) +
+            "\n";
 
   if (j.contains("style")) text += style_text(j.at("style"), style);
   text += "\nWhat the map says\n" + tag_rows(j.at("tags"));
-  if (!bodies.empty()) text += "\nEvery value, where it comes from, how sure that is, and what else was considered\n" + attribute_rows(attributes);
+  if (!bodies.empty())
+    text += "\nEvery value, where it comes from, how sure that is, and what else was considered\n" +
+            attribute_rows(attributes);
   text += body_rows(j, asked, asked_body);
   text += "\nWhat each stage did\n";
   for (const Json& stage : j.at("stages")) text += row(stage.value("stage", ""), 12, stage.value("text", ""));
@@ -301,8 +314,13 @@ std::string text_of(const Json& j, const outputs::FoundExplanation& found, const
     for (const Json& file : j["files"]) text += "  " + file.get<std::string>() + "\n";
   }
   if (!bodies.empty())
-    text += "\n" + wrapped("To change a value, tag the building in OpenStreetMap, or order it in a file for --overrides: an order (override) beats "
-                            "what is tagged, and what is tagged beats every other source.", 0) + "\n";
+    text += "\n" +
+            wrapped(
+                "To change a value, tag the building in OpenStreetMap, or order it in a file for --overrides: an order "
+                "(override) beats "
+                "what is tagged, and what is tagged beats every other source.",
+                0) +
+            "\n";
   return text;
 }
 
@@ -314,7 +332,8 @@ std::string explanation_text(const outputs::FoundExplanation& found, const std::
     make_printable(j);
     return text_of(j, found, body, edges, style);
   } catch (const Json::exception& error) {
-    throw base::InputError("explain/", found.explained.text(), std::string("the explanation is damaged: ") + error.what(),
+    throw base::InputError("explain/", found.explained.text(),
+                           std::string("the explanation is damaged: ") + error.what(),
                            "Build again; 'blockrand validate' lists all damage");
   }
 }
@@ -324,7 +343,8 @@ settings::CommandText explain_text() {
           .summary = "why one building looks as it does",
           .usage = "FOLDER ID [options]",
           .description =
-              "Tells everything that a build knows of one building or building part: its style and what spoke for it, each value with its source, how "
+              "Tells everything that a build knows of one building or building part: its style and what spoke for it, "
+              "each value with its source, how "
               "sure it is and what else was considered, what each stage did with it, what fell back and why, and the "
               "files it stands in. An object that is not in the model is explained, too.",
           .options = settings::kExplain,
@@ -349,8 +369,8 @@ int run_explain(const std::vector<std::string>& arguments) {
   const auto id = outputs::parse_object_id(s.id);
   if (!id) {
     const bool number = s.id.find_first_not_of("0123456789") == std::string::npos;
-    throw base::UsageError(fmt::format("{} is no id of an OpenStreetMap object. Write {} for a way, {} for a relation.", s.id,
-                                       number ? "w" + s.id : "w123", number ? "r" + s.id : "r45"));
+    throw base::UsageError(fmt::format("{} is no id of an OpenStreetMap object. Write {} for a way, {} for a relation.",
+                                       s.id, number ? "w" + s.id : "w123", number ? "r" + s.id : "r45"));
   }
   const auto found = outputs::find_explanation(s.folder, *id);
   if (!found)

@@ -14,8 +14,8 @@ namespace blockrand::cli {
 /// \param edges  also lists the wall segments of the outline: what each faces, how long it is, where it looks
 /// \param style  lists all evidence for its style, not the weightiest alone
 /// \throws base::InputError  `found` lacks something that every explanation has
-std::string explanation_text(const outputs::FoundExplanation& found, const std::string& body = {},
-                             bool edges = false, bool style = false);
+std::string explanation_text(const outputs::FoundExplanation& found, const std::string& body = {}, bool edges = false,
+                             bool style = false);
 
 settings::CommandText explain_text();
 int run_explain(const std::vector<std::string>& arguments);

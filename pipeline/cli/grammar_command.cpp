@@ -118,7 +118,8 @@ int import(const Settings& s) {
   std::error_code none;
   if (!target.empty() && fs::exists(target, none) && !s.build.force)
     throw base::UsageError(target + " exists already. Choose another file with -o, or --force");
-  const grammar::ImportedRules rules = grammar::rule_text_of(importers::facade_rules::read_facade_rules(s.rule_files.front()));
+  const grammar::ImportedRules rules =
+      grammar::rule_text_of(importers::facade_rules::read_facade_rules(s.rule_files.front()));
   for (const std::string& note : rules.notes) fmt::print(stderr, "{}\n", note);
   if (target.empty())
     std::fputs(rules.text.c_str(), stdout);

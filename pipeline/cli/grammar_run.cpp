@@ -16,11 +16,11 @@
 #include "pipeline/outputs/gltf/triangle_glb.h"
 #include "styles/grammar/evaluation/colour_text.h"
 #include "styles/grammar/evaluation/derive.h"
+#include "styles/grammar/evaluation/rule_tests.h"
+#include "styles/grammar/language/value_text.h"
 #include "styles/grammar/shapes/initial_shape.h"
 #include "styles/grammar/shapes/mesh_triangles.h"
-#include "styles/grammar/evaluation/rule_tests.h"
 #include "styles/grammar/shapes/occlusion.h"
-#include "styles/grammar/language/value_text.h"
 
 namespace blockrand::cli {
 namespace {

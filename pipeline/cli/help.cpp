@@ -36,18 +36,22 @@ std::string codes_text() {
 /// What stands in a build's folder, for the manual.
 std::vector<std::pair<std::string, std::string>> output_rows() {
   std::vector<std::pair<std::string, std::string>> rows;
-  for (const outputs::OutputFormat& format : outputs::all_outputs()) rows.insert(rows.end(), format.manual.begin(), format.manual.end());
-  rows.emplace_back("model.glb, model.city.json", "the whole build in one file, with --single-glb and --single-cityjson");
-  rows.emplace_back("build.json",
-                    "inputs and hashes, configuration, coordinate system, counts, hashes of all files: the same bytes each time");
+  for (const outputs::OutputFormat& format : outputs::all_outputs())
+    rows.insert(rows.end(), format.manual.begin(), format.manual.end());
+  rows.emplace_back("model.glb, model.city.json",
+                    "the whole build in one file, with --single-glb and --single-cityjson");
+  rows.emplace_back(
+      "build.json",
+      "inputs and hashes, configuration, coordinate system, counts, hashes of all files: the same bytes each time");
   rows.emplace_back("run.json", "time, memory and threads of this run");
   return rows;
 }
 
 /// What the program reads by itself, for the manual.
 const std::vector<std::pair<std::string, std::string>> kFiles = {
-    {"../share/blockrand/configs", "from the program's folder: defaults and materials, where --configs names no others; "
-                                   "in a build tree the source tree's configs"},
+    {"../share/blockrand/configs",
+     "from the program's folder: defaults and materials, where --configs names no others; "
+     "in a build tree the source tree's configs"},
 };
 
 std::string manual_text() {
@@ -56,11 +60,14 @@ std::string manual_text() {
        .summary = "rebuild a real neighbourhood in 3D from an OpenStreetMap extract",
        .description =
            "Blockrand reads an OpenStreetMap extract and writes every building in it as a closed, georeferenced solid, "
-           "with a roof: as 3D Tiles for globes and browsers, as CityGML, CityJSON and GeoPackage for GIS. What the map "
+           "with a roof: as 3D Tiles for globes and browsers, as CityGML, CityJSON and GeoPackage for GIS. What the "
+           "map "
            "does not say is inferred from other tags, from tagged neighbours, from the shape of the plan and from the "
            "building's use, and every value says where it came from.\n"
-           "Each building of the extract ends in exactly one state: modelled, represented by its parts or by the object it "
-           "duplicates, or reported with a coded reason; 'blockrand help codes' lists the reasons. The same input gives "
+           "Each building of the extract ends in exactly one state: modelled, represented by its parts or by the "
+           "object it "
+           "duplicates, or reported with a coded reason; 'blockrand help codes' lists the reasons. The same input "
+           "gives "
            "the same bytes, whatever the number of threads.",
        .outputs = output_rows(),
        .files = kFiles},
@@ -70,21 +77,23 @@ std::string manual_text() {
 }  // namespace
 
 settings::CommandText help_text() {
-  return {.name = "help",
-          .summary = "help on a command, all options, all report codes",
-          .usage = "[COMMAND | TOPIC]",
-          .description = "Prints help on a command or a topic; without either, the list of commands.",
-          .topics = {{"options", "the reference of all options; --toml: a config file with all of them and their defaults",
-                      {"--markdown", "--toml"}},
-                     {"codes", "the reasons that reports give, and what they mean"},
-                     {"man", "this program's manual page; to read it: blockrand help man | man -l -"},
-                     {"completion", "a script that completes commands and options in a shell",
-                      settings::completion_shells(), true}},
-          .takes_command = true,
-          .examples = {{"blockrand help build", ""},
-                       {"blockrand help options --toml > town.toml", "a config file to start from"},
-                       {"source <(blockrand help completion bash)", "completion in the bash that runs now"}},
-          .exit_codes = {{"0", "all well"}, {"1", "wrong usage"}, {"4", "output could not be written or internal error"}}};
+  return {
+      .name = "help",
+      .summary = "help on a command, all options, all report codes",
+      .usage = "[COMMAND | TOPIC]",
+      .description = "Prints help on a command or a topic; without either, the list of commands.",
+      .topics = {{"options",
+                  "the reference of all options; --toml: a config file with all of them and their defaults",
+                  {"--markdown", "--toml"}},
+                 {"codes", "the reasons that reports give, and what they mean"},
+                 {"man", "this program's manual page; to read it: blockrand help man | man -l -"},
+                 {"completion", "a script that completes commands and options in a shell",
+                  settings::completion_shells(), true}},
+      .takes_command = true,
+      .examples = {{"blockrand help build", ""},
+                   {"blockrand help options --toml > town.toml", "a config file to start from"},
+                   {"source <(blockrand help completion bash)", "completion in the bash that runs now"}},
+      .exit_codes = {{"0", "all well"}, {"1", "wrong usage"}, {"4", "output could not be written or internal error"}}};
 }
 
 std::string version_text() {

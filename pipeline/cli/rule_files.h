@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "pipeline/settings/options.h"
-#include "styles/grammar/language/check.h"
 #include "styles/grammar/evaluation/functions.h"
+#include "styles/grammar/language/check.h"
 #include "styles/grammar/language/program.h"
 
 namespace blockrand::cli {

@@ -224,7 +224,7 @@ bool BaselineResult::worse() const {
 }
 
 BaselineResult compare_with_baseline(const Comparison& comparison, const std::string& baseline_json,
-                                      const std::string& baseline_path, double allowed, const OptionList& options) {
+                                     const std::string& baseline_path, double allowed, const OptionList& options) {
   const Baseline baseline(baseline_json, baseline_path);
   BaselineResult verdict;
   for (std::size_t m = 0; m < kMeasureCount; ++m) {

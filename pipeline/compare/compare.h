@@ -3,8 +3,8 @@
 
 #include "pipeline/base/progress.h"
 #include "pipeline/compare/comparison.h"
-#include "pipeline/compare/options.h"
 #include "pipeline/compare/comparison_report.h"
+#include "pipeline/compare/options.h"
 
 namespace blockrand::compare {
 

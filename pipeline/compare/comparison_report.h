@@ -74,7 +74,7 @@ struct BaselineResult {
 /// buildings, both by more than `allowed`. `options` are set against the baseline's, where there are any.
 /// \throws base::InputError  when the text is no compare.json of a known format version
 BaselineResult compare_with_baseline(const Comparison& comparison, const std::string& baseline_json,
-                                      const std::string& baseline_path, double allowed, const OptionList& options = {});
+                                     const std::string& baseline_path, double allowed, const OptionList& options = {});
 std::string baseline_text(const BaselineResult& verdict);
 /// What is worse in one line, "eaves_error, missing_area, 2 buildings lost"; empty where nothing is.
 std::string failed_text(const BaselineResult& verdict);

@@ -7,9 +7,9 @@
 
 #include "importers/reference/read_options.h"
 #include "pipeline/base/option_table.h"
+#include "pipeline/compare/comparison_report.h"
 #include "pipeline/compare/facade_agreement.h"
 #include "pipeline/compare/matching.h"
-#include "pipeline/compare/comparison_report.h"
 #include "pipeline/compare/surfaces.h"
 
 namespace blockrand::compare {

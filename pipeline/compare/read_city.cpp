@@ -6,9 +6,9 @@
 #include <unordered_set>
 #include <utility>
 
+#include "importers/reference/affine_transform.h"
 #include "importers/reference/footprints.h"
 #include "importers/reference/read_model.h"
-#include "importers/reference/affine_transform.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/compare/area_vector.h"

@@ -6,8 +6,8 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/version.h"
 #include "pipeline/compare/comparison_report.h"
-#include "pipeline/compare/report_numbers.h"
 #include "pipeline/compare/comparison_sections.h"
+#include "pipeline/compare/report_numbers.h"
 
 namespace blockrand::compare {
 namespace {

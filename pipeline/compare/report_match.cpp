@@ -6,10 +6,10 @@
 
 #include "pipeline/base/markup.h"
 #include "pipeline/base/text.h"
+#include "pipeline/compare/comparison_sections.h"
 #include "pipeline/compare/report_numbers.h"
 #include "pipeline/compare/report_pictures.h"
 #include "pipeline/compare/report_places.h"
-#include "pipeline/compare/comparison_sections.h"
 #include "pipeline/compare/report_svg.h"
 
 namespace blockrand::compare {

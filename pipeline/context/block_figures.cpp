@@ -86,7 +86,8 @@ std::vector<Segment> street_segments(std::span<const NetworkLine> lines) {
 
 /// \param corners  of `building`: all, or one that speaks for all
 double area_within(const Polygon& building, std::span<const Point2> corners, const Polygon& block) {
-  const auto inside = std::count_if(corners.begin(), corners.end(), [&](Point2 p) { return geometry::contains(block, p); });
+  const auto inside =
+      std::count_if(corners.begin(), corners.end(), [&](Point2 p) { return geometry::contains(block, p); });
   if (inside == std::ssize(corners)) return geometry::area(building);
   if (inside == 0) return 0;
   const double common = geometry::common_area(std::span(&building, 1), std::span(&block, 1));
@@ -199,7 +200,8 @@ double depth_at(Point2 p, Point2 d, double reach, std::span<const Segment> walls
 
 /// Where rays of a side meet walls: the lower quartile by length, of the rays from streets, where there are any.
 double building_line_of(const Side& side) {
-  const bool has_street = std::any_of(side.samples.begin(), side.samples.end(), [](const Sample& s) { return s.at_street; });
+  const bool has_street =
+      std::any_of(side.samples.begin(), side.samples.end(), [](const Sample& s) { return s.at_street; });
   std::vector<std::pair<double, double>> hits;
   double sum = 0;
   for (const Sample& s : side.samples)
@@ -259,10 +261,9 @@ std::vector<Side> sides_of(const Block& block, std::span<const Segment> walls, c
       const int pieces = std::max(1, static_cast<int>(std::lround(length / options.sample_step)));
       for (int s = 0; s < pieces; ++s) {
         const double t = length * (s + 0.5) / pieces;
-        side.samples.push_back(
-            {side.length + t, length / pieces,
-             depth_at({a.x + d.x * t, a.y + d.y * t}, inwards, options.max_depth, walls, grid, near),
-             block.along_street[i]});
+        side.samples.push_back({side.length + t, length / pieces,
+                                depth_at({a.x + d.x * t, a.y + d.y * t}, inwards, options.max_depth, walls, grid, near),
+                                block.along_street[i]});
       }
       side.length += length;
     }

@@ -32,8 +32,8 @@ struct BlockFigures {
   double courtyard_area = 0;             ///< m²
 
   // Ratios: for blocks that give any (Block::gives_ratios).
-  std::optional<double> built_share;  ///< built area / block area. The block reaches to the centre lines of its
-                                      ///< streets, so this is less than the GRZ of its lots
+  std::optional<double> built_share;       ///< built area / block area. The block reaches to the centre lines of its
+                                           ///< streets, so this is less than the GRZ of its lots
   std::optional<double> tagged_share;      ///< tagged area / built area, where something is built
   std::optional<double> floor_area_ratio;  ///< GFZ: built share times mean storeys of the tagged buildings by area; as
                                            ///< good as `tagged_share`; empty where nothing is tagged

@@ -69,11 +69,11 @@ struct CellFigures {
   std::int64_t buildings = 0;
   double covered_share = 1;  ///< of the cell's area lies within the data
   // By the area of the cell: empty where less than kMinCovered of it is covered.
-  std::optional<double> density;           ///< buildings per hectare
-  std::optional<double> built_share;       ///< footprint area / cell area; above 1 where a large building reaches out of
-                                           ///< its cell
-  std::optional<double> floor_area_ratio;  ///< built share times storeys by area, as good as `tagged_share`
-  double tagged_share = 0;  ///< of the buildings have tagged storeys
+  std::optional<double> density;      ///< buildings per hectare
+  std::optional<double> built_share;  ///< footprint area / cell area; above 1 where a large building reaches out of
+                                      ///< its cell
+  std::optional<double> floor_area_ratio;              ///< built share times storeys by area, as good as `tagged_share`
+  double tagged_share = 0;                             ///< of the buildings have tagged storeys
   std::optional<double> storeys_mean, storeys_spread;  ///< of these buildings; spread is the standard deviation
   std::optional<double> party_wall_share;              ///< of the length of outlines
   double dated_share = 0;                              ///< of the buildings have a year

@@ -8,9 +8,9 @@
 #include <tuple>
 
 #include "pipeline/base/parallel.h"
-#include "pipeline/geometry/polygon_measures.h"
-#include "pipeline/geometry/box_index.h"
 #include "pipeline/footprints/terrace_rows.h"
+#include "pipeline/geometry/box_index.h"
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::context {
 
@@ -35,12 +35,15 @@ std::optional<double> tagged_storeys(const Extract& extract, const footprints::S
 }
 
 /// Canopies are no built land: one walks below them.
-bool is_built_land(const footprints::StoredFootprint& f) { return !f.box.empty() && !f.level.canopy && f.level.low <= 0; }
+bool is_built_land(const footprints::StoredFootprint& f) {
+  return !f.box.empty() && !f.level.canopy && f.level.low <= 0;
+}
 
 void append_footprints(const Extract& extract, const footprints::FootprintStore& store, std::uint32_t building,
                        std::vector<Footprint>& out, std::vector<std::uint32_t>& numbers) {
   for (model::Polygon& polygon : store.polygons(building)) {
-    out.push_back({store[building].id, std::move(polygon), tagged_storeys(extract, store[building]), store[building].level.canopy});
+    out.push_back({store[building].id, std::move(polygon), tagged_storeys(extract, store[building]),
+                   store[building].level.canopy});
     numbers.push_back(building);
   }
 }
@@ -61,7 +64,8 @@ void measure_all(const Extract& extract, const footprints::FootprintStore& store
     boxes.push_back(geometry::box_of(out.blocks[b].polygon.outer.points));
     if (out.blocks[b].too_large) continue;
     const Point2 c = boxes.back().centre();
-    cells[{static_cast<std::int64_t>(std::floor(c.x / kBatchCell)), static_cast<std::int64_t>(std::floor(c.y / kBatchCell))}]
+    cells[{static_cast<std::int64_t>(std::floor(c.x / kBatchCell)),
+           static_cast<std::int64_t>(std::floor(c.y / kBatchCell))}]
         .push_back(b);
   }
   std::vector<std::vector<std::uint32_t>> batches;
@@ -106,12 +110,13 @@ void measure_all(const Extract& extract, const footprints::FootprintStore& store
 /// Courtyards among buildings in no block: at the rim of the data, in the open country. Groups of buildings around one
 /// courtyard are no farther from each other than its widest opening. A building of several polygons may belong to no block
 /// while its polygons stand in some: what blocks have found there is not found again.
-void find_loose_courtyards(const Extract& extract, const footprints::FootprintStore& store, const geometry::BoxIndex& lines, int workers,
-                           ContextExtract& out) {
+void find_loose_courtyards(const Extract& extract, const footprints::FootprintStore& store,
+                           const geometry::BoxIndex& lines, int workers, ContextExtract& out) {
   footprints::FootprintStore loose(store.size());
   for (std::uint32_t b = 0; b < store.size(); ++b)
     if (out.block_of[b] == model::kNoIndex && is_built_land(store[b])) loose.set(b, store[b], store.polygons(b));
-  std::vector<footprints::TerraceRowPlan> groups = footprints::find_terrace_rows(loose, context::CourtyardOptions{}.max_opening);
+  std::vector<footprints::TerraceRowPlan> groups =
+      footprints::find_terrace_rows(loose, context::CourtyardOptions{}.max_opening);
   // A single building has courtyards, too.
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 64;
   std::vector<std::vector<Courtyard>> slots(in_flight);
@@ -124,7 +129,8 @@ void find_loose_courtyards(const Extract& extract, const footprints::FootprintSt
       box.include(store[b].box);
     }
     // A convex plan without a hole encloses nothing.
-    if (footprints.size() == 1 && footprints.front().polygon.holes.empty() && footprints.front().polygon.outer.size() <= 4) {
+    if (footprints.size() == 1 && footprints.front().polygon.holes.empty() &&
+        footprints.front().polygon.outer.size() <= 4) {
       slots[i % in_flight].clear();
       return;
     }
@@ -175,15 +181,17 @@ context::Cells district_cells(const Extract& extract, const footprints::Footprin
 
 }  // namespace
 
-Point2 place_of(const footprints::FootprintStore& footprints, std::uint32_t building) { return place_of(footprints.polygons(building)); }
+Point2 place_of(const footprints::FootprintStore& footprints, std::uint32_t building) {
+  return place_of(footprints.polygons(building));
+}
 
 context::CellIndex cell_of_building(const footprints::FootprintStore& footprints, std::uint32_t building) {
   return context::cell_of(place_of(footprints, building));
 }
 
-ContextExtract context_extract(const Extract& extract, const footprints::FootprintStore& footprints, std::span<const Point2> coverage,
-                               const georef::Projection& projection, int workers, base::Progress& progress,
-                               const context::UseOfTags& use_of) {
+ContextExtract context_extract(const Extract& extract, const footprints::FootprintStore& footprints,
+                               std::span<const Point2> coverage, const georef::Projection& projection, int workers,
+                               base::Progress& progress, const context::UseOfTags& use_of) {
   progress.begin("context");
   ContextExtract out;
   const context::Project project = [&](model::Location l) { return projection.forward(l); };

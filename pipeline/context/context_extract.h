@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "pipeline/base/progress.h"
+#include "pipeline/context/address_points.h"
 #include "pipeline/context/block_figures.h"
 #include "pipeline/context/blocks.h"
 #include "pipeline/context/cells.h"
 #include "pipeline/context/courtyards.h"
-#include "pipeline/context/address_points.h"
 #include "pipeline/context/street_network.h"
+#include "pipeline/footprints/footprint_store.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/extract.h"
-#include "pipeline/footprints/footprint_store.h"
 
 namespace blockrand::context {
 
@@ -33,8 +33,8 @@ struct ContextExtract {
   std::vector<context::Block> blocks;
   std::vector<context::BlockFigures> figures;  ///< parallel to blocks; without courtyards, which stand below
   std::vector<ExtractCourtyard> courtyards;    ///< by id
-  std::vector<std::uint32_t> block_of;         ///< per building: the block it belongs to, or kNoIndex. Blocks that are too
-                                               ///< large count as none: what reads a part of the extract cannot find them
+  std::vector<std::uint32_t> block_of;  ///< per building: the block it belongs to, or kNoIndex. Blocks that are too
+                                        ///< large count as none: what reads a part of the extract cannot find them
   context::Cells cells;  ///< of what stands on the ground, as in blocks: no canopies, nothing that floats
   std::vector<model::Point2> coverage;  ///< as given: how much of a cell the data covers (context::covered_share)
 };
@@ -44,8 +44,8 @@ struct ContextExtract {
 /// Deterministic for any number of workers. The value of a block, a courtyard, a cell depends on data within
 /// BlockOptions::max_extent of it, and on the repair of the buildings in it.
 ContextExtract context_extract(const model::Extract& extract, const footprints::FootprintStore& footprints,
-                               std::span<const model::Point2> coverage, const georef::Projection& projection, int workers,
-                               base::Progress& progress, const context::UseOfTags& use_of = {});
+                               std::span<const model::Point2> coverage, const georef::Projection& projection,
+                               int workers, base::Progress& progress, const context::UseOfTags& use_of = {});
 
 /// The middle of the largest polygon of a building's outline, which must not be empty.
 model::Point2 place_of(const footprints::FootprintStore& footprints, std::uint32_t building);

@@ -75,7 +75,8 @@ class Walls {
       grid_->near({corner.x - reach, corner.y - reach}, {corner.x + reach, corner.y + reach}, near);
       std::vector<Place> same, others;
       for (const std::uint32_t w : near) {
-        if (w == i || w == walls_[i].previous || square_distance(segments_[w], corner) > square(reach + kTouching)) continue;
+        if (w == i || w == walls_[i].previous || square_distance(segments_[w], corner) > square(reach + kTouching))
+          continue;
         const Point2 place = nearest_on(segments_[w], corner);
         const double gap = distance(corner, place);
         if (gap <= reach) (walls_[w].building == walls_[i].building ? same : others).push_back({gap, place});

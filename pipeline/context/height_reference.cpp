@@ -1,11 +1,10 @@
 #include "pipeline/context/height_reference.h"
 
-#include "importers/elevation/terrain.h"
-
 #include <fmt/format.h>
 
 #include <cctype>
 
+#include "importers/elevation/terrain.h"
 #include "pipeline/base/error.h"
 #include "pipeline/georef/transform.h"
 

@@ -40,7 +40,8 @@ double distance_to(const model::Polygon& polygon, Point2 p) {
 }
 
 /// Whether a piece of the footprint's walls within reach of `p` has no neighbour against it.
-bool has_free_wall(const Footprint& footprint, Point2 p, const VicinityIndex& index, const WallSegmentOptions& options) {
+bool has_free_wall(const Footprint& footprint, Point2 p, const VicinityIndex& index,
+                   const WallSegmentOptions& options) {
   for (const OutlineEdge& edge : edges_of({footprint.polygon})) {
     if (edge.length == 0 || geometry::distance_to_segment(p, edge.a, edge.b) > kEntranceReach) continue;
     double at = 0;

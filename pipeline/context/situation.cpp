@@ -13,22 +13,22 @@ namespace blockrand::context {
 namespace {
 
 using model::BuildingPosition;
-using model::WallSegmentKind;
-using model::WallSegment;
 using model::Point2;
+using model::WallSegment;
+using model::WallSegmentKind;
 
-constexpr double kMaxChamfer = 8;           ///< m. Longer walls between two streets are fronts of their own
-constexpr double kMaxRounding = 20;         ///< m. The same along a mapped curve: radii up to 12 m
-constexpr double kMinCutSine = 0.26;        ///< sine of 15 degrees, and
-constexpr double kMinCutCosine = 0.34;      ///< cosine of 70 degrees: how far a chamfer is turned from its neighbours
-constexpr double kCornerSine = 0.5;         ///< sine of 30 degrees: the least turn of a street corner
-constexpr double kMinCornerFront = 2;       ///< m. Fronts that meet at a corner are at least this long
-constexpr double kMinPartyWall = 1.5;       ///< m. Shorter ones tie no row together
-constexpr double kMaxWingDepth = 12;        ///< m. Side wings have rooms on one side only
-constexpr double kMinWingLength = 1.5;      ///< times the depth
-constexpr double kSidewards = 0.5;          ///< cosine of 60 degrees: party walls that look left or right of the front
-constexpr double kSetbackReach = 40;        ///< m to both sides: whose fronts make the building line
-constexpr double kSetbackStep = 8;          ///< m between places where it is looked for: a narrow house
+constexpr double kMaxChamfer = 8;       ///< m. Longer walls between two streets are fronts of their own
+constexpr double kMaxRounding = 20;     ///< m. The same along a mapped curve: radii up to 12 m
+constexpr double kMinCutSine = 0.26;    ///< sine of 15 degrees, and
+constexpr double kMinCutCosine = 0.34;  ///< cosine of 70 degrees: how far a chamfer is turned from its neighbours
+constexpr double kCornerSine = 0.5;     ///< sine of 30 degrees: the least turn of a street corner
+constexpr double kMinCornerFront = 2;   ///< m. Fronts that meet at a corner are at least this long
+constexpr double kMinPartyWall = 1.5;   ///< m. Shorter ones tie no row together
+constexpr double kMaxWingDepth = 12;    ///< m. Side wings have rooms on one side only
+constexpr double kMinWingLength = 1.5;  ///< times the depth
+constexpr double kSidewards = 0.5;      ///< cosine of 60 degrees: party walls that look left or right of the front
+constexpr double kSetbackReach = 40;    ///< m to both sides: whose fronts make the building line
+constexpr double kSetbackStep = 8;      ///< m between places where it is looked for: a narrow house
 
 /// Finds the outline edge of a wall segment.
 class Edges {
@@ -37,7 +37,9 @@ class Edges {
     for (std::size_t i = 0; i < outline.size(); ++i)
       if (outline[i].edge == 0) first_[{outline[i].polygon, outline[i].ring}] = i;
   }
-  const OutlineEdge& operator[](const WallSegment& f) const { return outline_[first_.at({f.polygon, f.ring}) + f.edge]; }
+  const OutlineEdge& operator[](const WallSegment& f) const {
+    return outline_[first_.at({f.polygon, f.ring}) + f.edge];
+  }
 
  private:
   const std::vector<OutlineEdge>& outline_;
@@ -53,7 +55,8 @@ template <class Visit>
 void for_each_ring(const std::vector<WallSegment>& edges, Visit&& visit) {
   for (std::size_t first = 0; first < edges.size();) {
     std::size_t last = first;
-    while (last < edges.size() && edges[last].polygon == edges[first].polygon && edges[last].ring == edges[first].ring) ++last;
+    while (last < edges.size() && edges[last].polygon == edges[first].polygon && edges[last].ring == edges[first].ring)
+      ++last;
     visit(first, last);
     first = last;
   }
@@ -169,7 +172,8 @@ std::optional<double> setback_of(const WallSegment& front, const OutlineEdge& ed
 double area_of(model::OsmId id, const VicinityIndex& index) {
   const auto& all = index.all().footprints;
   double area = 0;
-  for (auto f = std::lower_bound(all.begin(), all.end(), id, [](const Footprint& a, model::OsmId i) { return a.id < i; });
+  for (auto f =
+           std::lower_bound(all.begin(), all.end(), id, [](const Footprint&a, model::OsmId i) { return a.id < i; });
        f != all.end() && f->id == id; ++f)
     area += geometry::area(f->polygon);
   return area;
@@ -257,7 +261,8 @@ std::string block_of(const model::Building& building, const VicinityIndex& index
 }
 
 /// Ids of the courtyards before walls of the building, ascending.
-std::vector<std::string> courtyards_of(const model::Building& building, const Edges& outline, const VicinityIndex& index) {
+std::vector<std::string> courtyards_of(const model::Building& building, const Edges& outline,
+                                       const VicinityIndex& index) {
   std::vector<std::string> out;
   const std::vector<std::uint32_t> near = index.yards_near(box_of(building, 1));
   if (near.empty()) return out;
@@ -269,7 +274,8 @@ std::vector<std::string> courtyards_of(const model::Building& building, const Ed
     const Point2 p{wall.x + edge.outward.x * kBefore, wall.y + edge.outward.y * kBefore};
     for (const std::uint32_t y : near) {
       const Courtyard& yard = index.courtyard(index.yards()[y]);
-      if (std::find(out.begin(), out.end(), yard.id) == out.end() && geometry::contains(yard.polygon, p)) out.push_back(yard.id);
+      if (std::find(out.begin(), out.end(), yard.id) == out.end() && geometry::contains(yard.polygon, p))
+        out.push_back(yard.id);
     }
   }
   std::sort(out.begin(), out.end());
@@ -287,7 +293,8 @@ void mark_corners(model::Building& building, const std::vector<OutlineEdge>& out
     // A short wall between two others, turned outwards from both, but by less than a right angle.
     const auto is_cut = [&](std::size_t i) {
       const WallSegment &b = at(i + n - 1), &c = at(i), &d = at(i + 1);
-      if (n < 4 || c.length() > kMaxChamfer || c.kind != WallSegmentKind::street || b.kind != WallSegmentKind::street || d.kind != WallSegmentKind::street)
+      if (n < 4 || c.length() > kMaxChamfer || c.kind != WallSegmentKind::street || b.kind != WallSegmentKind::street ||
+          d.kind != WallSegmentKind::street)
         return false;
       const auto turns = [&](const WallSegment& p, const WallSegment& q) {
         return cross(of[p].along, of[q].along) > kMinCutSine && dot(of[p].along, of[q].along) > kMinCutCosine;

@@ -27,9 +27,9 @@ bool same_street(const NetworkLine& a, const NetworkLine& b) {
 }  // namespace
 
 std::string_view name(LineClass kind) {
-  constexpr std::string_view kNames[] = {"motorway",      "trunk",      "primary", "secondary", "tertiary", "residential",
-                                         "living_street", "pedestrian", "railway", "waterway",  "shore",    "coastline",
-                                         "other"};
+  constexpr std::string_view kNames[] = {"motorway",    "trunk",         "primary",    "secondary", "tertiary",
+                                         "residential", "living_street", "pedestrian", "railway",   "waterway",
+                                         "shore",       "coastline",     "other"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -38,7 +38,8 @@ void face_street(const OutlineEdge& edge, std::span<const WallSample> samples, c
   const VicinityIndex& index = *view.index;
   const auto lines = index.all().lines;
   const std::array<Point2, kFanRays> fan = fan_around(edge.outward);
-  const bool front = wall_segment.kind == model::WallSegmentKind::street || wall_segment.kind == model::WallSegmentKind::passage;
+  const bool front =
+      wall_segment.kind == model::WallSegmentKind::street || wall_segment.kind == model::WallSegmentKind::passage;
   std::vector<Share> shares;
   std::vector<std::uint32_t> seen;  // lines
   const auto give = [&](std::uint32_t line, double weight) {

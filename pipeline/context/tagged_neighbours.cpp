@@ -38,7 +38,7 @@ void TaggedNeighbours::for_each_near(model::Point2 place, std::uint8_t group, mo
 }
 
 std::optional<NeighbourVote<double>> TaggedNeighbours::storeys(model::Point2 place, std::uint8_t group,
-                                                                  model::OsmId self, int minimum) const {
+                                                               model::OsmId self, int minimum) const {
   std::vector<float> values;
   for_each_near(place, group, self, [&](const TaggedBuilding& b) {
     if (b.storeys) values.push_back(*b.storeys);
@@ -46,13 +46,14 @@ std::optional<NeighbourVote<double>> TaggedNeighbours::storeys(model::Point2 pla
   if (static_cast<int>(values.size()) < minimum || values.empty()) return std::nullopt;
   std::sort(values.begin(), values.end());
   const float median = values[(values.size() - 1) / 2];
-  const auto agree = std::count_if(values.begin(), values.end(), [&](float v) { return std::fabs(v - median) <= 0.5f; });
+  const auto agree =
+      std::count_if(values.begin(), values.end(), [&](float v) { return std::fabs(v - median) <= 0.5f; });
   return NeighbourVote<double>{median, static_cast<int>(values.size()),
-                                  static_cast<double>(agree) / static_cast<double>(values.size())};
+                               static_cast<double>(agree) / static_cast<double>(values.size())};
 }
 
 std::optional<NeighbourVote<model::RoofShape>> TaggedNeighbours::roof_shape(model::Point2 place, std::uint8_t group,
-                                                                               model::OsmId self, int minimum) const {
+                                                                            model::OsmId self, int minimum) const {
   std::array<int, model::kRoofShapeCount> votes{};
   int voices = 0;
   for_each_near(place, group, self, [&](const TaggedBuilding& b) {
@@ -63,7 +64,7 @@ std::optional<NeighbourVote<model::RoofShape>> TaggedNeighbours::roof_shape(mode
   if (voices < minimum || voices == 0) return std::nullopt;
   const auto best = std::max_element(votes.begin(), votes.end());
   return NeighbourVote<model::RoofShape>{static_cast<model::RoofShape>(best - votes.begin()), voices,
-                                            static_cast<double>(*best) / voices};
+                                         static_cast<double>(*best) / voices};
 }
 
 }  // namespace blockrand::context

@@ -16,8 +16,8 @@ namespace blockrand::context {
 /// depends on data within the reach alone (ARCHITECTURE.md, law 4).
 struct TaggedBuilding {
   model::OsmId id;
-  model::Point2 place;                         ///< m, any point of it
-  std::uint8_t group = 0;                      ///< only buildings of one group speak for each other
+  model::Point2 place;     ///< m, any point of it
+  std::uint8_t group = 0;  ///< only buildings of one group speak for each other
   std::optional<float> storeys;
   std::optional<model::RoofShape> roof_shape;
 };
@@ -26,8 +26,8 @@ struct TaggedBuilding {
 template <class T>
 struct NeighbourVote {
   T value{};
-  int voices = 0;      ///< neighbours that were asked
-  double share = 0;    ///< of them that agree: same roof shape, or storeys within half a storey
+  int voices = 0;    ///< neighbours that were asked
+  double share = 0;  ///< of them that agree: same roof shape, or storeys within half a storey
 };
 
 /// A grid index over the tagged buildings of an extract; read-only after construction, safe to share.
@@ -39,10 +39,10 @@ class TaggedNeighbours {
   /// Median storeys of the neighbours of `group` within the reach of `place`, other than `self`; empty when fewer than
   /// `minimum` are tagged. With an even number the lower of the middle two, so that the value is one that was mapped.
   std::optional<NeighbourVote<double>> storeys(model::Point2 place, std::uint8_t group, model::OsmId self,
-                                                  int minimum) const;
+                                               int minimum) const;
   /// The most frequent roof shape (ties: the first in the list of shapes).
-  std::optional<NeighbourVote<model::RoofShape>> roof_shape(model::Point2 place, std::uint8_t group,
-                                                               model::OsmId self, int minimum) const;
+  std::optional<NeighbourVote<model::RoofShape>> roof_shape(model::Point2 place, std::uint8_t group, model::OsmId self,
+                                                            int minimum) const;
   double reach() const { return reach_; }
 
  private:

@@ -8,7 +8,7 @@
 namespace blockrand::context {
 
 VicinityFinder::VicinityFinder(const model::Extract& extract, const footprints::FootprintStore& footprints,
-                                       const ContextExtract& context)
+                               const ContextExtract& context)
     : extract_(extract), footprints_(footprints), context_(context), buildings_(footprints::index_of(footprints)) {
   std::vector<geometry::PlanBox> boxes;
   for (const context::NetworkLine& line : context.lines) boxes.push_back(geometry::box_of(line.points));
@@ -24,7 +24,8 @@ VicinityFinder::VicinityFinder(const model::Extract& extract, const footprints::
     boxes.push_back(block.too_large ? geometry::PlanBox{} : geometry::box_of(block.polygon.outer.points));
   blocks_ = geometry::BoxIndex(std::move(boxes));
   boxes.clear();
-  for (const ExtractCourtyard& yard : context.courtyards) boxes.push_back(geometry::box_of(yard.courtyard.polygon.outer.points));
+  for (const ExtractCourtyard& yard : context.courtyards)
+    boxes.push_back(geometry::box_of(yard.courtyard.polygon.outer.points));
   courtyards_ = geometry::BoxIndex(std::move(boxes));
 }
 

@@ -55,7 +55,8 @@ VicinityIndex::VicinityIndex(const Vicinity& vicinity)
     block_boxes_.push_back(box_around(all_.blocks[b].polygon.outer.points));
     if (b >= all_.figures.size()) continue;
     const std::vector<Courtyard>& yards = all_.figures[b].courtyards;
-    for (std::uint32_t y = 0; y < yards.size(); ++y) yards_.push_back({b, y, box_around(yards[y].polygon.outer.points)});
+    for (std::uint32_t y = 0; y < yards.size(); ++y)
+      yards_.push_back({b, y, box_around(yards[y].polygon.outer.points)});
   }
   std::map<model::OsmId, Square> squares;
   for (std::uint32_t l = 0; l < all_.lines.size(); ++l) {

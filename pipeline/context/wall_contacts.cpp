@@ -77,8 +77,8 @@ bool in_building(const model::Building& building, Point2 p) {
 }
 
 /// Where a way crosses an edge or has a node on it.
-void add_portal_points(const model::Building& building, const OutlineEdge& edge, const PassageWay& way, std::uint32_t index,
-                      std::vector<PortalPoint>& out) {
+void add_portal_points(const model::Building& building, const OutlineEdge& edge, const PassageWay& way,
+                       std::uint32_t index, std::vector<PortalPoint>& out) {
   for (std::size_t i = 1; i < way.points.size(); ++i) {
     const Point2 p = way.points[i - 1], q = way.points[i], d = q - p;
     const double length = std::sqrt(dot(d, d));
@@ -90,7 +90,8 @@ void add_portal_points(const model::Building& building, const OutlineEdge& edge,
     const double to_line = cross(edge.a - p, edge.along) / -sine;
     const Point2 m{p.x + unit.x * to_line, p.y + unit.y * to_line};
     const double along = dot(m - edge.a, edge.along);
-    if (to_line < -kOnOutline || to_line > length + kOnOutline || along < -kOnOutline || along > edge.length + kOnOutline)
+    if (to_line < -kOnOutline || to_line > length + kOnOutline || along < -kOnOutline ||
+        along > edge.length + kOnOutline)
       continue;
     if (way.covered_only) {
       // Roofs over a path along a wall, or up to a door, open nothing: the way must go on inside.
@@ -159,14 +160,14 @@ std::vector<Contact> contacts_of(const OutlineEdge& edge, model::OsmId own, bool
   });
   std::vector<Contact> joined;
   for (const Contact& p : pieces) {
-    if (!joined.empty() && joined.back().neighbour == p.neighbour && p.start <= joined.back().end + options.min_wall_segment)
+    if (!joined.empty() && joined.back().neighbour == p.neighbour &&
+        p.start <= joined.back().end + options.min_wall_segment)
       joined.back().end = std::max(joined.back().end, p.end);
     else
       joined.push_back(p);
   }
-  std::erase_if(joined, [&](const Contact& c) {
-    return c.end - c.start < std::min(options.min_contact, edge.length / 2);
-  });
+  std::erase_if(joined,
+                [&](const Contact& c) { return c.end - c.start < std::min(options.min_contact, edge.length / 2); });
   return without_overlaps(std::move(joined), [](const Contact& c) { return c.neighbour; });
 }
 
@@ -189,7 +190,7 @@ bool has_arcade(const OutlineEdge& front, const PortalPoint& m, const model::Bui
 }  // namespace
 
 std::vector<std::vector<Portal>> portals_of(const model::Building& building, const std::vector<OutlineEdge>& edges,
-                                          const VicinityIndex& index, const WallSegmentOptions& options) {
+                                            const VicinityIndex& index, const WallSegmentOptions& options) {
   std::vector<std::vector<Portal>> out(edges.size());
   std::vector<PortalPoint> points;
   for (const std::uint32_t w : index.passages_near(box_of(building, kOnOutline)))
@@ -218,7 +219,8 @@ std::vector<std::vector<Portal>> portals_of(const model::Building& building, con
       double start = std::max(0.0, middle - half), end = std::min(edge.length, middle + half);
       if (end <= start) continue;
       // An arcade is open to the front along which it runs: its portal reaches to the corner.
-      if (start > 0 && middle < kArcadeHalfDepth && has_arcade(edges[before(e)], m, building, index, options)) start = 0;
+      if (start > 0 && middle < kArcadeHalfDepth && has_arcade(edges[before(e)], m, building, index, options))
+        start = 0;
       if (end < edge.length && edge.length - middle < kArcadeHalfDepth &&
           has_arcade(edges[after(e)], m, building, index, options))
         end = edge.length;

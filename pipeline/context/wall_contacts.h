@@ -41,6 +41,6 @@ struct Portal {
 /// The portals in all edges, parallel to `edges`, each in order and without overlaps. The portal of an arcade reaches to the
 /// corner of the front along which it runs.
 std::vector<std::vector<Portal>> portals_of(const model::Building& building, const std::vector<OutlineEdge>& edges,
-                                          const VicinityIndex& index, const WallSegmentOptions& options);
+                                            const VicinityIndex& index, const WallSegmentOptions& options);
 
 }  // namespace blockrand::context

@@ -12,18 +12,22 @@ namespace blockrand::context {
 
 namespace {
 
-using model::WallSegmentKind;
-using model::WallSegment;
 using model::Point2;
+using model::WallSegment;
+using model::WallSegmentKind;
 
 int rank(WallSegmentKind kind) {
   switch (kind) {
-    case WallSegmentKind::street: return 0;
-    case WallSegmentKind::passage: return 1;
-    case WallSegmentKind::courtyard: return 2;
+    case WallSegmentKind::street:
+      return 0;
+    case WallSegmentKind::passage:
+      return 1;
+    case WallSegmentKind::courtyard:
+      return 2;
     case WallSegmentKind::unknown:
     case WallSegmentKind::side:
-    case WallSegmentKind::party_wall: break;
+    case WallSegmentKind::party_wall:
+      break;
   }
   return 3;
 }
@@ -56,9 +60,8 @@ class WallSegments {
     }
     std::erase_if(found, [&](const auto& f) { return f.first > std::min(reach, least + kSameDistance); });
     const auto order = [&](std::uint32_t i) { return std::tuple(key(i), -edge(i).length(), i); };
-    const auto best = std::min_element(found.begin(), found.end(), [&](const auto& a, const auto& b) {
-      return order(a.second) < order(b.second);
-    });
+    const auto best = std::min_element(found.begin(), found.end(),
+                                       [&](const auto& a, const auto& b) { return order(a.second) < order(b.second); });
     return best == found.end() ? std::nullopt : std::optional(best->second);
   }
 
@@ -82,7 +85,9 @@ Point2 place_at(const model::Building& building, const SitePoint& point) {
 
 /// The wall segment that an entrance, address or shop of the building belongs to.
 std::optional<std::uint32_t> wall_segment_of(const SitePoint& point, Point2 place, const WallSegments& walls) {
-  const auto at_its_street = [&](std::uint32_t i) { return !point.street.empty() && walls.edge(i).street_name == point.street; };
+  const auto at_its_street = [&](std::uint32_t i) {
+    return !point.street.empty() && walls.edge(i).street_name == point.street;
+  };
   const auto is_street = [&](std::uint32_t i) { return walls.edge(i).kind == WallSegmentKind::street; };
   const auto any = [](std::uint32_t) { return true; };
   const auto by_kind = [&](std::uint32_t i) { return std::pair(!at_its_street(i), rank(walls.edge(i).kind)); };

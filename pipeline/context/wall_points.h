@@ -21,7 +21,7 @@ inline constexpr double kTreeReach = 15;
 /// without one to the nearest street front; without one to the nearest wall segment. Shops likewise: they are mapped in the
 /// middle of their rooms. What is behind the wall (SitePoint::use) is kept with the point.
 /// A tree belongs to the nearest wall segment within kTreeReach that is no party wall and has it in front, not behind.
-void assign_points(model::Building& building, const std::vector<OutlineEdge>& outline,
-                   const VicinityIndex& vicinity, const WallSegmentOptions& options = {});
+void assign_points(model::Building& building, const std::vector<OutlineEdge>& outline, const VicinityIndex& vicinity,
+                   const WallSegmentOptions& options = {});
 
 }  // namespace blockrand::context

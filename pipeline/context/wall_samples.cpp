@@ -10,8 +10,8 @@ namespace blockrand::context {
 
 namespace {
 
-using model::WallSegmentKind;
 using model::Point2;
+using model::WallSegmentKind;
 
 /// m. Rays begin this far before the wall: clear of its own rounding.
 constexpr double kBefore = 0.02;
@@ -135,7 +135,8 @@ WallSample look_out(const OutlineEdge& edge, double at, const BuildingView& view
   out.street_share = seen / all;
   const Sight& straight = out.fan[kFanRays / 2];
   // Where a recess is narrower than rays begin before a wall, they begin in the building itself.
-  if (straight.from_inside && index.all().footprints[straight.footprint].id != view.own) out.inside = straight.footprint;
+  if (straight.from_inside && index.all().footprints[straight.footprint].id != view.own)
+    out.inside = straight.footprint;
   for (const std::uint32_t s : view.squares)
     if (out.square == kNothing && index.squares()[s].box.meets({front, front}) &&
         index.contains(index.squares()[s], front))

@@ -23,16 +23,16 @@ BuildingView view_of(const model::Building& building, const VicinityIndex& index
 
 /// What is seen from one place.
 struct WallSample {
-  double at = 0;                       ///< m along the edge
-  std::array<Sight, kFanRays> fan;     ///< from right to left, as fan_around
+  double at = 0;                    ///< m along the edge
+  std::array<Sight, kFanRays> fan;  ///< from right to left, as fan_around
   /// party_wall (within another building), street, courtyard (a closed one), or unknown: surroundings_of tells
   model::WallSegmentKind kind = model::WallSegmentKind::unknown;
-  double ahead = 0;                    ///< [0, 1]: how much of the view straight ahead ends in a street it may front
-  double street_share = 0;             ///< [0, 1]: how much of the whole view ends in a street, by cosine
-  double street_distance = 0;          ///< m, mean over the rays of `ahead`, straight ahead
-  std::uint32_t square = kNothing;     ///< stands on it: index into VicinityIndex::squares
-  std::uint32_t yard = kNothing;       ///< a courtyard before it: index into VicinityIndex::yards
-  std::uint32_t inside = kNothing;     ///< lies within this footprint
+  double ahead = 0;                 ///< [0, 1]: how much of the view straight ahead ends in a street it may front
+  double street_share = 0;          ///< [0, 1]: how much of the whole view ends in a street, by cosine
+  double street_distance = 0;       ///< m, mean over the rays of `ahead`, straight ahead
+  std::uint32_t square = kNothing;  ///< stands on it: index into VicinityIndex::squares
+  std::uint32_t yard = kNothing;    ///< a courtyard before it: index into VicinityIndex::yards
+  std::uint32_t inside = kNothing;  ///< lies within this footprint
 };
 
 /// \param at  m along the edge
@@ -40,10 +40,10 @@ WallSample look_out(const OutlineEdge& edge, double at, const BuildingView& view
 
 /// What surrounds the ground before a place on a wall.
 struct Enclosure {
-  double own = 0;     ///< [0, 1] of the view around: ends at the building itself within WallSegmentOptions::view
-  double others = 0;  ///< [0, 1]: ends at other buildings
-  double street = 0;  ///< [0, 1]: ends in a street; what is left is open ground
-  bool alley = false; ///< a gap between walls that leads to a street or to open ground
+  double own = 0;      ///< [0, 1] of the view around: ends at the building itself within WallSegmentOptions::view
+  double others = 0;   ///< [0, 1]: ends at other buildings
+  double street = 0;   ///< [0, 1]: ends in a street; what is left is open ground
+  bool alley = false;  ///< a gap between walls that leads to a street or to open ground
   void divide(double by) {
     own /= by;
     others /= by;

@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/context/wall_contacts.h"
-#include "pipeline/context/wall_samples.h"
 #include "pipeline/context/situation.h"
 #include "pipeline/context/street_front.h"
+#include "pipeline/context/wall_contacts.h"
 #include "pipeline/context/wall_points.h"
+#include "pipeline/context/wall_samples.h"
 
 namespace blockrand::context {
 
 namespace {
 
-using model::WallSegmentKind;
-using model::WallSegment;
 using model::Point2;
+using model::WallSegment;
+using model::WallSegmentKind;
 
 /// A piece of an edge with one situation, as it is found.
 struct Piece {
@@ -58,8 +58,7 @@ void absorb_short(std::vector<Piece>& pieces, double least) {
       if (pieces[i].length() < pieces[shortest].length()) shortest = i;
     if (pieces[shortest].length() >= least) return;
     const bool has_before = shortest > 0, has_after = shortest + 1 < pieces.size();
-    const bool to_before =
-        has_before && (!has_after || pieces[shortest - 1].length() >= pieces[shortest + 1].length());
+    const bool to_before = has_before && (!has_after || pieces[shortest - 1].length() >= pieces[shortest + 1].length());
     if (to_before)
       pieces[shortest - 1].end = pieces[shortest].end;
     else
@@ -100,7 +99,8 @@ class Labeller {
       double start = m.start;
       for (std::size_t c = 0; c < contacts; ++c) {
         if (fixed[c].end <= start || fixed[c].start >= m.end) continue;
-        if (fixed[c].start > start) fixed.push_back({start, fixed[c].start, WallSegmentKind::passage, {}, m.passage, {}, 0});
+        if (fixed[c].start > start)
+          fixed.push_back({start, fixed[c].start, WallSegmentKind::passage, {}, m.passage, {}, 0});
         start = fixed[c].end;
       }
       if (start < m.end) fixed.push_back({start, m.end, WallSegmentKind::passage, {}, m.passage, {}, 0});
@@ -154,13 +154,19 @@ class Labeller {
   /// Courtyard or open ground, by what stands around.
   void add_surrounded(const OutlineEdge& edge, const Piece& piece, std::vector<Piece>& out) const {
     const int n = std::max(1, static_cast<int>(std::lround(piece.length() / options_.enclosure_step)));
-    const bool in_yard = std::any_of(piece.samples.begin(), piece.samples.end(),
-                                     [](const WallSample& s) { return s.yard != kNothing; });
+    const bool in_yard =
+        std::any_of(piece.samples.begin(), piece.samples.end(), [](const WallSample& s) { return s.yard != kNothing; });
     const double step = piece.length() / n;
     for (int i = 0; i < n; ++i) {
       const double start = piece.start + i * step, end = i + 1 == n ? piece.end : start + step;
       const Enclosure around = enclosure_at(edge, start + step / 2, building_.osm, in_yard, view_, options_);
-      Piece part{start, end, around.is_court(options_) ? WallSegmentKind::courtyard : WallSegmentKind::side, {}, kNothing, {}, around.margin(options_)};
+      Piece part{start,
+                 end,
+                 around.is_court(options_) ? WallSegmentKind::courtyard : WallSegmentKind::side,
+                 {},
+                 kNothing,
+                 {},
+                 around.margin(options_)};
       for (const WallSample& sample : piece.samples)
         if (sample.at >= start && (sample.at < end || i + 1 == n)) part.samples.push_back(sample);
       out.push_back(std::move(part));
@@ -200,7 +206,8 @@ double front_distance(const Piece& piece) {
 using Pieces = std::vector<std::vector<Piece>>;  ///< parallel to the edges
 
 /// Takes `street` from rears that look over a garden at the next street.
-void drop_rears(const std::vector<OutlineEdge>& edges, const Labeller& labeller, const WallSegmentOptions& options, Pieces& pieces) {
+void drop_rears(const std::vector<OutlineEdge>& edges, const Labeller& labeller, const WallSegmentOptions& options,
+                Pieces& pieces) {
   struct Front {
     model::Point2 outward;
     double distance;
@@ -208,7 +215,8 @@ void drop_rears(const std::vector<OutlineEdge>& edges, const Labeller& labeller,
   std::vector<Front> fronts;
   for (std::size_t e = 0; e < edges.size(); ++e)
     for (const Piece& p : pieces[e])
-      if (p.kind == WallSegmentKind::street && p.length() >= options.min_view) fronts.push_back({edges[e].outward, front_distance(p)});
+      if (p.kind == WallSegmentKind::street && p.length() >= options.min_view)
+        fronts.push_back({edges[e].outward, front_distance(p)});
   for (std::size_t e = 0; e < edges.size(); ++e)
     for (Piece& p : pieces[e]) {
       const double distance = p.kind == WallSegmentKind::street ? front_distance(p) : 0;
@@ -233,10 +241,13 @@ void join_jogs(const std::vector<OutlineEdge>& edges, const WallSegmentOptions& 
     std::vector<std::size_t> jogs;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t e = first + i, before = first + (i + count - 1) % count, after = first + (i + 1) % count;
-      if (edges[e].length > options.max_jog || pieces[e].size() != 1 || pieces[before].empty() || pieces[after].empty()) continue;
+      if (edges[e].length > options.max_jog || pieces[e].size() != 1 || pieces[before].empty() || pieces[after].empty())
+        continue;
       const WallSegmentKind kind = pieces[e][0].kind;
       if (kind != WallSegmentKind::side && kind != WallSegmentKind::courtyard) continue;
-      if (pieces[before].back().kind != WallSegmentKind::street || pieces[after].front().kind != WallSegmentKind::street) continue;
+      if (pieces[before].back().kind != WallSegmentKind::street ||
+          pieces[after].front().kind != WallSegmentKind::street)
+        continue;
       if (edges[before].along.x * edges[after].along.x + edges[before].along.y * edges[after].along.y > kStep)
         jogs.push_back(e);
     }
@@ -264,8 +275,12 @@ double confidence_of(const Piece& piece, const VicinityIndex& index) {
       break;
   }
   for (const WallSample& s : piece.samples)
-    if (s.yard != kNothing && piece.kind == WallSegmentKind::courtyard && index.courtyard(index.yards()[s.yard]).closed) return 0.97;
-  return 0.6 + 0.35 * std::min(1.0, piece.margin / Enclosure::kCertain);  // the agreement with labels made by eye is 60 % at the threshold
+    if (s.yard != kNothing && piece.kind == WallSegmentKind::courtyard && index.courtyard(index.yards()[s.yard]).closed)
+      return 0.97;
+  return 0.6 +
+         0.35 *
+             std::min(1.0, piece.margin /
+                               Enclosure::kCertain);  // the agreement with labels made by eye is 60 % at the threshold
 }
 
 WallSegment wall_segment_of(const OutlineEdge& edge, const Piece& piece, const VicinityIndex& index) {
@@ -298,7 +313,7 @@ void note_arcs(model::Building& building, const std::vector<OutlineEdge>& edges)
 }  // namespace
 
 void label_wall_segments(model::Building& building, const VicinityIndex& index, std::string_view address_street,
-                 const WallSegmentOptions& options) {
+                         const WallSegmentOptions& options) {
   building.edges.clear();
   const std::vector<OutlineEdge> edges = edges_of(building.outline);
   const std::vector<std::vector<Portal>> portals = portals_of(building, edges, index, options);

@@ -11,8 +11,8 @@
 #include "pipeline/context/block_figures.h"
 #include "pipeline/context/blocks.h"
 #include "pipeline/context/courtyards.h"
-#include "pipeline/context/wall_view.h"
 #include "pipeline/context/street_network.h"
+#include "pipeline/context/wall_view.h"
 #include "pipeline/geometry/box_index.h"
 #include "pipeline/model/building.h"
 
@@ -39,10 +39,10 @@ struct Vicinity {
 struct WallSegmentOptions {
   /// m. Walls nearer than this touch: party walls. As RepairOptions::snap_distance unless that is set.
   double touching = 0.40;
-  double min_contact = 0.5;   ///< m. Shorter contacts are corners that touch
-  double min_wall_segment = 0.3;   ///< m. Shorter pieces are not made
-  double min_view = 2.0;      ///< m. What a wall looks at changes no faster: views are blurred by where walls stand
-  double sample_step = 4;     ///< m between places that look out of a wall
+  double min_contact = 0.5;       ///< m. Shorter contacts are corners that touch
+  double min_wall_segment = 0.3;  ///< m. Shorter pieces are not made
+  double min_view = 2.0;          ///< m. What a wall looks at changes no faster: views are blurred by where walls stand
+  double sample_step = 4;         ///< m between places that look out of a wall
   /// m. How far a wall sees: courts are at most this wide (Berlin's widest inner grounds count as open ground).
   double view = 60;
   /// m. A street's line may be this far from its fronts: half of a wide carriageway and a forecourt of 25 m.
@@ -75,7 +75,9 @@ class VicinityIndex {
 
   struct Box {
     model::Point2 low, high;  ///< m
-    bool meets(const Box& o) const { return low.x <= o.high.x && o.low.x <= high.x && low.y <= o.high.y && o.low.y <= high.y; }
+    bool meets(const Box& o) const {
+      return low.x <= o.high.x && o.low.x <= high.x && low.y <= o.high.y && o.low.y <= high.y;
+    }
   };
   /// A courtyard: indices of its block and within BlockFigures::courtyards.
   struct Yard {
@@ -130,6 +132,6 @@ VicinityIndex::Box box_of(const model::Building& building, double margin);
 /// Requires: the building's polygons are among the footprints; rings as model::Ring says. The result depends neither on
 /// the order of what surrounds it nor on where a ring starts, and on nothing beyond kWallSegmentReach.
 void label_wall_segments(model::Building& building, const VicinityIndex& vicinity, std::string_view address_street = {},
-                 const WallSegmentOptions& options = {});
+                         const WallSegmentOptions& options = {});
 
 }  // namespace blockrand::context

@@ -33,7 +33,9 @@ std::int64_t cell_of(double metres, double size) { return static_cast<std::int64
 
 }  // namespace
 
-std::int64_t Scene::column(double x) const { return std::clamp(cell_of(x, kCell) - first_column_, std::int64_t{-1}, columns_); }
+std::int64_t Scene::column(double x) const {
+  return std::clamp(cell_of(x, kCell) - first_column_, std::int64_t{-1}, columns_);
+}
 std::int64_t Scene::row(double y) const { return std::clamp(cell_of(y, kCell) - first_row_, std::int64_t{-1}, rows_); }
 
 template <class Visit>
@@ -44,7 +46,8 @@ void Scene::for_each_cell(Point2 a, Point2 b, Visit&& visit) const {
                      last = std::min(column(b.x + kSlack), columns_ - 1);
   for (std::int64_t c = first; c <= last; ++c) {
     const auto west_border = static_cast<double>(c + first_column_) * kCell;
-    const double west = std::clamp(west_border - kSlack, a.x, b.x), east = std::clamp(west_border + kCell + kSlack, a.x, b.x);
+    const double west = std::clamp(west_border - kSlack, a.x, b.x),
+                 east = std::clamp(west_border + kCell + kSlack, a.x, b.x);
     const double from = b.x > a.x ? a.y + (west - a.x) * slope : a.y, to = b.x > a.x ? a.y + (east - a.x) * slope : b.y;
     const std::int64_t low = std::max<std::int64_t>(row(std::min(from, to) - kSlack), 0),
                        high = std::min(row(std::max(from, to) + kSlack), rows_ - 1);
@@ -54,9 +57,9 @@ void Scene::for_each_cell(Point2 a, Point2 b, Visit&& visit) const {
 
 Scene::Scene(std::span<const Footprint> footprints, std::span<const NetworkLine> lines, double margin) {
   for (std::uint32_t f = 0; f < footprints.size(); ++f) {
-    sort_.push_back(footprints[f].canopy                                            ? Sort::canopy
+    sort_.push_back(footprints[f].canopy                                       ? Sort::canopy
                     : geometry::area(footprints[f].polygon) < kOutbuildingArea ? Sort::outbuilding
-                                                                                 : Sort::building);
+                                                                               : Sort::building);
     if (footprints[f].polygon.outer.size() < 3) continue;
     add_walls(footprints[f].polygon.outer, true, f, walls_);
     for (const model::Ring& hole : footprints[f].polygon.holes) add_walls(hole, false, f, walls_);
@@ -163,7 +166,9 @@ Sight Scene::look(Point2 from, Point2 d, double reach, Obstacles obstacles) cons
   std::int64_t c = cell_of(from.x, kCell) - first_column_, r = cell_of(from.y, kCell) - first_row_;
   const int step_c = d.x > 0 ? 1 : -1, step_r = d.y > 0 ? 1 : -1;
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  const auto border = [](std::int64_t cell, int step) { return static_cast<double>(cell + (step > 0 ? 1 : 0)) * kCell; };
+  const auto border = [](std::int64_t cell, int step) {
+    return static_cast<double>(cell + (step > 0 ? 1 : 0)) * kCell;
+  };
   double to_c = d.x != 0 ? (border(c + first_column_, step_c) - from.x) / d.x : kNever;
   double to_r = d.y != 0 ? (border(r + first_row_, step_r) - from.y) / d.y : kNever;
   const double per_c = d.x != 0 ? kCell / std::fabs(d.x) : kNever, per_r = d.y != 0 ? kCell / std::fabs(d.y) : kNever;
@@ -200,8 +205,9 @@ Sight Scene::look(Point2 from, Point2 d, double reach, Obstacles obstacles) cons
 void Scene::walls_near(Point2 minimum, Point2 maximum, std::vector<std::uint32_t>& out) const {
   out.clear();
   if (items_.empty()) return;
-  const std::int64_t first = std::max<std::int64_t>(column(minimum.x), 0), last = std::min(column(maximum.x), columns_ - 1),
-                     low = std::max<std::int64_t>(row(minimum.y), 0), high = std::min(row(maximum.y), rows_ - 1);
+  const std::int64_t first = std::max<std::int64_t>(column(minimum.x), 0),
+                     last = std::min(column(maximum.x), columns_ - 1), low = std::max<std::int64_t>(row(minimum.y), 0),
+                     high = std::min(row(maximum.y), rows_ - 1);
   for (std::int64_t r = low; r <= high; ++r)
     for (std::int64_t c = first; c <= last; ++c) {
       const auto cell = static_cast<std::size_t>(r * columns_ + c);

@@ -21,10 +21,10 @@ struct Wall {
 
 /// A straight piece of a street's centre line, or of the outline of a pedestrian area; or the bar across a dead end.
 struct StreetPiece {
-  model::Point2 a, b;         ///< m
-  std::uint32_t line = 0;     ///< index into the lines given
-  model::Point2 along;        ///< unit vector
-  bool any_direction = false; ///< of a square's outline: says nothing of how the square lies
+  model::Point2 a, b;          ///< m
+  std::uint32_t line = 0;      ///< index into the lines given
+  model::Point2 along;         ///< unit vector
+  bool any_direction = false;  ///< of a square's outline: says nothing of how the square lies
 };
 
 /// m. At a dead end a bar as long as a turning place stands across the street: walls that close it look at street space,

@@ -20,9 +20,9 @@ using classify::kHouseArea;
 using classify::kNearReach;
 using model::Building;
 using model::BuildingPosition;
-using model::WallSegmentKind;
-using model::WallSegment;
 using model::Point2;
+using model::WallSegment;
+using model::WallSegmentKind;
 
 constexpr double kCornerSine = 0.342;   ///< of 20 degrees: what turns less is a bend in a wall
 constexpr double kSectionStep = 1;      ///< m between sections across a house: half a window axis
@@ -505,8 +505,9 @@ void PlaceIndex::near(Point2 place, double distance, std::vector<std::uint32_t>&
     if (squared_distance(places_.box(i).minimum, place) <= distance * distance) out.push_back(chosen_[i]);
 }
 
-FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& store, const context::ContextExtract& context,
-                           const context::VicinityFinder& vicinity, int workers, base::Progress& progress) {
+FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& store,
+                           const context::ContextExtract& context, const context::VicinityFinder& vicinity, int workers,
+                           base::Progress& progress) {
   progress.begin("measure");
   const std::size_t count = store.size();
   FactsExtract facts;

@@ -125,8 +125,9 @@ std::optional<model::RoofShape> usual_shape(classify::RoofFamily family, const c
 
 }  // namespace
 
-TagFacts tag_facts(const model::Extract& extract, const footprints::FootprintStore& store, const context::ContextExtract& context,
-                   const classify::Tables& tables, const georef::Projection& projection, FactsExtract& facts) {
+TagFacts tag_facts(const model::Extract& extract, const footprints::FootprintStore& store,
+                   const context::ContextExtract& context, const classify::Tables& tables,
+                   const georef::Projection& projection, FactsExtract& facts) {
   TagFacts out;
   const std::size_t n = store.size();
   out.dates.resize(n);

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "pipeline/base/progress.h"
+#include "pipeline/context/context_extract.h"
+#include "pipeline/evidence/building_facts.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/model/style.h"
-#include "pipeline/evidence/building_facts.h"
-#include "pipeline/context/context_extract.h"
 #include "styles/classify/classify.h"
 
 namespace blockrand::evidence {
@@ -64,8 +64,9 @@ struct TagFacts {
 };
 
 /// Reads tags and fills the tag features of `facts`.
-TagFacts tag_facts(const model::Extract& extract, const footprints::FootprintStore& footprints, const context::ContextExtract& context,
-                   const classify::Tables& tables, const georef::Projection& projection, FactsExtract& facts);
+TagFacts tag_facts(const model::Extract& extract, const footprints::FootprintStore& footprints,
+                   const context::ContextExtract& context, const classify::Tables& tables,
+                   const georef::Projection& projection, FactsExtract& facts);
 
 struct ClassifyOptions {
   bool tags = true;    ///< false: the building's own tags are no evidence for its style (measurements of the method)

@@ -88,7 +88,7 @@ void infer(Building& building, std::uint32_t number, const StyleInputs& in) {
   if (s.non_house) return;  // the defaults of its use know better
   // Who decided: tagged neighbours where their votes outweigh the building's own evidence, else that.
   const auto inferred_candidate = [](auto& to, auto value, float confidence, float votes, std::uint16_t voters,
-                        const classify::VoteKernel& kernel, const std::string& own) {
+                                     const classify::VoteKernel& kernel, const std::string& own) {
     const bool heard = static_cast<double>(votes) > kernel.prior;
     const std::string asked =
         fmt::format("{} tagged {} within {:.0f} m", voters, voters == 1 ? "neighbour" : "neighbours", kernel.reach);
@@ -99,13 +99,13 @@ void infer(Building& building, std::uint32_t number, const StyleInputs& in) {
   };
   const StoreysEstimate& storeys = in.styles.storeys[number];
   if (storeys.storeys > 0) {
-    inferred_candidate(out.storeys, storeys.storeys, storeys.confidence, storeys.votes, storeys.voters, in.tables.storeys_votes,
-          fmt::format("{:g}", storeys.own));
+    inferred_candidate(out.storeys, storeys.storeys, storeys.confidence, storeys.votes, storeys.voters,
+                       in.tables.storeys_votes, fmt::format("{:g}", storeys.own));
     out.storeys.why += fmt::format("; within one storey {:.0f} %", 100 * static_cast<double>(storeys.within_one));
   }
   const RoofEstimate& roof = in.styles.roofs[number];
   inferred_candidate(out.roof_shape, roof.shape, roof.confidence, roof.votes, roof.voters, in.tables.roof_votes,
-        std::string(classify::name(roof.own)));
+                     std::string(classify::name(roof.own)));
 }
 
 std::string years_text(model::YearRange years) {

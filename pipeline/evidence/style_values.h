@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "pipeline/model/region.h"
 #include "pipeline/evidence/building_facts.h"
 #include "pipeline/evidence/classify_extract.h"
+#include "pipeline/model/region.h"
 #include "styles/classify/classify.h"
 
 namespace blockrand::evidence {

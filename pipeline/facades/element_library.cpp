@@ -129,7 +129,7 @@ void ElementLibrary::add(const std::string& name, double number) {
 }
 
 void ElementLibrary::add_request(const grammar::ElementRequest& order, bool keep_left, bool keep_right,
-                             std::vector<std::string>& complaints) {
+                                 std::vector<std::string>& complaints) {
   for (std::size_t i = 1; i + 1 < order.arguments.size(); i += 2) {
     if (!std::holds_alternative<std::string>(order.arguments[i])) continue;
     const std::string& name = std::get<std::string>(order.arguments[i]);

@@ -42,7 +42,8 @@ class ElementLibrary {
   /// All parameters of an order in a rule file: pairs of name and value after the kind; "PART_colour" colours a part.
   /// \param keep_left, keep_right  false: not the run's own end, but one beside an interruption, cut square
   /// \param complaints  gets what is no colour
-  void add_request(const grammar::ElementRequest& order, bool keep_left, bool keep_right, std::vector<std::string>& complaints);
+  void add_request(const grammar::ElementRequest& order, bool keep_left, bool keep_right,
+                   std::vector<std::string>& complaints);
   /// The number of the element asked for in Region::elements; kNone when it cannot be made, for the reason in `error`.
   std::uint32_t take(std::string& error);
 

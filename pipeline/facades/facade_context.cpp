@@ -101,7 +101,8 @@ std::size_t storey_count(const C& c) {
 /// What is ordered for each storey from the ground floor up; empty texts where nothing is.
 std::vector<std::string> by_storey(const C& c, std::string_view key) {
   std::vector<std::string> out(storey_count(c));
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = overridden(c, model::DetailKind::storey, std::to_string(i), key);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = overridden(c, model::DetailKind::storey, std::to_string(i), key);
   return out;
 }
 

@@ -77,8 +77,8 @@ std::vector<FacadeSegment> facade_segments(const model::Building& building, std:
         if (p.from < middle && middle < p.to && (!best || p.apart < best->apart)) best = &p;
       const model::WallSegmentKind kind = best ? building.edges[best->edge].kind : model::WallSegmentKind::unknown;
       // A party wall keeps its neighbours apart, since they cover different heights.
-      const bool joins = out.size() > first && out.back().kind == kind && from - out.back().to < kShortestFacadeSegment &&
-                         kind != model::WallSegmentKind::party_wall;
+      const bool joins = out.size() > first && out.back().kind == kind &&
+                         from - out.back().to < kShortestFacadeSegment && kind != model::WallSegmentKind::party_wall;
       if (joins) {
         out.back().to = to;
         if (best && (out.back().edges.empty() || out.back().edges.back() != best->edge))

@@ -21,7 +21,8 @@ struct FacadeSegment {
   /// Degrees that the walls of the body turn at its ends, positive at corners that stand out; 0 where the wall goes on,
   /// where no wall follows, or one with another base or other eaves.
   double turn_left = 0, turn_right = 0;
-  std::optional<model::WallSegmentKind> kind_left, kind_right;  ///< of the wall segments beyond; none where no wall follows
+  std::optional<model::WallSegmentKind> kind_left,
+      kind_right;  ///< of the wall segments beyond; none where no wall follows
   double length() const { return to - from; }
 };
 

@@ -74,7 +74,8 @@ class FacadeBuilder {
       close_portals();
     }
     for (const FacadeSegment& segment : segments) {
-      if (segment.kind == model::WallSegmentKind::party_wall || segment.kind == model::WallSegmentKind::unknown) continue;
+      if (segment.kind == model::WallSegmentKind::party_wall || segment.kind == model::WallSegmentKind::unknown)
+        continue;
       derive_segment(*grammar, {building, part, walls[segment.wall], segment, eaves}, seed, row);
     }
     cut(part, walls);
@@ -385,8 +386,8 @@ class FacadeBuilder {
   std::vector<Asked> asked_;
   std::vector<PassagePortal> portals_;
   std::size_t portal_elements_ = 0;  ///< the first of asked_: what close_portals() put there
-  std::size_t yielding_ = 0;        ///< elements that would stand in a portal
-  std::size_t missed_doors_ = 0;    ///< those of them that are doors at mapped entrances
+  std::size_t yielding_ = 0;         ///< elements that would stand in a portal
+  std::size_t missed_doors_ = 0;     ///< those of them that are doors at mapped entrances
   std::set<std::string> told_;
   PartMaterials usual_materials_;  ///< of the part at work
   std::vector<std::string> complaints_;

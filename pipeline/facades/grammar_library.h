@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "styles/districts/rule_set.h"
-#include "styles/grammar/language/check.h"
 #include "styles/grammar/evaluation/derive.h"
+#include "styles/grammar/language/check.h"
 
 namespace blockrand::facades {
 

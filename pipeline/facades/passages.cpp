@@ -7,8 +7,8 @@
 namespace blockrand::facades {
 namespace {
 
-using model::WallSegmentKind;
 using model::Point2;
+using model::WallSegmentKind;
 
 /// Fronts that take a portal in; the more important first.
 int rank(WallSegmentKind kind) {
@@ -94,7 +94,7 @@ void pair_up(std::span<const WallFrame> walls, std::vector<PassagePortal>& porta
 }  // namespace
 
 std::vector<PassagePortal> take_portals(const model::BuildingPart& part, std::span<const WallFrame> walls,
-                                      std::vector<FacadeSegment>& segments) {
+                                        std::vector<FacadeSegment>& segments) {
   std::vector<PassagePortal> portals;
   std::vector<FacadeSegment> out;
   const double ground = part.attributes.ground_height.value;
@@ -113,7 +113,7 @@ std::vector<PassagePortal> take_portals(const model::BuildingPart& part, std::sp
     const bool has_left = !out.empty() && beside(out.back(), mine);
     const bool has_right = i + 1 < segments.size() && beside(mine, segments[i + 1]);
     const WallSegmentKind left = has_left ? out.back().kind : WallSegmentKind::unknown,
-                   right = has_right ? segments[i + 1].kind : WallSegmentKind::unknown;
+                          right = has_right ? segments[i + 1].kind : WallSegmentKind::unknown;
     const WallSegmentKind front = rank(left) >= rank(right) ? left : right;
     PassagePortal portal;
     portal.wall = mine.wall;

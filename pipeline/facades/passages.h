@@ -46,14 +46,14 @@ struct PassagePortal {
 /// first: labels do not tell which way they come from. Pairs whose common height is below kLeastHeadroom are none.
 /// What wall segments know of their neighbours is not kept up: link_corners() comes after.
 std::vector<PassagePortal> take_portals(const model::BuildingPart& part, std::span<const WallFrame> walls,
-                                      std::vector<FacadeSegment>& segments);
+                                        std::vector<FacadeSegment>& segments);
 
 inline constexpr double kCartWidth = 2.3;        ///< m
 inline constexpr double kStraightThrough = 0.7;  ///< cosine between a passage and the normals of its walls: 45 degrees
 inline constexpr double kLintel = 0.3;           ///< m between a passage and the floor above
 inline constexpr double kLeastHeadroom = 2.0;    ///< m
 inline constexpr double kPortalThreshold =
-    0.03;                                   ///< m of wall that stays under a portal: openings do not touch the ground
+    0.03;                                    ///< m of wall that stays under a portal: openings do not touch the ground
 inline constexpr double kPortalJamb = 0.05;  ///< m of wall that stays beside a portal at a corner of the building
 
 }  // namespace blockrand::facades

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/base/random.h"
 #include "pipeline/attributes/roof_edges.h"
+#include "pipeline/base/random.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/plan_shape.h"
 #include "pipeline/geometry/polygon_measures.h"
@@ -49,7 +49,8 @@ double within(double low, double high, double share) { return low + (high - low)
 
 class RoofInstaller {
  public:
-  RoofInstaller(const attributes::Defaults& defaults, const RoofInstallationOptions& options) : defaults_(defaults), options_(options) {
+  RoofInstaller(const attributes::Defaults& defaults, const RoofInstallationOptions& options)
+      : defaults_(defaults), options_(options) {
     const auto face = [&](const char* material, model::Colour or_else) {
       model::Face f;
       const int number = defaults.material(material);
@@ -320,7 +321,8 @@ int wanted_chimneys(const model::Attributes& attributes, model::BuildingPosition
   return roofs::chimney_count(frontage, each);
 }
 
-void add_roof_installations(model::Region& region, const attributes::Defaults& defaults, const RoofInstallationOptions& options) {
+void add_roof_installations(model::Region& region, const attributes::Defaults& defaults,
+                            const RoofInstallationOptions& options) {
   RoofInstaller installer(defaults, options);
   for (model::Building& building : region.buildings)
     if (building.owned) installer.furnish(building);

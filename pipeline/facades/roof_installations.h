@@ -42,6 +42,7 @@ int wanted_chimneys(const model::Attributes& attributes, model::BuildingPosition
 /// one old house in three, whose loft was converted (own choice). Measures are drawn per building within
 /// docs/style_measures.md §2.7, keyed by its id and the seed. Every body is checked; one that fails its check, or
 /// stands where another body of the building is, is left out. LoD2 and the LoD3 envelope are not touched.
-void add_roof_installations(model::Region& region, const attributes::Defaults& defaults, const RoofInstallationOptions& options);
+void add_roof_installations(model::Region& region, const attributes::Defaults& defaults,
+                            const RoofInstallationOptions& options);
 
 }  // namespace blockrand::facades

@@ -55,7 +55,9 @@ void FootprintStore::shrink_to_fit() {
   arcs_.shrink_to_fit();
 }
 
-void FootprintStore::add_overlap(std::uint32_t building, double area) { entries_[building].record.overlap_left += area; }
+void FootprintStore::add_overlap(std::uint32_t building, double area) {
+  entries_[building].record.overlap_left += area;
+}
 
 BoxIndex index_of(const FootprintStore& store) {
   std::vector<PlanBox> boxes;

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/footprints/repair/terrace_row.h"
 #include "pipeline/geometry/box_index.h"
 #include "pipeline/model/building.h"
-#include "pipeline/footprints/repair/terrace_row.h"
 
 namespace blockrand::footprints {
 
@@ -21,14 +21,15 @@ struct StoredFootprint {
   std::uint32_t lead = model::kNoIndex;  ///< into Extract::buildings
   model::Range rings;                    ///< into the store
   model::Range arcs;
-  PlanBox box;                           ///< empty where the outline has no area
+  PlanBox box;  ///< empty where the outline has no area
   repair::Level level;
   model::RepairRecord record;
-  double party_wall_length = 0;          ///< m that a neighbour has point for point
+  double party_wall_length = 0;                       ///< m that a neighbour has point for point
   model::IssueCode failure = model::IssueCode::none;  ///< why there is no outline
   bool has_parts = false;
-  model::ObjectState settled = model::ObjectState::pending;  ///< duplicate or represented: another building stands for it
-  model::OsmId related;                                      ///< that one
+  model::ObjectState settled =
+      model::ObjectState::pending;  ///< duplicate or represented: another building stands for it
+  model::OsmId related;             ///< that one
 };
 
 /// Outlines by the number of their building in the run (position in the shards, in their order).

@@ -22,7 +22,8 @@ MappedRings project_rings(const Extract& extract, const MappedBuilding& object, 
     Ring ring;
     ring.points.reserve(vertices.size());
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-      if (i > 0 && std::fabs(vertices[i].lon_degrees() - vertices[i - 1].lon_degrees()) > 180) crosses_antimeridian = true;
+      if (i > 0 && std::fabs(vertices[i].lon_degrees() - vertices[i - 1].lon_degrees()) > 180)
+        crosses_antimeridian = true;
       ring.points.push_back(model::snap(projection.forward(vertices[i].lon_degrees(), vertices[i].lat_degrees())));
     }
     ring.nodes.assign(nodes.begin(), nodes.end());

@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "pipeline/footprints/shard.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/region.h"
-#include "pipeline/footprints/shard.h"
 
 namespace blockrand::footprints {
 

@@ -1,21 +1,21 @@
 #include "pipeline/footprints/repair_extract.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include <fmt/format.h>
-
 #include "pipeline/base/parallel.h"
-#include "pipeline/geometry/slivers.h"
-#include "pipeline/geometry/polygon_measures.h"
-#include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/footprints/load.h"
-#include "pipeline/footprints/terrace_rows.h"
 #include "pipeline/footprints/repair/nested_outlines.h"
 #include "pipeline/footprints/repair/parts.h"
 #include "pipeline/footprints/repair/repair_terrace_row.h"
 #include "pipeline/footprints/repair/rings.h"
+#include "pipeline/footprints/terrace_rows.h"
+#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/geometry/slivers.h"
+#include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::footprints {
 
@@ -239,8 +239,8 @@ void yield_to_neighbours(std::uint32_t b, std::span<const std::uint32_t> beyond,
 }
 
 /// Rows are repaired apart: what a cut of a long row leaves of overlaps is said.
-void report_overlaps_at_cuts(std::span<const TerraceRowPlan> plans, const repair::RepairOptions& options, RepairedExtract& out,
-                             RepairTotals& totals) {
+void report_overlaps_at_cuts(std::span<const TerraceRowPlan> plans, const repair::RepairOptions& options,
+                             RepairedExtract& out, RepairTotals& totals) {
   for (const TerraceRowPlan& plan : plans)
     for (const std::uint32_t b : plan.buildings)
       for (const std::uint32_t other : plan.beyond) {

@@ -6,36 +6,36 @@
 #include <vector>
 
 #include "pipeline/base/progress.h"
-#include "pipeline/georef/projection.h"
-#include "pipeline/model/extract.h"
 #include "pipeline/footprints/footprint_store.h"
-#include "pipeline/footprints/shard.h"
 #include "pipeline/footprints/repair/kept_nodes.h"
 #include "pipeline/footprints/repair/options.h"
+#include "pipeline/footprints/shard.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/model/extract.h"
 
 namespace blockrand::footprints {
 
 /// What repair did to all outlines together. Lengths in metres, areas in square metres.
 struct RepairTotals {
-  std::uint64_t outlines = 0;             ///< with an area
-  std::uint64_t rows = 0;                 ///< of two buildings and more
-  std::uint64_t at_cuts = 0;              ///< buildings that a cut parted from a neighbour (REACH_CUT)
-  std::uint64_t vertices = 0, moved = 0;  ///< of all outlines
-  double mean_shift = 0, max_shift = 0;   ///< m, of the moved vertices
+  std::uint64_t outlines = 0;                          ///< with an area
+  std::uint64_t rows = 0;                              ///< of two buildings and more
+  std::uint64_t at_cuts = 0;                           ///< buildings that a cut parted from a neighbour (REACH_CUT)
+  std::uint64_t vertices = 0, moved = 0;               ///< of all outlines
+  double mean_shift = 0, max_shift = 0;                ///< m, of the moved vertices
   double median_area_change = 0, max_area_change = 0;  ///< of the mapped area, of those whose area changed
-  std::uint64_t area_changed = 0;         ///< outlines whose area changed by more than a thousandth
+  std::uint64_t area_changed = 0;                      ///< outlines whose area changed by more than a thousandth
   std::uint64_t shared_walls = 0, gaps_closed = 0, overlaps_resolved = 0;  ///< each counted once
-  double party_wall_length = 0;           ///< m, each wall once
-  std::uint64_t squared = 0;              ///< outlines with a main direction
-  std::uint64_t overlaps_left = 0;        ///< outlines with a reported overlap that stays
+  double party_wall_length = 0;                                            ///< m, each wall once
+  std::uint64_t squared = 0;                                               ///< outlines with a main direction
+  std::uint64_t overlaps_left = 0;  ///< outlines with a reported overlap that stays
   std::uint64_t arcs = 0;
 };
 
 /// The repaired outlines. The number of a building is its place in the shards, in their order.
 struct RepairedExtract {
   FootprintStore footprints;
-  std::vector<std::uint32_t> first;     ///< per shard: the number of its first building
-  std::vector<model::ReportRow> rows;   ///< sorted by object
+  std::vector<std::uint32_t> first;    ///< per shard: the number of its first building
+  std::vector<model::ReportRow> rows;  ///< sorted by object
   RepairTotals totals;
 };
 

@@ -3,11 +3,11 @@
 
 #include <vector>
 
+#include "pipeline/footprints/footprint_store.h"
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/region.h"
 #include "pipeline/model/roof_line.h"
-#include "pipeline/geometry/box_index.h"
-#include "pipeline/footprints/footprint_store.h"
 
 namespace blockrand::footprints {
 

@@ -126,8 +126,8 @@ class OutlineIndex {
     std::uint32_t index;
     Box box;
   };
-  static constexpr std::int64_t kCell = 20'000;     // 0.002 degrees, about 200 m
-  static constexpr std::int64_t kMostCells = 100;   // no outline is longer than 20 km; a broken one must not fill memory
+  static constexpr std::int64_t kCell = 20'000;    // 0.002 degrees, about 200 m
+  static constexpr std::int64_t kMostCells = 100;  // no outline is longer than 20 km; a broken one must not fill memory
   static std::int64_t cell(std::int64_t v) { return v >= 0 ? v / kCell : -((-v + kCell - 1) / kCell); }
   static std::uint64_t key(std::int64_t x, std::int64_t y) {
     return (static_cast<std::uint64_t>(x) << 32) ^ (static_cast<std::uint64_t>(y) & 0xffffffffu);
@@ -136,9 +136,10 @@ class OutlineIndex {
 };
 
 /// Objects that share edges, transitively: groups in order of their first members, members in order.
-std::vector<std::vector<std::uint32_t>> groups_by_edges(const Extract& extract, const std::vector<std::uint32_t>& objects) {
+std::vector<std::vector<std::uint32_t>> groups_by_edges(const Extract& extract,
+                                                        const std::vector<std::uint32_t>& objects) {
   struct Edge {
-    std::int64_t a, b;   // nodes, the lower first
+    std::int64_t a, b;    // nodes, the lower first
     std::uint32_t owner;  // index into `objects`
     auto operator<=>(const Edge&) const = default;
   };
@@ -183,8 +184,9 @@ std::vector<Shard> make_shards(const Extract& extract, model::Report& report, in
   const auto index_of = [&](model::OsmId id) {
     const auto place = std::lower_bound(extract.buildings.begin(), extract.buildings.end(), id,
                                         [](const MappedBuilding& b, model::OsmId wanted) { return b.id < wanted; });
-    return place != extract.buildings.end() && place->id == id ? static_cast<std::uint32_t>(place - extract.buildings.begin())
-                                                               : model::kNoIndex;
+    return place != extract.buildings.end() && place->id == id
+               ? static_cast<std::uint32_t>(place - extract.buildings.begin())
+               : model::kNoIndex;
   };
 
   // What relations say comes first; the first relation in id order wins a part that two claim.
@@ -193,7 +195,8 @@ std::vector<Shard> make_shards(const Extract& extract, model::Report& report, in
     std::uint32_t outline = index_of(relation.outline);
     if (outline == model::kNoIndex) continue;
     // A duplicate's parts belong to whom it is a duplicate of.
-    if (extract.buildings[outline].state == ObjectState::duplicate) outline = index_of(extract.buildings[outline].related);
+    if (extract.buildings[outline].state == ObjectState::duplicate)
+      outline = index_of(extract.buildings[outline].related);
     if (outline == model::kNoIndex || !buildable(extract.buildings[outline])) continue;
     if (extract.buildings[outline].kind != ObjectKind::building) continue;
     for (const model::OsmId id : relation.parts) {
@@ -223,7 +226,8 @@ std::vector<Shard> make_shards(const Extract& extract, model::Report& report, in
       outlines.for_each_at(centre, [&](std::uint32_t o, const Box& box) {
         if (held_share(extract, extract.buildings[o], part) < 0.5) return;
         const double area = box.area();
-        if (best == model::kNoIndex || area < best_area || (area == best_area && extract.buildings[o].id < extract.buildings[best].id)) {
+        if (best == model::kNoIndex || area < best_area ||
+            (area == best_area && extract.buildings[o].id < extract.buildings[best].id)) {
           best = o;
           best_area = area;
         }
@@ -274,7 +278,8 @@ std::vector<Shard> make_shards(const Extract& extract, model::Report& report, in
   std::vector<Shard> out;
   out.reserve(shards.size());
   for (auto& [tile, shard] : shards) {
-    std::sort(shard.seeds.begin(), shard.seeds.end(), [&](const Seed& a, const Seed& b) { return a.lead() < b.lead(); });
+    std::sort(shard.seeds.begin(), shard.seeds.end(),
+              [&](const Seed& a, const Seed& b) { return a.lead() < b.lead(); });
     out.push_back(std::move(shard));
   }
   return out;

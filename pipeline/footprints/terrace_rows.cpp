@@ -90,7 +90,8 @@ bool near(const FootprintStore& store, std::uint32_t a, std::uint32_t b, double 
 
 std::pair<std::int64_t, std::int64_t> terrace_row_cell(const PlanBox& box) {
   const Point2 c = box.centre();
-  return {static_cast<std::int64_t>(std::floor(c.x / kTerraceRowCell)), static_cast<std::int64_t>(std::floor(c.y / kTerraceRowCell))};
+  return {static_cast<std::int64_t>(std::floor(c.x / kTerraceRowCell)),
+          static_cast<std::int64_t>(std::floor(c.y / kTerraceRowCell))};
 }
 
 }  // namespace
@@ -107,7 +108,8 @@ std::vector<TerraceRowPlan> find_terrace_rows(const FootprintStore& store, doubl
   for (std::uint32_t i = 0; i < n; ++i) boxes[whole.find(i)].include(store[i].box);
   const auto too_long = [&](std::uint32_t i) {
     const PlanBox& box = boxes[whole.find(i)];
-    return !box.empty() && std::max(box.maximum.x - box.minimum.x, box.maximum.y - box.minimum.y) > kMaxTerraceRowExtent;
+    return !box.empty() &&
+           std::max(box.maximum.x - box.minimum.x, box.maximum.y - box.minimum.y) > kMaxTerraceRowExtent;
   };
   Union rows(n);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> cut;

@@ -71,7 +71,7 @@ bool triangulate(const PolygonRings& rings, const std::map<model::Point3, std::s
 }
 
 std::string validate_soup(const std::vector<Kernel::Point_3>& points,
-                       const std::vector<std::vector<std::size_t>>& triangles) {
+                          const std::vector<std::vector<std::size_t>>& triangles) {
   if (triangles.empty()) return "no faces";
   if (!pmp::is_polygon_soup_a_polygon_mesh(triangles)) return "faces do not form an oriented manifold";
   Mesh mesh;
@@ -117,7 +117,8 @@ std::string validate_solid(const std::vector<PolygonRings>& polygons) {
       for (const model::Point3& p : ring)
         if (!on_earth(p))
           return "a coordinate beyond all measure";
-        else if (index.emplace(p, points.size()).second) points.emplace_back(p.x, p.y, p.z);
+        else if (index.emplace(p, points.size()).second)
+          points.emplace_back(p.x, p.y, p.z);
     }
   std::vector<std::vector<std::size_t>> triangles;
   for (const auto& polygon : polygons)

@@ -37,9 +37,8 @@ SolidCheck check_topology(const std::vector<HalfEdge>& half_edges, std::size_t f
     const HalfEdge& e = half_edges[h];
     return std::pair(std::min(e.from, e.to), std::max(e.from, e.to));
   };
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return key(a) != key(b) ? key(a) < key(b) : a < b;
-  });
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
   std::vector<std::uint32_t> twin(count);
   for (std::uint32_t i = 0; i < count;) {
     std::uint32_t j = i;
@@ -131,7 +130,8 @@ FacePlane plane_of(const Solid& solid, const Face& face) {
 double off_plane(const Solid& solid, const Face& face, const FacePlane& plane) {
   double most = 0;
   for (const auto& loop : solid.loops_of(face))
-    for (const std::uint32_t i : solid.indices_of(loop)) most = std::max(most, std::fabs(plane.height(solid.vertices[i])));
+    for (const std::uint32_t i : solid.indices_of(loop))
+      most = std::max(most, std::fabs(plane.height(solid.vertices[i])));
   return most;
 }
 
@@ -354,8 +354,7 @@ SolidCheck doubled_place(std::span<const Grid3> vertices) {
     return vertices[a] != vertices[b] ? vertices[a] < vertices[b] : a < b;
   });
   for (std::size_t i = 1; i < order.size(); ++i)
-    if (vertices[order[i]] == vertices[order[i - 1]])
-      return {SolidDefect::non_manifold_vertex, order[i - 1], order[i]};
+    if (vertices[order[i]] == vertices[order[i - 1]]) return {SolidDefect::non_manifold_vertex, order[i - 1], order[i]};
   return {};
 }
 

@@ -26,7 +26,9 @@ std::vector<Point2> moved_apart(std::span<const Point2> ring) {
   std::vector<Point2> out;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const std::uint64_t bits = base::mix64(i);
-    const auto part = [](std::uint64_t half) { return kApart * (static_cast<double>(half & 0xffffffff) / 4294967296.0); };
+    const auto part = [](std::uint64_t half) {
+      return kApart * (static_cast<double>(half & 0xffffffff) / 4294967296.0);
+    };
     const Point2 p = ring[i] - ring[0];
     out.push_back({p.x + part(bits), p.y + part(bits >> 32)});
   }

@@ -122,7 +122,8 @@ class PlanarMap {
     cycles_.clear();
     for (std::uint32_t h = 0; h < from_.size(); ++h) {
       if (!alive_[h] || cycle_[h] != kNone) continue;
-      for (std::uint32_t g = h; cycle_[g] == kNone; g = next_[g]) cycle_[g] = static_cast<std::uint32_t>(cycles_.size());
+      for (std::uint32_t g = h; cycle_[g] == kNone; g = next_[g])
+        cycle_[g] = static_cast<std::uint32_t>(cycles_.size());
       cycles_.push_back(h);
     }
   }
@@ -236,7 +237,8 @@ std::vector<Polygon> in_order(std::vector<Polygon> faces) {
     std::sort(polygon.holes.begin(), polygon.holes.end(),
               [](const Ring& a, const Ring& b) { return a.points < b.points; });
   }
-  std::sort(faces.begin(), faces.end(), [](const Polygon& a, const Polygon& b) { return a.outer.points < b.outer.points; });
+  std::sort(faces.begin(), faces.end(),
+            [](const Polygon& a, const Polygon& b) { return a.outer.points < b.outer.points; });
   return faces;
 }
 

@@ -34,8 +34,8 @@ std::optional<Sliver> sliver_at(const Ring& ring, std::size_t first, std::size_t
   const double across = one <= other ? distance_to_segment(p, b, q) : distance_to_segment(q, p, a);
   if (across > width) return std::nullopt;
   const Grid2 gp = to_grid(p), ga = to_grid(a), gb = to_grid(b), gq = to_grid(q);
-  const bool outward = first == last ? orientation(gp, ga, gq) > 0
-                                     : orientation(gp, ga, gb) >= 0 && orientation(ga, gb, gq) >= 0;
+  const bool outward =
+      first == last ? orientation(gp, ga, gq) > 0 : orientation(gp, ga, gb) >= 0 && orientation(ga, gb, gq) >= 0;
   return Sliver{first, last, length, across, outward};
 }
 

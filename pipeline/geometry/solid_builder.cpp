@@ -9,8 +9,8 @@ std::uint32_t SolidBuilder::vertex(model::Point3 p) {
   const auto [place, inserted] = vertex_at_.try_emplace(g, static_cast<std::uint32_t>(solid_.vertices.size()));
   if (inserted) {
     const double step = 1.0 / model::kGridStepsPerMetre;
-    solid_.vertices.push_back({static_cast<double>(g.x) * step, static_cast<double>(g.y) * step,
-                               static_cast<double>(g.z) * step});
+    solid_.vertices.push_back(
+        {static_cast<double>(g.x) * step, static_cast<double>(g.y) * step, static_cast<double>(g.z) * step});
   }
   return place->second;
 }

@@ -32,7 +32,8 @@ bool neighbours(const Edge& e, const Edge& f) {
 
 /// Do two edges share more than the point that ring neighbours have in common?
 bool edges_conflict(const Edge& e, const Edge& f) {
-  if (std::max(std::min(e.a.y, e.b.y), std::min(f.a.y, f.b.y)) > std::min(std::max(e.a.y, e.b.y), std::max(f.a.y, f.b.y)))
+  if (std::max(std::min(e.a.y, e.b.y), std::min(f.a.y, f.b.y)) >
+      std::min(std::max(e.a.y, e.b.y), std::max(f.a.y, f.b.y)))
     return false;
   if (neighbours(e, f)) {
     // Ring neighbours conflict only when one runs back over the other. In a triangle both ends are common; then the
@@ -45,7 +46,8 @@ bool edges_conflict(const Edge& e, const Edge& f) {
   const int o1 = orientation(e.a, e.b, f.a), o2 = orientation(e.a, e.b, f.b);
   const int o3 = orientation(f.a, f.b, e.a), o4 = orientation(f.a, f.b, e.b);
   if (o1 * o2 < 0 && o3 * o4 < 0) return true;
-  return on_segment(e.a, e.b, f.a) || on_segment(e.a, e.b, f.b) || on_segment(f.a, f.b, e.a) || on_segment(f.a, f.b, e.b);
+  return on_segment(e.a, e.b, f.a) || on_segment(e.a, e.b, f.b) || on_segment(f.a, f.b, e.a) ||
+         on_segment(f.a, f.b, e.b);
 }
 
 /// Calls `found(e, f)` for conflicting pairs until it returns false.
@@ -57,7 +59,8 @@ void for_each_conflict(const Polygon& polygon, Found&& found) {
   const auto add = [&](const Ring& ring) {
     const auto n = static_cast<std::uint32_t>(ring.size());
     for (std::uint32_t i = 0; i < n; ++i)
-      edges.push_back({to_grid(ring.points[i]) - origin, to_grid(ring.points[(i + 1) % n]) - origin, ring_number, i, n});
+      edges.push_back(
+          {to_grid(ring.points[i]) - origin, to_grid(ring.points[(i + 1) % n]) - origin, ring_number, i, n});
     ++ring_number;
   };
   add(polygon.outer);
@@ -84,8 +87,8 @@ using geos::Geometry;
 Geometry collection_of(std::span<const Polygon> polygons, Point2 origin) {
   std::vector<GEOSGeometry*> parts;
   for (const Polygon& p : polygons) parts.push_back(geos::polygon_of(p, origin).release());
-  return Geometry(GEOSGeom_createCollection_r(context(), GEOS_MULTIPOLYGON, parts.data(),
-                                              static_cast<unsigned>(parts.size())));
+  return Geometry(
+      GEOSGeom_createCollection_r(context(), GEOS_MULTIPOLYGON, parts.data(), static_cast<unsigned>(parts.size())));
 }
 
 Geometry union_all(std::span<const Polygon> polygons, Point2 origin) {
@@ -204,7 +207,8 @@ void restore_nodes(std::vector<Polygon>& polygons, const std::map<Point2, std::i
 }  // namespace
 
 bool strictly_simple(const Polygon& polygon) {
-  if (polygon.outer.size() < 3 || repeats_a_point(polygon.outer) || signed_area(polygon.outer.points) == 0) return false;
+  if (polygon.outer.size() < 3 || repeats_a_point(polygon.outer) || signed_area(polygon.outer.points) == 0)
+    return false;
   for (const Ring& hole : polygon.holes)
     if (hole.size() < 3 || repeats_a_point(hole) || signed_area(hole.points) == 0) return false;
   bool simple = true;

@@ -8,8 +8,8 @@
 namespace blockrand::geometry {
 
 struct WallSegmentEnds {
-  model::Point2 from, to;              ///< m, on the 1/1024 m grid; the building on the left
-  model::Point2 edge_from, edge_to;    ///< m, of the whole edge
+  model::Point2 from, to;            ///< m, on the 1/1024 m grid; the building on the left
+  model::Point2 edge_from, edge_to;  ///< m, of the whole edge
 };
 
 /// The ends of `edge`, one of building.edges. An end within half a grid step of a corner is that corner.

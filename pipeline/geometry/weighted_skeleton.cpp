@@ -193,8 +193,8 @@ class Sweep {
   /// Puts two edges without length between the edges of a corner: the one that ends here, then one that runs as the edge
   /// that starts here, one that runs as the edge that ends here, and the one that starts here.
   bool add_corner_eaves(const CornerEaves& eaves) {
-    const auto found = std::find_if(active_.begin(), active_.end(),
-                                    [&](std::int32_t v) { return vertex(v).node == eaves.corner; });
+    const auto found =
+        std::find_if(active_.begin(), active_.end(), [&](std::int32_t v) { return vertex(v).node == eaves.corner; });
     if (found == active_.end()) return false;
     const std::int32_t first = *found;
     const std::int32_t before = vertex(first).left, after = vertex(first).right, next = vertex(first).next;

@@ -45,7 +45,8 @@ struct WeightedSkeletonNode {
 struct WeightedSkeletonFace {
   static constexpr std::uint32_t kDeck = 0xffffffff;
   static constexpr std::uint32_t kCorner = 0xfffffffe;
-  std::uint32_t edge = 0;   ///< the edge it rises from (of several on one line the first one); kDeck; kCorner (CornerEaves)
+  std::uint32_t edge =
+      0;  ///< the edge it rises from (of several on one line the first one); kDeck; kCorner (CornerEaves)
   std::uint32_t level = 0;  ///< how many changes of slope lie below it
   bool upright = false;     ///< stands on its edge's line; no area seen from above
   /// Counter-clockwise from above (upright ones: from outside), into WeightedSkeleton::nodes. The first loop is the
@@ -62,11 +63,11 @@ struct WeightedSkeleton {
 };
 
 enum class SkeletonFailure : std::uint8_t {
-  too_large,     ///< farther than kWidestSkeleton from the first corner, more corners than kMostWeightedCorners, or no
-                 ///< ring of three corners
-  bad_slope,     ///< beyond kLeastSlope and kSteepestSlope, changes out of order, changes or a deck below one grid step,
-                 ///< CornerEaves at a corner that does not take them
-  unbounded,     ///< upright edges leave a part that no slope ever closes
+  too_large,  ///< farther than kWidestSkeleton from the first corner, more corners than kMostWeightedCorners, or no
+              ///< ring of three corners
+  bad_slope,  ///< beyond kLeastSlope and kSteepestSlope, changes out of order, changes or a deck below one grid step,
+              ///< CornerEaves at a corner that does not take them
+  unbounded,  ///< upright edges leave a part that no slope ever closes
   inconsistent,  ///< the polygon is not strictly simple, or a mistake of ours
 };
 std::string_view name(SkeletonFailure failure);

@@ -51,8 +51,8 @@ struct VerticalCrs {
   std::string name;            ///< "DHHN2016 height"; empty when there is none
   std::string authority_code;  ///< "EPSG:7837"; empty when the definition has no code
   double metres_per_unit = 1;
-  bool downwards = false;      ///< depths instead of heights
-  bool ellipsoidal = false;    ///< a CRS of three dimensions: above its ellipsoid; then without a name
+  bool downwards = false;    ///< depths instead of heights
+  bool ellipsoidal = false;  ///< a CRS of three dimensions: above its ellipsoid; then without a name
 };
 
 /// The vertical part of a compound CRS, or a vertical CRS itself; empty name for any other.

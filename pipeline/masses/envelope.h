@@ -15,6 +15,7 @@ struct EnvelopeMaterials {
 /// Underside at z = `bottom`, a wall for every edge of the plan up to the roof, and the roof's surfaces. Points are
 /// rounded to the grid, equal ones shared. The plan must be strictly simple; whether the solid is valid is for
 /// geometry::check_solid to say.
-model::Solid envelope(const model::Polygon& plan, double bottom, const roofs::Roof& roof, const EnvelopeMaterials& materials);
+model::Solid envelope(const model::Polygon& plan, double bottom, const roofs::Roof& roof,
+                      const EnvelopeMaterials& materials);
 
 }  // namespace blockrand::masses

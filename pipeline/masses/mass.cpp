@@ -6,16 +6,16 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/masses/envelope.h"
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/attributes/roof_edges.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/masses/envelope.h"
 #include "styles/roofs/eaves_lines.h"
-#include "styles/roofs/skeleton_roofs.h"
 #include "styles/roofs/roof.h"
+#include "styles/roofs/skeleton_roofs.h"
 
 namespace blockrand::masses {
 
@@ -81,8 +81,7 @@ class MassBuilder {
     const Levels levels = levels_of(part);
     if (lod >= 1) build_lod1(part, part.roof_plan, levels, materials);
     if (lod >= 2) build_lod2(part, part.roof_plan, levels, materials);
-    if (part.lod < lod)
-      note(part, part.lod == 1 ? IssueCode::lod1_only : IssueCode::no_solid);
+    if (part.lod < lod) note(part, part.lod == 1 ? IssueCode::lod1_only : IssueCode::no_solid);
   }
 
  private:
@@ -104,7 +103,8 @@ class MassBuilder {
     EnvelopeMaterials materials;
     materials.wall = face(SurfaceKind::wall, a.wall_material.value, a.wall_colour.value);
     materials.roof = face(SurfaceKind::roof, a.roof_material.value, a.roof_colour.value);
-    materials.under = face(on_ground ? SurfaceKind::ground : SurfaceKind::outer_ceiling, a.wall_material.value, a.wall_colour.value);
+    materials.under =
+        face(on_ground ? SurfaceKind::ground : SurfaceKind::outer_ceiling, a.wall_material.value, a.wall_colour.value);
     return materials;
   }
 
@@ -126,7 +126,9 @@ class MassBuilder {
       const double thickness = std::min(options_.canopy_thickness, (top - bottom) / 2);
       if (a.min_height.source != model::Source::tag) bottom = std::max(bottom, top - roof - thickness);
     }
-    const double room = top - bottom - (part.canopy ? std::min(options_.canopy_thickness, (top - bottom) / 2) : options_.min_wall_height);
+    const double room =
+        top - bottom -
+        (part.canopy ? std::min(options_.canopy_thickness, (top - bottom) / 2) : options_.min_wall_height);
     if (roof > room) {
       // A roof that fills its part, as those of domes do, stands on a low wall without a word.
       if (a.roof_height.source == model::Source::tag && roof - room > options_.min_wall_height + kNoThickness)
@@ -134,9 +136,11 @@ class MassBuilder {
       roof = std::max(room, 0.0);
     }
     if (roof < options_.min_roof_height) {
-      if (a.roof_shape.value != RoofShape::flat && !is_unknown(a.roof_shape.value) && a.roof_shape.source == model::Source::tag)
+      if (a.roof_shape.value != RoofShape::flat && !is_unknown(a.roof_shape.value) &&
+          a.roof_shape.source == model::Source::tag)
         note(part, IssueCode::roof_height_clamped,
-             fmt::format("{} of {:.2f} m is too low for a slope: flat", model::name(a.roof_shape.value), std::max(roof, 0.0)));
+             fmt::format("{} of {:.2f} m is too low for a slope: flat", model::name(a.roof_shape.value),
+                         std::max(roof, 0.0)));
       roof = 0;
     }
     return {model::snap(ground + bottom), model::snap(ground + top - roof), model::snap(ground + top)};
@@ -154,8 +158,8 @@ class MassBuilder {
     }
   }
 
-  bool accept(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials, const roofs::Roof& roof,
-              RoofShape built) {
+  bool accept(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials,
+              const roofs::Roof& roof, RoofShape built) {
     auto result = checked(envelope(plan, levels.bottom, roof, materials));
     if (!result) return false;
     part.lod2 = std::move(result->solid);
@@ -166,7 +170,8 @@ class MassBuilder {
   }
 
   /// One shape on one plan; tidied more coarsely where its solid fails the check.
-  bool build_roof(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials, roofs::RoofRequest request) {
+  bool build_roof(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials,
+                  roofs::RoofRequest request) {
     request.measures = {levels.eaves, levels.top - levels.eaves};
     request.along_eaves_lines = true;
     if (build_tidied(part, plan, levels, materials, request)) return true;
@@ -174,7 +179,8 @@ class MassBuilder {
     // Where the roof of whole facades does not fit, or does not come out valid, every bay gets slopes of its own.
     const double along = roofs::main_slope(plan, request, true).run;
     request.along_eaves_lines = false;
-    if (part.usual_pitch > 0 && along > 0) keep_pitch(part, request, roofs::main_slope(plan, request, true).run / along);
+    if (part.usual_pitch > 0 && along > 0)
+      keep_pitch(part, request, roofs::main_slope(plan, request, true).run / along);
     if (!build_tidied(part, plan, levels, materials, request)) return false;
     note(part, IssueCode::roof_with_bays);
     return true;
@@ -199,7 +205,8 @@ class MassBuilder {
   double least_wall(const BuildingPart& part, const Levels& levels) const {
     return std::min(part.canopy ? 0.0 : options_.min_wall_height, levels.eaves - levels.bottom) - 0.001;
   }
-  bool build_tidied(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials, roofs::RoofRequest request) {
+  bool build_tidied(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials,
+                    roofs::RoofRequest request) {
     for (const double coarseness : roofs::kCoarseness) {
       request.coarseness = coarseness;
       const auto built = roofs::build_roof(plan, request);
@@ -218,7 +225,8 @@ class MassBuilder {
     if (asked != RoofShape::flat && measures.height > 0 && !part.roof_lines.empty()) {
       const auto lined = roofs::lined_roof(plan, measures, part.roof_lines);
       if (lined && accept(part, plan, levels, materials, *lined, RoofShape::lined)) return;
-      note(part, IssueCode::roof_lines_ignored, lined ? "their solid is not valid" : "they do not fit each other or the plan");
+      note(part, IssueCode::roof_lines_ignored,
+           lined ? "their solid is not valid" : "they do not fit each other or the plan");
     }
     if (asked != RoofShape::flat && !is_unknown(asked) && measures.height > 0) {
       const std::optional<Polygon> simplified = attributes::simpler_plan(plan, options_.simplify_tolerance);
@@ -226,7 +234,8 @@ class MassBuilder {
       const auto in_row = [&](const Polygon& p) {
         return &p == &part.roof_plan ? part.roof_edges : attributes::roof_edges(*building_, p);
       };
-      const bool row = std::find(part.roof_edges.begin(), part.roof_edges.end(), model::RoofEdge::party_wall) != part.roof_edges.end();
+      const bool row = std::find(part.roof_edges.begin(), part.roof_edges.end(), model::RoofEdge::party_wall) !=
+                       part.roof_edges.end();
       for (const bool heeds_row : {true, false}) {
         if (!heeds_row && !row) continue;
         for (const Polygon* p : std::initializer_list<const Polygon*>{&plan, simplified ? &*simplified : nullptr}) {
@@ -241,17 +250,20 @@ class MassBuilder {
       request.shape = RoofShape::hipped;
       request.edges.clear();
       if (asked != RoofShape::hipped && build_roof(part, plan, levels, materials, request)) {
-        note(part, IssueCode::roof_shape_adapted, std::string(model::name(asked)) + " as hipped: its solid is not valid");
+        note(part, IssueCode::roof_shape_adapted,
+             std::string(model::name(asked)) + " as hipped: its solid is not valid");
         return;
       }
       note(part, IssueCode::roof_failed, std::string(model::name(asked)));
     }
     // A flat roof in place of a pitched one ends at half its height, so that the volume stays.
-    const double top = asked == RoofShape::flat || is_unknown(asked) ? levels.top : model::snap((levels.eaves + levels.top) / 2);
+    const double top =
+        asked == RoofShape::flat || is_unknown(asked) ? levels.top : model::snap((levels.eaves + levels.top) / 2);
     if (accept(part, plan, levels, materials, roofs::flat_roof(plan, top), RoofShape::flat)) return;
     for (const double tolerance : {options_.simplify_tolerance, 2 * options_.simplify_tolerance}) {
       const std::optional<Polygon> simplified = attributes::simpler_plan(part.plan, tolerance);
-      if (simplified && accept(part, *simplified, levels, materials, roofs::flat_roof(*simplified, top), RoofShape::flat)) {
+      if (simplified &&
+          accept(part, *simplified, levels, materials, roofs::flat_roof(*simplified, top), RoofShape::flat)) {
         note(part, IssueCode::plan_simplified);
         return;
       }
@@ -266,7 +278,8 @@ class MassBuilder {
 
 }  // namespace
 
-void build_masses(Region& region, const attributes::Defaults& defaults, const attributes::GenerateOptions& options, int lod) {
+void build_masses(Region& region, const attributes::Defaults& defaults, const attributes::GenerateOptions& options,
+                  int lod) {
   MassBuilder builder(region, defaults, options);
   for (model::Building& building : region.buildings) {
     if (!building.owned) continue;

@@ -16,6 +16,7 @@ namespace blockrand::masses {
 /// noted in `BuildingPart::fallbacks` and in the region's report. A part without any solid keeps lod 0 (its footprint)
 /// or, with no plan, -1.
 /// Every solid that leaves is valid in the sense of geometry::check_solid.
-void build_masses(model::Region& region, const attributes::Defaults& defaults, const attributes::GenerateOptions& options, int lod);
+void build_masses(model::Region& region, const attributes::Defaults& defaults,
+                  const attributes::GenerateOptions& options, int lod);
 
 }  // namespace blockrand::masses

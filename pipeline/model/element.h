@@ -14,10 +14,10 @@
 namespace blockrand::model {
 
 // X(identifier, name)
-#define BLOCKRAND_ELEMENT_PARTS(X)                                                                            \
-  X(frame, "frame")                                                                                           \
-  X(glass, "glass") X(leaf, "leaf") X(surround, "surround") X(sill, "sill") X(wall, "wall") X(metal, "metal") \
-      X(panel, "panel")
+#define BLOCKRAND_ELEMENT_PARTS(X) \
+  X(frame, "frame")                \
+  X(glass, "glass")                \
+  X(leaf, "leaf") X(surround, "surround") X(sill, "sill") X(wall, "wall") X(metal, "metal") X(panel, "panel")
 
 /// What a face of an element is, for looks and for semantics: `frame` of windows and doors with bars and transoms;
 /// `glass`; door `leaf`s, gates, shutters; `surround`: bands, mouldings, pediments, pilasters, the wall's trim; `sill`;

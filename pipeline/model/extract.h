@@ -90,21 +90,21 @@ struct BuildingRelation {
 
 /// What a feature is good for; one object can be several things.
 enum class FeatureKind : std::uint32_t {
-  street = 1u << 0,         ///< highway=*
-  land_use = 1u << 1,       ///< landuse=*, leisure=*, natural=* areas
-  water = 1u << 2,          ///< waterway=*, natural=water, natural=coastline
-  railway = 1u << 3,        ///< railway=*
-  barrier = 1u << 4,        ///< barrier=wall|fence|retaining_wall|city_wall|hedge
-  tree = 1u << 5,           ///< natural=tree, natural=tree_row
-  entrance = 1u << 6,       ///< entrance=*, building=entrance, door=*
-  address = 1u << 7,        ///< addr:*
-  shop = 1u << 8,           ///< shop=*
-  amenity = 1u << 9,        ///< amenity=*
-  passage = 1u << 10,       ///< tunnel=building_passage, covered ways
-  roof_line = 1u << 11,     ///< roof:ridge=yes, roof:edge=yes
-  roof_apex = 1u << 12,     ///< roof:apex=*
-  place = 1u << 13,         ///< place=*
-  boundary = 1u << 14,      ///< boundary=*
+  street = 1u << 0,      ///< highway=*
+  land_use = 1u << 1,    ///< landuse=*, leisure=*, natural=* areas
+  water = 1u << 2,       ///< waterway=*, natural=water, natural=coastline
+  railway = 1u << 3,     ///< railway=*
+  barrier = 1u << 4,     ///< barrier=wall|fence|retaining_wall|city_wall|hedge
+  tree = 1u << 5,        ///< natural=tree, natural=tree_row
+  entrance = 1u << 6,    ///< entrance=*, building=entrance, door=*
+  address = 1u << 7,     ///< addr:*
+  shop = 1u << 8,        ///< shop=*
+  amenity = 1u << 9,     ///< amenity=*
+  passage = 1u << 10,    ///< tunnel=building_passage, covered ways
+  roof_line = 1u << 11,  ///< roof:ridge=yes, roof:edge=yes
+  roof_apex = 1u << 12,  ///< roof:apex=*
+  place = 1u << 13,      ///< place=*
+  boundary = 1u << 14,   ///< boundary=*
 };
 
 /// Any other object that the stages use.
@@ -119,11 +119,11 @@ struct Feature {
 
 /// What was counted before assembly.
 struct ExtractCounts {
-  std::uint64_t nodes = 0, ways = 0, relations = 0;                                ///< in the file
-  std::uint64_t building_nodes = 0, building_ways = 0, building_relations = 0;     ///< kind `building`
-  std::uint64_t part_nodes = 0, part_ways = 0, part_relations = 0;                 ///< kind `building_part`
-  std::uint64_t old_style_multipolygons = 0;  ///< relations whose tags were taken from outer ways
-  std::uint64_t areas_with_holes = 0;         ///< building or part areas with at least one hole
+  std::uint64_t nodes = 0, ways = 0, relations = 0;                             ///< in the file
+  std::uint64_t building_nodes = 0, building_ways = 0, building_relations = 0;  ///< kind `building`
+  std::uint64_t part_nodes = 0, part_ways = 0, part_relations = 0;              ///< kind `building_part`
+  std::uint64_t old_style_multipolygons = 0;          ///< relations whose tags were taken from outer ways
+  std::uint64_t areas_with_holes = 0;                 ///< building or part areas with at least one hole
   std::uint64_t missing_nodes = 0, missing_ways = 0;  ///< referenced by a kept object, not in the file
   std::uint64_t buildings() const { return building_nodes + building_ways + building_relations; }
   std::uint64_t parts() const { return part_nodes + part_ways + part_relations; }

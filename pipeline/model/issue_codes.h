@@ -33,21 +33,24 @@ enum class IssueClass : std::uint8_t {
   X(roof_shape_adapted, "ROOF_SHAPE_ADAPTED", fallback, "The plan does not take this shape; a relative was built.")  \
   X(roof_shape_unknown, "ROOF_SHAPE_UNKNOWN", fallback, "The value of roof:shape is in no list; flat was built.")    \
   X(roof_failed, "ROOF_FAILED", fallback, "The roof's solid failed its check; a flat roof was built.")               \
-  X(roof_lines_ignored, "ROOF_LINES_IGNORED", fallback, "The mapped ridges and edges make no roof; its shape was built.") \
+  X(roof_lines_ignored, "ROOF_LINES_IGNORED", fallback,                                                              \
+    "The mapped ridges and edges make no roof; its shape was built.")                                                \
   X(roof_simplified, "ROOF_SIMPLIFIED", fallback, "The roof stands on a simplified plan.")                           \
-  X(skeleton_fallback, "SKELETON_FALLBACK", fallback, "The weighted skeleton gave up; CGAL's hips were built.")     \
-  X(roof_row_ignored, "ROOF_ROW_IGNORED", fallback, "No valid roof between the party walls; it falls to all sides.")  \
+  X(skeleton_fallback, "SKELETON_FALLBACK", fallback, "The weighted skeleton gave up; CGAL's hips were built.")      \
+  X(roof_row_ignored, "ROOF_ROW_IGNORED", fallback, "No valid roof between the party walls; it falls to all sides.") \
   X(roof_height_clamped, "ROOF_HEIGHT_CLAMPED", fallback, "The roof was higher than the building allows.")           \
   X(lod1_only, "LOD1_ONLY", fallback, "No valid LoD2 solid; a block was built.")                                     \
-  X(facade_failed, "FACADE_FAILED", fallback, "The solid with openings failed its check; the walls stay closed.")     \
-  X(opening_left_out, "OPENING_LEFT_OUT", fallback, "Windows or doors did not fit their walls; the others were built.") \
-  X(grammar_error, "GRAMMAR_ERROR", fallback, "A rule asked for what cannot be made; the rest of the facade was built.") \
+  X(facade_failed, "FACADE_FAILED", fallback, "The solid with openings failed its check; the walls stay closed.")    \
+  X(opening_left_out, "OPENING_LEFT_OUT", fallback,                                                                  \
+    "Windows or doors did not fit their walls; the others were built.")                                              \
+  X(grammar_error, "GRAMMAR_ERROR", fallback,                                                                        \
+    "A rule asked for what cannot be made; the rest of the facade was built.")                                       \
   X(plan_simplified, "PLAN_SIMPLIFIED", fallback, "The plan was simplified to get a valid solid.")                   \
   X(rest_failed, "REST_FAILED", fallback, "The part of the outline that its parts leave free could not be built.")   \
   /* mended, ignored, unreadable */                                                                                  \
   X(value_unreadable, "VALUE_UNREADABLE", notice, "A tag's value cannot be parsed; it is kept as text.")             \
   X(value_clamped, "VALUE_CLAMPED", notice, "A tag's value is out of range and was limited.")                        \
-  X(duplicate_key, "DUPLICATE_KEY", notice, "A key stands twice on the object; the first value in order was kept.") \
+  X(duplicate_key, "DUPLICATE_KEY", notice, "A key stands twice on the object; the first value in order was kept.")  \
   X(values_conflict, "VALUES_CONFLICT", notice, "Two tags contradict each other; the stronger one was used.")        \
   X(members_missing, "MEMBERS_MISSING", notice, "Some members are not in the extract; the rest was built.")          \
   X(relation_repaired, "RELATION_REPAIRED", notice, "The relation's rings were assembled despite errors.")           \
@@ -59,14 +62,14 @@ enum class IssueClass : std::uint8_t {
   X(touching_rings, "TOUCHING_RINGS", notice, "Rings that touched were moved apart by a few centimetres.")           \
   X(sliver_dropped, "SLIVER_DROPPED", notice, "A piece below the smallest area was dropped.")                        \
   X(collinear_points, "COLLINEAR_POINTS", notice, "Points on straight walls were removed.")                          \
-  X(shared_wall_made, "SHARED_WALL_MADE", notice, "A wall was joined with that of a neighbour that almost met it.")   \
+  X(shared_wall_made, "SHARED_WALL_MADE", notice, "A wall was joined with that of a neighbour that almost met it.")  \
   X(shared_wall_conflict, "SHARED_WALL_CONFLICT", notice, "Joining walls would have broken the outline; they stay.") \
   X(squared, "SQUARED", notice, "Corners that were almost right were made right.")                                   \
   X(overlap_resolved, "OVERLAP_RESOLVED", notice, "An overlap with a neighbour was given to one of the two.")        \
   X(overlap_kept, "OVERLAP_KEPT", notice, "An overlap with a neighbour stays: without it, little would be left.")    \
   X(nested_building, "NESTED_BUILDING", notice, "A building lies within another one at the same level.")             \
   X(near_duplicate, "NEAR_DUPLICATE", notice, "The same house is mapped twice; one of the two outlines was built.")  \
-  X(covered_outline, "COVERED_OUTLINE", notice, "Others cover most of the outline; what they leave free was built.")\
+  X(covered_outline, "COVERED_OUTLINE", notice, "Others cover most of the outline; what they leave free was built.") \
   X(repair_bounded, "REPAIR_BOUNDED", notice, "Repair would have changed too much; the outline stays as mapped.")    \
   X(parts_outside, "PARTS_OUTSIDE", notice, "A building part sticks out of its building's outline.")                 \
   X(parts_overlap, "PARTS_OVERLAP", notice, "Parts overlap at overlapping heights; one of them gave way.")           \
@@ -76,8 +79,10 @@ enum class IssueClass : std::uint8_t {
   X(antimeridian, "ANTIMERIDIAN", notice, "The outline crosses longitude 180 degrees.")                              \
   X(reach_cut, "REACH_CUT", notice, "A row of buildings longer than 1 km was cut at the grid.")                      \
   X(terrain_missing, "TERRAIN_MISSING", notice, "The terrain has no value here; the ground height was used.")        \
-  X(roof_with_bays, "ROOF_WITH_BAYS", notice, "A roof along whole facades does not fit the plan; every bay has its own slopes.") \
-  X(override_unmatched, "OVERRIDE_UNMATCHED", notice, "An entry of the overrides has nothing in the extract to act on.") \
+  X(roof_with_bays, "ROOF_WITH_BAYS", notice,                                                                        \
+    "A roof along whole facades does not fit the plan; every bay has its own slopes.")                               \
+  X(override_unmatched, "OVERRIDE_UNMATCHED", notice,                                                                \
+    "An entry of the overrides has nothing in the extract to act on.")                                               \
   X(text_cleaned, "TEXT_CLEANED", notice, "Characters that no XML file may hold were replaced in a tag.")
 
 enum class IssueCode : std::uint8_t {
@@ -87,7 +92,7 @@ enum class IssueCode : std::uint8_t {
 };
 
 struct IssueInfo {
-  std::string_view text;     ///< as written in reports, upper case
+  std::string_view text;  ///< as written in reports, upper case
   IssueClass issue_class;
   std::string_view meaning;  ///< one sentence for documentation and report
 };

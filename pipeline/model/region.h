@@ -26,9 +26,9 @@ struct PartFailure {
 
 struct Region {
   TileId tile;
-  const Extract* extract = nullptr;      ///< for tags; outlives the region
-  std::vector<Building> buildings;       ///< sorted by OSM id
-  std::vector<MaterialClass> materials;  ///< what Face::material indexes
+  const Extract* extract = nullptr;       ///< for tags; outlives the region
+  std::vector<Building> buildings;        ///< sorted by OSM id
+  std::vector<MaterialClass> materials;   ///< what Face::material indexes
   std::vector<ColouredElement> elements;  ///< what Placement::element indexes
   EvidenceTable evidence;
   std::vector<PartFailure> part_failures;

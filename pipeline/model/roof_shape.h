@@ -246,10 +246,10 @@ enum class RoofOrientation : std::uint8_t { along, across };
 
 /// What an edge of a plan means to the roof above it.
 enum class RoofEdge : std::uint8_t {
-  open,       ///< a free side: eaves or a gable
-  street,     ///< looks on a street
-  courtyard,  ///< looks on a courtyard
-  party_wall, ///< a neighbour's wall: the roof ends upright there
+  open,        ///< a free side: eaves or a gable
+  street,      ///< looks on a street
+  courtyard,   ///< looks on a courtyard
+  party_wall,  ///< a neighbour's wall: the roof ends upright there
 };
 
 }  // namespace blockrand::model

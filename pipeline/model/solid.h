@@ -14,14 +14,14 @@ namespace blockrand::model {
 
 /// The semantic class of a face, in CityGML's terms.
 enum class SurfaceKind : std::uint8_t {
-  ground,         ///< touches the terrain
+  ground,  ///< touches the terrain
   wall,
   roof,
   outer_ceiling,  ///< underside of passages, bays, raised parts, canopies
   outer_floor,    ///< loggias, set-back terraces
   closure,
-  window,         ///< polygon of an opening, at the end of its reveal
-  door,           ///< the same
+  window,  ///< polygon of an opening, at the end of its reveal
+  door,    ///< the same
 };
 inline constexpr int kSurfaceKindCount = 8;
 
@@ -36,10 +36,10 @@ struct MaterialClass {
 /// outside, holes clockwise; no vertex is repeated within a loop.
 struct Face {
   SurfaceKind kind = SurfaceKind::wall;
-  std::uint8_t material = 0;    ///< index into TileModel::materials
+  std::uint8_t material = 0;  ///< index into TileModel::materials
   Colour colour;
   std::uint32_t first_loop = 0, loop_count = 0;  ///< into Solid::loops; the first loop is the outer one
-  std::int32_t edge = -1;       ///< the plan edge that this wall or roof face rises from; -1 for none
+  std::int32_t edge = -1;                        ///< the plan edge that this wall or roof face rises from; -1 for none
 };
 
 /// A closed boundary, stored as indexed faces with loops. All coordinates lie on the 1/1024 m grid.
@@ -54,7 +54,9 @@ struct Solid {
 
   bool empty() const { return faces.empty(); }
   std::span<const Loop> loops_of(const Face& f) const { return std::span(loops).subspan(f.first_loop, f.loop_count); }
-  std::span<const std::uint32_t> indices_of(const Loop& l) const { return std::span(indices).subspan(l.first, l.count); }
+  std::span<const std::uint32_t> indices_of(const Loop& l) const {
+    return std::span(indices).subspan(l.first, l.count);
+  }
 };
 
 /// The triangles of a solid, grouped by face: `triangles[first[f] .. first[f+1])` belong to face f. Counter-clockwise

@@ -29,9 +29,9 @@ enum class Source : std::uint8_t {
 inline constexpr int kSourceCount = 14;
 
 constexpr std::string_view name(Source source) {
-  constexpr std::string_view names[kSourceCount] = {"override", "tag",      "implied",  "part",   "imagery",
-                                                    "terrain",  "geometry", "neighbours", "block", "cell",
-                                                    "district", "region",   "preset",   "default"};
+  constexpr std::string_view names[kSourceCount] = {"override", "tag",      "implied",    "part",   "imagery",
+                                                    "terrain",  "geometry", "neighbours", "block",  "cell",
+                                                    "district", "region",   "preset",     "default"};
   return names[static_cast<int>(source)];
 }
 

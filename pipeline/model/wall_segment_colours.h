@@ -23,9 +23,12 @@ constexpr Colour colour_of(WallSegmentKind kind) {
 /// What a kind means, for legends.
 constexpr std::string_view meaning(WallSegmentKind kind) {
   constexpr std::string_view meanings[kWallSegmentKindCount] = {
-      "not known",         "faces a street",
-      "faces a courtyard", "faces the space between two buildings, or no street and no courtyard",
-      "shared with a neighbour", "passage: open at the ground",
+      "not known",
+      "faces a street",
+      "faces a courtyard",
+      "faces the space between two buildings, or no street and no courtyard",
+      "shared with a neighbour",
+      "passage: open at the ground",
   };
   return meanings[static_cast<int>(kind)];
 }

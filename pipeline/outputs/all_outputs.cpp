@@ -11,8 +11,9 @@ namespace blockrand::outputs {
 
 const std::vector<OutputFormat>& all_outputs() {
   // Explanations name the files of their tile: they come behind those.
-  static const std::vector<OutputFormat> all = {gltf_output(),   citygml_output(),     cityjson_output(), geopackage_output(),
-                                                report_output(), report_json_output(), explain_output()};
+  static const std::vector<OutputFormat> all = {gltf_output(),       citygml_output(), cityjson_output(),
+                                                geopackage_output(), report_output(),  report_json_output(),
+                                                explain_output()};
   return all;
 }
 

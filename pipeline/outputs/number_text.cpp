@@ -70,7 +70,9 @@ void append_four_decimals(std::string& out, double metres) {
 
 std::string osm_page(model::OsmId id) {
   if (id.number <= 0) return {};
-  const char* const kind = id.type == model::OsmType::node ? "node/" : id.type == model::OsmType::way ? "way/" : "relation/";
+  const char* const kind = id.type == model::OsmType::node  ? "node/"
+                           : id.type == model::OsmType::way ? "way/"
+                                                            : "relation/";
   std::string page = std::string("https://www.openstreetmap.org/") + kind;
   append_number(page, id.number);
   return page;

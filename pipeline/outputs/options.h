@@ -15,9 +15,9 @@ namespace blockrand::outputs {
 std::vector<std::string> format_names();
 
 struct OutputOptions {
-  std::vector<std::string> formats = format_names();     ///< in the order of format_names
-  Instancing instancing = Instancing::ext;               ///< how GLBs hold what stands in facades
-  Compression compression = Compression::none;           ///< of vertices, indices and places in GLBs
+  std::vector<std::string> formats = format_names();  ///< in the order of format_names
+  Instancing instancing = Instancing::ext;            ///< how GLBs hold what stands in facades
+  Compression compression = Compression::none;        ///< of vertices, indices and places in GLBs
   bool evidence = false;         ///< GLB, CityGML and CityJSON also say why each attribute has its value
   bool gzip = false;             ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
   bool single_glb = false;       ///< also model.glb: the whole build in one frame

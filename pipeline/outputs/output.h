@@ -33,8 +33,8 @@ namespace blockrand::outputs {
 /// extract's objects, which are complete when the outputs finish.
 struct OutputContext {
   const OutputOptions& options;
-  int lod = 2;              ///< highest level of detail
-  std::string_view input;   ///< the extract's path as given
+  int lod = 2;             ///< highest level of detail
+  std::string_view input;  ///< the extract's path as given
   base::StagedFolder& folder;
   const georef::Projection& projection;
   const georef::Crs& crs;
@@ -45,8 +45,8 @@ struct OutputContext {
   std::span<const footprints::Shard> shards;
   const footprints::RepairedExtract& repaired;
   const context::ContextExtract& context;
-  std::optional<model::TileId> alone;          ///< the one tile that is built, of a larger build
-  std::span<const model::ReportRow> earlier;   ///< rows from before the tiles, sorted
+  std::optional<model::TileId> alone;                             ///< the one tile that is built, of a larger build
+  std::span<const model::ReportRow> earlier;                      ///< rows from before the tiles, sorted
   std::function<std::string(std::string_view preset)> rule_file;  ///< as ExplainOptions has it; may be empty
   int workers = 1;
 };
@@ -54,9 +54,9 @@ struct OutputContext {
 /// A tile on which all stages have worked.
 struct FinishedTile {
   const model::Region& region;
-  std::size_t shard = 0;                    ///< index
-  std::string name;                         ///< "15_17600_12900"
-  bool has_parts = false;                   ///< a building has a body
+  std::size_t shard = 0;                                 ///< index
+  std::string name;                                      ///< "15_17600_12900"
+  bool has_parts = false;                                ///< a building has a body
   std::function<FinalState(std::uint32_t)> final_state;  ///< what becomes of object `mapped_index` of the extract
   /// What outputs wrote so far, those before this one in all_outputs().
   std::vector<base::PublishedFile> files;
@@ -66,9 +66,9 @@ struct FinishedTile {
 struct FinishedBuild {
   const ObjectCounts& counts;
   const Statistics& statistics;
-  const model::Region& whole;                    ///< all tiles as one; empty where no output keeps regions
-  const std::vector<model::ReportRow>& rows;     ///< of all objects, sorted
-  std::vector<base::PublishedFile>& files;       ///< written so far; outputs add theirs
+  const model::Region& whole;                 ///< all tiles as one; empty where no output keeps regions
+  const std::vector<model::ReportRow>& rows;  ///< of all objects, sorted
+  std::vector<base::PublishedFile>& files;    ///< written so far; outputs add theirs
   std::function<void(const std::string&)> warn;
 };
 
@@ -90,18 +90,18 @@ class Output {
 
 /// A file or folder, and what people find in it.
 struct OutputPlace {
-  std::string_view path;   ///< relative to the build
-  std::string_view about;  ///< for the list that ends a build
+  std::string_view path;                                                          ///< relative to the build
+  std::string_view about;                                                         ///< for the list that ends a build
   bool (*written)(const OutputOptions& options, std::uint64_t models) = nullptr;  ///< null: wherever the format is
 };
 
 /// A format before a build: what it is called, what it takes, how it begins.
 struct OutputFormat {
-  std::string_view name;                              ///< as --formats has it
-  std::string_view title{};                           ///< what the name does not say; may be empty
-  std::vector<std::string_view> other_names{};        ///< that --formats understands as well
-  bool in_formats = true;                             ///< false: an option of its own asks for it, or it is always there
-  std::vector<OutputPlace> places{};                  ///< for the list that ends a build
+  std::string_view name;                        ///< as --formats has it
+  std::string_view title{};                     ///< what the name does not say; may be empty
+  std::vector<std::string_view> other_names{};  ///< that --formats understands as well
+  bool in_formats = true;                       ///< false: an option of its own asks for it, or it is always there
+  std::vector<OutputPlace> places{};            ///< for the list that ends a build
   std::vector<std::pair<std::string_view, std::string_view>> manual{};  ///< path and text for the manual page
   /// One of its files is asked for.
   bool (*asked)(const OutputOptions& options) = nullptr;
@@ -124,10 +124,10 @@ double bytes_per_building(const OutputOptions& options, int lod);
 // ---- What several formats say alike.
 
 inline constexpr const char* kAttribution = "\u00a9 OpenStreetMap contributors, ODbL 1.0";
-std::string generator();                       ///< "Blockrand 0.1.0"
-std::string model_name(model::TileId id);      ///< "Blockrand 15/17600/12900"
-std::string tile_name(model::TileId id);       ///< "15_17600_12900"
-std::string tile_glb_path(model::TileId id);   ///< "tiles/15/17600/12900.glb"
+std::string generator();                      ///< "Blockrand 0.1.0"
+std::string model_name(model::TileId id);     ///< "Blockrand 15/17600/12900"
+std::string tile_name(model::TileId id);      ///< "15_17600_12900"
+std::string tile_glb_path(model::TileId id);  ///< "tiles/15/17600/12900.glb"
 
 /// Writes a city model, compressed as `<path>.gz` where --gzip asks for it.
 base::PublishedFile write_text_file(const std::string& path, const std::string& bytes, const OutputContext& context);

@@ -10,8 +10,8 @@
 namespace blockrand::outputs {
 namespace {
 
-using model::WallSegment;
 using model::Point2;
+using model::WallSegment;
 
 std::string name_of(std::int64_t node, Point2 at) {
   if (node != 0) return std::to_string(node);

@@ -17,7 +17,7 @@ struct IdentifiedWallSegment {
   /// y, stand for the node: `w123.e11_p400384000x5958656000`. The second and further wall segments of an edge end in `.1`,
   /// `.2`; where two edges of a building run between the same nodes, the later ones get a `~2`, `~3` before that.
   std::string id;
-  model::Point2 from, to;   ///< m, on the 1/1024 m grid
+  model::Point2 from, to;  ///< m, on the 1/1024 m grid
 };
 
 /// The wall segments of Building::edges, in their order. Those that point at no edge of the outline, or are shorter than the

@@ -9,8 +9,8 @@
 namespace blockrand::picture {
 namespace {
 
-using model::WallSegmentKind;
 using model::Point2;
+using model::WallSegmentKind;
 
 constexpr double kEdgeWidth = 1.1;   // m: walls of neighbours stay apart
 constexpr double kLeastWidth = 2.0;  // pixels: thinner lines lose their colour
@@ -69,8 +69,8 @@ void draw(Plan& plan, std::span<const PlanTile> tiles) {
   });
   const double width = std::max(kEdgeWidth, kLeastWidth * plan.metres_per_pixel());
   // Unknown ones first: at corners what is known is over them. Party walls last, as they are between two buildings.
-  for (const WallSegmentKind kind : {WallSegmentKind::unknown, WallSegmentKind::side, WallSegmentKind::courtyard, WallSegmentKind::street, WallSegmentKind::passage,
-                              WallSegmentKind::party_wall})
+  for (const WallSegmentKind kind : {WallSegmentKind::unknown, WallSegmentKind::side, WallSegmentKind::courtyard,
+                                     WallSegmentKind::street, WallSegmentKind::passage, WallSegmentKind::party_wall})
     each(&PlanTile::edges, [&](const PlanEdge& e) {
       if (e.kind == kind) plan.fill(strip(e, width), model::colour_of(kind));
     });

@@ -145,7 +145,8 @@ Light light_of(const Scene& scene, const View& view, const Samples& samples, con
       });
       for (int d = phase; d < count; d += phases) {
         const Point3& to_light = directions[static_cast<std::size_t>(d)];
-        const float lx = static_cast<float>(to_light.x), ly = static_cast<float>(to_light.y), lz = static_cast<float>(to_light.z);
+        const float lx = static_cast<float>(to_light.x), ly = static_cast<float>(to_light.y),
+                    lz = static_cast<float>(to_light.z);
         map.draw(scene, to_light, receivers.box);
         const auto lift = static_cast<float>(1.1 * map.cell());
         for (Asker& a : askers) {

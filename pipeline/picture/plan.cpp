@@ -37,7 +37,10 @@ std::vector<Point2> directions() {
 class Coverage {
  public:
   Coverage(int left, int top, int right, int bottom)
-      : left_(left), top_(top), width_(right - left), height_(bottom - top),
+      : left_(left),
+        top_(top),
+        width_(right - left),
+        height_(bottom - top),
         change_(static_cast<std::size_t>(width_ + 2) * static_cast<std::size_t>(height_), 0.0) {}
 
   void edge(Point2 a, Point2 b) {
@@ -138,7 +141,9 @@ void Plan::cover(const std::vector<std::vector<Point2>>& contours, Colour colour
     for (std::size_t i = 0; i < contour.size(); ++i) coverage.edge(contour[i], contour[(i + 1) % contour.size()]);
   coverage.for_each([&](int x, int y, double covered) {
     std::uint8_t* const rgb =
-        &image_.rgb[(static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x)) * 3];
+        &image_
+             .rgb[(static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x)) *
+                  3];
     const double share = covered * opacity;
     rgb[0] = mixed(rgb[0], colour.r, share);
     rgb[1] = mixed(rgb[1], colour.g, share);
@@ -166,7 +171,8 @@ void Plan::stroke(std::span<const Point2> points, double width, Colour colour, b
     const double dx = b.x - a.x, dy = b.y - a.y, length = std::sqrt(dx * dx + dy * dy);
     if (!(length > 0)) continue;
     const Point2 n{-dy / length * half, dx / length * half};  // to the left
-    contours.push_back({{a.x - n.x, a.y - n.y}, {b.x - n.x, b.y - n.y}, {b.x + n.x, b.y + n.y}, {a.x + n.x, a.y + n.y}});
+    contours.push_back(
+        {{a.x - n.x, a.y - n.y}, {b.x - n.x, b.y - n.y}, {b.x + n.x, b.y + n.y}, {a.x + n.x, a.y + n.y}});
   }
   cover(contours, colour, 1);
 }

@@ -15,7 +15,9 @@ void append(png_structp png, png_bytep data, png_size_t size) {
 
 /// libpng must not return from this; an exception passes through its C frames, which hold nothing to free but what
 /// png_destroy_write_struct frees (Debian builds libpng with unwind tables, as every amd64 library).
-[[noreturn]] void fail(png_structp, png_const_charp message) { throw std::runtime_error(std::string("PNG: ") + message); }
+[[noreturn]] void fail(png_structp, png_const_charp message) {
+  throw std::runtime_error(std::string("PNG: ") + message);
+}
 
 struct Writer {
   png_structp png = nullptr;
@@ -80,7 +82,8 @@ std::string palette_png(const Image& image, int colours) {
   png_write_info(w.png, w.info);
   png_set_packing(w.png);
   const auto row = static_cast<std::size_t>(image.width);
-  for (int y = 0; y < image.height; ++y) png_write_row(w.png, reduced.pixels.data() + static_cast<std::size_t>(y) * row);
+  for (int y = 0; y < image.height; ++y)
+    png_write_row(w.png, reduced.pixels.data() + static_cast<std::size_t>(y) * row);
   png_write_end(w.png, nullptr);
   return bytes;
 }

@@ -26,7 +26,8 @@ class Tones {
   Tones() {
     for (int i = 0; i < 256; ++i) {
       const double c = i / 255.0;
-      linear_[static_cast<std::size_t>(i)] = static_cast<float>(c <= 0.04045 ? c / 12.92 : base::pow((c + 0.055) / 1.055, 2.4));
+      linear_[static_cast<std::size_t>(i)] =
+          static_cast<float>(c <= 0.04045 ? c / 12.92 : base::pow((c + 0.055) / 1.055, 2.4));
     }
     for (int i = 0; i <= kSteps; ++i) {
       const double c = static_cast<double>(i) / kSteps;
@@ -120,12 +121,14 @@ std::vector<std::uint32_t> draw_lines(const Scene& scene, const View& view, cons
       const double px = a.x + dx * share - width / 2.0, py = a.y + dy * share - width / 2.0;
       if (px < -width || py < -width || px > view.width() || py > view.height()) continue;
       // Lines lie on edges of faces: what is behind by less than two samples' size does not hide them.
-      const double slack = view.perspective() ? nearness * nearness * 2 * view.sample_size(nearness) : 2 * view.sample_size(nearness);
+      const double slack =
+          view.perspective() ? nearness * nearness * 2 * view.sample_size(nearness) : 2 * view.sample_size(nearness);
       for (int j = 0; j < width; ++j)
         for (int i = 0; i < width; ++i) {
           const int x = static_cast<int>(px + i + 0.5), y = static_cast<int>(py + j + 0.5);
           if (x < 0 || y < 0 || x >= view.width() || y >= view.height()) continue;
-          const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x);
+          const std::size_t at =
+              static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x);
           if (nearness + slack >= samples.nearness[at]) out[at] = l + 1;
         }
     }
@@ -137,15 +140,17 @@ std::vector<std::uint32_t> draw_lines(const Scene& scene, const View& view, cons
 class Edges {
  public:
   Edges(const Scene& scene, const View& view, const Samples& samples, const RenderOptions& options)
-      : scene_(scene), view_(view), samples_(samples),
+      : scene_(scene),
+        view_(view),
+        samples_(samples),
         crease_(static_cast<float>(base::cos(options.crease_angle * base::kRadiansPerDegree))) {}
 
   /// True when a line runs between a sample and the one `step` further right or down, and belongs on this sample.
   bool at(int x, int y) const {
     const std::size_t i = index(x, y);
     return (x + 1 < view_.width() && between(i, i + 1, x > 0 ? i - 1 : i, x + 2 < view_.width() ? i + 2 : i + 1)) ||
-           (y + 1 < view_.height() &&
-            between(i, index(x, y + 1), y > 0 ? index(x, y - 1) : i, y + 2 < view_.height() ? index(x, y + 2) : index(x, y + 1)));
+           (y + 1 < view_.height() && between(i, index(x, y + 1), y > 0 ? index(x, y - 1) : i,
+                                              y + 2 < view_.height() ? index(x, y + 2) : index(x, y + 1)));
   }
 
  private:
@@ -178,8 +183,13 @@ class Edges {
 class Shader {
  public:
   Shader(const Scene& scene, const View& view, const Samples& samples, const RenderOptions& options)
-      : scene_(scene), view_(view), samples_(samples), options_(options), light_(options.lit ? light_of(scene, view, samples, options) : Light{}),
-        lines_(draw_lines(scene, view, samples, options.supersampling)), edges_(scene, view, samples, options),
+      : scene_(scene),
+        view_(view),
+        samples_(samples),
+        options_(options),
+        light_(options.lit ? light_of(scene, view, samples, options) : Light{}),
+        lines_(draw_lines(scene, view, samples, options.supersampling)),
+        edges_(scene, view, samples, options),
         background_(tones_.linear(options.background)) {
     const Point3 sun = to_sun(options);
     sun_ = {static_cast<float>(sun.x), static_cast<float>(sun.y), static_cast<float>(sun.z)};
@@ -192,7 +202,8 @@ class Shader {
   }
 
   Rgb shade(int x, int y) const {
-    const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
+    const std::size_t i =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
     const std::uint32_t what = samples_.what[i];
     if (!lines_.empty() && lines_[i] > 0) return tones_.linear(scene_.lines()[lines_[i] - 1].colour);
     Rgb colour = background_;
@@ -202,7 +213,8 @@ class Shader {
     } else if (what != kNothing) {
       const Scene::Vector n = normal_towards(scene_, what, view_, x, y);
       // Warm sun, cool sky, and a little light from the ground for what faces down.
-      const float facing = std::max(0.0f, n.x * sun_.x + n.y * sun_.y + n.z * sun_.z) * static_cast<float>(light_.sun[i]) / 255.0f;
+      const float facing =
+          std::max(0.0f, n.x * sun_.x + n.y * sun_.y + n.z * sun_.z) * static_cast<float>(light_.sun[i]) / 255.0f;
       const float open = light_.sky.empty() ? 1.0f : light_.sky[i];
       const auto sky = static_cast<float>(options_.sky_strength) * (0.5f + 0.5f * n.z) * open;
       const auto bounce = static_cast<float>(options_.sky_strength) * (0.10f + 0.14f * (0.5f - 0.5f * n.z));
@@ -230,13 +242,14 @@ class Shader {
     if (!t.blended) return tones_.linear(t.colours[0]);
     // Barycentric coordinates of the place, as shares of the triangle's area.
     const auto corner = [&](std::size_t k) { return Point3{t.corners[k].x, t.corners[k].y, t.corners[k].z}; };
-    const Point3 p = view_.position(x + 0.5, y + 0.5, samples_.nearness[i]), a = corner(0), b = corner(1), c = corner(2);
+    const Point3 p = view_.position(x + 0.5, y + 0.5, samples_.nearness[i]), a = corner(0), b = corner(1),
+                 c = corner(2);
     const Point3 n = cross(b - a, c - a);
     const double whole = dot(n, n);
     const double wb = std::clamp(dot(cross(p - a, c - a), n) / whole, 0.0, 1.0);
     const double wc = std::clamp(dot(cross(b - a, p - a), n) / whole, 0.0, 1.0 - wb);
-    return tones_.linear(t.colours[0]) * static_cast<float>(1 - wb - wc) + tones_.linear(t.colours[1]) * static_cast<float>(wb) +
-           tones_.linear(t.colours[2]) * static_cast<float>(wc);
+    return tones_.linear(t.colours[0]) * static_cast<float>(1 - wb - wc) +
+           tones_.linear(t.colours[1]) * static_cast<float>(wb) + tones_.linear(t.colours[2]) * static_cast<float>(wc);
   }
   /// How far a place of the ground has faded into the background.
   float faded(std::size_t i, int x, int y) const {
@@ -292,7 +305,9 @@ Image render(const Scene& scene, const Camera& camera, const RenderOptions& opti
         }
     for (int x = 0; x < options.width; ++x) {
       const Rgb mean = row[static_cast<std::size_t>(x)] * share;
-      std::uint8_t* out = &image.rgb[(static_cast<std::size_t>(y) * static_cast<std::size_t>(options.width) + static_cast<std::size_t>(x)) * 3];
+      std::uint8_t* out = &image.rgb[(static_cast<std::size_t>(y) * static_cast<std::size_t>(options.width) +
+                                      static_cast<std::size_t>(x)) *
+                                     3];
       out[0] = shader.encoded(mean.r);
       out[1] = shader.encoded(mean.g);
       out[2] = shader.encoded(mean.b);

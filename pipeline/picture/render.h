@@ -17,15 +17,15 @@ struct RenderOptions {
   double sky_strength = 0.9;       ///< likewise of white that sees the whole sky
   bool lit = true;                 ///< false: colours as they are, so that a legend holds; lines alone show the form
   bool shadows = true;
-  bool sky_occlusion = true;       ///< courtyards and streets are darker than roofs; false: every place sees its half-space
-  int sky_directions = 32;         ///< from which the sky is looked for; rounded up to a multiple of supersampling²
-  int shadow_map = 3072;           ///< cells along a side of the sun's depth map
-  int sky_map = 640;               ///< likewise of each of the sky's
-  bool lines = true;               ///< dark lines along silhouettes, creases and borders between objects
-  double line_strength = 0.55;     ///< 1: black; less where a pixel covers more than half a metre
-  double crease_angle = 20;        ///< degrees between faces from which on their common edge is a line
+  bool sky_occlusion = true;  ///< courtyards and streets are darker than roofs; false: every place sees its half-space
+  int sky_directions = 32;    ///< from which the sky is looked for; rounded up to a multiple of supersampling²
+  int shadow_map = 3072;      ///< cells along a side of the sun's depth map
+  int sky_map = 640;          ///< likewise of each of the sky's
+  bool lines = true;          ///< dark lines along silhouettes, creases and borders between objects
+  double line_strength = 0.55;  ///< 1: black; less where a pixel covers more than half a metre
+  double crease_angle = 20;     ///< degrees between faces from which on their common edge is a line
   model::Colour background{233, 236, 239};
-  double ground_fade = 1.1;        ///< the ground fades into the background from this many scene radii on
+  double ground_fade = 1.1;  ///< the ground fades into the background from this many scene radii on
 };
 
 /// The picture that `camera` takes of the scene.

@@ -23,7 +23,8 @@ std::array<Point3, 8> Box::corners() const {
 Point3 Box::centre() const { return (min + max) * 0.5; }
 
 Scene::Vector Scene::local(Point3 p) const {
-  return {static_cast<float>(p.x - origin_.x), static_cast<float>(p.y - origin_.y), static_cast<float>(p.z - origin_.z)};
+  return {static_cast<float>(p.x - origin_.x), static_cast<float>(p.y - origin_.y),
+          static_cast<float>(p.z - origin_.z)};
 }
 
 void Scene::push(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours, std::uint32_t object,
@@ -40,7 +41,8 @@ void Scene::push(const std::array<Point3, 3>& corners, const std::array<Colour, 
   triangles_.push_back(t);
 }
 
-void Scene::add(const model::Solid& solid, const model::SolidTriangles& triangles, std::uint32_t object, Point3 offset) {
+void Scene::add(const model::Solid& solid, const model::SolidTriangles& triangles, std::uint32_t object,
+                Point3 offset) {
   assert(solid.empty() || triangles.first.size() == solid.faces.size() + 1);
   for (std::size_t f = 0; f < solid.faces.size(); ++f) {
     const Colour c = solid.faces[f].colour;

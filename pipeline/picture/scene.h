@@ -67,8 +67,8 @@ class Scene {
     std::array<Vector, 3> corners;
     Vector normal;  ///< unit, towards the side from which the corners run counter-clockwise
     std::array<Colour, 3> colours;
-    bool closed = false;  ///< of a solid: never seen from behind
-    bool blended = false; ///< its corners differ in colour
+    bool closed = false;   ///< of a solid: never seen from behind
+    bool blended = false;  ///< its corners differ in colour
     std::uint32_t object = 0;
   };
   struct Line {
@@ -85,7 +85,8 @@ class Scene {
 
  private:
   Vector local(Point3 p) const;
-  void push(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours, std::uint32_t object, bool closed);
+  void push(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours, std::uint32_t object,
+            bool closed);
 
   Point3 origin_;
   std::vector<Triangle> triangles_;

@@ -36,7 +36,8 @@ int View::clip(std::array<Point3, kMaxCorners>& corners, int count) const {
   const double side = kFrame / scale_;
   const double slope = perspective_ ? side : 0, constant = perspective_ ? 0 : side;
   // The parallel view's axis need not pass through the middle of its grid.
-  const double mx = perspective_ ? 0 : (width_ / 2.0 - cx_) / scale_, my = perspective_ ? 0 : (cy_ - height_ / 2.0) / scale_;
+  const double mx = perspective_ ? 0 : (width_ / 2.0 - cx_) / scale_,
+               my = perspective_ ? 0 : (cy_ - height_ / 2.0) / scale_;
   const double planes[5][4] = {{0, 0, perspective_ ? 1.0 : 0.0, perspective_ ? -near_ : 1.0},
                                {1, 0, slope, constant - mx},
                                {-1, 0, slope, constant + mx},
@@ -51,7 +52,8 @@ int View::clip(std::array<Point3, kMaxCorners>& corners, int count) const {
     std::array<Point3, kMaxCorners> kept;
     int n = 0;
     for (int i = 0; i < count; ++i) {
-      const Point3 p = corners[static_cast<std::size_t>(i)], q = corners[static_cast<std::size_t>(i + 1 == count ? 0 : i + 1)];
+      const Point3 p = corners[static_cast<std::size_t>(i)],
+                   q = corners[static_cast<std::size_t>(i + 1 == count ? 0 : i + 1)];
       const double vp = value(p), vq = value(q);
       if (vp >= 0 && n < kMaxCorners) kept[static_cast<std::size_t>(n++)] = p;
       if ((vp >= 0) != (vq >= 0) && n < kMaxCorners)

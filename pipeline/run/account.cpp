@@ -12,7 +12,8 @@ using model::IssueCode;
 using model::MappedBuilding;
 using model::ObjectState;
 
-Account::Account(model::Extract& extract, std::vector<model::ReportRow> rows) : extract_(extract), rows_(std::move(rows)) {
+Account::Account(model::Extract& extract, std::vector<model::ReportRow> rows)
+    : extract_(extract), rows_(std::move(rows)) {
   std::vector<model::ReportRow>& read = extract.report.rows;
   rows_.insert(rows_.end(), std::make_move_iterator(read.begin()), std::make_move_iterator(read.end()));
   for (const model::ReportRow& row : rows_)
@@ -55,11 +56,19 @@ void Account::close(const std::optional<TileChoice>& tile, BuildSummary& summary
   for (const MappedBuilding& b : extract_.buildings) {
     ++(b.kind == model::ObjectKind::building ? summary.buildings_in : summary.parts_in);
     switch (b.state) {
-      case ObjectState::modelled: ++summary.models; break;
-      case ObjectState::duplicate: ++summary.duplicates; break;
-      case ObjectState::represented: ++summary.represented; break;
+      case ObjectState::modelled:
+        ++summary.models;
+        break;
+      case ObjectState::duplicate:
+        ++summary.duplicates;
+        break;
+      case ObjectState::represented:
+        ++summary.represented;
+        break;
       case ObjectState::pending:
-      case ObjectState::reported: ++summary.reported; break;
+      case ObjectState::reported:
+        ++summary.reported;
+        break;
     }
     if (b.state == ObjectState::reported) ++summary.issues[std::string(info(b.code).text)];
   }

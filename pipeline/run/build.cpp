@@ -1,6 +1,7 @@
 // The way of a build: read, choose the frame, cut into tiles, work on tiles in parallel, finish the outputs, publish.
 #include "pipeline/run/build.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -12,8 +13,6 @@
 #include <memory>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "pipeline/attributes/assign_extract.h"
 #include "pipeline/attributes/tagged_buildings.h"
 #include "pipeline/base/error.h"
@@ -21,8 +20,8 @@
 #include "pipeline/base/publish.h"
 #include "pipeline/base/text.h"
 #include "pipeline/context/ground.h"
-#include "pipeline/context/vicinity_finder.h"
 #include "pipeline/context/tagged_neighbours.h"
+#include "pipeline/context/vicinity_finder.h"
 #include "pipeline/footprints/roof_lines.h"
 #include "pipeline/outputs/output.h"
 #include "pipeline/outputs/statistics.h"
@@ -58,7 +57,8 @@ std::uint64_t current_rss_bytes() {
 // ---- before the tiles
 
 /// What reading found, for build.json.
-void record_extract(const BuildOptions& options, const BuildInputs& inputs, const LocatedExtract& located, BuildRecord& record) {
+void record_extract(const BuildOptions& options, const BuildInputs& inputs, const LocatedExtract& located,
+                    BuildRecord& record) {
   record.inputs = input_files(options, inputs);
   if (inputs.terrain) record.terrain = inputs.terrain->describe();
   record.heights = inputs.heights;
@@ -77,14 +77,15 @@ void warn_of_heights(const BuildOptions& options, const BuildInputs& inputs, bas
 
 /// \returns  rows about overrides that match nothing. A tile alone does not see what lies elsewhere: the build of the
 ///           whole tells that
-model::Report override_extract(const BuildOptions& options, BuildInputs& inputs, Extract& extract, base::Progress& progress) {
+model::Report override_extract(const BuildOptions& options, BuildInputs& inputs, Extract& extract,
+                               base::Progress& progress) {
   model::Report report;
   attributes::apply_overrides(inputs.overrides, extract, report);
   if (inputs.tile) report.rows.clear();
   if (!report.rows.empty())
-    progress.warn(fmt::format("{}: {} of {} entries match nothing in the extract, the first in {}; report.json lists them",
-                              options.overrides, report.rows.size(), inputs.overrides.entries.size(),
-                              report.rows.front().detail));
+    progress.warn(fmt::format(
+        "{}: {} of {} entries match nothing in the extract, the first in {}; report.json lists them", options.overrides,
+        report.rows.size(), inputs.overrides.entries.size(), report.rows.front().detail));
   return report;
 }
 
@@ -94,8 +95,9 @@ void check_free_space(const BuildOptions& options, std::uint64_t buildings, cons
   const std::uint64_t wanted = static_cast<std::uint64_t>(1.25 * each * static_cast<double>(buildings)) + 1'000'000;
   const std::uint64_t free = folder.free_bytes();
   if (wanted > free)
-    throw base::OutputError(fmt::format("{}: about {} needed, {} free. Free some space, choose another disk with -o, fewer --formats or --gzip",
-                                        options.output, base::with_byte_unit(wanted), base::with_byte_unit(free)));
+    throw base::OutputError(fmt::format(
+        "{}: about {} needed, {} free. Free some space, choose another disk with -o, fewer --formats or --gzip",
+        options.output, base::with_byte_unit(wanted), base::with_byte_unit(free)));
 }
 
 // ---- the tiles
@@ -130,12 +132,23 @@ TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenO
   Region region = run_tile(shard, inputs);
   result.outcomes = decide_outcomes(region, inputs.lod);
   result.statistics = outputs::count_statistics(region);
-  outputs::FinishedTile tile{.region = region,
-                             .shard = shard,
-                             .name = outputs::tile_name(region.tile),
-                             .has_parts = std::ranges::any_of(region.buildings, [](const model::Building& b) { return !b.parts.empty(); }),
-                             .final_state = account.final_states(result.outcomes.list),
-                             .files = {}};
+<<<<<<< HEAD
+  outputs::FinishedTile tile{
+      .region = region,
+      .shard = shard,
+      .name = outputs::tile_name(region.tile),
+      .has_parts = std::ranges::any_of(region.buildings, [](const model::Building& b) { return !b.parts.empty(); }),
+      .final_state = account.final_states(result.outcomes.list),
+      .files = {}};
+=======
+  outputs::FinishedTile tile{
+      .region = region,
+      .shard = shard,
+      .name = outputs::tile_name(region.tile),
+      .has_parts = std::ranges::any_of(region.buildings, [](const model::Building& b) { return !b.parts.empty(); }),
+      .fate = account.fates(result.outcomes.list),
+      .files = {}};
+>>>>>>> hF
   for (const auto& output : open.list) result.products.push_back(output->write_tile(tile));
   result.files = std::move(tile.files);
   result.rows = std::move(region.report.rows);
@@ -149,11 +162,24 @@ struct Sums {
   std::vector<masses::SlopeEnd> slope_ends;
   Region whole;  ///< for outputs that keep it
 
-  void take(TileResult&& tile, std::size_t shard, const BuildOptions& options, const OpenOutputs& open, Account& account,
-            BuildRecord& record) {
+  void take(TileResult&& tile, std::size_t shard, const BuildOptions& options, const OpenOutputs& open,
+            Account& account, BuildRecord& record) {
     account.take(tile.outcomes, std::move(tile.rows), record.summary);
-    const outputs::FinishedTile taken{
-        .region = tile.region, .shard = shard, .name = {}, .has_parts = false, .final_state = {}, .files = std::move(tile.files)};
+<<<<<<< HEAD
+    const outputs::FinishedTile taken{.region = tile.region,
+                                      .shard = shard,
+                                      .name = {},
+                                      .has_parts = false,
+                                      .final_state = {},
+                                      .files = std::move(tile.files)};
+=======
+    const outputs::FinishedTile taken{.region = tile.region,
+                                      .shard = shard,
+                                      .name = {},
+                                      .has_parts = false,
+                                      .fate = {},
+                                      .files = std::move(tile.files)};
+>>>>>>> hF
     for (std::size_t i = 0; i < open.list.size(); ++i) open.list[i]->take(taken, std::move(tile.products[i]));
     record.files.insert(record.files.end(), taken.files.begin(), taken.files.end());
     party_sides.insert(party_sides.end(), tile.statistics.party_sides.begin(), tile.statistics.party_sides.end());
@@ -170,7 +196,8 @@ struct Sums {
 
 // ---- after the tiles
 
-void finish_outputs(const OpenOutputs& open, const Region& whole, const Account& account, BuildRecord& record, base::Progress& progress) {
+void finish_outputs(const OpenOutputs& open, const Region& whole, const Account& account, BuildRecord& record,
+                    base::Progress& progress) {
   const outputs::FinishedBuild finished{.counts = record.summary,
                                         .statistics = record.statistics,
                                         .whole = whole,
@@ -180,10 +207,13 @@ void finish_outputs(const OpenOutputs& open, const Region& whole, const Account&
   for (const auto& output : open.list) output->finish(finished);
   for (const auto& output : open.list) output->conclude(finished);
   std::ranges::sort(record.files, {}, &base::PublishedFile::path);
+  for (const base::PublishedFile& f : record.files) record.summary.bytes += f.bytes;
+  record.summary.files = record.files.size() + 2;  // build.json and run.json come last
 }
 
 /// Completes the summary; the rest of what differs from run to run.
-RunRecord run_record(const std::chrono::steady_clock::time_point start, const base::Progress& progress, BuildSummary& summary) {
+RunRecord run_record(std::chrono::steady_clock::time_point start, double context_seconds, int workers,
+                     const base::Progress& progress, BuildSummary& summary) {
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   summary.peak_rss_bytes = peak_rss_bytes();
   RunRecord run;
@@ -192,6 +222,8 @@ RunRecord run_record(const std::chrono::steady_clock::time_point start, const ba
   run.peak_rss_bytes = summary.peak_rss_bytes;
   run.store_bytes = summary.store_bytes;
   run.tiles_in_flight = summary.tiles_in_flight;
+  run.tile_context_seconds = context_seconds;
+  run.jobs = workers;
   char host[256] = "";
   gethostname(host, sizeof host - 1);
   run.host = host;
@@ -227,10 +259,12 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const context::VicinityFinder vicinity(extract, repaired.footprints, context);
   const footprints::RoofLineFinder roof_lines(extract, projection);
   const footprints::BuildingNumbers numbers(repaired.footprints);
-  const context::TaggedNeighbours neighbours(attributes::tagged_buildings(extract, inputs.defaults, projection), options.generate.neighbour_reach);
+  const context::TaggedNeighbours neighbours(attributes::tagged_buildings(extract, inputs.defaults, projection),
+                                             options.generate.neighbour_reach);
   const attributes::DistrictAssigner assigner(
-      inputs.rules.book, {extract, repaired.footprints, context, prepared.styles, projection, inputs.defaults, neighbours,
-                          options.generate.neighbour_minimum, &inputs.overrides, located.facts.areas, options.seed});
+      inputs.rules.book,
+      {extract, repaired.footprints, context, prepared.styles, projection, inputs.defaults, neighbours,
+       options.generate.neighbour_minimum, &inputs.overrides, located.facts.areas, options.seed});
   if (!tile) {  // a tile alone does not see what lies elsewhere
     record.facts.areas = assigner.to_pin();
     for (const std::string& what : assigner.unanswered()) progress.warn(what);
@@ -247,21 +281,76 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2;
   Account account(extract, std::move(report.rows));
   const outputs::OutputContext output_context{
-      .options = options.outputs, .lod = options.lod, .input = options.input, .folder = folder, .projection = projection, .crs = record.crs,
-      .heights = record.heights, .data_time = record.data_time, .centre = located.facts.centre, .extract = extract, .shards = shards,
-      .repaired = repaired, .context = context, .alone = tile ? std::optional(tile->id) : std::nullopt, .earlier = account.earlier(),
-      .rule_file = [&](std::string_view preset) { return inputs.rule_file(preset); }, .workers = workers};
+      .options = options.outputs,
+      .lod = options.lod,
+      .input = options.input,
+      .folder = folder,
+      .projection = projection,
+      .crs = record.crs,
+      .heights = record.heights,
+      .data_time = record.data_time,
+      .centre = located.facts.centre,
+      .extract = extract,
+      .shards = shards,
+      .repaired = repaired,
+      .context = context,
+      .alone = tile ? std::optional(tile->id) : std::nullopt,
+      .earlier = account.earlier(),
+      .rule_file = [&](std::string_view preset) { return inputs.rule_file(preset); },
+      .workers = workers};
   const OpenOutputs open(output_context);
   const context::Ground ground(inputs.terrain ? &*inputs.terrain : nullptr, options.ground_height, projection);
   std::atomic<std::int64_t> context_time = 0;
   const evidence::StyleInputs style_inputs{prepared.facts, prepared.tags, prepared.styles, inputs.tables};
-  const TileInputs tile_inputs{
-      .extract = extract, .shards = shards, .projection = projection, .defaults = inputs.defaults, .kept = prepared.kept, .repaired = repaired,
-      .context = context, .vicinity = vicinity, .roof_lines = roof_lines, .numbers = numbers, .neighbours = neighbours,
-      .assigner = assigner, .overrides = inputs.overrides, .styles = style_inputs, .explain = options.outputs.explain,
-      .repair = options.repair, .generate = options.generate, .seed = options.seed, .lod = options.lod,
-      .grammars = inputs.grammars ? &*inputs.grammars : nullptr, .has_terrain = inputs.terrain.has_value(),
-      .ground = [&](const model::Building& building) { return ground.under(building); }, .context_time = context_time};
+<<<<<<< HEAD
+  const TileInputs tile_inputs{.extract = extract,
+                               .shards = shards,
+                               .projection = projection,
+                               .defaults = inputs.defaults,
+                               .kept = prepared.kept,
+                               .repaired = repaired,
+                               .context = context,
+                               .vicinity = vicinity,
+                               .roof_lines = roof_lines,
+                               .numbers = numbers,
+                               .neighbours = neighbours,
+                               .assigner = assigner,
+                               .overrides = inputs.overrides,
+                               .styles = style_inputs,
+                               .explain = options.outputs.explain,
+                               .repair = options.repair,
+                               .generate = options.generate,
+                               .seed = options.seed,
+                               .lod = options.lod,
+                               .grammars = inputs.grammars ? &*inputs.grammars : nullptr,
+                               .has_terrain = inputs.terrain.has_value(),
+                               .ground = [&](const model::Building& building) { return ground.under(building); },
+                               .context_time = context_time};
+=======
+  const TileInputs tile_inputs{.extract = extract,
+                               .shards = shards,
+                               .projection = projection,
+                               .defaults = inputs.defaults,
+                               .kept = prepared.kept,
+                               .repaired = repaired,
+                               .context = context,
+                               .surroundings = surroundings,
+                               .roof_lines = roof_lines,
+                               .numbers = numbers,
+                               .neighbours = neighbours,
+                               .assigner = assigner,
+                               .overrides = inputs.overrides,
+                               .styles = style_inputs,
+                               .explain = options.outputs.explain,
+                               .repair = options.repair,
+                               .generate = options.generate,
+                               .seed = options.seed,
+                               .lod = options.lod,
+                               .grammars = inputs.grammars ? &*inputs.grammars : nullptr,
+                               .has_terrain = inputs.terrain.has_value(),
+                               .ground = [&](const model::Building& building) { return ground.under(building); },
+                               .context_time = context_time};
+>>>>>>> hF
   progress.begin("tiles", to_build, "buildings");
   std::vector<TileResult> slots(in_flight);
   Sums sums;
@@ -280,16 +369,13 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   progress.begin("documents");
   finish_outputs(open, sums.whole, account, record, progress);
   folder.write("build.json", build_json(options, record));
-  for (const base::PublishedFile& f : record.files) summary.bytes += f.bytes;
-  summary.files = record.files.size() + 2;
   progress.end();
 
   summary.tiles_in_flight = std::min<std::uint64_t>(in_flight, todo.size());
-  RunRecord run = run_record(start, progress, summary);
-  run.tile_context_seconds = 1e-9 * static_cast<double>(context_time.load());
-  run.jobs = workers;
-  folder.write("run.json", run_json(run, summary));
-  if (const std::string left = folder.publish(); !left.empty()) progress.warn("the old build could not be removed: " + left);
+  const double context_seconds = 1e-9 * static_cast<double>(context_time.load());
+  folder.write("run.json", run_json(run_record(start, context_seconds, workers, progress, summary), summary));
+  if (const std::string left = folder.publish(); !left.empty())
+    progress.warn("the old build could not be removed: " + left);
   return summary;
 }
 

@@ -14,14 +14,14 @@ namespace blockrand::run {
 
 /// What a build ended with.
 struct BuildSummary : outputs::ObjectCounts {
-  std::map<std::string, std::uint64_t> issues;    ///< rows by code
+  std::map<std::string, std::uint64_t> issues;  ///< rows by code
   masses::Roofscape roofscape;                  ///< how roofs stand in their rows
-  std::uint64_t files = 0, bytes = 0;             ///< written
+  std::uint64_t files = 0, bytes = 0;           ///< written
   double seconds = 0;
   std::uint64_t peak_rss_bytes = 0;
-  std::uint64_t store_bytes = 0;                  ///< of it: the extract and its indices before the first tile
-  std::uint64_t tiles_in_flight = 0;              ///< at most this many tiles share the rest
-  bool below_quality = false;                     ///< a building is simpler than asked, or has no solid
+  std::uint64_t store_bytes = 0;      ///< of it: the extract and its indices before the first tile
+  std::uint64_t tiles_in_flight = 0;  ///< at most this many tiles share the rest
+  bool below_quality = false;         ///< a building is simpler than asked, or has no solid
 };
 
 /// Builds and publishes. An existing output folder stays untouched until the new one is complete.

@@ -10,7 +10,8 @@ namespace blockrand::run {
 
 namespace {
 
-std::optional<importers::elevation::Terrain> open_terrain(const std::string& path, const context::AskedReference& asked) {
+std::optional<importers::elevation::Terrain> open_terrain(const std::string& path,
+                                                          const context::AskedReference& asked) {
   if (path.empty()) return std::nullopt;
   return std::optional<importers::elevation::Terrain>(std::in_place, path, asked.metres_per_unit);
 }

@@ -7,16 +7,16 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "pipeline/base/parallel.h"
-#include "pipeline/attributes/tagged_buildings.h"
 #include "pipeline/attributes/defaults.h"
+#include "pipeline/attributes/tagged_buildings.h"
+#include "pipeline/base/parallel.h"
+#include "pipeline/footprints/load.h"
 #include "pipeline/layer_file/layer_file.h"
 #include "pipeline/layer_file/well_known_binary.h"
 #include "pipeline/picture/building_plan.h"
 #include "pipeline/picture/image.h"
 #include "pipeline/picture/lettering.h"
 #include "pipeline/picture/plan.h"
-#include "pipeline/footprints/load.h"
 
 namespace blockrand::run {
 
@@ -153,8 +153,9 @@ std::unique_ptr<DistrictSurvey> survey_districts(const BuildOptions& options, co
   attributes::apply_overrides(survey->overrides, survey->located.extract, unmatched);
   for (const model::ReportRow& row : unmatched.rows) progress.warn(row.object.text() + ": " + row.detail);
   survey->prepared.emplace(prepare_extract(survey->located, options, {}, survey->tables, rules.book, progress));
-  survey->neighbours.emplace(attributes::tagged_buildings(survey->located.extract, survey->defaults, survey->located.projection),
-                             options.generate.neighbour_reach);
+  survey->neighbours.emplace(
+      attributes::tagged_buildings(survey->located.extract, survey->defaults, survey->located.projection),
+      options.generate.neighbour_reach);
   for (const evidence::BuildingPlace& p : survey->prepared->facts.places) survey->positions.push_back(p.position);
   return survey;
 }
@@ -251,8 +252,9 @@ DistrictView show_districts(const DistrictSurvey& survey, const RuleSets& book, 
 std::vector<DistrictChange> diff_districts(const DistrictSurvey& survey, const RuleSets& a, const RuleSets& b,
                                            int workers, base::Progress& progress) {
   const PreparedExtract& prepared = *survey.prepared;
-  const evidence::StyleExtract by_b = classify_by_rule_sets(survey.located.extract, prepared.repaired.footprints, prepared.facts,
-                                             prepared.tags, survey.tables, b, workers, progress);
+  const evidence::StyleExtract by_b =
+      classify_by_rule_sets(survey.located.extract, prepared.repaired.footprints, prepared.facts, prepared.tags,
+                            survey.tables, b, workers, progress);
   const attributes::DistrictAssigner first(a, survey.inputs(prepared.styles)), second(b, survey.inputs(by_b));
   std::vector<DistrictChange> out;
   for (const std::uint32_t building : survey.buildings()) {

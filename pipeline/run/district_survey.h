@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/attributes/assign_extract.h"
+#include "pipeline/attributes/rule_sets.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/base/publish.h"
-#include "pipeline/attributes/assign_extract.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/prepare_extract.h"
-#include "pipeline/attributes/rule_sets.h"
 
 namespace blockrand::run {
 

@@ -128,7 +128,7 @@ Json statistics_json(const outputs::Statistics& t) {
   for (std::size_t k = 0; k < t.edges.size(); ++k)
     if (t.edges[k] > 0)
       j["edges"][model::name(static_cast<model::WallSegmentKind>(k))] = {{"stretches", t.edges[k]},
-                                                                  {"length_m", rounded(t.edge_length[k])}};
+                                                                         {"length_m", rounded(t.edge_length[k])}};
   j["positions"] = Json::object();
   for (std::size_t k = 0; k < t.positions.size(); ++k)
     if (t.positions[k] > 0) j["positions"][model::name(static_cast<model::BuildingPosition>(k))] = t.positions[k];

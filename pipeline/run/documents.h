@@ -9,14 +9,14 @@
 #include "importers/elevation/terrain.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/base/publish.h"
+#include "pipeline/context/height_reference.h"
+#include "pipeline/footprints/repair_extract.h"
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/round_trip.h"
 #include "pipeline/model/extract.h"
-#include "pipeline/run/build.h"
-#include "pipeline/context/height_reference.h"
-#include "pipeline/run/region_facts.h"
-#include "pipeline/footprints/repair_extract.h"
 #include "pipeline/outputs/statistics.h"
+#include "pipeline/run/build.h"
+#include "pipeline/run/region_facts.h"
 
 namespace blockrand::run {
 
@@ -49,9 +49,9 @@ struct BuildRecord {
 struct RunRecord {
   std::vector<base::Progress::PhaseTime> timings;
   double seconds = 0;
-  double tile_context_seconds = 0;    ///< of all threads: parts and facade edges, which are worked on in tiles
+  double tile_context_seconds = 0;  ///< of all threads: parts and facade edges, which are worked on in tiles
   std::uint64_t peak_rss_bytes = 0;
-  std::uint64_t store_bytes = 0;      ///< the object store with its indices
+  std::uint64_t store_bytes = 0;  ///< the object store with its indices
   std::uint64_t tiles_in_flight = 0;
   int jobs = 0;
   std::string host;

@@ -23,15 +23,15 @@ struct BuildOptions {
   std::string pinned;                         ///< build.json of an earlier build of the extract: its CRS, its coverage
   std::string crs;                            ///< "EPSG:…"; empty: chosen from the extent
   int lod = 2;                                ///< highest level of detail, 0 to 3
-  bool force = false;                    ///< replace an existing build
-  bool strict = false;                   ///< exit code 3 when a building is below the asked quality
-  int jobs = 0;                          ///< worker threads; 0: one per core
-  std::uint64_t seed = 1;                ///< of all random choices
-  std::string terrain;                   ///< raster with ground heights, or empty
-  std::string terrain_height_reference;  ///< "EPSG:7837", "sea-level", "ellipsoid"; empty: what the raster says
-  std::string districts;                 ///< rule set by name or file; empty: chosen by place from configs/districts/
-  std::string overrides;                 ///< overrides.toml, or empty
-  std::optional<double> ground_height;   ///< m above sea level for every base where there is no terrain
+  bool force = false;                         ///< replace an existing build
+  bool strict = false;                        ///< exit code 3 when a building is below the asked quality
+  int jobs = 0;                               ///< worker threads; 0: one per core
+  std::uint64_t seed = 1;                     ///< of all random choices
+  std::string terrain;                        ///< raster with ground heights, or empty
+  std::string terrain_height_reference;       ///< "EPSG:7837", "sea-level", "ellipsoid"; empty: what the raster says
+  std::string districts;                ///< rule set by name or file; empty: chosen by place from configs/districts/
+  std::string overrides;                ///< overrides.toml, or empty
+  std::optional<double> ground_height;  ///< m above sea level for every base where there is no terrain
   outputs::OutputOptions outputs;
   repair::RepairOptions repair;
   attributes::GenerateOptions generate;

@@ -33,7 +33,8 @@ Outcomes decide_outcomes(const Region& region, int asked) {
       if (lod < asked) out.below_quality = true;
       return true;
     }
-    out.list.push_back({index, ObjectState::reported, failure == IssueCode::none ? IssueCode::no_solid : failure, {}, -1});
+    out.list.push_back(
+        {index, ObjectState::reported, failure == IssueCode::none ? IssueCode::no_solid : failure, {}, -1});
     out.below_quality = true;
     return false;
   };

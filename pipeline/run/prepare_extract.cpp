@@ -44,8 +44,7 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
   return {std::move(extract), area, std::move(facts), crs, round_trip, std::move(projection)};
 }
 
-std::vector<classify::RegionPrior> region_priors(const districts::RuleSets& book,
-                                                 const classify::Tables& tables) {
+std::vector<classify::RegionPrior> region_priors(const districts::RuleSets& book, const classify::Tables& tables) {
   std::vector<classify::RegionPrior> out;
   for (const districts::RuleSet& set : book.sets) {
     classify::RegionPrior prior;
@@ -65,12 +64,15 @@ std::vector<classify::RegionPrior> region_priors(const districts::RuleSets& book
   return out;
 }
 
-evidence::StyleExtract classify_by_rule_sets(const model::Extract& extract, const footprints::FootprintStore& footprints,
-                              const evidence::FactsExtract& facts, const evidence::TagFacts& tags, const classify::Tables& tables,
-                              const districts::RuleSets& book, int workers, base::Progress& progress) {
+evidence::StyleExtract classify_by_rule_sets(const model::Extract& extract,
+                                             const footprints::FootprintStore& footprints,
+                                             const evidence::FactsExtract& facts, const evidence::TagFacts& tags,
+                                             const classify::Tables& tables, const districts::RuleSets& book,
+                                             int workers, base::Progress& progress) {
   const std::vector<classify::RegionPrior> priors = region_priors(book, tables);
   const evidence::PriorOf prior = [&](std::uint32_t building) -> const classify::RegionPrior* {
-    const std::uint32_t set = book.choose(footprints::box_centre(extract, extract.buildings[footprints[building].lead]));
+    const std::uint32_t set =
+        book.choose(footprints::box_centre(extract, extract.buildings[footprints[building].lead]));
     return set == districts::RuleSets::kNoSet ? nullptr : &priors[set];
   };
   return evidence::classify_extract(facts, tags, tables, prior, {}, workers, progress);
@@ -82,7 +84,8 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   const int workers = base::worker_count(options.jobs);
   const model::Extract& extract = located.extract;
   model::Report report;
-  std::vector<footprints::Shard> shards = footprints::make_shards(extract, report, tile ? tile->id.level : footprints::kTileLevel);
+  std::vector<footprints::Shard> shards =
+      footprints::make_shards(extract, report, tile ? tile->id.level : footprints::kTileLevel);
   if (!tile) located.facts.coverage = context::coverage_of(footprints::building_places(extract, located.projection));
   repair::KeptNodes kept(extract);
   footprints::RepairedExtract repaired =
@@ -92,14 +95,17 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
     const auto category = tables.ground_floor.category(tag);
     return category ? std::string_view(tables.ground_floor.categories[*category].name) : std::string_view();
   };
-  context::ContextExtract context = context::context_extract(extract, repaired.footprints, located.facts.coverage, located.projection,
-                                           workers, progress, use_of);
+  context::ContextExtract context = context::context_extract(extract, repaired.footprints, located.facts.coverage,
+                                                             located.projection, workers, progress, use_of);
   malloc_trim(0);
-  evidence::FactsExtract facts = evidence::facts_extract(extract, repaired.footprints, context,
-                                     context::VicinityFinder(extract, repaired.footprints, context), workers, progress);
-  evidence::TagFacts tags = evidence::tag_facts(extract, repaired.footprints, context, tables, located.projection, facts);
+  evidence::FactsExtract facts =
+      evidence::facts_extract(extract, repaired.footprints, context,
+                              context::VicinityFinder(extract, repaired.footprints, context), workers, progress);
+  evidence::TagFacts tags =
+      evidence::tag_facts(extract, repaired.footprints, context, tables, located.projection, facts);
   malloc_trim(0);
-  evidence::StyleExtract styles = classify_by_rule_sets(extract, repaired.footprints, facts, tags, tables, book, workers, progress);
+  evidence::StyleExtract styles =
+      classify_by_rule_sets(extract, repaired.footprints, facts, tags, tables, book, workers, progress);
   return {std::move(shards),  std::move(report), std::move(kept), std::move(repaired),
           std::move(context), std::move(facts),  std::move(tags), std::move(styles)};
 }

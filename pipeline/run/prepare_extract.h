@@ -5,20 +5,20 @@
 #include <vector>
 
 #include "pipeline/base/progress.h"
+#include "pipeline/context/context_extract.h"
+#include "pipeline/evidence/building_facts.h"
+#include "pipeline/evidence/classify_extract.h"
+#include "pipeline/footprints/area.h"
+#include "pipeline/footprints/repair/kept_nodes.h"
+#include "pipeline/footprints/repair_extract.h"
+#include "pipeline/footprints/shard.h"
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/georef/round_trip.h"
 #include "pipeline/model/extract.h"
-#include "pipeline/footprints/area.h"
 #include "pipeline/run/build.h"
-#include "pipeline/evidence/building_facts.h"
-#include "pipeline/evidence/classify_extract.h"
-#include "pipeline/context/context_extract.h"
 #include "pipeline/run/region_facts.h"
-#include "pipeline/footprints/repair_extract.h"
-#include "pipeline/footprints/shard.h"
 #include "pipeline/run/tile_choice.h"
-#include "pipeline/footprints/repair/kept_nodes.h"
 #include "styles/districts/rule_set.h"
 
 namespace blockrand::run {
@@ -27,7 +27,7 @@ namespace blockrand::run {
 struct LocatedExtract {
   model::Extract extract;
   std::optional<footprints::Area> area;  ///< empty: no building has an outline
-  RegionFacts facts;         ///< without coverage, but for a tile alone
+  RegionFacts facts;                     ///< without coverage, but for a tile alone
   georef::Crs crs;
   georef::RoundTrip round_trip;
   georef::Projection projection;
@@ -52,14 +52,15 @@ struct PreparedExtract {
 };
 
 /// What may be assumed of the regions of a rule book's sets, parallel to them.
-std::vector<classify::RegionPrior> region_priors(const districts::RuleSets& book,
-                                                 const classify::Tables& tables);
+std::vector<classify::RegionPrior> region_priors(const districts::RuleSets& book, const classify::Tables& tables);
 
 /// Classifies by what a rule book lets assume of its places; everything else that classification looks at is the same
 /// for all books.
-evidence::StyleExtract classify_by_rule_sets(const model::Extract& extract, const footprints::FootprintStore& footprints,
-                              const evidence::FactsExtract& facts, const evidence::TagFacts& tags, const classify::Tables& tables,
-                              const districts::RuleSets& book, int workers, base::Progress& progress);
+evidence::StyleExtract classify_by_rule_sets(const model::Extract& extract,
+                                             const footprints::FootprintStore& footprints,
+                                             const evidence::FactsExtract& facts, const evidence::TagFacts& tags,
+                                             const classify::Tables& tables, const districts::RuleSets& book,
+                                             int workers, base::Progress& progress);
 
 /// Cuts into shards, repairs, finds the context, measures, classifies; fills facts.coverage where no earlier build
 /// pinned it. \param located  stays where it is while the result is used

@@ -20,11 +20,14 @@ double finite(const nlohmann::json& value) {
 attributes::PinnedArea pinned_area(const nlohmann::json& j) {
   attributes::PinnedArea area{j.at("question").get<std::string>(), j.at("value").get<std::string>(), {}, {}};
   const std::string id = j.at("id").get<std::string>();
-  area.id.type = id.at(0) == 'n' ? model::OsmType::node : id.at(0) == 'w' ? model::OsmType::way : model::OsmType::relation;
+  area.id.type = id.at(0) == 'n'   ? model::OsmType::node
+                 : id.at(0) == 'w' ? model::OsmType::way
+                                   : model::OsmType::relation;
   area.id.number = std::stoll(id.substr(1));
   for (const nlohmann::json& ring : j.at("rings")) {
     std::vector<model::Location>& out = area.rings.emplace_back();
-    for (std::size_t i = 0; i + 1 < ring.size(); i += 2) out.push_back({ring.at(i).get<std::int32_t>(), ring.at(i + 1).get<std::int32_t>()});
+    for (std::size_t i = 0; i + 1 < ring.size(); i += 2)
+      out.push_back({ring.at(i).get<std::int32_t>(), ring.at(i + 1).get<std::int32_t>()});
   }
   return area;
 }

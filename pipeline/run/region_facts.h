@@ -6,19 +6,19 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/attributes/area_set.h"
 #include "pipeline/georef/lon_lat.h"
 #include "pipeline/model/point.h"
-#include "pipeline/attributes/area_set.h"
 #include "pipeline/run/build.h"
 
 namespace blockrand::run {
 
 struct RegionFacts {
-  std::string crs;                      ///< "EPSG:25833"
-  georef::GeoBox box;                   ///< of the buildings, degrees
-  georef::LonLat centre;                ///< degrees
-  std::vector<model::Point2> coverage;  ///< m, build CRS: where the data is (context::coverage_of)
-  std::vector<attributes::PinnedArea> areas;        ///< large ones that district rules ask for (DistrictAssigner::to_pin)
+  std::string crs;                            ///< "EPSG:25833"
+  georef::GeoBox box;                         ///< of the buildings, degrees
+  georef::LonLat centre;                      ///< degrees
+  std::vector<model::Point2> coverage;        ///< m, build CRS: where the data is (context::coverage_of)
+  std::vector<attributes::PinnedArea> areas;  ///< large ones that district rules ask for (DistrictAssigner::to_pin)
 };
 
 /// Reads the facts that an earlier build wrote into its build.json.

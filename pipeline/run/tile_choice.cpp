@@ -28,11 +28,13 @@ model::TileId parse_tile(const std::string& text) {
     ok = error == std::errc() && (i == 2 ? next == end : next != end && *next == '/');
     at = next + 1;
   }
-  ok = ok && numbers[0] >= kMinLevel && numbers[0] <= kMaxLevel && numbers[1] >= 0 && numbers[1] < (2LL << numbers[0]) &&
-       numbers[2] >= 0 && numbers[2] < (1LL << numbers[0]);
+  ok = ok && numbers[0] >= kMinLevel && numbers[0] <= kMaxLevel && numbers[1] >= 0 &&
+       numbers[1] < (2LL << numbers[0]) && numbers[2] >= 0 && numbers[2] < (1LL << numbers[0]);
   if (!ok)
-    throw base::UsageError("--tile " + text + " is no tile. Write level/x/y as in the file names below tiles/, for example 15/35207/25941; level from " +
-                           std::to_string(kMinLevel) + " to " + std::to_string(kMaxLevel));
+    throw base::UsageError(
+        "--tile " + text +
+        " is no tile. Write level/x/y as in the file names below tiles/, for example 15/35207/25941; level from " +
+        std::to_string(kMinLevel) + " to " + std::to_string(kMaxLevel));
   return {static_cast<int>(numbers[0]), static_cast<std::uint32_t>(numbers[1]), static_cast<std::uint32_t>(numbers[2])};
 }
 
@@ -44,7 +46,8 @@ std::optional<TileChoice> choose_tile(const BuildOptions& options) {
     return std::nullopt;
   }
   if (options.pinned.empty())
-    throw base::UsageError("--tile needs --pinned build.json of a build of the whole extract: a tile alone cannot choose the CRS");
+    throw base::UsageError(
+        "--tile needs --pinned build.json of a build of the whole extract: a tile alone cannot choose the CRS");
   if (options.bbox) throw base::UsageError("--tile and --bbox contradict each other");
   if (!options.crs.empty()) throw base::UsageError("--tile takes the CRS of --pinned: leave out --crs");
   TileChoice choice;
@@ -55,12 +58,13 @@ std::optional<TileChoice> choose_tile(const BuildOptions& options) {
   const double farthest = std::min(89.0, std::max(std::abs(tile.south), std::abs(tile.north)) + north);
   const double east = north / base::cos(farthest * base::kPi / 180);
   // A tile at 180 degrees sees nothing of what lies beyond: OSM cuts ways there.
-  choice.window = {std::max(-180.0, tile.west - east), std::max(-90.0, tile.south - north), std::min(180.0, tile.east + east),
-                   std::min(90.0, tile.north + north)};
+  choice.window = {std::max(-180.0, tile.west - east), std::max(-90.0, tile.south - north),
+                   std::min(180.0, tile.east + east), std::min(90.0, tile.north + north)};
   return choice;
 }
 
-std::vector<std::size_t> shards_to_build(std::span<const footprints::Shard> shards, const std::optional<TileChoice>& tile) {
+std::vector<std::size_t> shards_to_build(std::span<const footprints::Shard> shards,
+                                         const std::optional<TileChoice>& tile) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < shards.size(); ++i)
     if (!tile || shards[i].tile == tile->id) out.push_back(i);
@@ -90,7 +94,8 @@ void forget_others(model::Extract& extract, model::TileId tile, std::vector<mode
       kept.push_back(b.id);
     }
   extract.buildings = std::move(buildings);
-  std::erase_if(rows, [&](const model::ReportRow& row) { return !std::binary_search(kept.begin(), kept.end(), row.object); });
+  std::erase_if(rows,
+                [&](const model::ReportRow& row) { return !std::binary_search(kept.begin(), kept.end(), row.object); });
 }
 
 }  // namespace blockrand::run

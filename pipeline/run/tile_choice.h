@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/footprints/shard.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/model/report.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/region_facts.h"
-#include "pipeline/footprints/shard.h"
 
 namespace blockrand::run {
 
@@ -32,7 +32,8 @@ struct TileChoice {
 std::optional<TileChoice> choose_tile(const BuildOptions& options);
 
 /// Indices of the shards to build: all, or the tile's (none where it holds no building).
-std::vector<std::size_t> shards_to_build(std::span<const footprints::Shard> shards, const std::optional<TileChoice>& tile);
+std::vector<std::size_t> shards_to_build(std::span<const footprints::Shard> shards,
+                                         const std::optional<TileChoice>& tile);
 
 /// Removes the objects of other tiles from the extract, and their rows: they were read as surroundings only.
 void forget_others(model::Extract& extract, model::TileId tile, std::vector<model::ReportRow>& rows);

@@ -6,15 +6,15 @@
 #include <set>
 #include <utility>
 
+#include "pipeline/attributes/resolve.h"
 #include "pipeline/context/wall_segments.h"
 #include "pipeline/facades/facades.h"
-#include "pipeline/masses/mass.h"
-#include "pipeline/masses/part_overlaps.h"
-#include "pipeline/attributes/resolve.h"
 #include "pipeline/facades/roof_installations.h"
 #include "pipeline/footprints/load.h"
 #include "pipeline/footprints/repair/parts.h"
 #include "pipeline/footprints/repair/rings.h"
+#include "pipeline/masses/mass.h"
+#include "pipeline/masses/part_overlaps.h"
 
 namespace blockrand::run {
 
@@ -62,7 +62,9 @@ Region prepare(const footprints::Shard& shard, std::span<const std::uint32_t> nu
 }
 
 void resolve(Region& region, const TileInputs& in) {
-  attributes::resolve_attributes(region, {in.defaults, in.neighbours, in.seed, in.ground, &in.overrides, &in.styles.tables.catalogue}, in.generate);
+  attributes::resolve_attributes(
+      region, {in.defaults, in.neighbours, in.seed, in.ground, &in.overrides, &in.styles.tables.catalogue},
+      in.generate);
 }
 
 /// m above the height reference up to which a building's outer walls reach.
@@ -87,7 +89,8 @@ void cover_party_walls(Region& region, const TileInputs& in) {
   };
   for (const Building& building : region.buildings)
     for (const model::WallSegment& edge : building.edges)
-      if (edge.kind == model::WallSegmentKind::party_wall && edge.neighbour.number != 0 && find(region, edge.neighbour) == nullptr)
+      if (edge.kind == model::WallSegmentKind::party_wall && edge.neighbour.number != 0 &&
+          find(region, edge.neighbour) == nullptr)
         missing.insert(edge.neighbour);
   footprints::Shard beside;
   beside.tile = region.tile;
@@ -112,8 +115,7 @@ void cover_party_walls(Region& region, const TileInputs& in) {
       if (edge.kind != model::WallSegmentKind::party_wall || edge.neighbour.number == 0) continue;
       const Building* other = find(region, edge.neighbour);
       if (other == nullptr) other = find(halo, edge.neighbour);
-      if (other != nullptr)
-        edge.covered_height = static_cast<float>(common_height(building, *other));
+      if (other != nullptr) edge.covered_height = static_cast<float>(common_height(building, *other));
     }
 }
 
@@ -121,7 +123,8 @@ void cover_party_walls(Region& region, const TileInputs& in) {
 
 Region run_tile(std::size_t shard, const TileInputs& in) {
   std::vector<std::uint32_t> numbers(in.shards[shard].seeds.size());
-  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = in.repaired.first[shard] + static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    numbers[i] = in.repaired.first[shard] + static_cast<std::uint32_t>(i);
   const auto start = std::chrono::steady_clock::now();
   Region region = prepare(in.shards[shard], numbers, in);
   in.vicinity.label_wall_segments(region, numbers);

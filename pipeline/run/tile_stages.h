@@ -1,28 +1,28 @@
 // The stages that run per tile: outlines and parts, edges, attributes, masses.
 #pragma once
 
-#include <cstddef>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
 
-#include "pipeline/context/tagged_neighbours.h"
+#include "pipeline/attributes/assign_extract.h"
 #include "pipeline/attributes/defaults.h"
-#include "pipeline/facades/grammar_library.h"
 #include "pipeline/attributes/options.h"
 #include "pipeline/attributes/resolve.h"
-#include "pipeline/georef/projection.h"
-#include "pipeline/model/region.h"
-#include "pipeline/attributes/assign_extract.h"
 #include "pipeline/context/context_extract.h"
+#include "pipeline/context/tagged_neighbours.h"
+#include "pipeline/context/vicinity_finder.h"
+#include "pipeline/evidence/style_values.h"
+#include "pipeline/facades/grammar_library.h"
+#include "pipeline/footprints/repair/kept_nodes.h"
+#include "pipeline/footprints/repair/options.h"
 #include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/roof_lines.h"
 #include "pipeline/footprints/shard.h"
-#include "pipeline/evidence/style_values.h"
-#include "pipeline/context/vicinity_finder.h"
-#include "pipeline/footprints/repair/kept_nodes.h"
-#include "pipeline/footprints/repair/options.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/model/region.h"
 
 namespace blockrand::run {
 

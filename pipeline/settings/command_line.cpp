@@ -85,7 +85,8 @@ CommandLine read_command_line(Commands command, const std::vector<std::string>& 
   for (const std::string& extra : app.remaining()) {
     if (extra == "--") continue;
     if (extra.size() > 1 && extra.starts_with('-')) unknown_option(extra, command);
-    wrong_usage(fmt::format("unexpected argument {}{}.", extra, taken.empty() ? "" : ": " + taken + " already"), command);
+    wrong_usage(fmt::format("unexpected argument {}{}.", extra, taken.empty() ? "" : ": " + taken + " already"),
+                command);
   }
   // The file first, so that the command line is stronger.
   for (const auto& [o, option] : parsed) {
@@ -100,7 +101,8 @@ CommandLine read_command_line(Commands command, const std::vector<std::string>& 
       set(*o, line.settings, option->results().back());
     }
   for (const auto& [o, option] : parsed)
-    if (!o->if_missing.empty() && !(o->optional_for & command) && o->show(line.settings).empty()) wrong_usage(std::string(o->if_missing), command);
+    if (!o->if_missing.empty() && !(o->optional_for & command) && o->show(line.settings).empty())
+      wrong_usage(std::string(o->if_missing), command);
   return line;
 }
 

@@ -74,8 +74,8 @@ std::string option_help(unsigned command) {
 }
 
 std::string command_help(const CommandText& command) {
-  std::string text = fmt::format("Usage: blockrand {}{}{}\n", command.name, command.usage.empty() ? "" : " ",
-                                 command.usage);
+  std::string text =
+      fmt::format("Usage: blockrand {}{}{}\n", command.name, command.usage.empty() ? "" : " ", command.usage);
   for (std::size_t start = 0; start < command.description.size();) {
     const std::size_t end = std::min(command.description.find('\n', start), command.description.size());
     text += "\n" + paragraph(std::string_view(command.description).substr(start, end - start));

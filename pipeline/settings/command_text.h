@@ -18,7 +18,7 @@ struct Topic {
   std::string name;
   std::string summary;
   std::vector<std::string> forms{};  ///< words that may follow it
-  bool form_needed = false;        ///< one of them must
+  bool form_needed = false;          ///< one of them must
 };
 
 struct ExitCode {

@@ -10,7 +10,8 @@
 namespace blockrand::settings {
 namespace {
 
-constexpr std::string_view kHelpMeaning = "print the help of the command", kVersionMeaning = "print version and licence";
+constexpr std::string_view kHelpMeaning = "print the help of the command",
+                           kVersionMeaning = "print version and licence";
 
 using Texts = std::span<const CommandText>;
 
@@ -181,8 +182,7 @@ std::string zsh_value(const Option& o) {
 std::string zsh(Texts commands) {
   const auto described = [](const auto& words) {
     std::string text;
-    for (const auto& [word, meaning] : words)
-      text += "\n    " + quoted(zsh_escaped(word) + ":" + zsh_escaped(meaning));
+    for (const auto& [word, meaning] : words) text += "\n    " + quoted(zsh_escaped(word) + ":" + zsh_escaped(meaning));
     return text;
   };
   std::vector<std::pair<std::string, std::string>> words;
@@ -250,7 +250,9 @@ std::string zsh(Texts commands) {
 
 // ---- fish
 
-std::string fish_quoted(std::string_view text) { return "'" + replaced(replaced(text, "\\", "\\\\"), "'", "\\'") + "'"; }
+std::string fish_quoted(std::string_view text) {
+  return "'" + replaced(replaced(text, "\\", "\\\\"), "'", "\\'") + "'";
+}
 
 std::string fish(Texts commands) {
   std::string functions, lines;
@@ -302,7 +304,8 @@ std::string fish(Texts commands) {
          "  test (count $words) -gt 1; and contains -- $words[2] $argv\n"
          "end\n"
          "\n"
-         "# The word at the cursor has this number, and the one before it is the second argument, where that is given.\n"
+         "# The word at the cursor has this number, and the one before it is the second argument, where that is "
+         "given.\n"
          "function __blockrand_word\n"
          "  set -l words (commandline -opc)\n"
          "  test (count $words) -eq $argv[1]; or return 1\n"

@@ -14,13 +14,26 @@ namespace {
 std::string literal(std::string_view text) {
   std::string roff;
   for (const char c : text) switch (c) {
-      case '\\': roff += "\\e"; break;
-      case '-': roff += "\\-"; break;
-      case '\'': roff += "\\(aq"; break;
-      case '`': roff += "\\(ga"; break;
-      case '^': roff += "\\(ha"; break;
-      case '~': roff += "\\(ti"; break;
-      default: roff += c;
+      case '\\':
+        roff += "\\e";
+        break;
+      case '-':
+        roff += "\\-";
+        break;
+      case '\'':
+        roff += "\\(aq";
+        break;
+      case '`':
+        roff += "\\(ga";
+        break;
+      case '^':
+        roff += "\\(ha";
+        break;
+      case '~':
+        roff += "\\(ti";
+        break;
+      default:
+        roff += c;
     }
   // A line that begins with a dot is a request.
   return roff.starts_with('.') ? "\\&" + roff : roff;
@@ -88,8 +101,7 @@ std::string option_entry(const Option& o, unsigned all_commands) {
   body += ".";
   if (const std::string value = default_text(o); !value.empty()) body += " Default: " + value + ".";
   if (const std::string range = range_text(o); !range.empty()) body += " Range: " + range + ".";
-  if (!o.key.empty())
-    body += fmt::format(" Key: {}{}.", o.key, on_by_default(o) ? " = false" : "");
+  if (!o.key.empty()) body += fmt::format(" Key: {}{}.", o.key, on_by_default(o) ? " = false" : "");
   std::string commands;
   for (const Commands c : kAllCommands)
     if (o.commands & all_commands & c) commands += (commands.empty() ? "" : ", ") + std::string(name(c));
@@ -105,7 +117,9 @@ std::string manual(const ManualText& text, std::span<const CommandText> commands
 
   std::string roff =
       ".\\\" Printed by 'blockrand help man'; do not edit.\n"
-      ".TH BLOCKRAND 1 \"\" \"blockrand " + text.version + "\" \"User Commands\"\n"
+      ".TH BLOCKRAND 1 \"\" \"blockrand " +
+      text.version +
+      "\" \"User Commands\"\n"
       ".ad l\n.nh\n";
   roff += section("NAME") + "blockrand \\- " + prose(text.summary);
   roff += section("SYNOPSIS");
@@ -126,9 +140,11 @@ std::string manual(const ManualText& text, std::span<const CommandText> commands
     }
   }
 
-  roff += section("OPTIONS") +
-          prose("Every flag can be taken back with --no- before its name; a flag that is on unless you say so stands here "
-                "by that name. The last of a repeated option counts. Long options also take their value after =.");
+  roff +=
+      section("OPTIONS") +
+      prose(
+          "Every flag can be taken back with --no- before its name; a flag that is on unless you say so stands here "
+          "by that name. The last of a repeated option counts. Long options also take their value after =.");
   roff += hanging(bold("-h") + ", " + bold("--help"), prose("print the help of the command."));
   roff += hanging(bold("-V") + ", " + bold("--version"), prose("print version and licence. Without a command only."));
   for (const base::OptionSection& part : sections()) {
@@ -138,12 +154,13 @@ std::string manual(const ManualText& text, std::span<const CommandText> commands
     if (!entries.empty()) roff += fmt::format(".SS {}\n", literal(part.title)) + entries;
   }
 
-  roff += section("CONFIG FILE") +
-          paragraphs(
-              "Options with a key can stand in a TOML file that --config names: those under \"What is built\" in its "
-              "section [build], those that begin with --repair- in [repair], those that begin with --generate- in "
-              "[generate]. The command line is stronger than the file. Relative paths in it start at the file's folder.\n"
-              "'blockrand help options --toml' prints such a file with every key, its meaning and its default.");
+  roff +=
+      section("CONFIG FILE") +
+      paragraphs(
+          "Options with a key can stand in a TOML file that --config names: those under \"What is built\" in its "
+          "section [build], those that begin with --repair- in [repair], those that begin with --generate- in "
+          "[generate]. The command line is stronger than the file. Relative paths in it start at the file's folder.\n"
+          "'blockrand help options --toml' prints such a file with every key, its meaning and its default.");
   roff += section("OUTPUT") + prose("The folder that 'blockrand build' writes:");
   for (const auto& [name, meaning] : text.outputs) roff += hanging(bold(name), prose(meaning + "."));
   roff += section("FILES");
@@ -156,8 +173,9 @@ std::string manual(const ManualText& text, std::span<const CommandText> commands
       roff += hanging(bold(example.command),
                       example.meaning.empty() ? prose(command.summary + ".") : prose(example.meaning + "."));
   roff += section("COPYRIGHT") +
-          prose("Blockrand: GPL-3.0-or-later. Results made from OpenStreetMap data are subject to the ODbL; name their "
-                "source: OpenStreetMap contributors.");
+          prose(
+              "Blockrand: GPL-3.0-or-later. Results made from OpenStreetMap data are subject to the ODbL; name their "
+              "source: OpenStreetMap contributors.");
   roff += section("SEE ALSO") + "osmium(1), ogrinfo(1), xmllint(1)\n";
   return roff;
 }

@@ -13,8 +13,8 @@ namespace blockrand::settings {
 /// What the manual says beyond commands and options; each row is a name and its meaning.
 struct ManualText {
   std::string version;
-  std::string summary;      ///< for NAME: one line without a full stop
-  std::string description;  ///< paragraphs, each one line, separated by '\n'
+  std::string summary;                                       ///< for NAME: one line without a full stop
+  std::string description;                                   ///< paragraphs, each one line, separated by '\n'
   std::vector<std::pair<std::string, std::string>> outputs;  ///< what a build's folder holds
   std::vector<std::pair<std::string, std::string>> files;    ///< what the program reads by itself
 };

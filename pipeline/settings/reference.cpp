@@ -25,7 +25,8 @@ std::string options_markdown() {
       "Every option with a key can stand in a file that `--config FILE.toml` names, in the section given here; "
       "the command line is stronger than the file. Relative paths in the file start at the file's folder. "
       "`blockrand help options --toml` prints such a file with every default. "
-      "Every flag can be taken back with `--no-` before its name; a flag that is on unless you say so stands here by that "
+      "Every flag can be taken back with `--no-` before its name; a flag that is on unless you say so stands here by "
+      "that "
       "name, but its key is the plain one: `report = false`.\n";
   for (const base::OptionSection& section : sections()) {
     text +=

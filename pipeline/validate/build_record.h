@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "pipeline/base/progress.h"
-#include "pipeline/validate/finding_log.h"
 #include "pipeline/validate/checked_json.h"
+#include "pipeline/validate/finding_log.h"
 
 namespace blockrand::validate {
 
@@ -23,10 +23,11 @@ struct BuildRecord {
   Json json;
   int lod = 2;
   std::set<std::string> formats;  ///< "gltf", "citygml" …
-  bool baked = false;  ///< elements are triangles of their buildings' meshes
+  bool baked = false;             ///< elements are triangles of their buildings' meshes
   bool gzip = false, single_glb = false, single_cityjson = false, report = false, explain = false;
   std::string crs, pipeline, vertical_crs, height_reference;
-  std::string raised_from;  ///< vertical CRS from which heights were raised to the ellipsoid in 3D Tiles; empty: none, or unknown
+  std::string
+      raised_from;  ///< vertical CRS from which heights were raised to the ellipsoid in 3D Tiles; empty: none, or unknown
   double accuracy = 0;  ///< m, as PROJ states it for the operation
   std::string extract_path, extract_sha256;
   std::map<std::string, BuildFile> files;

@@ -38,8 +38,9 @@ bool known_element(std::string_view space, std::string_view name) {
                             "upperCorner", "MultiSurface", "surfaceMember", "Polygon",  "exterior",
                             "interior",    "LinearRing",   "posList",       "Solid",    "CompositeSurface",
                             "Point",       "pos"};
-  static const Names core = {"CityModel",         "cityObjectMember", "externalReference",
-                             "informationSystem", "externalObject",   "uri",
+  static const Names core = {"CityModel",         "cityObjectMember",
+                             "externalReference", "informationSystem",
+                             "externalObject",    "uri",
                              "Address",           "xalAddress",
                              "ImplicitGeometry",  "transformationMatrix",
                              "referencePoint",    "relativeGMLGeometry"};

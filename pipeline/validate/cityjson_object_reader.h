@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "pipeline/model/point.h"
-#include "pipeline/validate/contents.h"
 #include "pipeline/validate/checked_json.h"
+#include "pipeline/validate/contents.h"
 
 namespace blockrand::validate {
 

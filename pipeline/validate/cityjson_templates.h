@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/validate/checked_json.h"
 #include "pipeline/validate/cityjson_object_reader.h"
 #include "pipeline/validate/contents.h"
 #include "pipeline/validate/detail_check.h"
-#include "pipeline/validate/checked_json.h"
 
 namespace blockrand::validate {
 

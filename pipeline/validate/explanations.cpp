@@ -10,8 +10,8 @@
 
 #include "pipeline/base/text.h"
 #include "pipeline/validate/attribute_names.h"
-#include "pipeline/validate/ids.h"
 #include "pipeline/validate/checked_json.h"
+#include "pipeline/validate/ids.h"
 
 namespace blockrand::validate {
 namespace {

@@ -63,12 +63,9 @@ std::string validation_json(const ValidateOptions& options, const Validation& v)
     j["checked"].push_back({{"what", c.what}, {"how", c.how}, {"count", c.count}, {"unit", c.unit}});
   j["notes"] = v.notes;
   if (v.positions > 0)
-    j["positions"] = {{"source", v.position_source},
-                      {"corners", v.positions},
-                      {"worst_glb_m", v.worst_glb},
-                      {"worst_crs_m", v.worst_crs},
-                      {"corners_moved", v.positions_moved},
-                      {"worst_moved_m", v.worst_moved},
+    j["positions"] = {{"source", v.position_source},        {"corners", v.positions},
+                      {"worst_glb_m", v.worst_glb},         {"worst_crs_m", v.worst_crs},
+                      {"corners_moved", v.positions_moved}, {"worst_moved_m", v.worst_moved},
                       {"median_m", v.worst_median}};
   j["counts"] = Ordered::object();
   for (int c = 0; c < kCheckCount; ++c)

@@ -304,7 +304,9 @@ RepairsSaid GeoPackageReader::repairs() {
   const std::lock_guard lock(state_->reading);
   RepairsSaid said;
   state_->db.each("SELECT id, max_shift, overlaps_resolved FROM buildings WHERE max_shift >= 0",
-                  [&](const SqliteRow& row) { said[row.string(0)] = {row.real(1), row.integer(2) > 0}; });
+                  [&](const SqliteRow& row) {
+                    said[row.string(0)] = {row.real(1), row.integer(2) > 0};
+                  });
   return said;
 }
 

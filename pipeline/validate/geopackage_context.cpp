@@ -26,7 +26,7 @@ constexpr double kDirectionTolerance = 0.051;
 /// Of shares that are sums: a ten-thousandth is the last decimal, and overlaps of neighbours may add to it.
 constexpr double kShareSlack = 0.001;
 constexpr double kMinCovered = 0.95;  // of a cell that gives ratios by its area
-constexpr double kOnGrid = 1e-6;  // m: corners of cells are whole numbers
+constexpr double kOnGrid = 1e-6;      // m: corners of cells are whole numbers
 
 template <class Names>
 bool is_one_of(std::string_view text, const Names& names) {
@@ -151,7 +151,8 @@ class ContextRules {
       f.number("floor_area_ratio", 0, 1000);
       f.number("front_length", 0, 1e7);
       f.number("courtyard_area", 0, f.real("area") * (1 + kShareSlack) + kShareSlack);
-      const bool whole = f.text("kind") == "ordinary" && f.integer("cut_by_extract_edge") == 0 && f.integer("too_large") == 0;
+      const bool whole =
+          f.text("kind") == "ordinary" && f.integer("cut_by_extract_edge") == 0 && f.integer("too_large") == 0;
       for (const char* ratio : {"built_share", "tagged_share", "floor_area_ratio", "closure"})
         if (!whole && !f.null(ratio)) f.error(fmt::format("{} of a block that gives no ratios", ratio));
     });
@@ -233,19 +234,20 @@ class ContextRules {
     const int geometry = static_cast<int>(names.size());
     std::unordered_set<std::string> seen;
     Outline outline;
-    const bool done = s_.db.each(
-        sql + "e.geom, b.geom FROM facade_edges e LEFT JOIN buildings b ON b.id = e.building ORDER BY e.fid",
-        [&](const SqliteRow& row) {
-          Fields f(row, names);
-          const std::string_view building = f.text("building");
-          if (building != outline.building) {
-            finish(outline);
-            begin(outline, building, row, geometry + 1);
-            if (!seen.insert(outline.building).second) rule(building, "its rows of facade_edges do not stand together");
-          }
-          edge(f, read_geopackage_geometry(row.text(geometry), WkbType::line_string, srs_id_), outline);
-          for (std::string& error : f.errors) rule(f.text("id"), "layer facade_edges: " + error);
-        });
+    const bool done =
+        s_.db.each(sql + "e.geom, b.geom FROM facade_edges e LEFT JOIN buildings b ON b.id = e.building ORDER BY e.fid",
+                   [&](const SqliteRow& row) {
+                     Fields f(row, names);
+                     const std::string_view building = f.text("building");
+                     if (building != outline.building) {
+                       finish(outline);
+                       begin(outline, building, row, geometry + 1);
+                       if (!seen.insert(outline.building).second)
+                         rule(building, "its rows of facade_edges do not stand together");
+                     }
+                     edge(f, read_geopackage_geometry(row.text(geometry), WkbType::line_string, srs_id_), outline);
+                     for (std::string& error : f.errors) rule(f.text("id"), "layer facade_edges: " + error);
+                   });
     finish(outline);
     if (!done) rule("facade_edges", s_.db.error());
   }
@@ -318,7 +320,8 @@ class ContextRules {
     double looks = std::atan2(to.y - from.y, from.x - to.x) * (180 / 3.14159265358979323846);
     const double turn = std::fabs(std::remainder(f.real("orientation") - looks, 360));
     if (!(turn <= kDirectionTolerance))
-      f.error(fmt::format("orientation is {}, its line looks to {:.1f}", f.text("orientation"), looks < 0 ? looks + 360 : looks));
+      f.error(fmt::format("orientation is {}, its line looks to {:.1f}", f.text("orientation"),
+                          looks < 0 ? looks + 360 : looks));
     if (!outline.footprint.empty() && !lies_on(outline, from, to)) f.error("the stretch is no piece of the outline");
   }
 
@@ -329,7 +332,8 @@ class ContextRules {
       f.error(fmt::format("{} entrances among {} points", f.text("entrances"), ids.size()));
     if (ids.empty() && !f.null("house_numbers")) f.error("house numbers without a point that has them");
     for (const std::string_view id : ids) {
-      if (!is_osm_id(id) || id.front() != 'n') f.error(fmt::format("points \"{}\" is no list of nodes", f.text("points")));
+      if (!is_osm_id(id) || id.front() != 'n')
+        f.error(fmt::format("points \"{}\" is no list of nodes", f.text("points")));
       if (!points_.emplace(id).second) f.error(fmt::format("its point {} stands at another stretch, too", id));
     }
   }
@@ -389,24 +393,54 @@ class ContextRules {
 
 std::vector<std::string> context_columns(std::string_view table) {
   if (table == "buildings")
-    return {"style_p",     "p_gruenderzeit",    "p_tenement", "p_modern",  "p_other",     "morphology",
-            "position",    "front_orientation", "depth",     "width",     "setback",      "party_wall_length",
-            "block",       "courtyards",        "moved",     "mean_shift", "max_shift",   "mapped_area",
-            "shared_walls", "gaps_closed",      "overlaps_resolved", "overlap_left", "squared_direction"};
+    return {"style_p",      "p_gruenderzeit",    "p_tenement",
+            "p_modern",     "p_other",           "morphology",
+            "position",     "front_orientation", "depth",
+            "width",        "setback",           "party_wall_length",
+            "block",        "courtyards",        "moved",
+            "mean_shift",   "max_shift",         "mapped_area",
+            "shared_walls", "gaps_closed",       "overlaps_resolved",
+            "overlap_left", "squared_direction"};
   if (table == "facade_edges")
-    return {"id",     "building",     "kind",         "confidence",  "length",          "orientation",
-            "front",  "neighbour",    "covered_height", "street",    "street_name",     "street_class",
-            "street_distance", "street_angle", "visibility", "corner_start", "corner_end", "chamfer",
-            "entrances", "house_numbers", "points", "trees", "arc_radius", "arc_bulge",   "from_node",   "to_node"};
+    return {
+        "id",         "building",       "kind",       "confidence",  "length",       "orientation",     "front",
+        "neighbour",  "covered_height", "street",     "street_name", "street_class", "street_distance", "street_angle",
+        "visibility", "corner_start",   "corner_end", "chamfer",     "entrances",    "house_numbers",   "points",
+        "trees",      "arc_radius",     "arc_bulge",  "from_node",   "to_node"};
   if (table == "blocks")
-    return {"id",          "kind",         "area",             "cut_by_extract_edge", "too_large",
-            "buildings",   "built_share",  "tagged_share",     "floor_area_ratio",    "closure",
-            "front_length", "courtyard_area", "courtyards",    "streets"};
+    return {"id",
+            "kind",
+            "area",
+            "cut_by_extract_edge",
+            "too_large",
+            "buildings",
+            "built_share",
+            "tagged_share",
+            "floor_area_ratio",
+            "closure",
+            "front_length",
+            "courtyard_area",
+            "courtyards",
+            "streets"};
   if (table == "courtyards") return {"id", "block", "area", "closed", "opening", "buildings", "building_ids"};
   if (table == "cells")
-    return {"id",           "size",          "buildings",     "density",          "built_share",      "tagged_share",
-            "covered_share", "storeys_mean", "storeys_spread", "floor_area_ratio", "party_wall_share", "dated_share",  "year_mean",
-            "year_spread",  "footprint_quartile", "footprint_median", "footprint_upper_quartile"};
+    return {"id",
+            "size",
+            "buildings",
+            "density",
+            "built_share",
+            "tagged_share",
+            "covered_share",
+            "storeys_mean",
+            "storeys_spread",
+            "floor_area_ratio",
+            "party_wall_share",
+            "dated_share",
+            "year_mean",
+            "year_spread",
+            "footprint_quartile",
+            "footprint_median",
+            "footprint_upper_quartile"};
   return {};
 }
 

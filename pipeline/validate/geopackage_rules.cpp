@@ -228,10 +228,11 @@ class Rules {
            if (!g.errors.empty()) return;
            box.add(g);
            if (!indexed) return;
-           const bool like = !row.null(3) && row.real(3) <= g.min_x && row.real(4) <= g.min_y &&
-                             row.real(5) >= g.max_x && row.real(6) >= g.max_y && row.real(3) >= g.min_x - index_slack(g.min_x) &&
-                             row.real(4) >= g.min_y - index_slack(g.min_y) && row.real(5) <= g.max_x + index_slack(g.max_x) &&
-                             row.real(6) <= g.max_y + index_slack(g.max_y);
+           const bool like =
+               !row.null(3) && row.real(3) <= g.min_x && row.real(4) <= g.min_y && row.real(5) >= g.max_x &&
+               row.real(6) >= g.max_y && row.real(3) >= g.min_x - index_slack(g.min_x) &&
+               row.real(4) >= g.min_y - index_slack(g.min_y) && row.real(5) <= g.max_x + index_slack(g.max_x) &&
+               row.real(6) <= g.max_y + index_slack(g.max_y);
            if (like) return;
            if (unlike++ == 0) first_unlike = row.string(1);
          });

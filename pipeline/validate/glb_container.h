@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/validate/finding.h"
 #include "pipeline/validate/checked_json.h"
+#include "pipeline/validate/finding.h"
 
 namespace blockrand::validate {
 

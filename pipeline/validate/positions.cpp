@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "importers/osm/read_extract.h"
-#include "pipeline/validate/earth.h"
 #include "pipeline/validate/bytes_of_file.h"
 #include "pipeline/validate/checked_json.h"
+#include "pipeline/validate/earth.h"
 
 namespace blockrand::validate {
 namespace {
@@ -16,8 +16,8 @@ constexpr double kLeastEdge = 0.5;            // m
 constexpr double kNearestToPole = 89.999;     // degrees: a hundred metres
 constexpr double kMetresPerUnit = 0.0111319;  // 1e-7 degrees of latitude
 
-constexpr double kWritten = 0.0005;           // m: shifts are written in millimetres
-constexpr double kStraight = 0.02;            // m: flatter corners are points on a straight wall
+constexpr double kWritten = 0.0005;  // m: shifts are written in millimetres
+constexpr double kStraight = 0.02;   // m: flatter corners are points on a straight wall
 // The median of n values that spread normally by s has the standard error 1.2533 s / sqrt(n); s is 1.4826 times their
 // median distance from their median. Three of them: one sound build in 370 is beyond by chance, along one axis.
 constexpr double kThreeErrorsOfMedian = 3 * 1.2533 * 1.4826;
@@ -195,7 +195,8 @@ CommonShift common_shift(std::span<const std::pair<std::string, model::Point2>> 
   for (std::size_t i = 0; i < offsets.size();) {
     model::Point2 sum;
     std::size_t count = 0;
-    for (const std::string& building = offsets[i].first; i < offsets.size() && offsets[i].first == building; ++i, ++count) {
+    for (const std::string& building = offsets[i].first; i < offsets.size() && offsets[i].first == building;
+         ++i, ++count) {
       sum.x += offsets[i].second.x;
       sum.y += offsets[i].second.y;
     }
@@ -208,8 +209,8 @@ CommonShift common_shift(std::span<const std::pair<std::string, model::Point2>> 
   shift.median = {median_of(x), median_of(y)};
   for (auto [values, middle] : {std::pair(&x, shift.median.x), std::pair(&y, shift.median.y)}) {
     for (double& v : *values) v = std::fabs(v - middle);
-    shift.uncertainty = std::max(shift.uncertainty, kThreeErrorsOfMedian * median_of(*values) /
-                                                        std::sqrt(static_cast<double>(values->size())));
+    shift.uncertainty = std::max(
+        shift.uncertainty, kThreeErrorsOfMedian * median_of(*values) / std::sqrt(static_cast<double>(values->size())));
   }
   return shift;
 }

@@ -19,7 +19,7 @@ namespace blockrand::validate {
 struct SampledCorner {
   model::Location at;
   std::uint64_t rank = 0;  ///< pseudo-random, the same in every run: the first 1,000 that are found in the model count
-  double height = 0;  ///< m, over the line through its neighbours
+  double height = 0;       ///< m, over the line through its neighbours
 };
 
 /// By the id of a body that is a whole building.
@@ -86,8 +86,8 @@ void bound_positions(PositionSample& sample, const RepairsSaid& said, const std:
 /// What the offsets of all corners have in common. Repair moves corners to and fro: the median over buildings (of their
 /// mean offset, east and north apart) stays near zero unless everything was moved.
 struct CommonShift {
-  model::Point2 median;       ///< m east and north
-  double uncertainty = 0;     ///< m: three standard errors of the median, from the spread of the buildings
+  model::Point2 median;    ///< m east and north
+  double uncertainty = 0;  ///< m: three standard errors of the median, from the spread of the buildings
   std::size_t buildings = 0;
 };
 /// \param offsets  m, with the building; those of one building stand together

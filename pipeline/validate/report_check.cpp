@@ -31,8 +31,8 @@ class Reader {
 
   /// Repairs after which every clear corner is still there, no farther away than the building's max_shift.
   static bool only_moves(std::string_view code) {
-    for (const char* const c : {"SHARED_WALL_MADE", "SHARED_WALL_CONFLICT", "SQUARED", "OVERLAP_KEPT", "REPAIR_BOUNDED",
-                                "REACH_CUT"})
+    for (const char* const c :
+         {"SHARED_WALL_MADE", "SHARED_WALL_CONFLICT", "SQUARED", "OVERLAP_KEPT", "REPAIR_BOUNDED", "REACH_CUT"})
       if (code == c) return true;
     return false;
   }

@@ -16,10 +16,10 @@ struct Report {
   std::uint64_t objects = 0;
   std::map<std::string, std::string> states;  ///< of those that are not in the model: id → "reported", "duplicate"
   std::map<std::string, std::string> all;     ///< id → state and code: "reported NODE_ONLY", "represented "
-  std::set<std::string> mended;               ///< objects with rows that leave corners anywhere, or that say nothing of them
+  std::set<std::string> mended;  ///< objects with rows that leave corners anywhere, or that say nothing of them
   /// Objects with a row that tells of an overlap with another part or building: PARTS_OVERLAP, OVERLAP_KEPT.
   std::set<std::string> overlapping;
-  std::set<std::string> moved;                ///< objects with rows of repairs that move corners by a stated length at most
+  std::set<std::string> moved;  ///< objects with rows of repairs that move corners by a stated length at most
 };
 
 /// Reads FOLDER/report.json and compares it with build.json, row by row: REPORT_WRONG, COUNTS_DIFFER.

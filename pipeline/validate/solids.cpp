@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <exception>
 
-#include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/cgal_validator.h"
+#include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/triangulate.h"
 
 namespace blockrand::validate {
@@ -57,9 +57,7 @@ struct Own {
   std::string text;
   int number = 0;
 };
-Own own(const geometry::SolidCheck& check) {
-  return check.valid() ? Own{} : Own{check.text(), check.code()};
-}
+Own own(const geometry::SolidCheck& check) { return check.valid() ? Own{} : Own{check.text(), check.code()}; }
 
 /// Nothing where it has no points, or is too large.
 std::optional<model::Solid> solid_of(const ReadSolid& read) {
@@ -149,7 +147,8 @@ std::optional<ReadMesh> read_mesh(const std::vector<GlbTriangle>& read) {
   const Welder index(std::move(points));
   if (!compact(index.points(), kLargestMesh)) return std::nullopt;
   ReadMesh out{index.points(), {}};
-  for (const GlbTriangle& t : read) out.triangles.push_back({index(t.corners[0]), index(t.corners[1]), index(t.corners[2])});
+  for (const GlbTriangle& t : read)
+    out.triangles.push_back({index(t.corners[0]), index(t.corners[1]), index(t.corners[2])});
   return out;
 }
 
@@ -158,16 +157,17 @@ SolidValidity validator(const ReadSolid& solid) {
 }
 
 SolidValidity validator(const std::vector<GlbTriangle>& triangles) {
-  if (triangles.empty()) return {own(geometry::SolidCheck{geometry::SolidDefect::empty}).text, "no faces", iso_code(geometry::SolidDefect::empty)};
+  if (triangles.empty())
+    return {own(geometry::SolidCheck{geometry::SolidDefect::empty}).text, "no faces",
+            iso_code(geometry::SolidDefect::empty)};
   return validity_by([&] { return own_validity(triangles); }, [&] { return cgal_validity(triangles); });
 }
 
 void note(const SolidValidity& validity, const std::string& file, const std::string& object, const std::string& which,
           std::vector<Finding>& findings) {
   if (validity.valid()) return;
-  findings.push_back(
-      {validity.agreed() ? Check::solid_invalid : Check::validators_disagree, file, object, which + ": " + validity.text(),
-       validity.number});
+  findings.push_back({validity.agreed() ? Check::solid_invalid : Check::validators_disagree, file, object,
+                      which + ": " + validity.text(), validity.number});
 }
 
 }  // namespace blockrand::validate

@@ -13,9 +13,9 @@
 
 #include "pipeline/geometry/solid_defect.h"
 #include "pipeline/validate/attribute_names.h"
+#include "pipeline/validate/bytes_of_file.h"
 #include "pipeline/validate/cityjson_reader.h"
 #include "pipeline/validate/detail_check.h"
-#include "pipeline/validate/bytes_of_file.h"
 #include "pipeline/validate/glb.h"
 #include "pipeline/validate/ids.h"
 #include "pipeline/validate/part_overlap_check.h"
@@ -538,8 +538,8 @@ class Checker {
       for (const auto& [id, shown] : bodies) {
         std::vector<std::vector<Point2>> places(kTileFormats);  // of GLB in degrees
         for (const auto& [f, body] : shown)
-          places[f] =
-              f == kGltf ? corners_on_earth(proj_transform, transform_, glb_->triangles[rows.at(id)]) : plan_points(*body);
+          places[f] = f == kGltf ? corners_on_earth(proj_transform, transform_, glb_->triangles[rows.at(id)])
+                                 : plan_points(*body);
         const auto moved = context_.sample.reach.find(id);
         const double reach = moved == context_.sample.reach.end() ? 0 : moved->second;
         for (const SampledCorner& corner : context_.sample.corners.at(id)) {
@@ -550,8 +550,9 @@ class Checker {
           for (const auto& [f, body] : shown) {
             result.file[f] = files_.path[f];
             result.offset[f] =
-                f == kGltf ? offset_on_earth(places[f], corner.at)
-                           : offset(places[f], proj_transform.forward({corner.at.lon_degrees(), corner.at.lat_degrees()}));
+                f == kGltf
+                    ? offset_on_earth(places[f], corner.at)
+                    : offset(places[f], proj_transform.forward({corner.at.lon_degrees(), corner.at.lat_degrees()}));
             result.off[f] = std::hypot(result.offset[f].x, result.offset[f].y);
             result.tolerance[f] = kPositionTolerance + reach;
           }

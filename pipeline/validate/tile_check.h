@@ -12,9 +12,9 @@
 #include "pipeline/georef/proj_transform.h"
 #include "pipeline/validate/build_record.h"
 #include "pipeline/validate/citygml_reader.h"
-#include "pipeline/validate/format_agreement.h"
 #include "pipeline/validate/contents.h"
 #include "pipeline/validate/explanations.h"
+#include "pipeline/validate/format_agreement.h"
 #include "pipeline/validate/geopackage.h"
 #include "pipeline/validate/positions.h"
 #include "pipeline/validate/tileset_reader.h"
@@ -60,7 +60,7 @@ struct TileResult {
   FormatCounts counts[kTileFormats];
   std::uint64_t pairs = 0;                                    ///< pairs of parts that may overlap
   std::vector<std::string> told_overlaps;                     ///< "w1.w2 601 overlaps …": the report says so as well
-  std::uint64_t validated = 0;                                   ///< solids that were given to both judges
+  std::uint64_t validated = 0;                                ///< solids that were given to both judges
   std::uint64_t triangles = 0, attributes = 0, compared = 0;  ///< pairs of bodies in two formats
   std::uint64_t explained = 0;                                ///< records in explain/
   FormatCounts geopackage;
@@ -82,7 +82,8 @@ struct TileContext {
   const Tileset* tileset = nullptr;
   const CityGmlSchema* schema = nullptr;
   const PositionSample& sample;
-  georef::ProjTransformPool* proj_transform = nullptr;    ///< PROJ with the operation of build.json; null where it cannot be used
+  georef::ProjTransformPool* proj_transform =
+      nullptr;  ///< PROJ with the operation of build.json; null where it cannot be used
   georef::ProjTransformPool* positions = nullptr;  ///< PROJ with the operation that the positions are compared by
   const georef::Geoid& geoid;
   const std::set<std::string>* overlapping = nullptr;  ///< objects of which the report tells an overlap

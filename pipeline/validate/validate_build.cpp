@@ -16,8 +16,8 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/validate/build_record.h"
-#include "pipeline/validate/cityjson_reader.h"
 #include "pipeline/validate/bytes_of_file.h"
+#include "pipeline/validate/cityjson_reader.h"
 #include "pipeline/validate/report_check.h"
 #include "pipeline/validate/tile_check.h"
 

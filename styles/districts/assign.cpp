@@ -79,7 +79,8 @@ SubjectStyle style_of_subject(const RuleSets& book, const Subject& s, std::vecto
     subject_style.non_house = s.style->non_house;
     // Classification takes the sub-style from the likeliest class.
     subject_style.substyle_class = s.style->style_class();
-    const double of_class = static_cast<double>(subject_style.style[static_cast<std::size_t>(subject_style.substyle_class)]);
+    const double of_class =
+        static_cast<double>(subject_style.style[static_cast<std::size_t>(subject_style.substyle_class)]);
     subject_style.substyle_p = of_class > 0 ? std::min(1.0, static_cast<double>(s.style->substyle_p) / of_class) : 0;
   }
   subject_style.substyle = s.substyle;
@@ -118,10 +119,12 @@ bool fires(const Rule& rule, const Subject& s, const SubjectStyle& subject_style
   if (w.area && !w.area->holds(s.area)) return false;
   if (!w.eras.empty()) {
     const bool in_eras = subject_style.years ? any(w.eras, model::era_of(subject_style.years->middle()))
-                                     : sum_of(w.eras, subject_style) >= w.probability - kMargin;
+                                             : sum_of(w.eras, subject_style) >= w.probability - kMargin;
     if (!in_eras) return false;
   }
-  if (w.years && (!subject_style.years || subject_style.years->from > w.years->to || subject_style.years->to < w.years->from)) return false;
+  if (w.years &&
+      (!subject_style.years || subject_style.years->from > w.years->to || subject_style.years->to < w.years->from))
+    return false;
   if (const auto& box = rule.where.bbox) {
     const double lon = s.place.lon_degrees(), lat = s.place.lat_degrees();
     if (lon < (*box)[0] || lon > (*box)[2] || lat < (*box)[1] || lat > (*box)[3]) return false;
@@ -161,7 +164,8 @@ float confidence_of(const Rule& rule, const SubjectStyle& subject_style, double 
   };
   const bool by_substyle = !rule.which.substyles.empty();
   if (by_substyle) p *= of_class(subject_style.substyle_class) * subject_style.substyle_p;
-  if (rule.which.style && !(by_substyle && *rule.which.style == subject_style.substyle_class)) p *= of_class(*rule.which.style);
+  if (rule.which.style && !(by_substyle && *rule.which.style == subject_style.substyle_class))
+    p *= of_class(*rule.which.style);
   if (!rule.which.eras.empty() && !subject_style.years) p *= std::min(1.0, sum_of(rule.which.eras, subject_style));
   // Rounded: what a sum of floats leaves in its last bits is nobody's confidence.
   return static_cast<float>(static_cast<int>(p * 1000 + 0.5)) / 1000.0f;
@@ -175,7 +179,7 @@ struct TaggedPreset {
   std::string why;
 };
 std::vector<TaggedPreset> tagged_presets(const RuleSets& book, const Subject& s, bool in_words,
-                                     std::vector<std::string>* unreadable) {
+                                         std::vector<std::string>* unreadable) {
   std::vector<TaggedPreset> out;
   const auto take = [&](std::string_view value, model::Source source, float confidence, const model::OsmId* area) {
     if (value.empty()) return;
@@ -208,8 +212,8 @@ std::string conditions(const RuleSet& set, const Rule& rule, const Subject& s, c
   std::vector<std::string> words;
   const Which& w = rule.which;
   if (w.style)
-    words.push_back(
-        fmt::format("{} with {:.0f} %", model::name(*w.style), 100 * subject_style.style[static_cast<std::size_t>(*w.style)]));
+    words.push_back(fmt::format("{} with {:.0f} %", model::name(*w.style),
+                                100 * subject_style.style[static_cast<std::size_t>(*w.style)]));
   if (!w.eras.empty()) {
     std::vector<std::string_view> names;
     for (const model::Era e : w.eras) names.push_back(model::name(e));
@@ -217,7 +221,8 @@ std::string conditions(const RuleSet& set, const Rule& rule, const Subject& s, c
   }
   if (w.years) words.push_back(fmt::format("dated {} to {}", subject_style.years->from, subject_style.years->to));
   if (!w.substyles.empty())
-    words.push_back(fmt::format("style {} with {:.0f} % of its class", subject_style.substyle, 100 * subject_style.substyle_p));
+    words.push_back(
+        fmt::format("style {} with {:.0f} % of its class", subject_style.substyle, 100 * subject_style.substyle_p));
   if (!w.uses.empty()) words.push_back("building=" + std::string(s.use));
   if (w.area) words.push_back(fmt::format("{:.0f} m2", s.area));
   if (w.storeys) words.push_back(fmt::format("{:g} storeys", s.storeys().value_or(0)));
@@ -234,8 +239,8 @@ std::string conditions(const RuleSet& set, const Rule& rule, const Subject& s, c
 
 std::string in_words(const RuleSet& set, const Rule& rule, const WeightedPreset& drawn, const Subject& s,
                      const SubjectStyle& subject_style) {
-  std::string text =
-      fmt::format("rule '{}' of {} ({}): {}", rule.name, set.title, name(rule.level), conditions(set, rule, s, subject_style));
+  std::string text = fmt::format("rule '{}' of {} ({}): {}", rule.name, set.title, name(rule.level),
+                                 conditions(set, rule, s, subject_style));
   if (rule.presets.size() > 1) {
     text += fmt::format("; drawn with a chance of {:.0f} %", 100 * drawn.weight);
     if (rule.level == Level::block && !s.block.empty()) text += " for the whole block";

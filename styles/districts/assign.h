@@ -22,7 +22,7 @@ struct Subject {
   std::string_view use;                         ///< value of building=*
   double area = 0;                              ///< m²
   model::BuildingPosition position = model::BuildingPosition::unknown;
-  std::string_view block;          ///< id of its block; empty: none
+  std::string_view block;             ///< id of its block; empty: none
   std::string_view overridden_style;  ///< class or sub-style that an override gives
   std::function<std::optional<double>()> storeys;
   std::function<std::optional<double>(CellStatistic)> cell;
@@ -57,11 +57,11 @@ struct Parameter {
 /// The answer in full.
 struct Assignment {
   Decision decision;
-  std::vector<Parameter> parameters;    ///< by key
-  std::vector<std::uint32_t> fired;     ///< rules whose conditions hold, strongest first
-  std::string why;                      ///< a sentence
-  std::vector<model::Candidate> other_candidates;   ///< weaker presets, strongest first
-  std::vector<std::string> unreadable;  ///< blockrand:* tags with values that nobody knows
+  std::vector<Parameter> parameters;               ///< by key
+  std::vector<std::uint32_t> fired;                ///< rules whose conditions hold, strongest first
+  std::string why;                                 ///< a sentence
+  std::vector<model::Candidate> other_candidates;  ///< weaker presets, strongest first
+  std::vector<std::string> unreadable;             ///< blockrand:* tags with values that nobody knows
 };
 
 /// Strongest first: `blockrand:preset` on the building, then on the area around it, then the rules of the set. Rules

@@ -182,7 +182,7 @@ struct MouldingRun {
 };
 
 std::vector<MouldingRun> moulding_runs(std::span<const Point2> chain, bool closed,
-                                  std::span<const std::pair<double, double>> interruptions) {
+                                       std::span<const std::pair<double, double>> interruptions) {
   const std::size_t edges = closed ? chain.size() : chain.size() - 1;
   std::vector<double> at{0};
   for (std::size_t e = 0; e < edges; ++e) at.push_back(at.back() + length(chain[(e + 1) % chain.size()] - chain[e]));
@@ -244,7 +244,8 @@ struct Ends {
   double first_slope = 0, last_slope = 0;
 };
 
-Ends ends_of(const SweepOptions& options, const MouldingRun& s, const std::vector<Corner>& corners, double out_of_wall) {
+Ends ends_of(const SweepOptions& options, const MouldingRun& s, const std::vector<Corner>& corners,
+             double out_of_wall) {
   Ends out{options.ends, options.ends};
   const bool turned = options.wall == WallSide::right;
   const auto& first = turned ? options.last_end : options.start_end;

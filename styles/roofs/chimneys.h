@@ -77,6 +77,7 @@ std::vector<ChimneyPlace> flat_places(const Roof& roof, const ChimneyParameters&
 /// 5-7 m").
 std::vector<model::RoofInstallation> chimneys(const model::Polygon& plan, std::span<const model::RoofEdge> edges,
                                               const Roof& roof, double frontage,
-                                              const ChimneyParameters& parameters = {}, const ChimneyMaterials& materials = {});
+                                              const ChimneyParameters& parameters = {},
+                                              const ChimneyMaterials& materials = {});
 
 }  // namespace blockrand::roofs

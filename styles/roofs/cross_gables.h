@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "styles/roofs/element_layout.h"
 #include "styles/roofs/dormer_bodies.h"
+#include "styles/roofs/element_layout.h"
 
 namespace blockrand::roofs {
 

@@ -133,11 +133,13 @@ bool fits(const RoofSlope& plane, std::span<const Point2> outline, const Element
          });
 }
 
-Intervals free_intervals(const RoofSlope& plane, const LayoutRequest& wanted_layout, const ElementDistances& distances) {
+Intervals free_intervals(const RoofSlope& plane, const LayoutRequest& wanted_layout,
+                         const ElementDistances& distances) {
   const auto own = geometry::extent_along(wanted_layout.outline, {1, 0});
   const auto heights = geometry::extent_along(wanted_layout.outline, {0, 1});
   const auto along = plane.along_extent(), up = plane.up_extent();
-  if (own.maximum - own.minimum > along.maximum - along.minimum || heights.maximum + wanted_layout.up > up.maximum) return {};
+  if (own.maximum - own.minimum > along.maximum - along.minimum || heights.maximum + wanted_layout.up > up.maximum)
+    return {};
   const double low = along.minimum - own.maximum - 1, high = along.maximum - own.minimum + 1;
 
   Intervals taken;
@@ -152,7 +154,8 @@ Intervals free_intervals(const RoofSlope& plane, const LayoutRequest& wanted_lay
   const auto seen = [&](Point2 p, double x) { return Point2{p.x - x, p.y - wanted_layout.up}; };
   const auto far = [&](double limit, std::span<const Point2> points) {
     const auto other = geometry::extent_along(points, {0, 1});
-    return other.minimum - wanted_layout.up > heights.maximum + limit || other.maximum - wanted_layout.up < heights.minimum - limit;
+    return other.minimum - wanted_layout.up > heights.maximum + limit ||
+           other.maximum - wanted_layout.up < heights.minimum - limit;
   };
   Intervals standing;  // of flush fronts
   for (const SlopeBorder& border : plane.borders) {

@@ -35,7 +35,7 @@ struct HigherInterval {
 
 /// Where the neighbour is lower.
 std::vector<HigherInterval> open_intervals(std::uint32_t edge, const HeightLine& own, const HeightLine& neighbour,
-                                    double length, const FirewallOptions& options) {
+                                           double length, const FirewallOptions& options) {
   if (neighbour.empty()) return {{edge, 0, length}};
   std::vector<double> places{0, length};
   for (const auto* line : {&own, &neighbour})
@@ -150,7 +150,8 @@ BuiltFirewalls firewalls(const model::Polygon& plan, const Roof& roof, std::span
     edge_of.push_back(stretches[piece.region - keep_clear.size()].edge);
   }
   CellBodies made = bodies_of_cells(cells, {SurfaceKind::roof, SurfaceKind::wall, SurfaceKind::closure});
-  for (model::Solid& solid : made.solids) out.elements.bodies.push_back({RoofElementKind::firewall, std::move(solid), {}});
+  for (model::Solid& solid : made.solids)
+    out.elements.bodies.push_back({RoofElementKind::firewall, std::move(solid), {}});
   for (std::uint32_t c = 0; c < cells.size(); ++c)
     if (!std::binary_search(made.lost.begin(), made.lost.end(), c)) built.insert(edge_of[c]);
   for (const std::uint32_t edge : asked) out.elements.refused += !built.contains(edge);

@@ -22,7 +22,7 @@ struct Roof {
     std::int32_t edge = -1;                         ///< the plan edge it rises from; -1 when none
     std::vector<std::vector<model::Point3>> loops;  ///< counter-clockwise from outside; holes follow
     bool upright = false;                           ///< a piece of wall that stands in the roof: gablet, sawtooth
-    std::int32_t element = -1;                      ///< the element it belongs to (its cheek, front, roof): Roof::elements
+    std::int32_t element = -1;  ///< the element it belongs to (its cheek, front, roof): Roof::elements
   };
   std::vector<Surface> surfaces;
   /// For each plan edge the upper end of its wall, from the edge's end back to its start: two points at eaves height
@@ -50,15 +50,16 @@ struct RoofRequest {
   std::vector<model::RoofEdge> edges;
   /// Bays and recesses of facades get no slopes of their own (eaves_lines.h). No roof where that does not fit the plan.
   bool along_eaves_lines = false;
-  bool shape_is_mapped = false;  ///< tagged: hips, two slopes and gables at street corners stay, whatever the row is like
-  bool axis_is_mapped = false;   ///< `down` and `across` are: ridges run that way, eaves along party walls or not
+  bool shape_is_mapped =
+      false;  ///< tagged: hips, two slopes and gables at street corners stay, whatever the row is like
+  bool axis_is_mapped = false;  ///< `down` and `across` are: ridges run that way, eaves along party walls or not
 };
 
 /// What was built.
 struct BuiltRoof {
   Roof roof;
-  model::RoofShape shape = model::RoofShape::flat;       ///< differs from the asked one where the plan does not take it
-  model::IssueCode note = model::IssueCode::none;        ///< ROOF_SHAPE_ADAPTED, ROOF_SHAPE_UNKNOWN, SKELETON_FALLBACK
+  model::RoofShape shape = model::RoofShape::flat;  ///< differs from the asked one where the plan does not take it
+  model::IssueCode note = model::IssueCode::none;   ///< ROOF_SHAPE_ADAPTED, ROOF_SHAPE_UNKNOWN, SKELETON_FALLBACK
   std::string detail;
 };
 
@@ -103,8 +104,8 @@ std::optional<Roof> crossed_roof(const model::Polygon& plan, RoofMeasures measur
 
 /// The slope that a roof's pitch speaks of: how far it runs horizontally and which share of the roof's height it climbs.
 struct MainSlope {
-  double run = 0;   ///< m
-  double rise = 1;  ///< share of the roof's height
+  double run = 0;      ///< m
+  double rise = 1;     ///< share of the roof's height
   bool leans = false;  ///< of a lean-to in a row, whose usual pitch is gentler
 };
 
@@ -117,15 +118,16 @@ MainSlope main_slope(const model::Polygon& plan, const RoofRequest& request, boo
 /// m. Height of a mansard over `run` m with an attic storey of `attic` m behind its steep slopes, at the usual pitches of
 /// 68 and 26 degrees (docs/style_measures.md 2.7).
 double mansard_height(double run, double attic);
-inline constexpr double kMansardSteep = 2.4750868534162964;   ///< tangent of 68 degrees
-inline constexpr double kMansardGentle = 0.48773258856586144; ///< tangent of 26 degrees
+inline constexpr double kMansardSteep = 2.4750868534162964;    ///< tangent of 68 degrees
+inline constexpr double kMansardGentle = 0.48773258856586144;  ///< tangent of 26 degrees
 
 /// True for plans of one wing: their extents tell how far slopes run and in which direction.
 bool has_plain_extents(const model::Polygon& plan);
 
 /// The roof that roof:ridge, roof:edge and roof:apex draw (docs/roofs.md, "Lines"), from points on the grid. Empty when there is
 /// no ridge, when lines cross where they have no common point, leave the plan, or hang in the air.
-std::optional<Roof> lined_roof(const model::Polygon& plan, RoofMeasures measures, std::span<const model::RoofLine> lines);
+std::optional<Roof> lined_roof(const model::Polygon& plan, RoofMeasures measures,
+                               std::span<const model::RoofLine> lines);
 
 /// Unit vector of a compass direction in degrees (0 north, 90 east).
 model::Point2 compass_vector(double degrees);

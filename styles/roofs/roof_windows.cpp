@@ -29,7 +29,8 @@ std::vector<Point2> roof_window_outline(const RoofWindowParameters& p) {
 }
 
 std::optional<model::RoofInstallation> roof_window(const RoofSlope& plane, const RoofWindowParameters& p, Point2 place,
-                                                   const RoofWindowMaterials& materials, const ElementDistances& distances) {
+                                                   const RoofWindowMaterials& materials,
+                                                   const ElementDistances& distances) {
   auto outline = roof_window_outline(p);
   for (Point2& q : outline) q = {q.x + place.x, q.y + place.y};
   if (outline.empty() || !takes_elements(plane) || !fits(plane, outline, distances)) return std::nullopt;

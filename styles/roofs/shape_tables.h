@@ -21,8 +21,8 @@ inline constexpr double kLeastBreakRun = 0.1, kMostBreakRun = 0.45;  ///< of the
 
 // The Berlin roof: tangents, docs/style_measures.md 2.7 (street 45-60-65, deck 4-8-15; knee wall 0.5 to 1.2 m of 3 to 4
 // m).
-inline constexpr double kBerlinSteep = 1.7320508075688772;   ///< 60 degrees
-inline constexpr double kBerlinGentle = 0.14054083470239145; ///< 8 degrees
+inline constexpr double kBerlinSteep = 1.7320508075688772;    ///< 60 degrees
+inline constexpr double kBerlinGentle = 0.14054083470239145;  ///< 8 degrees
 inline constexpr double kKneeWall = 0.4;  ///< of the height the roof has without it: about 0.7 m at a depth of 13 m
 inline constexpr double kLeastKneeWall = 0.1;  ///< m
 

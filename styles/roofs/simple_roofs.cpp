@@ -73,11 +73,11 @@ Point2 default_slope(const Polygon& plan, const std::vector<model::RoofEdge>& ed
     const bool leans = !party && opposite(e) > all[e].length / 2;
     const double away = street ? -(all[e].outwards().x * street->x + all[e].outwards().y * street->y) : 0;
     constexpr double kAway = 0.7;  // cosine of about 45 degrees
-    const int rank = party || all[e].length < least                          ? 0
-                     : in_row && away > kAway                                ? 4
-                     : leans && !is(e, model::RoofEdge::street)              ? 3
-                     : in_row && is(e, model::RoofEdge::street)              ? 2
-                                                                             : 1;
+    const int rank = party || all[e].length < least             ? 0
+                     : in_row && away > kAway                   ? 4
+                     : leans && !is(e, model::RoofEdge::street) ? 3
+                     : in_row && is(e, model::RoofEdge::street) ? 2
+                                                                : 1;
     if (rank < best_rank || (rank == best_rank && all[e].length <= best)) continue;
     best_rank = rank;
     best = all[e].length;

@@ -32,8 +32,8 @@ using model::RoofShape;
 using model::WingEnds;
 
 // Shares of the roof's height and run; docs/roofs.md has them.
-constexpr double kGableShare = 0.6;        ///< of H: where a half-hip begins, a gablet as well
-constexpr int kVaultSteps = 5;             ///< pitches of a round roof
+constexpr double kGableShare = 0.6;  ///< of H: where a half-hip begins, a gablet as well
+constexpr int kVaultSteps = 5;       ///< pitches of a round roof
 /// Of the other slopes' rise: a wing of half depth under a roof of 35 degrees leans at 12
 /// (docs/style_measures.md 2.7: 5 to 20).
 constexpr double kLeanSlope = 0.3;
@@ -165,7 +165,7 @@ class Builder {
   Profiles all_sides(const EdgeProfile& eaves) const {
     Profiles out;
     for (const RoofSide side : sides_.sides)
-      out.edges.push_back(side == RoofSide::eaves                    ? eaves
+      out.edges.push_back(side == RoofSide::eaves                   ? eaves
                           : side == RoofSide::lean && !sides_.leans ? pitch(kLeanSlope)
                           : side == RoofSide::lean                  ? eaves
                                                                     : upright());
@@ -193,7 +193,8 @@ class Builder {
   Profiles berlin() const {
     Profiles profiles = all_sides(pitch(kBerlinGentle));
     const auto is_front = [&](std::size_t e) {
-      return sides_.sides[e] == RoofSide::eaves && e < request_.edges.size() && request_.edges[e] == model::RoofEdge::street;
+      return sides_.sides[e] == RoofSide::eaves && e < request_.edges.size() &&
+             request_.edges[e] == model::RoofEdge::street;
     };
     bool fronts = false;
     for (std::size_t e = 0; e < profiles.edges.size(); ++e) {
@@ -272,8 +273,8 @@ class Builder {
     if (sides_.has(RoofSide::party)) return std::nullopt;
     const auto hips = by_cgal(plan_);
     if (!hips) return std::nullopt;
-    return BuiltRoof{to_roof(plan_, *hips, request_.measures, request_.coarseness), RoofShape::hipped, IssueCode::skeleton_fallback,
-                     std::string(model::name(request_.shape)) + " as hipped"};
+    return BuiltRoof{to_roof(plan_, *hips, request_.measures, request_.coarseness), RoofShape::hipped,
+                     IssueCode::skeleton_fallback, std::string(model::name(request_.shape)) + " as hipped"};
   }
 
   const Polygon& plan_;
@@ -326,7 +327,8 @@ SkeletonRun skeleton_run(const Polygon& plan, const RoofRequest& request) {
       whole.measures = {0, geometry::equivalent_width(plan) / 2};  // of the usual steepness
       const Builder builder(eaves->plan, whole, *form);
       // The roof that will be built, and not one that turns out not to fit the plan.
-      if (const double run = builder.largest_run(); run > 0 && goes_onto(builder, *eaves, plan)) return {run, builder.leans()};
+      if (const double run = builder.largest_run(); run > 0 && goes_onto(builder, *eaves, plan))
+        return {run, builder.leans()};
     }
   }
   const Builder builder(plan, request, *form);

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "styles/grammar/evaluation/derive.h"
-#include "styles/grammar/shapes/initial_shape.h"
 #include "styles/grammar/language/program.h"
+#include "styles/grammar/shapes/initial_shape.h"
 
 namespace {
 

@@ -25,8 +25,10 @@ using namespace blockrand;
 model::Polygon plan(int kind) {
   using testing_shapes::polygon;
   switch (kind) {
-    case 0: return testing_shapes::turned(polygon({{0, 0}, {14.2, 0.03}, {14.15, 10.1}, {0.02, 10}}));
-    case 1: return testing_shapes::turned(polygon({{0, 0}, {20, 0.02}, {20, 8}, {8.03, 8}, {8, 18}, {0, 18.01}}));
+    case 0:
+      return testing_shapes::turned(polygon({{0, 0}, {14.2, 0.03}, {14.15, 10.1}, {0.02, 10}}));
+    case 1:
+      return testing_shapes::turned(polygon({{0, 0}, {20, 0.02}, {20, 8}, {8.03, 8}, {8, 18}, {0, 18.01}}));
     default: {
       auto court = testing_shapes::turned(polygon({{0, 0}, {40, 0.1}, {40.05, 30}, {0, 30.1}}));
       const auto hole = testing_shapes::turned(polygon({{11, 11}, {11.1, 19}, {29, 19.05}, {29, 11}}));
@@ -45,7 +47,8 @@ roofs::Roof hips(const model::Polygon& p) {
 
 void weighted_skeleton(benchmark::State& state) {
   const auto p = plan(static_cast<int>(state.range(0)));
-  const std::vector<geometry::EdgeProfile> profiles(p.outer.size() + (p.holes.empty() ? 0 : p.holes[0].size()), {0.84, {}});
+  const std::vector<geometry::EdgeProfile> profiles(p.outer.size() + (p.holes.empty() ? 0 : p.holes[0].size()),
+                                                    {0.84, {}});
   for (auto _ : state) benchmark::DoNotOptimize(geometry::weighted_skeleton(p, profiles));
 }
 void skeleton_by_cgal(benchmark::State& state) {

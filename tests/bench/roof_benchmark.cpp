@@ -10,7 +10,8 @@
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/base/parallel.h"
-#include "pipeline/masses/envelope.h"
+#include "pipeline/footprints/area.h"
+#include "pipeline/footprints/repair_extract.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/straight_skeleton.h"
@@ -18,8 +19,7 @@
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/projection.h"
-#include "pipeline/footprints/area.h"
-#include "pipeline/footprints/repair_extract.h"
+#include "pipeline/masses/envelope.h"
 #include "styles/roofs/roof.h"
 
 using namespace blockrand;
@@ -36,7 +36,8 @@ std::vector<model::Polygon> repaired_plans(const std::string& path) {
   const auto shards = footprints::make_shards(extract, report);
   base::Progress progress;
   const repair::KeptNodes kept(extract);
-  const auto repaired = footprints::repair_extract(extract, shards, projection, kept, {}, base::worker_count(0), progress);
+  const auto repaired =
+      footprints::repair_extract(extract, shards, projection, kept, {}, base::worker_count(0), progress);
   std::vector<model::Polygon> plans;
   for (std::uint32_t b = 0; b < repaired.footprints.size(); ++b)
     for (model::Polygon plan : repaired.footprints.polygons(b)) {

@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-#include "styles/grammar/language/check.h"
 #include "styles/grammar/evaluation/derive.h"
-#include "styles/grammar/shapes/initial_shape.h"
+#include "styles/grammar/language/check.h"
 #include "styles/grammar/language/program.h"
+#include "styles/grammar/shapes/initial_shape.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace blockrand::grammar;

@@ -27,10 +27,10 @@ class Messages : public citygml::CityGMLLogger {
 };
 
 struct Seen {
-  std::map<std::string, int> objects;    ///< by type
-  std::vector<std::string> buildings;    ///< ids
-  std::map<std::string, int> polygons;   ///< by level of detail
-  std::map<std::string, int> colours;    ///< polygons by the diffuse colour of their material, "#rrggbb" or "none"
+  std::map<std::string, int> objects;   ///< by type
+  std::vector<std::string> buildings;   ///< ids
+  std::map<std::string, int> polygons;  ///< by level of detail
+  std::map<std::string, int> colours;   ///< polygons by the diffuse colour of their material, "#rrggbb" or "none"
   std::size_t triangles = 0;
 };
 

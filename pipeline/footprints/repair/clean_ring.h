@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "pipeline/model/polygon.h"
 #include "pipeline/footprints/repair/kept_nodes.h"
 #include "pipeline/footprints/repair/options.h"
+#include "pipeline/model/polygon.h"
 
 namespace blockrand::repair {
 

@@ -35,9 +35,9 @@ constexpr double kTerracePriorWeight = 1, kBuildingPriorWeight = 2;
 /// A pair of edges, before the noise of the row is known.
 struct Candidate {
   Contact contact;
-  double mean = 0;        ///< m, gap in the middle of what is common
-  double mean_weight = 0; ///< variance of `mean` for noise of variance 1 in each difference
-  double cost = 0;        ///< m: sum of the gaps at both ends
+  double mean = 0;                ///< m, gap in the middle of what is common
+  double mean_weight = 0;         ///< variance of `mean` for noise of variance 1 in each difference
+  double cost = 0;                ///< m: sum of the gaps at both ends
   double from_e = 0, from_f = 0;  ///< m along each edge from its first vertex, where what is common begins
 };
 
@@ -152,7 +152,8 @@ class Search {
       for (const Contact::End& end : {c.contact.low, c.contact.high}) {
         if (vertices_.point[end.of_e] == vertices_.point[end.of_f]) continue;
         const double square = end.gap * end.gap;
-        for (Sum* s : {&row, &buildings[vertices_.building(c.contact.e)], &buildings[vertices_.building(c.contact.f)]}) {
+        for (Sum* s :
+             {&row, &buildings[vertices_.building(c.contact.e)], &buildings[vertices_.building(c.contact.f)]}) {
           s->squares += square;
           s->count += 1;
         }
@@ -197,9 +198,8 @@ class Search {
     std::vector<std::vector<Claim>> claims(vertices_.size());
     const auto claimed = [&](std::uint32_t edge, double from, double to) {
       const double spare = std::min(options_.snap_reach, (to - from) / 2);
-      return std::any_of(claims[edge].begin(), claims[edge].end(), [&](const Claim& c) {
-        return std::min(c.to, to) - std::max(c.from, from) > spare;
-      });
+      return std::any_of(claims[edge].begin(), claims[edge].end(),
+                         [&](const Claim& c) { return std::min(c.to, to) - std::max(c.from, from) > spare; });
     };
     for (const Candidate& c : candidates_) {
       const Contact& w = c.contact;

@@ -21,8 +21,8 @@ struct Contact {
   };
   std::uint32_t e = 0, f = 0;  ///< edges (index of their first vertex), e of the building that comes first
   End low, high;
-  double length = 0;           ///< m, in common
-  bool opposed = true;         ///< false: they run the same way, one footprint lies over the other
+  double length = 0;    ///< m, in common
+  bool opposed = true;  ///< false: they run the same way, one footprint lies over the other
 };
 
 struct Contacts {

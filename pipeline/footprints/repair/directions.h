@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/footprints/repair/terrace_row.h"
 #include "pipeline/footprints/repair/terrace_lines.h"
+#include "pipeline/footprints/repair/terrace_row.h"
 
 namespace blockrand::repair {
 

@@ -6,11 +6,11 @@
 #include <set>
 #include <tuple>
 
-#include "pipeline/geometry/footprint_overlap.h"
-#include "pipeline/geometry/slivers.h"
-#include "pipeline/geometry/polygon_measures.h"
-#include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/footprints/repair/rings.h"
+#include "pipeline/geometry/footprint_overlap.h"
+#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/geometry/slivers.h"
+#include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::repair {
 
@@ -171,8 +171,8 @@ class Resolver {
     TerraceBuilding& building = row_.buildings[loser];
     const double before = area_of(building.polygons);
     if (before - area < (1 - most) * first_area_[loser]) return false;
-    geometry::ValidPolygons rest = geometry::difference(building.polygons, polygons(winner), options_.min_piece_area,
-                                                        options_.ring_clearance);
+    geometry::ValidPolygons rest =
+        geometry::difference(building.polygons, polygons(winner), options_.min_piece_area, options_.ring_clearance);
     if (rest.polygons.empty()) return false;
     const double noise = rest.dropped_area + drop_strips(rest.polygons, building.polygons.size(), around);
     if (rest.polygons.empty() || noise > options_.max_area_change * before) return false;
@@ -338,7 +338,7 @@ class Resolver {
   const RepairOptions& options_;
   model::Report& report_;
   std::vector<Box> boxes_;
-  std::vector<double> first_area_;  ///< m², before anything was given away
+  std::vector<double> first_area_;                          ///< m², before anything was given away
   std::set<std::pair<std::uint32_t, std::uint32_t>> kept_;  ///< overlaps that stay
   std::map<std::uint32_t, std::uint32_t> nested_;           ///< who lies within whom
   std::vector<std::uint32_t> touched_;                      ///< by the cuts of this trial

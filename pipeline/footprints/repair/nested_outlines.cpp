@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/geometry/slivers.h"
-#include "pipeline/geometry/polygon_measures.h"
-#include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/footprints/repair/rings.h"
+#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/geometry/slivers.h"
+#include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::repair {
 
@@ -239,8 +239,9 @@ class Coverings {
     restore_nodes(rest, covered);
     double kept = 0;
     for (const Polygon& p : rest) kept += geometry::area(p);
-    report_.add(building.id, IssueCode::covered_outline,
-                std::to_string(inner.size()) + " within it; " + square_metres(kept) + " of " + square_metres(area) + " left");
+    report_.add(
+        building.id, IssueCode::covered_outline,
+        std::to_string(inner.size()) + " within it; " + square_metres(kept) + " of " + square_metres(area) + " left");
     if (rest.empty())
       settle(outer, ObjectState::represented, inner.front());  // of those with most in common with it
     else

@@ -1,9 +1,9 @@
 // Buildings drawn over others: the same house twice, an outline around houses that are mapped one by one.
 #pragma once
 
-#include "pipeline/model/report.h"
 #include "pipeline/footprints/repair/options.h"
 #include "pipeline/footprints/repair/terrace_row.h"
+#include "pipeline/model/report.h"
 
 namespace blockrand::repair {
 
@@ -23,7 +23,8 @@ namespace blockrand::repair {
 /// the order of buildings.
 void settle_coverings(TerraceRow& row, const RepairOptions& options, model::Report& report);
 
-inline constexpr double kSameShare = 0.9;    ///< of the area; two drawings of one house differ by their walls' thickness
-inline constexpr double kWithinShare = 0.8;  ///< of the area; outlines of houses stick out of the outline of their group
+inline constexpr double kSameShare = 0.9;  ///< of the area; two drawings of one house differ by their walls' thickness
+inline constexpr double kWithinShare =
+    0.8;  ///< of the area; outlines of houses stick out of the outline of their group
 
 }  // namespace blockrand::repair

@@ -4,12 +4,12 @@
 #include <string>
 #include <utility>
 
-#include "pipeline/geometry/slivers.h"
-#include "pipeline/geometry/polygon_measures.h"
-#include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/footprints/repair/parts_bodies.h"
 #include "pipeline/footprints/repair/parts_follow.h"
 #include "pipeline/footprints/repair/rings.h"
+#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/geometry/slivers.h"
+#include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::repair {
 

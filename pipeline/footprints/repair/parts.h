@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/footprints/repair/kept_nodes.h"
+#include "pipeline/footprints/repair/options.h"
 #include "pipeline/model/building.h"
 #include "pipeline/model/region.h"
 #include "pipeline/model/report.h"
-#include "pipeline/footprints/repair/kept_nodes.h"
-#include "pipeline/footprints/repair/options.h"
 
 namespace blockrand::repair {
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/footprints/repair/options.h"
 #include "pipeline/model/building.h"
 #include "pipeline/model/report.h"
-#include "pipeline/footprints/repair/options.h"
 
 namespace blockrand::repair {
 

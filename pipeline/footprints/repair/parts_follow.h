@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/model/polygon.h"
 #include "pipeline/footprints/repair/options.h"
+#include "pipeline/model/polygon.h"
 
 namespace blockrand::repair {
 

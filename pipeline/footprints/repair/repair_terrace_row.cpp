@@ -5,10 +5,10 @@
 
 #include "pipeline/footprints/repair/arcs.h"
 #include "pipeline/footprints/repair/ground_overlaps.h"
-#include "pipeline/footprints/repair/terrace_graph.h"
-#include "pipeline/footprints/repair/terrace_records.h"
 #include "pipeline/footprints/repair/shared_walls.h"
 #include "pipeline/footprints/repair/square.h"
+#include "pipeline/footprints/repair/terrace_graph.h"
+#include "pipeline/footprints/repair/terrace_records.h"
 
 namespace blockrand::repair {
 

@@ -1,9 +1,9 @@
 // A row of footprints repaired together.
 #pragma once
 
-#include "pipeline/model/report.h"
 #include "pipeline/footprints/repair/options.h"
 #include "pipeline/footprints/repair/terrace_row.h"
+#include "pipeline/model/report.h"
 
 namespace blockrand::repair {
 

@@ -6,11 +6,11 @@
 #include <span>
 #include <string>
 
+#include "pipeline/footprints/repair/clean_ring.h"
 #include "pipeline/geometry/even_odd.h"
 #include "pipeline/geometry/footprint_overlap.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
-#include "pipeline/footprints/repair/clean_ring.h"
 
 namespace blockrand::repair {
 
@@ -220,8 +220,7 @@ void unite_pieces(std::vector<Polygon>& polygons, const RepairOptions& options, 
   for (const Polygon& p : polygons) boxes.push_back(box_of(p));
   bool near = false;
   for (std::size_t i = 0; i < boxes.size() && !near; ++i)
-    for (std::size_t j = i + 1; j < boxes.size() && !near; ++j)
-      near = meet(boxes[i], boxes[j]);
+    for (std::size_t j = i + 1; j < boxes.size() && !near; ++j) near = meet(boxes[i], boxes[j]);
   if (!near) return;
   geometry::ValidPolygons united = geometry::unite(polygons, options.min_piece_area, options.ring_clearance);
   if (united.polygons.empty() || united.polygons.size() == polygons.size()) {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/footprints/repair/kept_nodes.h"
+#include "pipeline/footprints/repair/options.h"
 #include "pipeline/model/building.h"
 #include "pipeline/model/polygon.h"
 #include "pipeline/model/report.h"
-#include "pipeline/footprints/repair/kept_nodes.h"
-#include "pipeline/footprints/repair/options.h"
 
 namespace blockrand::repair {
 

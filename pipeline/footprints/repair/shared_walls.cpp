@@ -89,7 +89,8 @@ class Builder {
   }
 
   bool apart(std::uint32_t a, std::uint32_t b) const {
-    return std::binary_search(contacts_.apart.begin(), contacts_.apart.end(), std::pair(std::min(a, b), std::max(a, b)));
+    return std::binary_search(contacts_.apart.begin(), contacts_.apart.end(),
+                              std::pair(std::min(a, b), std::max(a, b)));
   }
 
   /// Makes one corner of both vertices' corners, unless a rule forbids it.
@@ -100,8 +101,10 @@ class Builder {
     for (const std::uint32_t m : left_)
       for (const std::uint32_t n : right_) {
         const auto &r = vertices_.ring(m), &s = vertices_.ring(n);
-        if (r.building == s.building && (r.polygon == s.polygon || vertices_.point[m] != vertices_.point[n])) return false;
-        if (!same_level(row_.buildings[r.building].level, row_.buildings[s.building].level) || apart(m, n)) return false;
+        if (r.building == s.building && (r.polygon == s.polygon || vertices_.point[m] != vertices_.point[n]))
+          return false;
+        if (!same_level(row_.buildings[r.building].level, row_.buildings[s.building].level) || apart(m, n))
+          return false;
       }
     left_.insert(left_.end(), right_.begin(), right_.end());
     const Place place = place_of(left_);
@@ -142,8 +145,8 @@ class Builder {
     struct Pair {
       double distance;
       Point2 least, most;
-      std::uint32_t a, b;            ///< vertices
-      std::uint32_t inner, edge;     ///< what ends in the middle of what, where they cannot be one
+      std::uint32_t a, b;         ///< vertices
+      std::uint32_t inner, edge;  ///< what ends in the middle of what, where they cannot be one
       bool operator<(const Pair& o) const {
         return std::tie(distance, least, most, a, b) < std::tie(o.distance, o.least, o.most, o.a, o.b);
       }
@@ -151,8 +154,7 @@ class Builder {
     std::vector<Pair> pairs;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> feet;
     for (const Contact& w : contacts_.walls) {
-      const double noise =
-          std::max(contacts_.noise[vertices_.building(w.e)], contacts_.noise[vertices_.building(w.f)]);
+      const double noise = std::max(contacts_.noise[vertices_.building(w.e)], contacts_.noise[vertices_.building(w.f)]);
       const double reach = std::min(options_.snap_reach, kReachSigmas * noise + kLeastReach);
       for (const Contact::End& end : {w.low, w.high}) {
         const Point2 p = vertices_.point[end.of_e], q = vertices_.point[end.of_f];
@@ -211,7 +213,8 @@ class Builder {
       const std::uint32_t corner = corner_of_[vertex], polygon = vertices_.ring_of[edge] - vertices_.ring(edge).ring;
       if (in_polygon(polygon, corner)) continue;
       const Point2 p = graph_.corners[corner].start;
-      const Point2 a = graph_.corners[corner_of_[edge]].start, b = graph_.corners[corner_of_[vertices_.next(edge)]].start;
+      const Point2 a = graph_.corners[corner_of_[edge]].start,
+                   b = graph_.corners[corner_of_[vertices_.next(edge)]].start;
       const double length = distance(a, b);
       if (length <= 2 * kLeastPiece) continue;
       const double x = (b.x - a.x) / length, y = (b.y - a.y) / length;
@@ -262,6 +265,8 @@ class Builder {
 
 }  // namespace
 
-TerraceGraph build_terrace_graph(const TerraceRow& row, const RepairOptions& options) { return Builder(row, options).run(); }
+TerraceGraph build_terrace_graph(const TerraceRow& row, const RepairOptions& options) {
+  return Builder(row, options).run();
+}
 
 }  // namespace blockrand::repair

@@ -380,7 +380,7 @@ class Squaring {
   TerraceGraph& graph_;
   const RepairOptions& options_;
   std::vector<std::uint32_t>& local_;  // per corner of the graph: index into corners_
-  TerraceDirections told_;                 // lines' corners are indices into corners_
+  TerraceDirections told_;             // lines' corners are indices into corners_
   std::vector<std::uint32_t> corners_;
   Point2 origin_;
   std::vector<Point2> start_, evidence_, position_;  // m, relative to origin_
@@ -397,7 +397,8 @@ class Squaring {
 
 }  // namespace
 
-void square_terrace_row(TerraceGraph& graph, const TerraceRow& row, const RepairOptions& options, std::vector<double>& direction) {
+void square_terrace_row(TerraceGraph& graph, const TerraceRow& row, const RepairOptions& options,
+                        std::vector<double>& direction) {
   direction.assign(row.buildings.size(), -1);
   std::vector<std::uint32_t> local(graph.corners.size(), 0);
   for (const auto& rings : connected_rings(graph, row.buildings.size())) {

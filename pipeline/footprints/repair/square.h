@@ -24,6 +24,7 @@ namespace blockrand::repair {
 ///
 /// `direction`, one per building of the row: degrees [0, 90) clockwise from north of its main walls; -1 where no wall
 /// was given a direction.
-void square_terrace_row(TerraceGraph& graph, const TerraceRow& row, const RepairOptions& options, std::vector<double>& direction);
+void square_terrace_row(TerraceGraph& graph, const TerraceRow& row, const RepairOptions& options,
+                        std::vector<double>& direction);
 
 }  // namespace blockrand::repair

@@ -42,8 +42,14 @@ struct FootprintValidity {
 class Writer {
  public:
   Writer(TerraceGraph& graph, TerraceRow& row, const RepairOptions& options)
-      : graph_(graph), row_(row), options_(options), first_ring_(row.buildings.size() + 1), trials_(row.buildings.size()),
-        split_(row.buildings.size()), reason_(row.buildings.size()), users_(graph.corners.size()) {
+      : graph_(graph),
+        row_(row),
+        options_(options),
+        first_ring_(row.buildings.size() + 1),
+        trials_(row.buildings.size()),
+        split_(row.buildings.size()),
+        reason_(row.buildings.size()),
+        users_(graph.corners.size()) {
     std::size_t r = 0;
     for (std::uint32_t b = 0; b < row.buildings.size(); ++b) {
       first_ring_[b] = static_cast<std::uint32_t>(r);
@@ -299,17 +305,17 @@ class Writer {
   TerraceGraph& graph_;
   TerraceRow& row_;
   const RepairOptions& options_;
-  std::vector<std::uint32_t> first_ring_;           ///< by building, and the end
-  std::vector<int> trials_;                         ///< by building: steps back so far
-  std::vector<std::uint32_t> split_;                ///< by building: corners that left their neighbours
-  std::vector<std::string> reason_;                 ///< by building: why
-  std::vector<std::vector<std::uint32_t>> users_;   ///< by corner: buildings that have it, or had
+  std::vector<std::uint32_t> first_ring_;          ///< by building, and the end
+  std::vector<int> trials_;                        ///< by building: steps back so far
+  std::vector<std::uint32_t> split_;               ///< by building: corners that left their neighbours
+  std::vector<std::string> reason_;                ///< by building: why
+  std::vector<std::vector<std::uint32_t>> users_;  ///< by corner: buildings that have it, or had
 };
 
 }  // namespace
 
 void apply_terrace_graph(TerraceGraph& graph, TerraceRow& row, const RepairOptions& options, model::Report& report,
-                     std::vector<std::vector<SaidPoint>>& said) {
+                         std::vector<std::vector<SaidPoint>>& said) {
   said.assign(row.buildings.size(), {});
   Writer(graph, row, options).run(report, said);
 }

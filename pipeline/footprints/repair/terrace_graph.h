@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "pipeline/model/report.h"
 #include "pipeline/footprints/repair/options.h"
 #include "pipeline/footprints/repair/terrace_row.h"
+#include "pipeline/model/report.h"
 
 namespace blockrand::repair {
 
@@ -26,6 +26,6 @@ struct SaidPoint {
 /// `graph` ends as it was written.
 /// \param[out] said  for each building, what its vertices said; sorted
 void apply_terrace_graph(TerraceGraph& graph, TerraceRow& row, const RepairOptions& options, model::Report& report,
-                     std::vector<std::vector<SaidPoint>>& said);
+                         std::vector<std::vector<SaidPoint>>& said);
 
 }  // namespace blockrand::repair

@@ -175,7 +175,9 @@ class Reader {
 
 }  // namespace
 
-TerraceLines terrace_lines(const TerraceGraph& graph, std::span<const std::uint32_t> rings) { return Reader(graph, rings).read(); }
+TerraceLines terrace_lines(const TerraceGraph& graph, std::span<const std::uint32_t> rings) {
+  return Reader(graph, rings).read();
+}
 
 std::vector<std::vector<std::uint32_t>> connected_rings(const TerraceGraph& graph, std::size_t buildings) {
   std::vector<std::uint32_t> parent(buildings), owner(graph.corners.size(), kNoFrame);

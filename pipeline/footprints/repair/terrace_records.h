@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "pipeline/model/report.h"
-#include "pipeline/footprints/repair/terrace_row.h"
 #include "pipeline/footprints/repair/terrace_graph.h"
+#include "pipeline/footprints/repair/terrace_row.h"
+#include "pipeline/model/report.h"
 
 namespace blockrand::repair {
 

@@ -32,38 +32,41 @@ struct TerraceBuilding {
   model::OsmId id;
   std::vector<model::Polygon> polygons;
   Level level;
-  bool has_parts = false;       ///< mapped parts describe it: stronger than an outline alone where two overlap
-  int tags = 0;                 ///< how much the mapper said of it
+  bool has_parts = false;  ///< mapped parts describe it: stronger than an outline alone where two overlap
+  int tags = 0;            ///< how much the mapper said of it
   model::ObjectState settled = model::ObjectState::pending;  ///< out: duplicate or represented, then without polygons
-  model::OsmId related;         ///< out: of whom, by whom
-  std::vector<model::Arc> arcs; ///< out: curves of the repaired polygons
-  model::RepairRecord record;   ///< mapped_area given; the rest out
+  model::OsmId related;                                      ///< out: of whom, by whom
+  std::vector<model::Arc> arcs;                              ///< out: curves of the repaired polygons
+  model::RepairRecord record;                                ///< mapped_area given; the rest out
 };
 
 struct TerraceRow {
-  std::vector<TerraceBuilding> buildings;      ///< by OSM id
-  std::vector<model::Polygon> beyond_cut;  ///< footprints of buildings that REACH_CUT put into other rows. Corners within
-                                           ///< `snap_reach` of them stay where they are
+  std::vector<TerraceBuilding> buildings;  ///< by OSM id
+  std::vector<model::Polygon>
+      beyond_cut;  ///< footprints of buildings that REACH_CUT put into other rows. Corners within
+                   ///< `snap_reach` of them stay where they are
 };
 
 /// One corner of the row's topology.
 struct Corner {
-  model::Point2 start;             ///< m, before squaring: the mean of what is said
-  model::Point2 position;          ///< m; where it ends. Equal to `start` at first
-  std::vector<model::Point2> said; ///< m, ascending, each once: where footprints have the corner (copies of one node say one
-                                   ///< thing); empty for the foot of a neighbour's wall alone
-  bool fixed = false;              ///< must not move
-  std::int64_t node = 0;           ///< OSM node, the least of those merged; 0 where repair made it
+  model::Point2 start;     ///< m, before squaring: the mean of what is said
+  model::Point2 position;  ///< m; where it ends. Equal to `start` at first
+  std::vector<model::Point2>
+      said;               ///< m, ascending, each once: where footprints have the corner (copies of one node say one
+                          ///< thing); empty for the foot of a neighbour's wall alone
+  bool fixed = false;     ///< must not move
+  std::int64_t node = 0;  ///< OSM node, the least of those merged; 0 where repair made it
 };
 
 /// A ring of a footprint as a list of corners.
 struct TerraceRing {
-  std::uint32_t building = 0;      ///< index into Row::buildings
-  std::uint32_t polygon = 0;       ///< index into its polygons
-  std::uint32_t ring = 0;          ///< 0: outer; k: holes[k - 1]
+  std::uint32_t building = 0;  ///< index into Row::buildings
+  std::uint32_t polygon = 0;   ///< index into its polygons
+  std::uint32_t ring = 0;      ///< 0: outer; k: holes[k - 1]
   std::vector<std::uint32_t> corners;
-  std::vector<std::uint32_t> wall; ///< parallel to `corners`: which edge of the ring before sharing the edge from here to the
-                                   ///< next corner is a piece of; pieces of one wall stay in line
+  std::vector<std::uint32_t>
+      wall;  ///< parallel to `corners`: which edge of the ring before sharing the edge from here to the
+             ///< next corner is a piece of; pieces of one wall stay in line
 };
 
 struct TerraceGraph {

@@ -38,9 +38,8 @@ std::vector<Wall> walls_with_feet(const TerraceGraph& graph) {
 }
 
 bool within(const Corner& corner, Point2 p, double bound) {
-  return std::all_of(corner.said.begin(), corner.said.end(), [&](Point2 s) {
-    return (p.x - s.x) * (p.x - s.x) + (p.y - s.y) * (p.y - s.y) <= bound * bound;
-  });
+  return std::all_of(corner.said.begin(), corner.said.end(),
+                     [&](Point2 s) { return (p.x - s.x) * (p.x - s.x) + (p.y - s.y) * (p.y - s.y) <= bound * bound; });
 }
 
 /// Where walls pull a corner: the point that satisfies all `normal . shift = distance` best.
@@ -75,8 +74,10 @@ void fit_ends(const std::vector<Wall>& walls, TerraceGraph& graph, double bound)
     for (const std::uint32_t c : w.between) {
       const Corner& corner = graph.corners[c];
       const double px = corner.start.x - a.start.x, py = corner.start.y - a.start.y;
-      const double t = std::clamp((px * dx + py * dy) / (length * length), 0.0, 1.0), off = px * normal.x + py * normal.y;
-      const double weight = corner.fixed ? kFixedWeight : static_cast<double>(std::max<std::size_t>(1, corner.said.size()));
+      const double t = std::clamp((px * dx + py * dy) / (length * length), 0.0, 1.0),
+                   off = px * normal.x + py * normal.y;
+      const double weight =
+          corner.fixed ? kFixedWeight : static_cast<double>(std::max<std::size_t>(1, corner.said.size()));
       aa += weight * (1 - t) * (1 - t);
       ab += weight * (1 - t) * t;
       bb += weight * t * t;

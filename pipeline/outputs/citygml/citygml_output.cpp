@@ -11,9 +11,9 @@ CityGmlOptions citygml_options(const model::Region& region, const OutputContext&
   const std::string& code = context.crs.authority_code;
   const std::string number = code.substr(code.find(':') + 1);
   const std::string& vertical = context.heights.vertical_crs;
-  o.srs_name = vertical.empty() ? "urn:ogc:def:crs:EPSG::" + number
-                                : "urn:ogc:def:crs,crs:EPSG::" + number +
-                                      ",crs:EPSG::" + vertical.substr(vertical.find(':') + 1);
+  o.srs_name = vertical.empty()
+                   ? "urn:ogc:def:crs:EPSG::" + number
+                   : "urn:ogc:def:crs,crs:EPSG::" + number + ",crs:EPSG::" + vertical.substr(vertical.find(':') + 1);
   o.height_reference = context.heights.words;
   o.attribution = kAttribution;
   o.name = model_name(region.tile);
@@ -52,10 +52,11 @@ OutputFormat citygml_output() {
           .places = {{"citygml/", "CityGML 2.0, one file per tile"}},
           .manual = {{"citygml/", "CityGML 2.0, LoD0 to LoD2 with boundary surfaces, one file per tile"}},
           .asked = [](const OutputOptions& o) { return o.writes("citygml"); },
-          .bytes_per_building = [](const OutputOptions& o, std::size_t lod) {
-            constexpr double kBytes[] = {2500, 5500, 12500, 120000};
-            return o.gzip ? kBytes[lod] / 7 : kBytes[lod];
-          },
+          .bytes_per_building =
+              [](const OutputOptions& o, std::size_t lod) {
+                constexpr double kBytes[] = {2500, 5500, 12500, 120000};
+                return o.gzip ? kBytes[lod] / 7 : kBytes[lod];
+              },
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<CityGmlOutput>(c); }};
 }
 

@@ -12,8 +12,8 @@
 #include "pipeline/outputs/citygml/codes.h"
 #include "pipeline/outputs/citygml/geometry_text.h"
 #include "pipeline/outputs/material_classes.h"
-#include "pipeline/outputs/placed_element.h"
 #include "pipeline/outputs/number_text.h"
+#include "pipeline/outputs/placed_element.h"
 
 namespace blockrand::outputs {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "pipeline/outputs/sink.h"
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/sink.h"
 
 namespace blockrand::outputs {
 

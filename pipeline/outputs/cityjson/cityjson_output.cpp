@@ -30,7 +30,8 @@ struct WholeFile {
 
 class CityJsonOutput : public Output {
  public:
-  explicit CityJsonOutput(const OutputContext& context) : context_(context), sequences_(context.options.writes("cityjson")) {
+  explicit CityJsonOutput(const OutputContext& context)
+      : context_(context), sequences_(context.options.writes("cityjson")) {
     if (context.options.single_cityjson) whole_ = std::make_unique<WholeFile>(context);
   }
 
@@ -54,7 +55,8 @@ class CityJsonOutput : public Output {
  private:
   base::PublishedFile write(const model::Region& region, const std::string& name) const {
     return write_text_file("cityjson/" + name + ".city.jsonl",
-                           write_cityjson_sequence(region, cityjson_options(context_, model_name(region.tile))), context_);
+                           write_cityjson_sequence(region, cityjson_options(context_, model_name(region.tile))),
+                           context_);
   }
 
   const OutputContext& context_;
@@ -65,20 +67,22 @@ class CityJsonOutput : public Output {
 }  // namespace
 
 OutputFormat cityjson_output() {
-  return {.name = "cityjson",
-          .places = {{"cityjson/", "CityJSON 2.0, one text sequence per tile",
-                      [](const OutputOptions& o, std::uint64_t) { return o.writes("cityjson"); }},
-                     {"model.city.json", "the whole build as one CityJSON object",
-                      [](const OutputOptions& o, std::uint64_t) { return o.single_cityjson; }}},
-          .manual = {{"cityjson/", "the same content as CityJSON 2.0 text sequences"}},
-          .asked = [](const OutputOptions& o) { return o.writes("cityjson") || o.single_cityjson; },
-          .bytes_per_building = [](const OutputOptions& o, std::size_t lod) {
+  return {
+      .name = "cityjson",
+      .places = {{"cityjson/", "CityJSON 2.0, one text sequence per tile",
+                  [](const OutputOptions& o, std::uint64_t) { return o.writes("cityjson"); }},
+                 {"model.city.json", "the whole build as one CityJSON object",
+                  [](const OutputOptions& o, std::uint64_t) { return o.single_cityjson; }}},
+      .manual = {{"cityjson/", "the same content as CityJSON 2.0 text sequences"}},
+      .asked = [](const OutputOptions& o) { return o.writes("cityjson") || o.single_cityjson; },
+      .bytes_per_building =
+          [](const OutputOptions& o, std::size_t lod) {
             constexpr double kBytes[] = {1500, 2000, 3500, 3500};
             const double sequence = o.gzip ? kBytes[lod] / 5 : kBytes[lod];
             return (o.writes("cityjson") ? sequence : 0) + (o.single_cityjson ? kBytes[lod] : 0);
           },
-          .takes_regions = [](const OutputOptions& o) { return o.single_cityjson; },
-          .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<CityJsonOutput>(c); }};
+      .takes_regions = [](const OutputOptions& o) { return o.single_cityjson; },
+      .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<CityJsonOutput>(c); }};
 }
 
 }  // namespace blockrand::outputs

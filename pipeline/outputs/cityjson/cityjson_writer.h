@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "pipeline/outputs/sink.h"
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/sink.h"
 
 namespace blockrand::outputs {
 

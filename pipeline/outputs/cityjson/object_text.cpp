@@ -87,8 +87,7 @@ void append_appearance(std::string& out, const MaterialNumbers& numbers,
 }
 
 ObjectText::ObjectText(const model::Region& region, const CityJsonOptions& options, const GridOrigin& origin,
-                       VertexTable& vertices, MaterialNumbers& materials,
-                       const std::vector<std::uint32_t>& templates)
+                       VertexTable& vertices, MaterialNumbers& materials, const std::vector<std::uint32_t>& templates)
     : region_(region),
       options_(options),
       origin_(origin),

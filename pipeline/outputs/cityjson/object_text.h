@@ -6,12 +6,12 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/model/region.h"
 #include "pipeline/outputs/cityjson/cityjson_writer.h"
 #include "pipeline/outputs/cityjson/template_table.h"
 #include "pipeline/outputs/cityjson/vertex_table.h"
 #include "pipeline/outputs/material_classes.h"
 #include "pipeline/outputs/number_text.h"
-#include "pipeline/model/region.h"
 
 namespace blockrand::outputs {
 

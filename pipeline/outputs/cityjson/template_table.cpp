@@ -2,8 +2,8 @@
 
 #include <map>
 
-#include "pipeline/outputs/placed_element.h"
 #include "pipeline/outputs/number_text.h"
+#include "pipeline/outputs/placed_element.h"
 
 namespace blockrand::outputs {
 namespace {

@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "pipeline/outputs/material_classes.h"
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/material_classes.h"
 
 namespace blockrand::outputs {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/outputs/explain/json_text.h"
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/explain/json_text.h"
 
 namespace blockrand::outputs {
 

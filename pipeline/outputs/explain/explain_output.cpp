@@ -58,9 +58,9 @@ class ExplainOutput : public Output {
  private:
   std::optional<CourtyardFacts> courtyard(std::string_view id) const {
     const std::vector<context::ExtractCourtyard>& all = context_.context.courtyards;
-    const auto found = std::lower_bound(all.begin(), all.end(), id, [](const context::ExtractCourtyard& y, std::string_view i) {
-      return y.courtyard.id < i;
-    });
+    const auto found =
+        std::lower_bound(all.begin(), all.end(), id,
+                         [](const context::ExtractCourtyard& y, std::string_view i) { return y.courtyard.id < i; });
     if (found == all.end() || found->courtyard.id != id) return std::nullopt;
     return CourtyardFacts{found->courtyard.area, found->courtyard.closed};
   }

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <set>
 
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/outputs/explain/detail_text.h"
 #include "pipeline/outputs/explain/json_text.h"
 #include "pipeline/outputs/explain/situation_text.h"
 #include "pipeline/outputs/explain/style_text.h"
 #include "pipeline/outputs/number_text.h"
-#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -33,10 +33,12 @@ constexpr std::int64_t kTurn = 3'600'000'000;  // 360 degrees in OSM's 1e-7
 
 class Writer {
  public:
-  Writer(const Region& region, const ExplainOptions& options) : region_(region), options_(options), tags_(region.extract) {
+  Writer(const Region& region, const ExplainOptions& options)
+      : region_(region), options_(options), tags_(region.extract) {
     rows_.reserve(region.report.rows.size());
     for (const ReportRow& row : region.report.rows) rows_.push_back(&row);
-    std::stable_sort(rows_.begin(), rows_.end(), [](const ReportRow* a, const ReportRow* b) { return a->object < b->object; });
+    std::stable_sort(rows_.begin(), rows_.end(),
+                     [](const ReportRow* a, const ReportRow* b) { return a->object < b->object; });
   }
 
   void line(const Building& building, Explanations& out) {
@@ -80,7 +82,8 @@ class Writer {
   // ---- who it is
   void identity(const Building& building) {
     if (const auto name = tags_.name(building.tags); !name.empty()) json_.string("name", name);
-    if (const std::string address = tags_.address(building.tags).line(); !address.empty()) json_.string("address", address);
+    if (const std::string address = tags_.address(building.tags).line(); !address.empty())
+      json_.string("address", address);
     json_.key("tags");
     if (tags_.extract())
       append_tags_json(*text_, *tags_.extract(), building.tags);
@@ -124,7 +127,8 @@ class Writer {
     json_.integers("nodes", nodes.size(), [&](std::size_t i) { return nodes[i]; });
     json_.integers("lon", lon.size(), [&](std::size_t i) { return lon[i]; });
     json_.integers("lat", lat.size(), [&](std::size_t i) { return lat[i]; });
-    json_.integers("rings", rings.size(), [&](std::size_t i) { return static_cast<std::int64_t>(rings[i].vertices.count); });
+    json_.integers("rings", rings.size(),
+                   [&](std::size_t i) { return static_cast<std::int64_t>(rings[i].vertices.count); });
     json_.close('}');
   }
 
@@ -180,10 +184,13 @@ class Writer {
       holes += ring.inner;
     }
     std::string text = fmt::format("{} in OpenStreetMap with {} and {}",
-                                   mapped.id.type == model::OsmType::way ? "a closed way" : mapped.id.type == model::OsmType::relation ? "a relation" : "a node",
+                                   mapped.id.type == model::OsmType::way        ? "a closed way"
+                                   : mapped.id.type == model::OsmType::relation ? "a relation"
+                                                                                : "a node",
                                    counted(building.tags.count, "tag"), counted(points, "point"));
     if (holes > 0) text += ", " + counted(holes, "courtyard");
-    if (mapped.geometry_from != mapped.id && mapped.geometry_from.number != 0) text += "; its outline comes from " + mapped.geometry_from.text();
+    if (mapped.geometry_from != mapped.id && mapped.geometry_from.number != 0)
+      text += "; its outline comes from " + mapped.geometry_from.text();
     if (building.has_mapped_parts) {
       std::size_t parts = 0;
       for (const BuildingPart& part : building.parts) parts += !part.rest;
@@ -194,8 +201,9 @@ class Writer {
 
   std::string read_text(const Building& building) {
     const std::string text = mapped_text(building);
-    const std::string noted = said(building, {model::IssueCode::value_unreadable, model::IssueCode::value_clamped, model::IssueCode::values_conflict,
-                                              model::IssueCode::members_missing, model::IssueCode::relation_repaired,
+    const std::string noted = said(building, {model::IssueCode::value_unreadable, model::IssueCode::value_clamped,
+                                              model::IssueCode::values_conflict, model::IssueCode::members_missing,
+                                              model::IssueCode::relation_repaired,
                                               model::IssueCode::old_style_multipolygon, model::IssueCode::text_cleaned,
                                               model::IssueCode::part_without_outline, model::IssueCode::antimeridian});
     return noted.empty() ? text : text + ". " + noted;
@@ -205,12 +213,12 @@ class Writer {
     using model::IssueCode;
     std::vector<std::string> pieces;
     const std::string mended =
-        said(building, {IssueCode::duplicate_points, IssueCode::spike_removed, IssueCode::ring_repaired,
-                        IssueCode::split_outline, IssueCode::touching_rings, IssueCode::sliver_dropped,
-                        IssueCode::collinear_points, IssueCode::shared_wall_conflict, IssueCode::overlap_kept,
-                        IssueCode::nested_building, IssueCode::repair_bounded, IssueCode::parts_outside,
-                        IssueCode::parts_overlap, IssueCode::outline_made, IssueCode::parts_incomplete,
-                        IssueCode::reach_cut});
+        said(building,
+             {IssueCode::duplicate_points, IssueCode::spike_removed, IssueCode::ring_repaired, IssueCode::split_outline,
+              IssueCode::touching_rings, IssueCode::sliver_dropped, IssueCode::collinear_points,
+              IssueCode::shared_wall_conflict, IssueCode::overlap_kept, IssueCode::nested_building,
+              IssueCode::repair_bounded, IssueCode::parts_outside, IssueCode::parts_overlap, IssueCode::outline_made,
+              IssueCode::parts_incomplete, IssueCode::reach_cut});
     const std::string moved = moved_text(building);
     if (!mended.empty()) pieces.push_back(mended);
     if (!moved.empty()) pieces.push_back(moved);
@@ -239,33 +247,43 @@ class Writer {
     const auto count = [&](std::string_view, std::string_view, const auto& sourced) {
       switch (sourced.source) {
         case model::Source::override_:
-        case model::Source::tag: ++tagged; break;
+        case model::Source::tag:
+          ++tagged;
+          break;
         case model::Source::preset:
-        case model::Source::default_: ++assumed; break;
+        case model::Source::default_:
+          ++assumed;
+          break;
         case model::Source::neighbours:
         case model::Source::block:
         case model::Source::cell:
         case model::Source::district:
-        case model::Source::region: ++around; break;
+        case model::Source::region:
+          ++around;
+          break;
         case model::Source::implied:
         case model::Source::part:
         case model::Source::imagery:
         case model::Source::terrain:
-        case model::Source::geometry: ++followed;
+        case model::Source::geometry:
+          ++followed;
       }
     };
     model::for_each_attribute(building.attributes, count, [](std::string_view, std::string_view) {});
-    return fmt::format("{} values: {} tagged, {} following from other values, parts or the plan, {} from the surroundings, {} assumed",
-                       tagged + followed + around + assumed, tagged, followed, around, assumed);
+    return fmt::format(
+        "{} values: {} tagged, {} following from other values, parts or the plan, {} from the surroundings, {} assumed",
+        tagged + followed + around + assumed, tagged, followed, around, assumed);
   }
 
   /// The preset with its parameters, and what is ordered for single storeys, edges and bays.
   std::string assign_text(const Building& building) const {
     std::string text;
     if (const std::string& preset = building.attributes.preset.value; !preset.empty()) text = "preset " + preset;
-    for (const auto& [key, value] : building.preset_parameters) text += fmt::format("{}{}={}", text.empty() ? "" : ", ", key, value);
+    for (const auto& [key, value] : building.preset_parameters)
+      text += fmt::format("{}{}={}", text.empty() ? "" : ", ", key, value);
     for (const model::DetailOverride& d : building.detail_overrides) {
-      text += fmt::format("{}{}{} {} ordered", text.empty() ? "" : "; ", d.body == building.id() ? "" : d.body + " ", model::name(d.kind), d.name);
+      text += fmt::format("{}{}{} {} ordered", text.empty() ? "" : "; ", d.body == building.id() ? "" : d.body + " ",
+                          model::name(d.kind), d.name);
       for (const auto& [key, value] : d.values) text += fmt::format(" {}={}", key, value);
       text += " (" + d.from + ")";
     }
@@ -273,8 +291,7 @@ class Writer {
   }
 
   std::string build_text(const Building& building, const FinalState& final_state) {
-    if (building.parts.empty())
-      return fmt::format("nothing was built: {}", model::info(final_state.code).meaning);
+    if (building.parts.empty()) return fmt::format("nothing was built: {}", model::info(final_state.code).meaning);
     if (building.parts.size() == 1) return body_text(building.parts.front());
     // Bodies that became the same are named together, in the order of the first of them.
     std::vector<std::pair<std::string, std::vector<std::string>>> groups;
@@ -300,8 +317,10 @@ class Writer {
     if (part.lod == 0) text = "a footprint on the ground";
     if (part.lod == 1) text = "a block without a roof";
     if (part.lod >= 2)
-      text = part.canopy ? "a canopy" : fmt::format("walls to {:.1f} m under a {} roof", part.attributes.height.value - part.attributes.roof_height.value,
-                                                     model::name(part.built_roof));
+      text = part.canopy ? "a canopy"
+                         : fmt::format("walls to {:.1f} m under a {} roof",
+                                       part.attributes.height.value - part.attributes.roof_height.value,
+                                       model::name(part.built_roof));
     if (options_.lod >= 2 && part.built_roof != part.attributes.roof_shape.value && !part.canopy)
       text += fmt::format(" where {} was wanted", model::name(part.attributes.roof_shape.value));
     for (const model::IssueCode code : part.fallbacks) {
@@ -329,8 +348,8 @@ class Writer {
     }
     std::string text = fmt::format("rule file {} of preset {}", file, preset);
     text += any ? ": " + detail_text(sum) : ": no body has facades";
-    const std::string noted =
-        said(building, {model::IssueCode::opening_left_out, model::IssueCode::facade_failed, model::IssueCode::grammar_error});
+    const std::string noted = said(building, {model::IssueCode::opening_left_out, model::IssueCode::facade_failed,
+                                              model::IssueCode::grammar_error});
     return noted.empty() ? text : text + ". " + noted;
   }
 
@@ -342,7 +361,8 @@ class Writer {
         faces += solid->faces.size();
       }
     if (solids == 0) return "there is no solid to check";
-    return fmt::format("{} with {} faces: closed, outward, without self-intersections", counted(solids, "solid"), faces);
+    return fmt::format("{} with {} faces: closed, outward, without self-intersections", counted(solids, "solid"),
+                       faces);
   }
 
   // ---- values
@@ -422,13 +442,15 @@ class Writer {
       auto early = std::lower_bound(options_.earlier.begin(), options_.earlier.end(), id,
                                     [](const ReportRow& row, model::OsmId o) { return row.object < o; });
       for (; early != options_.earlier.end() && early->object == id; ++early) visit(*early);
-      auto late = std::lower_bound(rows_.begin(), rows_.end(), id, [](const ReportRow* row, model::OsmId o) { return row->object < o; });
+      auto late = std::lower_bound(rows_.begin(), rows_.end(), id,
+                                   [](const ReportRow* row, model::OsmId o) { return row->object < o; });
       for (; late != rows_.end() && (*late)->object == id; ++late) visit(**late);
     };
     of_object(building.osm);
     std::vector<model::OsmId> parts;
     for (const BuildingPart& part : building.parts)
-      if (part.osm != building.osm && std::find(parts.begin(), parts.end(), part.osm) == parts.end()) parts.push_back(part.osm);
+      if (part.osm != building.osm && std::find(parts.begin(), parts.end(), part.osm) == parts.end())
+        parts.push_back(part.osm);
     for (const model::OsmId id : parts) of_object(id);
   }
 

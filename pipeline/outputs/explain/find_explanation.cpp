@@ -30,12 +30,16 @@ std::optional<model::OsmId> parse_short_id(std::string_view text) {
   if (!number) return std::nullopt;
   switch (text[0]) {
     case 'N':
-    case 'n': return model::OsmId{model::OsmType::node, *number};
+    case 'n':
+      return model::OsmId{model::OsmType::node, *number};
     case 'W':
-    case 'w': return model::OsmId{model::OsmType::way, *number};
+    case 'w':
+      return model::OsmId{model::OsmType::way, *number};
     case 'R':
-    case 'r': return model::OsmId{model::OsmType::relation, *number};
-    default: return std::nullopt;
+    case 'r':
+      return model::OsmId{model::OsmType::relation, *number};
+    default:
+      return std::nullopt;
   }
 }
 
@@ -112,7 +116,8 @@ std::string line_of(const std::string& path, model::OsmId building) {
 std::optional<Json> reported_row(const std::string& folder, model::OsmId id) {
   const std::string path = folder + "/report.json";
   const Json report = Json::parse(read_file(path), nullptr, false);
-  if (report.is_discarded() || !report.is_object() || !report.contains("objects")) damaged(path, "is no report of a build");
+  if (report.is_discarded() || !report.is_object() || !report.contains("objects"))
+    damaged(path, "is no report of a build");
   for (const Json& row : report["objects"]) {
     if (!row.is_object() || !row.contains("id") || row["id"] != id.text()) continue;
     Json out = row;
@@ -132,7 +137,8 @@ std::optional<model::OsmId> parse_object_id(std::string_view text) {
     text.remove_prefix(host + std::string_view("openstreetmap.org/").size());
     text = text.substr(0, text.find_first_of("?#"));
     // Pages below an object's own, such as its history.
-    if (const std::size_t second = text.find('/', text.find('/') + 1); second != std::string_view::npos) text = text.substr(0, second);
+    if (const std::size_t second = text.find('/', text.find('/') + 1); second != std::string_view::npos)
+      text = text.substr(0, second);
   }
   while (text.ends_with('/')) text.remove_suffix(1);
   for (const auto& [word, type] : {std::pair{std::string_view("node"), model::OsmType::node},
@@ -149,7 +155,8 @@ std::optional<model::OsmId> parse_object_id(std::string_view text) {
 std::optional<FoundExplanation> find_explanation(const std::string& folder, model::OsmId id) {
   std::error_code error;
   if (!fs::exists(fs::path(folder) / "build.json", error))
-    throw base::UsageError(folder + " is no build (it has no build.json). Name the output folder of 'blockrand build'.");
+    throw base::UsageError(folder +
+                           " is no build (it has no build.json). Name the output folder of 'blockrand build'.");
   const std::string index = folder + "/explain/index.txt";
   if (!fs::exists(index, error)) {
     const Json build = Json::parse(read_file(folder + "/build.json"), nullptr, false);
@@ -159,13 +166,16 @@ std::optional<FoundExplanation> find_explanation(const std::string& folder, mode
     damaged(index, "is missing");
   }
   if (const auto entry = look_up(index, id))
-    return FoundExplanation{line_of(folder + "/explain/" + entry->tile + ".jsonl.gz", entry->building), true, id, entry->building};
+    return FoundExplanation{line_of(folder + "/explain/" + entry->tile + ".jsonl.gz", entry->building), true, id,
+                            entry->building};
   const auto row = reported_row(folder, id);
   if (!row) return std::nullopt;
-  if (row->contains("state") && (*row)["state"] == "duplicate" && row->contains("related") && (*row)["related"].is_string())
+  if (row->contains("state") && (*row)["state"] == "duplicate" && row->contains("related") &&
+      (*row)["related"].is_string())
     if (const auto other = parse_short_id((*row)["related"].get<std::string>()))
       if (const auto entry = look_up(index, *other))
-        return FoundExplanation{line_of(folder + "/explain/" + entry->tile + ".jsonl.gz", entry->building), true, id, entry->building};
+        return FoundExplanation{line_of(folder + "/explain/" + entry->tile + ".jsonl.gz", entry->building), true, id,
+                                entry->building};
   return FoundExplanation{row->dump(), false, id, id};
 }
 

@@ -15,10 +15,10 @@ std::optional<model::OsmId> parse_object_id(std::string_view text);
 
 /// One object's explanation as JSON.
 struct FoundExplanation {
-  std::string json;            ///< a line as pipeline/outputs/explain/explanation.h describes; or, for an object that no
-                               ///< line explains, its row of report.json with "code", "meaning" and "detail"
-  bool in_model = false;       ///< false: a row of report.json
-  model::OsmId asked;          ///< may be a part of the building that `json` explains, or its duplicate
+  std::string json;       ///< a line as pipeline/outputs/explain/explanation.h describes; or, for an object that no
+                          ///< line explains, its row of report.json with "code", "meaning" and "detail"
+  bool in_model = false;  ///< false: a row of report.json
+  model::OsmId asked;     ///< may be a part of the building that `json` explains, or its duplicate
   model::OsmId explained;
 };
 

@@ -14,22 +14,29 @@ namespace {
 
 using model::Building;
 using model::BuildingPosition;
-using model::WallSegmentKind;
 using model::WallSegment;
+using model::WallSegmentKind;
 
-constexpr std::size_t kMostNames = 6;   // more is no help to a reader; "edges" has them all
-constexpr double kAreaSeen = 0.05;      // m²: smaller changes vanish in the rounding of the text
-constexpr double kSetbackSeen = 0.05;   // m, likewise
+constexpr std::size_t kMostNames = 6;  // more is no help to a reader; "edges" has them all
+constexpr double kAreaSeen = 0.05;     // m²: smaller changes vanish in the rounding of the text
+constexpr double kSetbackSeen = 0.05;  // m, likewise
 
 std::string_view in_words(BuildingPosition position) {
   switch (position) {
-    case BuildingPosition::free_standing: return "free-standing house";
-    case BuildingPosition::end_of_row: return "end of a row";
-    case BuildingPosition::mid_row: return "within a row";
-    case BuildingPosition::corner_house: return "corner house";
-    case BuildingPosition::rear_building: return "rear building (Hinterhaus)";
-    case BuildingPosition::side_wing: return "side wing (Seitenflügel)";
-    case BuildingPosition::unknown: break;
+    case BuildingPosition::free_standing:
+      return "free-standing house";
+    case BuildingPosition::end_of_row:
+      return "end of a row";
+    case BuildingPosition::mid_row:
+      return "within a row";
+    case BuildingPosition::corner_house:
+      return "corner house";
+    case BuildingPosition::rear_building:
+      return "rear building (Hinterhaus)";
+    case BuildingPosition::side_wing:
+      return "side wing (Seitenflügel)";
+    case BuildingPosition::unknown:
+      break;
   }
   return "how it stands to its block is not known";
 }
@@ -62,7 +69,7 @@ std::string text_of(const std::vector<Tally>& tallies, bool with_materials) {
   std::vector<std::string> names;
   for (const Tally& t : tallies)
     names.push_back(with_materials ? fmt::format("{} ({:.1f} m, looks {})", t.name, t.length, t.looks)
-                               : fmt::format("{} ({:.1f} m)", t.name, t.length));
+                                   : fmt::format("{} ({:.1f} m)", t.name, t.length));
   return listed(names, kMostNames);
 }
 
@@ -70,8 +77,9 @@ std::string courtyards_text(const Building& building, const CourtyardLookup& loo
   std::vector<std::string> names;
   for (const std::string& id : building.situation.courtyards) {
     const std::optional<CourtyardFacts> facts = lookup ? lookup(id) : std::nullopt;
-    names.push_back(facts ? fmt::format("{} courtyard of {:.0f} m2", facts->closed ? "a closed" : "an open", facts->area)
-                          : "the courtyard " + id);
+    names.push_back(facts
+                        ? fmt::format("{} courtyard of {:.0f} m2", facts->closed ? "a closed" : "an open", facts->area)
+                        : "the courtyard " + id);
   }
   return names.empty() ? "" : "stands at " + listed(names, kMostNames);
 }
@@ -82,9 +90,7 @@ double degrees(double value) { return std::nearbyint(value * 10) / 10; }
 
 }  // namespace
 
-std::string counted(std::size_t n, std::string_view noun) {
-  return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
-}
+std::string counted(std::size_t n, std::string_view noun) { return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s"); }
 
 std::string listed(const std::vector<std::string>& names, std::size_t most) {
   std::string text;
@@ -135,7 +141,8 @@ std::string situation_text(const Building& building, const CourtyardLookup& cour
   bool chamfer = false;
   const std::vector<IdentifiedWallSegment> found = wall_segments(building);
   const auto on_front = [&](std::uint32_t index) {
-    const auto wall_segment = std::find_if(found.begin(), found.end(), [&](const IdentifiedWallSegment& t) { return t.index == index; });
+    const auto wall_segment =
+        std::find_if(found.begin(), found.end(), [&](const IdentifiedWallSegment& t) { return t.index == index; });
     if (wall_segment == found.end()) return;
     const WallSegment& e = building.edges[index];
     add(fronts, street_of(e), e.length(), compass(outward(wall_segment->from, wall_segment->to)));

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/model/building.h"
 #include "pipeline/outputs/explain/explanation.h"
 #include "pipeline/outputs/explain/json_text.h"
-#include "pipeline/model/building.h"
 
 namespace blockrand::outputs {
 

@@ -1,8 +1,8 @@
 // Why a building has its style, for machines; `blockrand explain` makes words of it. Internal to this folder.
 #pragma once
 
-#include "pipeline/outputs/explain/json_text.h"
 #include "pipeline/model/building.h"
+#include "pipeline/outputs/explain/json_text.h"
 
 namespace blockrand::outputs {
 

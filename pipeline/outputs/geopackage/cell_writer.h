@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/outputs/geopackage/geopackage_rows.h"
-#include "pipeline/outputs/number_text.h"
 #include "pipeline/layer_file/well_known_binary.h"
 #include "pipeline/model/building.h"
+#include "pipeline/outputs/geopackage/geopackage_rows.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 

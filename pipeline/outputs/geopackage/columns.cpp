@@ -92,7 +92,8 @@ std::vector<Column> building_columns() {
   for (const char* name : {"country", "city", "suburb", "postcode", "street", "house_number"})
     c.push_back({name, ColumnKind::text, "", "Address as mapped: " + std::string(name)});
   add_attributes(c);
-  for (const auto& more : {style_columns(), situation_columns(), repair_columns()}) c.insert(c.end(), more.begin(), more.end());
+  for (const auto& more : {style_columns(), situation_columns(), repair_columns()})
+    c.insert(c.end(), more.begin(), more.end());
   c.push_back({"tags", ColumnKind::text, "", "All OpenStreetMap tags as a JSON object"});
   return c;
 }

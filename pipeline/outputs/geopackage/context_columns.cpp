@@ -16,14 +16,16 @@ std::vector<Column> style_columns() {
       {"p_modern", kReal, "", "Probability: designed after 1918"},
       {"p_other", kReal, "", "Probability: church, shed, garage, house from before 1840"},
       {"morphology", kText, "",
-       "How the houses of its quarter stand: perimeter_block, old_town, slab, detached, terrace; empty: was not classified"},
+       "How the houses of its quarter stand: perimeter_block, old_town, slab, detached, terrace; empty: was not "
+       "classified"},
   };
 }
 
 std::vector<Column> situation_columns() {
   return {
       {"position", kText, "",
-       "free_standing, end_of_row, mid_row, corner_house; rear_building: inside the block; side_wing: inside the block, "
+       "free_standing, end_of_row, mid_row, corner_house; rear_building: inside the block; side_wing: inside the "
+       "block, "
        "along the border of its lot; unknown"},
       {"front_orientation", kReal, "degree", "Where the main front looks, clockwise from grid north"},
       {"depth", kReal, "m", "Extent across the main front; without a front the shorter side"},
@@ -31,7 +33,8 @@ std::vector<Column> situation_columns() {
       {"setback", kReal, "m", "From the building line of the street back to the main front"},
       {"party_wall_length", kReal, "m", "Length of the walls that are shared with neighbours"},
       {"block", kText, "", "Id of its block in the layer blocks"},
-      {"courtyards", kText, "", "Ids of the courtyards that it stands at, in the layer courtyards, separated by blanks"},
+      {"courtyards", kText, "",
+       "Ids of the courtyards that it stands at, in the layer courtyards, separated by blanks"},
   };
 }
 
@@ -52,7 +55,8 @@ std::vector<Column> repair_columns() {
 
 std::vector<Column> wall_segment_columns() {
   return {
-      {"id", kText, "", "Building and the OpenStreetMap nodes at both ends of the edge; .1, .2 for its further stretches"},
+      {"id", kText, "",
+       "Building and the OpenStreetMap nodes at both ends of the edge; .1, .2 for its further stretches"},
       {"building", kText, "", "Id of the building it belongs to"},
       {"kind", kText, "",
        "What it faces: street, courtyard, side (a gap to a neighbour), party_wall, passage; unknown"},
@@ -91,8 +95,7 @@ std::vector<Column> block_columns() {
       {"cut_by_extract_edge", kInteger, "", "1: reaches beyond the data, so that it gives no ratios"},
       {"too_large", kInteger, "", "1: larger than a block of houses, so that it gives no ratios"},
       {"buildings", kInteger, "", "Number of buildings that belong to it"},
-      {"built_share", kReal, "",
-       "Area of footprints by area of the block (GRZ up to the middle of the streets)"},
+      {"built_share", kReal, "", "Area of footprints by area of the block (GRZ up to the middle of the streets)"},
       {"tagged_share", kReal, "", "Of the area of footprints: the share under buildings with mapped storeys"},
       {"floor_area_ratio", kReal, "", "Floor area by area of the block (GFZ), from mapped storeys"},
       {"closure", kReal, "", "Share of the street front that is built"},
@@ -127,7 +130,8 @@ std::vector<Column> cell_columns() {
       {"tagged_share", kReal, "", "Share of the buildings with mapped storeys"},
       {"storeys_mean", kReal, "", "Mean of the mapped storeys"},
       {"storeys_spread", kReal, "", "Standard deviation of the mapped storeys"},
-      {"floor_area_ratio", kReal, "", "Floor area by area of the square, from mapped storeys; empty where the data does not cover it"},
+      {"floor_area_ratio", kReal, "",
+       "Floor area by area of the square, from mapped storeys; empty where the data does not cover it"},
       {"party_wall_share", kReal, "", "Share of the outlines' length that is shared with neighbours"},
       {"dated_share", kReal, "", "Share of the buildings with a mapped year"},
       {"year_mean", kReal, "", "Mean of the mapped years"},

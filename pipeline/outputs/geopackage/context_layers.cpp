@@ -67,8 +67,9 @@ outputs::CellRow cell_row(const context::CellIndex& cell, const context::CellSum
 
 }  // namespace
 
-void write_context_layers(outputs::GeoPackageWriter& out, const context::ContextExtract& context, const footprints::RepairedExtract& repaired,
-                          std::span<const footprints::Shard> shards, const std::optional<model::TileId>& tile) {
+void write_context_layers(outputs::GeoPackageWriter& out, const context::ContextExtract& context,
+                          const footprints::RepairedExtract& repaired, std::span<const footprints::Shard> shards,
+                          const std::optional<model::TileId>& tile) {
   const footprints::FootprintStore& store = repaired.footprints;
   std::vector<bool> here(store.size(), !tile);
   if (tile)
@@ -105,7 +106,8 @@ void write_context_layers(outputs::GeoPackageWriter& out, const context::Context
     for (std::uint32_t b = 0; b < store.size(); ++b)
       if (here[b] && !store[b].box.empty()) cells.insert(context::cell_of_building(store, b));
   for (const auto& [cell, sums] : context.cells)
-    if (!tile || cells.contains(cell)) out.add_cell(cell_row(cell, sums, context::covered_share(cell, context.coverage)));
+    if (!tile || cells.contains(cell))
+      out.add_cell(cell_row(cell, sums, context::covered_share(cell, context.coverage)));
 }
 
 }  // namespace blockrand::outputs

@@ -3,18 +3,19 @@
 
 #include <optional>
 
-#include "pipeline/outputs/geopackage/geopackage_writer.h"
-#include "pipeline/model/region.h"
 #include "pipeline/context/context_extract.h"
 #include "pipeline/footprints/footprint_store.h"
 #include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/shard.h"
+#include "pipeline/model/region.h"
+#include "pipeline/outputs/geopackage/geopackage_writer.h"
 
 namespace blockrand::outputs {
 
 /// Writes the layers `blocks`, `courtyards` and `cells`: all of the extract's, or, for a tile that is built alone, those
 /// in which or at which one of its buildings stands (what lies beyond was read in part only).
-void write_context_layers(outputs::GeoPackageWriter& out, const context::ContextExtract& context, const footprints::RepairedExtract& repaired,
-                          std::span<const footprints::Shard> shards, const std::optional<model::TileId>& tile);
+void write_context_layers(outputs::GeoPackageWriter& out, const context::ContextExtract& context,
+                          const footprints::RepairedExtract& repaired, std::span<const footprints::Shard> shards,
+                          const std::optional<model::TileId>& tile);
 
 }  // namespace blockrand::outputs

@@ -8,7 +8,8 @@ namespace {
 
 model::Polygon square(model::Point2 corner, double size) {
   model::Polygon p;
-  p.outer.points = {corner, {corner.x + size, corner.y}, {corner.x + size, corner.y + size}, {corner.x, corner.y + size}};
+  p.outer.points = {
+      corner, {corner.x + size, corner.y}, {corner.x + size, corner.y + size}, {corner.x, corner.y + size}};
   p.outer.nodes.assign(4, 0);
   return p;
 }

@@ -9,18 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/outputs/geopackage/geopackage_rows.h"
 #include "pipeline/model/osm_id.h"
 #include "pipeline/model/polygon.h"
+#include "pipeline/outputs/geopackage/geopackage_rows.h"
 
 namespace blockrand::outputs {
 
 /// The land between streets, railways and water.
 struct BlockRow {
-  std::string id;           ///< as BuildingSituation::block
-  model::Polygon polygon;   ///< build CRS
+  std::string id;          ///< as BuildingSituation::block
+  model::Polygon polygon;  ///< build CRS
   double area = 0;
-  std::string kind;         ///< "ordinary", "between_carriageways", "between_tracks", "street_space", "water"
+  std::string kind;  ///< "ordinary", "between_carriageways", "between_tracks", "street_space", "water"
   bool cut_by_extract_edge = false, too_large = false;
   std::int64_t buildings = 0;
   std::optional<double> built_share, tagged_share, floor_area_ratio, closure;
@@ -37,15 +37,15 @@ struct CourtyardRow {
   model::Polygon polygon;  ///< build CRS
   double area = 0;
   bool closed = true;
-  double opening = 0;      ///< sum of the gaps that lead out
+  double opening = 0;                   ///< sum of the gaps that lead out
   std::vector<model::OsmId> buildings;  ///< that surround it, ascending
 };
 
 /// A square of the fixed grid.
 struct CellRow {
-  std::string id;          ///< "c12_-3"
-  model::Point2 corner;    ///< m, south-west, build CRS
-  double size = 250;       ///< m, side
+  std::string id;        ///< "c12_-3"
+  model::Point2 corner;  ///< m, south-west, build CRS
+  double size = 250;     ///< m, side
   std::int64_t buildings = 0;
   double covered_share = 1;  ///< of its area lies within the data; with less than 0.95 it gives no ratios by its area
   std::optional<double> density;  ///< buildings per hectare

@@ -48,7 +48,8 @@ using ReportedDetails = std::map<std::pair<model::OsmId, model::IssueCode>, std:
 ReportedDetails reported_details(const std::vector<model::ReportRow>& rows) {
   ReportedDetails details;
   for (const model::ReportRow& row : rows)
-    if (info(row.code).issue_class == model::IssueClass::reported) details.emplace(std::pair(row.object, row.code), row.detail);
+    if (info(row.code).issue_class == model::IssueClass::reported)
+      details.emplace(std::pair(row.object, row.code), row.detail);
   return details;
 }
 
@@ -98,14 +99,15 @@ class GeoPackageOutput : public Output {
 }  // namespace
 
 OutputFormat geopackage_output() {
-  return {.name = "gpkg",
-          .title = "GeoPackage",
-          .other_names = {"geopackage"},
-          .places = {{kFile, "footprints with every value and its source, coloured, for QGIS"}},
-          .manual = {{kFile, "GeoPackage for QGIS: footprints with every attribute, its source and its confidence"}},
-          .asked = [](const OutputOptions& o) { return o.writes("gpkg"); },
-          .bytes_per_building = [](const OutputOptions&, std::size_t) { return 4800.0; },
-          .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<GeoPackageOutput>(c); }};
+  return {
+      .name = "gpkg",
+      .title = "GeoPackage",
+      .other_names = {"geopackage"},
+      .places = {{kFile, "footprints with every value and its source, coloured, for QGIS"}},
+      .manual = {{kFile, "GeoPackage for QGIS: footprints with every attribute, its source and its confidence"}},
+      .asked = [](const OutputOptions& o) { return o.writes("gpkg"); },
+      .bytes_per_building = [](const OutputOptions&, std::size_t) { return 4800.0; },
+      .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<GeoPackageOutput>(c); }};
 }
 
 }  // namespace blockrand::outputs

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/outputs/geopackage/cell_writer.h"
 #include "pipeline/outputs/geopackage/columns.h"
 #include "pipeline/outputs/geopackage/wall_segment_rows.h"
-#include "pipeline/outputs/style_basis.h"
 #include "pipeline/outputs/number_text.h"
-#include "pipeline/geometry/check_solid.h"
-#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/outputs/style_basis.h"
 
 namespace blockrand::outputs {
 namespace {

@@ -1,10 +1,10 @@
 #include "pipeline/outputs/geopackage/geopackage_writer.h"
 
+#include "pipeline/layer_file/layer_file.h"
+#include "pipeline/layer_file/well_known_binary.h"
 #include "pipeline/outputs/geopackage/cell_writer.h"
 #include "pipeline/outputs/geopackage/columns.h"
 #include "pipeline/outputs/geopackage/qgis_styles.h"
-#include "pipeline/layer_file/layer_file.h"
-#include "pipeline/layer_file/well_known_binary.h"
 
 namespace blockrand::outputs {
 namespace {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/outputs/geopackage/context_rows.h"
-#include "pipeline/outputs/geopackage/geopackage_rows.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/geopackage/context_rows.h"
+#include "pipeline/outputs/geopackage/geopackage_rows.h"
 
 namespace blockrand::outputs {
 

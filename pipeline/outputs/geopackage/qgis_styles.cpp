@@ -5,10 +5,10 @@
 #include <string_view>
 #include <utility>
 
-#include "pipeline/outputs/geopackage/qml.h"
 #include "pipeline/model/building.h"
-#include "pipeline/model/wall_segment_colours.h"
 #include "pipeline/model/issue_codes.h"
+#include "pipeline/model/wall_segment_colours.h"
+#include "pipeline/outputs/geopackage/qml.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -182,7 +182,8 @@ std::string style_classes() {
   }};
   Qml qml(Shape::fill);
   qml.categories("style");
-  for (std::size_t i = 0; i < kClasses.size(); ++i) qml.category(model::kStyleClassNames[i], kClasses[i].first, kClasses[i].second);
+  for (std::size_t i = 0; i < kClasses.size(); ++i)
+    qml.category(model::kStyleClassNames[i], kClasses[i].first, kClasses[i].second);
   qml.category("", "not known", kOthers);
   return std::move(qml).done();
 }

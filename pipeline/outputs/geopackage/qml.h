@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/outputs/number_text.h"
 #include "pipeline/model/colour.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 

@@ -1,8 +1,8 @@
 // What the GeoPackage says of outlines: their wall segments, how a building stands, what repair did. Internal to this folder.
 #pragma once
 
-#include "pipeline/outputs/geopackage/cell_writer.h"
 #include "pipeline/model/building.h"
+#include "pipeline/outputs/geopackage/cell_writer.h"
 
 namespace blockrand::outputs {
 

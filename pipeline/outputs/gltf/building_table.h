@@ -1,8 +1,8 @@
 // What a GLB tells about each building part.
 #pragma once
 
-#include "pipeline/outputs/gltf/property_table.h"
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/gltf/property_table.h"
 
 namespace blockrand::outputs {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pipeline/outputs/frame.h"
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/frame.h"
 
 namespace blockrand::outputs {
 

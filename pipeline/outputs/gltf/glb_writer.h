@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <string>
 
+#include "pipeline/model/region.h"
 #include "pipeline/outputs/frame.h"
 #include "pipeline/outputs/gltf/compression.h"
 #include "pipeline/outputs/gltf/instance_writer.h"
-#include "pipeline/model/region.h"
 
 namespace blockrand::outputs {
 

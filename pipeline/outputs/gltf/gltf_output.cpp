@@ -61,9 +61,8 @@ GlbOptions glb_options(const OutputContext& context, const georef::EnuFrame& fra
 }
 
 /// What viewers show from farther away than facades: blocks, then roofs (tileset.h says from how far).
-void write_coarser_levels(const model::Region& region, GlbOptions options, const std::string& place,
-                          TileEntry& entry, base::StagedFolder& folder,
-                          std::vector<base::PublishedFile>& files) {
+void write_coarser_levels(const model::Region& region, GlbOptions options, const std::string& place, TileEntry& entry,
+                          base::StagedFolder& folder, std::vector<base::PublishedFile>& files) {
   for (const auto& [lod, error] : {std::pair(1, kBlockError), std::pair(2, kRoofError)}) {
     options.lod = lod;
     const Glb glb = write_glb(region, options);
@@ -81,9 +80,10 @@ void set_bounds(TileEntry& entry, const georef::EnuFrame& frame) {
   const double reference = frame.origin().lon;
   double west = 0, east = 0;
   for (int i = 0; i < 9; ++i) {
-    const model::Point3 p = i == 8 ? model::Point3{(entry.min.x + entry.max.x) / 2, (entry.min.y + entry.max.y) / 2, entry.min.z}
-                            : model::Point3{i & 1 ? entry.max.x : entry.min.x, i & 2 ? entry.max.y : entry.min.y,
-                                     i & 4 ? entry.max.z : entry.min.z};
+    const model::Point3 p =
+        i == 8 ? model::Point3{(entry.min.x + entry.max.x) / 2, (entry.min.y + entry.max.y) / 2, entry.min.z}
+               : model::Point3{i & 1 ? entry.max.x : entry.min.x, i & 2 ? entry.max.y : entry.min.y,
+                               i & 4 ? entry.max.z : entry.min.z};
     const georef::Geodetic g = georef::from_ecef(frame.to_ecef(p));
     double lon = g.lon;
     if (lon - reference > 180) lon -= 360;
@@ -187,9 +187,10 @@ class GltfOutput : public Output {
     }
     if (!context_.options.single_glb) return;
     if (const double reach = write_model(build.whole, context_, build.files); reach > kFineModelRadius)
-      build.warn(fmt::format("model.glb reaches {:.0f} km from its origin: far from there its vertices are more than 4 mm coarse. "
-                             "Use tileset.json, or a --bbox",
-                             reach / 1000));
+      build.warn(fmt::format(
+          "model.glb reaches {:.0f} km from its origin: far from there its vertices are more than 4 mm coarse. "
+          "Use tileset.json, or a --bbox",
+          reach / 1000));
   }
 
  private:
@@ -211,10 +212,11 @@ OutputFormat gltf_output() {
           .manual = {{"tileset.json, tiles/",
                       "3D Tiles 1.1: one GLB per tile, with every attribute and its source as feature metadata"}},
           .asked = [](const OutputOptions& o) { return o.writes("gltf") || o.single_glb; },
-          .bytes_per_building = [](const OutputOptions& o, std::size_t) {
-            constexpr double kBytes = 3000;
-            return (o.writes("gltf") ? kBytes : 0) + (o.single_glb ? kBytes : 0);
-          },
+          .bytes_per_building =
+              [](const OutputOptions& o, std::size_t) {
+                constexpr double kBytes = 3000;
+                return (o.writes("gltf") ? kBytes : 0) + (o.single_glb ? kBytes : 0);
+              },
           .keeps_whole = [](const OutputOptions& o) { return o.single_glb; },
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<GltfOutput>(c); }};
 }

@@ -9,10 +9,10 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/outputs/gltf/element_geometry.h"
-#include "pipeline/outputs/placed_element.h"
 #include "pipeline/geometry/solid_builder.h"
 #include "pipeline/geometry/triangulate.h"
+#include "pipeline/outputs/gltf/element_geometry.h"
+#include "pipeline/outputs/placed_element.h"
 
 namespace blockrand::outputs {
 namespace {

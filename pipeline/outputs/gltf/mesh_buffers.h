@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/outputs/frame.h"
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/frame.h"
 
 namespace blockrand::outputs {
 

@@ -1,9 +1,9 @@
 #include "pipeline/outputs/plan/plan_picture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "pipeline/georef/tiles.h"
 #include "pipeline/picture/image.h"
@@ -12,10 +12,10 @@ namespace blockrand::outputs {
 
 namespace {
 
-constexpr int kFilePixels = 3000;      // a side of the file: at kPlanReach a wall is two pixels wide
-constexpr int kReportPixels = 1300;    // a side of the picture in the report
-constexpr double kTileExtent = 700;    // m: buildings of a tile of level 15 lie at most so far from its centre
-constexpr double kFinest = 8;          // pixels per metre: more shows nothing more
+constexpr int kFilePixels = 3000;    // a side of the file: at kPlanReach a wall is two pixels wide
+constexpr int kReportPixels = 1300;  // a side of the picture in the report
+constexpr double kTileExtent = 700;  // m: buildings of a tile of level 15 lie at most so far from its centre
+constexpr double kFinest = 8;        // pixels per metre: more shows nothing more
 
 picture::PlanBox cropped(const picture::PlanBox& box, model::Point2 middle) {
   const auto crop = [](double low, double high, double at) {
@@ -63,7 +63,8 @@ picture::Image sheet(std::span<const picture::PlanTile> tiles, const picture::Pl
 
 }  // namespace
 
-PlanChoice choose_plan(std::span<const footprints::Shard> shards, const georef::Projection& projection, const PicturePlan& pictures) {
+PlanChoice choose_plan(std::span<const footprints::Shard> shards, const georef::Projection& projection,
+                       const PicturePlan& pictures) {
   PlanChoice choice;
   choice.middle = {pictures.origin.x, pictures.origin.y};
   // The plan may lie to one side of the middle, and a tile to one side of its own.
@@ -77,7 +78,8 @@ PlanChoice choose_plan(std::span<const footprints::Shard> shards, const georef::
   return choice;
 }
 
-PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::ContextExtract& context, const PlanChoice& choice) {
+PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::ContextExtract& context,
+                    const PlanChoice& choice) {
   PlanSheet out;
   const picture::PlanBox all = picture::box_of(tiles);
   if (!(all.width() > 0 && all.height() > 0)) return out;
@@ -88,8 +90,9 @@ PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::Context
   out.in_report = {picture::png(small), small.width, small.height,
                    "From above, north up. Walls in the colours of what they face."};
   if (!choice.whole || box.width() < all.width() || box.height() < all.height())
-    out.note = fmt::format("The plan shows {:.0f} by {:.0f} m of the build's densest part. All of it is in the GeoPackage.",
-                           box.width(), box.height());
+    out.note =
+        fmt::format("The plan shows {:.0f} by {:.0f} m of the build's densest part. All of it is in the GeoPackage.",
+                    box.width(), box.height());
   return out;
 }
 

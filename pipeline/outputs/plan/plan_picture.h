@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/outputs/report/report_facts.h"
-#include "pipeline/picture/building_plan.h"
 #include "pipeline/context/context_extract.h"
 #include "pipeline/outputs/report/pictures.h"
+#include "pipeline/outputs/report/report_facts.h"
+#include "pipeline/picture/building_plan.h"
 
 namespace blockrand::outputs {
 
@@ -23,7 +23,8 @@ struct PlanChoice {
 };
 
 /// Chooses every tile that may come into the plan around the densest one.
-PlanChoice choose_plan(std::span<const footprints::Shard> shards, const georef::Projection& projection, const PicturePlan& pictures);
+PlanChoice choose_plan(std::span<const footprints::Shard> shards, const georef::Projection& projection,
+                       const PicturePlan& pictures);
 
 struct PlanSheet {
   std::string png;                   ///< the sheet as a file of its own, to look at closely; empty without buildings
@@ -34,6 +35,7 @@ struct PlanSheet {
 /// Draws blocks, streets, courtyards, buildings and their edges. A plan wider than 2 * kPlanReach shows the surroundings
 /// of the middle of the densest tile only: on more, walls would be too thin to tell their colours.
 /// \param tiles  the chosen ones, in tile order
-PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::ContextExtract& context, const PlanChoice& choice);
+PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::ContextExtract& context,
+                    const PlanChoice& choice);
 
 }  // namespace blockrand::outputs

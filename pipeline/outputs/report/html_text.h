@@ -7,8 +7,8 @@
 
 #include "pipeline/base/markup.h"
 #include "pipeline/base/text.h"
-#include "pipeline/outputs/number_text.h"
 #include "pipeline/model/osm_id.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 

@@ -2,7 +2,8 @@
 
 namespace blockrand::outputs {
 
-const std::string_view kReportStyle = R"css(.sources { width: 100%; } .sources td { border: 0; padding-top: .22rem; padding-bottom: .22rem; vertical-align: middle; }
+const std::string_view kReportStyle =
+    R"css(.sources { width: 100%; } .sources td { border: 0; padding-top: .22rem; padding-bottom: .22rem; vertical-align: middle; }
 .sources td:first-child { white-space: nowrap; } .sources td.bar { width: 62%; }
 .sources svg { display: block; width: 100%; height: 1.15rem; border-radius: .2rem; }
 .key { display: flex; flex-wrap: wrap; gap: .25rem 1.2rem; margin: .7rem 0; padding: 0; list-style: none; font-size: .9rem; max-width: none; }

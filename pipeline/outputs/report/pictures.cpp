@@ -1,11 +1,11 @@
 #include "pipeline/outputs/report/pictures.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
-
-#include <fmt/format.h>
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/text.h"
@@ -68,13 +68,16 @@ Point3 densest_spot(const std::vector<PicturedBuilding>& buildings) {
     for (const PicturedBuilding& b : buildings) {
       if (houses_only && !like_a_house(b)) continue;
       const Point3 c = b.box.centre();
-      const Key home{static_cast<std::int64_t>(std::floor(c.x / kCell)), static_cast<std::int64_t>(std::floor(c.y / kCell))};
+      const Key home{static_cast<std::int64_t>(std::floor(c.x / kCell)),
+                     static_cast<std::int64_t>(std::floor(c.y / kCell))};
       for (std::int64_t x = -1; x <= 1; ++x)
         for (std::int64_t y = -1; y <= 1; ++y) ++cells[{home.first + x, home.second + y}];
     }
-    const auto best = std::max_element(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto best =
+        std::max_element(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     if (best == cells.end()) continue;
-    return {(static_cast<double>(best->first.first) + 0.5) * kCell, (static_cast<double>(best->first.second) + 0.5) * kCell, 0};
+    return {(static_cast<double>(best->first.first) + 0.5) * kCell,
+            (static_cast<double>(best->first.second) + 0.5) * kCell, 0};
   }
   return {};
 }
@@ -107,8 +110,8 @@ View best_view(std::span<const Point3> points) {
                              {180, 110, "south", "north"},
                              {260, 180, "west", "east"}};
   const auto distance = [&](const View& view) {
-    const Camera c =
-        picture::fit_perspective(points, {view.azimuth, kElevation}, static_cast<double>(kWidth) / kHeight, kFieldOfView, kMargin);
+    const Camera c = picture::fit_perspective(points, {view.azimuth, kElevation}, static_cast<double>(kWidth) / kHeight,
+                                              kFieldOfView, kMargin);
     double sum = 0;
     for (const Point3& p : points)
       sum += (p.x - c.eye.x) * c.forward.x + (p.y - c.eye.y) * c.forward.y + (p.z - c.eye.z) * c.forward.z;
@@ -126,7 +129,8 @@ View best_view(std::span<const Point3> points) {
 
 }  // namespace
 
-PicturePlan plan_pictures(std::span<const footprints::Shard> shards, const georef::Projection& projection, std::uint64_t budget) {
+PicturePlan plan_pictures(std::span<const footprints::Shard> shards, const georef::Projection& projection,
+                          std::uint64_t budget) {
   PicturePlan plan;
   plan.chosen.assign(shards.size(), false);
   if (shards.empty()) return plan;
@@ -270,7 +274,8 @@ std::vector<outputs::ReportPicture> Pictures::take(int workers) {
       shots.size(), std::min<int>(workers, 2), shots.size(),
       [&](std::size_t i) {
         const Shot& shot = shots[i];
-        out[i] = {picture::png(picture::render(scene_, shot.camera, shot.options)), shot.options.width, shot.options.height, shot.caption};
+        out[i] = {picture::png(picture::render(scene_, shot.camera, shot.options)), shot.options.width,
+                  shot.options.height, shot.caption};
       },
       [](std::size_t) {});
   scene_ = picture::Scene(plan_.origin);

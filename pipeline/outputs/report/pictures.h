@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/outputs/report/report_facts.h"
+#include "pipeline/footprints/shard.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/report/report_facts.h"
 #include "pipeline/picture/scene.h"
-#include "pipeline/footprints/shard.h"
 
 namespace blockrand::outputs {
 

@@ -2,9 +2,9 @@
 #include <algorithm>
 
 #include "pipeline/base/text.h"
+#include "pipeline/model/wall_segment_colours.h"
 #include "pipeline/outputs/report/html_text.h"
 #include "pipeline/outputs/report/report_sections.h"
-#include "pipeline/model/wall_segment_colours.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -18,7 +18,8 @@ std::string spaced(std::string_view name) {
 }
 
 std::string swatch(model::Colour colour) {
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\" aria-hidden=\"true\"><rect width=\"10\" height=\"10\" "
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\" aria-hidden=\"true\"><rect width=\"10\" "
+         "height=\"10\" "
          "fill=\"" +
          model::text(colour) + "\"/></svg>";
 }
@@ -98,7 +99,8 @@ std::string position_table(const ContextFacts& c) {
 bool has_context(const ReportFacts& f) {
   const ContextFacts& c = f.context;
   const auto any = [](const auto& counts, std::size_t first) {
-    return std::any_of(counts.begin() + static_cast<std::ptrdiff_t>(first), counts.end(), [](std::uint64_t n) { return n > 0; });
+    return std::any_of(counts.begin() + static_cast<std::ptrdiff_t>(first), counts.end(),
+                       [](std::uint64_t n) { return n > 0; });
   };
   return !c.repair.empty() || c.plan || any(c.edges, 0) || any(c.positions, 1);
 }
@@ -107,8 +109,10 @@ std::string context_section(const ReportFacts& f) {
   if (!has_context(f)) return {};
   const ContextFacts& c = f.context;
   std::string out =
-      "<section id=\"context\">\n<h2>Footprints and context</h2>\n<p>Outlines are drawn by many hands: repair makes walls of "
-      "neighbours one and almost right corners right. Then each stretch of an outline is told by what it faces. The GeoPackage "
+      "<section id=\"context\">\n<h2>Footprints and context</h2>\n<p>Outlines are drawn by many hands: repair makes "
+      "walls of "
+      "neighbours one and almost right corners right. Then each stretch of an outline is told by what it faces. The "
+      "GeoPackage "
       "has all of it as layers: <code>facade_edges</code>, <code>blocks</code>, <code>courtyards</code>, "
       "<code>cells</code>.</p>\n";
   out += plan_figure(c);

@@ -40,21 +40,21 @@ struct ReportPicture {
 struct ContextFacts {
   /// What repair did, as people read it: {"Corners moved", "12,345 of 67,890"}.
   std::vector<std::pair<std::string, std::string>> repair;
-  std::array<std::uint64_t, model::kWallSegmentKindCount> edges{};   ///< wall segments of outlines by model::EdgeKind
-  std::array<double, model::kWallSegmentKindCount> edge_length{};    ///< m
+  std::array<std::uint64_t, model::kWallSegmentKindCount> edges{};  ///< wall segments of outlines by model::EdgeKind
+  std::array<double, model::kWallSegmentKindCount> edge_length{};   ///< m
   std::array<std::uint64_t, model::kBuildingPositionCount> positions{};  ///< buildings by model::BuildingPosition
   std::optional<ReportPicture> plan;  ///< from above, edges in the colours of model/edge_colours.h
   std::string plan_note;              ///< what the plan shows, where it is not the whole build; may be empty
 };
 
 struct ReportFacts {
-  std::string input;            ///< path as given; the page shows its last component
-  std::string data_time;        ///< ISO 8601, of the data; may be empty
+  std::string input;      ///< path as given; the page shows its last component
+  std::string data_time;  ///< ISO 8601, of the data; may be empty
   std::string program_version;
   std::string crs_code, crs_name;
-  double crs_accuracy = -1;     ///< m; negative: unknown
+  double crs_accuracy = -1;  ///< m; negative: unknown
   std::string height_reference, vertical_crs;
-  int lod = 2;                  ///< asked for
+  int lod = 2;                                       ///< asked for
   double centre_longitude = 0, centre_latitude = 0;  ///< degrees, for the link to the place; both 0: none
 
   std::uint64_t buildings_in = 0, parts_in = 0;
@@ -69,11 +69,12 @@ struct ReportFacts {
   double volume = 0;                                                    ///< m³
   std::uint64_t party_walls = 0;
 
-  std::span<const model::ReportRow> rows;  ///< of all objects, sorted; outlives this. Reported ones carry the detail of their object
+  std::span<const model::ReportRow>
+      rows;  ///< of all objects, sorted; outlives this. Reported ones carry the detail of their object
   std::vector<ReportedObject> objects;  ///< in id order
   std::vector<ReportFile> files;        ///< in path order, report.html itself left out
   std::vector<ReportPicture> pictures;
-  std::string pictures_note;            ///< what the pictures show, where it is not the whole build; may be empty
+  std::string pictures_note;  ///< what the pictures show, where it is not the whole build; may be empty
   ContextFacts context;
   std::string attribution = "\u00a9 OpenStreetMap contributors";
 };

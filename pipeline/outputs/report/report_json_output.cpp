@@ -65,13 +65,14 @@ class ReportJsonOutput : public Output {
 }  // namespace
 
 OutputFormat report_json_output() {
-  return {.name = "report.json",
-          .in_formats = false,
-          .places = {{"report.json", "every object that is not modelled as asked, with its reason"}},
-          .manual = {{"report.json", "every object that was not modelled, and why; every fallback"}},
-          .asked = [](const OutputOptions&) { return true; },
-          .bytes_per_building = [](const OutputOptions&, std::size_t) { return 300.0; },
-          .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ReportJsonOutput>(c); }};
+  return {
+      .name = "report.json",
+      .in_formats = false,
+      .places = {{"report.json", "every object that is not modelled as asked, with its reason"}},
+      .manual = {{"report.json", "every object that was not modelled, and why; every fallback"}},
+      .asked = [](const OutputOptions&) { return true; },
+      .bytes_per_building = [](const OutputOptions&, std::size_t) { return 300.0; },
+      .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ReportJsonOutput>(c); }};
 }
 
 }  // namespace blockrand::outputs

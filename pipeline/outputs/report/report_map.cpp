@@ -73,7 +73,8 @@ class Pen {
 
 /// Marks the points of `ring[from..to]` that the line between its ends misses by more than `tolerance` (Douglas-Peucker,
 /// with a stack of its own: rings of thousands of points must not go deep).
-void mark_needed(const std::vector<MapPoint>& ring, std::size_t from, std::size_t to, double tolerance, std::vector<char>& keep) {
+void mark_needed(const std::vector<MapPoint>& ring, std::size_t from, std::size_t to, double tolerance,
+                 std::vector<char>& keep) {
   std::vector<std::pair<std::size_t, std::size_t>> open{{from, to}};
   while (!open.empty()) {
     const auto [a, b] = open.back();
@@ -128,8 +129,8 @@ class MapWriter {
       xs.push_back((box->west + box->east) / 2);
       ys.push_back((box->south + box->north) / 2);
       if (!whole) whole = *box;
-      whole = Box{std::min(whole->west, box->west), std::min(whole->south, box->south), std::max(whole->east, box->east),
-                  std::max(whole->north, box->north)};
+      whole = Box{std::min(whole->west, box->west), std::min(whole->south, box->south),
+                  std::max(whole->east, box->east), std::max(whole->north, box->north)};
     }
     if (!whole) return false;
     frame_ = *whole;
@@ -152,7 +153,8 @@ class MapWriter {
       box.reset();
       ++outside;
     }
-    const std::int64_t margin = std::max<std::int64_t>(50, std::max(frame_.east - frame_.west, frame_.north - frame_.south) / 50);
+    const std::int64_t margin =
+        std::max<std::int64_t>(50, std::max(frame_.east - frame_.west, frame_.north - frame_.south) / 50);
     frame_ = {frame_.west - margin, frame_.south - margin, frame_.east + margin, frame_.north + margin};
     return true;
   }
@@ -173,7 +175,8 @@ class MapWriter {
     const MapBuilding& building = footprints_.buildings[b];
     bool any = false;
     for (std::uint32_t ring = building.first_ring; ring < building.first_ring + building.ring_count; ++ring) {
-      corners_.assign(footprints_.corners.begin() + footprints_.ring_begin(ring), footprints_.corners.begin() + footprints_.ring_ends[ring]);
+      corners_.assign(footprints_.corners.begin() + footprints_.ring_begin(ring),
+                      footprints_.corners.begin() + footprints_.ring_ends[ring]);
       simplify(unit, tolerance);
       if (corners_.size() < 3) continue;
       any = true;
@@ -259,12 +262,14 @@ using Groups = std::map<std::uint32_t, std::pair<Classes, std::string>>;
 
 std::string text_of(const Groups& groups) {
   std::string out;
-  for (const auto& [key, group] : groups) out += "<path class=\"" + group.first.text() + "\" d=\"" + group.second + "\"/>\n";
+  for (const auto& [key, group] : groups)
+    out += "<path class=\"" + group.first.text() + "\" d=\"" + group.second + "\"/>\n";
   return out;
 }
 
 /// One element per combination of classes. Empty where it would exceed the budget.
-std::optional<std::string> grouped_paths(MapWriter& writer, std::size_t count, std::int64_t unit, double tolerance, std::size_t budget) {
+std::optional<std::string> grouped_paths(MapWriter& writer, std::size_t count, std::int64_t unit, double tolerance,
+                                         std::size_t budget) {
   Groups groups;
   std::map<std::uint32_t, Pen> pens;
   std::size_t bytes = 0;
@@ -380,7 +385,8 @@ ReportMap report_map(const MapFootprints& footprints, const std::vector<std::uin
     for (std::size_t t = 0; t < kMapThemes; ++t) ++out.counts[t][writer.classes(b).of[t]];
   for (std::size_t b = 0; b < count; ++b) out.without_area += !writer.drawn(b);
   if (!writer.choose_frame(out.outside)) return out;
-  const std::int64_t width = writer.frame().east - writer.frame().west, height = writer.frame().north - writer.frame().south;
+  const std::int64_t width = writer.frame().east - writer.frame().west,
+                     height = writer.frame().north - writer.frame().south;
 
   std::int64_t unit = 1;
   std::string paths;
@@ -404,31 +410,38 @@ ReportMap report_map(const MapFootprints& footprints, const std::vector<std::uin
       const double most = std::max(1.0, static_cast<double>(budget.bytes) / 20);
       unit = 10;
       std::int64_t side = 50;
-      while (static_cast<double>(width / unit / side + 1) * static_cast<double>(height / unit / side + 1) > most) side *= 2;
+      while (static_cast<double>(width / unit / side + 1) * static_cast<double>(height / unit / side + 1) > most)
+        side *= 2;
       paths = cells(writer, count, unit, side);
-      out.note = "There are too many buildings to draw each: the map shows cells of " + metres(side * unit) +
-                 " in the colour of most of their buildings; of issues, the gravest that a tenth of the buildings have.";
+      out.note =
+          "There are too many buildings to draw each: the map shows cells of " + metres(side * unit) +
+          " in the colour of most of their buildings; of issues, the gravest that a tenth of the buildings have.";
     }
   }
 
   const std::string w = std::to_string(width / unit), h = std::to_string(height / unit);
   const std::int64_t bar = scale_bar(width);
   out.svg = "<div class=\"frame\" style=\"max-width:calc(max(26rem, 88vh * " +
-            rounded(static_cast<double>(width) / static_cast<double>(height), 3) + "))\">\n<svg xmlns=\"http://www.w3.org/2000/svg\" id=\"map-svg\" viewBox=\"0 0 " +
-            w + " " + h + "\" role=\"img\" aria-label=\"Map of the footprints\" data-metres=\"" + std::to_string(width / 10) + "\">\n" +
-            "<g class=\"footprints" + (width > kFar ? " far" : "") + "\">\n" + paths + "</g>\n<g class=\"marks\">\n";
+            rounded(static_cast<double>(width) / static_cast<double>(height), 3) +
+            "))\">\n<svg xmlns=\"http://www.w3.org/2000/svg\" id=\"map-svg\" viewBox=\"0 0 " + w + " " + h +
+            "\" role=\"img\" aria-label=\"Map of the footprints\" data-metres=\"" + std::to_string(width / 10) +
+            "\">\n" + "<g class=\"footprints" + (width > kFar ? " far" : "") + "\">\n" + paths +
+            "</g>\n<g class=\"marks\">\n";
   const std::string radius = std::to_string(std::max<std::int64_t>(1, std::max(width, height) / unit / 60));
   for (const std::uint32_t b : marked) {
     if (!writer.drawn(b)) continue;
     const MapPoint p = writer.middle(b);
     out.marks.push_back(b);
-    out.svg += "<circle id=\"at-" + footprints.buildings[b].osm.text() + "\" cx=\"" + std::to_string(writer.column(p.x, unit)) +
-               "\" cy=\"" + std::to_string(writer.row(p.y, unit)) + "\" r=\"" + radius + "\"/>\n";
+    out.svg += "<circle id=\"at-" + footprints.buildings[b].osm.text() + "\" cx=\"" +
+               std::to_string(writer.column(p.x, unit)) + "\" cy=\"" + std::to_string(writer.row(p.y, unit)) +
+               "\" r=\"" + radius + "\"/>\n";
   }
   const std::uint64_t per_mille = static_cast<std::uint64_t>(bar) * 10'000 / static_cast<std::uint64_t>(width);
-  out.svg += "</g>\n</svg>\n<div class=\"scale\"><span class=\"bar\" style=\"width:" + std::to_string(per_mille / 10) + "." +
-             std::to_string(per_mille % 10) + "%\"></span><span class=\"length\">" + metres(bar * 10) + "</span></div>\n" +
-             "<div class=\"north\" title=\"Grid north is up\">N<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 20 30\" aria-hidden=\"true\"><path d=\"M10 0L18 30 10 24 2 30z\"/></svg></div>\n</div>\n";
+  out.svg += "</g>\n</svg>\n<div class=\"scale\"><span class=\"bar\" style=\"width:" + std::to_string(per_mille / 10) +
+             "." + std::to_string(per_mille % 10) + "%\"></span><span class=\"length\">" + metres(bar * 10) +
+             "</span></div>\n" +
+             "<div class=\"north\" title=\"Grid north is up\">N<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 "
+             "20 30\" aria-hidden=\"true\"><path d=\"M10 0L18 30 10 24 2 30z\"/></svg></div>\n</div>\n";
   return out;
 }
 

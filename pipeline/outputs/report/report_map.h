@@ -29,17 +29,17 @@ inline constexpr int kSourceClasses = model::kSourceCount + 1;
 
 /// How large the map's text may become, and how it gets smaller.
 struct MapBudget {
-  std::size_t bytes = 8'000'000;           ///< of path data; 8 MB still scroll smoothly in a browser
-  std::size_t single_footprints = 8'000;   ///< up to here each footprint is an element with title and link
+  std::size_t bytes = 8'000'000;          ///< of path data; 8 MB still scroll smoothly in a browser
+  std::size_t single_footprints = 8'000;  ///< up to here each footprint is an element with title and link
 };
 
 struct ReportMap {
-  std::string svg;      ///< empty where there is no footprint
-  std::string note;     ///< how the map was simplified, escaped; empty: not at all
+  std::string svg;   ///< empty where there is no footprint
+  std::string note;  ///< how the map was simplified, escaped; empty: not at all
   std::array<std::vector<std::uint64_t>, kMapThemes> counts;  ///< buildings by theme and class
   std::vector<std::uint32_t> marks;  ///< of `marked` those that lie in the frame, in the same order
-  std::uint64_t outside = 0;       ///< buildings beyond the map's frame
-  std::uint64_t without_area = 0;  ///< buildings that have no footprint
+  std::uint64_t outside = 0;         ///< buildings beyond the map's frame
+  std::uint64_t without_area = 0;    ///< buildings that have no footprint
 };
 
 /// \param issue    worst issue class per building, parallel to footprints.buildings

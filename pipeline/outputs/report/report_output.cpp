@@ -139,8 +139,10 @@ OutputFormat report_output() {
           .places = {{"report.html", "what was built, where values come from, a map and pictures"},
                      {"plan.png", "seen from above, walls in the colours of what they face",
                       [](const OutputOptions&, std::uint64_t models) { return models > 0; }}},
-          .manual = {{"report.html", "what was built, where values come from, what fell back and why, with a map and pictures"},
-                     {"plan.png", "the neighbourhood from above: blocks, courtyards, walls in the colours of what they face"}},
+          .manual = {{"report.html",
+                      "what was built, where values come from, what fell back and why, with a map and pictures"},
+                     {"plan.png",
+                      "the neighbourhood from above: blocks, courtyards, walls in the colours of what they face"}},
           .asked = [](const OutputOptions& o) { return o.report; },
           .bytes_per_building = [](const OutputOptions&, std::size_t) { return 150.0; },
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<ReportOutput>(c); }};

@@ -36,13 +36,16 @@ std::uint64_t ReportBuilder::buildings_built() const {
 
 std::string ReportBuilder::html(const ReportFacts& facts, const ReportOptions& options) const {
   const Issues issues = collect_issues(footprints_, facts, options);
-  const ReportMap map = report_map(footprints_, issues.of_building, issues.listed, {options.map_bytes, options.single_footprints});
+  const ReportMap map =
+      report_map(footprints_, issues.of_building, issues.listed, {options.map_bytes, options.single_footprints});
   std::string out;
   out.reserve(map.svg.size() + 2'000'000);
-  out += "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<meta name=\"generator\" content=\"Blockrand " +
-         escaped(facts.program_version) + "\"/>\n<link rel=\"icon\" href=\"data:,\"/>\n<title>Blockrand report: " +
-         escaped(facts.input.substr(facts.input.find_last_of('/') + 1)) + "</title>\n<style>";
+  out +=
+      "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<meta name=\"generator\" "
+      "content=\"Blockrand " +
+      escaped(facts.program_version) + "\"/>\n<link rel=\"icon\" href=\"data:,\"/>\n<title>Blockrand report: " +
+      escaped(facts.input.substr(facts.input.find_last_of('/') + 1)) + "</title>\n<style>";
   out += base::kPageStyle;
   out += kReportStyle;
   out += "</style>\n</head>\n<body>\n";

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "pipeline/outputs/report/html_text.h"
 #include "pipeline/model/building.h"
+#include "pipeline/outputs/report/html_text.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -35,12 +35,20 @@ std::string label(std::string_view name) {
   return escaped(out);
 }
 
-constexpr std::string_view kSourceMeaning[model::kSourceCount] = {
-    "a correction by the user",          "a tag of the object",          "follows from another tag",
-    "taken from the building\u2019s parts", "seen in an aerial image",      "measured in an elevation model",
-    "read from the footprint\u2019s shape", "like tagged neighbours",       "like the rest of its block",
-    "like its surroundings",             "usual in its district",        "usual in the region",
-    "usual for this kind of building",   "nothing known: a general value"};
+constexpr std::string_view kSourceMeaning[model::kSourceCount] = {"a correction by the user",
+                                                                  "a tag of the object",
+                                                                  "follows from another tag",
+                                                                  "taken from the building\u2019s parts",
+                                                                  "seen in an aerial image",
+                                                                  "measured in an elevation model",
+                                                                  "read from the footprint\u2019s shape",
+                                                                  "like tagged neighbours",
+                                                                  "like the rest of its block",
+                                                                  "like its surroundings",
+                                                                  "usual in its district",
+                                                                  "usual in the region",
+                                                                  "usual for this kind of building",
+                                                                  "nothing known: a general value"};
 
 /// The number of a source as CSS class, or 0 for a name that no list knows.
 int source_number(std::string_view name) {
@@ -50,30 +58,35 @@ int source_number(std::string_view name) {
 }
 
 std::string swatch(const std::string& css_class) {
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\" aria-hidden=\"true\"><rect class=\"" + css_class +
-         "\" width=\"10\" height=\"10\" rx=\"2\"/></svg>";
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\" aria-hidden=\"true\"><rect class=\"" +
+         css_class + "\" width=\"10\" height=\"10\" rx=\"2\"/></svg>";
 }
 
 }  // namespace
 
 std::string head_section(const ReportFacts& f, bool styles) {
-  std::string out = "<header>\n<p class=\"kicker\">Blockrand report</p>\n<h1>" + escaped(file_name(f.input)) + "</h1>\n";
+  std::string out =
+      "<header>\n<p class=\"kicker\">Blockrand report</p>\n<h1>" + escaped(file_name(f.input)) + "</h1>\n";
   out += "<p class=\"lead\">" + count_of(f.buildings_built, "building", "buildings") + " rebuilt in 3D as " +
-         count_of(f.bodies, "body", "bodies") + ", from what OpenStreetMap says about them and, where it is silent, from " +
+         count_of(f.bodies, "body", "bodies") +
+         ", from what OpenStreetMap says about them and, where it is silent, from " +
          "assumptions that this page shows.</p>\n";
   const auto box = [&](std::uint64_t n, std::string_view text) {
     return "<div><b>" + with_thousands(n) + "</b><span>" + std::string(text) + "</span></div>";
   };
-  out += "<div class=\"sum\">" + box(f.buildings_in + f.parts_in, "mapped objects") + "<i>=</i>" + box(f.models, "modelled") +
-         "<i>+</i>" + box(f.represented + f.duplicates, "represented by others") + "<i>+</i>" + box(f.reported, "not modelled") + "</div>\n";
-  out += "<p class=\"soft small\">Nothing mapped is lost: every object with <code>building</code> or <code>building:part</code> (" +
-         count_of(f.buildings_in, "building", "buildings") + ", " + count_of(f.parts_in, "part", "parts") +
-         ") is modelled, stands for another one, or is listed below with a reason.";
+  out += "<div class=\"sum\">" + box(f.buildings_in + f.parts_in, "mapped objects") + "<i>=</i>" +
+         box(f.models, "modelled") + "<i>+</i>" + box(f.represented + f.duplicates, "represented by others") +
+         "<i>+</i>" + box(f.reported, "not modelled") + "</div>\n";
+  out +=
+      "<p class=\"soft small\">Nothing mapped is lost: every object with <code>building</code> or "
+      "<code>building:part</code> (" +
+      count_of(f.buildings_in, "building", "buildings") + ", " + count_of(f.parts_in, "part", "parts") +
+      ") is modelled, stands for another one, or is listed below with a reason.";
   if (f.duplicates > 0) out += " Of those represented, " + with_thousands(f.duplicates) + " are mapped twice.";
   out += "</p>\n<dl class=\"facts\">\n";
   std::string levels;
   constexpr std::string_view kLevels[] = {"LoD\u00a00 (footprint)", "LoD\u00a01 (block)", "LoD\u00a02 (with roof)",
-                                             "LoD\u00a03 (with facades)"};
+                                          "LoD\u00a03 (with facades)"};
   for (int lod = 3; lod >= 0; --lod) {
     const std::uint64_t n = f.models_by_lod[static_cast<std::size_t>(lod)];
     if (n == 0 && lod != f.lod) continue;
@@ -90,12 +103,15 @@ std::string head_section(const ReportFacts& f, bool styles) {
     std::string lon, lat;
     append_number(lon, static_cast<double>(static_cast<std::int64_t>(f.centre_longitude * 1e5)) / 1e5);
     append_number(lat, static_cast<double>(static_cast<std::int64_t>(f.centre_latitude * 1e5)) / 1e5);
-    fact(out, "Place", "<a href=\"https://www.openstreetmap.org/#map=15/" + lat + "/" + lon + "\">" + lat + ", " + lon + "</a> (latitude, longitude)");
+    fact(out, "Place",
+         "<a href=\"https://www.openstreetmap.org/#map=15/" + lat + "/" + lon + "\">" + lat + ", " + lon +
+             "</a> (latitude, longitude)");
   }
   fact(out, "Built by", "Blockrand " + escaped(f.program_version));
   out += "</dl>\n<nav>" + std::string(f.pictures.empty() ? "" : "<a href=\"#pictures\">Pictures</a>") +
          "<a href=\"#map\">Map</a>" + (has_context(f) ? "<a href=\"#context\">Footprints and context</a>" : "") +
-         (styles ? "<a href=\"#styles\">Styles</a>" : "") + "<a href=\"#sources\">Where values come from</a><a href=\"#issues\">Fallbacks and issues</a>"
+         (styles ? "<a href=\"#styles\">Styles</a>" : "") +
+         "<a href=\"#sources\">Where values come from</a><a href=\"#issues\">Fallbacks and issues</a>"
          "<a href=\"#statistics\">Statistics</a><a href=\"#files\">Files</a></nav>\n</header>\n";
   return out;
 }
@@ -120,10 +136,12 @@ std::string picture_section(const ReportFacts& f) {
 }
 
 std::string source_section(const ReportFacts& f) {
-  std::string out = "<section id=\"sources\">\n<h2>Where values come from</h2>\n"
-                    "<p>Maps say little about most buildings. Each bar shows, for one attribute of all bodies, which share of the values "
-                    "was mapped and which was inferred, and from what. Every single value with its source and confidence is in the "
-                    "files.</p>\n";
+  std::string out =
+      "<section id=\"sources\">\n<h2>Where values come from</h2>\n"
+      "<p>Maps say little about most buildings. Each bar shows, for one attribute of all bodies, which share of the "
+      "values "
+      "was mapped and which was inferred, and from what. Every single value with its source and confidence is in the "
+      "files.</p>\n";
   std::array<bool, model::kSourceCount + 1> present{};
   std::string rows;
   const auto add = [&](const std::string& attribute, const std::map<std::string, std::uint64_t>& by_source) {
@@ -145,15 +163,16 @@ std::string source_section(const ReportFacts& f) {
       before += counts[k];
       if (k >= 1 && k <= 4) mapped += counts[k];
       const std::string text = name + " " + with_thousands(counts[k]) + " (" + percent(counts[k], all) + ")";
-      bar += "<rect class=\"b" + std::to_string(k) + "\" x=\"" + std::to_string(from) + "\" width=\"" + std::to_string(to - from) +
-             "\" height=\"10\"><title>" + text + "</title></rect>";
+      bar += "<rect class=\"b" + std::to_string(k) + "\" x=\"" + std::to_string(from) + "\" width=\"" +
+             std::to_string(to - from) + "\" height=\"10\"><title>" + text + "</title></rect>";
       words += (words.empty() ? "" : ", ") + text;
     }
     // Attributes that only some bodies have say of how many they speak.
     const std::string some = all < f.bodies ? " <span class=\"soft small\">of " + with_thousands(all) + "</span>" : "";
-    rows += "<tr><td>" + label(attribute) + some + "</td><td class=\"bar\"><svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10000 10\" "
-            "preserveAspectRatio=\"none\" role=\"img\" aria-label=\"" + words + "\">" + bar + "</svg></td><td class=\"n\">" +
-            percent(mapped, all) + "</td></tr>\n";
+    rows += "<tr><td>" + label(attribute) + some +
+            "</td><td class=\"bar\"><svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10000 10\" "
+            "preserveAspectRatio=\"none\" role=\"img\" aria-label=\"" +
+            words + "\">" + bar + "</svg></td><td class=\"n\">" + percent(mapped, all) + "</td></tr>\n";
   };
   std::vector<std::string> known;
   const model::Attributes order;
@@ -161,18 +180,23 @@ std::string source_section(const ReportFacts& f) {
     known.emplace_back(name);
     if (const auto found = f.sources.find(name); found != f.sources.end()) add(found->first, found->second);
   };
-  model::for_each_attribute(order, [&](const char* name, const char*, const auto&) { next(name); },
-                            [&](const char* name, const char*) { next(name); });
+  model::for_each_attribute(
+      order, [&](const char* name, const char*, const auto&) { next(name); },
+      [&](const char* name, const char*) { next(name); });
   for (const auto& [attribute, by_source] : f.sources)
     if (std::find(known.begin(), known.end(), attribute) == known.end()) add(attribute, by_source);
   if (rows.empty()) return out + "<p>No body was built.</p>\n</section>\n";
   out += "<ul class=\"key\">";
   for (std::size_t k = 1; k < present.size(); ++k)
     if (present[k])
-      out += "<li>" + swatch("b" + std::to_string(k)) + std::string(model::name(static_cast<model::Source>(k - 1))) + " <span class=\"soft\">" +
-             std::string(kSourceMeaning[k - 1]) + "</span></li>";
-  out += "</ul>\n<table class=\"sources\"><thead><tr><th>Attribute</th><th>Share of bodies</th><th class=\"n\">From the map</th></tr></thead><tbody>\n" +
-         rows + "</tbody></table>\n<details><summary>The same in numbers</summary>\n<div class=\"wide\"><table><thead><tr><th>Attribute</th>";
+      out += "<li>" + swatch("b" + std::to_string(k)) + std::string(model::name(static_cast<model::Source>(k - 1))) +
+             " <span class=\"soft\">" + std::string(kSourceMeaning[k - 1]) + "</span></li>";
+  out +=
+      "</ul>\n<table class=\"sources\"><thead><tr><th>Attribute</th><th>Share of bodies</th><th class=\"n\">From the "
+      "map</th></tr></thead><tbody>\n" +
+      rows +
+      "</tbody></table>\n<details><summary>The same in numbers</summary>\n<div "
+      "class=\"wide\"><table><thead><tr><th>Attribute</th>";
   for (std::size_t k = 1; k < present.size(); ++k)
     if (present[k]) out += "<th class=\"n\">" + std::string(model::name(static_cast<model::Source>(k - 1))) + "</th>";
   out += "</tr></thead><tbody>\n";
@@ -189,7 +213,8 @@ std::string source_section(const ReportFacts& f) {
 }
 
 std::string statistics_section(const ReportFacts& f) {
-  std::string out = "<section id=\"statistics\">\n<h2>Statistics</h2>\n<div class=\"pair\"><div>\n<h3>Sizes</h3>\n<table><tbody>\n";
+  std::string out =
+      "<section id=\"statistics\">\n<h2>Statistics</h2>\n<div class=\"pair\"><div>\n<h3>Sizes</h3>\n<table><tbody>\n";
   const auto row = [&](std::string_view name, const std::string& value) {
     out += "<tr><td>" + std::string(name) + "</td><td class=\"n\">" + value + "</td></tr>\n";
   };
@@ -206,7 +231,8 @@ std::string statistics_section(const ReportFacts& f) {
   std::uint64_t all = 0;
   for (const auto& [shape, n] : roofs) all += n;
   for (const auto& [shape, n] : roofs)
-    out += "<tr><td>" + label(shape) + "</td><td class=\"n\">" + with_thousands(n) + "</td><td class=\"n soft\">" + percent(n, all) + "</td></tr>\n";
+    out += "<tr><td>" + label(shape) + "</td><td class=\"n\">" + with_thousands(n) + "</td><td class=\"n soft\">" +
+           percent(n, all) + "</td></tr>\n";
   return out + "</tbody></table></div></div>\n</section>\n";
 }
 
@@ -217,7 +243,8 @@ std::string file_section(const ReportFacts& f) {
     std::uint64_t files = 0, bytes = 0;
   };
   Kind kinds[] = {
-      {"tileset.json", "3D Tiles 1.1", "CesiumJS, QGIS 3.34 or newer, Unreal, Unity: open <code>tileset.json</code>", false, 0, 0},
+      {"tileset.json", "3D Tiles 1.1", "CesiumJS, QGIS 3.34 or newer, Unreal, Unity: open <code>tileset.json</code>",
+       false, 0, 0},
       {"tiles/", "\u2026 its tiles", "single GLB files, for Blender and other editors", true, 0, 0},
       {"model.glb", "glTF, whole build", "Blender and other editors, 3D viewers", false, 0, 0},
       {"citygml/", "CityGML 2.0", "FME, 3DCityDB, KIT ModelViewer, azul; one file per tile", true, 0, 0},
@@ -233,19 +260,26 @@ std::string file_section(const ReportFacts& f) {
         ++kind.files;
         kind.bytes += file.bytes;
       }
-  std::string out = "<section id=\"files\">\n<h2>Files</h2>\n<p>All paths are relative to this page.</p>\n<div class=\"wide\"><table><thead><tr><th>What</th><th>Where</th>"
-                    "<th class=\"n\">Files</th><th class=\"n\">Size</th><th>Open with</th></tr></thead><tbody>\n";
-  const auto row = [&](std::string_view name, std::string_view path, const std::string& files, const std::string& size, std::string_view how) {
-    out += "<tr><td>" + std::string(name) + "</td><td><a href=\"" + std::string(path) + "\">" + std::string(path) + "</a></td><td class=\"n\">" +
-           files + "</td><td class=\"n\">" + size + "</td><td>" + std::string(how) + "</td></tr>\n";
+  std::string out =
+      "<section id=\"files\">\n<h2>Files</h2>\n<p>All paths are relative to this page.</p>\n<div "
+      "class=\"wide\"><table><thead><tr><th>What</th><th>Where</th>"
+      "<th class=\"n\">Files</th><th class=\"n\">Size</th><th>Open with</th></tr></thead><tbody>\n";
+  const auto row = [&](std::string_view name, std::string_view path, const std::string& files, const std::string& size,
+                       std::string_view how) {
+    out += "<tr><td>" + std::string(name) + "</td><td><a href=\"" + std::string(path) + "\">" + std::string(path) +
+           "</a></td><td class=\"n\">" + files + "</td><td class=\"n\">" + size + "</td><td>" + std::string(how) +
+           "</td></tr>\n";
   };
   for (const Kind& kind : kinds)
-    if (kind.files > 0) row(kind.name, kind.prefix, with_thousands(kind.files), base::with_byte_unit(kind.bytes), kind.how);
+    if (kind.files > 0)
+      row(kind.name, kind.prefix, with_thousands(kind.files), base::with_byte_unit(kind.bytes), kind.how);
   row("Inputs, settings, counts, hashes", "build.json", "1", "", "any editor or script");
   row("Times, memory, host", "run.json", "1", "", "any editor or script");
-  out += "</tbody></table></div>\n<h3>Why does this building look as it does?</h3>\n<p>Ask for any building of the map by its id; "
-         "OUT is the folder of this page:</p>\n<pre><code>blockrand explain OUT w123</code></pre>\n"
-         "<p>To check every written file again:</p>\n<pre><code>blockrand validate OUT</code></pre>\n</section>\n";
+  out +=
+      "</tbody></table></div>\n<h3>Why does this building look as it does?</h3>\n<p>Ask for any building of the map by "
+      "its id; "
+      "OUT is the folder of this page:</p>\n<pre><code>blockrand explain OUT w123</code></pre>\n"
+      "<p>To check every written file again:</p>\n<pre><code>blockrand validate OUT</code></pre>\n</section>\n";
   return out;
 }
 

@@ -44,15 +44,16 @@ struct CodeRows {
 
 /// Objects by code, at most `options.listed_objects` of each, in id order; and the gravest issue class of each building.
 struct Issues {
-  std::vector<CodeRows> codes;             ///< in the order of issue_codes.h, those that occur
-  std::vector<std::uint8_t> of_building;   ///< issue class of report_map.h, parallel to the footprints
-  std::vector<std::uint32_t> listed;       ///< buildings that appear in a list, ascending
+  std::vector<CodeRows> codes;            ///< in the order of issue_codes.h, those that occur
+  std::vector<std::uint8_t> of_building;  ///< issue class of report_map.h, parallel to the footprints
+  std::vector<std::uint32_t> listed;      ///< buildings that appear in a list, ascending
 };
 Issues collect_issues(const MapFootprints& footprints, const ReportFacts& facts, const ReportOptions& options);
 
 /// \param marks  buildings with a mark on the map, ascending
-std::string issue_section(const MapFootprints& footprints, const Issues& issues, const std::vector<std::uint32_t>& marks,
-                          const ReportFacts& facts, const ReportOptions& options);
+std::string issue_section(const MapFootprints& footprints, const Issues& issues,
+                          const std::vector<std::uint32_t>& marks, const ReportFacts& facts,
+                          const ReportOptions& options);
 std::string map_section(const ReportMap& map, const ReportFacts& facts);
 
 }  // namespace blockrand::outputs

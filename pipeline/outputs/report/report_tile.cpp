@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "pipeline/outputs/number_text.h"
 #include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -46,7 +46,8 @@ void count_style(const model::Building& building, StyleCounts& counts) {
   if (!is_classified(building.style)) return;
   // What outputs say, so that a user's correction counts; the attribute may be empty where nothing was resolved.
   const model::Attributes& a = building.attributes;
-  const auto style = place_in(model::kStyleClassNames, a.style.value).value_or(static_cast<std::size_t>(building.style.style_class()));
+  const auto style =
+      place_in(model::kStyleClassNames, a.style.value).value_or(static_cast<std::size_t>(building.style.style_class()));
   const auto era = place_in(model::kEraNames, a.era.value).value_or(static_cast<std::size_t>(building.style.built()));
   ++counts.classes[style][static_cast<std::size_t>(basis_of(a.style.source, building.style.non_house))];
   ++counts.eras[era][static_cast<std::size_t>(basis_of(a.era.source, false))];

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/outputs/style_basis.h"
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/style_basis.h"
 
 namespace blockrand::outputs {
 

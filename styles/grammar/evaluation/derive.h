@@ -13,9 +13,9 @@
 
 #include "styles/grammar/evaluation/functions.h"
 #include "styles/grammar/language/program.h"
-#include "styles/grammar/shapes/shape.h"
 #include "styles/grammar/language/source.h"
 #include "styles/grammar/language/value.h"
+#include "styles/grammar/shapes/shape.h"
 
 namespace blockrand::grammar {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "styles/grammar/shapes/pieces.h"
 #include "styles/grammar/evaluation/run.h"
 #include "styles/grammar/language/value_text.h"
+#include "styles/grammar/shapes/pieces.h"
 
 namespace blockrand::grammar {
 
@@ -58,8 +58,9 @@ std::vector<SplitItem> Run::split_items(Range range, Place& place, std::vector<N
     }
     made.mark = item.mark;
     made.size = item.value == kNone ? 1 : number(item.value, place);
-    if (item.value == kNone) made.mark = Mark::floating;  // before 2015.0 a size could be left out
-                                                          // (docs/rule_language.md §1.2)
+    if (item.value == kNone)
+      made.mark = Mark::floating;  // before 2015.0 a size could be left out
+                                   // (docs/rule_language.md §1.2)
     if (!std::isfinite(made.size)) {
       tell(Severity::warning, "not_finite", item.location, "this size is not a finite number; 0 is taken instead");
       made.size = 0;

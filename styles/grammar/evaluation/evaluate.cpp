@@ -6,8 +6,8 @@
 #include "pipeline/base/random.h"
 #include "styles/grammar/evaluation/arrays.h"
 #include "styles/grammar/evaluation/run.h"
-#include "styles/grammar/shapes/scope.h"
 #include "styles/grammar/language/value_text.h"
+#include "styles/grammar/shapes/scope.h"
 
 namespace blockrand::grammar {
 namespace {

@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "styles/grammar/evaluation/arrays.h"
-#include "styles/grammar/shapes/measure.h"
 #include "styles/grammar/evaluation/run.h"
-#include "styles/grammar/shapes/scope.h"
 #include "styles/grammar/language/value_text.h"
+#include "styles/grammar/shapes/measure.h"
+#include "styles/grammar/shapes/scope.h"
 
 namespace blockrand::grammar {
 namespace {

@@ -10,8 +10,8 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "styles/grammar/shapes/shape_mesh.h"
 #include "styles/grammar/language/value.h"
+#include "styles/grammar/shapes/shape_mesh.h"
 
 namespace blockrand::grammar {
 

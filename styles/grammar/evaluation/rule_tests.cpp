@@ -4,9 +4,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "styles/grammar/language/value_text.h"
 #include "styles/grammar/shapes/initial_shape.h"
 #include "styles/grammar/shapes/measure.h"
-#include "styles/grammar/language/value_text.h"
 
 namespace blockrand::grammar {
 namespace {

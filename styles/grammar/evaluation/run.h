@@ -9,11 +9,11 @@
 #include <unordered_set>
 #include <vector>
 
-#include "styles/grammar/shapes/components.h"
 #include "styles/grammar/evaluation/derive.h"
+#include "styles/grammar/shapes/components.h"
+#include "styles/grammar/shapes/occlusion.h"
 #include "styles/grammar/shapes/operations.h"
 #include "styles/grammar/shapes/split.h"
-#include "styles/grammar/shapes/occlusion.h"
 
 namespace blockrand::grammar {
 

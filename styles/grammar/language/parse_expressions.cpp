@@ -184,8 +184,7 @@ NodeId Parser::primary() {
     expression.kind = ExpressionKind::number;
     const std::string_view digits = slice(t);
     const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), expression.number);
-    if (read.ec == std::errc::result_out_of_range)
-      warn(t, "number_range", "this number is beyond what can be stored");
+    if (read.ec == std::errc::result_out_of_range) warn(t, "number_range", "this number is beyond what can be stored");
     ++at_;
     return add(expression);
   }

@@ -1,10 +1,10 @@
 #include "styles/grammar/shapes/mesh_tools.h"
 
 #include <algorithm>
-#include <unordered_map>
 #include <cmath>
 #include <numeric>
 #include <tuple>
+#include <unordered_map>
 
 #include "pipeline/base/portable_math.h"
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "styles/grammar/shapes/shape_mesh.h"
 #include "styles/grammar/shapes/scope.h"
 #include "styles/grammar/shapes/shape.h"
+#include "styles/grammar/shapes/shape_mesh.h"
 
 namespace blockrand::grammar {
 

@@ -9,8 +9,8 @@
 #include <tl/expected.hpp>
 
 #include "styles/grammar/language/ast.h"
-#include "styles/grammar/shapes/shape.h"
 #include "styles/grammar/language/value.h"
+#include "styles/grammar/shapes/shape.h"
 
 namespace blockrand::grammar {
 

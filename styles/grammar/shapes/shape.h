@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "styles/grammar/shapes/shape_mesh.h"
 #include "styles/grammar/language/value.h"
+#include "styles/grammar/shapes/shape_mesh.h"
 
 namespace blockrand::grammar {
 

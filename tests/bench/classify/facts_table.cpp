@@ -15,19 +15,19 @@
 #include <string>
 
 #include "importers/osm/read_extract.h"
+#include "pipeline/attributes/rule_sets.h"
 #include "pipeline/base/random.h"
 #include "pipeline/context/blocks.h"
-#include "pipeline/georef/projection.h"
-#include "pipeline/footprints/area.h"
+#include "pipeline/context/context_extract.h"
 #include "pipeline/evidence/building_facts.h"
 #include "pipeline/evidence/classify_extract.h"
-#include "pipeline/context/context_extract.h"
+#include "pipeline/footprints/area.h"
 #include "pipeline/footprints/load.h"
-#include "pipeline/run/prepare_extract.h"
-#include "pipeline/footprints/repair_extract.h"
-#include "pipeline/attributes/rule_sets.h"
-#include "pipeline/footprints/shard.h"
 #include "pipeline/footprints/repair/kept_nodes.h"
+#include "pipeline/footprints/repair_extract.h"
+#include "pipeline/footprints/shard.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/run/prepare_extract.h"
 
 using namespace blockrand;
 
@@ -48,7 +48,8 @@ int part_of(model::OsmId id) {
 std::string number(float v) { return v == v ? fmt::format("{:.5g}", v) : std::string(); }
 
 struct Answers {
-  evidence::StyleExtract tagged, untagged, no_region, no_smooth, permuted, era, storeys, storeys_alone, roof, roof_alone;
+  evidence::StyleExtract tagged, untagged, no_region, no_smooth, permuted, era, storeys, storeys_alone, roof,
+      roof_alone;
 };
 
 /// Gives each building the geometry of another: what classification is worth without it.
@@ -71,8 +72,8 @@ evidence::FactsExtract permuted(const evidence::FactsExtract& facts) {
 /// Classifies with one tenth hidden after the other and keeps the answers of those hidden.
 template <class Hide, class Keep>
 void in_tenths(
-    const evidence::FactsExtract& facts, const evidence::TagFacts& tags, const footprints::FootprintStore& store, Hide hide,
-    Keep keep,
+    const evidence::FactsExtract& facts, const evidence::TagFacts& tags, const footprints::FootprintStore& store,
+    Hide hide, Keep keep,
     const std::function<evidence::StyleExtract(const evidence::FactsExtract&, const evidence::TagFacts&)>& classify) {
   for (int part = 0; part < kParts; ++part) {
     evidence::FactsExtract f = facts;
@@ -87,7 +88,8 @@ void in_tenths(
   }
 }
 
-void write_table(const std::string& input, const std::string& configs, const std::string& table, bool answers, bool quick) {
+void write_table(const std::string& input, const std::string& configs, const std::string& table, bool answers,
+                 bool quick) {
   base::Progress progress;
   const model::Extract extract = importers::osm::read_extract(input, {});
   const auto area = footprints::area_of(extract);

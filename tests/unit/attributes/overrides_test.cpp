@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include "pipeline/base/error.h"
 #include "pipeline/attributes/resolve.h"
+#include "pipeline/base/error.h"
 
 namespace blockrand::attributes {
 namespace {

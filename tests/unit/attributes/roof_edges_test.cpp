@@ -8,15 +8,16 @@
 namespace blockrand::attributes {
 namespace {
 
-using model::WallSegmentKind;
 using model::Point2;
 using model::RoofEdge;
+using model::WallSegmentKind;
 using testing_shapes::ring;
 
 /// A house 6 m wide and 10 m deep: south, east, north, west.
 const model::Polygon kHouse{ring({{0, 0}, {6, 0}, {6, 10}, {0, 10}}), {}};
 
-model::Building building(const std::vector<std::tuple<std::uint32_t, WallSegmentKind, double, double, bool>>& segments) {
+model::Building building(
+    const std::vector<std::tuple<std::uint32_t, WallSegmentKind, double, double, bool>>& segments) {
   model::Building b;
   b.outline = {kHouse};
   for (const auto& [edge, kind, start, end, outbuilding] : segments) {

@@ -148,8 +148,9 @@ TEST_F(Configs, AreNotSoughtAnywhereElse) {
     configs_folder("", here / "usr/bin/blockrand");
     FAIL() << "a folder above the prefix was taken";
   } catch (const base::UsageError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr((here / "usr/bin/configs").string()),
-                                    HasSubstr((here / "usr/share/blockrand/configs").string()), HasSubstr("--configs")));
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr((here / "usr/bin/configs").string()),
+                      HasSubstr((here / "usr/share/blockrand/configs").string()), HasSubstr("--configs")));
   }
   EXPECT_THROW(configs_folder("/nowhere", program_file()), base::UsageError) << "no fallback for a wrong --configs";
   EXPECT_EQ(program_file().filename(), "test_cli");

@@ -180,7 +180,7 @@ TEST(Baseline, WhatWasComparedOtherwiseIsTold) {
   now.absolute_heights = true;
   now.reference.crs = "EPSG:25833";
   const BaselineResult v = compare_with_baseline(now, comparison_json(measured(), {{"align", "none"}, {"seed", "1"}}),
-                                                  "before.json", 0.02, {{"align", "both"}, {"lod", "2"}});
+                                                 "before.json", 0.02, {{"align", "both"}, {"lod", "2"}});
   EXPECT_FALSE(v.worse());
   EXPECT_THAT(v.differs,
               ElementsAre("CRS was EPSG:25832 and is EPSG:25833", "heights was above own ground and is absolute",

@@ -105,7 +105,8 @@ TEST(BlockFigures, OnlyStreetsHaveAFront) {
 }
 
 TEST(BlockFigures, AStraightSideOfRiverAndStreetHasItsFrontAtTheStreet) {
-  std::vector<NetworkLine> lines{street(1, {{60, 0}, {120, 0}, {120, 100}, {0, 100}, {0, 0}}), street(2, {{0, 0}, {60, 0}})};
+  std::vector<NetworkLine> lines{street(1, {{60, 0}, {120, 0}, {120, 100}, {0, 100}, {0, 0}}),
+                                 street(2, {{0, 0}, {60, 0}})};
   lines[1].kind = LineClass::waterway;
   // At the river houses stand 2 m from its line, at the street 12 m: the line of the street's front is its own.
   const std::vector<Footprint> houses{house(11, 0, 2, 60, 12), house(12, 60, 12, 50, 12)};

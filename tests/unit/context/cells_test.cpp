@@ -80,7 +80,8 @@ TEST(Cells, KnowHowMuchOfThemTheDataCovers) {
   EXPECT_DOUBLE_EQ(covered_share(cell, all), 1);
   EXPECT_DOUBLE_EQ(covered_share(cell, std::vector<Point2>{{0, 0}, {250, 0}, {0, 250}}), 0.5);
   EXPECT_DOUBLE_EQ(covered_share(cell, std::vector<Point2>{{-100, -100}, {100, -100}, {100, 400}, {-100, 400}}), 0.4);
-  EXPECT_DOUBLE_EQ(covered_share(cell, std::vector<Point2>{{50, 50}, {150, 50}, {150, 150}, {50, 150}}), 0.16) << "within";
+  EXPECT_DOUBLE_EQ(covered_share(cell, std::vector<Point2>{{50, 50}, {150, 50}, {150, 150}, {50, 150}}), 0.16)
+      << "within";
   EXPECT_DOUBLE_EQ(covered_share({1, 1}, std::vector<Point2>{{0, 0}, {250, 0}, {0, 250}}), 0);
   EXPECT_DOUBLE_EQ(covered_share(cell, {}), 0);
 }

@@ -16,7 +16,8 @@ TaggedBuilding tagged(std::int64_t number, double x, double y, float storeys, st
 const OsmId kNobody{OsmType::way, 999};
 
 TEST(TaggedNeighbours, MedianWithinTheReachOnly) {
-  const TaggedNeighbours n({tagged(1, 0, 0, 3), tagged(2, 50, 0, 5), tagged(3, -60, 20, 4), tagged(4, 101, 0, 20)}, 100);
+  const TaggedNeighbours n({tagged(1, 0, 0, 3), tagged(2, 50, 0, 5), tagged(3, -60, 20, 4), tagged(4, 101, 0, 20)},
+                           100);
   const auto vote = n.storeys({0, 0}, 0, kNobody, 3);
   ASSERT_TRUE(vote);
   EXPECT_DOUBLE_EQ(vote->value, 4);

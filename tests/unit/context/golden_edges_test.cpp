@@ -15,8 +15,8 @@
 namespace blockrand::context {
 namespace {
 
-using model::WallSegmentKind;
 using model::Point2;
+using model::WallSegmentKind;
 
 struct GoldenEdge {
   std::string extract, building;

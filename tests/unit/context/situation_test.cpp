@@ -76,8 +76,8 @@ TEST(Situation, EndOfARowAndFreeStanding) {
 
 TEST(Situation, RearBuildingAndSideWing) {
   SmallTown t = perimeter_block();
-  t.box(51, 38, 40, 62, 52);       // Hinterhaus
-  t.box(52, 26, 22, 33, 44);       // Seitenfluegel behind the front house 11
+  t.box(51, 38, 40, 62, 52);  // Hinterhaus
+  t.box(52, 26, 22, 33, 44);  // Seitenfluegel behind the front house 11
   t.label();
   EXPECT_EQ(t[51].situation.position, BuildingPosition::rear_building);
   EXPECT_THAT(t[51].situation.fronts, IsEmpty());
@@ -138,9 +138,9 @@ TEST(Situation, ShedInAGardenStandsFree) {
 TEST(Situation, ABuildingOfTwoPolygonsIsInOneBlockAsTheBlockSays) {
   for (const double depth : {4.0, 12.0}) {
     SmallTown t = perimeter_block();
-    t.box(51, 40, 40, 60, 50);                                                         // 200 m2 in the block
+    t.box(51, 40, 40, 60, 50);  // 200 m2 in the block
     SmallTown beyond;
-    beyond.box(51, 110, 40, 130, 40 + depth);                                          // 80 or 240 m2 over the street
+    beyond.box(51, 110, 40, 130, 40 + depth);  // 80 or 240 m2 over the street
     t.buildings.back().outline.push_back(beyond.footprints[0].polygon);
     t.footprints.push_back(beyond.footprints[0]);
     t.label();

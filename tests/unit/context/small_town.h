@@ -13,7 +13,8 @@ namespace blockrand::context {
 /// Buildings, streets and points around a place in the build CRS. Coordinates in metres from there; turned by `angle`.
 class SmallTown {
  public:
-  explicit SmallTown(double degrees = 0) : cos_(std::cos(degrees * 0.017453292519943295)), sin_(std::sin(degrees * 0.017453292519943295)) {}
+  explicit SmallTown(double degrees = 0)
+      : cos_(std::cos(degrees * 0.017453292519943295)), sin_(std::sin(degrees * 0.017453292519943295)) {}
 
   using Points = std::vector<model::Point2>;
 
@@ -32,9 +33,12 @@ class SmallTown {
     buildings.push_back(b);
     footprints.push_back({b.osm, polygon, std::nullopt, canopy});
   }
-  void box(std::int64_t id, double x0, double y0, double x1, double y1) { house(id, {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}); }
+  void box(std::int64_t id, double x0, double y0, double x1, double y1) {
+    house(id, {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
+  }
 
-  NetworkLine& street(std::int64_t id, const Points& points, const std::string& name, LineClass kind = LineClass::residential) {
+  NetworkLine& street(std::int64_t id, const Points& points, const std::string& name,
+                      LineClass kind = LineClass::residential) {
     NetworkLine line;
     line.id = {model::OsmType::way, id};
     line.kind = kind;
@@ -76,7 +80,8 @@ class SmallTown {
   }
 
   const model::Building& operator[](std::int64_t id) const {
-    return *std::find_if(buildings.begin(), buildings.end(), [&](const model::Building& b) { return b.osm.number == id; });
+    return *std::find_if(buildings.begin(), buildings.end(),
+                         [&](const model::Building& b) { return b.osm.number == id; });
   }
 
   /// The stretch of a building that holds the point nearest to (x, y).

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "importers/osm/read_extract.h"
-#include "pipeline/georef/crs.h"
 #include "pipeline/footprints/area.h"
 #include "pipeline/footprints/load.h"
 #include "pipeline/footprints/shard.h"
+#include "pipeline/georef/crs.h"
 #include "tests/unit/footprints/repair/repair_alone.h"
 
 namespace blockrand::context {

@@ -12,9 +12,9 @@
 namespace blockrand::context {
 namespace {
 
-using model::WallSegmentKind;
-using model::WallSegment;
 using model::Point2;
+using model::WallSegment;
+using model::WallSegmentKind;
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -43,7 +43,8 @@ void expect_complete(const model::Building& b) {
   double perimeter = 0;
   const auto add = [&](const model::Ring& r) {
     for (std::size_t i = 0; i < r.size(); ++i)
-      perimeter += std::hypot(r.points[(i + 1) % r.size()].x - r.points[i].x, r.points[(i + 1) % r.size()].y - r.points[i].y);
+      perimeter +=
+          std::hypot(r.points[(i + 1) % r.size()].x - r.points[i].x, r.points[(i + 1) % r.size()].y - r.points[i].y);
   };
   for (const model::Polygon& p : b.outline) {
     add(p.outer);
@@ -239,8 +240,8 @@ TEST(WallSegments, CourtOfAUIsACourtyardAndAnLHasNone) {
 TEST(WallSegments, SquareInFrontIsStreetSpace) {
   SmallTown t;
   t.street(901, {{0, 0}, {60, 0}, {60, 60}, {0, 60}, {0, 0}}, "Market", LineClass::pedestrian).area = true;
-  t.box(1, 20, 60, 32, 72);   // its front lies on the outline of the square
-  t.box(2, 62, 20, 74, 32);   // 2 m beside it
+  t.box(1, 20, 60, 32, 72);  // its front lies on the outline of the square
+  t.box(2, 62, 20, 74, 32);  // 2 m beside it
   t.label();
   EXPECT_EQ(t.kind(1, 26, 60), WallSegmentKind::street);
   EXPECT_EQ(t.edge(1, 26, 60).street_name, "Market");
@@ -343,7 +344,7 @@ TEST(WallSegments, EntrancesAndTreesGoToTheNearestWall) {
   t.point(703, SitePointKind::entrance, 44, 16);  // in the middle of the house: nobody's
   t.point(704, SitePointKind::tree, 40, 6);
   t.point(705, SitePointKind::tree, 44, 26);
-  t.point(706, SitePointKind::tree, 44, 16);      // within the house
+  t.point(706, SitePointKind::tree, 44, 16);  // within the house
   t.label();
   EXPECT_EQ(t.edge(12, 44, 10).entrances, 1);
   EXPECT_EQ(t.edge(11, 30, 10).entrances, 1);
@@ -370,10 +371,10 @@ std::vector<std::string> holders(const SmallTown& t, std::int64_t point) {
 /// Shops are mapped in the middle of their rooms: they open to the street of their house, or of their address.
 TEST(WallPoints, ShopsGoToTheWallAtTheirStreet) {
   SmallTown t = perimeter_block();
-  t.point(700, SitePointKind::shop, 44, 19, "", "", "shop");                   // nearer to the yard
-  t.point(701, SitePointKind::shop, 44, 21.5, "", "", "craft");                // at the wall to the yard
+  t.point(700, SitePointKind::shop, 44, 19, "", "", "shop");                    // nearer to the yard
+  t.point(701, SitePointKind::shop, 44, 21.5, "", "", "craft");                 // at the wall to the yard
   t.point(702, SitePointKind::address, 44, 15, "South Street", "5", "office");  // with an address
-  t.point(703, SitePointKind::shop, 44, 8, "", "", "shop");                    // on the pavement: nobody's
+  t.point(703, SitePointKind::shop, 44, 8, "", "", "shop");                     // on the pavement: nobody's
   t.point(704, SitePointKind::shop, 16, 13, "West Street", "", "gastronomy");
   t.label();
   EXPECT_THAT(holders(t, 700), ElementsAre("w12 street South Street"));
@@ -390,14 +391,14 @@ TEST(WallPoints, ShopsGoToTheWallAtTheirStreet) {
 
 TEST(WallPoints, AddressesInAHouseGoToTheWallAtTheirStreet) {
   SmallTown t = perimeter_block();
-  t.point(700, SitePointKind::address, 44, 16, "South Street", "5");  // in the middle
-  t.point(701, SitePointKind::address, 44, 18, "", "5a");             // no street told, nearer to the yard
+  t.point(700, SitePointKind::address, 44, 16, "South Street", "5");     // in the middle
+  t.point(701, SitePointKind::address, 44, 18, "", "5a");                // no street told, nearer to the yard
   t.point(702, SitePointKind::address, 44, 21.5, "South Street", "5b");  // at the wall to the yard
   t.point(703, SitePointKind::address, 44, 9.4, "South Street", "7");    // before the wall
   t.point(704, SitePointKind::address, 44, 8, "South Street", "9");      // on the pavement: nobody's
-  t.point(705, SitePointKind::address, 16, 13, "West Street", "1");      // in a corner house, nearer to the other street
+  t.point(705, SitePointKind::address, 16, 13, "West Street", "1");  // in a corner house, nearer to the other street
   t.point(706, SitePointKind::address, 16, 14, "South Street", "3");
-  t.point(707, SitePointKind::address, 44, 15, "South Street", "");      // no number: no address of a door
+  t.point(707, SitePointKind::address, 44, 15, "South Street", "");  // no number: no address of a door
   t.label();
   EXPECT_THAT(holders(t, 700), ElementsAre("w12 street South Street"));
   EXPECT_THAT(holders(t, 701), ElementsAre("w12 street South Street"));
@@ -477,8 +478,8 @@ TEST(WallPoints, StandInOneWallOfOneHouseInAnyOrder) {
   t.house(61, {{8, 8}, {30, 8}, {30, 30}, {8, 30}}, {}, true);  // a canopy over a corner
   t.box(62, 40, 12, 44, 16);                                    // stands in another house
   for (int i = 0; i < 600; ++i)
-    t.point(1000 + i, i % 2 ? SitePointKind::entrance : SitePointKind::address, draw(5, 95), draw(5, 28), "South Street",
-            std::to_string(i));
+    t.point(1000 + i, i % 2 ? SitePointKind::entrance : SitePointKind::address, draw(5, 95), draw(5, 28),
+            "South Street", std::to_string(i));
   SmallTown other = t;
   std::shuffle(other.points.begin(), other.points.end(), random);
   std::shuffle(other.buildings.begin(), other.buildings.end(), random);
@@ -535,7 +536,8 @@ void expect_same(const SmallTown& a, const SmallTown& b, double tolerance) {
   ASSERT_EQ(la.size(), lb.size());
   for (const auto& [id, kinds] : la)
     for (std::size_t k = 0; k < kinds.size(); ++k)
-      EXPECT_NEAR(kinds[k], lb.at(id)[k], tolerance) << "w" << id << " " << model::name(static_cast<WallSegmentKind>(k));
+      EXPECT_NEAR(kinds[k], lb.at(id)[k], tolerance)
+          << "w" << id << " " << model::name(static_cast<WallSegmentKind>(k));
   for (const model::Building& building : a.buildings) {
     const model::BuildingSituation &s = building.situation, &o = b[building.osm.number].situation;
     EXPECT_EQ(s.position, o.position) << building.id();
@@ -622,7 +624,8 @@ void add_feature(model::Extract& e, model::OsmId id, std::uint32_t kinds, const 
   f.tags = {static_cast<std::uint32_t>(e.tags.size()), static_cast<std::uint32_t>(tags.tags.size())};
   for (const auto& [key, value] : tags.tags) e.tags.push_back({e.strings.intern(key), e.strings.intern(value)});
   f.rings = {static_cast<std::uint32_t>(e.rings.size()), 1};
-  e.rings.push_back({{static_cast<std::uint32_t>(e.vertices.size()), static_cast<std::uint32_t>(places.size())}, false});
+  e.rings.push_back(
+      {{static_cast<std::uint32_t>(e.vertices.size()), static_cast<std::uint32_t>(places.size())}, false});
   for (const model::Location p : places) {
     e.vertices.push_back(p);
     e.vertex_nodes.push_back(p.lon);
@@ -673,9 +676,8 @@ TEST(SitePoints, AreEntrancesAddressesAndTrees) {
   EXPECT_EQ(found[0].place, (Point2{5, 6}));
   EXPECT_EQ(found[1].kind, SitePointKind::address);
   EXPECT_EQ(found[2].kind, SitePointKind::tree);
-  const std::vector<SitePoint> used = site_points(e, plain, [](const auto& tag) {
-    return tag("shop").empty() ? std::string_view() : std::string_view("shop");
-  });
+  const std::vector<SitePoint> used = site_points(
+      e, plain, [](const auto& tag) { return tag("shop").empty() ? std::string_view() : std::string_view("shop"); });
   ASSERT_EQ(used.size(), 4u);
   EXPECT_EQ(used[0].use, "");
   EXPECT_EQ(used[3].kind, SitePointKind::shop);

@@ -16,20 +16,20 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/text.h"
-#include "pipeline/masses/envelope.h"
 #include "pipeline/facades/facade_context.h"
 #include "pipeline/facades/passages.h"
 #include "pipeline/facades/wall_corners.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/triangulate.h"
+#include "pipeline/masses/envelope.h"
 #include "styles/roofs/roof.h"
 #include "tests/unit/geometry/shapes.h"
 
 namespace blockrand::facades {
 namespace {
 
-using model::WallSegmentKind;
 using model::Point2;
+using model::WallSegmentKind;
 using testing_shapes::Random;
 
 const std::filesystem::path kSource = BLOCKRAND_SOURCE_DIR;
@@ -37,7 +37,8 @@ const std::filesystem::path kSource = BLOCKRAND_SOURCE_DIR;
 struct House {
   double width = 18, depth = 12, storey_height = 3.8, plinth = 0.8;
   int storeys = 5;
-  std::vector<WallSegmentKind> edges{WallSegmentKind::street, WallSegmentKind::party_wall, WallSegmentKind::courtyard, WallSegmentKind::party_wall};
+  std::vector<WallSegmentKind> edges{WallSegmentKind::street, WallSegmentKind::party_wall, WallSegmentKind::courtyard,
+                                     WallSegmentKind::party_wall};
   double angle_x = 1, angle_y = 0;  ///< direction of the front
 };
 
@@ -666,7 +667,8 @@ const std::string kOneWindow =
 
 TEST(Passages, StretchesBeyondKnowTheFrontThatTookTheMouthIn) {
   House house;
-  house.edges = {WallSegmentKind::street, WallSegmentKind::side, WallSegmentKind::courtyard, WallSegmentKind::party_wall};
+  house.edges = {WallSegmentKind::street, WallSegmentKind::side, WallSegmentKind::courtyard,
+                 WallSegmentKind::party_wall};
   model::Region region = region_of(house, "own", 5);
   model::Building& b = region.buildings[0];
   model::WallSegment portal = b.edges[0];

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <map>
 
-#include "pipeline/masses/envelope.h"
 #include "pipeline/facades/opening_proof.h"
-#include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/cgal_validator.h"
+#include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/triangulate.h"
+#include "pipeline/masses/envelope.h"
 #include "styles/roofs/roof.h"
 #include "tests/unit/geometry/random_plans.h"
 #include "tests/unit/geometry/shapes.h"

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/masses/envelope.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
+#include "pipeline/masses/envelope.h"
 #include "tests/unit/geometry/shapes.h"
 
 namespace blockrand::facades {

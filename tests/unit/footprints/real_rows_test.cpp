@@ -11,14 +11,14 @@
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/base/parallel.h"
-#include "pipeline/geometry/slivers.h"
-#include "pipeline/geometry/polygon_measures.h"
-#include "pipeline/geometry/valid_polygon.h"
-#include "pipeline/georef/crs.h"
-#include "pipeline/georef/projection.h"
 #include "pipeline/footprints/area.h"
 #include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/terrace_rows.h"
+#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/geometry/slivers.h"
+#include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/georef/crs.h"
+#include "pipeline/georef/projection.h"
 
 namespace blockrand::footprints {
 namespace {
@@ -98,19 +98,22 @@ TEST_P(RealExtracts, AreRepaired) {
   const repair::KeptNodes kept(extract);
   const repair::RepairOptions options;
   const auto start = std::chrono::steady_clock::now();
-  const RepairedExtract repaired = repair_extract(extract, shards, projection, kept, options, base::worker_count(0), progress);
+  const RepairedExtract repaired =
+      repair_extract(extract, shards, projection, kept, options, base::worker_count(0), progress);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const RepairTotals& t = repaired.totals;
   const Validated validated = judge(repaired, options);
-  std::printf("| %s | %llu | moved %llu of %llu, mean %.3f m, max %.3f m | area changed %llu, median %.4f %%, max %.2f %% | "
-              "shared walls %llu | gaps closed %llu | overlaps resolved %llu, left %zu | cut %llu | squared %llu | arcs %llu | %.2f s |\n",
-              GetParam(), static_cast<unsigned long long>(t.outlines), static_cast<unsigned long long>(t.moved),
-              static_cast<unsigned long long>(t.vertices), t.mean_shift, t.max_shift,
-              static_cast<unsigned long long>(t.area_changed), 100 * t.median_area_change, 100 * t.max_area_change,
-              static_cast<unsigned long long>(t.shared_walls), static_cast<unsigned long long>(t.gaps_closed),
-              static_cast<unsigned long long>(t.overlaps_resolved), validated.reported,
-              static_cast<unsigned long long>(t.at_cuts), static_cast<unsigned long long>(t.squared),
-              static_cast<unsigned long long>(t.arcs), seconds);
+  std::printf(
+      "| %s | %llu | moved %llu of %llu, mean %.3f m, max %.3f m | area changed %llu, median %.4f %%, max %.2f %% | "
+      "shared walls %llu | gaps closed %llu | overlaps resolved %llu, left %zu | cut %llu | squared %llu | arcs %llu | "
+      "%.2f s |\n",
+      GetParam(), static_cast<unsigned long long>(t.outlines), static_cast<unsigned long long>(t.moved),
+      static_cast<unsigned long long>(t.vertices), t.mean_shift, t.max_shift,
+      static_cast<unsigned long long>(t.area_changed), 100 * t.median_area_change, 100 * t.max_area_change,
+      static_cast<unsigned long long>(t.shared_walls), static_cast<unsigned long long>(t.gaps_closed),
+      static_cast<unsigned long long>(t.overlaps_resolved), validated.reported,
+      static_cast<unsigned long long>(t.at_cuts), static_cast<unsigned long long>(t.squared),
+      static_cast<unsigned long long>(t.arcs), seconds);
   EXPECT_EQ(validated.invalid, 0u);
   EXPECT_EQ(validated.slivers, 0u);
   EXPECT_EQ(validated.missing, 0u) << "buildings without an outline and without a reason";
@@ -121,10 +124,11 @@ TEST_P(RealExtracts, AreRepaired) {
 
 INSTANTIATE_TEST_SUITE_P(Small, RealExtracts,
                          ::testing::Values("berlin-luisenstadt-2021.osm", "berlin-mitte-2014.osm.pbf",
-                                           "berlin-pariser-platz-2014.osm.pbf", "berlin-unter-den-linden-clipped.osm.gz",
-                                           "berlin-zionskirchplatz-2020.osm", "berlin_frankfurter_allee.osm.pbf",
-                                           "berlin_karl_marx_allee.osm.pbf", "dortmund-innenstadt.osm.gz",
-                                           "helsinki-centre-2019.osm.pbf", "husum_altstadt.osm.pbf", "ingolstadt-altstadt.osm",
+                                           "berlin-pariser-platz-2014.osm.pbf",
+                                           "berlin-unter-den-linden-clipped.osm.gz", "berlin-zionskirchplatz-2020.osm",
+                                           "berlin_frankfurter_allee.osm.pbf", "berlin_karl_marx_allee.osm.pbf",
+                                           "dortmund-innenstadt.osm.gz", "helsinki-centre-2019.osm.pbf",
+                                           "husum_altstadt.osm.pbf", "ingolstadt-altstadt.osm",
                                            "lauf-2020-clipped.osm.pbf", "liechtenstein-2013-08-03.osm.pbf",
                                            "liechtenstein-2022-12.osm.pbf", "monaco-2021.osm.pbf"));
 INSTANTIATE_TEST_SUITE_P(City, RealExtracts, ::testing::Values("berlin-2014-06.osm.pbf"));

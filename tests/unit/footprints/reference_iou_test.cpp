@@ -13,10 +13,10 @@
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/base/parallel.h"
-#include "pipeline/georef/crs.h"
-#include "pipeline/georef/projection.h"
 #include "pipeline/footprints/area.h"
 #include "pipeline/footprints/repair_extract.h"
+#include "pipeline/georef/crs.h"
+#include "pipeline/georef/projection.h"
 #include "tests/unit/run/survey_match.h"
 
 namespace blockrand::footprints::test {
@@ -37,7 +37,8 @@ constexpr double kLoss = 0.01;   // of IoU
 class Town {
  public:
   explicit Town(const fs::path& file)
-      : extract_(importers::osm::read_extract(file.string())), area_(area_of(extract_).value()),
+      : extract_(importers::osm::read_extract(file.string())),
+        area_(area_of(extract_).value()),
         projection_(georef::open_crs(georef::choose_crs(area_.centre.lon, area_.centre.lat), area_.box), area_.box),
         kept_(extract_) {
     model::Report report;
@@ -76,18 +77,18 @@ enum Placing : std::size_t { as_is, offset_off, best_place, kPlacings };
 struct Measured {
   std::string ids;
   std::size_t buildings = 0, surveyed = 0;
-  bool gone = false;           ///< another building stands for one of them now
-  double shift = 0;            ///< m, the largest of the records
-  double outline_shift = 0;    ///< m, between the outlines before and after
-  double area = 0, survey_area = 0;        ///< m²
-  std::array<double, kSteps> iou{};        ///< as is
+  bool gone = false;                 ///< another building stands for one of them now
+  double shift = 0;                  ///< m, the largest of the records
+  double outline_shift = 0;          ///< m, between the outlines before and after
+  double area = 0, survey_area = 0;  ///< m²
+  std::array<double, kSteps> iou{};  ///< as is
   std::array<double, kPlacings> before{}, after{};
   bool moved() const { return shift > kMoved || outline_shift > kMoved; }
   double gain(Placing p) const { return after[p] - before[p]; }
 };
 
 Point2 median(std::vector<Point2> points) {
-  const auto middle = [&](double Point2::* of) {
+  const auto middle = [&](double Point2::*of) {
     std::sort(points.begin(), points.end(), [&](Point2 a, Point2 b) { return a.*of < b.*of; });
     return points.empty() ? 0 : points[points.size() / 2].*of;
   };
@@ -115,8 +116,8 @@ Measured measure(const std::array<FootprintStore, kSteps>& steps, const SurveyMa
     out.ids += (out.ids.empty() ? "" : "+") + after.id.text();
     out.gone |= after.settled != model::ObjectState::pending;
     out.shift = std::max(out.shift, after.record.max_shift);
-    out.outline_shift = std::max(
-        out.outline_shift, shape_of(steps[mapped], {b}).outline_distance(shape_of(steps[repaired], {b})));
+    out.outline_shift =
+        std::max(out.outline_shift, shape_of(steps[mapped], {b}).outline_distance(shape_of(steps[repaired], {b})));
   }
   for (std::size_t s = 0; s < kSteps; ++s)
     out.iou[s] = shape_of(steps[s], match.buildings).intersection_over_union(match.ground);
@@ -172,8 +173,9 @@ void print_row(const char* what, const std::vector<Measured>& some) {
 
 void print_table(const std::vector<Measured>& all) {
   const auto moved = those(all, [](const Measured& m) { return m.moved(); });
-  std::printf("| which | matches | as is: before | after | change | lost > 0.01 | without the offset: before | after | "
-              "change | lost | each at its best place: before | after | change | lost |\n");
+  std::printf(
+      "| which | matches | as is: before | after | change | lost > 0.01 | without the offset: before | after | "
+      "change | lost | each at its best place: before | after | change | lost |\n");
   print_row("all", all);
   print_row("moved > 5 cm", moved);
   print_row("  by the record", those(moved, [](const Measured& m) { return m.shift > kMoved; }));
@@ -185,17 +187,19 @@ void print_table(const std::vector<Measured>& all) {
   for (const Measured& m : moved)
     for (std::size_t s = 0; s < kSteps; ++s)
       change[s] += (m.iou[s] - m.iou[mapped]) / static_cast<double>(moved.size());
-  std::printf("  mean change of the moved, as is: simplified %+.4f, walls shared %+.4f, squared apart %+.4f, "
-              "all %+.4f\n",
-              change[simplified], change[shared], change[squared], change[repaired]);
+  std::printf(
+      "  mean change of the moved, as is: simplified %+.4f, walls shared %+.4f, squared apart %+.4f, "
+      "all %+.4f\n",
+      change[simplified], change[shared], change[squared], change[repaired]);
 }
 
 void print_losers(const std::vector<Measured>& all) {
   std::vector<Measured> moved = those(all, [](const Measured& m) { return m.moved(); });
   std::stable_sort(moved.begin(), moved.end(),
                    [](const auto& a, const auto& b) { return a.gain(as_is) < b.gain(as_is); });
-  std::printf("  worst: buildings (surveyed), area / surveyed, shift / of outline, IoU before, change: simplified, "
-              "walls shared, squared apart, all; all without the offset, at its best place\n");
+  std::printf(
+      "  worst: buildings (surveyed), area / surveyed, shift / of outline, IoU before, change: simplified, "
+      "walls shared, squared apart, all; all without the offset, at its best place\n");
   for (std::size_t i = 0; i < std::min<std::size_t>(10, moved.size()); ++i) {
     const Measured& m = moved[i];
     std::printf("  %s (%zu)%s %.0f / %.0f m2, %.2f / %.2f m, %.4f: %+.4f %+.4f %+.4f %+.4f; %+.4f %+.4f\n",

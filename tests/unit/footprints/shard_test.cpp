@@ -22,7 +22,8 @@ std::uint32_t add(Extract& e, std::int64_t number, ObjectKind kind, std::vector<
   b.id = {OsmType::way, number};
   b.kind = kind;
   b.rings = {static_cast<std::uint32_t>(e.rings.size()), 1};
-  e.rings.push_back({{static_cast<std::uint32_t>(e.vertices.size()), static_cast<std::uint32_t>(outline.size())}, false});
+  e.rings.push_back(
+      {{static_cast<std::uint32_t>(e.vertices.size()), static_cast<std::uint32_t>(outline.size())}, false});
   for (const Location v : outline) {
     e.vertices.push_back(v);
     e.vertex_nodes.push_back(static_cast<std::int64_t>(e.vertex_nodes.size()) + 1);
@@ -58,7 +59,8 @@ TEST(Shards, PartsGoToTheSmallestOutlineThatHoldsThem) {
 TEST(Shards, APartOnTheOutlinesEdgeAndAlittleBeyondBelongsToIt) {
   Extract e;
   const auto outline = add(e, 1, ObjectKind::building, square(0, 0, 1000));
-  const auto part = add(e, 2, ObjectKind::building_part, {{kX, kY}, {kX + 1003, kY - 2}, {kX + 1000, kY + 1000}, {kX, kY + 1000}});
+  const auto part =
+      add(e, 2, ObjectKind::building_part, {{kX, kY}, {kX + 1003, kY - 2}, {kX + 1000, kY + 1000}, {kX, kY + 1000}});
   model::Report report;
   EXPECT_EQ(seed_of(make_shards(e, report), outline)->parts, std::vector<std::uint32_t>{part});
 }
@@ -118,13 +120,15 @@ TEST(Shards, PartsWithoutOutlineThatShareEdgesAreOneBuilding) {
   const auto at_corner = add(e, 7, ObjectKind::building_part, square(900, 300, 300));
   // Squares run from their lower left corner counter-clockwise: what is right of one is left of the next.
   const auto join = [&](std::uint32_t left, std::uint32_t right) {
-    const auto l = e.rings[e.buildings[left].rings.first].vertices.first, r = e.rings[e.buildings[right].rings.first].vertices.first;
+    const auto l = e.rings[e.buildings[left].rings.first].vertices.first,
+               r = e.rings[e.buildings[right].rings.first].vertices.first;
     e.vertex_nodes[r] = e.vertex_nodes[l + 1];
     e.vertex_nodes[r + 3] = e.vertex_nodes[l + 2];
   };
   join(first, second);
   join(second, third);
-  const auto c = e.rings[e.buildings[at_corner].rings.first].vertices.first, t = e.rings[e.buildings[third].rings.first].vertices.first;
+  const auto c = e.rings[e.buildings[at_corner].rings.first].vertices.first,
+             t = e.rings[e.buildings[third].rings.first].vertices.first;
   e.vertex_nodes[c] = e.vertex_nodes[t + 2];  // one common node is no common wall
   model::Report report;
   const auto shards = make_shards(e, report);
@@ -144,7 +148,8 @@ TEST(Shards, PartsWithoutOutlineThatShareEdgesAreOneBuilding) {
 TEST(Shards, TheTileIsThatOfTheBoxCentreAndEveryBuildingHasOne) {
   Extract e;
   // A long building whose first corner lies two tiles west of its centre.
-  add(e, 1, ObjectKind::building, {{kX - 100'000, kY}, {kX + 110'000, kY}, {kX + 110'000, kY + 500}, {kX - 100'000, kY + 500}});
+  add(e, 1, ObjectKind::building,
+      {{kX - 100'000, kY}, {kX + 110'000, kY}, {kX + 110'000, kY + 500}, {kX - 100'000, kY + 500}});
   add(e, 2, ObjectKind::building, square(5'000, 0, 300));
   model::Report report;
   const auto shards = make_shards(e, report);

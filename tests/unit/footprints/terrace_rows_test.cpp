@@ -52,7 +52,8 @@ TEST(IndexOfFootprints, PairsAreThoseWhoseBoxesAreNear) {
 }
 
 TEST(Rows, NeighboursAreOneRowAndAlleysPartThem) {
-  const FootprintStore store = store_of({box(0, 0, 10, 10), box(10.4, 0, 10, 10), box(22, 0, 10, 10), box(25, 3, 2, 2)});
+  const FootprintStore store =
+      store_of({box(0, 0, 10, 10), box(10.4, 0, 10, 10), box(22, 0, 10, 10), box(25, 3, 2, 2)});
   const std::vector<TerraceRowPlan> rows = find_terrace_rows(store, 1);
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_THAT(rows[0].buildings, ElementsAre(0u, 1u));

@@ -34,7 +34,8 @@ Solid prism(const std::vector<Point3>& loop, double height) {
 }
 
 /// The solid with its loops rewritten by `change`, faces otherwise as they are.
-Solid rebuilt(const Solid& solid, const std::function<void(std::vector<std::vector<std::vector<std::uint32_t>>>&)>& change) {
+Solid rebuilt(const Solid& solid,
+              const std::function<void(std::vector<std::vector<std::vector<std::uint32_t>>>&)>& change) {
   std::vector<std::vector<std::vector<std::uint32_t>>> faces;
   for (const Face& f : solid.faces) {
     auto& loops = faces.emplace_back();
@@ -87,7 +88,8 @@ Solid joined(const Solid& a, const Solid& b, bool weld) {
 }  // namespace
 
 Solid box(Point3 at, double width, double depth, double height) {
-  return prism({at, {at.x + width, at.y, at.z}, {at.x + width, at.y + depth, at.z}, {at.x, at.y + depth, at.z}}, height);
+  return prism({at, {at.x + width, at.y, at.z}, {at.x + width, at.y + depth, at.z}, {at.x, at.y + depth, at.z}},
+               height);
 }
 
 Solid gabled_house(Point3 at, double width, double depth, double eaves, double ridge) {
@@ -108,8 +110,10 @@ Solid courtyard_block(Point3 at, double outer, double inner, double height) {
   SolidBuilder b;
   const double m = (outer - inner) / 2;
   const auto square = [&](double inset, double side, double z) {
-    return std::vector<Point3>{{at.x + inset, at.y + inset, z}, {at.x + inset + side, at.y + inset, z},
-                               {at.x + inset + side, at.y + inset + side, z}, {at.x + inset, at.y + inset + side, z}};
+    return std::vector<Point3>{{at.x + inset, at.y + inset, z},
+                               {at.x + inset + side, at.y + inset, z},
+                               {at.x + inset + side, at.y + inset + side, z},
+                               {at.x + inset, at.y + inset + side, z}};
   };
   const auto reversed = [](std::vector<Point3> v) {
     std::reverse(v.begin(), v.end());
@@ -203,7 +207,8 @@ Solid pyramid(double tip) {
       continue;
     }
     for (std::size_t i = 0; i < loop.size(); ++i)
-      b.add_face({loop[i], loop[(i + 1) % loop.size()], {kFar.x + 5, kFar.y + 4, kFar.z + tip}}, face(SurfaceKind::roof));
+      b.add_face({loop[i], loop[(i + 1) % loop.size()], {kFar.x + 5, kFar.y + 4, kFar.z + tip}},
+                 face(SurfaceKind::roof));
   }
   return b.take();
 }
@@ -234,34 +239,47 @@ void classed(std::vector<BrokenSolid>& out) {
     s.vertices[s.indices[2]] = s.vertices[s.indices[0]];
     out.push_back({"two vertices at one place in one ring", s, 104});
   }
-  out.push_back({"a roof with a spike", shafts(square, {}, [](Roof& roof) {
-                   const Point3 p = roof[0][1];
-                   roof[0].insert(roof[0].begin() + 2, {{p.x + 3, p.y, p.z}, {p.x + 1, p.y, p.z}});
-                 }), 104});
+  out.push_back({"a roof with a spike",
+                 shafts(square, {},
+                        [](Roof& roof) {
+                          const Point3 p = roof[0][1];
+                          roof[0].insert(roof[0].begin() + 2, {{p.x + 3, p.y, p.z}, {p.x + 1, p.y, p.z}});
+                        }),
+                 104});
   out.push_back({"a shaft through the wall", shafts(square, {hole(8, 2, 12, 4)}), 201});
   out.push_back({"two shafts that cross", shafts(square, {hole(2, 2, 5, 4), hole(4, 3, 6, 6)}), 201});
   out.push_back({"two shafts with a common wall", shafts(square, {hole(2, 2, 4, 4), hole(4, 2, 6, 4)}), 201});
-  out.push_back({"a shaft that touches the wall with a corner", shafts(square, {{{0, 4}, {2, 6}, {4, 4}, {2, 2}}}), 201});
+  out.push_back(
+      {"a shaft that touches the wall with a corner", shafts(square, {{{0, 4}, {2, 6}, {4, 4}, {2, 2}}}), 201});
   out.push_back({"two shafts that touch with corners", shafts(square, {hole(2, 2, 4, 4), hole(4, 4, 6, 6)}), 201});
-  out.push_back({"a shaft that crosses the outline through its corners",
-                 shafts({{0, 0}, {5, 2}, {10, 0}, {10, 8}, {5, 6}, {0, 8}}, {{{5, 2}, {0, 4}, {5, 6}, {5, 9}, {12, 4}}}), 201});
-  out.push_back({"a shaft twice", shafts(square, {hole(2, 2, 4, 4)}, [](Roof& roof) { roof.push_back(roof[1]); }), 202});
+  out.push_back(
+      {"a shaft that crosses the outline through its corners",
+       shafts({{0, 0}, {5, 2}, {10, 0}, {10, 8}, {5, 6}, {0, 8}}, {{{5, 2}, {0, 4}, {5, 6}, {5, 9}, {12, 4}}}), 201});
+  out.push_back(
+      {"a shaft twice", shafts(square, {hole(2, 2, 4, 4)}, [](Roof& roof) { roof.push_back(roof[1]); }), 202});
   out.push_back({"a shaft as large as the house", shafts(square, {turned(square)}), 202});
-  out.push_back({"a shaft twice, once turned and from another corner", shafts(square, {hole(2, 2, 4, 4)}, [](Roof& roof) {
-                   roof.push_back({roof[1][2], roof[1][1], roof[1][0], roof[1][3]});
-                 }), 202});
+  out.push_back({"a shaft twice, once turned and from another corner",
+                 shafts(square, {hole(2, 2, 4, 4)},
+                        [](Roof& roof) {
+                          roof.push_back({roof[1][2], roof[1][1], roof[1][0], roof[1][3]});
+                        }),
+                 202});
   out.push_back({"a roof with a fold of a centimetre", stepped_roof(12), 204, false});
   out.push_back({"a roof with a fold of six grid steps", stepped_roof(6), 204, false});
   out.push_back({"a shaft from wall to wall", shafts(square, {{{0, 4}, {5, 6}, {10, 4}, {5, 2}}}), 205});
-  out.push_back({"three shafts in a ring", shafts(square, {{{2, 2}, {2, 5}, {3, 4}}, {{2, 5}, {5, 5}, {4, 4}}, {{5, 5}, {5, 2}, {2, 2}, {4, 3}}}), 205});
+  out.push_back({"three shafts in a ring",
+                 shafts(square, {{{2, 2}, {2, 5}, {3, 4}}, {{2, 5}, {5, 5}, {4, 4}}, {{5, 5}, {5, 2}, {2, 2}, {4, 3}}}),
+                 205});
   out.push_back({"a shaft beside the house", shafts(square, {hole(12, 2, 14, 4)}), 206});
-  out.push_back({"a shaft beside the house that touches it", shafts(square, {{{10, 4}, {12, 6}, {14, 4}, {12, 2}}}), 206});
+  out.push_back(
+      {"a shaft beside the house that touches it", shafts(square, {{{10, 4}, {12, 6}, {14, 4}, {12, 2}}}), 206});
   out.push_back({"a shaft in a shaft", shafts(square, {hole(2, 2, 8, 6), hole(4, 3, 5, 4)}), 207});
   out.push_back({"a shaft around a shaft", shafts(square, {hole(4, 3, 5, 4), hole(2, 2, 8, 6)}), 207});
-  out.push_back({"a shaft that runs the wrong way round in the roof", shafts(square, {hole(2, 2, 4, 4)}, [](Roof& roof) {
-                   std::reverse(roof[1].begin(), roof[1].end());
-                 }), 208, false});
-  out.push_back({"a shaft that runs the wrong way round everywhere", shafts(square, {turned(hole(2, 2, 4, 4))}), 208, false});
+  out.push_back({"a shaft that runs the wrong way round in the roof",
+                 shafts(square, {hole(2, 2, 4, 4)}, [](Roof& roof) { std::reverse(roof[1].begin(), roof[1].end()); }),
+                 208, false});
+  out.push_back(
+      {"a shaft that runs the wrong way round everywhere", shafts(square, {turned(hole(2, 2, 4, 4))}), 208, false});
   {
     SolidBuilder b;
     const Point3 p{kFar.x, kFar.y, kFar.z}, q{p.x + 4, p.y, p.z}, r{p.x, p.y + 4, p.z};
@@ -289,24 +307,34 @@ std::vector<BrokenSolid> broken_solids() {
     const auto faces = base.solid.faces.size();
     // A face is missing: each kind of face once.
     for (const std::size_t f : {std::size_t{0}, std::size_t{1}, faces - 1})
-      out.push_back({base.name + " without face " + std::to_string(f),
-                     rebuilt(base.solid, [&](auto& loops) { loops.erase(loops.begin() + static_cast<std::ptrdiff_t>(f)); }), 302});
+      out.push_back(
+          {base.name + " without face " + std::to_string(f),
+           rebuilt(base.solid, [&](auto& loops) { loops.erase(loops.begin() + static_cast<std::ptrdiff_t>(f)); }),
+           302});
     // A face looks inwards.
     for (const std::size_t f : {std::size_t{0}, std::size_t{1}, faces - 1})
-      out.push_back({base.name + " with face " + std::to_string(f) + " flipped", rebuilt(base.solid, [&](auto& loops) {
-                       for (auto& loop : loops[f]) std::reverse(loop.begin(), loop.end());
-                     }), 307});
-    out.push_back({base.name + " inside out", rebuilt(base.solid, [](auto& all) {
-                     for (auto& loops : all)
-                       for (auto& loop : loops) std::reverse(loop.begin(), loop.end());
-                   }), 405});
-    out.push_back({base.name + " with a face twice", rebuilt(base.solid, [](auto& loops) { loops.push_back(loops[1]); }), 303});
+      out.push_back({base.name + " with face " + std::to_string(f) + " flipped",
+                     rebuilt(base.solid,
+                             [&](auto& loops) {
+                               for (auto& loop : loops[f]) std::reverse(loop.begin(), loop.end());
+                             }),
+                     307});
+    out.push_back({base.name + " inside out",
+                   rebuilt(base.solid,
+                           [](auto& all) {
+                             for (auto& loops : all)
+                               for (auto& loop : loops) std::reverse(loop.begin(), loop.end());
+                           }),
+                   405});
+    out.push_back(
+        {base.name + " with a face twice", rebuilt(base.solid, [](auto& loops) { loops.push_back(loops[1]); }), 303});
     // Vertices pulled through the opposite side.
     for (const std::size_t v : {std::size_t{0}, base.solid.vertices.size() - 1}) {
       Solid s = base.solid;
       s.vertices[v].x += 200;
       s.vertices[v].z += 50;
-      out.push_back({base.name + " with vertex " + std::to_string(v) + " pulled away", s, base.name == "box" && v > 0 ? 104 : 203});
+      out.push_back({base.name + " with vertex " + std::to_string(v) + " pulled away", s,
+                     base.name == "box" && v > 0 ? 104 : 203});
     }
     {
       Solid s = base.solid;
@@ -322,8 +350,10 @@ std::vector<BrokenSolid> broken_solids() {
     }
     const Point3 corner{far.x + 100, far.y, far.z};
     out.push_back({base.name + " beside another", joined(base.solid, box(corner, 5, 5, 5), true), 305});
-    out.push_back({base.name + " with a box in it", joined(base.solid, box({far.x + 1, far.y + 1, far.z + 1}, 1, 1, 1), true), 305});
-    out.push_back({base.name + " with a box through its wall", joined(base.solid, box({far.x - 1, far.y + 2, far.z + 1}, 3, 1, 1), true), 305});
+    out.push_back({base.name + " with a box in it",
+                   joined(base.solid, box({far.x + 1, far.y + 1, far.z + 1}, 1, 1, 1), true), 305});
+    out.push_back({base.name + " with a box through its wall",
+                   joined(base.solid, box({far.x - 1, far.y + 2, far.z + 1}, 3, 1, 1), true), 305});
   }
   const Solid a = box(far, 4, 4, 4);
   out.push_back({"two boxes on one edge", joined(a, box({far.x + 4, far.y + 4, far.z}, 4, 4, 4), true), 303});
@@ -342,10 +372,16 @@ std::vector<BrokenSolid> broken_solids() {
     out.push_back({"an index without vertex", s, 901});
   }
   out.push_back({"prism over a bow-tie",
-                 prism({far, {far.x + 8, far.y + 6, far.z}, {far.x + 8, far.y, far.z}, {far.x, far.y + 6, far.z}}, 5), 104});
+                 prism({far, {far.x + 8, far.y + 6, far.z}, {far.x + 8, far.y, far.z}, {far.x, far.y + 6, far.z}}, 5),
+                 104});
   out.push_back({"prism whose plan touches itself",
-                 prism({far, {far.x + 8, far.y, far.z}, {far.x + 8, far.y + 4, far.z}, {far.x + 4, far.y, far.z},
-                        {far.x, far.y + 4, far.z}}, 5), 104});
+                 prism({far,
+                        {far.x + 8, far.y, far.z},
+                        {far.x + 8, far.y + 4, far.z},
+                        {far.x + 4, far.y, far.z},
+                        {far.x, far.y + 4, far.z}},
+                       5),
+                 104});
   {
     // A roof ridge below the ground.
     out.push_back({"ridge under the ground", gabled_house(far, 12, 9, 5, -3), 104});
@@ -372,7 +408,8 @@ std::vector<SoundSolid> sound_solids() {
   out.push_back({"two shafts that face each other corner to corner",
                  shafts(square, {hole(2, 2, 4, 4), hole(4 + 4 * kStep, 4 + 4 * kStep, 6, 6)})});
   out.push_back({"a shaft half a centimetre within the wall", shafts(square, {hole(5 * kStep, 2, 4, 4)})});
-  out.push_back({"a shaft shaped as the outline", shafts(square, {hole(kStep * 8, kStep * 8, 10 - kStep * 8, 8 - kStep * 8)})});
+  out.push_back(
+      {"a shaft shaped as the outline", shafts(square, {hole(kStep * 8, kStep * 8, 10 - kStep * 8, 8 - kStep * 8)})});
   out.push_back({"a roof with a step of one grid step", stepped_roof(1)});
   out.push_back({"a roof with a steep step within rounding", stepped_roof(3)});
   out.push_back({"a pyramid that ends on its eaves but for a centimetre", pyramid(6 + 10 * kStep)});

@@ -20,7 +20,7 @@ model::Solid courtyard_block(model::Point3 at, double outer, double inner, doubl
 struct BrokenSolid {
   std::string name;
   model::Solid solid;
-  int code = 0;             ///< what it is told as (geometry/solid_defect.h)
+  int code = 0;              ///< what it is told as (geometry/solid_defect.h)
   bool seen_by_cgal = true;  ///< false: the second judge has no word on it
 };
 

@@ -44,7 +44,8 @@ TEST(CgalValidation, FindsEveryBrokenSolidButTheOnesItCannotSee) {
 }
 
 TEST(CgalValidation, CoordinatesBeyondAllMeasureEndInAVerdict) {
-  for (const double wrong : {1e200, -1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double wrong :
+       {1e200, -1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     auto polygons = polygons_of(testing_shapes::box({0, 0, 0}, 10, 8, 6));
     polygons[2][0][1].x = wrong;
     EXPECT_EQ(validate_solid(polygons), "a coordinate beyond all measure");

@@ -82,7 +82,8 @@ TEST(CheckSolid, OnWallsThatStandAskew) {
     constexpr double c = 0.83867056794542402964, d = 0.54463903501502708222;
     for (auto& v : s.vertices) {
       const double x = v.x - 391000, y = v.y - 5819000, z = v.z - 34;
-      v = model::snap(model::Point3{391000 + c * x - d * z, 5819000 + c * y + d * (d * x + c * z), 40 + c * (d * x + c * z) - d * y});
+      v = model::snap(model::Point3{391000 + c * x - d * z, 5819000 + c * y + d * (d * x + c * z),
+                                    40 + c * (d * x + c * z) - d * y});
     }
     const int code = check(s).code();
     // Rings that touch exactly before the turn touch, cross or miss each other by a grid step after it.

@@ -1,7 +1,7 @@
 #include "pipeline/geometry/planar_faces.h"
 
-#include <gmock/gmock.h>
 #include <geos_c.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -265,7 +265,8 @@ std::vector<Rings> faces_by_geos(const std::vector<DividingLine>& lines) {
     GEOSCoordSeq_setXY_r(geos, sequence, 1, edges[i].b.x, edges[i].b.y);
     parts.push_back(GEOSGeom_createLineString_r(geos, sequence));
   }
-  GEOSGeometry* all = GEOSGeom_createCollection_r(geos, GEOS_MULTILINESTRING, parts.data(), static_cast<unsigned>(parts.size()));
+  GEOSGeometry* all =
+      GEOSGeom_createCollection_r(geos, GEOS_MULTILINESTRING, parts.data(), static_cast<unsigned>(parts.size()));
   const GEOSGeometry* const input[] = {all};
   GEOSGeometry* faces = GEOSPolygonize_r(geos, input, 1);
   std::vector<Rings> out;
@@ -291,8 +292,8 @@ TEST(FacesOfLines, AreThoseOfGeos) {
     // Sparse ones have bridges, dead ends and islands; dense ones many crossings. Squares on whole metres touch in corners.
     auto lines = tangle(seed, 2 + static_cast<int>(seed % 30) * 2, 200);
     for (int i = 0; i < 25; ++i)
-      lines.push_back(square(2000 + static_cast<std::uint64_t>(i), 10.0 * static_cast<double>(random() % 25), 10.0 * static_cast<double>(random() % 25),
-                             10.0 * static_cast<double>(1 + random() % 3)));
+      lines.push_back(square(2000 + static_cast<std::uint64_t>(i), 10.0 * static_cast<double>(random() % 25),
+                             10.0 * static_cast<double>(random() % 25), 10.0 * static_cast<double>(1 + random() % 3)));
     std::vector<Rings> ours;
     for (const Face& face : faces_of_lines(lines)) {
       Rings rings{face.polygon.outer.points};

@@ -165,7 +165,8 @@ TEST(MakeValid, BowTieBecomesTwoTriangles) {
 
 TEST(MakeValid, OverlapStaysInside) {
   // A ring that runs twice over one corner: even-odd filling would cut a hole.
-  const auto p = valid({ring({{0, 0}, {10, 0}, {10, 10}, {4, 10}, {4, 4}, {6, 4}, {6, 6}, {2, 6}, {2, 10}, {0, 10}})}, {false});
+  const auto p =
+      valid({ring({{0, 0}, {10, 0}, {10, 10}, {4, 10}, {4, 4}, {6, 4}, {6, 6}, {2, 6}, {2, 10}, {0, 10}})}, {false});
   EXPECT_GT(total_area(p), 80);
 }
 
@@ -195,9 +196,7 @@ TEST(MakeValid, KeepsNodesOfPointsThatSurvive) {
   EXPECT_EQ(known, 4);
 }
 
-TEST(MakeValid, ZeroAreaVanishes) {
-  EXPECT_TRUE(valid({ring({{0, 0}, {4, 0}, {8, 0}})}, {false}).empty());
-}
+TEST(MakeValid, ZeroAreaVanishes) { EXPECT_TRUE(valid({ring({{0, 0}, {4, 0}, {8, 0}})}, {false}).empty()); }
 
 TEST(MakeValid, RandomRingsAlwaysEndSimple) {
   testing_shapes::Random random(7);
@@ -214,7 +213,8 @@ TEST(MakeValid, RandomRingsAlwaysEndSimple) {
 
 TEST(Difference, OutlineMinusItsParts) {
   const std::vector<Polygon> outline{polygon({{0, 0}, {20, 0}, {20, 10}, {0, 10}})};
-  const std::vector<Polygon> parts{polygon({{0, 0}, {5, 0}, {5, 10}, {0, 10}}), polygon({{5, 0}, {12, 0}, {12, 10}, {5, 10}})};
+  const std::vector<Polygon> parts{polygon({{0, 0}, {5, 0}, {5, 10}, {0, 10}}),
+                                   polygon({{5, 0}, {12, 0}, {12, 10}, {5, 10}})};
   const auto rest = difference(outline, parts, 0.05, 0.03);
   ASSERT_EQ(rest.polygons.size(), 1u);
   EXPECT_NEAR(area(rest.polygons[0]), 80, 1e-6);

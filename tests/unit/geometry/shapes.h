@@ -22,7 +22,8 @@ inline model::Polygon polygon(std::vector<model::Point2> points) { return {ring(
 inline model::Polygon turned(const model::Polygon& p) {
   const auto turn = [](model::Ring r) {
     constexpr double c = 0.83867056794542402964, s = 0.54463903501502708222;
-    for (auto& q : r.points) q = model::snap(model::Point2{391000.5 + c * q.x - s * q.y, 5819000.25 + s * q.x + c * q.y});
+    for (auto& q : r.points)
+      q = model::snap(model::Point2{391000.5 + c * q.x - s * q.y, 5819000.25 + s * q.x + c * q.y});
     return r;
   };
   model::Polygon out{turn(p.outer), {}};

@@ -140,13 +140,16 @@ TEST(WeightedSkeleton, EavesWithoutLengthFillACorner) {
     EXPECT_NEAR(broken->height(), 3 + 4.5 * 0.5, is_turned ? 0.002 : 1e-9);
     EXPECT_NEAR(area_seen_from_above(*broken), area(plan), 1e-6);
     // Only between two upright edges, in a convex corner.
-    EXPECT_EQ(weighted_skeleton(plan, profiles, {}, std::vector<CornerEaves>{{0, {}}}).error(), SkeletonFailure::bad_slope);
-    EXPECT_EQ(weighted_skeleton(plan, profiles, {}, std::vector<CornerEaves>{{9, {}}}).error(), SkeletonFailure::bad_slope);
+    EXPECT_EQ(weighted_skeleton(plan, profiles, {}, std::vector<CornerEaves>{{0, {}}}).error(),
+              SkeletonFailure::bad_slope);
+    EXPECT_EQ(weighted_skeleton(plan, profiles, {}, std::vector<CornerEaves>{{9, {}}}).error(),
+              SkeletonFailure::bad_slope);
   }
   const Polygon ell = polygon({{0, 0}, {20, 0}, {20, 20}, {10, 20}, {10, 10}, {0, 10}});
   std::vector<EdgeProfile> profiles = equal(ell);
   profiles[3].slope = profiles[4].slope = kUpright;
-  EXPECT_EQ(weighted_skeleton(ell, profiles, {}, std::vector<CornerEaves>{{4, {}}}).error(), SkeletonFailure::bad_slope);
+  EXPECT_EQ(weighted_skeleton(ell, profiles, {}, std::vector<CornerEaves>{{4, {}}}).error(),
+            SkeletonFailure::bad_slope);
 }
 
 TEST(WeightedSkeleton, SaysWhyItGivesUp) {

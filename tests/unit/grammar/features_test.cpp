@@ -16,8 +16,8 @@
 #include <sstream>
 
 #include "styles/grammar/evaluation/asset_files.h"
-#include "styles/grammar/language/known_names.h"
 #include "styles/grammar/evaluation/rule_tests.h"
+#include "styles/grammar/language/known_names.h"
 #include "tests/unit/grammar/counted_features.h"
 #include "tests/unit/grammar/evaluation/derive_support.h"
 

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "pipeline/base/random.h"
-#include "styles/grammar/language/check.h"
 #include "styles/grammar/evaluation/derive.h"
-#include "styles/grammar/shapes/initial_shape.h"
+#include "styles/grammar/language/check.h"
 #include "styles/grammar/language/lexer.h"
 #include "styles/grammar/language/parser.h"
 #include "styles/grammar/language/program.h"
+#include "styles/grammar/shapes/initial_shape.h"
 #include "tests/unit/grammar/sample_rules.h"
 
 namespace blockrand::grammar {

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/attributes/defaults.h"
-#include "pipeline/masses/mass.h"
 #include "pipeline/attributes/resolve.h"
+#include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
-#include "tests/unit/geometry/shapes.h"
+#include "pipeline/masses/mass.h"
 #include "tests/unit/footprints/repair/repair_alone.h"
+#include "tests/unit/geometry/shapes.h"
 
 namespace blockrand::masses {
 namespace {
@@ -56,12 +56,16 @@ class Town {
     for (const attributes::Material& m : defaults.materials) region.materials.push_back(m.material_class);
     repair::test::repair_alone(region);
     const context::TaggedNeighbours index(neighbours, 100);
-    attributes::resolve_attributes(region, {defaults, index, seed, [this](const model::Building&) { return ground; }}, {});
+    attributes::resolve_attributes(region, {defaults, index, seed, [this](const model::Building&) { return ground; }},
+                                   {});
     build_masses(region, defaults, {}, lod);
   }
-  const model::BuildingPart& part(std::size_t building = 0, std::size_t part = 0) const { return region.buildings.at(building).parts.at(part); }
+  const model::BuildingPart& part(std::size_t building = 0, std::size_t part = 0) const {
+    return region.buildings.at(building).parts.at(part);
+  }
   bool reported(IssueCode code) const {
-    return std::any_of(region.report.rows.begin(), region.report.rows.end(), [&](const auto& r) { return r.code == code; });
+    return std::any_of(region.report.rows.begin(), region.report.rows.end(),
+                       [&](const auto& r) { return r.code == code; });
   }
 
   attributes::Defaults defaults;
@@ -150,7 +154,11 @@ TEST(Resolve, StoreysFromAHeightAlone) {
 TEST(Resolve, NeighboursBeatPresetsAndTagsBeatNeighbours) {
   Town t;
   for (int i = 0; i < 3; ++i)
-    t.neighbours.push_back({{model::OsmType::way, 100 + i}, {10.0 * i, 20}, attributes::neighbour_group(t.defaults, "yes", 100), 6, std::nullopt});
+    t.neighbours.push_back({{model::OsmType::way, 100 + i},
+                            {10.0 * i, 20},
+                            attributes::neighbour_group(t.defaults, "yes", 100),
+                            6,
+                            std::nullopt});
   t.add(kHouse);
   t.add({{20, 0}, {32, 0}, {32, 9}, {20, 9}}).storeys = 2;
   t.build();
@@ -166,7 +174,11 @@ TEST(Resolve, NeighboursBeatPresetsAndTagsBeatNeighbours) {
 TEST(Resolve, AGarageDoesNotGrowToItsNeighbours) {
   Town t;
   for (int i = 0; i < 5; ++i)
-    t.neighbours.push_back({{model::OsmType::way, 100 + i}, {10.0 * i, 20}, attributes::neighbour_group(t.defaults, "yes", 100), 6, std::nullopt});
+    t.neighbours.push_back({{model::OsmType::way, 100 + i},
+                            {10.0 * i, 20},
+                            attributes::neighbour_group(t.defaults, "yes", 100),
+                            6,
+                            std::nullopt});
   t.add({{0, 0}, {6, 0}, {6, 3}, {0, 3}}, "garage");
   t.add({{20, 0}, {21, 0}, {21, 2}, {20, 2}}, "yes");  // a stele
   t.build();
@@ -259,7 +271,8 @@ TEST(Mass, LoD1HasTheVolumeOfTheRoof) {
   tags.roof_height = 4;
   tags.roof_shape = RoofShape::gabled;
   t.build();
-  EXPECT_NEAR(geometry::volume(t.part().lod1, t.part().lod1_triangles), geometry::volume(t.part().lod2, t.part().lod2_triangles), 1);
+  EXPECT_NEAR(geometry::volume(t.part().lod1, t.part().lod1_triangles),
+              geometry::volume(t.part().lod2, t.part().lod2_triangles), 1);
 }
 
 TEST(Mass, CanopiesAreSlabsWithoutWallsBelow) {
@@ -287,7 +300,8 @@ TEST(Mass, WhatHasAnUndersideAndNoHeightStandsAboveIt) {
   EXPECT_NEAR(bottom(t.part(2).lod2), 34 + 4 * storey, 0.001);
   EXPECT_NEAR(top(t.part(2).lod2), 34 + 6 * storey, 0.001);
   EXPECT_EQ(std::count_if(t.region.report.rows.begin(), t.region.report.rows.end(),
-                          [](const auto& r) { return r.code == IssueCode::values_conflict; }), 1);
+                          [](const auto& r) { return r.code == IssueCode::values_conflict; }),
+            1);
 }
 
 TEST(Mass, ARoofThatThePlanDoesNotTakeSaysSo) {
@@ -312,9 +326,11 @@ TEST(Mass, ARoofHigherThanItsHouseIsClampedAndReported) {
 }
 
 TEST(Mass, EveryShapeOnEveryPlanGivesAValidSolid) {
-  const std::vector<std::vector<Point2>> plans{
-      kHouse, {{0, 0}, {20, 0}, {20, 8}, {8, 8}, {8, 18}, {0, 18}}, {{0, 0}, {10, 0}, {10, 10}, {0, 10}},
-      {{0, 0}, {30, 0}, {30, 20}, {22, 20}, {22, 8}, {8, 8}, {8, 20}, {0, 20}}, {{0, 0}, {9, 1}, {5, 8}}};
+  const std::vector<std::vector<Point2>> plans{kHouse,
+                                               {{0, 0}, {20, 0}, {20, 8}, {8, 8}, {8, 18}, {0, 18}},
+                                               {{0, 0}, {10, 0}, {10, 10}, {0, 10}},
+                                               {{0, 0}, {30, 0}, {30, 20}, {22, 20}, {22, 8}, {8, 8}, {8, 20}, {0, 20}},
+                                               {{0, 0}, {9, 1}, {5, 8}}};
   for (std::size_t shape = 0; shape < std::size(model::kRoofShapeNames); ++shape) {
     Town t;
     for (const auto& plan : plans) {

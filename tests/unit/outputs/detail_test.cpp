@@ -11,10 +11,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "pipeline/geometry/cgal_validator.h"
+#include "pipeline/geometry/check_solid.h"
 #include "pipeline/outputs/citygml/citygml_writer.h"
 #include "pipeline/outputs/gltf/glb_writer.h"
-#include "pipeline/geometry/check_solid.h"
-#include "pipeline/geometry/cgal_validator.h"
 #include "pipeline/picture/camera.h"
 #include "pipeline/picture/render.h"
 #include "tests/unit/outputs/facade_region.h"

@@ -6,10 +6,10 @@
 #include <fstream>
 #include <vector>
 
+#include "pipeline/georef/frames.h"
 #include "pipeline/outputs/citygml/citygml_writer.h"
 #include "pipeline/outputs/gltf/glb_writer.h"
 #include "pipeline/outputs/tileset/tileset.h"
-#include "pipeline/georef/frames.h"
 #include "tests/unit/outputs/sample_region.h"
 
 using namespace blockrand;

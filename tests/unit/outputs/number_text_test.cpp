@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "pipeline/outputs/gltf/linear_light.h"
 #include "pipeline/model/point.h"
+#include "pipeline/outputs/gltf/linear_light.h"
 
 namespace blockrand::outputs {
 namespace {

@@ -13,8 +13,8 @@ inline constexpr double kRowX = 391000, kRowY = 5819000;
 
 /// A stretch of the outer ring of the building's first outline.
 /// \param start, end  m along the edge; end 0: the whole edge
-inline model::WallSegment& add_stretch(model::Building& b, std::uint32_t edge, model::WallSegmentKind kind, double start = 0,
-                                      double end = 0) {
+inline model::WallSegment& add_stretch(model::Building& b, std::uint32_t edge, model::WallSegmentKind kind,
+                                       double start = 0, double end = 0) {
   const model::Ring& ring = b.outline.at(0).outer;
   const model::Point2 p = ring.points[edge], q = ring.points[(edge + 1) % ring.size()];
   model::WallSegment e;

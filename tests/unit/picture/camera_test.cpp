@@ -45,7 +45,8 @@ TEST(Camera, FitsTouchTheMarginAndNothingLeavesThePicture) {
     for (const double elevation : {0.0, 20.0, 60.0, 90.0})
       for (const bool perspective : {true, false}) {
         const Direction from{azimuth, elevation};
-        const Camera camera = perspective ? fit_perspective(points, from, 1.5, 40, 0.1) : fit_orthographic(points, from, 1.5, 0.1);
+        const Camera camera =
+            perspective ? fit_perspective(points, from, 1.5, 40, 0.1) : fit_orthographic(points, from, 1.5, 0.1);
         const auto [x, y] = filled(camera, points);
         EXPECT_LE(std::max(x, y), 0.9 + 1e-6) << azimuth << ' ' << elevation << ' ' << perspective;
         EXPECT_GT(std::max(x, y), 0.899) << azimuth << ' ' << elevation << ' ' << perspective;

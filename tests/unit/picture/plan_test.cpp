@@ -15,11 +15,11 @@
 namespace blockrand::picture {
 namespace {
 
+using model::Colour;
+using model::Point2;
+using model::WallSegmentKind;
 using outputs::test::kRowX;
 using outputs::test::kRowY;
-using model::Colour;
-using model::WallSegmentKind;
-using model::Point2;
 
 constexpr Colour kWhite{255, 255, 255}, kBlack{0, 0, 0};
 
@@ -125,8 +125,10 @@ Plan row_plan() {
   PlanTile tile = plan_tile(sample.region());
   tile.streets.push_back({{{kRowX - 20, kRowY}, {kRowX + 70, kRowY}}, 7});
   tile.streets.push_back({{{kRowX - 10, kRowY - 10}, {kRowX - 10, kRowY + 60}}, 7});
-  tile.courtyards.push_back(polygon({{kRowX, kRowY + 22}, {kRowX + 30, kRowY + 22}, {kRowX + 30, kRowY + 39}, {kRowX, kRowY + 39}}));
-  tile.blocks.push_back(polygon({{kRowX - 10, kRowY}, {kRowX + 60, kRowY}, {kRowX + 60, kRowY + 50}, {kRowX - 10, kRowY + 50}}));
+  tile.courtyards.push_back(
+      polygon({{kRowX, kRowY + 22}, {kRowX + 30, kRowY + 22}, {kRowX + 30, kRowY + 39}, {kRowX, kRowY + 39}}));
+  tile.blocks.push_back(
+      polygon({{kRowX - 10, kRowY}, {kRowX + 60, kRowY}, {kRowX + 60, kRowY + 50}, {kRowX - 10, kRowY + 50}}));
   const PlanTile tiles[] = {tile};
   const PlanBox box = box_of(tiles);
   EXPECT_EQ(box.min_x, kRowX - 20);
@@ -145,7 +147,8 @@ TEST(BuildingPlan, EdgesHaveTheColourOfTheirKind) {
   EXPECT_EQ(at(plan, kRowX + 20.5, kRowY + 8.5), edge(WallSegmentKind::passage));
   EXPECT_EQ(at(plan, kRowX + 20, kRowY + 21.5), edge(WallSegmentKind::courtyard));
   EXPECT_EQ(at(plan, kRowX + 44.5, kRowY + 15), edge(WallSegmentKind::side));
-  for (const double x : {11.6, 12.4}) EXPECT_EQ(at(plan, kRowX + x, kRowY + 15), edge(WallSegmentKind::party_wall)) << "of both";
+  for (const double x : {11.6, 12.4})
+    EXPECT_EQ(at(plan, kRowX + x, kRowY + 15), edge(WallSegmentKind::party_wall)) << "of both";
   EXPECT_EQ(at(plan, kRowX + 20, kRowY + 15), kPlanBuilding);
   EXPECT_EQ(at(plan, kRowX + 20, kRowY + 30), kPlanCourtyard);
   EXPECT_EQ(at(plan, kRowX + 50, kRowY + 2), kPlanStreet);
@@ -199,14 +202,16 @@ TEST(EdgeColours, StayApartForColourBlindPeople) {
       {{1.255528, -0.076749, -0.178779}, {-0.078411, 0.930809, 0.147602}, {0.004733, 0.691367, 0.303900}},
       {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   std::vector<Colour> colours{kPlanBuilding};
-  for (int k = 0; k < model::kWallSegmentKindCount; ++k) colours.push_back(model::colour_of(static_cast<WallSegmentKind>(k)));
+  for (int k = 0; k < model::kWallSegmentKindCount; ++k)
+    colours.push_back(model::colour_of(static_cast<WallSegmentKind>(k)));
   for (int eye = 0; eye < 4; ++eye) {
     std::vector<Lab> seen;
     for (const Colour c : colours) {
       const Rgb from = linear(c);
       Rgb to;
       for (std::size_t i = 0; i < 3; ++i)
-        to[i] = std::clamp(kSeen[eye][i][0] * from[0] + kSeen[eye][i][1] * from[1] + kSeen[eye][i][2] * from[2], 0.0, 1.0);
+        to[i] =
+            std::clamp(kSeen[eye][i][0] * from[0] + kSeen[eye][i][1] * from[1] + kSeen[eye][i][2] * from[2], 0.0, 1.0);
       seen.push_back(lab(to));
     }
     for (std::size_t i = 0; i < seen.size(); ++i)

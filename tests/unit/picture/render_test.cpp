@@ -103,7 +103,9 @@ TEST(Render, SharedEdgesLeaveNoGapAndNoOverlap) {
   constexpr int n = 30;
   const auto corner = [](int i, int j) {
     const auto jitter = [&](int k) {
-      return static_cast<double>(base::random_bits(7, static_cast<std::uint64_t>(i * 1000 + j), k == 0 ? "x" : "y") % 1000) / 2500;
+      return static_cast<double>(base::random_bits(7, static_cast<std::uint64_t>(i * 1000 + j), k == 0 ? "x" : "y") %
+                                 1000) /
+             2500;
     };
     const bool inner = i > 0 && j > 0 && i < n && j < n;
     return Point3{i - n / 2.0 + (inner ? jitter(0) : 0), j - n / 2.0 + (inner ? jitter(1) : 0), 0};
@@ -273,7 +275,7 @@ TEST(Render, LinesMarkBordersBetweenObjectsAndCreases) {
 TEST(Render, SceneLinesAreHiddenByWhatIsBeforeThem) {
   Scene scene;
   add_quad(scene, {-5, 5, -5}, {0, 5, -5}, {0, 5, 5}, {-5, 5, 5}, kGrey, 1);
-  scene.add_line({-3, 6, 0}, {3, 6, 0}, kRed);   // behind the wall on its left half
+  scene.add_line({-3, 6, 0}, {3, 6, 0}, kRed);     // behind the wall on its left half
   scene.add_line({-3, 5, 1}, {-1, 5, 1}, kGreen);  // on the wall
   const RenderOptions o = plain(100, 100);
   const Image image = render(scene, look_at({0, 0, 0}, {0, 5, 0}, 60), o);
@@ -308,7 +310,8 @@ TEST(Render, TheSameBytesEachTimeAndOnEveryMachine) {
   EXPECT_EQ(image, village(240));
   EXPECT_EQ(base::sha256(std::string(image.rgb.begin(), image.rgb.end())),
             "5822c61349bf52a5a7d828eae435713631bf5f8dd9d877533c701fb6f0437c11")
-      << "The renderer draws something else than before. Where that was meant, look at a picture, then update the hash; "
+      << "The renderer draws something else than before. Where that was meant, look at a picture, then update the "
+         "hash; "
          "where it was not, something in it depends on the machine.";
 }
 

@@ -116,7 +116,8 @@ TEST(CrossGable, StandsOnEveryKindOfRoofAnywhere) {
           wanted_layout.flush = true;
           wanted_layout.up = 0;
           wanted_layout.count = 1;
-          for (const double along : lay_out(*plane, wanted_layout).along) built += add_cross_gable(roof, s, gable(), {along, 0});
+          for (const double along : lay_out(*plane, wanted_layout).along)
+            built += add_cross_gable(roof, s, gable(), {along, 0});
         }
         EXPECT_GE(built, 2u) << model::name(shape) << " on " << name;
         EXPECT_EQ(validity(p, roof), "none") << model::name(shape) << " on " << name;

@@ -5,9 +5,9 @@
 #include <fstream>
 
 #include "pipeline/outputs/gltf/glb_writer.h"
-#include "tests/unit/roofs/roof_with_edges.h"
 #include "tests/unit/roofs/element_checks.h"
 #include "tests/unit/roofs/roof_checks.h"
+#include "tests/unit/roofs/roof_with_edges.h"
 
 namespace blockrand::roof_checks {
 namespace {
@@ -74,8 +74,8 @@ TEST_P(DressedRoofs, BodiesAreValidAndTouchOnly) {
         const RoofWithEdges with_edges = dress(place, *roof, around, gable);
         ASSERT_EQ(fault(house, with_edges.bodies), "") << name << " at " << angle << ", row " << static_cast<int>(row);
         bodies += static_cast<int>(with_edges.bodies.size());
-        for (const auto* e :
-             {&with_edges.gables, &with_edges.firewalls, &with_edges.parapets, &with_edges.overhangs, &with_edges.caps}) {
+        for (const auto* e : {&with_edges.gables, &with_edges.firewalls, &with_edges.parapets, &with_edges.overhangs,
+                              &with_edges.caps}) {
           asked += e->asked;
           refused += e->refused;
         }
@@ -129,7 +129,8 @@ TEST(DressedRoofsOnRandomPlans, BodiesAreValidAndTouchOnly) {
     const RoofWithEdges with_edges = dress(plan, *roof, around, gable);
     ASSERT_EQ(fault(house, with_edges.bodies), "") << "plan " << i << ' ' << model::name(shape);
     bodies += static_cast<int>(with_edges.bodies.size());
-    for (const auto* e : {&with_edges.gables, &with_edges.firewalls, &with_edges.parapets, &with_edges.overhangs, &with_edges.caps}) {
+    for (const auto* e :
+         {&with_edges.gables, &with_edges.firewalls, &with_edges.parapets, &with_edges.overhangs, &with_edges.caps}) {
       asked += e->asked;
       refused += e->refused;
     }

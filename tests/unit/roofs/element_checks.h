@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/masses/envelope.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/solid_overlap.h"
 #include "pipeline/geometry/triangulate.h"
+#include "pipeline/masses/envelope.h"
 #include "pipeline/model/roof_element.h"
 #include "styles/roofs/roof.h"
 

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "pipeline/outputs/gltf/glb_writer.h"
 #include "pipeline/attributes/defaults.h"
+#include "pipeline/outputs/gltf/glb_writer.h"
 #include "tests/unit/roofs/fitted_roof.h"
 
 namespace blockrand::roofs {
@@ -40,8 +40,8 @@ class Street {
         const auto kind = f.kind;
         f = [&] {
           model::Face with_edges = installation.kind == model::RoofElementKind::chimney
-                                    ? face(kind, "plaster", {140, 70, 55})
-                                    : face(kind, "plaster", {70, 80, 90});
+                                       ? face(kind, "plaster", {140, 70, 55})
+                                       : face(kind, "plaster", {70, 80, 90});
           with_edges.first_loop = f.first_loop;
           with_edges.loop_count = f.loop_count;
           return with_edges;

@@ -22,7 +22,7 @@ std::vector<Point2> plan_of(const model::Solid& solid) {
 }  // namespace
 
 Fitted fit_out(const model::Polygon& plan, std::span<const model::RoofEdge> edges, const Roof& roof,
-                  const Fitting& with) {
+               const Fitting& with) {
   Fitted out;
   out.roof = roof;
   const std::size_t surfaces = roof.surfaces.size();

@@ -38,7 +38,7 @@ struct Fitted {
 /// One cross gable in the middle of each eaves, then dormers, then roof windows, as many as fit on each slope; then
 /// chimneys.
 Fitted fit_out(const model::Polygon& plan, std::span<const model::RoofEdge> edges, const roofs::Roof& roof,
-                  const Fitting& with);
+               const Fitting& with);
 
 /// Party walls where a wall goes up to the roof (gables), open edges elsewhere: a house of a row.
 std::vector<model::RoofEdge> gables_as_party_walls(const roofs::Roof& roof);

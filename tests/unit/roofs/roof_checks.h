@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/masses/envelope.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/masses/envelope.h"
 #include "styles/roofs/roof.h"
 #include "tests/unit/geometry/shapes.h"
 

@@ -11,11 +11,11 @@
 #include <optional>
 #include <sstream>
 
-#include "pipeline/outputs/gltf/glb_writer.h"
 #include "pipeline/attributes/defaults.h"
-#include "pipeline/masses/mass.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/masses/mass.h"
+#include "pipeline/outputs/gltf/glb_writer.h"
 #include "tests/unit/geometry/shapes.h"
 
 namespace blockrand::roofs {
@@ -359,8 +359,8 @@ std::vector<RoofShape> shapes() {
   std::vector<RoofShape> out;
   for (std::size_t i = 0; i < std::size(model::kRoofShapeNames); ++i)
     // `lined` has lines of its own on every plan; the last two name no shape.
-    if (const auto shape = static_cast<RoofShape>(i);
-        shape != RoofShape::lined && shape != RoofShape::berlin && shape != RoofShape::many && shape != RoofShape::other)
+    if (const auto shape = static_cast<RoofShape>(i); shape != RoofShape::lined && shape != RoofShape::berlin &&
+                                                      shape != RoofShape::many && shape != RoofShape::other)
       out.push_back(shape);
   return out;
 }

@@ -76,7 +76,8 @@ TEST(HippedRoof, RidgeOfATenBySixPlan) {
 
 TEST(GabledRoof, OneRidgePerWing) {
   for (const auto& [name, plan] : some_plans()) {
-    const std::map<std::string, std::size_t> expected{{"rectangle", 2}, {"L", 2}, {"U", 2}, {"T", 3}, {"trapezoid", 2}, {"courtyard", 0}};
+    const std::map<std::string, std::size_t> expected{{"rectangle", 2}, {"L", 2},         {"U", 2},
+                                                      {"T", 3},         {"trapezoid", 2}, {"courtyard", 0}};
     for (const Polygon& p : {plan, turned(plan)}) {
       EXPECT_EQ(wing_ends(p, request(RoofShape::gabled)).size(), expected.at(name)) << name;
       const auto built = build_roof(p, request(RoofShape::gabled));
@@ -142,7 +143,8 @@ TEST(HippedRoof, RegularPlansAtThePrecisionOfTheMap) {
         for (int i = 0; i < count; ++i) {
           const double angle = 2 * M_PI * (i + 0.1 * turn) / count, radius = is_star && i % 2 ? 8 : 20;
           const auto mapped = [](double metres, double unit) { return std::round(metres / unit) * unit; };
-          points.push_back(model::snap(Point2{391000 + mapped(radius * std::cos(angle), 0.0068), 5819000 + mapped(radius * std::sin(angle), 0.0111)}));
+          points.push_back(model::snap(Point2{391000 + mapped(radius * std::cos(angle), 0.0068),
+                                              5819000 + mapped(radius * std::sin(angle), 0.0111)}));
         }
         const Polygon plan = polygon(points);
         bool valid = false;
@@ -163,8 +165,10 @@ TEST(HippedRoof, RegularPlansAtThePrecisionOfTheMap) {
 TEST(RandomRoofs, AreValidOrCounted) {
   const bool many = std::getenv("BLOCKRAND_MANY") != nullptr;
   const std::uint64_t rounds = many ? 100000 : 2000;
-  const RoofShape shapes[] = {RoofShape::hipped,  RoofShape::gabled,  RoofShape::half_hipped,    RoofShape::mansard,
-                              RoofShape::gambrel, RoofShape::round,   RoofShape::side_hipped,    RoofShape::hipped_and_gabled,
+  const RoofShape shapes[] = {RoofShape::hipped,         RoofShape::gabled,
+                              RoofShape::half_hipped,    RoofShape::mansard,
+                              RoofShape::gambrel,        RoofShape::round,
+                              RoofShape::side_hipped,    RoofShape::hipped_and_gabled,
                               RoofShape::double_saltbox, RoofShape::quadruple_saltbox};
   std::map<std::string, std::uint64_t> validities;
   std::uint64_t built = 0, fallbacks = 0, invalid = 0;
@@ -197,8 +201,8 @@ TEST(RandomRoofs, AreValidOrCounted) {
     if (invalid < 12) std::printf("polygon %lu, %s: %s\n", i, std::string(model::name(shape)).c_str(), v.c_str());
   }
   for (const auto& [v, n] : validities) std::printf("  %s: %lu\n", v.c_str(), n);
-  std::printf("%lu random polygons: %lu roofs, %lu skeletons given up, %lu solids refused by the checker (%.3f %%)\n", rounds, built,
-              fallbacks, invalid, 100.0 * static_cast<double>(invalid) / static_cast<double>(rounds));
+  std::printf("%lu random polygons: %lu roofs, %lu skeletons given up, %lu solids refused by the checker (%.3f %%)\n",
+              rounds, built, fallbacks, invalid, 100.0 * static_cast<double>(invalid) / static_cast<double>(rounds));
   EXPECT_LT(fallbacks + invalid, 1 + rounds / 1000);
 }
 

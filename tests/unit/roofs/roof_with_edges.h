@@ -29,8 +29,9 @@ struct RoofWithEdges {
 
 /// Gables first, then firewalls between them, parapets between those, overhangs where nothing else stands, caps up to
 /// all of them. \param gable  an edge and what is to stand on it
-inline RoofWithEdges dress(const model::Polygon& plan, const roofs::Roof& roof, const std::vector<Neighbourhood>& around,
-                         const std::optional<std::pair<std::uint32_t, roofs::GableOptions>>& gable) {
+inline RoofWithEdges dress(const model::Polygon& plan, const roofs::Roof& roof,
+                           const std::vector<Neighbourhood>& around,
+                           const std::optional<std::pair<std::uint32_t, roofs::GableOptions>>& gable) {
   RoofWithEdges out;
   const auto take = [&](roofs::BuiltElements& into, roofs::BuiltElements&& from) {
     for (auto& body : from.bodies) out.bodies.push_back(std::move(body));

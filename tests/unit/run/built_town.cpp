@@ -4,19 +4,19 @@
 #include <optional>
 
 #include "importers/osm/read_extract.h"
-#include "pipeline/base/parallel.h"
-#include "pipeline/context/blocks.h"
-#include "pipeline/georef/crs.h"
-#include "pipeline/footprints/area.h"
 #include "pipeline/attributes/assign_extract.h"
-#include "pipeline/evidence/classify_extract.h"
-#include "pipeline/context/context_extract.h"
-#include "pipeline/footprints/load.h"
-#include "pipeline/run/prepare_extract.h"
 #include "pipeline/attributes/rule_sets.h"
 #include "pipeline/attributes/tagged_buildings.h"
-#include "pipeline/evidence/style_values.h"
+#include "pipeline/base/parallel.h"
+#include "pipeline/context/blocks.h"
+#include "pipeline/context/context_extract.h"
 #include "pipeline/context/vicinity_finder.h"
+#include "pipeline/evidence/classify_extract.h"
+#include "pipeline/evidence/style_values.h"
+#include "pipeline/footprints/area.h"
+#include "pipeline/footprints/load.h"
+#include "pipeline/georef/crs.h"
+#include "pipeline/run/prepare_extract.h"
 #include "pipeline/run/tile_stages.h"
 
 namespace blockrand::run::test {
@@ -71,8 +71,8 @@ struct BuiltTown::State {
         kept(extract),
         repaired(footprints::repair_extract(extract, shards, projection, kept, repair, workers, progress)),
         context(context::context_extract(extract, repaired.footprints,
-                                context::coverage_of(footprints::building_places(extract, projection)), projection, workers,
-                                progress)),
+                                         context::coverage_of(footprints::building_places(extract, projection)),
+                                         projection, workers, progress)),
         vicinity(extract, repaired.footprints, context),
         roof_lines(extract, projection),
         numbers(repaired.footprints),
@@ -81,14 +81,14 @@ struct BuiltTown::State {
         tags(evidence::tag_facts(extract, repaired.footprints, context, tables, projection, facts)),
         style_extract(classified()) {
     assigner.emplace(rules.book, attributes::AssignInputs{.extract = extract,
-                                              .footprints = repaired.footprints,
-                                              .context = context,
-                                              .styles = style_extract,
-                                              .projection = projection,
-                                              .defaults = defaults,
-                                              .neighbours = neighbours,
-                                              .overrides = &overrides,
-                                              .pinned = {}});
+                                                          .footprints = repaired.footprints,
+                                                          .context = context,
+                                                          .styles = style_extract,
+                                                          .projection = projection,
+                                                          .defaults = defaults,
+                                                          .neighbours = neighbours,
+                                                          .overrides = &overrides,
+                                                          .pinned = {}});
   }
 
   /// With the priors of its region, as a build does.
@@ -97,7 +97,8 @@ struct BuiltTown::State {
     return evidence::classify_extract(
         facts, tags, tables,
         [&](std::uint32_t b) -> const classify::RegionPrior* {
-          const std::uint32_t set = rules.book.choose(footprints::box_centre(extract, extract.buildings[repaired.footprints[b].lead]));
+          const std::uint32_t set =
+              rules.book.choose(footprints::box_centre(extract, extract.buildings[repaired.footprints[b].lead]));
           return set == blockrand::districts::RuleSets::kNoSet ? nullptr : &priors[set];
         },
         {}, workers, progress);

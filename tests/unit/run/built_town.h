@@ -10,10 +10,10 @@
 
 #include "pipeline/attributes/defaults.h"
 #include "pipeline/attributes/options.h"
-#include "pipeline/georef/projection.h"
-#include "pipeline/model/region.h"
 #include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/shard.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/model/region.h"
 
 namespace blockrand::run::test {
 

@@ -10,11 +10,11 @@
 #include <filesystem>
 #include <map>
 
-#include "pipeline/base/random.h"
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/attributes/tagged_buildings.h"
-#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/base/random.h"
 #include "pipeline/footprints/load.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "tests/unit/run/built_town.h"
 
 namespace blockrand::run::test {
@@ -181,7 +181,7 @@ HeldOut hold_out(const fs::path& file) {
           for (BuildingPart& part : hidden.buildings.back().parts) hide(part.mapped, what);
         }
         attributes::resolve_attributes(hidden, {town.defaults(), neighbours[static_cast<std::size_t>(fold)], 1, ground},
-                                     usual_generation());
+                                       usual_generation());
         std::size_t next = 0;
         for (const Building& b : region.buildings) {
           if (next == hidden.buildings.size() || hidden.buildings[next].osm != b.osm) continue;

@@ -16,14 +16,14 @@
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/context/blocks.h"
-#include "pipeline/georef/crs.h"
-#include "pipeline/georef/projection.h"
-#include "pipeline/footprints/area.h"
 #include "pipeline/evidence/building_facts.h"
+#include "pipeline/footprints/area.h"
 #include "pipeline/footprints/load.h"
+#include "pipeline/footprints/repair/kept_nodes.h"
 #include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/shard.h"
-#include "pipeline/footprints/repair/kept_nodes.h"
+#include "pipeline/georef/crs.h"
+#include "pipeline/georef/projection.h"
 
 namespace blockrand::run::test {
 
@@ -103,10 +103,11 @@ struct MeasuredTown {
     model::Report report;
     const auto shards = footprints::make_shards(extract, report);
     const repair::KeptNodes kept(extract);
-    repaired =
-        std::make_unique<footprints::RepairedExtract>(footprints::repair_extract(extract, shards, *projection, kept, {}, workers, quiet));
+    repaired = std::make_unique<footprints::RepairedExtract>(
+        footprints::repair_extract(extract, shards, *projection, kept, {}, workers, quiet));
     context = context::context_extract(extract, repaired->footprints,
-                              context::coverage_of(footprints::building_places(extract, *projection)), *projection, workers, quiet);
+                                       context::coverage_of(footprints::building_places(extract, *projection)),
+                                       *projection, workers, quiet);
     const context::VicinityFinder vicinity(extract, repaired->footprints, context);
     facts = evidence::facts_extract(extract, repaired->footprints, context, vicinity, workers, quiet);
   }

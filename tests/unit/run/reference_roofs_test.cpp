@@ -484,12 +484,16 @@ TEST(ReferenceRoofs, OfTownsStandAtTheSurveysHeights) {
   const auto map = cases(all, &Match::on_map);
   // Two questions apart: is a roof told as sloped that is, and do the slopes that are built lie where the survey has them?
   const auto is_flat = [](const RoofCase& c) { return c.seen.starts_with("flat"); };
-  const auto right = std::count_if(map.begin(), map.end(), [&](const RoofCase& c) { return (c.asked == RoofShape::flat) == is_flat(c); });
+  const auto right = std::count_if(map.begin(), map.end(),
+                                   [&](const RoofCase& c) { return (c.asked == RoofShape::flat) == is_flat(c); });
   std::printf("Flat or sloped: %td of %zu right\n", right, map.size());
   EXPECT_GT(static_cast<double>(right), 0.75 * static_cast<double>(map.size())) << "measured 0.78";
   const auto sloped = [&](const RoofCase& c) { return c.asked != RoofShape::flat; };
-  EXPECT_GT(print_cases("asked sloped", map, [&](const RoofCase& c) { return sloped(c) && c.seen != "flat, stepped"; }).found, 0.78);
-  EXPECT_LT(print_cases("gabled", map, [&](const RoofCase& c) { return sloped(c) && c.seen == "gabled"; }).median_rms, 1.0);
+  EXPECT_GT(
+      print_cases("asked sloped", map, [&](const RoofCase& c) { return sloped(c) && c.seen != "flat, stepped"; }).found,
+      0.78);
+  EXPECT_LT(print_cases("gabled", map, [&](const RoofCase& c) { return sloped(c) && c.seen == "gabled"; }).median_rms,
+            1.0);
 }
 
 /// Building of a part: "GUID_…_2" is part 2 of "GUID_…".

@@ -5,9 +5,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "importers/reference/affine_transform.h"
 #include "importers/reference/citygml.h"
 #include "importers/reference/footprints.h"
-#include "importers/reference/affine_transform.h"
 #include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::run::test {

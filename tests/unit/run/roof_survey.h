@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/unit/run/surveyed_surfaces.h"
 #include "tests/unit/run/survey_match.h"
+#include "tests/unit/run/surveyed_surfaces.h"
 
 namespace blockrand::run::test {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "importers/reference/affine_transform.h"
 #include "importers/reference/citygml.h"
 #include "importers/reference/footprints.h"
-#include "importers/reference/affine_transform.h"
 
 namespace blockrand::run::test {
 
@@ -74,7 +74,8 @@ PlanShape shape_of(const footprints::FootprintStore& store, const std::vector<st
   return PlanShape(all);
 }
 
-std::vector<SurveyMatch> match_survey(const footprints::FootprintStore& mapped, const std::vector<SurveyedBuilding>& survey) {
+std::vector<SurveyMatch> match_survey(const footprints::FootprintStore& mapped,
+                                      const std::vector<SurveyedBuilding>& survey) {
   const geometry::BoxIndex index = footprints::index_of(mapped);
   const std::size_t n = survey.size();
   Groups groups(n + mapped.size());

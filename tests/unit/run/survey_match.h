@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/footprints/footprint_store.h"
 #include "pipeline/geometry/plan_shape.h"
 #include "pipeline/model/polygon.h"
-#include "pipeline/footprints/footprint_store.h"
 
 namespace blockrand::run::test {
 
@@ -37,7 +37,8 @@ struct SurveyMatch {
 /// a building and a surveyed one are linked when they have more than half of the smaller one in common; what is linked,
 /// directly or through others, is one match (1:1, 1:n, n:1, n:m); a match counts when both sides, each united, have
 /// more than half of their area in common. Anything else is another building than the survey saw, not one drawn badly.
-std::vector<SurveyMatch> match_survey(const footprints::FootprintStore& mapped, const std::vector<SurveyedBuilding>& survey);
+std::vector<SurveyMatch> match_survey(const footprints::FootprintStore& mapped,
+                                      const std::vector<SurveyedBuilding>& survey);
 
 /// The outlines of some buildings together.
 PlanShape shape_of(const footprints::FootprintStore& store, const std::vector<std::uint32_t>& buildings);

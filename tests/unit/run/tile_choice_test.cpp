@@ -22,7 +22,8 @@ class Pinned : public ::testing::Test {
   void write(const std::string& text) { std::ofstream(path_) << text; }
   void TearDown() override { std::filesystem::remove(path_); }
   std::string path_ = ::testing::TempDir() + "pinned-" + std::to_string(::getpid()) + ".json";
-  std::string good_ = R"({"configuration":)" + configuration({}).dump() + R"(,"crs":{"code":"EPSG:25833"},"region":{"box":[13.3,52.4,13.5,52.6],"centre":[13.4,52.5],
+  std::string good_ = R"({"configuration":)" + configuration({}).dump() +
+                      R"(,"crs":{"code":"EPSG:25833"},"region":{"box":[13.3,52.4,13.5,52.6],"centre":[13.4,52.5],
                           "areas":[],"coverage":[[380000,5800000],[390000,5800000],[385000,5810000.5]]}})";
 };
 
@@ -64,7 +65,8 @@ TEST_F(Pinned, MistakesAreNamed) {
   options.pinned.clear();
   EXPECT_THAT(message<base::UsageError>(options), HasSubstr("--pinned"));
   options.pinned = path_;
-  for (const char* text : {"15", "15/1", "15/1/2/3", "a/b/c", "15/-1/2", "15/65536/2", "15/1/32768", "5/1/1", "15/1/2 ", "15//2"}) {
+  for (const char* text :
+       {"15", "15/1", "15/1/2/3", "a/b/c", "15/-1/2", "15/65536/2", "15/1/32768", "5/1/1", "15/1/2 ", "15//2"}) {
     options.tile = text;
     EXPECT_THAT(message<base::UsageError>(options), HasSubstr("level/x/y")) << text;
   }

@@ -11,11 +11,11 @@
 #include <fstream>
 #include <map>
 
-#include "pipeline/outputs/gltf/glb_writer.h"
 #include "pipeline/geometry/polygon_measures.h"
-#include "tests/unit/run/built_town.h"
-#include "tests/unit/roofs/roof_with_edges.h"
+#include "pipeline/outputs/gltf/glb_writer.h"
 #include "tests/unit/roofs/element_checks.h"
+#include "tests/unit/roofs/roof_with_edges.h"
+#include "tests/unit/run/built_town.h"
 
 namespace blockrand::run::test {
 namespace {
@@ -27,8 +27,8 @@ using model::Point3;
 using model::Polygon;
 using model::Solid;
 using model::SurfaceKind;
-using roof_checks::RoofWithEdges;
 using roof_checks::Neighbourhood;
+using roof_checks::RoofWithEdges;
 
 /// A part that stands, read back from its solid: its plan, its roof, and what neighbours see of it.
 struct Siting {
@@ -222,7 +222,8 @@ TEST_P(RoofEdges, AllBodiesAreValid) {
         if (const auto edge = roof_checks::gable_edge(s.plan, s.roof, around)) gable.emplace(*edge, *drawn);
       const RoofWithEdges with_edges = roof_checks::dress(s.plan, s.roof, around, gable);
       constexpr const char* reasons[] = {"", ": no such outline", ": no room", ": no body"};
-      if (gable) ++by_gable[std::string(roofs::name(gable->second.form)) + reasons[static_cast<int>(with_edges.refusal)]];
+      if (gable)
+        ++by_gable[std::string(roofs::name(gable->second.form)) + reasons[static_cast<int>(with_edges.refusal)]];
       gables.add(with_edges.gables);
       firewalls.add(with_edges.firewalls);
       parapets.add(with_edges.parapets);
@@ -306,7 +307,8 @@ TEST_P(RoofEdges, AllBodiesAreValid) {
   EXPECT_GE(parts, GetParam().least_parts);
   EXPECT_EQ(invalid, 0);
   EXPECT_EQ(reaching, 0);
-  for (const auto kind : {model::RoofElementKind::eaves, model::RoofElementKind::verge, model::RoofElementKind::hip_cap})
+  for (const auto kind :
+       {model::RoofElementKind::eaves, model::RoofElementKind::verge, model::RoofElementKind::hip_cap})
     EXPECT_EQ(in_neighbour[kind], 0) << model::name(kind);
   EXPECT_LE(all.refused, GetParam().most_refused * all.asked);
   if (folder) {

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <map>
 
-#include "tests/unit/run/built_town.h"
 #include "tests/unit/roofs/fitted_roof.h"
+#include "tests/unit/run/built_town.h"
 
 namespace blockrand::run::test {
 namespace {

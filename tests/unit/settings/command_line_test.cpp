@@ -74,7 +74,9 @@ TEST(CommandLine, UnknownOptionsSuggestTheNearest) {
   EXPECT_THAT(build_error({"--job=3"}), StartsWith("usage: unknown option --job. Did you mean --jobs?"));
   EXPECT_EQ(build_error({"--somethingelse"}), "usage: unknown option --somethingelse. Try 'blockrand build --help'.");
   EXPECT_THAT(build_error({"-z"}), StartsWith("usage: unknown option -z. Try"));
-  EXPECT_THAT(error_of([] { read_command_line(kInfo, {"in.osm", "--gzip"}); }),
+  EXPECT_THAT(error_of([] {
+                read_command_line(kInfo, {"in.osm", "--gzip"});
+              }),
               AllOf(HasSubstr("unknown option --gzip"), HasSubstr("'blockrand info --help'")));
 }
 
@@ -108,8 +110,8 @@ TEST(CommandLine, HelpListsWhatTheCommandKnows) {
   EXPECT_THAT(option_help(kBuild), AllOf(HasSubstr("-o, --output FOLDER"), HasSubstr("[gltf,citygml,"),
                                          HasSubstr("--log-format"), testing::Not(HasSubstr("--json"))));
   EXPECT_THAT(option_help(kInfo), AllOf(HasSubstr("--json"), testing::Not(HasSubstr("--output"))));
-  EXPECT_THAT(option_help(kBuild), AllOf(HasSubstr("      --no-report           no report.html"),
-                                         testing::Not(HasSubstr("--report"))))
+  EXPECT_THAT(option_help(kBuild),
+              AllOf(HasSubstr("      --no-report           no report.html"), testing::Not(HasSubstr("--report"))))
       << "what is on by default is shown by the name that changes something";
   for (std::size_t start = 0; start < option_help(kBuild).size();) {
     const std::string help = option_help(kBuild);

@@ -121,9 +121,9 @@ TEST(Completion, KnowsCommandsTopicsOptionsAndValues) {
   for (const std::string& shell : completion_shells()) {
     const std::string script = completion(shell, commands());
     const std::string dashes = shell == "fish" ? "-l " : "--";
-    EXPECT_THAT(script, AllOf(HasSubstr(dashes + "formats"), HasSubstr(dashes + "no-report"), Not(HasSubstr(dashes + "json")),
-                              HasSubstr("gltf citygml"), HasSubstr("auto bar plain none"), HasSubstr("shell"),
-                              HasSubstr("one two")))
+    EXPECT_THAT(script, AllOf(HasSubstr(dashes + "formats"), HasSubstr(dashes + "no-report"),
+                              Not(HasSubstr(dashes + "json")), HasSubstr("gltf citygml"),
+                              HasSubstr("auto bar plain none"), HasSubstr("shell"), HasSubstr("one two")))
         << shell;
     EXPECT_THAT(script, Not(HasSubstr(dashes + "report"))) << shell << ": it is on already";
     EXPECT_EQ(script, completion(shell, commands()));

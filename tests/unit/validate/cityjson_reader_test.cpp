@@ -14,8 +14,8 @@
 namespace blockrand::validate {
 namespace {
 
-using outputs::test::SampleRegion;
 using nlohmann::json;
+using outputs::test::SampleRegion;
 
 outputs::CityJsonOptions options() {
   outputs::CityJsonOptions o;

@@ -103,7 +103,8 @@ TEST_F(Damage, TruncatedFiles) {
       expect_findings(file, bytes.substr(0, length), "cut to " + std::to_string(length));
     }
     // Nobody can say how long build.json should be: without its last line break it is the same document.
-    if (file.filename() != "build.json") expect_findings(file, bytes.substr(0, bytes.size() - 1), "without its last byte");
+    if (file.filename() != "build.json")
+      expect_findings(file, bytes.substr(0, bytes.size() - 1), "without its last byte");
     expect_findings(file, bytes + bytes, "twice");
   }
 }

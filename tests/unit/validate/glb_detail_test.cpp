@@ -18,9 +18,9 @@
 namespace blockrand::validate {
 namespace {
 
+using nlohmann::json;
 using outputs::Compression;
 using outputs::Instancing;
-using nlohmann::json;
 
 /// A frame that stands on the Earth: its matrix is that of its origin.
 outputs::GlbOptions options(Instancing how, Compression compression = Compression::none) {

@@ -1,23 +1,22 @@
 // Single judges of `blockrand validate`.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <fmt/format.h>
 
 #include <cmath>
 #include <fstream>
 #include <iterator>
 
 #include "pipeline/base/error.h"
-#include "pipeline/outputs/gzip.h"
 #include "pipeline/geometry/solid_defect.h"
 #include "pipeline/georef/frames.h"
-#include "pipeline/georef/projection.h"
 #include "pipeline/georef/proj_transform.h"
-#include "pipeline/validate/format_agreement.h"
-#include "pipeline/validate/earth.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/outputs/gzip.h"
 #include "pipeline/validate/bytes_of_file.h"
+#include "pipeline/validate/earth.h"
 #include "pipeline/validate/finding_log.h"
+#include "pipeline/validate/format_agreement.h"
 #include "pipeline/validate/ids.h"
 #include "pipeline/validate/part_overlap_check.h"
 #include "pipeline/validate/positions.h"
@@ -349,9 +348,9 @@ std::vector<std::pair<std::string, model::Point2>> offsets(int buildings, double
   for (int b = 0; b < buildings; ++b) {
     const bool is_moved = random() < moved;
     for (int i = 0; i < 4; ++i)
-      out.emplace_back("w" + std::to_string(1000 + b), is_moved
-                                                           ? model::Point2{common + random() * 0.6 - 0.3, random() * 0.6 - 0.3}
-                                                           : model::Point2{common, 0.0004});
+      out.emplace_back("w" + std::to_string(1000 + b),
+                       is_moved ? model::Point2{common + random() * 0.6 - 0.3, random() * 0.6 - 0.3}
+                                : model::Point2{common, 0.0004});
   }
   return out;
 }

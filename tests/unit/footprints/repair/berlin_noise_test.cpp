@@ -8,10 +8,10 @@
 
 #include "importers/reference/citygml.h"
 #include "importers/reference/footprints.h"
-#include "pipeline/geometry/polygon_measures.h"
-#include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/footprints/repair/repair_terrace_row.h"
 #include "pipeline/footprints/repair/rings.h"
+#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/geometry/valid_polygon.h"
 #include "tests/unit/footprints/repair/noise_scene.h"
 
 namespace blockrand::repair::test {

@@ -74,7 +74,8 @@ TEST(Overlaps, TheWeakerGivesWayAndBothHaveTheSamePoints) {
 }
 
 TEST(Overlaps, NewPointsOnTheWinnersSlantedWallBecomeItsPoints) {
-  TerraceRow before = row_of_polygons({polygon(box(0, 0, 10, 10)), polygon({{9, -5}, {20, 3.3}, {13, 14.7}, {7.7, 11.1}})});
+  TerraceRow before =
+      row_of_polygons({polygon(box(0, 0, 10, 10)), polygon({{9, -5}, {20, 3.3}, {13, 14.7}, {7.7, 11.1}})});
   before.buildings[1].tags = 4;
   const TerraceRow row = resolved(before);
   ASSERT_TRUE(all_valid(row));
@@ -137,7 +138,7 @@ TEST(Overlaps, IdenticalTwinsStayAndAreReported) {
 TEST(Overlaps, OutlineAroundItsHousesKeepsWhatIsLeft) {
   // Three houses cover most of an area drawn as a building; 6 m of it remain.
   const TerraceRow row = resolved(row_of_polygons({polygon(box(0, 0, 8, 10)), polygon(box(8, 0, 16, 10)),
-                                            polygon(box(16, 0, 24, 10)), polygon(box(0, 0, 30, 10))}));
+                                                   polygon(box(16, 0, 24, 10)), polygon(box(0, 0, 30, 10))}));
   ASSERT_TRUE(all_valid(row));
   EXPECT_THAT(area(row.buildings[3]), DoubleNear(60, 1e-9));
 }
@@ -204,8 +205,8 @@ TEST(Overlaps, ACutAlongAFrontLeavesNoNeedles) {
 
 TEST(Overlaps, AWedgeAlongTheNeighboursWallIsCutWhereItStarts) {
   // w1 runs out in a tip of 4 m and 5 mm beside w2's wall, which keeps a corner where w1 ends.
-  const TerraceRow row = resolved(row_of_polygons(
-      {polygon({{0, 0}, {10, 0}, {10, 14}, {9.995, 10}, {0, 10}}), polygon(box(10, 0, 20, 14))}));
+  const TerraceRow row = resolved(
+      row_of_polygons({polygon({{0, 0}, {10, 0}, {10, 14}, {9.995, 10}, {0, 10}}), polygon(box(10, 0, 20, 14))}));
   ASSERT_TRUE(all_valid(row));
   EXPECT_EQ(row.buildings[0].polygons[0].outer.size(), 5u);
   EXPECT_TRUE(has_point(row.buildings[0], at(10, 10)));
@@ -214,7 +215,8 @@ TEST(Overlaps, AWedgeAlongTheNeighboursWallIsCutWhereItStarts) {
 }
 
 TEST(Overlaps, OtherLevelsDoNotConflict) {
-  TerraceRow before = row_of_polygons({polygon(box(0, 0, 10, 10)), polygon(box(5, 0, 15, 10)), polygon(box(5, 5, 15, 15))});
+  TerraceRow before =
+      row_of_polygons({polygon(box(0, 0, 10, 10)), polygon(box(5, 0, 15, 10)), polygon(box(5, 5, 15, 15))});
   before.buildings[1].level.canopy = true;
   before.buildings[2].level.low = 4;
   before.buildings[0].level.high = 4;

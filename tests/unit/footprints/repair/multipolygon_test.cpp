@@ -10,9 +10,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/footprints/repair/rings.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
-#include "pipeline/footprints/repair/rings.h"
 #include "tests/unit/importers/osm/support.h"
 
 namespace blockrand::repair {

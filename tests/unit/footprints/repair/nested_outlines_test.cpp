@@ -16,7 +16,8 @@ using model::ObjectState;
 using testing::ElementsAre;
 
 const TerraceBuilding& find(const TerraceRow& row, model::OsmId id) {
-  return *std::find_if(row.buildings.begin(), row.buildings.end(), [&](const TerraceBuilding& b) { return b.id == id; });
+  return *std::find_if(row.buildings.begin(), row.buildings.end(),
+                       [&](const TerraceBuilding& b) { return b.id == id; });
 }
 
 /// A square of 10 m at x; of a share of 1 - d / 10 with another one d metres beside it.
@@ -82,7 +83,8 @@ TEST(Coverings, OutlineOfTwoHousesKeepsWhatTheyLeaveFree) {
 }
 
 TEST(Coverings, OutlineWithoutARestIsRepresentedByTheLargestHouse) {
-  TerraceRow row = row_of_polygons({polygon(box(0, 0, 7, 10)), polygon(box(7, 0, 16, 10)), polygon(box(0, 0, 16.2, 10))});
+  TerraceRow row =
+      row_of_polygons({polygon(box(0, 0, 7, 10)), polygon(box(7, 0, 16, 10)), polygon(box(0, 0, 16.2, 10))});
   model::Report report;
   settle_coverings(row, {}, report);
   EXPECT_EQ(row.buildings[2].settled, ObjectState::represented);

@@ -273,9 +273,15 @@ Footprints true_houses(std::uint32_t seed, int blocks) {
   for (int k = 0; k < blocks; ++k) {
     Shapes shapes;
     switch (k % 3) {
-      case 0: add_row(random, shapes); break;
-      case 1: add_block(random, shapes); break;
-      default: add_bent_row(random, shapes); break;
+      case 0:
+        add_row(random, shapes);
+        break;
+      case 1:
+        add_block(random, shapes);
+        break;
+      default:
+        add_bent_row(random, shapes);
+        break;
     }
     add_junctions(random, shapes);
     const double angle = random.uniform(0, 2 * kPi), c = std::cos(angle), s = std::sin(angle);
@@ -355,12 +361,12 @@ std::vector<std::vector<std::size_t>> rows_of(const Footprints& footprints, doub
 std::string Score::text() const {
   const auto share = [](int part, int all) { return all > 0 ? 100.0 * part / all : 0.0; };
   char line[400];
-  std::snprintf(line, sizeof line,
-                "walls %d, recovered %.2f %%; alleys %d, closed %d, touching %d; right angles %d, restored %.2f %%; obliques "
-                "%d, squared %.2f %%; vertex error %.3f -> %.3f m; largest shift %.3f m; overlap %.3f m2; invalid %d",
-                walls, share(walls_recovered, walls), alleys, alleys_closed, alleys_touching, right,
-                share(right_restored, right), oblique, share(oblique_squared, oblique), error_before, error_after,
-                largest_shift, overlap, invalid);
+  std::snprintf(
+      line, sizeof line,
+      "walls %d, recovered %.2f %%; alleys %d, closed %d, touching %d; right angles %d, restored %.2f %%; obliques "
+      "%d, squared %.2f %%; vertex error %.3f -> %.3f m; largest shift %.3f m; overlap %.3f m2; invalid %d",
+      walls, share(walls_recovered, walls), alleys, alleys_closed, alleys_touching, right, share(right_restored, right),
+      oblique, share(oblique_squared, oblique), error_before, error_after, largest_shift, overlap, invalid);
   return line;
 }
 

@@ -29,11 +29,13 @@ TerraceRow row_of(const Footprints& footprints);
 std::vector<std::vector<std::size_t>> rows_of(const Footprints& footprints, double reach);
 
 struct Score {
-  int walls = 0, walls_recovered = 0;     ///< true shared walls of at least 1 m; with the same points for 90 % of the length
-  int alleys = 0, alleys_closed = 0;      ///< pairs that face each other across 0.8 to 3 m; with a common edge afterwards
-  int alleys_touching = 0;                ///< with a common point afterwards
-  int right = 0, right_restored = 0;      ///< true right angles with legs of at least 1 m; right to 0.1 degrees
-  int oblique = 0, oblique_squared = 0;   ///< true corners more than 5 degrees off right, legs of at least 8 m; right to 0.2
+  int walls = 0,
+      walls_recovered = 0;  ///< true shared walls of at least 1 m; with the same points for 90 % of the length
+  int alleys = 0, alleys_closed = 0;  ///< pairs that face each other across 0.8 to 3 m; with a common edge afterwards
+  int alleys_touching = 0;            ///< with a common point afterwards
+  int right = 0, right_restored = 0;  ///< true right angles with legs of at least 1 m; right to 0.1 degrees
+  int oblique = 0,
+      oblique_squared = 0;  ///< true corners more than 5 degrees off right, legs of at least 8 m; right to 0.2
   double error_before = 0, error_after = 0;  ///< m, mean distance of vertices from the truth
   double largest_shift = 0;                  ///< m, of RepairRecord
   double overlap = 0;                        ///< m2, left between neighbours

@@ -14,8 +14,8 @@ namespace {
 constexpr int kBlocks = 240;
 
 struct Bar {
-  double radius;   ///< m, of the disc
-  double walls;    ///< share of walls that must come back
+  double radius;  ///< m, of the disc
+  double walls;   ///< share of walls that must come back
 };
 
 Score experiment(double radius, bool square, bool cut) {
@@ -42,8 +42,8 @@ Score experiment(double radius, bool square, bool cut) {
     conflicts += r.code == model::IssueCode::shared_wall_conflict;
     bounded += r.code == model::IssueCode::repair_bounded;
   }
-  std::printf("noise %.1f m%s%s, %zu houses: %s; conflicts %d, bounded %d; %.0f houses/s\n", radius, square ? ", squared" : "",
-              cut ? ", row by row" : "", truth.size(), s.text().c_str(), conflicts, bounded,
+  std::printf("noise %.1f m%s%s, %zu houses: %s; conflicts %d, bounded %d; %.0f houses/s\n", radius,
+              square ? ", squared" : "", cut ? ", row by row" : "", truth.size(), s.text().c_str(), conflicts, bounded,
               static_cast<double>(truth.size()) / seconds);
   return s;
 }

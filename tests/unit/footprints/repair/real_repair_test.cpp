@@ -11,15 +11,15 @@
 
 #include "importers/osm/read_extract.h"
 #include "pipeline/base/random.h"
+#include "pipeline/footprints/area.h"
+#include "pipeline/footprints/load.h"
+#include "pipeline/footprints/repair/parts.h"
+#include "pipeline/footprints/repair/rings.h"
+#include "pipeline/footprints/shard.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/projection.h"
-#include "pipeline/footprints/area.h"
-#include "pipeline/footprints/load.h"
-#include "pipeline/footprints/shard.h"
-#include "pipeline/footprints/repair/parts.h"
-#include "pipeline/footprints/repair/rings.h"
 
 namespace blockrand::repair {
 namespace {

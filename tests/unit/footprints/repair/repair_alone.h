@@ -1,9 +1,9 @@
 // Each building of a region repaired without its neighbours: what tests of later stages start from.
 #pragma once
 
-#include "pipeline/model/region.h"
 #include "pipeline/footprints/repair/parts.h"
 #include "pipeline/footprints/repair/rings.h"
+#include "pipeline/model/region.h"
 
 namespace blockrand::repair::test {
 

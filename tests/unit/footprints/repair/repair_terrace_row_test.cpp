@@ -150,8 +150,8 @@ TEST(RepairRow, ChainOfRowHousesWithNoiseIsAPartition) {
 
 TEST(RepairRow, BuildingThatSharingWouldBreakStaysAndSaysSo) {
   // A kiosk of 1.2 x 1.2 m between two houses: closing both gaps would add 30 % to it.
-  const TerraceRow before = row_of_polygons(
-      {polygon(box(0, 0, 10, 8)), polygon(box(10.2, 2, 11.4, 3.2)), polygon(box(11.6, 0, 20, 8))});
+  const TerraceRow before =
+      row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.2, 2, 11.4, 3.2)), polygon(box(11.6, 0, 20, 8))});
   TerraceRow row = before;
   model::Report report;
   repair_terrace_row(row, without_squaring(), report);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "pipeline/footprints/repair/clean_ring.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
-#include "pipeline/footprints/repair/clean_ring.h"
-#include "tests/unit/geometry/shapes.h"
 #include "tests/unit/footprints/repair/repair_alone.h"
+#include "tests/unit/geometry/shapes.h"
 
 namespace blockrand::repair {
 namespace {
@@ -43,7 +43,8 @@ model::Region region_of(std::vector<model::Building> buildings) {
 }
 
 int count(const model::Region& r, IssueCode code) {
-  return static_cast<int>(std::count_if(r.report.rows.begin(), r.report.rows.end(), [&](const auto& row) { return row.code == code; }));
+  return static_cast<int>(
+      std::count_if(r.report.rows.begin(), r.report.rows.end(), [&](const auto& row) { return row.code == code; }));
 }
 
 std::vector<std::string> ids(const model::Building& b) {
@@ -94,7 +95,8 @@ TEST(Repair, BowTieIsTwoPiecesOfOneBuilding) {
 }
 
 TEST(Repair, NothingToBuildIsAReasonNotACrash) {
-  auto r = region_of({building(1, {{0, 0}, {5, 0}, {5, 0.0005}}), building(2, {}), building(3, {{0, 0}, {9, 0}, {3, 0}, {6, 0}})});
+  auto r = region_of(
+      {building(1, {{0, 0}, {5, 0}, {5, 0.0005}}), building(2, {}), building(3, {{0, 0}, {9, 0}, {3, 0}, {6, 0}})});
   for (const auto& b : r.buildings) {
     EXPECT_TRUE(b.parts.empty());
     EXPECT_NE(b.failure, IssueCode::none);
@@ -151,7 +153,8 @@ TEST(Repair, AreaIsKeptWhereTheRingWasSound) {
   testing_shapes::Random random(3);
   for (int round = 0; round < 100; ++round) {
     const double w = 5 + 20 * random.unit(), d = 5 + 20 * random.unit();
-    const auto plan = testing_shapes::turned(testing_shapes::polygon({{0, 0}, {w, 0}, {w, d}, {w / 2, d}, {w / 2, d / 2}, {0, d / 2}}));
+    const auto plan = testing_shapes::turned(
+        testing_shapes::polygon({{0, 0}, {w, 0}, {w, d}, {w / 2, d}, {w / 2, d / 2}, {0, d / 2}}));
     const double before = geometry::area(plan);
     const auto r = region_of({building(1, plan.outer.points)});
     EXPECT_DOUBLE_EQ(geometry::area(r.buildings[0].outline[0]), before);

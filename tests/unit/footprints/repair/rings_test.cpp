@@ -9,10 +9,10 @@
 #include <sstream>
 
 #include "pipeline/base/portable_math.h"
+#include "pipeline/footprints/repair/clean_ring.h"
 #include "pipeline/geometry/even_odd.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
-#include "pipeline/footprints/repair/clean_ring.h"
 #include "tests/unit/geometry/shapes.h"
 
 namespace blockrand::repair {

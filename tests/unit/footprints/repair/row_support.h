@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/footprints/repair/repair_terrace_row.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
-#include "pipeline/footprints/repair/repair_terrace_row.h"
 
 namespace blockrand::repair::test {
 

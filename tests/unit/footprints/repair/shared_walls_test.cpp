@@ -74,9 +74,9 @@ TEST(SharedWalls, CornerInTheMiddleOfAWallIsPutIntoIt) {
 }
 
 TEST(SharedWalls, PiecesOfAWallLieInLine) {
-  const TerraceRow row = repaired(row_of_polygons({polygon(box(0, 0, 10, 30)), polygon({{10.3, 0}, {20, 0}, {20, 9}, {10.1, 9}}),
-                                            polygon({{9.9, 9}, {20, 9}, {20, 19}, {10.2, 19}}),
-                                            polygon({{10, 19}, {20, 19}, {20, 30}, {10.1, 30}})}));
+  const TerraceRow row = repaired(row_of_polygons(
+      {polygon(box(0, 0, 10, 30)), polygon({{10.3, 0}, {20, 0}, {20, 9}, {10.1, 9}}),
+       polygon({{9.9, 9}, {20, 9}, {20, 19}, {10.2, 19}}), polygon({{10, 19}, {20, 19}, {20, 30}, {10.1, 30}})}));
   ASSERT_TRUE(all_valid(row));
   const model::Ring& wall = row.buildings[0].polygons[0].outer;
   ASSERT_EQ(wall.size(), 6u);
@@ -96,8 +96,8 @@ TEST(SharedWalls, PiecesOfAWallLieInLine) {
 
 TEST(SharedWalls, ThreeHousesMeetInOneCorner) {
   const TerraceRow row = repaired(row_of_polygons({polygon({{0, 0}, {10, 0}, {10.1, 10}, {0, 10}}),
-                                            polygon({{10.2, 0}, {20, 0}, {20, 10}, {10.2, 9.9}}),
-                                            polygon({{0, 10.2}, {10, 10.15}, {20, 10.2}, {20, 20}, {0, 20}})}));
+                                                   polygon({{10.2, 0}, {20, 0}, {20, 10}, {10.2, 9.9}}),
+                                                   polygon({{0, 10.2}, {10, 10.15}, {20, 10.2}, {20, 20}, {0, 20}})}));
   ASSERT_TRUE(all_valid(row));
   Point2 meeting{};
   int common = 0;
@@ -122,7 +122,7 @@ TEST(SharedWalls, AlleyOf80CentimetresStaysOpen) {
 TEST(SharedWalls, MouthOfAnAlleyStaysOpenWhereAThirdHouseHasACornerThere) {
   // The corner of the house behind is nearer to both than snap_reach.
   const TerraceRow row = repaired(row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.8, 0, 20, 8)),
-                                            polygon({{0, 8.1}, {10.4, 8.1}, {20, 8.1}, {20, 16}, {0, 16}})}));
+                                                   polygon({{0, 8.1}, {10.4, 8.1}, {20, 8.1}, {20, 16}, {0, 16}})}));
   ASSERT_TRUE(all_valid(row));
   for (const Point2 p : row.buildings[0].polygons[0].outer.points) EXPECT_FALSE(has_point(row.buildings[1], p));
   EXPECT_GT(shared_length(row.buildings[0], row.buildings[2]), 9.0);
@@ -131,13 +131,15 @@ TEST(SharedWalls, MouthOfAnAlleyStaysOpenWhereAThirdHouseHasACornerThere) {
 
 TEST(SharedWalls, WedgeBetweenTwoHousesIsNotClosed) {
   // They meet in a corner and go apart by 15 degrees.
-  const TerraceRow before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon({{10, 0}, {20, 0}, {20, 8}, {12.14, 8}})});
+  const TerraceRow before =
+      row_of_polygons({polygon(box(0, 0, 10, 8)), polygon({{10, 0}, {20, 0}, {20, 8}, {12.14, 8}})});
   const TerraceRow row = repaired(before);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(same_points(row.buildings[i], before.buildings[i]));
 }
 
 TEST(SharedWalls, WallUnderACanopyIsUntouched) {
-  TerraceRow before = row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.2, 0, 20, 8)), polygon(box(-3, -3, 10.1, 9))});
+  TerraceRow before =
+      row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10.2, 0, 20, 8)), polygon(box(-3, -3, 10.1, 9))});
   before.buildings[1].level.canopy = true;
   before.buildings[2].level.layer = 1;
   const TerraceRow row = repaired(before);
@@ -154,25 +156,26 @@ TEST(SharedWalls, BridgeAboveSharesNothing) {
 
 TEST(SharedWalls, HouseInACourtyardTouchesItsWalls) {
   // A hole of 10 x 10 m, nearly filled.
-  const TerraceRow row = repaired(row_of_polygons(
-      {polygon(box(0, 0, 30, 30), {box(10, 10, 20, 20)}), polygon({{10.2, 10.1}, {19.8, 10.2}, {19.9, 19.9}, {10.1, 19.8}})}));
+  const TerraceRow row = repaired(row_of_polygons({polygon(box(0, 0, 30, 30), {box(10, 10, 20, 20)}),
+                                                   polygon({{10.2, 10.1}, {19.8, 10.2}, {19.9, 19.9}, {10.1, 19.8}})}));
   ASSERT_TRUE(all_valid(row));
   EXPECT_THAT(shared_length(row.buildings[0], row.buildings[1]), DoubleNear(40, 0.8));
   EXPECT_EQ(row.buildings[1].record.shared_walls, 1u);
 }
 
 TEST(SharedWalls, HouseWithinAnUFillsIt) {
-  const TerraceRow row = repaired(row_of_polygons(
-      {polygon({{0, 0}, {30, 0}, {30, 20}, {20, 20}, {20, 10}, {10, 10}, {10, 20}, {0, 20}}),
-       polygon({{10.2, 10.2}, {19.8, 10.1}, {19.9, 20}, {10.1, 20}})}));
+  const TerraceRow row =
+      repaired(row_of_polygons({polygon({{0, 0}, {30, 0}, {30, 20}, {20, 20}, {20, 10}, {10, 10}, {10, 20}, {0, 20}}),
+                                polygon({{10.2, 10.2}, {19.8, 10.1}, {19.9, 20}, {10.1, 20}})}));
   ASSERT_TRUE(all_valid(row));
   EXPECT_THAT(shared_length(row.buildings[0], row.buildings[1]), DoubleNear(30, 0.6));
 }
 
 TEST(SharedWalls, CourtyardsOfNeighboursThatTouchStayApart) {
   // Two L-shaped halves around a court: what is shared are the walls where they meet.
-  const TerraceRow row = repaired(row_of_polygons({polygon({{0, 0}, {20, 0}, {20, 6}, {6, 6}, {6, 20}, {0, 20}}),
-                                            polygon({{20.2, 6.2}, {20.1, 20}, {6.2, 20.2}, {6.1, 14}, {14, 14}, {14, 6.1}})}));
+  const TerraceRow row =
+      repaired(row_of_polygons({polygon({{0, 0}, {20, 0}, {20, 6}, {6, 6}, {6, 20}, {0, 20}}),
+                                polygon({{20.2, 6.2}, {20.1, 20}, {6.2, 20.2}, {6.1, 14}, {14, 14}, {14, 6.1}})}));
   ASSERT_TRUE(all_valid(row));
   EXPECT_THAT(shared_length(row.buildings[0], row.buildings[1]), DoubleNear(12, 0.5));
 }
@@ -191,7 +194,8 @@ TEST(SharedWalls, CornersNearTheCutStayWhereTheyAre) {
 TEST(SharedWalls, SwitchedOffEveryCornerIsItsOwn) {
   RepairOptions options = without_squaring();
   options.share_walls = false;
-  const TerraceGraph graph = build_terrace_graph(row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10, 0, 20, 8))}), options);
+  const TerraceGraph graph =
+      build_terrace_graph(row_of_polygons({polygon(box(0, 0, 10, 8)), polygon(box(10, 0, 20, 8))}), options);
   EXPECT_EQ(graph.corners.size(), 8u);
   for (const Corner& c : graph.corners) EXPECT_EQ(c.said.size(), 1u);
 }

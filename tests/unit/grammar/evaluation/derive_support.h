@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "styles/grammar/evaluation/derive.h"
-#include "styles/grammar/shapes/initial_shape.h"
 #include "styles/grammar/language/program.h"
 #include "styles/grammar/language/value_text.h"
+#include "styles/grammar/shapes/initial_shape.h"
 
 namespace blockrand::grammar::testing_support {
 

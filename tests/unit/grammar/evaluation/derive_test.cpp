@@ -7,8 +7,8 @@
 #include <set>
 
 #include "derive_support.h"
-#include "styles/grammar/shapes/measure.h"
 #include "styles/grammar/evaluation/run.h"
+#include "styles/grammar/shapes/measure.h"
 
 namespace blockrand::grammar {
 namespace {

@@ -269,7 +269,8 @@ TEST(UnreadableFiles, RubbishAfterTheEnd) {
 
 TEST(UnreadableFiles, ErrorsInXmlNameTheLine) {
   const TempFolder folder;
-  EXPECT_THAT(error_of(folder.write("a.osm", "<osm version='0.6'>\n<node id='1'>\n</osm>")), HasSubstr("a.osm:line 3, column 2: XML parsing error: mismatched tag"));
+  EXPECT_THAT(error_of(folder.write("a.osm", "<osm version='0.6'>\n<node id='1'>\n</osm>")),
+              HasSubstr("a.osm:line 3, column 2: XML parsing error: mismatched tag"));
   EXPECT_NE(error_of(folder.write("b.osm", OsmText().raw("<node id='1' lon='east' lat='52'/>").xml())), "no error");
   EXPECT_NE(
       error_of(folder.write("c.osm", OsmText().raw(std::string("<way id='1'><tag k='a' v='b\0c'/></way>", 37)).xml())),

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "importers/reference/reference_crs.h"
 #include "importers/reference/affine_transform.h"
+#include "importers/reference/reference_crs.h"
 #include "pipeline/base/error.h"
 #include "pipeline/georef/crs_facts.h"
 #include "pipeline/georef/proj_transform.h"

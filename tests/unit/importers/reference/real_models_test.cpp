@@ -15,9 +15,9 @@
 #include <sstream>
 
 #include "importers/osm/read_extract.h"
+#include "importers/reference/affine_transform.h"
 #include "importers/reference/footprints.h"
 #include "importers/reference/read_model.h"
-#include "importers/reference/affine_transform.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/georef/projection.h"
 #include "tests/unit/importers/reference/support.h"

@@ -1,5 +1,3 @@
-#include "pipeline/outputs/explain/explanation.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "pipeline/outputs/explain/explanation.h"
 #include "pipeline/outputs/gzip.h"
 #include "tests/unit/outputs/row_sample.h"
 #include "tests/unit/outputs/sample_region.h"
@@ -55,8 +54,9 @@ TEST(Explain, ValuesCarrySourceReasonAndWhatLost) {
   model::Building& b = sample.add_building(7, {{"building", "house"}, {"name", "a \"quoted\"\nname"}});
   sample.add_box(b, "w7", 0, 0, 10, 8, 0, 6);
   auto& region = sample.region();
-  b.attributes.storeys = {4, model::Source::neighbours, 0.6f,
-                          region.evidence.add({"median of 7 neighbours", {{model::Source::preset, 0.3f, "3", "usual for houses"}}})};
+  b.attributes.storeys = {
+      4, model::Source::neighbours, 0.6f,
+      region.evidence.add({"median of 7 neighbours", {{model::Source::preset, 0.3f, "3", "usual for houses"}}})};
   const json line = lines_of(explain(region, plain_options()).lines).at("w7");
   EXPECT_EQ(line.at("name"), "a \"quoted\"\nname");
   EXPECT_EQ(line.at("tags").at("building"), "house");
@@ -69,7 +69,10 @@ TEST(Explain, ValuesCarrySourceReasonAndWhatLost) {
     EXPECT_NEAR(a.at("confidence").get<double>(), 0.6, 1e-6);
     EXPECT_EQ(a.at("why"), "median of 7 neighbours");
     ASSERT_EQ(a.at("lost").size(), 1u);
-    EXPECT_EQ(a.at("lost")[0], json({{"value", "3"}, {"source", "preset"}, {"confidence", a.at("lost")[0].at("confidence")}, {"why", "usual for houses"}}));
+    EXPECT_EQ(a.at("lost")[0], json({{"value", "3"},
+                                     {"source", "preset"},
+                                     {"confidence", a.at("lost")[0].at("confidence")},
+                                     {"why", "usual for houses"}}));
   }
   EXPECT_TRUE(seen);
 }
@@ -81,7 +84,8 @@ TEST(Explain, NotesComeFromBeforeAndFromTheTile) {
   const model::OsmId seven{model::OsmType::way, 7}, eight{model::OsmType::way, 8};
   sample.region().report.add(eight, model::IssueCode::spike_removed, "of another");
   sample.region().report.add(seven, model::IssueCode::spike_removed, "1 points");
-  const std::vector<model::ReportRow> earlier = {{seven, model::IssueCode::value_unreadable, "height=tall"}, {eight, model::IssueCode::value_clamped, "x"}};
+  const std::vector<model::ReportRow> earlier = {{seven, model::IssueCode::value_unreadable, "height=tall"},
+                                                 {eight, model::IssueCode::value_clamped, "x"}};
   ExplainOptions options = plain_options();
   options.earlier = earlier;
   const json line = lines_of(explain(sample.region(), options).lines).at("w7");
@@ -118,17 +122,20 @@ TEST(ExplainRow, SaysHowAHouseStands) {
     return CourtyardFacts{312.4, true};
   };
   const auto lines = lines_of(explain(test::row_sample().region(), options).lines);
-  EXPECT_EQ(stages_of(lines.at("w1")).at("context"),
-            "corner house; fronts on Oderberger Straße (14.0 m, looks W) and Kastanienallee (12.0 m, looks S); "
-            "1 mapped entrance; walls shared with w2 (14.0 m); 14.0 m deep and 12.0 m wide; stands at a closed courtyard "
-            "of 312 m2; in block w900.n5.l");
-  EXPECT_EQ(stages_of(lines.at("w2")).at("context"),
-            "within a row; front on Kastanienallee (14.7 m, looks S); a passage 3.3 m wide; walls shared with w3 (14.0 m) "
-            "and w1 (14.0 m); 14.0 m deep and 18.0 m wide; 0.4 m behind the building line of the street; stands at a "
-            "closed courtyard of 312 m2; in block w900.n5.l");
-  EXPECT_EQ(stages_of(lines.at("w4")).at("context"),
-            "rear building (Hinterhaus); no wall is shared with a neighbour; 9.0 m deep and 12.0 m wide; stands at a closed "
-            "courtyard of 312 m2; in block w900.n5.l");
+  EXPECT_EQ(
+      stages_of(lines.at("w1")).at("context"),
+      "corner house; fronts on Oderberger Straße (14.0 m, looks W) and Kastanienallee (12.0 m, looks S); "
+      "1 mapped entrance; walls shared with w2 (14.0 m); 14.0 m deep and 12.0 m wide; stands at a closed courtyard "
+      "of 312 m2; in block w900.n5.l");
+  EXPECT_EQ(
+      stages_of(lines.at("w2")).at("context"),
+      "within a row; front on Kastanienallee (14.7 m, looks S); a passage 3.3 m wide; walls shared with w3 (14.0 m) "
+      "and w1 (14.0 m); 14.0 m deep and 18.0 m wide; 0.4 m behind the building line of the street; stands at a "
+      "closed courtyard of 312 m2; in block w900.n5.l");
+  EXPECT_EQ(
+      stages_of(lines.at("w4")).at("context"),
+      "rear building (Hinterhaus); no wall is shared with a neighbour; 9.0 m deep and 12.0 m wide; stands at a closed "
+      "courtyard of 312 m2; in block w900.n5.l");
 }
 
 TEST(ExplainRow, SaysWhatRepairDid) {
@@ -140,33 +147,56 @@ TEST(ExplainRow, SaysWhatRepairDid) {
   fourth.repaired.overlap_left = 0.25;
   const auto lines = lines_of(explain(sample.region(), plain_options()).lines);
   EXPECT_EQ(stages_of(lines.at("w1")).at("repair"), "no corner was moved; the footprint has 4 points and 168.0 m2");
-  EXPECT_EQ(stages_of(lines.at("w2")).at("repair"),
-            "3 of 4 corners moved by 0.08 m on average, 0.31 m at most, to share 2 walls with w3 and w1 and to make corners "
-            "right; 1 gap between walls closed; area 251.4 -> 252.0 m2; the footprint has 4 points and 252.0 m2");
-  EXPECT_EQ(stages_of(lines.at("w4")).at("repair"),
-            "1 of 4 corners moved by 0.20 m on average, 0.20 m at most, to resolve 1 overlap; 0.2 m2 still overlap with "
-            "others; 1 curve kept; the footprint has 4 points and 108.0 m2");
+  EXPECT_EQ(
+      stages_of(lines.at("w2")).at("repair"),
+      "3 of 4 corners moved by 0.08 m on average, 0.31 m at most, to share 2 walls with w3 and w1 and to make corners "
+      "right; 1 gap between walls closed; area 251.4 -> 252.0 m2; the footprint has 4 points and 252.0 m2");
+  EXPECT_EQ(
+      stages_of(lines.at("w4")).at("repair"),
+      "1 of 4 corners moved by 0.20 m on average, 0.20 m at most, to resolve 1 overlap; 0.2 m2 still overlap with "
+      "others; 1 curve kept; the footprint has 4 points and 108.0 m2");
 }
 
 TEST(ExplainRow, MachinesReadTheSame) {
   const auto lines = lines_of(explain(test::row_sample().region(), plain_options()).lines);
   const json& line = lines.at("w2");
-  EXPECT_EQ(line.at("repair"), json({{"vertices", 4}, {"moved", 3}, {"mean_shift", 0.082}, {"max_shift", 0.31},
-                                     {"mapped_area", 251.4}, {"area", 252}, {"shared_walls", 2}, {"gaps_closed", 1},
-                                     {"overlaps_resolved", 0}, {"overlap_left", 0}, {"direction", 90}}));
-  EXPECT_EQ(line.at("situation"),
-            json({{"position", "mid_row"}, {"orientation", 180}, {"depth", 14}, {"width", 18}, {"setback", 0.4},
-                  {"party_wall_length", 28}, {"block", "w900.n5.l"}, {"courtyards", {"w1.y7_8"}}}));
+  EXPECT_EQ(line.at("repair"), json({{"vertices", 4},
+                                     {"moved", 3},
+                                     {"mean_shift", 0.082},
+                                     {"max_shift", 0.31},
+                                     {"mapped_area", 251.4},
+                                     {"area", 252},
+                                     {"shared_walls", 2},
+                                     {"gaps_closed", 1},
+                                     {"overlaps_resolved", 0},
+                                     {"overlap_left", 0},
+                                     {"direction", 90}}));
+  EXPECT_EQ(line.at("situation"), json({{"position", "mid_row"},
+                                        {"orientation", 180},
+                                        {"depth", 14},
+                                        {"width", 18},
+                                        {"setback", 0.4},
+                                        {"party_wall_length", 28},
+                                        {"block", "w900.n5.l"},
+                                        {"courtyards", {"w1.y7_8"}}}));
   const json& edges = line.at("edges");
   ASSERT_EQ(edges.size(), 6u);
-  EXPECT_EQ(edges[1], json({{"id", "w2.e20_21.1"}, {"kind", "passage"}, {"confidence", 0.9}, {"length", 3.3},
-                            {"looks", "S"}, {"street", "w900"}, {"street_name", "Kastanienallee"},
-                            {"street_class", "residential"}, {"street_distance", 11.5}, {"street_angle", 0.2},
+  EXPECT_EQ(edges[1], json({{"id", "w2.e20_21.1"},
+                            {"kind", "passage"},
+                            {"confidence", 0.9},
+                            {"length", 3.3},
+                            {"looks", "S"},
+                            {"street", "w900"},
+                            {"street_name", "Kastanienallee"},
+                            {"street_class", "residential"},
+                            {"street_distance", 11.5},
+                            {"street_angle", 0.2},
                             {"visibility", 1}}));
   EXPECT_EQ(edges[2].at("front"), true);
-  EXPECT_EQ(lines.at("w1").at("edges")[0].at("points"), json({{{"id", "n71"}, {"entrance", true}, {"house_number", "7"}},
-                                                              {{"id", "n72"}, {"entrance", false}, {"house_number", "7a"}},
-                                                              {{"id", "n73"}, {"entrance", false}, {"house_number", "7"}}}));
+  EXPECT_EQ(lines.at("w1").at("edges")[0].at("points"),
+            json({{{"id", "n71"}, {"entrance", true}, {"house_number", "7"}},
+                  {{"id", "n72"}, {"entrance", false}, {"house_number", "7a"}},
+                  {{"id", "n73"}, {"entrance", false}, {"house_number", "7"}}}));
   EXPECT_FALSE(edges[2].contains("points"));
   EXPECT_EQ(edges[3].at("neighbour"), "w3");
   EXPECT_EQ(lines.at("w4").at("edges")[2].at("radius"), 6.25);
@@ -198,7 +228,9 @@ TEST(Explain, WhatWasNotBuiltSaysWhy) {
   test::SampleRegion sample;
   sample.add_building(7, {{"building", "yes"}});
   ExplainOptions options = plain_options();
-  options.final_state = [](std::uint32_t) { return FinalState{model::ObjectState::reported, model::IssueCode::zero_area, {}}; };
+  options.final_state = [](std::uint32_t) {
+    return FinalState{model::ObjectState::reported, model::IssueCode::zero_area, {}};
+  };
   const json line = lines_of(explain(sample.region(), options).lines).at("w7");
   EXPECT_EQ(line.at("state"), "reported");
   EXPECT_EQ(line.at("code"), "ZERO_AREA");
@@ -233,9 +265,22 @@ model::Building& classified(test::SampleRegion& sample) {
   b.style_why.second = model::StyleClass::modern;
   b.style_why.prior = {0.125f, -0.125f, 0, 0};
   b.style_why.elsewhere = {1.3333334f, 0, -1, 0};
-  b.style_why.terms = {{"depth_ratio", "", "greatest depth: wings", 1.9f, 1.5f, std::numeric_limits<float>::infinity(), {2.f, 1.f, -0.5f, 0.f}},
-                       {"area", "m2", "footprint area", 312.40001f, -std::numeric_limits<float>::infinity(), 400.f, {0.25f, 0, 0, 0}}};
-  b.style_why.changes = {{"depth_ratio", "", "greatest depth: wings", 1.9f, -std::numeric_limits<float>::infinity(), 1.2f, {-2.f, 0, 1.f, 0}}};
+  b.style_why.terms = {
+      {"depth_ratio",
+       "",
+       "greatest depth: wings",
+       1.9f,
+       1.5f,
+       std::numeric_limits<float>::infinity(),
+       {2.f, 1.f, -0.5f, 0.f}},
+      {"area", "m2", "footprint area", 312.40001f, -std::numeric_limits<float>::infinity(), 400.f, {0.25f, 0, 0, 0}}};
+  b.style_why.changes = {{"depth_ratio",
+                          "",
+                          "greatest depth: wings",
+                          1.9f,
+                          -std::numeric_limits<float>::infinity(),
+                          1.2f,
+                          {-2.f, 0, 1.f, 0}}};
   return b;
 }
 
@@ -244,8 +289,10 @@ TEST(ExplainStyle, IsToldToMachines) {
   classified(sample);
   const json style = lines_of(explain(sample.region(), plain_options()).lines).at("w7").at("style");
   EXPECT_EQ(style.at("class"), "gruenderzeit");
-  EXPECT_EQ(style.at("probabilities"), json({{"gruenderzeit", 0.825}, {"tenement", 0.05}, {"modern", 0.11}, {"other", 0.015}}));
-  EXPECT_EQ(style.at("era"), json({{"pre1840", 0.0625}, {"1840_1918", 0.875}, {"1919_1945", 0.0312}, {"post1945", 0.0312}}));
+  EXPECT_EQ(style.at("probabilities"),
+            json({{"gruenderzeit", 0.825}, {"tenement", 0.05}, {"modern", 0.11}, {"other", 0.015}}));
+  EXPECT_EQ(style.at("era"),
+            json({{"pre1840", 0.0625}, {"1840_1918", 0.875}, {"1919_1945", 0.0312}, {"post1945", 0.0312}}));
   EXPECT_EQ(style.at("morphology").at("slab"), 0.25);
   EXPECT_EQ(style.at("years"), json({1890, 1895}));
   EXPECT_EQ(style.at("substyle"), "gz_mk_front");
@@ -255,11 +302,12 @@ TEST(ExplainStyle, IsToldToMachines) {
   EXPECT_EQ(style.at("elsewhere").at("gruenderzeit"), 1.333) << "weights have three decimals";
   EXPECT_FALSE(style.contains("rule"));
   ASSERT_EQ(style.at("terms").size(), 2u);
-  EXPECT_EQ(style.at("terms")[0], json({{"feature", "depth_ratio"},
-                                        {"meaning", "greatest depth: wings"},
-                                        {"value", 1.9},
-                                        {"low", 1.5},
-                                        {"weights", {{"gruenderzeit", 2}, {"tenement", 1}, {"modern", -0.5}, {"other", 0}}}}))
+  EXPECT_EQ(style.at("terms")[0],
+            json({{"feature", "depth_ratio"},
+                  {"meaning", "greatest depth: wings"},
+                  {"value", 1.9},
+                  {"low", 1.5},
+                  {"weights", {{"gruenderzeit", 2}, {"tenement", 1}, {"modern", -0.5}, {"other", 0}}}}))
       << "an open bin has no high";
   EXPECT_EQ(style.at("terms")[1].at("unit"), "m2");
   EXPECT_EQ(style.at("terms")[1].at("value"), 312.4);

@@ -20,13 +20,16 @@ using model::OsmType;
 constexpr OsmId way(std::int64_t n) { return {OsmType::way, n}; }
 
 TEST(ObjectId, IsReadAsPeopleWriteIt) {
-  for (const char* text : {"w123", "way/123", "way 123", "https://www.openstreetmap.org/way/123", "https://www.openstreetmap.org/way/123/",
-                           "openstreetmap.org/way/123#map=19/52/13", "https://www.openstreetmap.org/way/123/history", "W123", " w123 ", "w123.w456", "w123.rest", "w123.2"})
+  for (const char* text :
+       {"w123", "way/123", "way 123", "https://www.openstreetmap.org/way/123", "https://www.openstreetmap.org/way/123/",
+        "openstreetmap.org/way/123#map=19/52/13", "https://www.openstreetmap.org/way/123/history", "W123", " w123 ",
+        "w123.w456", "w123.rest", "w123.2"})
     EXPECT_EQ(parse_object_id(text), way(123)) << text;
   EXPECT_EQ(parse_object_id("r45"), (OsmId{OsmType::relation, 45}));
   EXPECT_EQ(parse_object_id("relation/45"), (OsmId{OsmType::relation, 45}));
   EXPECT_EQ(parse_object_id("n-7"), (OsmId{OsmType::node, -7}));
-  for (const char* text : {"", "w", "123", "x1", "w12x", "way", "way/", "way/x", "ways/1", "w99999999999999999999", "w 1"})
+  for (const char* text :
+       {"", "w", "123", "x1", "w12x", "way", "way/", "way/x", "ways/1", "w99999999999999999999", "w 1"})
     EXPECT_FALSE(parse_object_id(text)) << text;
 }
 
@@ -52,10 +55,13 @@ class FindExplanation : public ::testing::Test {
     write("explain/15_0_0.jsonl.gz", outputs::gzip(lines[0]));
     write("explain/15_1_1.jsonl.gz", outputs::gzip(lines[1]));
     write("explain/index.txt", index_);
-    write("report.json", R"({"objects":[{"id":"n5","kind":"building","state":"reported","code":"NODE_ONLY"},)"
-                         R"({"id":"w7","kind":"building","state":"duplicate","related":"w2"}],"codes":{"NODE_ONLY":"A point."}})");
+    write("report.json",
+          R"({"objects":[{"id":"n5","kind":"building","state":"reported","code":"NODE_ONLY"},)"
+          R"({"id":"w7","kind":"building","state":"duplicate","related":"w2"}],"codes":{"NODE_ONLY":"A point."}})");
   }
-  void write(const std::string& name, const std::string& bytes) { std::ofstream(folder_ + "/" + name, std::ios::binary) << bytes; }
+  void write(const std::string& name, const std::string& bytes) {
+    std::ofstream(folder_ + "/" + name, std::ios::binary) << bytes;
+  }
 
   std::string folder_, index_;
   std::vector<std::int64_t> ids_;
@@ -71,7 +77,8 @@ TEST_F(FindExplanation, BisectionFindsEveryLineAndNothingElse) {
       EXPECT_TRUE(found->in_model);
       EXPECT_FALSE(find_explanation(folder_, {type, n + 9'000'001}));
     }
-  for (const std::int64_t n : {std::int64_t{0}, std::int64_t{1}, std::int64_t{-4}, std::int64_t{999'999'999}}) EXPECT_FALSE(find_explanation(folder_, way(n))) << n;
+  for (const std::int64_t n : {std::int64_t{0}, std::int64_t{1}, std::int64_t{-4}, std::int64_t{999'999'999}})
+    EXPECT_FALSE(find_explanation(folder_, way(n))) << n;
 }
 
 TEST_F(FindExplanation, PartsAndDuplicatesLeadToTheirBuilding) {
@@ -87,8 +94,9 @@ TEST_F(FindExplanation, PartsAndDuplicatesLeadToTheirBuilding) {
 }
 
 TEST_F(FindExplanation, DuplicatesOfEachOtherEnd) {
-  write("report.json", R"({"objects":[{"id":"w7","state":"duplicate","related":"w9"},{"id":"w9","state":"duplicate","related":"w7"},)"
-                       R"({"id":5},7],"codes":3})");
+  write("report.json",
+        R"({"objects":[{"id":"w7","state":"duplicate","related":"w9"},{"id":"w9","state":"duplicate","related":"w7"},)"
+        R"({"id":5},7],"codes":3})");
   const auto found = find_explanation(folder_, way(7));
   ASSERT_TRUE(found);
   EXPECT_FALSE(found->in_model);

@@ -8,11 +8,11 @@
 #include <fstream>
 #include <iterator>
 
-#include "pipeline/outputs/wall_segment_ids.h"
+#include "pipeline/model/wall_segment_colours.h"
 #include "pipeline/outputs/geopackage/columns.h"
 #include "pipeline/outputs/geopackage/geopackage_writer.h"
 #include "pipeline/outputs/geopackage/qgis_styles.h"
-#include "pipeline/model/wall_segment_colours.h"
+#include "pipeline/outputs/wall_segment_ids.h"
 #include "tests/unit/outputs/row_sample.h"
 
 namespace blockrand::outputs {
@@ -62,13 +62,8 @@ BlockRow a_block() {
   return b;
 }
 CourtyardRow a_courtyard() {
-  return {"w1.y7_8",
-          "w900.n5.l",
-          rectangle(test::kRowX, test::kRowY + 22, 25, 20),
-          500,
-          true,
-          0,
-          {{model::OsmType::way, 1}, {model::OsmType::way, 2}}};
+  return {"w1.y7_8", "w900.n5.l", rectangle(test::kRowX, test::kRowY + 22, 25, 20),    500,
+          true,      0,           {{model::OsmType::way, 1}, {model::OsmType::way, 2}}};
 }
 CellRow a_cell() {
   CellRow c;
@@ -129,24 +124,28 @@ class ContextLayers : public testing::Test {
 };
 
 TEST_F(ContextLayers, EdgesAreNamedByTheirNodes) {
-  EXPECT_THAT(query(path, "SELECT id, building, kind, length, orientation, front FROM facade_edges WHERE building = 'w2'"),
-              ElementsAre(ElementsAre("w2.e20_21", "w2", "street", "7.0", "180.0", "1"),
-                          ElementsAre("w2.e20_21.1", "w2", "passage", "3.3", "180.0", "0"),
-                          ElementsAre("w2.e20_21.2", "w2", "street", "7.7", "180.0", "1"),
-                          ElementsAre("w2.e21_22", "w2", "party_wall", "14.0", "90.0", "0"),
-                          ElementsAre("w2.e22_23", "w2", "courtyard", "18.0", "0.0", "0"),
-                          ElementsAre("w2.e23_20", "w2", "party_wall", "14.0", "270.0", "0")));
-  EXPECT_THAT(query(path, "SELECT count(*), count(DISTINCT id) FROM facade_edges"), ElementsAre(ElementsAre("18", "18")));
+  EXPECT_THAT(
+      query(path, "SELECT id, building, kind, length, orientation, front FROM facade_edges WHERE building = 'w2'"),
+      ElementsAre(ElementsAre("w2.e20_21", "w2", "street", "7.0", "180.0", "1"),
+                  ElementsAre("w2.e20_21.1", "w2", "passage", "3.3", "180.0", "0"),
+                  ElementsAre("w2.e20_21.2", "w2", "street", "7.7", "180.0", "1"),
+                  ElementsAre("w2.e21_22", "w2", "party_wall", "14.0", "90.0", "0"),
+                  ElementsAre("w2.e22_23", "w2", "courtyard", "18.0", "0.0", "0"),
+                  ElementsAre("w2.e23_20", "w2", "party_wall", "14.0", "270.0", "0")));
+  EXPECT_THAT(query(path, "SELECT count(*), count(DISTINCT id) FROM facade_edges"),
+              ElementsAre(ElementsAre("18", "18")));
 }
 
 TEST_F(ContextLayers, EdgesSayWhatTheyFace) {
+  EXPECT_THAT(
+      query(path,
+            "SELECT street, street_name, street_class, street_distance, street_angle, visibility, corner_start, "
+            "corner_end, chamfer, entrances, neighbour, from_node, to_node FROM facade_edges WHERE id = 'w1.e10_11'"),
+      ElementsAre(ElementsAre("w900", "Kastanienallee", "residential", "11.5", "0.2", "1.0", "1", "0", "0", "1", "NULL",
+                              "10", "11")));
   EXPECT_THAT(query(path,
-                    "SELECT street, street_name, street_class, street_distance, street_angle, visibility, corner_start, "
-                    "corner_end, chamfer, entrances, neighbour, from_node, to_node FROM facade_edges WHERE id = 'w1.e10_11'"),
-              ElementsAre(ElementsAre("w900", "Kastanienallee", "residential", "11.5", "0.2", "1.0", "1", "0", "0", "1",
-                                      "NULL", "10", "11")));
-  EXPECT_THAT(query(path, "SELECT neighbour, covered_height, street, street_distance, arc_radius, confidence "
-                          "FROM facade_edges WHERE id = 'w1.e11_12'"),
+                    "SELECT neighbour, covered_height, street, street_distance, arc_radius, confidence "
+                    "FROM facade_edges WHERE id = 'w1.e11_12'"),
               ElementsAre(ElementsAre("w2", "16.5", "NULL", "NULL", "NULL", "0.9")));
   EXPECT_THAT(query(path, "SELECT arc_radius, arc_bulge FROM facade_edges WHERE id = 'w4.e42_43'"),
               ElementsAre(ElementsAre("6.25", "outward")));
@@ -168,28 +167,34 @@ TEST_F(ContextLayers, EdgesAreLinesAlongTheOutline) {
 }
 
 TEST_F(ContextLayers, BuildingsSayHowTheyStandAndWhatWasMended) {
-  EXPECT_THAT(query(path, "SELECT position, front_orientation, depth, width, setback, party_wall_length, block, courtyards "
-                          "FROM buildings ORDER BY id"),
+  EXPECT_THAT(query(path,
+                    "SELECT position, front_orientation, depth, width, setback, party_wall_length, block, courtyards "
+                    "FROM buildings ORDER BY id"),
               ElementsAre(ElementsAre("corner_house", "180.0", "14.0", "12.0", "NULL", "14.0", "w900.n5.l", "w1.y7_8"),
                           ElementsAre("mid_row", "180.0", "14.0", "18.0", "0.4", "28.0", "w900.n5.l", "w1.y7_8"),
                           ElementsAre("end_of_row", "180.0", "14.0", "15.0", "NULL", "14.0", "w900.n5.l", "w1.y7_8"),
                           ElementsAre("rear_building", "NULL", "9.0", "12.0", "NULL", "0.0", "w900.n5.l", "w1.y7_8")));
-  EXPECT_THAT(query(path, "SELECT moved, mean_shift, max_shift, mapped_area, shared_walls, gaps_closed, overlaps_resolved, "
-                          "overlap_left, squared_direction FROM buildings WHERE id IN ('w1', 'w2') ORDER BY id"),
+  EXPECT_THAT(query(path,
+                    "SELECT moved, mean_shift, max_shift, mapped_area, shared_walls, gaps_closed, overlaps_resolved, "
+                    "overlap_left, squared_direction FROM buildings WHERE id IN ('w1', 'w2') ORDER BY id"),
               ElementsAre(ElementsAre("0", "0.0", "0.0", "168.0", "0", "0", "0", "0.0", "NULL"),
                           ElementsAre("3", "0.082", "0.31", "251.4", "2", "1", "0", "0.0", "90.0")));
 }
 
 TEST_F(ContextLayers, BlocksCourtyardsAndCellsHaveTheirFigures) {
-  EXPECT_THAT(query(path, "SELECT id, kind, area, cut_by_extract_edge, too_large, buildings, built_share, tagged_share, "
-                          "floor_area_ratio, closure, front_length, courtyard_area, courtyards, streets FROM blocks"),
-              ElementsAre(ElementsAre("w900.n5.l", "ordinary", "4200.0", "0", "0", "4", "0.1757", "NULL", "NULL", "0.75",
-                                      "45.0", "500.0", "1", "Kastanienallee; w901")));
+  EXPECT_THAT(query(path,
+                    "SELECT id, kind, area, cut_by_extract_edge, too_large, buildings, built_share, tagged_share, "
+                    "floor_area_ratio, closure, front_length, courtyard_area, courtyards, streets FROM blocks"),
+              ElementsAre(ElementsAre("w900.n5.l", "ordinary", "4200.0", "0", "0", "4", "0.1757", "NULL", "NULL",
+                                      "0.75", "45.0", "500.0", "1", "Kastanienallee; w901")));
   EXPECT_THAT(query(path, "SELECT id, block, area, closed, opening, buildings, building_ids FROM courtyards"),
               ElementsAre(ElementsAre("w1.y7_8", "w900.n5.l", "500.0", "1", "0.0", "2", "w1 w2")));
-  EXPECT_THAT(query(path, "SELECT id, size, buildings, covered_share, density, built_share, tagged_share, storeys_mean, storeys_spread, "
-                          "year_mean, footprint_median FROM cells"),
-              ElementsAre(ElementsAre("c1564_23276", "250.0", "4", "0.9712", "0.64", "0.0118", "0.25", "5.0", "NULL", "NULL", "190.5")));
+  EXPECT_THAT(query(path,
+                    "SELECT id, size, buildings, covered_share, density, built_share, tagged_share, storeys_mean, "
+                    "storeys_spread, "
+                    "year_mean, footprint_median FROM cells"),
+              ElementsAre(ElementsAre("c1564_23276", "250.0", "4", "0.9712", "0.64", "0.0118", "0.25", "5.0", "NULL",
+                                      "NULL", "190.5")));
   EXPECT_THAT(query(path, "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'cells'"),
               ElementsAre(ElementsAre("391000.0", "5819000.0", "391250.0", "5819250.0")));
 }
@@ -225,8 +230,8 @@ TEST(ContextStyles, EdgesHaveTheColoursOfThePlan) {
       const auto kind = static_cast<model::WallSegmentKind>(k);
       const model::Colour c = model::colour_of(kind);
       EXPECT_THAT(style.qml, HasSubstr("value=\"" + std::string(model::name(kind)) + "\""));
-      EXPECT_THAT(style.qml, HasSubstr("name=\"line_color\" value=\"" + std::to_string(c.r) + ',' + std::to_string(c.g) +
-                                       ',' + std::to_string(c.b) + ",255\""));
+      EXPECT_THAT(style.qml, HasSubstr("name=\"line_color\" value=\"" + std::to_string(c.r) + ',' +
+                                       std::to_string(c.g) + ',' + std::to_string(c.b) + ",255\""));
     }
     return;
   }
@@ -243,8 +248,9 @@ TEST(ContextRows, WithoutContextEverythingIsEmpty) {
   GeoPackageWriter writer(folder / "a.gpkg", {"EPSG:25833", "", "", ""});
   writer.add(geopackage_rows(sample.region(), 2));
   writer.close();
-  EXPECT_THAT(query(folder / "a.gpkg", "SELECT position, depth, party_wall_length, block, moved, max_shift FROM buildings"),
-              ElementsAre(ElementsAre("unknown", "NULL", "NULL", "NULL", "NULL", "NULL")));
+  EXPECT_THAT(
+      query(folder / "a.gpkg", "SELECT position, depth, party_wall_length, block, moved, max_shift FROM buildings"),
+      ElementsAre(ElementsAre("unknown", "NULL", "NULL", "NULL", "NULL", "NULL")));
   for (const std::string layer : {"facade_edges", "blocks", "courtyards", "cells"})
     EXPECT_THAT(query(folder / "a.gpkg", "SELECT * FROM " + layer), IsEmpty());
 }

@@ -18,10 +18,10 @@
 #include <thread>
 
 #include "pipeline/base/error.h"
+#include "pipeline/model/issue_codes.h"
 #include "pipeline/outputs/geopackage/columns.h"
 #include "pipeline/outputs/geopackage/geopackage_writer.h"
 #include "pipeline/outputs/geopackage/qgis_styles.h"
-#include "pipeline/model/issue_codes.h"
 #include "tests/unit/outputs/row_sample.h"
 #include "tests/unit/outputs/sample_region.h"
 
@@ -178,10 +178,14 @@ TEST(GeoPackageRows, ProbabilitiesOfTheStyleStandWhereThereAreSome) {
   GeoPackageWriter writer(folder / "a.gpkg", kOptions);
   writer.add(geopackage_rows(sample.region(), 2));
   writer.close();
-  const std::string columns = "SELECT style_p, p_gruenderzeit, p_tenement, p_modern, p_other, morphology FROM buildings WHERE id = ";
-  EXPECT_THAT(query(folder / "a.gpkg", columns + "'w5'"), ElementsAre(ElementsAre("0.6667", "0.1", "0.2", "0.6667", "0.0333", "slab")));
-  EXPECT_THAT(query(folder / "a.gpkg", columns + "'w6'"), ElementsAre(ElementsAre("NULL", "NULL", "NULL", "NULL", "NULL", "NULL")));
-  EXPECT_EQ(column(folder / "a.gpkg", "SELECT type FROM pragma_table_info('buildings') WHERE name = 'style_p'").at(0), "REAL");
+  const std::string columns =
+      "SELECT style_p, p_gruenderzeit, p_tenement, p_modern, p_other, morphology FROM buildings WHERE id = ";
+  EXPECT_THAT(query(folder / "a.gpkg", columns + "'w5'"),
+              ElementsAre(ElementsAre("0.6667", "0.1", "0.2", "0.6667", "0.0333", "slab")));
+  EXPECT_THAT(query(folder / "a.gpkg", columns + "'w6'"),
+              ElementsAre(ElementsAre("NULL", "NULL", "NULL", "NULL", "NULL", "NULL")));
+  EXPECT_EQ(column(folder / "a.gpkg", "SELECT type FROM pragma_table_info('buildings') WHERE name = 'style_p'").at(0),
+            "REAL");
 }
 
 TEST_F(GeoPackage, BuildingsSayWhatStands) {

@@ -37,7 +37,8 @@ TEST(PicturePlan, SmallBuildsArePicturedWhole) {
 }
 
 TEST(PicturePlan, LargeOnesShowTheDensestTileAndItsNeighbours) {
-  const std::vector<footprints::Shard> shards{shard(0, 0, 30), shard(1, 0, 30), shard(2, 0, 50), shard(3, 0, 20), shard(9, 9, 1)};
+  const std::vector<footprints::Shard> shards{shard(0, 0, 30), shard(1, 0, 30), shard(2, 0, 50), shard(3, 0, 20),
+                                              shard(9, 9, 1)};
   const PicturePlan plan = plan_pictures(shards, projection(), 100);
   EXPECT_FALSE(plan.whole);
   // 50, then its two neighbours at the same distance; the far tile of one building would fit but stands apart.

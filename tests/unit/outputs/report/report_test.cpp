@@ -1,5 +1,3 @@
-#include "pipeline/outputs/report/report_page.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <libxml/parser.h>
@@ -8,6 +6,7 @@
 
 #include <set>
 
+#include "pipeline/outputs/report/report_page.h"
 #include "tests/unit/outputs/sample_region.h"
 
 namespace blockrand::outputs {
@@ -79,7 +78,8 @@ ReportFacts some_facts() {
   f.duplicates = 1;
   f.reported = 1;
   f.models_by_lod = {0, 1, 6};
-  f.sources = {{"storeys", {{"tag", 1}, {"neighbours", 2}}}, {"height", {{"implied", 3}}}, {"new_thing", {{"oracle", 3}}}};
+  f.sources = {
+      {"storeys", {{"tag", 1}, {"neighbours", 2}}}, {"height", {{"implied", 3}}}, {"new_thing", {{"oracle", 3}}}};
   f.roofs = {{"flat", 5}, {"gabled", 2}};
   f.files = {{"tileset.json", 10}, {"tiles/15/1/1.glb", 2000}, {"citygml/15_1_1.gml", 3000}};
   return f;
@@ -155,7 +155,8 @@ TEST(Report, StylesAreCountedByWhatTheyRestOn) {
   EXPECT_EQ(html.one(row + "'Other']//s:svg/@aria-label"), "rule 1 (100\u00a0%)");
   EXPECT_EQ(html.one(row + "'Modern']/h:td[3]"), "0 0\u00a0%") << "of the halo";
   EXPECT_EQ(html.one("//h:section[@id='styles']//h:tr[h:td[1]='1840 to 1918']/h:td[3]"), "2 50\u00a0%");
-  EXPECT_EQ(html.one("//h:section[@id='styles']//h:tr[h:td[1]='After 1945']//s:svg/@aria-label"), "evidence 1 (100\u00a0%)");
+  EXPECT_EQ(html.one("//h:section[@id='styles']//h:tr[h:td[1]='After 1945']//s:svg/@aria-label"),
+            "evidence 1 (100\u00a0%)");
   EXPECT_THAT(html.one("//h:section[@id='styles']/h:ul"), HasSubstr("evidence 50\u00a0%"));
 }
 
@@ -169,7 +170,8 @@ TEST(Report, FootprintsAreTheMapInDecimetres) {
   const Page html(zoo_page().html(some_facts()));
   ASSERT_TRUE(html.well_formed());
   // w40: 40 x 40 m, its south-west corner at (391000, 5819040); w-7: 10 x 8 m at (391000, 5819000). y points down.
-  const auto court = first_ring(html.one("//s:path[@id='w40']/@d")), house = first_ring(html.one("//s:path[@id='w-7']/@d"));
+  const auto court = first_ring(html.one("//s:path[@id='w40']/@d")),
+             house = first_ring(html.one("//s:path[@id='w-7']/@d"));
   ASSERT_EQ(court.size(), 4u);
   ASSERT_EQ(house.size(), 4u);
   EXPECT_EQ(court[1], std::pair(court[0].first + 400, court[0].second));
@@ -223,10 +225,11 @@ TEST(Report, EveryRowIsListedAndLeadsToTheMap) {
                                            {way(31), IssueCode::roof_failed, ""},
                                            {way(99), IssueCode::open_way, "ends 2 m apart"}};
   facts.rows = rows;
-  facts.objects = {{way(30), model::ObjectKind::building, model::ObjectState::represented, IssueCode::none, way(31)},
-                   {way(99), model::ObjectKind::building, model::ObjectState::reported, IssueCode::open_way, {}},
-                   {way(100), model::ObjectKind::building, model::ObjectState::duplicate, IssueCode::none, way(12)},
-                   {{OsmType::node, 5}, model::ObjectKind::building, model::ObjectState::reported, IssueCode::node_only, {}}};
+  facts.objects = {
+      {way(30), model::ObjectKind::building, model::ObjectState::represented, IssueCode::none, way(31)},
+      {way(99), model::ObjectKind::building, model::ObjectState::reported, IssueCode::open_way, {}},
+      {way(100), model::ObjectKind::building, model::ObjectState::duplicate, IssueCode::none, way(12)},
+      {{OsmType::node, 5}, model::ObjectKind::building, model::ObjectState::reported, IssueCode::node_only, {}}};
   const Page html(zoo_page().html(facts));
   ASSERT_TRUE(html.well_formed());
   EXPECT_EQ(html.one("//h:details[@id='code-OPEN_WAY']//h:li"), "w99 ends 2 m apart");
@@ -289,8 +292,9 @@ TEST(Report, LoadsNothing) {
   const Page html(zoo_page().html(facts));
   ASSERT_TRUE(html.well_formed());
   for (const std::string& src : html.all("//*/@src")) EXPECT_THAT(src, testing::StartsWith("data:image/png;base64,"));
-  EXPECT_THAT(html.all("//h:img/@src"), testing::ElementsAre("data:image/png;base64,iVBORw0KGgo=", "data:image/png;base64,//4=",
-                                                            "data:image/png;base64,YWJj"));
+  EXPECT_THAT(html.all("//h:img/@src"),
+              testing::ElementsAre(
+                  "data:image/png;base64,iVBORw0KGgo=", "data:image/png;base64,//4=", "data:image/png;base64,YWJj"));
   for (const std::string& href : html.all("//h:link/@href")) EXPECT_EQ(href, "data:,");
   EXPECT_THAT(html.text, Not(HasSubstr("url(")));
   EXPECT_THAT(html.text, Not(HasSubstr("@import")));
@@ -304,7 +308,8 @@ TEST(Report, BarsShowShares) {
   EXPECT_EQ(html.one(storeys + "//s:rect[@class='b8']/@x"), "3333");
   EXPECT_EQ(html.one(storeys + "//s:rect[@class='b8']/@width"), "6667");
   EXPECT_THAT(html.one(storeys + "/h:td[3]"), HasSubstr("33"));
-  EXPECT_EQ(html.count("//h:tr[h:td[1] = 'New thing']//s:rect[@class='b0']"), 1u) << "what no list knows is shown all the same";
+  EXPECT_EQ(html.count("//h:tr[h:td[1] = 'New thing']//s:rect[@class='b0']"), 1u)
+      << "what no list knows is shown all the same";
 }
 
 TEST(Report, NothingBuiltIsAPageToo) {
@@ -315,9 +320,7 @@ TEST(Report, NothingBuiltIsAPageToo) {
 
 // ---- the map's budget
 
-MapFootprints town(int count) {
-  return report_tile(SampleRegion::settlement(count, false).region()).footprints;
-}
+MapFootprints town(int count) { return report_tile(SampleRegion::settlement(count, false).region()).footprints; }
 
 ReportTile town_tile(int count) { return {town(count), {}}; }
 
