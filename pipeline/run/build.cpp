@@ -132,7 +132,6 @@ TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenO
   Region region = run_tile(shard, inputs);
   result.outcomes = decide_outcomes(region, inputs.lod);
   result.statistics = outputs::count_statistics(region);
-<<<<<<< HEAD
   outputs::FinishedTile tile{
       .region = region,
       .shard = shard,
@@ -140,15 +139,6 @@ TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenO
       .has_parts = std::ranges::any_of(region.buildings, [](const model::Building& b) { return !b.parts.empty(); }),
       .final_state = account.final_states(result.outcomes.list),
       .files = {}};
-=======
-  outputs::FinishedTile tile{
-      .region = region,
-      .shard = shard,
-      .name = outputs::tile_name(region.tile),
-      .has_parts = std::ranges::any_of(region.buildings, [](const model::Building& b) { return !b.parts.empty(); }),
-      .fate = account.fates(result.outcomes.list),
-      .files = {}};
->>>>>>> hF
   for (const auto& output : open.list) result.products.push_back(output->write_tile(tile));
   result.files = std::move(tile.files);
   result.rows = std::move(region.report.rows);
@@ -165,21 +155,12 @@ struct Sums {
   void take(TileResult&& tile, std::size_t shard, const BuildOptions& options, const OpenOutputs& open,
             Account& account, BuildRecord& record) {
     account.take(tile.outcomes, std::move(tile.rows), record.summary);
-<<<<<<< HEAD
     const outputs::FinishedTile taken{.region = tile.region,
                                       .shard = shard,
                                       .name = {},
                                       .has_parts = false,
                                       .final_state = {},
                                       .files = std::move(tile.files)};
-=======
-    const outputs::FinishedTile taken{.region = tile.region,
-                                      .shard = shard,
-                                      .name = {},
-                                      .has_parts = false,
-                                      .fate = {},
-                                      .files = std::move(tile.files)};
->>>>>>> hF
     for (std::size_t i = 0; i < open.list.size(); ++i) open.list[i]->take(taken, std::move(tile.products[i]));
     record.files.insert(record.files.end(), taken.files.begin(), taken.files.end());
     party_sides.insert(party_sides.end(), tile.statistics.party_sides.begin(), tile.statistics.party_sides.end());
@@ -302,7 +283,6 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const context::Ground ground(inputs.terrain ? &*inputs.terrain : nullptr, options.ground_height, projection);
   std::atomic<std::int64_t> context_time = 0;
   const evidence::StyleInputs style_inputs{prepared.facts, prepared.tags, prepared.styles, inputs.tables};
-<<<<<<< HEAD
   const TileInputs tile_inputs{.extract = extract,
                                .shards = shards,
                                .projection = projection,
@@ -326,31 +306,6 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
                                .has_terrain = inputs.terrain.has_value(),
                                .ground = [&](const model::Building& building) { return ground.under(building); },
                                .context_time = context_time};
-=======
-  const TileInputs tile_inputs{.extract = extract,
-                               .shards = shards,
-                               .projection = projection,
-                               .defaults = inputs.defaults,
-                               .kept = prepared.kept,
-                               .repaired = repaired,
-                               .context = context,
-                               .surroundings = surroundings,
-                               .roof_lines = roof_lines,
-                               .numbers = numbers,
-                               .neighbours = neighbours,
-                               .assigner = assigner,
-                               .overrides = inputs.overrides,
-                               .styles = style_inputs,
-                               .explain = options.outputs.explain,
-                               .repair = options.repair,
-                               .generate = options.generate,
-                               .seed = options.seed,
-                               .lod = options.lod,
-                               .grammars = inputs.grammars ? &*inputs.grammars : nullptr,
-                               .has_terrain = inputs.terrain.has_value(),
-                               .ground = [&](const model::Building& building) { return ground.under(building); },
-                               .context_time = context_time};
->>>>>>> hF
   progress.begin("tiles", to_build, "buildings");
   std::vector<TileResult> slots(in_flight);
   Sums sums;
