@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "importers/elevation/terrain.h"
 #include "pipeline/base/error.h"
 
 namespace blockrand::context {

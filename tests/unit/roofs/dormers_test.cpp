@@ -40,6 +40,8 @@ std::vector<Point2> front_of(const DormerParameters& p) {
         out.push_back({x, p.wall_height / 2 * (1 + std::cos(2 * M_PI * x / p.width))});
       }
       return out;
+    case DormerKind::shed:
+    case DormerKind::flat:
     default:
       return {{-half, p.wall_height}, {half, p.wall_height}};
   }

@@ -186,6 +186,12 @@ model::Colour colour_of(RoofElementKind kind, SurfaceKind face) {
       return face == SurfaceKind::roof ? model::Colour{176, 90, 66} : model::Colour{240, 236, 226};
     case RoofElementKind::verge:
       return face == SurfaceKind::roof ? model::Colour{186, 104, 70} : model::Colour{240, 236, 226};
+    case RoofElementKind::dormer:
+    case RoofElementKind::cross_gable:
+    case RoofElementKind::roof_window:
+    case RoofElementKind::chimney:
+    case RoofElementKind::ridge_cap:
+    case RoofElementKind::hip_cap:
     default:
       return {120, 52, 40};
   }

@@ -59,6 +59,18 @@ Class class_of(RoofShape shape) {
     case RoofShape::pyramidal:
     case RoofShape::cone:
       return pyramidal;
+    case RoofShape::crosspitched:
+    case RoofShape::sawtooth:
+    case RoofShape::butterfly:
+    case RoofShape::dome:
+    case RoofShape::onion:
+    case RoofShape::round:
+    case RoofShape::spire:
+    case RoofShape::helm:
+    case RoofShape::many:
+    case RoofShape::other:
+    case RoofShape::lined:
+    case RoofShape::berlin:
     default:
       return other;
   }

@@ -106,6 +106,10 @@ std::map<std::string, std::size_t> counts(const ReferenceModel& m) {
         case SurfaceClass::installation:
           ++c["BuildingInstallation"];
           break;
+        case SurfaceClass::floor:
+        case SurfaceClass::ceiling:
+        case SurfaceClass::room:
+        case SurfaceClass::furniture:
         default:
           break;
       }
