@@ -116,7 +116,7 @@ std::vector<Point2> points_of(const std::string& text) {
 }
 
 std::vector<Case> read_cases() {
-  std::ifstream file(std::string(BLOCKRAND_SOURCE_DIR) + "/tests/unit/repair/rings.txt");
+  std::ifstream file(std::string(BLOCKRAND_SOURCE_DIR) + "/tests/unit/footprints/repair/rings.txt");
   EXPECT_TRUE(file.is_open());
   std::vector<Case> out;
   std::string line;
