@@ -9,11 +9,20 @@
 namespace blockrand::model {
 
 // X(identifier, name)
-#define BLOCKRAND_ROOF_ELEMENTS(X)                                                                                    \
-  X(dormer, "dormer")                                                                                                 \
-  X(cross_gable, "cross_gable")                                                                                       \
-  X(roof_window, "roof_window") X(chimney, "chimney") X(parapet, "parapet") X(gable, "gable") X(firewall, "firewall") \
-      X(eaves, "eaves") X(verge, "verge") X(ridge_cap, "ridge_cap") X(hip_cap, "hip_cap")
+// clang-format off
+#define BLOCKRAND_ROOF_ELEMENTS(X) \
+  X(dormer, "dormer")              \
+  X(cross_gable, "cross_gable")    \
+  X(roof_window, "roof_window")    \
+  X(chimney, "chimney")            \
+  X(parapet, "parapet")            \
+  X(gable, "gable")                \
+  X(firewall, "firewall")          \
+  X(eaves, "eaves")                \
+  X(verge, "verge")                \
+  X(ridge_cap, "ridge_cap")        \
+  X(hip_cap, "hip_cap")
+// clang-format on
 
 /// The semantic class of an element. Dormers and cross gables are part of the building's envelope (Roof::elements); the
 /// others are bodies of their own on it (RoofInstallation): CityGML's outer building installations.
