@@ -193,7 +193,7 @@ class WrongCalls(BuildTest):
     def test_unknown_option_names_the_nearest(self):
         self.wrong('build', SAMPLE, '-o', self.path('out'), '--job', '4', words=['--job', '--jobs'])
         self.wrong('build', SAMPLE, '-o', self.path('out'), '--gzipp', words=['--gzipp', '--gzip'])
-        self.wrong('info', SAMPLE, '--lod', '2', words=['--lod'])
+        self.wrong('info', SAMPLE, '--single-glb', words=['--single-glb'])
 
     def test_two_inputs(self):
         self.wrong('build', SAMPLE, SAMPLE, '-o', self.path('out'))
