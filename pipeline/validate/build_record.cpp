@@ -9,6 +9,7 @@
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/validate/bytes_of_file.h"
+#include "pipeline/validate/formats.h"
 
 namespace blockrand::validate {
 namespace {
@@ -66,8 +67,7 @@ class Reader {
     else
       for (const Json& f : *formats) {
         const std::string name = text(&f);
-        if (name != "gltf" && name != "citygml" && name != "cityjson" && name != "gpkg")
-          wrong("configuration.formats", "unknown format " + name);
+        if (!is_format(name)) wrong("configuration.formats", "unknown format " + name);
         r_.formats.insert(name);
       }
     r_.baked = text(member(c, "instancing")) == "baked";

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/base/progress.h"
@@ -22,8 +23,8 @@ struct BuildFile {
 struct BuildRecord {
   Json json;
   int lod = 2;
-  std::set<std::string> formats;  ///< "gltf", "citygml" …
-  bool baked = false;             ///< elements are triangles of their buildings' meshes
+  std::set<std::string, std::less<>> formats;  ///< "gltf", "citygml" …
+  bool baked = false;                          ///< elements are triangles of their buildings' meshes
   bool gzip = false, single_glb = false, single_cityjson = false, report = false, explain = false;
   std::string crs, pipeline, vertical_crs, height_reference;
   std::string
@@ -33,7 +34,7 @@ struct BuildRecord {
   std::map<std::string, BuildFile> files;
   /// A member of "counts"; nothing where it is missing.
   std::optional<std::uint64_t> count(const char* name) const { return whole(member(member(json, "counts"), name)); }
-  bool has(const std::string& format) const { return formats.count(format) > 0; }
+  bool has(std::string_view format) const { return formats.find(format) != formats.end(); }
 };
 
 /// Reads FOLDER/build.json and checks that its fields are there and do not contradict each other (BUILD_JSON).

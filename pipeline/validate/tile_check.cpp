@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -13,8 +12,6 @@
 
 #include "pipeline/geometry/solid_defect.h"
 #include "pipeline/validate/attribute_names.h"
-#include "pipeline/validate/bytes_of_file.h"
-#include "pipeline/validate/cityjson_reader.h"
 #include "pipeline/validate/detail_check.h"
 #include "pipeline/validate/glb.h"
 #include "pipeline/validate/ids.h"
@@ -22,6 +19,7 @@
 #include "pipeline/validate/placed_elements.h"
 #include "pipeline/validate/places.h"
 #include "pipeline/validate/solids.h"
+#include "pipeline/validate/tile_contents.h"
 
 namespace blockrand::validate {
 namespace {
@@ -29,19 +27,12 @@ namespace {
 using model::Point2;
 using model::Point3;
 
-constexpr auto kGltf = static_cast<std::size_t>(Format::gltf), kCityGml = static_cast<std::size_t>(Format::citygml),
-               kCityJson = static_cast<std::size_t>(Format::cityjson);
 constexpr double kPositionTolerance = 1e-3;  // m; the promise
 // Corners of meshes: the millimetre, and the tenth that the polynomial of a tile's frame may cost.
 // And steps of 1/4096 m that vertices and places are stored in.
 constexpr double kMeshTolerance = 1.35e-3;
 // The geoid over a tile is a plane for the writer and a grid here.
 constexpr double kGeoidTolerance = 5e-3;
-
-bool says_unreadable(const std::vector<Finding>& findings) {
-  return std::any_of(findings.begin(), findings.end(),
-                     [](const Finding& f) { return f.check == Check::file_unreadable; });
-}
 
 bool has_geometry(const ReadBody& body, int lod) { return lod == 0 ? !body.footprint.empty() : !body.solids.empty(); }
 
@@ -50,9 +41,7 @@ class Checker {
   Checker(const TileFiles& files, const TileContext& context) : files_(files), context_(context) {}
 
   TileResult run() {
-    read_glb_tile();
-    read_citygml_tile();
-    read_cityjson_tile();
+    tile_ = read_tile(files_, context_, out_);
     check_bounds();
     validate_solids();
     check_overlaps();
@@ -66,11 +55,11 @@ class Checker {
   }
 
   TileResult run_single_glb() {
-    read_glb_file(files_.path[kGltf]);
-    if (glb_) {
-      transform_ = glb_->georeference.local_to_ecef;
-      find_doubles({glb_->contents, files_.path[kGltf]}, out_.findings);
-      check_sources({glb_->contents, files_.path[kGltf]}, out_.findings);
+    tile_.glb = read_glb_file(files_.path[kGltf], context_, out_);
+    if (tile_.glb) {
+      tile_.transform = tile_.glb->georeference.local_to_ecef;
+      find_doubles({tile_.glb->contents, files_.path[kGltf]}, out_.findings);
+      check_sources({tile_.glb->contents, files_.path[kGltf]}, out_.findings);
       validate_meshes();
       check_positions();
       count();
@@ -83,115 +72,16 @@ class Checker {
     out_.findings.push_back({check, file, std::move(object), std::move(what)});
   }
 
-  /// The content of a file of the tile; a file that is not there was found already.
-  std::optional<std::string> load(const std::string& path, FormatCounts& counts) {
-    const std::string full = (std::filesystem::path(context_.folder) / path).string();
-    std::error_code error;
-    if (!std::filesystem::exists(full, error)) {
-      counts.incomplete = true;
-      return std::nullopt;
-    }
-    std::string why;
-    auto content = content_of(full, why);
-    if (!content) {
-      found(Check::file_unreadable, path, "", why);
-      counts.incomplete = true;
-    }
-    return content;
-  }
-
   void take(std::vector<Finding>& findings) {
     out_.findings.insert(out_.findings.end(), std::make_move_iterator(findings.begin()),
                          std::make_move_iterator(findings.end()));
     findings.clear();
   }
 
-  // ---- reading
-
-  void read_glb_file(const std::string& path) {
-    FormatCounts& counts = out_.counts[kGltf];
-    const auto bytes = load(path, counts);
-    if (!bytes) return;
-    glb_ = read_glb(*bytes, path);
-    take(glb_->contents.findings);
-    if (!glb_->readable) {
-      counts.incomplete = true;
-      glb_.reset();
-      return;
-    }
-    if (glb_->georeference.present && glb_->georeference.crs != context_.record.crs)
-      found(Check::georeference, path, "",
-            fmt::format("says {}, build.json says {}", glb_->georeference.crs, context_.record.crs));
-    for (const auto& t : glb_->triangles) out_.triangles += t.size();
-  }
-
-  void read_glb_tile() {
-    const std::string& path = files_.path[kGltf];
-    if (path.empty()) return;
-    read_glb_file(path);
-    if (!glb_) return;
-    transform_ = glb_->georeference.local_to_ecef;
-    if (!context_.tileset || !context_.tileset->readable) return;
-    const auto entry = context_.tileset->entries.find(path);
-    if (entry == context_.tileset->entries.end())
-      return found(Check::tile_missing, path, "", "the tileset does not name it");
-    entry_ = &entry->second;
-    transform_ = entry_->transform;
-    if (!glb_->georeference.present || transform_ == glb_->georeference.local_to_ecef) return;
-    const Matrix& g = glb_->georeference.local_to_ecef;
-    found(Check::georeference, path, "",
-          fmt::format("its local_to_ecef is not the tileset's transform: origins {:.4f} m apart",
-                      std::hypot(transform_[12] - g[12], transform_[13] - g[13], transform_[14] - g[14])));
-  }
-
-  void read_citygml_tile() {
-    const std::string& path = files_.path[kCityGml];
-    if (path.empty()) return;
-    const auto xml = load(path, out_.counts[kCityGml]);
-    if (!xml) return;
-    CityGml gml = read_citygml(*xml, path);
-    take(gml.contents.findings);
-    if (!gml.readable) {
-      out_.counts[kCityGml].incomplete = true;
-      return;
-    }
-    if (context_.schema)
-      for (Finding& f : context_.schema->validate(*xml, path)) out_.findings.push_back(std::move(f));
-    const auto number = [](const std::string& code) { return code.substr(code.find(':') + 1); };
-    const std::string expected = context_.record.vertical_crs.empty()
-                                     ? "urn:ogc:def:crs:EPSG::" + number(context_.record.crs)
-                                     : "urn:ogc:def:crs,crs:EPSG::" + number(context_.record.crs) +
-                                           ",crs:EPSG::" + number(context_.record.vertical_crs);
-    if (!gml.contents.buildings.empty() && gml.srs_name != expected)
-      found(Check::citygml_rule, path, "",
-            fmt::format("srsName is {}, by build.json it is {}", gml.srs_name, expected));
-    contents_[kCityGml] = std::move(gml.contents);
-  }
-
-  void read_cityjson_tile() {
-    const std::string& path = files_.path[kCityJson];
-    if (path.empty()) return;
-    const auto text = load(path, out_.counts[kCityJson]);
-    if (!text) return;
-    Contents contents = read_cityjson(*text, path);
-    const bool unreadable = says_unreadable(contents.findings);
-    take(contents.findings);
-    if (unreadable)
-      out_.counts[kCityJson].incomplete = true;
-    else
-      contents_[kCityJson] = std::move(contents);
-  }
-
-  /// A format's contents, or null.
-  const Contents* contents(std::size_t format) const {
-    if (format == kGltf) return glb_ ? &glb_->contents : nullptr;
-    return contents_[format] ? &*contents_[format] : nullptr;
-  }
-
   // ---- one format by itself
 
   void check_bounds() {
-    if (entry_) check_bounds(*glb_, *entry_, files_.path[kGltf]);
+    if (tile_.entry) check_bounds(*tile_.glb, *tile_.entry, files_.path[kGltf]);
   }
 
   void check_bounds(const Glb& glb, const TilesetEntry& entry, const std::string& path) {
@@ -209,18 +99,18 @@ class Checker {
 
   /// The same buildings in less detail: the same rows, in the same place, and meshes like the solids of their level.
   void check_levels() {
-    if (!glb_) return;
-    const Side finest{glb_->contents, files_.path[kGltf]};
-    if (context_.record.lod == 3 && !glb_->triangles.empty() && files_.levels.empty())
+    if (!tile_.glb) return;
+    const Side finest{tile_.glb->contents, files_.path[kGltf]};
+    if (context_.record.lod == 3 && !tile_.glb->triangles.empty() && files_.levels.empty())
       found(Check::tile_missing, files_.path[kGltf], "", "no coarser level of the tile");
     for (const auto& [lod, path] : files_.levels) {
       FormatCounts ignored;
-      const auto bytes = load(path, ignored);
+      const auto bytes = load_file(path, context_, ignored, out_);
       if (!bytes) continue;
       Glb glb = read_glb(*bytes, path);
       take(glb.contents.findings);
       if (!glb.readable) continue;
-      if (glb.georeference.local_to_ecef != glb_->georeference.local_to_ecef)
+      if (glb.georeference.local_to_ecef != tile_.glb->georeference.local_to_ecef)
         found(Check::georeference, path, "", "its frame is not that of " + files_.path[kGltf]);
       if (context_.tileset && context_.tileset->readable) {
         const auto entry = context_.tileset->entries.find(path);
@@ -239,10 +129,10 @@ class Checker {
   }
 
   void compare_level(const Glb& glb, const std::string& path, int lod) {
-    const std::size_t f = contents_[kCityGml] ? kCityGml : kCityJson;
-    if (!contents_[f] || !context_.proj_transform) return;
+    const std::size_t f = tile_.models[kCityGml] ? kCityGml : kCityJson;
+    if (!tile_.models[f] || !context_.proj_transform) return;
     Contents coarse;
-    for (const ReadBody& body : contents_[f]->bodies) {
+    for (const ReadBody& body : tile_.models[f]->bodies) {
       ReadBody& copy = coarse.bodies.emplace_back();
       copy.id = body.id;
       copy.footprint = body.footprint;
@@ -255,8 +145,9 @@ class Checker {
   }
 
   void validate_meshes() {
-    validate_meshes(*glb_, files_.path[kGltf], context_.record.lod);
-    if (context_.record.lod == 3 && !context_.record.baked) check_openings(*glb_, files_.path[kGltf], out_.findings);
+    validate_meshes(*tile_.glb, files_.path[kGltf], context_.record.lod);
+    if (context_.record.lod == 3 && !context_.record.baked)
+      check_openings(*tile_.glb, files_.path[kGltf], out_.findings);
   }
 
   /// \param level  of detail that the file shows; a mesh of LoD3 is several bodies with holes in their walls
@@ -276,8 +167,8 @@ class Checker {
   }
 
   void validate_solids() {
-    if (glb_) validate_meshes();
-    const Contents *gml = contents(kCityGml), *json = contents(kCityJson);
+    if (tile_.glb) validate_meshes();
+    const Contents *gml = tile_.of(kCityGml), *json = tile_.of(kCityJson);
     std::unordered_map<std::string_view, const ReadBody*> validated;
     if (gml)
       for (const ReadBody& body : gml->bodies) {
@@ -315,9 +206,9 @@ class Checker {
              (context_.overlapping->count(owner(id)) || context_.overlapping->count(building_of(id)));
     };
     std::size_t format = 0;
-    const Contents* c = model(format);
+    const Contents* c = tile_.model(format);
     if (!c || context_.record.lod == 0) return;
-    for (PartsOverlap& o : format == kGltf ? find_overlaps(*glb_, out_.pairs) : find_overlaps(*c, out_.pairs)) {
+    for (PartsOverlap& o : format == kGltf ? find_overlaps(*tile_.glb, out_.pairs) : find_overlaps(*c, out_.pairs)) {
       // What encloses nothing cannot overlap.
       if (unsound_.count(o.first) || unsound_.count(o.second)) continue;
       if (told(o.first) || told(o.second))
@@ -365,19 +256,19 @@ class Checker {
   void compare() {
     std::vector<std::size_t> there;
     for (const std::size_t f : {kCityGml, kCityJson, kGltf})
-      if (contents(f)) {
+      if (tile_.of(f)) {
         there.push_back(f);
-        find_doubles({*contents(f), files_.path[f]}, out_.findings);
+        find_doubles({*tile_.of(f), files_.path[f]}, out_.findings);
       }
-    if (glb_) check_sources({glb_->contents, files_.path[kGltf]}, out_.findings);
+    if (tile_.glb) check_sources({tile_.glb->contents, files_.path[kGltf]}, out_.findings);
     for (const std::size_t f : {kCityGml, kCityJson})
-      if (contents(f)) check_ground(*contents(f), files_.path[f]);
+      if (tile_.of(f)) check_ground(*tile_.of(f), files_.path[f]);
     if (there.empty()) return;
     const std::size_t reference = there.front();
-    const Side first{*contents(reference), files_.path[reference]};
+    const Side first{*tile_.of(reference), files_.path[reference]};
     for (const std::size_t f : there) {
       if (f == reference) continue;
-      const Side other{*contents(f), files_.path[f]};
+      const Side other{*tile_.of(f), files_.path[f]};
       compare_objects(first, other, out_.findings);
       compare_attributes(first, other, f == kGltf, out_.findings);
       out_.compared += other.contents.bodies.size();
@@ -386,7 +277,7 @@ class Checker {
         compare_details(first, other);
       }
     }
-    if (glb_ && reference != kGltf) compare_with_mesh(first);
+    if (tile_.glb && reference != kGltf) compare_with_mesh(first);
     note_absent(reference, there);
   }
 
@@ -401,10 +292,11 @@ class Checker {
 
   void compare_with_mesh(const Side& reference) {
     if (!context_.proj_transform) return;
-    compare_in_frame(*glb_, [&](const ToLocal& to_local, double tolerance) {
-      compare_meshes(reference, *glb_, files_.path[kGltf], to_local, tolerance, context_.record.baked, out_.findings);
+    compare_in_frame(*tile_.glb, [&](const ToLocal& to_local, double tolerance) {
+      compare_meshes(reference, *tile_.glb, files_.path[kGltf], to_local, tolerance, context_.record.baked,
+                     out_.findings);
       if (!context_.record.baked)
-        compare_places(reference, *glb_, files_.path[kGltf], to_local, tolerance, out_.findings);
+        compare_places(reference, *tile_.glb, files_.path[kGltf], to_local, tolerance, out_.findings);
     });
   }
 
@@ -417,7 +309,7 @@ class Checker {
         for (std::size_t i = 0; i < in.size(); ++i) {
           const georef::LonLat at = proj_transform.inverse(in[i].xy());
           const double undulation = raised ? context_.geoid.undulation(at.lon, at.lat).value_or(0) : 0;
-          out[i] = apply_inverse(transform_, proj_transform.to_ecef({at.lon, at.lat, in[i].z + undulation}));
+          out[i] = apply_inverse(tile_.transform, proj_transform.to_ecef({at.lon, at.lat, in[i].z + undulation}));
         }
       };
       compare(to_local, kMeshTolerance + glb.position_step * 0.87 + (raised ? kGeoidTolerance : 0));
@@ -426,29 +318,18 @@ class Checker {
 
   /// A format that the build has, but not for this tile.
   void note_absent(std::size_t reference, const std::vector<std::size_t>& there) {
-    const Contents& c = *contents(reference);
+    const Contents& c = *tile_.of(reference);
     if (c.bodies.empty()) return;
-    static constexpr const char* kKeys[kTileFormats] = {"gltf", "citygml", "cityjson"};
     for (std::size_t f = 0; f < kTileFormats; ++f) {
-      if (!context_.record.has(kKeys[f]) || !files_.path[f].empty() || std::count(there.begin(), there.end(), f))
+      if (!context_.record.has(kFormats[f].key) || !files_.path[f].empty() || std::count(there.begin(), there.end(), f))
         continue;
       // A tile where nothing could be built has no mesh.
       const auto shown = std::count_if(c.bodies.begin(), c.bodies.end(),
                                        [&](const ReadBody& b) { return has_geometry(b, context_.record.lod); });
       if (f == kGltf && shown == 0) continue;
       found(Check::object_missing, files_.path[reference], files_.name,
-            fmt::format("{} bodies of the tile, but no file of it in {}", c.bodies.size(), kFormatNames[f]));
+            fmt::format("{} bodies of the tile, but no file of it in {}", c.bodies.size(), kFormats[f].title));
     }
-  }
-
-  /// The first format that tells bodies, attributes and geometry; null where none is there.
-  const Contents* model(std::size_t& format) const {
-    for (const std::size_t f : {kCityGml, kCityJson, kGltf})
-      if (const Contents* c = contents(f)) {
-        format = f;
-        return c;
-      }
-    return nullptr;
   }
 
   void check_geopackage() {
@@ -463,7 +344,7 @@ class Checker {
     n.buildings = rows.contents.buildings.size();
     n.bodies = rows.contents.bodies.size();
     std::size_t format = 0;
-    const Contents* reference = model(format);
+    const Contents* reference = tile_.model(format);
     if (!reference) return;
     // Buildings without a body are rows of the layer, but not in the other formats.
     std::set<std::string_view> with_bodies;
@@ -503,14 +384,14 @@ class Checker {
   void check_explained() {
     if (!context_.explanations) return;
     std::size_t format = 0;
-    const Contents* reference = model(format);
+    const Contents* reference = tile_.model(format);
     if (files_.explanations.empty()) {
       if (reference && !reference->bodies.empty())
         found(Check::explanation_wrong, files_.path[format], files_.name, "the tile has no file in explain/");
       return;
     }
     FormatCounts ignored;
-    const auto lines = load(files_.explanations, ignored);
+    const auto lines = load_file(files_.explanations, context_, ignored, out_);
     if (!lines) return;
     static const std::vector<std::pair<std::string, std::string>> none;
     const auto entries = context_.explanations->find(files_.name);
@@ -526,19 +407,19 @@ class Checker {
     std::map<std::string, std::vector<std::pair<std::size_t, const ReadBody*>>> bodies;  // in id order
     std::unordered_map<std::string_view, std::size_t> rows;
     for (std::size_t f = 0; f < kTileFormats; ++f)
-      if (const Contents* c = contents(f))
+      if (const Contents* c = tile_.of(f))
         for (std::size_t i = 0; i < c->bodies.size(); ++i) {
           const ReadBody& body = c->bodies[i];
           if (!context_.sample.corners.count(body.id)) continue;
           if (f == kGltf) rows.emplace(body.id, i);
-          if (f == kGltf ? !glb_->triangles[i].empty() : has_geometry(body, context_.record.lod))
+          if (f == kGltf ? !tile_.glb->triangles[i].empty() : has_geometry(body, context_.record.lod))
             bodies[body.id].emplace_back(f, &body);
         }
     context_.positions->with([&](georef::ProjTransform& proj_transform) {
       for (const auto& [id, shown] : bodies) {
         std::vector<std::vector<Point2>> places(kTileFormats);  // of GLB in degrees
         for (const auto& [f, body] : shown)
-          places[f] = f == kGltf ? corners_on_earth(proj_transform, transform_, glb_->triangles[rows.at(id)])
+          places[f] = f == kGltf ? corners_on_earth(proj_transform, tile_.transform, tile_.glb->triangles[rows.at(id)])
                                  : plan_points(*body);
         const auto moved = context_.sample.reach.find(id);
         const double reach = moved == context_.sample.reach.end() ? 0 : moved->second;
@@ -568,7 +449,7 @@ class Checker {
     std::set<std::string> modelled;
     bool counted_sources = false;
     for (const std::size_t f : {kCityGml, kCityJson, kGltf}) {
-      const Contents* c = contents(f);
+      const Contents* c = tile_.of(f);
       if (!c) continue;
       FormatCounts& n = out_.counts[f];
       n.files = 1;
@@ -580,11 +461,11 @@ class Checker {
         out_.ids[f].push_back(body.id);
         if (f == kGltf ? context_.record.single_glb : f == kCityJson && context_.record.single_cityjson) {
           BodyDigest d = digest(body);
-          if (f == kGltf) d.geometry = glb_->triangles[i].size();
+          if (f == kGltf) d.geometry = tile_.glb->triangles[i].size();
           out_.digests[f].emplace_back(body.id, d);
         }
         out_.attributes += body.attributes.size();
-        const bool shown = f == kGltf ? !glb_->triangles[i].empty() : has_geometry(body, context_.record.lod);
+        const bool shown = f == kGltf ? !tile_.glb->triangles[i].empty() : has_geometry(body, context_.record.lod);
         if (shown) models.insert(owner(body.id));
         if (f == kGltf) n.solids[0] += shown;
         if (f != kGltf) count_detail(body, n);
@@ -625,10 +506,7 @@ class Checker {
   const TileFiles& files_;
   const TileContext& context_;
   TileResult out_;
-  std::optional<Glb> glb_;
-  std::optional<Contents> contents_[kTileFormats];
-  const TilesetEntry* entry_ = nullptr;
-  Matrix transform_ = kIdentity;
+  TileContents tile_;
   std::set<std::string> unsound_;  // bodies with a solid that a judge refused
 };
 

@@ -15,16 +15,12 @@
 #include "pipeline/validate/contents.h"
 #include "pipeline/validate/explanations.h"
 #include "pipeline/validate/format_agreement.h"
+#include "pipeline/validate/formats.h"
 #include "pipeline/validate/geopackage.h"
 #include "pipeline/validate/positions.h"
 #include "pipeline/validate/tileset_reader.h"
 
 namespace blockrand::validate {
-
-/// The formats that are files of a tile.
-enum class Format { gltf, citygml, cityjson };
-inline constexpr int kTileFormats = 3;
-inline constexpr const char* kFormatNames[kTileFormats] = {"GLB tiles", "CityGML", "CityJSON"};
 
 /// A tile's files as build.json lists them, relative to the build; empty where it lists none.
 struct TileFiles {

@@ -18,6 +18,7 @@
 #include "pipeline/validate/build_record.h"
 #include "pipeline/validate/bytes_of_file.h"
 #include "pipeline/validate/cityjson_reader.h"
+#include "pipeline/validate/formats.h"
 #include "pipeline/validate/report_check.h"
 #include "pipeline/validate/tile_check.h"
 
@@ -25,42 +26,6 @@ namespace blockrand::validate {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The tile that a file belongs to and its format; empty for files of the whole build.
-struct TilePath {
-  std::string tile;
-  Format format = Format::gltf;
-  int coarser = -1;  ///< level of detail of a GLB beside the tile's finest
-};
-
-TilePath tile_path(std::string_view path) {
-  const auto between = [&](std::string_view start, std::initializer_list<std::string_view> ends) -> std::string {
-    if (!path.starts_with(start)) return {};
-    for (const std::string_view end : ends)
-      if (path.ends_with(end) && path.size() > start.size() + end.size())
-        return std::string(path.substr(start.size(), path.size() - start.size() - end.size()));
-    return {};
-  };
-  if (std::string name = between("tiles/", {".glb"}); !name.empty()) {
-    std::replace(name.begin(), name.end(), '/', '_');
-    constexpr std::string_view kLevel = "_lod";
-    if (name.size() > kLevel.size() + 1 && name.substr(name.size() - kLevel.size() - 1, kLevel.size()) == kLevel &&
-        name.back() >= '0' && name.back() <= '2')
-      return {name.substr(0, name.size() - kLevel.size() - 1), Format::gltf, name.back() - '0'};
-    return {name, Format::gltf};
-  }
-  if (const std::string name = between("citygml/", {".gml", ".gml.gz"}); !name.empty()) return {name, Format::citygml};
-  if (const std::string name = between("cityjson/", {".city.jsonl", ".city.jsonl.gz"}); !name.empty())
-    return {name, Format::cityjson};
-  return {};
-}
-
-/// "explain/15_1_2.jsonl.gz" → "15_1_2"
-std::string explained_tile(std::string_view path) {
-  constexpr std::string_view kStart = "explain/", kEnd = ".jsonl.gz";
-  if (!path.starts_with(kStart) || !path.ends_with(kEnd) || path.size() <= kStart.size() + kEnd.size()) return {};
-  return std::string(path.substr(kStart.size(), path.size() - kStart.size() - kEnd.size()));
-}
 
 constexpr double kMillimetre = 1e-3;  // m: what positions are promised to
 /// m. Sound builds stay far below: the grid takes half a millimetre, repair moves as many corners east as west.
@@ -251,13 +216,13 @@ class Run {
   void check_tiles() {
     std::map<std::string, TileFiles> tiles;
     for (const auto& [path, file] : record_.files)
-      if (const TilePath t = tile_path(path); !t.tile.empty()) {
-        TileFiles& files = tiles[t.tile];
-        files.name = t.tile;
-        if (t.coarser >= 0)
-          files.levels[t.coarser] = path;
+      if (const auto t = tile_path(path)) {
+        TileFiles& files = tiles[t->tile];
+        files.name = t->tile;
+        if (t->coarser)
+          files.levels[*t->coarser] = path;
         else
-          files.path[static_cast<std::size_t>(t.format)] = path;
+          files.path[static_cast<std::size_t>(t->format)] = path;
       } else if (std::string tile = explained_tile(path); !tile.empty()) {
         TileFiles& files = tiles[tile];
         files.name = tile;
@@ -288,15 +253,12 @@ class Run {
           progress_.advance_to(i + 1);
         });
     for (std::size_t f = 0; f < kTileFormats; ++f) {
-      static constexpr const char* kHow[kTileFormats] = {"glTF 2.0, property tables, bounds, georeference",
-                                                         "structure, references, attributes, colours",
-                                                         "structure, references, attributes, colours"};
       if (totals_[f].files == 0) continue;
-      std::string how = kHow[f];
+      std::string how(kFormats[f].checked);
       if (f == static_cast<std::size_t>(Format::gltf) && record_.lod == 3 && record_.baked)
         how += ", LoD3 not compared: elements are baked in";
       if (f == static_cast<std::size_t>(Format::citygml) && schema_) how += ", OGC schemas";
-      checked(kFormatNames[f], std::move(how), totals_[f].bodies, fmt::format("bodies in {} files", totals_[f].files));
+      checked(title(f), std::move(how), totals_[f].bodies, fmt::format("bodies in {} files", totals_[f].files));
     }
     if (geopackage_)
       checked("GeoPackage", "OGC and QGIS rules, every row against the other formats", geopackage_total_.bodies,
@@ -337,17 +299,17 @@ class Run {
   }
 
   TileContext context() {
-    return {o_.folder,
-            record_,
-            record_.has("gltf") ? &tileset_ : nullptr,
-            schema_.get(),
-            sample_,
-            pinned_ ? &*pinned_ : nullptr,
-            positions_,
-            geoid_,
-            report_ ? &report_->overlapping : nullptr,
-            geopackage_.get(),
-            index_ ? &*index_ : nullptr};
+    return {.folder = o_.folder,
+            .record = record_,
+            .tileset = record_.has("gltf") ? &tileset_ : nullptr,
+            .schema = schema_.get(),
+            .sample = sample_,
+            .proj_transform = pinned_ ? &*pinned_ : nullptr,
+            .positions = positions_,
+            .geoid = geoid_,
+            .overlapping = report_ ? &report_->overlapping : nullptr,
+            .geopackage = geopackage_.get(),
+            .explanations = index_ ? &*index_ : nullptr};
   }
 
   void take(TileResult&& tile) {
@@ -357,7 +319,7 @@ class Run {
       std::move(tile.digests[f].begin(), tile.digests[f].end(), std::back_inserter(digests_[f]));
       for (std::string& id : tile.ids[f])
         if (!ids_[f].insert(std::hash<std::string>{}(id)).second && tile.counts[f].files > 0)
-          log().add(Check::object_doubled, kFormatNames[f], id, "the body stands in two tiles");
+          log().add(Check::object_doubled, title(f), id, "the body stands in two tiles");
     }
     geopackage_total_.add(tile.geopackage);
     explained_ += tile.explained;
@@ -425,7 +387,7 @@ class Run {
       return;
     }
     std::vector<Finding> findings;
-    compare_digests(digests_[f], kFormatNames[f], bodies, file, findings);
+    compare_digests(digests_[f], title(f), bodies, file, findings);
     log().add(std::move(findings));
   }
 
@@ -442,23 +404,22 @@ class Run {
         log().add(Check::counts_differ, "build.json", std::string("counts.") + key,
                   fmt::format("{} in the file, {} {}", *said, is, what));
     };
-    static constexpr const char* kKeys[kTileFormats] = {"gltf", "citygml", "cityjson"};
     bool any = false;
     for (std::size_t f = 0; f < kTileFormats; ++f) {
       const FormatCounts& n = totals_[f];
-      if (!record_.has(kKeys[f]) || n.incomplete) continue;
+      if (!record_.has(kFormats[f].key) || n.incomplete) continue;
       any = true;
-      expect(std::string("objects shown in ") + kFormatNames[f], n.models, "models");
+      expect("objects shown in " + title(f), n.models, "models");
       if (f == static_cast<std::size_t>(Format::gltf)) continue;
-      expect(std::string("buildings in ") + kFormatNames[f], n.buildings, "buildings");
-      expect(std::string("bodies in ") + kFormatNames[f], n.bodies, "bodies");
-      expect(std::string("solids of LoD 1 in ") + kFormatNames[f], n.solids[1], "solids_lod1");
-      expect(std::string("solids of LoD 2 in ") + kFormatNames[f], n.solids[2], "solids_lod2");
-      expect(std::string("solids of LoD 3 in ") + kFormatNames[f], n.solids[3], "solids_lod3");
-      expect(std::string("windows in ") + kFormatNames[f], n.windows, "windows");
-      expect(std::string("doors in ") + kFormatNames[f], n.doors, "doors");
-      expect(std::string("placed elements in ") + kFormatNames[f], n.placements, "placements");
-      expect(std::string("installations in ") + kFormatNames[f], n.installations, "installations");
+      expect("buildings in " + title(f), n.buildings, "buildings");
+      expect("bodies in " + title(f), n.bodies, "bodies");
+      expect("solids of LoD 1 in " + title(f), n.solids[1], "solids_lod1");
+      expect("solids of LoD 2 in " + title(f), n.solids[2], "solids_lod2");
+      expect("solids of LoD 3 in " + title(f), n.solids[3], "solids_lod3");
+      expect("windows in " + title(f), n.windows, "windows");
+      expect("doors in " + title(f), n.doors, "doors");
+      expect("placed elements in " + title(f), n.placements, "placements");
+      expect("installations in " + title(f), n.installations, "installations");
     }
     if (geopackage_) expect("bodies in buildings.gpkg", geopackage_total_.bodies, "bodies");
     if (any) check_statistics();
@@ -535,10 +496,9 @@ class Run {
     const double off = std::hypot(shift.median.x, shift.median.y);
     v_.worst_median = std::max(v_.worst_median, off);
     if (shift.buildings < kLeastBuildings) return;
-    constexpr const char* kNames[] = {"GLB", "CityGML", "CityJSON"};
     if (off > kCommonShift + shift.uncertainty)
       log().add(
-          Check::position, kNames[static_cast<int>(format)], "",
+          Check::position, std::string(kFormats[static_cast<std::size_t>(format)].file), "",
           fmt::format("the corners of {} buildings lie {:.3f} m east and {:.3f} m north of where OpenStreetMap has "
                       "them, in the median: the whole model was moved",
                       shift.buildings, shift.median.x, shift.median.y));
