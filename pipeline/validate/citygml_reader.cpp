@@ -16,6 +16,7 @@
 #include "pipeline/geometry/solid_defect.h"
 #include "pipeline/validate/attribute_names.h"
 #include "pipeline/validate/citygml_names.h"
+#include "pipeline/validate/citygml_parser.h"
 #include "pipeline/validate/detail_check.h"
 #include "pipeline/validate/ids.h"
 
@@ -62,681 +63,377 @@ std::optional<std::vector<double>> number_list(std::string_view text) {
   }
 }
 
-class Parser {
- public:
-  Parser(const std::string& name, CityGml& out) : name_(name), out_(out) {}
-
-  /// \return false where the file is not well-formed
-  bool parse(xmlTextReaderPtr reader) {
-    int status = 0;
-    while ((status = xmlTextReaderRead(reader)) == 1) {
-      switch (xmlTextReaderNodeType(reader)) {
-        case XML_READER_TYPE_ELEMENT: {
-          const bool empty = xmlTextReaderIsEmptyElement(reader) == 1;
-          line_ = xmlTextReaderGetParserLineNumber(reader);
-          start(reader);
-          if (empty) end();
-          break;
-        }
-        case XML_READER_TYPE_END_ELEMENT:
-          end();
-          break;
-        case XML_READER_TYPE_TEXT:
-        case XML_READER_TYPE_CDATA:
-        case XML_READER_TYPE_SIGNIFICANT_WHITESPACE:
-          text_ += view(xmlTextReaderConstValue(reader));
-          break;
-        case XML_READER_TYPE_DOCUMENT_TYPE:
-          rule("a document type definition", "");
-          break;
-        default:
-          break;
-      }
-    }
-    if (status != 0) return false;
-    finish();
-    return true;
-  }
-
- private:
-  /// Where the polygons of a MultiSurface belong.
-  enum class Target { footprint, surface, detail_surface, installation, element };
-  /// A polygon of LoD3's boundary surfaces, or a reference to one of LoD2's.
-  struct Member {
-    std::string id;
-    std::size_t surface = 0;  ///< of the body's boundary surfaces, in their order
-    bool link = false;
-    ReadPolygon polygon;
-  };
-  struct OpenedWall {
-    std::string id;
-    std::size_t surface = 0;
-    std::string polygon;  ///< its id
-    std::optional<std::size_t> placement;
-  };
-  /// A body in the making, beside what Contents keeps of it.
-  struct Open {
-    std::size_t body = 0;
-    bool has_parts = false;
-    std::string function;
-    std::vector<std::pair<std::string, ReadPolygon>> surfaces;  ///< polygon id and polygon
-    std::vector<Member> members;                                ///< of LoD3
-    std::vector<OpenedWall> openings;
-    std::array<std::vector<std::string>, 4> references;  ///< of the solids, by LoD
-    std::array<bool, 4> has_reference_solid{};
-    std::size_t boundary_surfaces = 0;
-  };
-  struct Element {
-    std::string id;
-    std::vector<ReadPolygon> polygons;
-  };
-  struct Material {
-    std::string colour;
-    std::vector<std::string> targets;
-  };
-  struct Place {
-    std::size_t body = 0;
-    int solid = kFootprint;  ///< of the body, or what else
-    std::size_t polygon = 0;
-    std::size_t item = 0;  ///< the installation of the body, or the element
-  };
-  static constexpr int kFootprint = -1, kInstallation = -2, kElement = -3;
-
-  void found(Check check, std::string what, std::string object, int number = 0) {
-    if (++found_ > 1000) return;  // of one file
-    out_.contents.findings.push_back(
-        {check, name_, std::move(object), fmt::format("line {}: {}", line_, what), number});
-  }
-  void rule(std::string what, std::string object) { found(Check::citygml_rule, std::move(what), std::move(object)); }
-  void defect(SolidDefect what) {
-    found(Check::citygml_rule, fmt::format("{} {}", iso_code(what), name(what)), object(), iso_code(what));
-  }
-
-  std::string_view parent(std::size_t up = 1) const {
-    return stack_.size() > up ? stack_[stack_.size() - 1 - up] : std::string_view();
-  }
-  ReadBody* body() { return open_.empty() ? nullptr : &out_.contents.bodies[open_.back().body]; }
-  std::string object() { return open_.empty() ? std::string() : body()->id; }
-
-  void start(xmlTextReaderPtr reader) {
-    // Names live in the reader's dictionary as long as the reader.
-    const std::string_view name = view(xmlTextReaderConstLocalName(reader)),
-                           space = view(xmlTextReaderConstNamespaceUri(reader));
-    text_.clear();
-    stack_.push_back(name);
-    if (!known_element(space, name)) rule(fmt::format("unexpected element {}", name), object());
-    std::string id;
-    if (xmlTextReaderHasAttributes(reader) == 1) {
-      id = attribute(reader, "id", kGml);
-      if (!id.empty() && !ids_.insert(id).second) rule("gml:id twice: " + id, id);
-    }
-    if (stack_.size() == 1 && (name != "CityModel" || space != kCore))
-      rule("the root is no CityModel of CityGML 2.0", "");
-    if (space == kGml)
-      start_gml(reader, name, id);
-    else if (space == kBuilding)
-      start_building(name, id);
-    else if (space == kCore)
-      start_core(reader, name);
-    else if (space == kGenerics && name.ends_with("Attribute"))
-      attribute_ = attribute(reader, "name");
-    else if (space == kGenerics && name == "value" && parent() == "measureAttribute" &&
-             attribute(reader, "uom").empty())
-      rule(attribute_ + " has no unit", object());
-    else if (space == kAppearance && name == "X3DMaterial")
-      materials_.emplace_back();
-  }
-
-  void start_gml(xmlTextReaderPtr reader, std::string_view name, const std::string& id) {
-    if (name == "Envelope") {
-      out_.srs_name = attribute(reader, "srsName");
-      if (attribute(reader, "srsDimension") != "3") rule("the envelope is not three-dimensional", "");
-    } else if (name == "Solid") {
-      const std::string_view property = parent();
-      if (!body() || (property != "lod1Solid" && property != "lod2Solid" && property != "lod3Solid"))
-        return rule("a solid that is nobody's", id);
-      ReadSolid solid;
-      solid.lod = property[3] - '0';
-      body()->solids.push_back(std::move(solid));
-      in_solid_ = true;
-      solid_id_ = id;
-      by_reference_ = false;
-    } else if (name == "surfaceMember" && in_solid_) {
-      const std::string href = attribute(reader, "href", kLink);
-      if (href.empty()) return;
-      if (href[0] != '#') return rule("a reference to another file: " + href, object());
-      open_.back().references[static_cast<std::size_t>(body()->solids.back().lod)].push_back(href.substr(1));
-      by_reference_ = true;
-    } else if (name == "surfaceMember" && target_ == Target::detail_surface && !open_.empty()) {
-      const std::string href = attribute(reader, "href", kLink);
-      if (href.empty()) return;
-      if (href[0] != '#') return rule("a reference to another file: " + href, object());
-      open_.back().members.push_back({href.substr(1), open_.back().boundary_surfaces, true, {}});
-    } else if (name == "MultiSurface") {
-      start_multi_surface(id);
-    } else if (name == "Polygon") {
-      polygon_ = {};
-      polygon_.kind = opening_.empty() ? surface_ : opening_;
-      polygon_id_ = id;
-      in_polygon_ = true;
-    }
-  }
-
-  void start_multi_surface(const std::string& id) {
-    const std::string_view property = parent();
-    target_ = property == "lod3MultiSurface"      ? Target::detail_surface
-              : property == "lod3Geometry"        ? Target::installation
-              : property == "relativeGMLGeometry" ? Target::element
-              : surface_.empty()                  ? Target::footprint
-                                                  : Target::surface;
-    if (target_ == Target::installation && body()) {
-      body()->detail.installations.push_back({installation_, installation_kind_, {}});
-    } else if (target_ == Target::element) {
-      if (id.empty()) rule("the geometry of an element without a gml:id", object());
-      element_ = id;
-      element_at_.emplace(id, elements_.size());
-      elements_.push_back({id, {}});
-    }
-  }
-
-  void start_core(xmlTextReaderPtr reader, std::string_view name) {
-    if (name == "ImplicitGeometry") {
-      element_.clear();
-      matrix_.clear();
-      reference_point_.reset();
-    } else if (name == "relativeGMLGeometry") {
-      const std::string href = attribute(reader, "href", kLink);
-      if (href.empty()) return;
-      if (href[0] != '#') return rule("a reference to another file: " + href, object());
-      element_ = href.substr(1);
-    }
-  }
-
-  void start_building(std::string_view name, const std::string& id) {
-    if (name == "Building" || name == "BuildingPart") {
-      const bool part = name == "BuildingPart";
-      if (part != !open_.empty()) rule(fmt::format("{} out of its place", name), id);
-      if (!(part ? is_body_id(id) : is_osm_id(id))) rule(fmt::format("\"{}\" is no id", id), id);
-      ReadBody body;
-      body.id = id;
-      body.building = part && !open_.empty() ? out_.contents.bodies[open_.front().body].id : id;
-      if (part && building_of(id) != body.building)
-        rule(fmt::format("{} does not belong to {}", id, body.building), id);
-      if (!open_.empty()) open_.front().has_parts = true;
-      if (!part) out_.contents.buildings.push_back(id);
-      // What the building before it, or a damaged one around it, was at is not its own.
-      opening_.clear();
-      surface_.clear();
-      target_ = Target::footprint;
-      open_.emplace_back();
-      open_.back().body = out_.contents.bodies.size();
-      out_.contents.bodies.push_back(std::move(body));
-    } else if (const std::string_view kind = surface_kind(name); !kind.empty() && parent() == "boundedBy") {
-      surface_ = kind;
-      if (!open_.empty()) ++open_.back().boundary_surfaces;
-    } else if (const std::string_view opening = opening_kind(name); !opening.empty()) {
-      if (parent() != "opening" || open_.empty() || surface_.empty())
-        return rule(fmt::format("{} out of its place", name), id);
-      opening_ = opening;
-      open_.back().openings.push_back({id, open_.back().boundary_surfaces, {}, {}});
-    } else if (name == "BuildingInstallation") {
-      if (parent() != "outerBuildingInstallation" || open_.empty()) rule("BuildingInstallation out of its place", id);
-      in_installation_ = true;
-      installation_ = id;
-      installation_kind_.clear();
-    }
-  }
-
-  void end() {
-    const std::string_view name = stack_.back();
-    if (name == "posList") {
-      end_ring();
-    } else if (name == "Polygon") {
-      end_polygon();
-    } else if (name == "Solid") {
-      if (in_solid_ && by_reference_) {
-        open_.back().has_reference_solid[static_cast<std::size_t>(body()->solids.back().lod)] = true;
-        if (!body()->solids.back().polygons.empty()) rule("a solid half of references, half of polygons", object());
-      } else if (in_solid_ && body()->solids.back().polygons.empty()) {
-        rule("a solid without faces", object());
-      }
-      in_solid_ = false;
-    } else if (!surface_kind(name).empty() && parent() == "boundedBy") {
-      surface_.clear();
-    } else if (!opening_kind(name).empty()) {
-      opening_.clear();
-    } else if (name == "BuildingInstallation") {
-      in_installation_ = false;
-    } else if (name == "transformationMatrix") {
-      matrix_ = number_list(text_).value_or(std::vector<double>{});
-    } else if (name == "pos" && parent(2) == "referencePoint") {
-      end_reference_point();
-    } else if (name == "ImplicitGeometry") {
-      if (body()) end_implicit();
-    } else if (name == "Building" || name == "BuildingPart") {
-      if (!open_.empty()) end_body();
-    } else if (name == "lowerCorner" || name == "upperCorner") {
-      end_corner(name == "lowerCorner");
-    } else if (name == "value") {
-      end_attribute();
-    } else if (name == "diffuseColor") {
-      if (!materials_.empty()) materials_.back().colour = colour(text_);
-    } else if (name == "target") {
-      const std::string_view target = trimmed(text_);
-      if (target.size() < 2 || target[0] != '#')
-        rule(fmt::format("an appearance with the target \"{}\"", target.substr(0, 40)), "");
-      else if (!materials_.empty())
-        materials_.back().targets.emplace_back(target.substr(1));
-    } else if (!open_.empty()) {
-      end_element(name);
-    }
-    stack_.pop_back();
-    text_.clear();
-  }
-
-  void end_ring() {
-    const auto values = number_list(text_);
-    if (!values || values->size() % 3 != 0) return rule("coordinates that are no triples of numbers", object());
-    std::vector<Point3> ring;
-    double off = 0;
-    for (std::size_t i = 0; i < values->size(); i += 3) {
-      const Point3 p{(*values)[i], (*values)[i + 1], (*values)[i + 2]};
-      if (std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) > kLargestCoordinate)
-        return rule("a coordinate beyond any CRS", object());
-      if (target_ == Target::element && !in_solid_) {  // in a frame of its own
-        ring.push_back(p);
-        continue;
-      }
-      const Point3 q = model::snap(p);
-      off = std::max({off, std::fabs(p.x - q.x), std::fabs(p.y - q.y), std::fabs(p.z - q.z)});
-      if (lower_ && upper_ &&
-          (p.x < lower_->x || p.y < lower_->y || p.z < lower_->z || p.x > upper_->x || p.y > upper_->y ||
-           p.z > upper_->z))
-        outside_ = true;
-      ring.push_back(q);
-    }
-    if (off > kGridTolerance)
-      found(Check::off_grid, fmt::format("a coordinate lies {:.6f} m off the 1/1024 m grid", off), object());
-    if (ring.size() < 4) return defect(SolidDefect::too_few_points);
-    if (ring.front() != ring.back()) return defect(SolidDefect::ring_open);
-    ring.pop_back();
-    for (std::size_t i = 0; i < ring.size(); ++i)
-      if (ring[i] == ring[(i + 1) % ring.size()]) {
-        defect(SolidDefect::same_points);
-        break;
-      }
-    if (!in_polygon_) return rule("a ring outside of a polygon", object());
-    if ((parent(2) == "exterior") != polygon_.rings.empty()) rule("rings out of order", object());
-    polygon_.rings.push_back(std::move(ring));
-  }
-
-  void end_polygon() {
-    in_polygon_ = false;
-    if (!body()) return rule("a polygon that is nobody's", polygon_id_);
-    if (polygon_.rings.empty()) return;  // its rings were found wanting
-    if (in_solid_) {
-      ReadSolid& solid = body()->solids.back();
-      note_place(polygon_id_, {open_.back().body, static_cast<int>(body()->solids.size()) - 1, solid.polygons.size()});
-      solid.polygons.push_back(std::move(polygon_));
-      return;
-    }
-    switch (target_) {
-      case Target::surface:
-        open_.back().surfaces.emplace_back(polygon_id_, std::move(polygon_));
-        break;
-      case Target::detail_surface:
-        if (!opening_.empty() && open_.back().openings.empty()) {
-          rule("a polygon of an opening that is nobody's", polygon_id_);
-        } else if (!opening_.empty()) {
-          OpenedWall& opening = open_.back().openings.back();
-          if (!opening.polygon.empty()) rule("has two polygons", opening.id);
-          opening.polygon = polygon_id_;
-        }
-        open_.back().members.push_back({polygon_id_, open_.back().boundary_surfaces, false, std::move(polygon_)});
-        break;
-      case Target::installation: {
-        auto& installations = body()->detail.installations;
-        if (installations.empty()) return rule("a polygon of an installation that is nobody's", polygon_id_);
-        note_place(polygon_id_,
-                   {open_.back().body, kInstallation, installations.back().polygons.size(), installations.size() - 1});
-        installations.back().polygons.push_back(std::move(polygon_));
-        break;
-      }
-      case Target::element:
-        if (elements_.empty()) return rule("a polygon of an element that is nobody's", polygon_id_);
-        note_place(polygon_id_, {open_.back().body, kElement, elements_.back().polygons.size(), elements_.size() - 1});
-        elements_.back().polygons.push_back(std::move(polygon_));
-        break;
-      case Target::footprint:
-        note_place(polygon_id_, {open_.back().body, kFootprint, body()->footprint.size()});
-        body()->footprint.push_back(std::move(polygon_));
-        break;
-    }
-  }
-
-  void end_reference_point() {
-    const auto values = number_list(text_);
-    if (!values || values->size() != 3) return;
-    const Point3 p{(*values)[0], (*values)[1], (*values)[2]}, q = model::snap(p);
-    const double off = std::max({std::fabs(p.x - q.x), std::fabs(p.y - q.y), std::fabs(p.z - q.z)});
-    if (off > kGridTolerance)
-      found(Check::off_grid, fmt::format("a reference point lies {:.6f} m off the 1/1024 m grid", off), object());
-    reference_point_ = q;
-  }
-
-  /// Elements are turned about the vertical alone.
-  void end_implicit() {
-    if (!turns_about_the_vertical(matrix_))
-      return rule("an implicit geometry whose matrix is no rotation about the vertical", object());
-    if (!reference_point_) return rule("an implicit geometry without a reference point", object());
-    if (element_.empty()) return rule("an implicit geometry without geometry", object());
-    auto& placements = body()->detail.placements;
-    if (!opening_.empty() && open_.back().openings.empty())
-      rule("an element in an opening that is nobody's", object());
-    else if (!opening_.empty())
-      open_.back().openings.back().placement = placements.size();
-    placed_.push_back({open_.back().body, placements.size(), element_});
-    placements.push_back({0, *reference_point_, {matrix_[0], matrix_[4]}});
-  }
-
-  void note_place(const std::string& id, Place place) {
-    if (!id.empty()) places_.emplace(id, place);
-  }
-
-  /// The LoD3 solid gets the polygons of its boundary surfaces, those of LoD2 among them.
-  void end_detail(const Open& open, ReadBody& body) {
-    ReadSolid* solid = nullptr;
-    int number = 0;
-    for (std::size_t s = 0; s < body.solids.size(); ++s)
-      if (body.solids[s].lod == 3) solid = &body.solids[s], number = static_cast<int>(s);
-    if (!solid || !open.has_reference_solid[3]) {
-      if (!open.members.empty()) rule("boundary surfaces of LoD3 without a solid", body.id);
-      return;
-    }
-    std::unordered_map<std::string_view, std::size_t> lod2, members;
-    for (std::size_t i = 0; i < open.surfaces.size(); ++i) lod2.emplace(open.surfaces[i].first, i);
-    for (std::size_t i = 0; i < open.members.size(); ++i)
-      if (!members.emplace(open.members[i].id, i).second)
-        rule("polygon " + open.members[i].id + " is twice in the surfaces of LoD3", body.id);
-    const std::size_t nowhere = open.members.size();  // of polygons that are not in the solid
-    std::vector<std::size_t> polygon_of(open.members.size(), nowhere);
-    for (const std::string& id : open.references[3]) {
-      const auto place = members.find(id);
-      if (place == members.end()) {
-        rule("a reference to #" + id + ", which is no polygon of LoD3", body.id);
-        continue;
-      }
-      const Member& member = open.members[place->second];
-      if (polygon_of[place->second] != nowhere) {
-        rule("polygon " + id + " is twice in the solid", body.id);
-        continue;
-      }
-      if (!member.link) {
-        polygon_of[place->second] = solid->polygons.size();
-        note_place(id, {open.body, number, solid->polygons.size()});
-        solid->polygons.push_back(member.polygon);
-        continue;
-      }
-      const auto shared = lod2.find(id);
-      if (shared == lod2.end()) {
-        rule("a reference to #" + id + ", which is no polygon of the building", body.id);
-        continue;
-      }
-      polygon_of[place->second] = solid->polygons.size();
-      shared_.push_back({id, {open.body, number, solid->polygons.size()}});
-      solid->polygons.push_back(open.surfaces[shared->second].second);
-    }
-    for (std::size_t i = 0; i < polygon_of.size(); ++i)
-      if (polygon_of[i] == nowhere)
-        rule(fmt::format("surface polygon {} is not in the solid of LoD3", open.members[i].id), body.id);
-    // The first polygon of a surface is the wall, what follows are its reveals; openings come after them.
-    std::vector<std::vector<std::size_t>> by_surface(open.boundary_surfaces + 1);
-    for (std::size_t i = 0; i < open.members.size(); ++i) by_surface[open.members[i].surface].push_back(polygon_of[i]);
-    for (const OpenedWall& o : open.openings) {
-      const auto polygon = members.find(o.polygon);
-      if (o.polygon.empty() || polygon == members.end()) {
-        rule("has no polygon", o.id);
-        continue;
-      }
-      const auto& wall = by_surface[o.surface];
-      ReadOpening opening;
-      opening.id = o.id;
-      opening.polygon = polygon_of[polygon->second];
-      if (opening.polygon == nowhere) continue;  // was said of its polygon
-      if (wall.empty() || wall.front() == nowhere) {
-        rule("has no wall in the solid of LoD3", o.id);
-        continue;
-      }
-      opening.wall = wall.front();
-      std::copy_if(wall.begin() + 1, wall.end(), std::back_inserter(opening.reveals),
-                   [&](std::size_t p) { return p != nowhere; });
-      opening.placement = o.placement;
-      body.detail.openings.push_back(std::move(opening));
-    }
-    check_detail(body, [&](std::string what, const std::string& id) { rule(std::move(what), id); });
-  }
-
-  /// The solids get the polygons of their boundary surfaces.
-  void end_body() {
-    Open open = std::move(open_.back());
-    ReadBody& body = out_.contents.bodies[open.body];
-    end_detail(open, body);
-    ReadSolid* solid = nullptr;
-    int number = -1;
-    for (std::size_t s = 0; s < body.solids.size(); ++s)
-      if (body.solids[s].lod == 2) solid = &body.solids[s], number = static_cast<int>(s);
-    if (open.has_reference_solid[2] && solid) {
-      std::unordered_map<std::string, std::size_t> index;
-      for (std::size_t i = 0; i < open.surfaces.size(); ++i) index.emplace(open.surfaces[i].first, i);
-      std::vector<int> used(open.surfaces.size(), 0);
-      for (const std::string& id : open.references[2]) {
-        const auto place = index.find(id);
-        if (place == index.end()) {
-          rule("a reference to #" + id + ", which is no polygon of the building", body.id);
-          continue;
-        }
-        if (++used[place->second] > 1) {
-          rule("polygon " + id + " is twice in the solid", body.id);
-          continue;
-        }
-        note_place(id, {open.body, number, solid->polygons.size()});
-        solid->polygons.push_back(std::move(open.surfaces[place->second].second));
-      }
-      for (std::size_t i = 0; i < used.size(); ++i)
-        if (used[i] == 0) rule(fmt::format("surface polygon {} is not in the solid", open.surfaces[i].first), body.id);
-    } else if (!open.surfaces.empty()) {
-      rule("boundary surfaces without a solid", body.id);
-    }
-    for (std::size_t s = 0; s + 1 < body.solids.size(); ++s)
-      if (body.solids[s].lod >= body.solids[s + 1].lod)
-        rule("solids out of the order of their LoD, or one twice", body.id);
-    if (outside_) rule("a point lies outside of the envelope", body.id);
-    outside_ = false;
-    finish_attributes(body);
-    if (open.has_parts) {
-      if (!body.footprint.empty() || !body.solids.empty()) rule("a building with geometry beside its parts", body.id);
-      assemblies_.push_back(open.body);
-    } else if (!body.attributes.count("lod")) {
-      rule("neither parts nor an attribute lod", body.id);
-    } else {
-      const std::string& lod = body.attributes["lod"];
-      if (lod >= "0" && lod <= "9" && body.footprint.empty()) rule("no lod0FootPrint", body.id);
-    }
-    open_.pop_back();
-  }
-
-  void finish_attributes(ReadBody& body) {
-    for (const std::string& name : attribute_names()) {
-      const auto value = body.attributes.find(name);
-      const auto source = body.attributes.find(name + "_source"),
-                 confidence = body.attributes.find(name + "_confidence");
-      if (source != body.attributes.end()) {
-        if (!is_source(source->second))
-          found(Check::source_wrong, fmt::format("{} from \"{}\"", name, source->second), body.id);
-        if (confidence == body.attributes.end()) found(Check::source_wrong, name + " without confidence", body.id);
-      } else {
-        if (confidence != body.attributes.end())
-          found(Check::source_wrong, name + "_confidence without a source", body.id);
-        if (value != body.attributes.end()) body.attributes[name + "_source"] = "tag";
-      }
-      if (confidence != body.attributes.end()) {
-        const std::string& text = confidence->second;
-        double c = -1;
-        std::from_chars(text.data(), text.data() + text.size(), c);
-        if (!(c >= 0 && c <= 1)) found(Check::source_wrong, fmt::format("confidence of {} is {}", name, text), body.id);
-      }
-    }
-  }
-
-  void end_corner(bool lower) {
-    const auto values = number_list(text_);
-    if (!values || values->size() != 3) return rule("the envelope's corner is no point", "");
-    (lower ? lower_ : upper_) = Point3{(*values)[0], (*values)[1], (*values)[2]};
-  }
-
-  void end_attribute() {
-    if (!body() || attribute_.empty()) return;
-    const std::string_view type = parent();
-    if (type != "stringAttribute") {
-      const std::string number = number_text(trimmed(text_));
-      if (number.empty() || (type == "intAttribute" && number.find_first_not_of("-0123456789") != std::string::npos))
-        rule(fmt::format("{} {} is \"{}\"", type, attribute_, text_.substr(0, 40)), object());
-      text_ = number;
-    }
-    // Tags and sentences are not compared; of a city they would fill the memory.
-    if (!attribute_.starts_with("osm.") && !attribute_.ends_with("_evidence"))
-      if (!body()->attributes.emplace(attribute_, text_).second) rule(attribute_ + " stands twice", object());
-    attribute_.clear();
-  }
-
-  void end_element(std::string_view name) {
-    ReadBody& b = *body();
-    const auto number_of = [&](const char* attribute) {
-      const std::string number = number_text(trimmed(text_));
-      if (number.empty()) return rule(fmt::format("{} is \"{}\"", name, text_.substr(0, 40)), b.id);
-      b.attributes[attribute] = number;
-    };
-    if (name == "function") {
-      (in_installation_ ? installation_kind_ : b.attributes["use"]) = text_;
-    } else if (name == "measuredHeight") {
-      number_of("height");
-    } else if (name == "storeysAboveGround") {
-      number_of("storeys");
-    } else if (name == "storeyHeightsAboveGround") {
-      const auto heights = number_list(text_);
-      if (!heights || heights->empty()) return rule("storeyHeightsAboveGround is no list of numbers", b.id);
-      for (const double h : *heights)
-        if (h != heights->front()) rule("storeys of different heights", b.id);
-      b.attributes["storey_height"] = number_text(trimmed(text_).substr(0, trimmed(text_).find(' ')));
-    } else if (name == "uri" && parent() == "externalObject") {
-      // w12.w34 is made from the tags of way 34, w12.rest from those of way 12.
-      static const std::unordered_map<char, std::string> kinds = {{'n', "node/"}, {'w', "way/"}, {'r', "relation/"}};
-      const std::string id = owner(b.id);
-      const auto kind = kinds.find(id.empty() ? ' ' : id[0]);
-      if (kind != kinds.end() && text_ != "https://www.openstreetmap.org/" + kind->second + id.substr(1))
-        rule("its external reference leads to " + text_.substr(0, 80), b.id);
-    }
-  }
-
-  /// "#rrggbb" of three numbers from 0 to 1.
-  std::string colour(const std::string& text) {
-    const auto values = number_list(text);
-    if (!values || values->size() != 3 ||
-        std::any_of(values->begin(), values->end(), [](double v) { return !(v >= 0 && v <= 1); })) {
-      rule("a colour that is none: " + text.substr(0, 40), "");
-      return {};
-    }
-    return fmt::format("#{:02x}{:02x}{:02x}", std::lround((*values)[0] * 255), std::lround((*values)[1] * 255),
-                       std::lround((*values)[2] * 255));
-  }
-
-  void place_element(const ReadBody& body, ReadPlacement& placement, std::uint64_t element) {
-    placement.element = element;
-    if (lower_ && upper_ && reaches_beyond(placement, out_.contents.elements.at(element), *lower_, *upper_))
-      rule(fmt::format("an element reaches out of the envelope, at {:.3f} {:.3f} {:.3f}", placement.origin.x,
-                       placement.origin.y, placement.origin.z),
-           body.id);
-  }
-
-  ReadPolygon& polygon_at(const Place& place) {
-    if (place.solid == kElement) return elements_[place.item].polygons[place.polygon];
-    ReadBody& body = out_.contents.bodies[place.body];
-    if (place.solid == kInstallation) return body.detail.installations[place.item].polygons[place.polygon];
-    if (place.solid == kFootprint) return body.footprint[place.polygon];
-    return body.solids[static_cast<std::size_t>(place.solid)].polygons[place.polygon];
-  }
-
-  void finish() {
-    for (const Material& m : materials_)
-      for (const std::string& target : m.targets) {
-        const auto place = places_.find(target);
-        if (place == places_.end()) {
-          rule("an appearance of #" + target + ", which is no polygon", "");
-          continue;
-        }
-        std::string& slot = polygon_at(place->second).colour;
-        if (!slot.empty()) rule("#" + target + " has two colours", out_.contents.bodies[place->second.body].id);
-        slot = m.colour;
-      }
-    for (const auto& [id, place] : shared_)
-      if (const auto original = places_.find(id); original != places_.end())
-        polygon_at(place).colour = polygon_at(original->second).colour;
-    std::vector<std::uint64_t> digests;
-    for (const Element& element : elements_) {
-      digests.push_back(element_digest(element.polygons));
-      if (element.polygons.empty()) rule("an element without polygons", element.id);
-      out_.contents.elements.try_emplace(digests.back(), element_of(element.polygons));
-    }
-    for (const Placed& p : placed_) {
-      ReadBody& body = out_.contents.bodies[p.body];
-      const auto element = element_at_.find(p.element);
-      if (element == element_at_.end())
-        rule("a reference to #" + p.element + ", which is no element", body.id);
-      else
-        place_element(body, body.detail.placements[p.placement], digests[element->second]);
-    }
-    if (!out_.contents.buildings.empty() && (!lower_ || !upper_ || out_.srs_name.empty()))
-      rule("no envelope with a reference system", "");
-    // Buildings of several parts are no bodies of their own.
-    std::vector<ReadBody> bodies;
-    for (std::size_t i = 0, next = 0; i < out_.contents.bodies.size(); ++i) {
-      if (next < assemblies_.size() && assemblies_[next] == i)
-        ++next;
-      else
-        bodies.push_back(std::move(out_.contents.bodies[i]));
-    }
-    out_.contents.bodies = std::move(bodies);
-  }
-
-  const std::string& name_;
-  CityGml& out_;
-  std::vector<std::string_view> stack_;
-  std::vector<Open> open_;  ///< the building, and its part where one is open
-  std::vector<std::size_t> assemblies_;
-  std::unordered_set<std::string> ids_;
-  std::unordered_map<std::string, Place> places_;  ///< polygons by gml:id
-  std::vector<Material> materials_;
-  std::optional<Point3> lower_, upper_;
-  struct Placed {
-    std::size_t body = 0, placement = 0;
-    std::string element;
-  };
-  std::vector<std::pair<std::string, Place>> shared_;  ///< polygons of LoD3 that are those of LoD2, by their id
-  std::vector<Element> elements_;
-  std::unordered_map<std::string, std::size_t> element_at_;
-  std::vector<Placed> placed_;
-  Target target_ = Target::footprint;
-  std::vector<double> matrix_;
-  std::optional<Point3> reference_point_;
-  std::string opening_, element_, installation_, installation_kind_;
-  bool in_installation_ = false;
-  ReadPolygon polygon_;
-  std::string text_, surface_, attribute_, polygon_id_, solid_id_;
-  bool in_solid_ = false, in_polygon_ = false, by_reference_ = false, outside_ = false;
-  int line_ = 0, found_ = 0;
-};
-
 }  // namespace
+
+bool CityGmlParser::parse(xmlTextReaderPtr reader) {
+  int status = 0;
+  while ((status = xmlTextReaderRead(reader)) == 1) {
+    switch (xmlTextReaderNodeType(reader)) {
+      case XML_READER_TYPE_ELEMENT: {
+        const bool empty = xmlTextReaderIsEmptyElement(reader) == 1;
+        line_ = xmlTextReaderGetParserLineNumber(reader);
+        start(reader);
+        if (empty) end();
+        break;
+      }
+      case XML_READER_TYPE_END_ELEMENT:
+        end();
+        break;
+      case XML_READER_TYPE_TEXT:
+      case XML_READER_TYPE_CDATA:
+      case XML_READER_TYPE_SIGNIFICANT_WHITESPACE:
+        text_ += view(xmlTextReaderConstValue(reader));
+        break;
+      case XML_READER_TYPE_DOCUMENT_TYPE:
+        rule("a document type definition", "");
+        break;
+      default:
+        break;
+    }
+  }
+  if (status != 0) return false;
+  finish();
+  return true;
+}
+
+void CityGmlParser::start(xmlTextReaderPtr reader) {
+  // Names live in the reader's dictionary as long as the reader.
+  const std::string_view name = view(xmlTextReaderConstLocalName(reader)),
+                         space = view(xmlTextReaderConstNamespaceUri(reader));
+  text_.clear();
+  stack_.push_back(name);
+  if (!known_element(space, name)) rule(fmt::format("unexpected element {}", name), object());
+  std::string id;
+  if (xmlTextReaderHasAttributes(reader) == 1) {
+    id = attribute(reader, "id", kGml);
+    if (!id.empty() && !ids_.insert(id).second) rule("gml:id twice: " + id, id);
+  }
+  if (stack_.size() == 1 && (name != "CityModel" || space != kCore))
+    rule("the root is no CityModel of CityGML 2.0", "");
+  if (space == kGml)
+    start_gml(reader, name, id);
+  else if (space == kBuilding)
+    start_building(name, id);
+  else if (space == kCore)
+    start_core(reader, name);
+  else if (space == kGenerics && name.ends_with("Attribute"))
+    attribute_ = attribute(reader, "name");
+  else if (space == kGenerics && name == "value" && parent() == "measureAttribute" && attribute(reader, "uom").empty())
+    rule(attribute_ + " has no unit", object());
+  else if (space == kAppearance && name == "X3DMaterial")
+    materials_.emplace_back();
+}
+
+void CityGmlParser::start_gml(xmlTextReaderPtr reader, std::string_view name, const std::string& id) {
+  if (name == "Envelope") {
+    out_.srs_name = attribute(reader, "srsName");
+    if (attribute(reader, "srsDimension") != "3") rule("the envelope is not three-dimensional", "");
+  } else if (name == "Solid") {
+    const std::string_view property = parent();
+    if (!body() || (property != "lod1Solid" && property != "lod2Solid" && property != "lod3Solid"))
+      return rule("a solid that is nobody's", id);
+    ReadSolid solid;
+    solid.lod = property[3] - '0';
+    body()->solids.push_back(std::move(solid));
+    in_solid_ = true;
+    solid_id_ = id;
+    by_reference_ = false;
+  } else if (name == "surfaceMember" && in_solid_) {
+    const std::string href = attribute(reader, "href", kLink);
+    if (href.empty()) return;
+    if (href[0] != '#') return rule("a reference to another file: " + href, object());
+    open_.back().references[static_cast<std::size_t>(body()->solids.back().lod)].push_back(href.substr(1));
+    by_reference_ = true;
+  } else if (name == "surfaceMember" && target_ == Target::detail_surface && !open_.empty()) {
+    const std::string href = attribute(reader, "href", kLink);
+    if (href.empty()) return;
+    if (href[0] != '#') return rule("a reference to another file: " + href, object());
+    open_.back().members.push_back({href.substr(1), open_.back().boundary_surfaces, true, {}});
+  } else if (name == "MultiSurface") {
+    start_multi_surface(id);
+  } else if (name == "Polygon") {
+    polygon_ = {};
+    polygon_.kind = opening_.empty() ? surface_ : opening_;
+    polygon_id_ = id;
+    in_polygon_ = true;
+  }
+}
+
+void CityGmlParser::start_multi_surface(const std::string& id) {
+  const std::string_view property = parent();
+  target_ = property == "lod3MultiSurface"      ? Target::detail_surface
+            : property == "lod3Geometry"        ? Target::installation
+            : property == "relativeGMLGeometry" ? Target::element
+            : surface_.empty()                  ? Target::footprint
+                                                : Target::surface;
+  if (target_ == Target::installation && body()) {
+    body()->detail.installations.push_back({installation_, installation_kind_, {}});
+  } else if (target_ == Target::element) {
+    if (id.empty()) rule("the geometry of an element without a gml:id", object());
+    element_ = id;
+    element_at_.emplace(id, elements_.size());
+    elements_.push_back({id, {}});
+  }
+}
+
+void CityGmlParser::start_core(xmlTextReaderPtr reader, std::string_view name) {
+  if (name == "ImplicitGeometry") {
+    element_.clear();
+    matrix_.clear();
+    reference_point_.reset();
+  } else if (name == "relativeGMLGeometry") {
+    const std::string href = attribute(reader, "href", kLink);
+    if (href.empty()) return;
+    if (href[0] != '#') return rule("a reference to another file: " + href, object());
+    element_ = href.substr(1);
+  }
+}
+
+void CityGmlParser::start_building(std::string_view name, const std::string& id) {
+  if (name == "Building" || name == "BuildingPart") {
+    const bool part = name == "BuildingPart";
+    if (part != !open_.empty()) rule(fmt::format("{} out of its place", name), id);
+    if (!(part ? is_body_id(id) : is_osm_id(id))) rule(fmt::format("\"{}\" is no id", id), id);
+    ReadBody body;
+    body.id = id;
+    body.building = part && !open_.empty() ? out_.contents.bodies[open_.front().body].id : id;
+    if (part && building_of(id) != body.building) rule(fmt::format("{} does not belong to {}", id, body.building), id);
+    if (!open_.empty()) open_.front().has_parts = true;
+    if (!part) out_.contents.buildings.push_back(id);
+    // What the building before it, or a damaged one around it, was at is not its own.
+    opening_.clear();
+    surface_.clear();
+    target_ = Target::footprint;
+    open_.emplace_back();
+    open_.back().body = out_.contents.bodies.size();
+    out_.contents.bodies.push_back(std::move(body));
+  } else if (const std::string_view kind = surface_kind(name); !kind.empty() && parent() == "boundedBy") {
+    surface_ = kind;
+    if (!open_.empty()) ++open_.back().boundary_surfaces;
+  } else if (const std::string_view opening = opening_kind(name); !opening.empty()) {
+    if (parent() != "opening" || open_.empty() || surface_.empty())
+      return rule(fmt::format("{} out of its place", name), id);
+    opening_ = opening;
+    open_.back().openings.push_back({id, open_.back().boundary_surfaces, {}, {}});
+  } else if (name == "BuildingInstallation") {
+    if (parent() != "outerBuildingInstallation" || open_.empty()) rule("BuildingInstallation out of its place", id);
+    in_installation_ = true;
+    installation_ = id;
+    installation_kind_.clear();
+  }
+}
+
+void CityGmlParser::end() {
+  const std::string_view name = stack_.back();
+  if (name == "posList") {
+    end_ring();
+  } else if (name == "Polygon") {
+    end_polygon();
+  } else if (name == "Solid") {
+    if (in_solid_ && by_reference_) {
+      open_.back().has_reference_solid[static_cast<std::size_t>(body()->solids.back().lod)] = true;
+      if (!body()->solids.back().polygons.empty()) rule("a solid half of references, half of polygons", object());
+    } else if (in_solid_ && body()->solids.back().polygons.empty()) {
+      rule("a solid without faces", object());
+    }
+    in_solid_ = false;
+  } else if (!surface_kind(name).empty() && parent() == "boundedBy") {
+    surface_.clear();
+  } else if (!opening_kind(name).empty()) {
+    opening_.clear();
+  } else if (name == "BuildingInstallation") {
+    in_installation_ = false;
+  } else if (name == "transformationMatrix") {
+    matrix_ = number_list(text_).value_or(std::vector<double>{});
+  } else if (name == "pos" && parent(2) == "referencePoint") {
+    end_reference_point();
+  } else if (name == "ImplicitGeometry") {
+    if (body()) end_implicit();
+  } else if (name == "Building" || name == "BuildingPart") {
+    if (!open_.empty()) end_body();
+  } else if (name == "lowerCorner" || name == "upperCorner") {
+    end_corner(name == "lowerCorner");
+  } else if (name == "value") {
+    end_attribute();
+  } else if (name == "diffuseColor") {
+    if (!materials_.empty()) materials_.back().colour = colour(text_);
+  } else if (name == "target") {
+    const std::string_view target = trimmed(text_);
+    if (target.size() < 2 || target[0] != '#')
+      rule(fmt::format("an appearance with the target \"{}\"", target.substr(0, 40)), "");
+    else if (!materials_.empty())
+      materials_.back().targets.emplace_back(target.substr(1));
+  } else if (!open_.empty()) {
+    end_element(name);
+  }
+  stack_.pop_back();
+  text_.clear();
+}
+
+void CityGmlParser::end_ring() {
+  const auto values = number_list(text_);
+  if (!values || values->size() % 3 != 0) return rule("coordinates that are no triples of numbers", object());
+  std::vector<Point3> ring;
+  double off = 0;
+  for (std::size_t i = 0; i < values->size(); i += 3) {
+    const Point3 p{(*values)[i], (*values)[i + 1], (*values)[i + 2]};
+    if (std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) > kLargestCoordinate)
+      return rule("a coordinate beyond any CRS", object());
+    if (target_ == Target::element && !in_solid_) {  // in a frame of its own
+      ring.push_back(p);
+      continue;
+    }
+    const Point3 q = model::snap(p);
+    off = std::max({off, std::fabs(p.x - q.x), std::fabs(p.y - q.y), std::fabs(p.z - q.z)});
+    if (lower_ && upper_ &&
+        (p.x < lower_->x || p.y < lower_->y || p.z < lower_->z || p.x > upper_->x || p.y > upper_->y ||
+         p.z > upper_->z))
+      outside_ = true;
+    ring.push_back(q);
+  }
+  if (off > kGridTolerance)
+    found(Check::off_grid, fmt::format("a coordinate lies {:.6f} m off the 1/1024 m grid", off), object());
+  if (ring.size() < 4) return defect(SolidDefect::too_few_points);
+  if (ring.front() != ring.back()) return defect(SolidDefect::ring_open);
+  ring.pop_back();
+  for (std::size_t i = 0; i < ring.size(); ++i)
+    if (ring[i] == ring[(i + 1) % ring.size()]) {
+      defect(SolidDefect::same_points);
+      break;
+    }
+  if (!in_polygon_) return rule("a ring outside of a polygon", object());
+  if ((parent(2) == "exterior") != polygon_.rings.empty()) rule("rings out of order", object());
+  polygon_.rings.push_back(std::move(ring));
+}
+
+void CityGmlParser::end_polygon() {
+  in_polygon_ = false;
+  if (!body()) return rule("a polygon that is nobody's", polygon_id_);
+  if (polygon_.rings.empty()) return;  // its rings were found wanting
+  if (in_solid_) {
+    ReadSolid& solid = body()->solids.back();
+    note_place(polygon_id_, {open_.back().body, static_cast<int>(body()->solids.size()) - 1, solid.polygons.size()});
+    solid.polygons.push_back(std::move(polygon_));
+    return;
+  }
+  switch (target_) {
+    case Target::surface:
+      open_.back().surfaces.emplace_back(polygon_id_, std::move(polygon_));
+      break;
+    case Target::detail_surface:
+      if (!opening_.empty() && open_.back().openings.empty()) {
+        rule("a polygon of an opening that is nobody's", polygon_id_);
+      } else if (!opening_.empty()) {
+        OpenedWall& opening = open_.back().openings.back();
+        if (!opening.polygon.empty()) rule("has two polygons", opening.id);
+        opening.polygon = polygon_id_;
+      }
+      open_.back().members.push_back({polygon_id_, open_.back().boundary_surfaces, false, std::move(polygon_)});
+      break;
+    case Target::installation: {
+      auto& installations = body()->detail.installations;
+      if (installations.empty()) return rule("a polygon of an installation that is nobody's", polygon_id_);
+      note_place(polygon_id_,
+                 {open_.back().body, kInstallation, installations.back().polygons.size(), installations.size() - 1});
+      installations.back().polygons.push_back(std::move(polygon_));
+      break;
+    }
+    case Target::element:
+      if (elements_.empty()) return rule("a polygon of an element that is nobody's", polygon_id_);
+      note_place(polygon_id_, {open_.back().body, kElement, elements_.back().polygons.size(), elements_.size() - 1});
+      elements_.back().polygons.push_back(std::move(polygon_));
+      break;
+    case Target::footprint:
+      note_place(polygon_id_, {open_.back().body, kFootprint, body()->footprint.size()});
+      body()->footprint.push_back(std::move(polygon_));
+      break;
+  }
+}
+
+void CityGmlParser::end_reference_point() {
+  const auto values = number_list(text_);
+  if (!values || values->size() != 3) return;
+  const Point3 p{(*values)[0], (*values)[1], (*values)[2]}, q = model::snap(p);
+  const double off = std::max({std::fabs(p.x - q.x), std::fabs(p.y - q.y), std::fabs(p.z - q.z)});
+  if (off > kGridTolerance)
+    found(Check::off_grid, fmt::format("a reference point lies {:.6f} m off the 1/1024 m grid", off), object());
+  reference_point_ = q;
+}
+
+void CityGmlParser::end_implicit() {
+  if (!turns_about_the_vertical(matrix_))
+    return rule("an implicit geometry whose matrix is no rotation about the vertical", object());
+  if (!reference_point_) return rule("an implicit geometry without a reference point", object());
+  if (element_.empty()) return rule("an implicit geometry without geometry", object());
+  auto& placements = body()->detail.placements;
+  if (!opening_.empty() && open_.back().openings.empty())
+    rule("an element in an opening that is nobody's", object());
+  else if (!opening_.empty())
+    open_.back().openings.back().placement = placements.size();
+  placed_.push_back({open_.back().body, placements.size(), element_});
+  placements.push_back({0, *reference_point_, {matrix_[0], matrix_[4]}});
+}
+
+void CityGmlParser::end_corner(bool lower) {
+  const auto values = number_list(text_);
+  if (!values || values->size() != 3) return rule("the envelope's corner is no point", "");
+  (lower ? lower_ : upper_) = Point3{(*values)[0], (*values)[1], (*values)[2]};
+}
+
+void CityGmlParser::end_attribute() {
+  if (!body() || attribute_.empty()) return;
+  const std::string_view type = parent();
+  if (type != "stringAttribute") {
+    const std::string number = number_text(trimmed(text_));
+    if (number.empty() || (type == "intAttribute" && number.find_first_not_of("-0123456789") != std::string::npos))
+      rule(fmt::format("{} {} is \"{}\"", type, attribute_, text_.substr(0, 40)), object());
+    text_ = number;
+  }
+  // Tags and sentences are not compared; of a city they would fill the memory.
+  if (!attribute_.starts_with("osm.") && !attribute_.ends_with("_evidence"))
+    if (!body()->attributes.emplace(attribute_, text_).second) rule(attribute_ + " stands twice", object());
+  attribute_.clear();
+}
+
+void CityGmlParser::end_element(std::string_view name) {
+  ReadBody& b = *body();
+  const auto number_of = [&](const char* attribute) {
+    const std::string number = number_text(trimmed(text_));
+    if (number.empty()) return rule(fmt::format("{} is \"{}\"", name, text_.substr(0, 40)), b.id);
+    b.attributes[attribute] = number;
+  };
+  if (name == "function") {
+    (in_installation_ ? installation_kind_ : b.attributes["use"]) = text_;
+  } else if (name == "measuredHeight") {
+    number_of("height");
+  } else if (name == "storeysAboveGround") {
+    number_of("storeys");
+  } else if (name == "storeyHeightsAboveGround") {
+    const auto heights = number_list(text_);
+    if (!heights || heights->empty()) return rule("storeyHeightsAboveGround is no list of numbers", b.id);
+    for (const double h : *heights)
+      if (h != heights->front()) rule("storeys of different heights", b.id);
+    b.attributes["storey_height"] = number_text(trimmed(text_).substr(0, trimmed(text_).find(' ')));
+  } else if (name == "uri" && parent() == "externalObject") {
+    // w12.w34 is made from the tags of way 34, w12.rest from those of way 12.
+    static const std::unordered_map<char, std::string> kinds = {{'n', "node/"}, {'w', "way/"}, {'r', "relation/"}};
+    const std::string id = owner(b.id);
+    const auto kind = kinds.find(id.empty() ? ' ' : id[0]);
+    if (kind != kinds.end() && text_ != "https://www.openstreetmap.org/" + kind->second + id.substr(1))
+      rule("its external reference leads to " + text_.substr(0, 80), b.id);
+  }
+}
+
+std::string CityGmlParser::colour(const std::string& text) {
+  const auto values = number_list(text);
+  if (!values || values->size() != 3 ||
+      std::any_of(values->begin(), values->end(), [](double v) { return !(v >= 0 && v <= 1); })) {
+    rule("a colour that is none: " + text.substr(0, 40), "");
+    return {};
+  }
+  return fmt::format("#{:02x}{:02x}{:02x}", std::lround((*values)[0] * 255), std::lround((*values)[1] * 255),
+                     std::lround((*values)[2] * 255));
+}
 
 CityGml read_citygml(std::string_view xml, const std::string& name) {
   CityGml out;
@@ -749,7 +446,7 @@ CityGml read_citygml(std::string_view xml, const std::string& name) {
   if (reader) {
     xmlTextReaderSetErrorHandler(
         reader.get(), [](void*, const char*, xmlParserSeverities, xmlTextReaderLocatorPtr) {}, nullptr);
-    out.readable = Parser(name, out).parse(reader.get());
+    out.readable = CityGmlParser(name, out).parse(reader.get());
   }
   if (!out.readable) {
     const int line = reader ? xmlTextReaderGetParserLineNumber(reader.get()) : 0;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <new>
 
+#include "pipeline/outputs/citygml/appearance_text.h"
 #include "pipeline/outputs/citygml/codes.h"
 #include "pipeline/outputs/citygml/geometry_text.h"
 #include "pipeline/outputs/material_classes.h"
@@ -78,75 +79,6 @@ bool is_year(std::string_view text) {
   return text.size() == 4 && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }) &&
          text != "0000";
 }
-
-/// Which polygons have which material. Kept until all buildings are written: about 40 bytes a face.
-class AppearanceText {
- public:
-  void add(const model::Solid& solid, std::string_view id) {
-    for (std::size_t f = 0; f < solid.faces.size(); ++f) {
-      append_polygon_id(target(solid.faces[f].material, solid.faces[f].colour), id, f);
-      close();
-    }
-  }
-
-  /// The polygons of a LoD3 solid that its LoD2 solid does not have.
-  void add_detail(const model::Solid& lod2, const model::Solid& lod3, std::string_view id) {
-    for (std::size_t f = 0; f < lod3.faces.size(); ++f)
-      if (!is_shared_face(lod2, lod3, f)) {
-        append_detail_polygon_id(target(lod3.faces[f].material, lod3.faces[f].colour), id, f);
-        close();
-      }
-  }
-  void add(const model::ColouredElement& element, std::string_view id) {
-    const auto& faces = element.element->mesh.faces;
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-      const model::PartMaterial& look = element.materials[static_cast<std::size_t>(faces[f].part)];
-      append_polygon_id(target(look.material, look.colour), id, f);
-      close();
-    }
-  }
-
-  /// Hands the appearanceMember to `write` in pieces; nothing when nothing was added.
-  template <class Write>
-  void write(const std::vector<model::MaterialClass>& classes, const Write& write) const {
-    if (targets_.empty()) return;
-    std::string out = "<app:appearanceMember><app:Appearance><app:theme>";
-    out += kVisualTheme;
-    out += "</app:theme>\n";
-    for (std::size_t i = 0; i < targets_.size(); ++i) {
-      const std::uint32_t key = numbers_.keys()[i];
-      const X3dMaterial look = x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
-      out += "<app:surfaceDataMember><app:X3DMaterial><gml:name>";
-      append_xml(out, look.name);
-      out += "</gml:name><app:diffuseColor>";
-      append_ten_thousandths(out, look.diffuse, ' ');
-      out += "</app:diffuseColor><app:specularColor>";
-      append_ten_thousandths(out, look.specular, ' ');
-      out += "</app:specularColor><app:shininess>";
-      append_ten_thousandths(out, look.shininess);
-      out += "</app:shininess>\n";
-      write(out);
-      write(targets_[i]);
-      out = "</app:X3DMaterial></app:surfaceDataMember>\n";
-    }
-    out += "</app:Appearance></app:appearanceMember>\n";
-    write(out);
-  }
-
- private:
-  /// Opens a target of this look; the caller appends the id and closes it.
-  std::string& target(std::uint8_t material, model::Colour colour) {
-    last_ = numbers_.number(MaterialNumbers::key(material, colour));
-    if (last_ == targets_.size()) targets_.emplace_back();
-    targets_[last_] += "<app:target>#";
-    return targets_[last_];
-  }
-  void close() { targets_[last_] += "</app:target>\n"; }
-
-  MaterialNumbers numbers_;
-  std::vector<std::string> targets_;  // by number of the material
-  std::uint32_t last_ = 0;
-};
 
 /// Writes the text of one building after the other. Buildings are put together by hand from fixed pieces: an element at
 /// a time through the XML library costs several times as much.

@@ -1,0 +1,189 @@
+// The roof's shape, orientation and height.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/attributes/resolver.h"
+#include "pipeline/base/portable_math.h"
+#include "styles/roofs/roof_sides.h"
+
+namespace blockrand::attributes {
+namespace {
+
+using model::Attributes;
+using model::RoofOrientation;
+using model::RoofShape;
+using model::Source;
+using model::Sourced;
+
+/// degrees. Wings of half depth lean on the neighbour's wall at 5 to 20 (docs/style_measures.md 2.7).
+constexpr double kLeanPitch = 12;
+
+double tangent(double degrees) { return base::tan(degrees * base::kRadiansPerDegree); }
+
+/// Full storeys under rafters: Berlin's building codes from 1887 allowed five and 22 m to the eaves, post-war ones call what has
+/// its highest floor above 22 m a tower. Of 37 houses with seven storeys and more that looked sloped 37 are tagged flat, of 29
+/// with six 14 (docs/internal/RESULTS.md, "Roofs against references").
+constexpr float kMostStoreysUnderRafters = 6;
+
+/// Pitch of roofs that no tag measures, degrees. \param of_use  that of sloped roofs of the building's use
+double usual_pitch(RoofShape shape, double of_use) {
+  const model::UsualPitch& pitch = model::traits(shape).pitch;
+  return pitch.own > 0 ? pitch.own : std::min(of_use, pitch.most);
+}
+
+}  // namespace
+
+Sourced<RoofShape> Resolver::roof_shape() {
+  std::vector<Choice<RoofShape>> choices;
+  if (own.roof_shape) choices.push_back({*own.roof_shape, Source::tag, kTagConfidence, "tagged"});
+  // What neighbours and evidence say; sloped roofs only where rafters reach.
+  std::optional<context::NeighbourVote<RoofShape>> vote;
+  if (!is_non_house()) vote = in.neighbours.roof_shape(place(), group, id, options.neighbour_minimum);
+  const model::InferredCandidate<RoofShape>& inferred_candidate = building.inferred.roof_shape;
+  std::string vote_why;
+  Source vote_source = Source::neighbours;
+  if (inferred_candidate.confidence > 0) {
+    vote = context::NeighbourVote<RoofShape>{inferred_candidate.value, 0,
+                                             static_cast<double>(inferred_candidate.confidence)};
+    vote_why = inferred_candidate.why;
+    vote_source = inferred_candidate.source;
+  } else if (vote) {
+    vote_why = fmt::format("{:.0f} % of {} neighbours within {:.0f} m", 100 * vote->share, vote->voices,
+                           in.neighbours.reach());
+  }
+  const bool agreed = vote && (inferred_candidate.confidence > 0 || vote->share >= 0.5);
+  if (part && !part->roof_lines.empty())
+    choices.push_back({RoofShape::gabled, Source::implied, kImpliedConfidence, "ridges are mapped"});
+  if ((own.roof_height && *own.roof_height < kNoRoofHeight) || (own.roof_angle && *own.roof_angle < kNoRoofAngle))
+    choices.push_back({RoofShape::flat, Source::implied, kImpliedConfidence, "the roof's tagged height or angle is 0"});
+  if (own.roof_orientation || own.roof_direction || tags_speak_of_slope()) {
+    // A direction alone means one slope, storeys or an angle mean two, or what sloped roof is usual here.
+    const bool one_slope = own.roof_direction && !own.roof_orientation && !tags_speak_of_slope();
+    const bool as_usual = agreed && vote->value != RoofShape::flat && vote->value != RoofShape::other;
+    choices.push_back({one_slope  ? RoofShape::skillion
+                       : as_usual ? vote->value
+                                  : RoofShape::gabled,
+                       Source::implied, kImpliedConfidence,
+                       as_usual && !one_slope ? "other roof tags speak of a slope, neighbours of this one"
+                                              : "other roof tags speak of a slope"});
+  }
+  if (outline && outline->roof_shape && !has_own_height())
+    choices.push_back({*outline->roof_shape, Source::implied, kOutlineConfidence, "the outline's roof"});
+  if (outline && has_own_height())
+    choices.push_back(
+        {RoofShape::flat, Source::implied, kGeometryConfidence, "a part with a height and no roof tags ends flat"});
+  const bool wide = width() > preset.pitched_width;
+  const auto& counted = own.storeys || !outline || has_own_height() ? own.storeys : outline->storeys;
+  if (preset.roof_shape != RoofShape::flat && counted && *counted > kMostStoreysUnderRafters)
+    choices.push_back({RoofShape::flat, Source::geometry, kImpliedConfidence,
+                       fmt::format("{:g} storeys are too many for rafters", *counted)});
+  if (preset.roof_shape != RoofShape::flat && part && roofs::is_enclosed(plan(), part->roof_edges))
+    choices.push_back(
+        {RoofShape::flat, Source::geometry, kImpliedConfidence, "neighbours stand at all sides: no side for eaves"});
+  if (agreed && (vote->value == RoofShape::flat || !wide))
+    choices.push_back({vote->value, vote_source,
+                       inferred_candidate.confidence > 0 ? static_cast<double>(inferred_candidate.confidence)
+                                                         : 0.2 + 0.5 * vote->share,
+                       std::move(vote_why)});
+  if (preset.roof_shape != RoofShape::flat && wide)
+    choices.push_back({RoofShape::flat, Source::geometry, kGeometryConfidence,
+                       fmt::format("the plan is {:.0f} m wide, too wide for rafters", width())});
+  choices.push_back({preset.roof_shape, preset_source(), preset_confidence(), preset_name()});
+  return first(std::move(choices));
+}
+
+Sourced<RoofOrientation> Resolver::roof_orientation(RoofShape shape) {
+  std::vector<Choice<RoofOrientation>> choices;
+  if (own.roof_orientation) choices.push_back({*own.roof_orientation, Source::tag, kTagConfidence, "tagged"});
+  if (shape != RoofShape::flat && !own.roof_direction && part && plan().outer.size() >= 3) {
+    if (const auto axis = roofs::row_axis(plan(), tagged_request(own, shape, part->roof_edges))) {
+      const model::Point2 longer = geometry::long_axis(plan().outer.points);
+      const bool across =
+          std::fabs(axis->x * longer.x + axis->y * longer.y) < std::fabs(axis->x * longer.y - axis->y * longer.x);
+      choices.push_back({across ? RoofOrientation::across : RoofOrientation::along, Source::geometry,
+                         kPartyWallConfidence, "the ridge follows the row"});
+    }
+  }
+  choices.push_back({RoofOrientation::along, Source::default_, kDefaultConfidence, "along the longer side"});
+  return first(std::move(choices));
+}
+
+Sourced<double> Resolver::roof_height(RoofShape shape, RoofOrientation orientation, double storey_height) {
+  if (shape == RoofShape::flat) return make<double>(0, Source::implied, kImpliedConfidence, "flat roof");
+  std::vector<Choice<double>> choices;
+  if (const auto tagged = useful_roof_height(own, shape))
+    choices.push_back({*tagged, Source::tag, kTagConfidence, "tagged"});
+  if (const auto given = height_of_angle(own, shape, plan(), row()))
+    choices.push_back(
+        {*given, Source::implied, kImpliedConfidence, fmt::format("a tagged pitch of {:g} degrees", *own.roof_angle)});
+  if (own.roof_storeys && *own.roof_storeys > 0)
+    choices.push_back({*own.roof_storeys * storey_height, Source::implied, kImpliedConfidence,
+                       fmt::format("{:g} tagged storeys in the roof", *own.roof_storeys)});
+  choices.push_back(usual_height(shape, orientation));
+  return first(std::move(choices));
+}
+
+Choice<double> Resolver::usual_height(RoofShape shape, RoofOrientation orientation) {
+  roofs::RoofRequest request = tagged_request(own, shape, row());
+  request.across = orientation == RoofOrientation::across;
+  const roofs::MainSlope slope =
+      plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
+  const auto* edges = model::constructed_as<model::EdgeRoof>(shape);
+  if (edges && edges->eaves == model::EavesProfile::berlin)
+    return {slope.run, preset_source(), preset_confidence(),
+            "60 degrees to the street, 8 to the yard, a knee wall there"};
+  if (edges && edges->eaves == model::EavesProfile::broken) {
+    const double run = roofs::main_slope(plan(), request, false).run, attic = attic_height(preset.storey_height);
+    // Below an attic's height there is no storey in it: the pitch alone counts.
+    if (run * roofs::kMansardSteep > 2 * attic)
+      return {
+          roofs::mansard_height(run, attic), preset_source(), preset_confidence(),
+          fmt::format("an attic storey of {:.1f} m behind 68 degrees, 26 above, over a run of {:.1f} m", attic, run)};
+  }
+  double pitch = std::min(usual_pitch(shape, preset.roof_pitch), options.max_roof_pitch);
+  if (slope.leans && pitch <= preset.roof_pitch) pitch = std::min(pitch, kLeanPitch);
+  const double height = slope.run * tangent(pitch) / slope.rise;
+  usual_pitch_asked = pitch;
+  if (height > options.max_usual_roof_height && pitch <= preset.roof_pitch) {
+    usual_pitch_asked = 0;
+    return {options.max_usual_roof_height, preset_source(), preset_confidence(),
+            fmt::format("the highest usual roof, over a run of {:.1f} m", slope.run)};
+  }
+  return {height, preset_source(), preset_confidence(),
+          fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, slope.run)};
+}
+
+void Resolver::fit_roof_height(Attributes& a, bool storeys_known, double plinth, double covered) {
+  const double wanted = a.roof_height.value;
+  const double whole = std::max(a.height.value - own.min_height.value_or(0), 0.0);
+  double roof = wanted;
+  std::string why = "what height and storeys leave";
+  if (useful_roof_height(own, a.roof_shape.value)) {
+    if (wanted <= whole + kNoRoofHeight) return;  // the part may be all roof; walls take their minimum when it is built
+    roof = whole;
+    why = "what the height leaves";
+  } else {
+    if (useful_roof_angle(own, a.roof_shape.value)) {
+      roof = std::min(wanted, roof_limit(own, a.height.value));
+    } else {
+      roof = std::min(wanted, 0.6 * whole);
+      if (storeys_known && a.storeys.value > 0) {
+        const double left = a.height.value - plinth - a.storeys.value * preset.storey_height;
+        roof = std::clamp(left, wanted * 2 / 3, wanted * 4 / 3);
+        roof = std::min(roof, std::max(a.height.value - plinth - a.storeys.value * kLowestStorey, 0.1 * whole));
+      }
+    }
+    if (covered > 0) {
+      const double upper = storeys_known ? std::max(a.storeys.value - 1, 0.0) * kLowestStorey : 0;
+      roof = std::min(roof, std::max(a.height.value - covered - upper, 0.1 * whole));
+    }
+  }
+  if (roof == wanted) return;
+  a.roof_height = make<double>(std::max(roof, 0.0), Source::implied, kImpliedConfidence, std::move(why),
+                               {{a.roof_height.source, a.roof_height.confidence, fmt::format("{:.2f}", wanted),
+                                 region.evidence[a.roof_height.evidence].text}});
+}
+
+}  // namespace blockrand::attributes
