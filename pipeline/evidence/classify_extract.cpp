@@ -61,7 +61,7 @@ class Poll {
  public:
   /// \param answer  of a building, or a negative number for none
   Poll(const FactsExtract& facts, const VoteKernel& kernel, std::vector<std::int16_t> answers)
-      : facts_(facts), kernel_(kernel), answers_(std::move(answers)), index_(facts, tellers(), kernel.reach) {}
+      : facts_(facts), kernel_(kernel), answers_(std::move(answers)), index_(facts, tellers()) {}
 
   struct Result {
     PerAnswer votes{};
@@ -287,7 +287,7 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
     std::vector<std::uint32_t> houses;
     for (std::uint32_t b = 0; b < n; ++b)
       if (facts.places[b].house) houses.push_back(b);
-    const PlaceIndex index(facts, houses, kNearReach);
+    const PlaceIndex index(facts, houses);
     std::vector<PerAnswer> alone(n);
     in_runs(n, workers, [&](std::size_t first, std::size_t last) {
       for (std::size_t b = first; b < last; ++b)
@@ -313,7 +313,7 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
     std::vector<std::uint32_t> houses;
     for (std::uint32_t b = 0; b < n; ++b)
       if (facts.places[b].house && !out.styles[b].non_house) houses.push_back(b);
-    const PlaceIndex index(facts, houses, kNearReach);
+    const PlaceIndex index(facts, houses);
     std::vector<std::array<float, kStyles>> next(n), added(n);
     for (int round = 0; round < tables.smoothing.rounds; ++round) {
       in_runs(n, workers, [&](std::size_t first, std::size_t last) {
