@@ -1,7 +1,6 @@
 // Reads profile presets and checks that they can be built.
 #include "styles/elements/profile_library.h"
 
-
 #include "pipeline/base/toml_file.h"
 #include "styles/elements/built_in_profiles.h"
 

@@ -42,8 +42,7 @@ std::pair<double, double> filled(const Camera& camera, const std::vector<Point3>
 TEST(Camera, FitsTouchTheMarginAndNothingLeavesThePicture) {
   const std::vector<Point3> points = corners_of_a_box();
   for (const double azimuth : {0.0, 35.0, 180.0, 290.0})
-    for (const double elevation : {0.0, 20.0, 60.0, 90.0})
-    {
+    for (const double elevation : {0.0, 20.0, 60.0, 90.0}) {
       const auto [x, y] = filled(fit_perspective(points, {azimuth, elevation}, 1.5, 40, 0.1), points);
       EXPECT_LE(std::max(x, y), 0.9 + 1e-6) << azimuth << ' ' << elevation;
       EXPECT_GT(std::max(x, y), 0.899) << azimuth << ' ' << elevation;

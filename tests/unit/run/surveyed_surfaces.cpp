@@ -38,7 +38,9 @@ int common_directions(const std::vector<double>& a, const std::vector<double>& b
   for (const double d : a) {
     std::size_t best = b.size();
     for (std::size_t i = 0; i < b.size(); ++i)
-      if (!taken[i] && degrees_between(d, b[i]) <= 20 && (best == b.size() || degrees_between(d, b[i]) < degrees_between(d, b[best]))) best = i;
+      if (!taken[i] && degrees_between(d, b[i]) <= 20 &&
+          (best == b.size() || degrees_between(d, b[i]) < degrees_between(d, b[best])))
+        best = i;
     if (best == b.size()) continue;
     taken[best] = true;
     ++common;
