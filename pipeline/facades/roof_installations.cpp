@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -49,8 +51,9 @@ double within(double low, double high, double share) { return low + (high - low)
 
 class RoofInstaller {
  public:
-  RoofInstaller(const attributes::Defaults& defaults, const RoofInstallationOptions& options)
-      : defaults_(defaults), options_(options) {
+  RoofInstaller(const masses::BuiltMasses& masses, const attributes::Defaults& defaults,
+                const RoofInstallationOptions& options)
+      : masses_(masses), defaults_(defaults), options_(options) {
     const auto face = [&](const char* material, model::Colour or_else) {
       model::Face f;
       const int number = defaults.material(material);
@@ -68,13 +71,15 @@ class RoofInstaller {
     window_.pane.colour = kPane;
   }
 
-  void furnish(model::Building& building) {
+  /// \param index  of the building in its region
+  void furnish(model::Building& building, std::uint32_t index) {
     BuildingPart* const body = main_body(building);
     if (!body) return;
     if (!has_hearths(building.attributes)) return;
     const double area = geometry::area(body->roof_plan.outer.size() >= 3 ? body->roof_plan : body->plan);
     if (!(area >= kLeastPlan)) return;
-    const auto standing = solid_roof(body->lod2);
+    const masses::BuiltMass* const standing =
+        masses_.find({index, static_cast<std::uint32_t>(body - building.parts.data())});
     if (!standing) return;
     const std::vector<model::RoofEdge> edges = edges_of(building, *body, standing->plan);
     const double width = building.situation.width.value_or(0);
@@ -171,8 +176,9 @@ class RoofInstaller {
   }
 
   /// \return the corners of the stacks on the plan, four each
-  std::vector<Point2> put_chimneys(const model::Building& building, BuildingPart& body, const SolidRoof& standing,
-                                   const std::vector<model::RoofEdge>& edges, double frontage) const {
+  std::vector<Point2> put_chimneys(const model::Building& building, BuildingPart& body,
+                                   const masses::BuiltMass& standing, const std::vector<model::RoofEdge>& edges,
+                                   double frontage) const {
     const bool flat = body.built_roof == model::RoofShape::flat;
     const int count = wanted_chimneys(building.attributes, building.situation.position, flat, frontage,
                                       share(building, "has a chimney"));
@@ -199,7 +205,7 @@ class RoofInstaller {
     return out;
   }
 
-  void put_roof_windows(const model::Building& building, BuildingPart& body, const SolidRoof& standing,
+  void put_roof_windows(const model::Building& building, BuildingPart& body, const masses::BuiltMass& standing,
                         const std::vector<model::RoofEdge>& edges, const std::vector<Point2>& stacks, bool old) const {
     const bool attic = body.attributes.roof_storeys.value >= 1;
     if (!attic && !(old && share(building, "converted loft") < kConvertedLofts)) return;
@@ -233,6 +239,7 @@ class RoofInstaller {
     roofs::occupy(slope, ring, kFromChimney);
   }
 
+  const masses::BuiltMasses& masses_;
   const attributes::Defaults& defaults_;
   const RoofInstallationOptions& options_;
   roofs::ChimneyMaterials stack_;
@@ -240,70 +247,6 @@ class RoofInstaller {
 };
 
 }  // namespace
-
-std::optional<SolidRoof> solid_roof(const model::Solid& solid) {
-  if (solid.faces.empty()) return std::nullopt;
-  SolidRoof out;
-  const auto points = [&](const model::Solid::Loop& loop) {
-    std::vector<Point3> p;
-    for (const std::uint32_t v : solid.indices_of(loop)) p.push_back(solid.vertices[v]);
-    return p;
-  };
-  // The underside comes first: the plan's rings, turned round.
-  double bottom = 0;
-  bool outer = true;
-  for (const auto& loop : solid.loops_of(solid.faces[0])) {
-    model::Ring ring;
-    for (const Point3& p : points(loop)) {
-      if (outer && ring.points.empty()) bottom = p.z;
-      if (p.z != bottom) return std::nullopt;
-      ring.points.push_back(p.xy());
-    }
-    std::reverse(ring.points.begin(), ring.points.end());
-    (outer ? out.plan.outer : out.plan.holes.emplace_back()) = std::move(ring);
-    outer = false;
-  }
-  std::vector<std::pair<Point2, Point2>> sides;
-  const auto add_sides = [&](const model::Ring& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i)
-      sides.emplace_back(ring.points[i], ring.points[(i + 1) % ring.size()]);
-  };
-  add_sides(out.plan.outer);
-  for (const model::Ring& hole : out.plan.holes) add_sides(hole);
-
-  out.roof.wall_tops.resize(sides.size());
-  std::size_t f = 1;
-  for (; f < solid.faces.size(); ++f) {
-    const model::Face& face = solid.faces[f];
-    if (face.kind != model::SurfaceKind::wall || face.edge < 0) break;
-    const auto edge = static_cast<std::size_t>(face.edge);
-    if (edge >= sides.size() || face.loop_count != 1 || !out.roof.wall_tops[edge].empty()) return std::nullopt;
-    const auto& [a, b] = sides[edge];
-    const std::vector<Point3> loop = points(solid.loops[face.first_loop]);
-    if (loop[0] != Point3{a.x, a.y, bottom} || loop[1] != Point3{b.x, b.y, bottom}) return std::nullopt;
-    auto& top = out.roof.wall_tops[edge];
-    // A wall without height at one end has but one point there.
-    if (loop[2].xy() != b) top.push_back(loop[1]);
-    top.insert(top.end(), loop.begin() + 2, loop.end());
-    if (top.back().xy() != a) top.push_back(loop[0]);
-  }
-  for (std::size_t e = 0; e < sides.size(); ++e)
-    if (out.roof.wall_tops[e].empty()) {  // without any height: the roof comes down to the underside
-      const auto& [a, b] = sides[e];
-      out.roof.wall_tops[e] = {{b.x, b.y, bottom}, {a.x, a.y, bottom}};
-    }
-  for (; f < solid.faces.size(); ++f) {
-    const model::Face& face = solid.faces[f];
-    if (face.kind != model::SurfaceKind::roof && face.kind != model::SurfaceKind::wall) return std::nullopt;
-    roofs::Roof::Surface surface;
-    surface.edge = face.edge;
-    surface.upright = face.kind == model::SurfaceKind::wall;
-    for (const auto& loop : solid.loops_of(face)) surface.loops.push_back(points(loop));
-    out.roof.surfaces.push_back(std::move(surface));
-  }
-  if (out.roof.surfaces.empty()) return std::nullopt;
-  return out;
-}
 
 int wanted_chimneys(const model::Attributes& attributes, model::BuildingPosition position, bool flat, double frontage,
                     double lot) {
@@ -321,11 +264,11 @@ int wanted_chimneys(const model::Attributes& attributes, model::BuildingPosition
   return roofs::chimney_count(frontage, each);
 }
 
-void add_roof_installations(model::Region& region, const attributes::Defaults& defaults,
-                            const RoofInstallationOptions& options) {
-  RoofInstaller installer(defaults, options);
-  for (model::Building& building : region.buildings)
-    if (building.owned) installer.furnish(building);
+void add_roof_installations(model::Region& region, const masses::BuiltMasses& masses,
+                            const attributes::Defaults& defaults, const RoofInstallationOptions& options) {
+  RoofInstaller installer(masses, defaults, options);
+  for (std::uint32_t b = 0; b < region.buildings.size(); ++b)
+    if (region.buildings[b].owned) installer.furnish(region.buildings[b], b);
 }
 
 }  // namespace blockrand::facades

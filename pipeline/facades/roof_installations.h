@@ -2,28 +2,16 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "pipeline/attributes/defaults.h"
+#include "pipeline/masses/built_mass.h"
 #include "pipeline/model/region.h"
-#include "styles/roofs/roof.h"
 
 namespace blockrand::facades {
 
 struct RoofInstallationOptions {
   std::uint64_t seed = 0;
 };
-
-/// A roof read back from the solid that it closes, and the plan that the solid stands on.
-struct SolidRoof {
-  model::Polygon plan;  ///< edges are numbered as those of `roof`: ring by ring, outer ring first
-  roofs::Roof roof;
-};
-
-/// The roof of a solid that envelope() made: its plan out of the underside, wall tops out of the walls. LoD2 is not
-/// computed again, so that what stands on a roof stands on the very faces that are written.
-/// \return nothing where the solid is laid out in another way
-std::optional<SolidRoof> solid_roof(const model::Solid& solid);
 
 /// How many chimneys a house of that class, era and frontage has (docs/style_measures.md §2.7: frontage / 6 for houses
 /// with a stove in every room; detached houses one). Own choices, since no source counts them: houses of 1919 to 1945
@@ -42,7 +30,8 @@ int wanted_chimneys(const model::Attributes& attributes, model::BuildingPosition
 /// one old house in three, whose loft was converted (own choice). Measures are drawn per building within
 /// docs/style_measures.md §2.7, keyed by its id and the seed. Every body is checked; one that fails its check, or
 /// stands where another body of the building is, is left out. LoD2 and the LoD3 envelope are not touched.
-void add_roof_installations(model::Region& region, const attributes::Defaults& defaults,
-                            const RoofInstallationOptions& options);
+/// \param masses  of the same region: the roofs that its LoD2 solids have
+void add_roof_installations(model::Region& region, const masses::BuiltMasses& masses,
+                            const attributes::Defaults& defaults, const RoofInstallationOptions& options);
 
 }  // namespace blockrand::facades

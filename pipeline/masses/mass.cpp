@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/attributes/roof_edges.h"
@@ -72,9 +76,12 @@ class MassBuilder {
   MassBuilder(Region& region, const attributes::Defaults& defaults, const attributes::GenerateOptions& options)
       : region_(region), defaults_(defaults), options_(options) {}
 
-  void build(model::Building& building, BuildingPart& part, int lod) {
+  void build(BodyIndex body, int lod) {
+    model::Building& building = region_.buildings[body.building];
+    BuildingPart& part = building.parts[body.part];
     if (part.plan.outer.size() < 3) return;
     building_ = &building;
+    body_ = body;
     if (part.roof_plan.outer.size() < 3) attributes::prepare_roof_plans(building, options_.collinear_tolerance);
     part.lod = 0;
     const EnvelopeMaterials materials = materials_of(part);
@@ -83,6 +90,9 @@ class MassBuilder {
     if (lod >= 2) build_lod2(part, part.roof_plan, levels, materials);
     if (part.lod < lod) note(part, part.lod == 1 ? IssueCode::lod1_only : IssueCode::no_solid);
   }
+
+  /// What was built; the builder has nothing left.
+  BuiltMasses take() { return BuiltMasses(std::move(built_)); }
 
  private:
   void note(BuildingPart& part, IssueCode code, std::string detail = {}) {
@@ -166,6 +176,7 @@ class MassBuilder {
     part.lod2_triangles = std::move(result->triangles);
     part.built_roof = built;
     part.lod = 2;
+    built_.push_back({body_, built_mass(plan, levels.bottom, roof)});
     return true;
   }
 
@@ -274,17 +285,20 @@ class MassBuilder {
   const attributes::Defaults& defaults_;
   const attributes::GenerateOptions& options_;
   model::Building* building_ = nullptr;
+  BodyIndex body_;  ///< the part at work
+  std::vector<BuiltMasses::Entry> built_;
 };
 
 }  // namespace
 
-void build_masses(Region& region, const attributes::Defaults& defaults, const attributes::GenerateOptions& options,
-                  int lod) {
+BuiltMasses build_masses(Region& region, const attributes::Defaults& defaults,
+                         const attributes::GenerateOptions& options, int lod) {
   MassBuilder builder(region, defaults, options);
-  for (model::Building& building : region.buildings) {
-    if (!building.owned) continue;
-    for (BuildingPart& part : building.parts) builder.build(building, part, lod);
+  for (std::uint32_t b = 0; b < region.buildings.size(); ++b) {
+    if (!region.buildings[b].owned) continue;
+    for (std::uint32_t p = 0; p < region.buildings[b].parts.size(); ++p) builder.build({b, p}, lod);
   }
+  return builder.take();
 }
 
 }  // namespace blockrand::masses

@@ -3,6 +3,7 @@
 
 #include "pipeline/attributes/defaults.h"
 #include "pipeline/attributes/options.h"
+#include "pipeline/masses/built_mass.h"
 #include "pipeline/model/region.h"
 
 namespace blockrand::masses {
@@ -16,7 +17,8 @@ namespace blockrand::masses {
 /// noted in `BuildingPart::fallbacks` and in the region's report. A part without any solid keeps lod 0 (its footprint)
 /// or, with no plan, -1.
 /// Every solid that leaves is valid in the sense of geometry::check_solid.
-void build_masses(model::Region& region, const attributes::Defaults& defaults,
-                  const attributes::GenerateOptions& options, int lod);
+/// \return plan and roof of every `lod2`, those of the step that was taken
+BuiltMasses build_masses(model::Region& region, const attributes::Defaults& defaults,
+                         const attributes::GenerateOptions& options, int lod);
 
 }  // namespace blockrand::masses

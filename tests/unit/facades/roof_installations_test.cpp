@@ -1,14 +1,18 @@
-// Chimneys and roof windows on roofs that are read back from their solids.
+// Chimneys and roof windows on roofs that the masses hand on.
 #include "pipeline/facades/roof_installations.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
+#include "pipeline/masses/built_mass.h"
 #include "pipeline/masses/envelope.h"
 #include "tests/unit/geometry/shapes.h"
 
@@ -43,8 +47,14 @@ roofs::Roof roof_of(const House& h) {
   return roofs::build_roof(h.plan, request)->roof;
 }
 
-model::Region region_of(const House& h, std::int64_t id = 1) {
+/// Buildings that stand, and what the masses hand on of them.
+struct Tile {
   model::Region region;
+  std::vector<masses::BuiltMasses::Entry> built;
+};
+
+Tile tile_of(const House& h, std::int64_t id = 1) {
+  Tile tile;
   model::Building b;
   b.osm = {model::OsmType::way, id};
   b.situation.width = 18;
@@ -63,15 +73,19 @@ model::Region region_of(const House& h, std::int64_t id = 1) {
   looks.wall.kind = model::SurfaceKind::wall;
   looks.roof.kind = model::SurfaceKind::roof;
   looks.under.kind = model::SurfaceKind::ground;
-  part.lod2 = masses::envelope(h.plan, 0, roof_of(h), looks);
+  const roofs::Roof roof = roof_of(h);
+  part.lod2 = masses::envelope(h.plan, 0, roof, looks);
+  tile.built.push_back({{0, 0}, masses::built_mass(h.plan, 0, roof)});
   part.lod2_triangles = *geometry::triangulate(part.lod2);
   part.lod3.solid = part.lod2;
   part.lod3.triangles = part.lod2_triangles;
   part.lod = 3;
   b.parts.push_back(std::move(part));
-  region.buildings.push_back(std::move(b));
-  return region;
+  tile.region.buildings.push_back(std::move(b));
+  return tile;
 }
+
+void furnish(Tile& tile) { add_roof_installations(tile.region, masses::BuiltMasses(tile.built), defaults(), {}); }
 
 int count(const model::Region& region, model::RoofElementKind kind) {
   const auto& all = region.buildings[0].parts[0].lod3.roof_installations;
@@ -79,41 +93,32 @@ int count(const model::Region& region, model::RoofElementKind kind) {
 }
 
 model::Region fitted(const House& h, std::int64_t id = 1) {
-  model::Region region = region_of(h, id);
-  add_roof_installations(region, defaults(), {});
-  return region;
+  Tile tile = tile_of(h, id);
+  furnish(tile);
+  return std::move(tile.region);
 }
 
-TEST(SolidRoof, IsTheRoofThatTheSolidCloses) {
-  House court;
-  court.plan.holes = {testing_shapes::ring({{6, 4}, {6, 8}, {12, 8}, {12, 4}})};
-  court.edges.resize(8, RoofEdge::open);
-  for (const RoofShape shape : {RoofShape::flat, RoofShape::gabled, RoofShape::hipped, RoofShape::mansard,
-                                RoofShape::skillion, RoofShape::half_hipped, RoofShape::saltbox})
-    for (const bool holes : {false, true}) {
-      House h = holes ? court : House{};
-      h.shape = shape;
-      if (holes && shape != RoofShape::flat && shape != RoofShape::hipped) continue;
-      const roofs::Roof roof = roof_of(h);
-      const auto read = solid_roof(region_of(h).buildings[0].parts[0].lod2);
-      ASSERT_TRUE(read) << model::name(shape);
-      EXPECT_EQ(read->plan.outer.points, h.plan.outer.points);
-      ASSERT_EQ(read->plan.holes.size(), h.plan.holes.size());
-      ASSERT_EQ(read->roof.surfaces.size(), roof.surfaces.size());
-      for (std::size_t s = 0; s < roof.surfaces.size(); ++s) {
-        EXPECT_EQ(read->roof.surfaces[s].upright, roof.surfaces[s].upright);
-        EXPECT_EQ(read->roof.surfaces[s].loops.size(), roof.surfaces[s].loops.size());
-        for (std::size_t l = 0; l < roof.surfaces[s].loops.size(); ++l)
-          EXPECT_EQ(read->roof.surfaces[s].loops[l].size(), roof.surfaces[s].loops[l].size());
-      }
-      EXPECT_EQ(read->roof.wall_tops.size(), roof.wall_tops.size());
-      for (std::size_t e = 0; e < roof.wall_tops.size(); ++e) {
-        ASSERT_EQ(read->roof.wall_tops[e].size(), roof.wall_tops[e].size()) << model::name(shape) << e;
-        for (std::size_t i = 0; i < roof.wall_tops[e].size(); ++i)
-          EXPECT_EQ(read->roof.wall_tops[e][i], model::snap(roof.wall_tops[e][i]));
-      }
-    }
-  EXPECT_FALSE(solid_roof(model::Solid{}));
+TEST(RoofInstallations, StandOnTheRoofThatTheMassesHandOn) {
+  House h;
+  h.shape = RoofShape::flat;
+  Tile tile = tile_of(h);
+  const auto lowest_of_all = [](const Tile& of) {
+    double z = 1e9;
+    for (const auto& i : of.region.buildings[0].parts[0].lod3.roof_installations)
+      for (const auto& v : i.solid.vertices) z = std::min(z, v.z);
+    return z;
+  };
+  Tile raised = tile;
+  raised.built[0].mass = masses::built_mass(h.plan, 0, roofs::flat_roof(h.plan, h.eaves + 1));
+  furnish(tile);
+  furnish(raised);
+  EXPECT_NEAR(lowest_of_all(tile), h.eaves, 0.05);
+  EXPECT_NEAR(lowest_of_all(raised), h.eaves + 1, 0.05);
+
+  Tile without = tile_of(h);
+  without.built.clear();
+  furnish(without);
+  EXPECT_TRUE(without.region.buildings[0].parts[0].lod3.roof_installations.empty());
 }
 
 TEST(RoofInstallations, AnOldHouseHasAStackForEverySixMetresOfFrontage) {
@@ -164,10 +169,10 @@ TEST(RoofInstallations, CountsFollowEraRoofAndUse) {
   shed.plan = polygon({{0, 0}, {5, 0}, {5, 5}, {0, 5}});
   shed.height = 2;
   EXPECT_TRUE(fitted(shed).buildings[0].parts[0].lod3.roof_installations.empty());
-  model::Region below = region_of({});
-  below.buildings[0].parts[0].lod = 2;
-  add_roof_installations(below, defaults(), {});
-  EXPECT_TRUE(below.buildings[0].parts[0].lod3.roof_installations.empty());
+  Tile below = tile_of({});
+  below.region.buildings[0].parts[0].lod = 2;
+  furnish(below);
+  EXPECT_TRUE(below.region.buildings[0].parts[0].lod3.roof_installations.empty());
 }
 
 TEST(RoofInstallations, AtticStoreysHaveRoofWindowsOnBothSidesAndConvertedLoftsToTheYard) {
@@ -193,68 +198,86 @@ TEST(RoofInstallations, AtticStoreysHaveRoofWindowsOnBothSidesAndConvertedLoftsT
 TEST(RoofInstallations, DependsOnNothingButTheBuilding) {
   House h;
   const auto alone = fitted(h, 7).buildings[0].parts[0].lod3.roof_installations;
-  model::Region two = region_of(h, 5);
-  two.buildings.push_back(region_of(h, 7).buildings[0]);
-  add_roof_installations(two, defaults(), {});
-  const auto& beside = two.buildings[1].parts[0].lod3.roof_installations;
+  Tile two = tile_of(h, 5);
+  const Tile second = tile_of(h, 7);
+  two.region.buildings.push_back(second.region.buildings[0]);
+  two.built.push_back({{1, 0}, second.built[0].mass});
+  furnish(two);
+  const auto& beside = two.region.buildings[1].parts[0].lod3.roof_installations;
   ASSERT_EQ(alone.size(), beside.size());
   for (std::size_t i = 0; i < alone.size(); ++i) EXPECT_EQ(alone[i].solid.vertices, beside[i].solid.vertices);
-  const auto& first = two.buildings[0].parts[0].lod3.roof_installations;
+  const auto& first = two.region.buildings[0].parts[0].lod3.roof_installations;
   EXPECT_TRUE(first.size() != beside.size() || first[0].solid.vertices != beside[0].solid.vertices)
       << "houses have their own measures";
 }
 
 TEST(RoofInstallations, NothingStandsWhereAnotherBodyOfTheHouseDoes) {
-  model::Region region = region_of({});
-  model::BuildingPart tower = region.buildings[0].parts[0];
+  Tile tile = tile_of({});
+  model::Building& house = tile.region.buildings[0];
+  model::BuildingPart tower = house.parts[0];
   tower.id = "w1.tower";
   tower.plan = polygon({{-1, -1}, {17, -1}, {17, 11}, {-1, 11}});
-  region.buildings[0].parts.push_back(tower);
-  add_roof_installations(region, defaults(), {});
-  for (const auto& i : region.buildings[0].parts[0].lod3.roof_installations)
+  house.parts.push_back(tower);
+  tile.built.push_back({{0, 1}, tile.built[0].mass});
+  furnish(tile);
+  for (const auto& i : house.parts[0].lod3.roof_installations)
     for (const auto& v : i.solid.vertices) EXPECT_FALSE(geometry::contains(tower.plan, v.xy()));
-  EXPECT_TRUE(region.buildings[0].parts[1].lod3.roof_installations.empty()) << "the largest body has them";
+  EXPECT_TRUE(house.parts[1].lod3.roof_installations.empty()) << "the largest body has them";
 }
 
-model::BuildingPart body(const model::Polygon& plan, double bottom, double top, const std::string& id) {
+/// A body with a flat roof, and what the masses hand on of it.
+std::pair<model::BuildingPart, masses::BuiltMass> body(const model::Polygon& plan, double bottom, double top,
+                                                       const std::string& id) {
   House h;
   h.plan = plan;
   h.shape = RoofShape::flat;
-  model::BuildingPart part = region_of(h).buildings[0].parts[0];
+  model::BuildingPart part = tile_of(h).region.buildings[0].parts[0];
   part.id = id;
   masses::EnvelopeMaterials looks;
   looks.wall.kind = model::SurfaceKind::wall;
   looks.roof.kind = model::SurfaceKind::roof;
   looks.under.kind = model::SurfaceKind::ground;
-  part.lod2 = part.lod3.solid = masses::envelope(plan, bottom, roofs::flat_roof(plan, top), looks);
+  const roofs::Roof roof = roofs::flat_roof(plan, top);
+  part.lod2 = part.lod3.solid = masses::envelope(plan, bottom, roof, looks);
   part.lod2_triangles = part.lod3.triangles = *geometry::triangulate(part.lod2);
-  return part;
+  return {std::move(part), masses::built_mass(plan, bottom, roof)};
+}
+
+/// A house of these bodies.
+Tile house_of(std::vector<std::pair<model::BuildingPart, masses::BuiltMass>> bodies) {
+  Tile tile = tile_of(House{});
+  tile.region.buildings[0].parts.clear();
+  tile.built.clear();
+  for (auto& [part, mass] : bodies) {
+    tile.built.push_back({{0, static_cast<std::uint32_t>(tile.built.size())}, std::move(mass)});
+    tile.region.buildings[0].parts.push_back(std::move(part));
+  }
+  return tile;
 }
 
 TEST(RoofInstallations, TowersOverAPodiumHaveTheChimneys) {
   const model::Polygon plan = polygon({{0, 0}, {18, 0}, {18, 12}, {0, 12}}),
                        wide = polygon({{-2, -2}, {20, -2}, {20, 14}, {-2, 14}});
   for (const bool wider : {false, true}) {
-    model::Region region = region_of({});
-    region.buildings[0].parts = {body(wider ? wide : plan, 0, 6, "w1.podium"), body(plan, 6, 24, "w1.tower")};
-    add_roof_installations(region, defaults(), {});
-    EXPECT_TRUE(region.buildings[0].parts[0].lod3.roof_installations.empty()) << "the podium is covered";
-    EXPECT_EQ(region.buildings[0].parts[1].lod3.roof_installations.size(), 3u) << "what is below is not in the way";
+    Tile tile = house_of({body(wider ? wide : plan, 0, 6, "w1.podium"), body(plan, 6, 24, "w1.tower")});
+    furnish(tile);
+    const auto& parts = tile.region.buildings[0].parts;
+    EXPECT_TRUE(parts[0].lod3.roof_installations.empty()) << "the podium is covered";
+    EXPECT_EQ(parts[1].lod3.roof_installations.size(), 3u) << "what is below is not in the way";
   }
   // A lantern does not cover the house under it.
-  model::Region region = region_of({});
-  region.buildings[0].parts = {body(plan, 0, 24, "w1.house"),
-                               body(polygon({{8, 4}, {14, 4}, {14, 10}, {8, 10}}), 24, 27, "w1.lantern")};
-  add_roof_installations(region, defaults(), {});
-  EXPECT_FALSE(region.buildings[0].parts[0].lod3.roof_installations.empty());
-  EXPECT_TRUE(region.buildings[0].parts[1].lod3.roof_installations.empty());
+  Tile tile = house_of(
+      {body(plan, 0, 24, "w1.house"), body(polygon({{8, 4}, {14, 4}, {14, 10}, {8, 10}}), 24, 27, "w1.lantern")});
+  furnish(tile);
+  EXPECT_FALSE(tile.region.buildings[0].parts[0].lod3.roof_installations.empty());
+  EXPECT_TRUE(tile.region.buildings[0].parts[1].lod3.roof_installations.empty());
 }
 
 TEST(RoofInstallations, WithoutAFrontageThePlanTellsIt) {
-  model::Region region = region_of({});
-  region.buildings[0].situation.width = 0;
-  add_roof_installations(region, defaults(), {});
-  EXPECT_EQ(count(region, model::RoofElementKind::chimney), 2) << "sqrt(18 m * 12 m) / 6 m";
+  Tile tile = tile_of({});
+  tile.region.buildings[0].situation.width = 0;
+  furnish(tile);
+  EXPECT_EQ(count(tile.region, model::RoofElementKind::chimney), 2) << "sqrt(18 m * 12 m) / 6 m";
 }
 
 }  // namespace
