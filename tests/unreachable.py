@@ -7,8 +7,10 @@ PROGRAM holds all product objects, those that nothing refers to as well (whole a
 machine code: calls, jumps and addresses taken in code, and addresses in data that reached code refers to. Templates and
 inline functions (weak symbols) and functions of one file (local symbols) are not listed: the ones that only tests call
 hang on a listed one. A function that its callers took in (inlined) leaves no call behind: a function is listed only when its
-own source does not call it either (the source is looked up by the declaration's name).
-Ends with 1 when a function is missing from the allowlist or an entry of the list is reached or gone.
+own source does not call it either. Sources are searched for its bare name: a dead function that calls itself, or whose
+namesake is called in a source, is missed.
+Ends with 1 when a function is missing from the allowlist or an entry of the list is reached or gone, and with 77 (skipped)
+for programs of other processors than x86-64. unreachable_test.py proves it.
 """
 import bisect
 import collections
@@ -90,9 +92,14 @@ def reached(symbols, refers, nameless):
     return seen
 
 
+def short_name(name):
+    """blockrand::a::B::f[abi:cxx11](int) -> f; the tag says that a std::string is returned."""
+    return re.sub(r"(\[abi:\w+\])?\(.*", "", name.replace("(anonymous namespace)::", "")).split("::")[-1]
+
+
 def called_in_its_source(name, sources):
     """Does the file that defines the function name it a second time, apart from comments?"""
-    short = re.sub(r"\(.*", "", name.replace("(anonymous namespace)::", "")).split("::")[-1]
+    short = short_name(name)
     word = re.compile(r"(?<![\w\"])" + re.escape(short) + r"\s*\(")
     definition = re.compile(r"^[\w:<>,&*\s\[\]]*?\b" + re.escape(short) + r"\(.*", re.M)
     for text in sources:
@@ -109,35 +116,37 @@ def product_sources():
     return texts
 
 
-def unreachable(program):
+def unreachable(program, sources):
     symbols = Symbols(program)
     refers, nameless = references(program, symbols)
     seen = reached(symbols, refers, nameless)
     left = [name for address, (_, kind, name) in symbols.at.items()
             if kind == "T" and address not in seen and name.startswith("_ZN") and "9blockrand" in name[:16]]
     names = subprocess.run(["c++filt"], input="\n".join(left), check=True, capture_output=True, text=True).stdout
-    sources = product_sources()
     return sorted({n for n in names.splitlines()
                    if n and n.startswith("blockrand::") and not called_in_its_source(n, sources)})
 
 
-def main():
-    if len(sys.argv) not in (2, 3):
+def main(arguments, sources):
+    if len(arguments) not in (1, 2):
         raise SystemExit(__doc__)
-    found = unreachable(sys.argv[1])
-    if len(sys.argv) == 2:
+    if "X86-64" not in output("readelf", "-h", arguments[0]):
+        print("unreachable: this machine code is not read: skipped")
+        return 77
+    found = unreachable(arguments[0], sources)
+    if len(arguments) == 1:
         print("\n".join(found))
         return 0
-    lines = pathlib.Path(sys.argv[2]).read_text(encoding="utf-8").splitlines()
+    lines = pathlib.Path(arguments[1]).read_text(encoding="utf-8").splitlines()
     allowed = {line.strip() for line in lines if line.strip() and not line.startswith("#")}
     new, stale = sorted(set(found) - allowed), sorted(allowed - set(found))
     for name in new:
         print(f"unreachable: only tests call {name}")
     for name in stale:
-        print(f"unreachable: {name} is reached or gone: strike it from {sys.argv[2]}")
+        print(f"unreachable: {name} is reached or gone: strike it from {arguments[1]}")
     print(f"unreachable: {len(found)} functions, {len(allowed)} allowed, {len(new)} new, {len(stale)} stale")
     return 1 if new or stale else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:], product_sources()))

@@ -1,16 +1,6 @@
 #include "importers/reference/reference_model.h"
 
-#include <algorithm>
-
 namespace blockrand::importers::reference {
-namespace {
-
-void raise_lod(const std::vector<Geometry>& geometries, int& lod) {
-  for (const Geometry& g : geometries)
-    if (!g.faces.empty()) lod = std::max(lod, g.lod);
-}
-
-}  // namespace
 
 std::string_view name_of(SurfaceClass surface_class) {
   switch (surface_class) {
@@ -103,16 +93,6 @@ std::string_view name_of(NoteKind kind) {
 }
 
 bool is_breach(NoteKind kind) { return kind != NoteKind::not_read && kind != NoteKind::crs; }
-
-int Building::lod() const {
-  int highest = -1;
-  raise_lod(geometries, highest);
-  for (const Surface& s : surfaces) {
-    raise_lod(s.geometries, highest);
-    for (const Opening& o : s.openings) raise_lod(o.geometries, highest);
-  }
-  return highest;
-}
 
 std::size_t ReferenceModel::count(NoteKind kind) const {
   for (const Note& n : notes)

@@ -92,9 +92,6 @@ struct Building {
   std::vector<Geometry> geometries;  ///< the building's own: solids, multi-surfaces, footprints
   std::vector<Surface> surfaces;
   std::size_t implicit_geometries = 0;  ///< uses of a template that were not read: from another file, or broken
-
-  /// Highest level of detail with a face; -1 without geometry.
-  int lod() const;
 };
 
 enum class AxisOrder : std::uint8_t { automatic, east_first, north_first };

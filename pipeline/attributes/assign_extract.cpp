@@ -365,10 +365,6 @@ DistrictAssigner::DistrictAssigner(const RuleSets& book, const AssignInputs& inp
     : impl_(std::make_unique<Impl>(book, inputs)) {}
 DistrictAssigner::~DistrictAssigner() = default;
 
-std::uint32_t DistrictAssigner::rule_set(std::uint32_t building) const {
-  return impl_->book.choose(impl_->place_of(building));
-}
-
 districts::Decision DistrictAssigner::decide(std::uint32_t building, model::BuildingPosition position) const {
   districts::Decision d = impl_->ask(building, position, [&](std::uint32_t set, const districts::Subject& s) {
     return districts::decide(impl_->book, set, s, impl_->in.seed);

@@ -53,8 +53,6 @@ class DistrictAssigner {
   DistrictAssigner(const DistrictAssigner&) = delete;
   DistrictAssigner& operator=(const DistrictAssigner&) = delete;
 
-  /// Index into the book's sets, or RuleSets::kNoSet.
-  std::uint32_t rule_set(std::uint32_t building) const;
   districts::Decision decide(std::uint32_t building, model::BuildingPosition position) const;
   districts::Assignment assign(std::uint32_t building, model::BuildingPosition position) const;
 

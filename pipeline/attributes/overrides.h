@@ -56,8 +56,6 @@ struct OverrideNames {
 /// \throws base::InputError  with file, line and column: not TOML, keys that are no id and no attribute, values out of
 ///                           range, unknown names (with the nearest), values that contradict each other
 Overrides read_overrides(const std::string& path, const Defaults& defaults, const OverrideNames& names);
-Overrides parse_overrides(std::string_view text, const std::string& name, const Defaults& defaults,
-                          const OverrideNames& names);
 
 /// Gives the orders to the extract's objects as if they were tags, before any stage looks at them: what hangs together
 /// (storeys, heights, roof) then follows as it follows from tags. Tags that an order contradicts are taken away: a

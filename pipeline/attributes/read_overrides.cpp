@@ -332,10 +332,4 @@ Overrides read_overrides(const std::string& path, const Defaults& defaults, cons
   return Reader(path, defaults, names).read(std::move(root));
 }
 
-Overrides parse_overrides(std::string_view text, const std::string& name, const Defaults& defaults,
-                          const OverrideNames& names) {
-  TomlTable root = TomlTable::parse(text, name);
-  return Reader(name, defaults, names).read(std::move(root));
-}
-
 }  // namespace blockrand::attributes

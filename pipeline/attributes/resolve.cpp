@@ -124,7 +124,7 @@ Sourced<std::string> Resolver::material(base::StringId tagged, base::StringId ou
   return first(std::move(choices));
 }
 
-void Resolver::looks(Attributes& a) {
+void Resolver::surfaces(Attributes& a) {
   const base::StringId outline_wall = outline ? outline->wall_material : 0,
                        outline_roof = outline ? outline->roof_material : 0;
   a.wall_material = material(own.wall_material, outline_wall, preset.wall_material);
@@ -147,7 +147,7 @@ Attributes Resolver::resolve(Sourced<double> lowest) {
   a.ground_height = lowest;
   heights(a);
   if (own.roof_direction) a.roof_direction = make<double>(*own.roof_direction, Source::tag, kTagConfidence, "tagged");
-  looks(a);
+  surfaces(a);
   derived(a);
   return a;
 }

@@ -188,7 +188,8 @@ struct Resolver {
   model::Sourced<std::string> material(base::StringId tagged, base::StringId outline_tagged,
                                        const std::string& preset_material);
 
-  void looks(model::Attributes& a);
+  /// Materials and colours of walls and roof.
+  void surfaces(model::Attributes& a);
 
   model::Attributes resolve(model::Sourced<double> lowest);
 

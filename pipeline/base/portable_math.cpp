@@ -358,13 +358,6 @@ double sinh(double x) {
   return std::copysign(half_exp(a), x);
 }
 
-double cosh(double x) {
-  const double a = std::fabs(x);
-  if (!(a < 40)) return half_exp(a);
-  const double e = exp(a);
-  return 0.5 * (e + 1.0 / e);
-}
-
 double asinh(double x) {
   const double a = std::fabs(x);
   if (!(a > 0) || a == kInfinity) return x;

@@ -44,7 +44,6 @@ double log(double x);
 double log1p(double x);  ///< log(1 + x), accurate near 0
 
 double sinh(double x);
-double cosh(double x);
 double asinh(double x);
 double atanh(double x);  ///< infinite at -1 and 1, NaN beyond
 

@@ -37,9 +37,9 @@ std::string rate_text(double rate) {
 }  // namespace
 
 Progress::Progress(ProgressStyle style, LogFormat format, bool quiet, Sink sink)
-    : style_(style), format_(format), quiet_(quiet), sink_(std::move(sink)) {
+    : style_(style), format_(format), sink_(std::move(sink)) {
   if (style_ == ProgressStyle::automatic) style_ = isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::plain;
-  if (quiet_) style_ = ProgressStyle::none;
+  if (quiet) style_ = ProgressStyle::none;
   if (format_ == LogFormat::json && style_ == ProgressStyle::bar) style_ = ProgressStyle::plain;
   // One write per text, so that lines of several processes do not mix.
   if (!sink_) sink_ = [](std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); };
@@ -153,12 +153,9 @@ void Progress::log(std::string_view level, std::string_view message) {
     return;
   }
   wipe();
-  sink_(level == "info" ? fmt::format("{}\n", message) : fmt::format("blockrand: {}: {}\n", level, message));
+  sink_(fmt::format("blockrand: {}: {}\n", level, message));
 }
 
-void Progress::info(std::string_view message) {
-  if (!quiet_) log("info", message);
-}
 void Progress::warn(std::string_view message) { log("warning", message); }
 void Progress::error(std::string_view message) { log("error", message); }
 

@@ -41,7 +41,6 @@ class Progress {
   /// Units done in this phase so far, in all. Calls may come out of order: the largest counts.
   void advance_to(std::uint64_t done);
   void end();
-  void info(std::string_view message);
   void warn(std::string_view message);
   void error(std::string_view message);
 
@@ -56,7 +55,6 @@ class Progress {
 
   ProgressStyle style_;
   LogFormat format_;
-  bool quiet_;
   Sink sink_;
   std::mutex mutex_;
   std::string phase_, unit_;

@@ -52,12 +52,6 @@ std::string Sha256::finish() {
   return hex;
 }
 
-std::string sha256(std::string_view bytes) {
-  Sha256 digest;
-  digest.add(bytes);
-  return digest.finish();
-}
-
 std::string sha256_file(const std::string& path) {
   const auto fail = [&path] {
     return InputError(path, "", std::strerror(errno), "Check the path and the file's permissions.");

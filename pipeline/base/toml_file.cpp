@@ -245,8 +245,6 @@ int TomlTable::line(std::string_view key) const {
   return static_cast<int>(data_->position.line);
 }
 
-const std::string& TomlTable::file() const { return data_->file; }
-
 std::optional<std::string> TomlTable::plain(std::string_view key) {
   const toml::node* node = data_->ask(key);
   if (!node) return std::nullopt;

@@ -43,7 +43,6 @@ class TomlTable {
   bool holds_text(std::string_view key) const;
   /// Line of `key` in the file, from 1; without such a key that of the table; 0 for the root.
   int line(std::string_view key = {}) const;
-  const std::string& file() const;
   /// Keys of this table in alphabetical order.
   std::vector<std::string> keys() const;
   /// The value of `key` as the user would write it on a command line: text without quotes, numbers and booleans as

@@ -74,11 +74,6 @@ std::vector<Point2> grid(const std::vector<Polygon>& a, const std::vector<Polygo
   return out;
 }
 
-double between(double a, double b) {
-  const double d = std::fabs(std::remainder(a - b, 360.0));
-  return d;
-}
-
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
@@ -223,38 +218,6 @@ RoofPlanes form_of(const RoofSurfaces& roof, std::span<const Point2> points) {
     if (pitches[k - 1 - k / 7] - pitches[k / 7] > 15) ++with_two;
   }
   out.two_pitches = with_two >= 2;
-  return out;
-}
-
-int common_directions(const std::vector<double>& a, const std::vector<double>& b) {
-  std::vector<bool> taken(b.size(), false);
-  int common = 0;
-  for (const double d : a) {
-    std::size_t best = b.size();
-    for (std::size_t i = 0; i < b.size(); ++i)
-      if (!taken[i] && between(d, b[i]) <= 20 && (best == b.size() || between(d, b[i]) < between(d, b[best]))) best = i;
-    if (best == b.size()) continue;
-    taken[best] = true;
-    ++common;
-  }
-  return common;
-}
-
-SurfaceError vertical_error(const RoofSurfaces& built, const RoofSurfaces& surveyed, std::span<const Point2> points,
-                            double built_up) {
-  SurfaceError out;
-  double squares = 0;
-  for (const Point2 p : points) {
-    const auto a = built.at(p), b = surveyed.at(p);
-    if (!a || !b) continue;
-    const double d = a->z + built_up - b->z;
-    ++out.points;
-    out.mean += d;
-    squares += d * d;
-  }
-  if (out.points == 0) return out;
-  out.mean /= static_cast<double>(out.points);
-  out.rms = std::sqrt(squares / static_cast<double>(out.points));
   return out;
 }
 

@@ -71,15 +71,4 @@ struct RoofPlanes {
 };
 RoofPlanes form_of(const RoofSurfaces& roof, std::span<const model::Point2> points);
 
-/// How many of `a` have a partner in `b` within 20 degrees, one to one.
-int common_directions(const std::vector<double>& a, const std::vector<double>& b);
-
-/// Vertical differences over points that both cover.
-struct SurfaceError {
-  std::size_t points = 0;
-  double mean = 0, rms = 0;  ///< m, of (built - surveyed)
-};
-SurfaceError vertical_error(const RoofSurfaces& built, const RoofSurfaces& surveyed,
-                            std::span<const model::Point2> points, double built_up = 0);
-
 }  // namespace blockrand::compare

@@ -3,37 +3,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace blockrand::context {
 
-TaggedNeighbours::Cell TaggedNeighbours::cell_of(model::Point2 p) const {
-  return {static_cast<std::int64_t>(std::floor(p.x / reach_)), static_cast<std::int64_t>(std::floor(p.y / reach_))};
-}
-
 TaggedNeighbours::TaggedNeighbours(std::vector<TaggedBuilding> buildings, double reach)
     : reach_(reach), buildings_(std::move(buildings)) {
-  std::sort(buildings_.begin(), buildings_.end(), [&](const TaggedBuilding& a, const TaggedBuilding& b) {
-    const Cell ca = cell_of(a.place), cb = cell_of(b.place);
-    return ca != cb ? ca < cb : a.id < b.id;
-  });
-  cells_.reserve(buildings_.size());
-  for (const TaggedBuilding& b : buildings_) cells_.push_back(cell_of(b.place));
+  std::vector<geometry::PlanBox> places;
+  places.reserve(buildings_.size());
+  for (const TaggedBuilding& b : buildings_) places.push_back({b.place, b.place});
+  places_ = geometry::BoxIndex(std::move(places));
 }
 
 template <class Visit>
 void TaggedNeighbours::for_each_near(model::Point2 place, std::uint8_t group, model::OsmId self, Visit&& visit) const {
-  const Cell home = cell_of(place);
-  for (std::int64_t x = home.x - 1; x <= home.x + 1; ++x) {
-    // Cells of one column are consecutive in the sorted order.
-    const auto first = std::lower_bound(cells_.begin(), cells_.end(), Cell{x, home.y - 1});
-    const auto last = std::upper_bound(first, cells_.end(), Cell{x, home.y + 1});
-    for (auto c = first; c != last; ++c) {
-      const TaggedBuilding& b = buildings_[static_cast<std::size_t>(c - cells_.begin())];
-      if (b.group != group || b.id == self) continue;
-      const double dx = b.place.x - place.x, dy = b.place.y - place.y;
-      if (dx * dx + dy * dy <= reach_ * reach_) visit(b);
-    }
+  for (const std::uint32_t i : places_.near({place, place}, reach_)) {
+    const TaggedBuilding& b = buildings_[i];
+    if (b.group != group || b.id == self) continue;
+    const double dx = b.place.x - place.x, dy = b.place.y - place.y;
+    if (dx * dx + dy * dy <= reach_ * reach_) visit(b);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/model/osm_id.h"
 #include "pipeline/model/point.h"
 #include "pipeline/model/roof_shape.h"
@@ -30,10 +31,10 @@ struct NeighbourVote {
   double share = 0;  ///< of them that agree: same roof shape, or storeys within half a storey
 };
 
-/// A grid index over the tagged buildings of an extract; read-only after construction, safe to share.
+/// The tagged buildings of an extract; read-only after construction, safe to share.
 class TaggedNeighbours {
  public:
-  /// \param reach  m; fixes the cell size
+  /// \param reach  m: how far away a neighbour may be
   TaggedNeighbours(std::vector<TaggedBuilding> buildings, double reach);
 
   /// Median storeys of the neighbours of `group` within the reach of `place`, other than `self`; empty when fewer than
@@ -46,17 +47,12 @@ class TaggedNeighbours {
   double reach() const { return reach_; }
 
  private:
-  struct Cell {
-    std::int64_t x = 0, y = 0;
-    friend auto operator<=>(const Cell&, const Cell&) = default;
-  };
-  Cell cell_of(model::Point2 p) const;
   template <class Visit>
   void for_each_near(model::Point2 place, std::uint8_t group, model::OsmId self, Visit&& visit) const;
 
   double reach_;
-  std::vector<TaggedBuilding> buildings_;  ///< sorted by cell, then id
-  std::vector<Cell> cells_;                ///< parallel to buildings_
+  std::vector<TaggedBuilding> buildings_;
+  geometry::BoxIndex places_;  ///< of buildings_, by number
 };
 
 }  // namespace blockrand::context

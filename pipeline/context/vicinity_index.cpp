@@ -13,8 +13,6 @@ namespace {
 using model::Point2;
 using Box = VicinityIndex::Box;
 
-constexpr double kCell = 16;  ///< m. The size of a house: places are looked for, not boxes
-
 void grow(Box& box, std::span<const Point2> points) {
   for (const Point2 p : points) {
     box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y)};
@@ -72,8 +70,8 @@ VicinityIndex::VicinityIndex(const Vicinity& vicinity)
   std::vector<geometry::PlanBox> places, footprints;
   for (const auto& point : all_.points) places.push_back({point.place, point.place});
   for (const Footprint& f : all_.footprints) footprints.push_back(geometry::box_of(f.polygon.outer.points));
-  points_ = geometry::BoxIndex(std::move(places), kCell);
-  footprints_ = geometry::BoxIndex(std::move(footprints), kCell);
+  points_ = geometry::BoxIndex(std::move(places));
+  footprints_ = geometry::BoxIndex(std::move(footprints));
 }
 
 bool VicinityIndex::contains(const Square& square, Point2 p) const {

@@ -490,12 +490,12 @@ std::vector<std::size_t> runs_of(const footprints::FootprintStore& store) {
 
 }  // namespace
 
-PlaceIndex::PlaceIndex(const FactsExtract& facts, std::span<const std::uint32_t> chosen, double size)
+PlaceIndex::PlaceIndex(const FactsExtract& facts, std::span<const std::uint32_t> chosen)
     : chosen_(chosen.begin(), chosen.end()) {
   std::vector<geometry::PlanBox> places;
   places.reserve(chosen.size());
   for (const std::uint32_t b : chosen) places.push_back({facts.places[b].place, facts.places[b].place});
-  places_ = geometry::BoxIndex(std::move(places), size);
+  places_ = geometry::BoxIndex(std::move(places));
 }
 
 void PlaceIndex::near(Point2 place, double distance, std::vector<std::uint32_t>& out) const {
@@ -565,7 +565,7 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
     else if (facts.features[b].has(Feature::area) && !store[b].level.canopy)
       small.push_back(b);
   }
-  const PlaceIndex house_index(facts, houses, kNearReach), small_index(facts, small, kNearReach);
+  const PlaceIndex house_index(facts, houses), small_index(facts, small);
   // Into a copy: neighbours read what was measured alone, and nothing that this loop writes.
   std::vector<FeatureVector> out = facts.features;
   const auto around = [&](std::size_t i) {

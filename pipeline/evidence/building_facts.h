@@ -46,8 +46,7 @@ struct FactsExtract {
 class PlaceIndex {
  public:
   /// \param chosen  the buildings to file, ascending
-  /// \param size    m, of the cells; near() is meant for distances of about that
-  PlaceIndex(const FactsExtract& facts, std::span<const std::uint32_t> chosen, double size);
+  PlaceIndex(const FactsExtract& facts, std::span<const std::uint32_t> chosen);
   /// Ascending.
   void near(model::Point2 place, double distance, std::vector<std::uint32_t>& out) const;
 

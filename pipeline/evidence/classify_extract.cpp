@@ -61,7 +61,7 @@ class Poll {
  public:
   /// \param answer  of a building, or a negative number for none
   Poll(const FactsExtract& facts, const VoteKernel& kernel, std::vector<std::int16_t> answers)
-      : facts_(facts), kernel_(kernel), answers_(std::move(answers)), index_(facts, tellers(), kernel.reach) {}
+      : facts_(facts), kernel_(kernel), answers_(std::move(answers)), index_(facts, tellers()) {}
 
   struct Result {
     PerAnswer votes{};
@@ -123,118 +123,35 @@ std::optional<model::RoofShape> usual_shape(classify::RoofFamily family, const c
   return style.double_saltbox > 0 ? std::optional(RoofShape::berlin) : std::nullopt;
 }
 
-}  // namespace
+/// One classification of an extract: what the steps share.
+struct Classifier {
+  const FactsExtract& facts;
+  const TagFacts& tags;
+  const classify::Tables& tables;
+  const PriorOf& prior;
+  const ClassifyOptions& options;
+  int workers = 1;
+  std::size_t n = facts.features.size();
+  StyleExtract out{};
+  std::vector<std::array<float, kStyles>> alone_style{};  ///< log-odds of each building's style by itself
 
-TagFacts tag_facts(const model::Extract& extract, const footprints::FootprintStore& store,
-                   const context::ContextExtract& context, const classify::Tables& tables,
-                   const georef::Projection& projection, FactsExtract& facts) {
-  TagFacts out;
-  const std::size_t n = store.size();
-  out.dates.resize(n);
-  out.years.resize(n);
-  out.roofs.resize(n);
-  out.non_house.assign(n, -1);
+  bool known(std::size_t b) const { return facts.features[b].has(Feature::area); }
 
-  // Fields of equal small rectangles.
-  std::vector<classify::SmallPlan> plans;
-  std::vector<std::uint32_t> small;
-  for (std::uint32_t b = 0; b < n; ++b) {
-    const FeatureVector& f = facts.features[b];
-    if (!f.has(Feature::area) || static_cast<double>(f[Feature::area]) > tables.non_houses.equal_largest_area) continue;
-    plans.push_back(
-        {facts.places[b].place, static_cast<double>(f[Feature::area]), static_cast<int>(f[Feature::corners])});
-    small.push_back(b);
-  }
-  const std::vector<int> equal = classify::equal_neighbours(plans, tables.non_houses);
-  std::vector<int> equal_of(n, 0);
-  for (std::size_t i = 0; i < small.size(); ++i) equal_of[small[i]] = equal[i];
+  void eras_and_styles();
+  void quarters();
+  void smooth_styles();
+  void storeys_and_roofs();
+};
 
-  // House numbers inside: a node with an address makes a shed a house. Shops inside: what the ground floor is used for.
-  std::vector<std::uint8_t> addressed(n, 0);
-  {
-    const geometry::BoxIndex index = footprints::index_of(store);
-    const auto for_each_around = [&](model::Point2 place, auto&& visit) {
-      for (const std::uint32_t b : index.near({place, place}, 0)) {
-        const std::vector<model::Polygon> polygons = store.polygons(b);
-        if (std::any_of(polygons.begin(), polygons.end(),
-                        [&](const model::Polygon& p) { return geometry::contains(p, place); }))
-          visit(b);
-      }
-    };
-    for (const context::SitePoint& p : context.points)
-      if (!p.house_number.empty()) for_each_around(p.place, [&](std::uint32_t b) { addressed[b] = 1; });
-    for (const model::Feature& feature : extract.features) {
-      if (feature.area || feature.rings.count == 0 || feature.id.type != model::OsmType::node ||
-          !(feature.is(model::FeatureKind::shop) || feature.is(model::FeatureKind::amenity)))
-        continue;
-      const auto category =
-          tables.ground_floor.category([&](std::string_view key) { return extract.tag(feature.tags, key); });
-      if (!category) continue;
-      const model::Point2 place =
-          model::snap(projection.forward(extract.vertices_of(extract.rings[feature.rings.first]).front()));
-      for_each_around(place, [&](std::uint32_t b) {
-        std::vector<int>& counts = out.points[b];
-        counts.resize(tables.ground_floor.categories.size());
-        ++counts[*category];
-      });
-    }
-  }
-
-  std::map<std::pair<std::string, std::string>, std::int32_t> reasons;
-  for (std::uint32_t b = 0; b < n; ++b) {
-    FeatureVector& f = facts.features[b];
-    if (!f.has(Feature::area)) continue;
-    const model::MappedBuilding& mapped = extract.buildings[store[b].lead];
-    const std::string_view use = extract.strings.view(mapped.attributes.use);
-    const classify::TagLookup tag = [&](std::string_view key) { return extract.tag(mapped.tags, key); };
-    classify::fill_tag_features(f, mapped.attributes, use, tag, tables.tags);
-    if (addressed[b]) f[Feature::tag_number] = 1;
-    if (mapped.attributes.built) out.years[b] = mapped.attributes.built->years;
-    if (f.has(Feature::tag_year)) {
-      const bool dated = mapped.attributes.built &&
-                         static_cast<float>(mapped.attributes.built->years.middle()) == f[Feature::tag_year];
-      out.dates[b] = {f[Feature::tag_year], dated ? mapped.attributes.built->confidence : 0.7f};
-    }
-    out.roofs[b] = mapped.attributes.roof_shape;
-    classify::NonHouseFacts asked;
-    asked.use = use;
-    asked.tag = tag;
-    asked.area = static_cast<double>(f[Feature::area]);
-    asked.has_address = f[Feature::tag_number] > 0;
-    if (mapped.attributes.storeys) asked.storeys = static_cast<double>(*mapped.attributes.storeys);
-    asked.equal_neighbours = equal_of[b];
-    if (auto non_house = classify::non_house(asked, tables.non_houses)) {
-      const auto [known, fresh] =
-          reasons.try_emplace({non_house->kind, non_house->why}, static_cast<std::int32_t>(out.reasons.size()));
-      out.non_house[b] = known->second;
-      if (fresh) out.reasons.push_back(std::move(*non_house));
-    }
-  }
-  return out;
-}
-
-StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, const classify::Tables& tables,
-                              const PriorOf& prior, const ClassifyOptions& options, int workers,
-                              base::Progress& progress) {
-  progress.begin("classify");
-  const std::size_t n = facts.features.size();
-  StyleExtract out;
-  out.styles.resize(n);
-  out.storeys.resize(n);
-  out.roofs.resize(n);
-  out.elsewhere.assign(n, {});
-  out.region.assign(n, {});
-
-  const auto known = [&](std::size_t b) { return facts.features[b].has(Feature::area); };
-
-  // Era and quarter of each building alone, with dated neighbours.
+/// Era and style of each building alone, with dated neighbours.
+void Classifier::eras_and_styles() {
+  alone_style.resize(n);
   std::vector<std::int16_t> dated(n, -1);
   if (options.dates)
     for (std::size_t b = 0; b < n; ++b)
       if (tags.dates[b].confidence > 0.5f)
         dated[b] = static_cast<std::int16_t>(model::era_of(static_cast<int>(tags.dates[b].year)));
   const Poll era_poll(facts, tables.era_votes, dated);
-  std::vector<std::array<float, kStyles>> base(n);
   in_runs(n, workers, [&](std::size_t first, std::size_t last) {
     std::vector<std::uint32_t> near;
     for (std::size_t b = first; b < last; ++b) {
@@ -273,7 +190,7 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
           out.region[b][c] = out.elsewhere[b][c] = static_cast<float>(add[c]);
         }
       }
-      base[b] = as_floats<kStyles>(style);
+      alone_style[b] = as_floats<kStyles>(style);
       s.style = as_floats<kStyles>(classify::probabilities(style, kStyles));
       if (s.non_house) {
         s.style.fill((1 - kRuleSays) / (kStyles - 1));
@@ -281,101 +198,101 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
       }
     }
   });
+}
 
-  // A quarter is what its houses say together: the mean of their log-odds.
-  {
-    std::vector<std::uint32_t> houses;
-    for (std::uint32_t b = 0; b < n; ++b)
-      if (facts.places[b].house) houses.push_back(b);
-    const PlaceIndex index(facts, houses, kNearReach);
-    std::vector<PerAnswer> alone(n);
-    in_runs(n, workers, [&](std::size_t first, std::size_t last) {
-      for (std::size_t b = first; b < last; ++b)
-        if (known(b)) alone[b] = tables.morphology.log_odds(facts.features[b], false);
-    });
+/// A quarter is what its houses say together: the mean of their log-odds.
+void Classifier::quarters() {
+  std::vector<std::uint32_t> houses;
+  for (std::uint32_t b = 0; b < n; ++b)
+    if (facts.places[b].house) houses.push_back(b);
+  const PlaceIndex index(facts, houses);
+  std::vector<PerAnswer> alone(n);
+  in_runs(n, workers, [&](std::size_t first, std::size_t last) {
+    for (std::size_t b = first; b < last; ++b)
+      if (known(b)) alone[b] = tables.morphology.log_odds(facts.features[b], false);
+  });
+  in_runs(n, workers, [&](std::size_t first, std::size_t last) {
+    std::vector<std::uint32_t> near;
+    for (std::size_t b = first; b < last; ++b) {
+      if (!known(b)) continue;
+      index.near(facts.places[b].place, kNearReach, near);
+      PerAnswer sum = facts.places[b].house ? PerAnswer{} : alone[b];
+      const double voices = static_cast<double>(near.size()) + (facts.places[b].house ? 0 : 1);
+      for (const std::uint32_t o : near)
+        for (std::size_t m = 0; m < kMorphologies; ++m) sum[m] += alone[o][m];
+      for (std::size_t m = 0; m < kMorphologies; ++m) sum[m] = classify::round_log_odds(sum[m] / voices);
+      out.styles[b].morphology = as_floats<kMorphologies>(classify::probabilities(sum, kMorphologies));
+    }
+  });
+}
+
+/// Styles follow those of the row and the block.
+void Classifier::smooth_styles() {
+  std::vector<std::uint32_t> houses;
+  for (std::uint32_t b = 0; b < n; ++b)
+    if (facts.places[b].house && !out.styles[b].non_house) houses.push_back(b);
+  const PlaceIndex index(facts, houses);
+  std::vector<std::array<float, kStyles>> next(n), added(n);
+  for (int round = 0; round < tables.smoothing.rounds; ++round) {
     in_runs(n, workers, [&](std::size_t first, std::size_t last) {
       std::vector<std::uint32_t> near;
       for (std::size_t b = first; b < last; ++b) {
-        if (!known(b)) continue;
-        index.near(facts.places[b].place, kNearReach, near);
-        PerAnswer sum = facts.places[b].house ? PerAnswer{} : alone[b];
-        const double voices = static_cast<double>(near.size()) + (facts.places[b].house ? 0 : 1);
-        for (const std::uint32_t o : near)
-          for (std::size_t m = 0; m < kMorphologies; ++m) sum[m] += alone[o][m];
-        for (std::size_t m = 0; m < kMorphologies; ++m) sum[m] = classify::round_log_odds(sum[m] / voices);
-        out.styles[b].morphology = as_floats<kMorphologies>(classify::probabilities(sum, kMorphologies));
+        next[b] = out.styles[b].style;
+        if (!known(b) || !facts.places[b].house || out.styles[b].non_house) continue;
+        const BuildingPlace& own = facts.places[b];
+        const Siting siting = classify::siting_of(own.position);
+        PerAnswer sum{};
+        for (std::size_t c = 0; c < kStyles; ++c) sum[c] = static_cast<double>(alone_style[b][c]);
+        const auto listen = [&](const PerAnswer& heard, double weight, double strength) {
+          if (weight <= 0) return;
+          for (std::size_t c = 0; c < kStyles; ++c)
+            sum[c] += strength * base::log((heard[c] / weight + tables.smoothing.doubt) * static_cast<double>(kStyles));
+        };
+        PerAnswer row{};
+        double lengths = 0;
+        for (const Contact& c : facts.contacts_of(static_cast<std::uint32_t>(b))) {
+          if (classify::siting_of(facts.places[c.other].position) != siting || out.styles[c.other].non_house) continue;
+          for (std::size_t k = 0; k < kStyles; ++k)
+            row[k] += static_cast<double>(c.length) * static_cast<double>(out.styles[c.other].style[k]);
+          lengths += static_cast<double>(c.length);
+        }
+        listen(row, lengths, tables.smoothing.row);
+        PerAnswer block{};
+        double houses_there = 0;
+        if (own.block != model::kNoIndex) {
+          index.near(own.place, kNearReach, near);
+          for (const std::uint32_t o : near) {
+            if (o == b || facts.places[o].block != own.block || classify::siting_of(facts.places[o].position) != siting)
+              continue;
+            for (std::size_t k = 0; k < kStyles; ++k) block[k] += static_cast<double>(out.styles[o].style[k]);
+            ++houses_there;
+          }
+        }
+        listen(block, houses_there, tables.smoothing.block);
+        for (std::size_t c = 0; c < kStyles; ++c) {
+          sum[c] = classify::round_log_odds(sum[c]);
+          added[b][c] = static_cast<float>(sum[c]) - alone_style[b][c];
+        }
+        next[b] = as_floats<kStyles>(classify::probabilities(sum, kStyles));
       }
     });
+    for (std::size_t b = 0; b < n; ++b) out.styles[b].style = next[b];
   }
-
-  // Styles follow those of the row and the block.
-  if (options.smooth) {
-    std::vector<std::uint32_t> houses;
-    for (std::uint32_t b = 0; b < n; ++b)
-      if (facts.places[b].house && !out.styles[b].non_house) houses.push_back(b);
-    const PlaceIndex index(facts, houses, kNearReach);
-    std::vector<std::array<float, kStyles>> next(n), added(n);
-    for (int round = 0; round < tables.smoothing.rounds; ++round) {
-      in_runs(n, workers, [&](std::size_t first, std::size_t last) {
-        std::vector<std::uint32_t> near;
-        for (std::size_t b = first; b < last; ++b) {
-          next[b] = out.styles[b].style;
-          if (!known(b) || !facts.places[b].house || out.styles[b].non_house) continue;
-          const BuildingPlace& own = facts.places[b];
-          const Siting siting = classify::siting_of(own.position);
-          PerAnswer sum{};
-          for (std::size_t c = 0; c < kStyles; ++c) sum[c] = static_cast<double>(base[b][c]);
-          const auto listen = [&](const PerAnswer& heard, double weight, double strength) {
-            if (weight <= 0) return;
-            for (std::size_t c = 0; c < kStyles; ++c)
-              sum[c] +=
-                  strength * base::log((heard[c] / weight + tables.smoothing.doubt) * static_cast<double>(kStyles));
-          };
-          PerAnswer row{};
-          double lengths = 0;
-          for (const Contact& c : facts.contacts_of(static_cast<std::uint32_t>(b))) {
-            if (classify::siting_of(facts.places[c.other].position) != siting || out.styles[c.other].non_house)
-              continue;
-            for (std::size_t k = 0; k < kStyles; ++k)
-              row[k] += static_cast<double>(c.length) * static_cast<double>(out.styles[c.other].style[k]);
-            lengths += static_cast<double>(c.length);
-          }
-          listen(row, lengths, tables.smoothing.row);
-          PerAnswer block{};
-          double houses_there = 0;
-          if (own.block != model::kNoIndex) {
-            index.near(own.place, kNearReach, near);
-            for (const std::uint32_t o : near) {
-              if (o == b || facts.places[o].block != own.block ||
-                  classify::siting_of(facts.places[o].position) != siting)
-                continue;
-              for (std::size_t k = 0; k < kStyles; ++k) block[k] += static_cast<double>(out.styles[o].style[k]);
-              ++houses_there;
-            }
-          }
-          listen(block, houses_there, tables.smoothing.block);
-          for (std::size_t c = 0; c < kStyles; ++c) {
-            sum[c] = classify::round_log_odds(sum[c]);
-            added[b][c] = static_cast<float>(sum[c]) - base[b][c];
-          }
-          next[b] = as_floats<kStyles>(classify::probabilities(sum, kStyles));
-        }
-      });
-      for (std::size_t b = 0; b < n; ++b) out.styles[b].style = next[b];
+  for (std::size_t b = 0; b < n; ++b) {
+    if (!known(b) || out.styles[b].non_house) continue;
+    PerAnswer sum{};
+    for (std::size_t c = 0; c < kStyles; ++c) {
+      sum[c] =
+          classify::round_log_odds(tables.smoothing.certainty * static_cast<double>(alone_style[b][c] + added[b][c]));
+      // With what is taken off for having been said twice, so that all terms still add up.
+      out.elsewhere[b][c] += static_cast<float>(sum[c]) - alone_style[b][c];
     }
-    for (std::size_t b = 0; b < n; ++b) {
-      if (!known(b) || out.styles[b].non_house) continue;
-      PerAnswer sum{};
-      for (std::size_t c = 0; c < kStyles; ++c) {
-        sum[c] = classify::round_log_odds(tables.smoothing.certainty * static_cast<double>(base[b][c] + added[b][c]));
-        // With what is taken off for having been said twice, so that all terms still add up.
-        out.elsewhere[b][c] += static_cast<float>(sum[c]) - base[b][c];
-      }
-      out.styles[b].style = as_floats<kStyles>(classify::probabilities(sum, kStyles));
-    }
+    out.styles[b].style = as_floats<kStyles>(classify::probabilities(sum, kStyles));
   }
+}
 
-  // Storeys, sub-style, roof.
+/// Storeys, sub-style, roof.
+void Classifier::storeys_and_roofs() {
   const std::size_t counts = tables.storey_counts.size();
   std::vector<std::int16_t> storeys_told(n, -1), roofs_told(n, -1);
   for (std::size_t b = 0; b < n; ++b) {
@@ -476,7 +393,115 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
                                                        own_roof.begin());
     }
   });
+}
+
+}  // namespace
+
+TagFacts tag_facts(const model::Extract& extract, const footprints::FootprintStore& store,
+                   const context::ContextExtract& context, const classify::Tables& tables,
+                   const georef::Projection& projection, FactsExtract& facts) {
+  TagFacts out;
+  const std::size_t n = store.size();
+  out.dates.resize(n);
+  out.years.resize(n);
+  out.roofs.resize(n);
+  out.non_house.assign(n, -1);
+
+  // Fields of equal small rectangles.
+  std::vector<classify::SmallPlan> plans;
+  std::vector<std::uint32_t> small;
+  for (std::uint32_t b = 0; b < n; ++b) {
+    const FeatureVector& f = facts.features[b];
+    if (!f.has(Feature::area) || static_cast<double>(f[Feature::area]) > tables.non_houses.equal_largest_area) continue;
+    plans.push_back(
+        {facts.places[b].place, static_cast<double>(f[Feature::area]), static_cast<int>(f[Feature::corners])});
+    small.push_back(b);
+  }
+  const std::vector<int> equal = classify::equal_neighbours(plans, tables.non_houses);
+  std::vector<int> equal_of(n, 0);
+  for (std::size_t i = 0; i < small.size(); ++i) equal_of[small[i]] = equal[i];
+
+  // House numbers inside: a node with an address makes a shed a house. Shops inside: what the ground floor is used for.
+  std::vector<std::uint8_t> addressed(n, 0);
+  {
+    const geometry::BoxIndex index = footprints::index_of(store);
+    const auto for_each_around = [&](model::Point2 place, auto&& visit) {
+      for (const std::uint32_t b : index.near({place, place}, 0)) {
+        const std::vector<model::Polygon> polygons = store.polygons(b);
+        if (std::any_of(polygons.begin(), polygons.end(),
+                        [&](const model::Polygon& p) { return geometry::contains(p, place); }))
+          visit(b);
+      }
+    };
+    for (const context::SitePoint& p : context.points)
+      if (!p.house_number.empty()) for_each_around(p.place, [&](std::uint32_t b) { addressed[b] = 1; });
+    for (const model::Feature& feature : extract.features) {
+      if (feature.area || feature.rings.count == 0 || feature.id.type != model::OsmType::node ||
+          !(feature.is(model::FeatureKind::shop) || feature.is(model::FeatureKind::amenity)))
+        continue;
+      const auto category =
+          tables.ground_floor.category([&](std::string_view key) { return extract.tag(feature.tags, key); });
+      if (!category) continue;
+      const model::Point2 place =
+          model::snap(projection.forward(extract.vertices_of(extract.rings[feature.rings.first]).front()));
+      for_each_around(place, [&](std::uint32_t b) {
+        std::vector<int>& counts = out.points[b];
+        counts.resize(tables.ground_floor.categories.size());
+        ++counts[*category];
+      });
+    }
+  }
+
+  std::map<std::pair<std::string, std::string>, std::int32_t> reasons;
+  for (std::uint32_t b = 0; b < n; ++b) {
+    FeatureVector& f = facts.features[b];
+    if (!f.has(Feature::area)) continue;
+    const model::MappedBuilding& mapped = extract.buildings[store[b].lead];
+    const std::string_view use = extract.strings.view(mapped.attributes.use);
+    const classify::TagLookup tag = [&](std::string_view key) { return extract.tag(mapped.tags, key); };
+    classify::fill_tag_features(f, mapped.attributes, use, tag, tables.tags);
+    if (addressed[b]) f[Feature::tag_number] = 1;
+    if (mapped.attributes.built) out.years[b] = mapped.attributes.built->years;
+    if (f.has(Feature::tag_year)) {
+      const bool dated = mapped.attributes.built &&
+                         static_cast<float>(mapped.attributes.built->years.middle()) == f[Feature::tag_year];
+      out.dates[b] = {f[Feature::tag_year], dated ? mapped.attributes.built->confidence : 0.7f};
+    }
+    out.roofs[b] = mapped.attributes.roof_shape;
+    classify::NonHouseFacts asked;
+    asked.use = use;
+    asked.tag = tag;
+    asked.area = static_cast<double>(f[Feature::area]);
+    asked.has_address = f[Feature::tag_number] > 0;
+    if (mapped.attributes.storeys) asked.storeys = static_cast<double>(*mapped.attributes.storeys);
+    asked.equal_neighbours = equal_of[b];
+    if (auto non_house = classify::non_house(asked, tables.non_houses)) {
+      const auto [known, fresh] =
+          reasons.try_emplace({non_house->kind, non_house->why}, static_cast<std::int32_t>(out.reasons.size()));
+      out.non_house[b] = known->second;
+      if (fresh) out.reasons.push_back(std::move(*non_house));
+    }
+  }
   return out;
+}
+
+StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, const classify::Tables& tables,
+                              const PriorOf& prior, const ClassifyOptions& options, int workers,
+                              base::Progress& progress) {
+  progress.begin("classify");
+  Classifier classifier{
+      .facts = facts, .tags = tags, .tables = tables, .prior = prior, .options = options, .workers = workers};
+  StyleExtract& out = classifier.out;
+  out.styles.resize(classifier.n);
+  out.storeys.resize(classifier.n);
+  out.roofs.resize(classifier.n);
+  out.elsewhere.assign(classifier.n, {});
+  out.region.assign(classifier.n, {});
+  classifier.eras_and_styles();
+  classifier.quarters();
+  if (options.smooth) classifier.smooth_styles();
+  classifier.storeys_and_roofs();
+  return std::move(out);
 }
 
 }  // namespace blockrand::evidence

@@ -63,7 +63,7 @@ BoxIndex index_of(const FootprintStore& store) {
   std::vector<PlanBox> boxes;
   boxes.reserve(store.size());
   for (std::uint32_t b = 0; b < store.size(); ++b) boxes.push_back(store[b].box);
-  return BoxIndex(std::move(boxes), BoxIndex::kHouseCell);
+  return BoxIndex(std::move(boxes));
 }
 
 BuildingNumbers::BuildingNumbers(const FootprintStore& store) {

@@ -1,7 +1,9 @@
 #include "pipeline/geometry/box_index.h"
 
 #include <algorithm>
-#include <cmath>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
 
 namespace blockrand::geometry {
 
@@ -32,54 +34,49 @@ bool PlanBox::near(const PlanBox& other, double distance) const {
          minimum.y <= other.maximum.y + distance && other.minimum.y <= maximum.y + distance;
 }
 
+namespace index = boost::geometry::index;
+using Corner = boost::geometry::model::point<double, 2, boost::geometry::cs::cartesian>;
+using Box = boost::geometry::model::box<Corner>;
+
 namespace {
 
-/// A box over more cells stands in a list of its own; for a query over more it is as cheap to ask every box.
-constexpr double kManyCells = 4096;
+/// Children of a node. More make the tree flatter and its nodes slower to search.
+constexpr std::size_t kChildren = 16;
+
+/// m. How far a box that is asked for is widened before the exact comparison: a sum and a difference of coordinates of
+/// some 1e7 m round differently by less.
+constexpr double kRounding = 1e-6;
+
+Box grown(const PlanBox& box, double by) {
+  return {Corner(box.minimum.x - by, box.minimum.y - by), Corner(box.maximum.x + by, box.maximum.y + by)};
+}
 
 }  // namespace
 
-std::int32_t BoxIndex::cell_of(double metres) const { return static_cast<std::int32_t>(std::floor(metres / cell_)); }
+struct BoxIndex::Tree {
+  using Entry = std::pair<Box, std::uint32_t>;
+  explicit Tree(const std::vector<Entry>& entries) : boxes(entries.begin(), entries.end()) {}
+  index::rtree<Entry, index::rstar<kChildren>> boxes;
+};
 
-double BoxIndex::cells_of(const PlanBox& box, double distance) const {
-  return ((box.maximum.x - box.minimum.x + 2 * distance) / cell_ + 1) *
-         ((box.maximum.y - box.minimum.y + 2 * distance) / cell_ + 1);
-}
+BoxIndex::BoxIndex() = default;
 
-BoxIndex::BoxIndex(std::vector<PlanBox> boxes, double cell) : boxes_(std::move(boxes)), cell_(cell) {
-  for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
-    const PlanBox& box = boxes_[i];
-    if (box.empty()) continue;
-    extent_.include(box);
-    if (cells_of(box, 0) > kManyCells) {
-      large_.push_back(i);
-      continue;
-    }
-    for (std::int32_t x = cell_of(box.minimum.x); x <= cell_of(box.maximum.x); ++x)
-      for (std::int32_t y = cell_of(box.minimum.y); y <= cell_of(box.maximum.y); ++y) entries_.push_back({x, y, i});
-  }
-  std::sort(entries_.begin(), entries_.end());
+BoxIndex::BoxIndex(std::vector<PlanBox> boxes) : boxes_(std::move(boxes)) {
+  std::vector<Tree::Entry> entries;
+  entries.reserve(boxes_.size());
+  for (std::uint32_t i = 0; i < boxes_.size(); ++i)
+    if (!boxes_[i].empty()) entries.emplace_back(grown(boxes_[i], 0), i);
+  if (!entries.empty()) tree_ = std::make_shared<const Tree>(entries);
 }
 
 std::vector<std::uint32_t> BoxIndex::near(const PlanBox& box, double distance) const {
   std::vector<std::uint32_t> out;
-  if (!box.near(extent_, distance)) return out;
-  if (cells_of(box, distance) > kManyCells) {
-    for (std::uint32_t i = 0; i < boxes_.size(); ++i)
-      if (boxes_[i].near(box, distance)) out.push_back(i);
-    return out;
-  }
-  const std::int32_t y0 = cell_of(box.minimum.y - distance), y1 = cell_of(box.maximum.y + distance);
-  for (std::int32_t x = cell_of(box.minimum.x - distance); x <= cell_of(box.maximum.x + distance); ++x) {
-    // Cells of one column are consecutive in the sorted order.
-    auto entry = std::lower_bound(entries_.begin(), entries_.end(), Entry{x, y0, 0});
-    for (; entry != entries_.end() && entry->x == x && entry->y <= y1; ++entry)
-      if (boxes_[entry->box].near(box, distance)) out.push_back(entry->box);
-  }
-  for (const std::uint32_t i : large_)
-    if (boxes_[i].near(box, distance)) out.push_back(i);
+  if (!tree_ || box.empty()) return out;
+  const auto near_enough = [&](const Tree::Entry& entry) { return boxes_[entry.second].near(box, distance); };
+  for (auto entry = tree_->boxes.qbegin(index::intersects(grown(box, distance + kRounding)));
+       entry != tree_->boxes.qend(); ++entry)
+    if (near_enough(*entry)) out.push_back(entry->second);
   std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 

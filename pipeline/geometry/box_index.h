@@ -1,8 +1,8 @@
 // Boxes in plan, and which of them come near a place.
 #pragma once
 
-#include <compare>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -25,18 +25,13 @@ struct PlanBox {
 PlanBox box_of(std::span<const model::Point2> points);
 
 /// The one index of boxes, and of points as boxes without extent: which come near a place, and which near each other.
-/// Boxes by the cells of a fixed grid; read-only after construction, safe to share between threads. Boost's packed
-/// R-tree is made as fast and answers 0.9 to 1.9 times as fast (tests/bench/kernel_benchmark.cpp: a microsecond or two
-/// for a house's neighbours either way), which was not worth its templates; it would fit behind these functions.
+/// Boost.Geometry's packed R-tree; read-only after construction, safe to share between threads. It was measured against
+/// sorted cells of a fixed grid (docs/internal/RESULTS.md, "Index of boxes").
 class BoxIndex {
  public:
-  static constexpr double kStreetCell = 250;  ///< m, for streets and blocks: boxes of some 100 m
-  static constexpr double kHouseCell = 64;    ///< m, two to four houses wide: few boxes lie in more than four cells
-
-  BoxIndex() = default;
+  BoxIndex();
   /// Empty boxes keep their number and are never found.
-  /// \param cell  m, positive; about the size of a usual box or query. What is found does not depend on it.
-  explicit BoxIndex(std::vector<PlanBox> boxes, double cell = kStreetCell);
+  explicit BoxIndex(std::vector<PlanBox> boxes);
   /// The boxes at most `distance` metres from `box` along both axes, ascending.
   std::vector<std::uint32_t> near(const PlanBox& box, double distance) const;
   /// All pairs a < b of boxes at most `distance` metres apart along both axes, ascending.
@@ -44,19 +39,9 @@ class BoxIndex {
   const PlanBox& box(std::uint32_t i) const { return boxes_[i]; }
 
  private:
-  struct Entry {
-    std::int32_t x = 0, y = 0;  ///< cell
-    std::uint32_t box = 0;
-    friend auto operator<=>(const Entry&, const Entry&) = default;
-  };
-  std::int32_t cell_of(double metres) const;
-  double cells_of(const PlanBox& box, double distance) const;
-
+  struct Tree;
   std::vector<PlanBox> boxes_;
-  double cell_ = kStreetCell;
-  PlanBox extent_;
-  std::vector<std::uint32_t> large_;  ///< boxes over so many cells that all queries ask for them
-  std::vector<Entry> entries_;        ///< sorted
+  std::shared_ptr<const Tree> tree_;  ///< null: no box
 };
 
 }  // namespace blockrand::geometry

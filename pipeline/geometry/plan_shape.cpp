@@ -56,21 +56,6 @@ double PlanShape::intersection_over_union(const PlanShape& other) const {
   return common / (area_ + other.area_ - common);
 }
 
-double PlanShape::best_intersection_over_union(const PlanShape& other) const {
-  Point2 at;
-  double best = intersection_over_union(other);
-  for (double step = 0.64; step >= 0.01; step /= 2)
-    for (bool better = true; better;) {
-      better = false;
-      for (const Point2 d : {Point2{step, 0}, Point2{-step, 0}, Point2{0, step}, Point2{0, -step}}) {
-        const Point2 next{at.x + d.x, at.y + d.y};
-        const double iou = moved(next).intersection_over_union(other);
-        if (iou > best) best = iou, at = next, better = true;
-      }
-    }
-  return best;
-}
-
 double PlanShape::outline_distance(const PlanShape& other) const {
   if (empty() || other.empty()) return 0;
   // GEOS measures from points of the lines; between corners they are walked in steps.

@@ -25,9 +25,6 @@ class PlanShape {
   /// 0.5 m); 0 where one is empty.
   double outline_distance(const PlanShape& other) const;
   PlanShape moved(model::Point2 by) const;
-  /// intersection_over_union at the best place that this shape can be moved to (to 1 cm, found by descent from where it
-  /// is): how well the forms agree, wherever they lie.
-  double best_intersection_over_union(const PlanShape& other) const;
   PlanShape united(const PlanShape& other) const;
 
  private:

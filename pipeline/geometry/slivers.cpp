@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon_measures.h"
@@ -37,12 +36,6 @@ std::optional<Sliver> sliver_at(const Ring& ring, std::size_t first, std::size_t
   const bool outward =
       first == last ? orientation(gp, ga, gq) > 0 : orientation(gp, ga, gb) >= 0 && orientation(ga, gb, gq) >= 0;
   return Sliver{first, last, length, across, outward};
-}
-
-std::optional<Sliver> sliver_from(const Ring& ring, std::size_t first, double width) {
-  if (ring.size() < 4) return std::nullopt;
-  const std::optional<Sliver> pointed = sliver_at(ring, first, first, width);
-  return pointed ? pointed : sliver_at(ring, first, (first + 1) % ring.size(), width);
 }
 
 /// Takes the tip away.
@@ -90,11 +83,10 @@ int cut_slivers(Ring& ring, double width) {
 
 }  // namespace
 
-std::vector<Sliver> find_slivers(const Ring& ring, double width) {
-  std::vector<Sliver> out;
-  for (std::size_t i = 0; i < ring.size(); ++i)
-    if (const std::optional<Sliver> sliver = sliver_from(ring, i, width)) out.push_back(*sliver);
-  return out;
+std::optional<Sliver> sliver_from(const Ring& ring, std::size_t first, double width) {
+  if (ring.size() < 4) return std::nullopt;
+  const std::optional<Sliver> pointed = sliver_at(ring, first, first, width);
+  return pointed ? pointed : sliver_at(ring, first, (first + 1) % ring.size(), width);
 }
 
 int cut_slivers(Polygon& polygon, double width) {

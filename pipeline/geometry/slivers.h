@@ -1,6 +1,7 @@
 // Slivers: what a cut along a wall that is almost another wall leaves between the two.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "pipeline/model/polygon.h"
@@ -18,7 +19,8 @@ struct Sliver {
   double width = 0;                 ///< m, from where the shorter leg starts to the longer one
   bool outward = true;              ///< made of inside; else a crack. For rings with their inside on the left
 };
-std::vector<Sliver> find_slivers(const model::Ring& ring, double width);
+/// The sliver whose tip begins at point `first` of the ring.
+std::optional<Sliver> sliver_from(const model::Ring& ring, std::size_t first, double width);
 
 /// Cuts the outward slivers of all rings off, where the shorter leg starts: at that point, if it lies on the longer leg
 /// (kOnWall), else straight across to the longer leg. What is cut off is all that changes, but for rounding the new

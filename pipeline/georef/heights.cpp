@@ -105,9 +105,4 @@ std::optional<double> Geoid::undulation(double lon_deg, double lat_deg) const {
   return model::snap(up);
 }
 
-std::optional<double> geoid_undulation(double lon_deg, double lat_deg) {
-  static const Geoid geoid;  // immutable, costs 10 ms to make
-  return geoid.undulation(lon_deg, lat_deg);
-}
-
 }  // namespace blockrand::georef

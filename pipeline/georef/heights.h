@@ -44,7 +44,4 @@ class Geoid {
   std::shared_ptr<Impl> impl_;
 };
 
-/// Geoid::undulation of EGM96 with one shared Geoid.
-std::optional<double> geoid_undulation(double lon_deg, double lat_deg);
-
 }  // namespace blockrand::georef

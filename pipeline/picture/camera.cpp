@@ -62,16 +62,4 @@ Camera fit_perspective(std::span<const Point3> points, Direction from, double as
   return camera;
 }
 
-Camera fit_orthographic(std::span<const Point3> points, Direction from, double aspect, double margin) {
-  Camera camera = aimed(from);
-  camera.projection = Projection::orthographic;
-  if (points.empty()) return camera;
-  const double east = reach(points, camera.right, {}, 0), west = -reach(points, camera.right * -1, {}, 0);
-  const double top = reach(points, camera.up, {}, 0), bottom = -reach(points, camera.up * -1, {}, 0);
-  const double nearest = -reach(points, {}, camera.forward, -1);
-  camera.height = std::max({top - bottom, (east - west) / aspect, 1e-3}) / (1 - margin);
-  camera.eye = camera.right * ((east + west) / 2) + camera.up * ((top + bottom) / 2) + camera.forward * (nearest - 1);
-  return camera;
-}
-
 }  // namespace blockrand::picture

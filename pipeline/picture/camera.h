@@ -36,8 +36,4 @@ struct Direction {
 Camera fit_perspective(std::span<const Point3> points, Direction from, double aspect, double field_of_view = 35,
                        double margin = 0.04);
 
-/// The orthographic camera in that direction that sees all `points`: {azimuth, 0} is an elevation drawing of the side
-/// that faces the azimuth, {180, 90} a plan with north up.
-Camera fit_orthographic(std::span<const Point3> points, Direction from, double aspect, double margin = 0.04);
-
 }  // namespace blockrand::picture

@@ -99,43 +99,6 @@ Samples see(const Scene& scene, const View& view) {
 /// m. Samples up to this size get lines of full strength.
 constexpr double kFineSample = 0.35;
 
-/// Lines of the scene: index + 1 of the line that covers a sample, 0 for none.
-std::vector<std::uint32_t> draw_lines(const Scene& scene, const View& view, const Samples& samples, int width) {
-  std::vector<std::uint32_t> out;
-  if (scene.lines().empty()) return out;
-  out.assign(samples.what.size(), 0);
-  for (std::uint32_t l = 0; l < scene.lines().size(); ++l) {
-    const Scene::Line& line = scene.lines()[l];
-    std::array<Point3, View::kMaxCorners> ends;
-    ends[0] = view.to_camera({line.from.x, line.from.y, line.from.z});
-    ends[1] = view.to_camera({line.to.x, line.to.y, line.to.z});
-    // A polygon of two corners is clipped like any other, and comes back as its ends.
-    const int count = view.clip(ends, 2);
-    if (count < 2) continue;
-    const Projected a = view.project(ends[0]), b = view.project(ends[1]);
-    const double dx = b.x - a.x, dy = b.y - a.y;
-    const int steps = static_cast<int>(std::max({dx < 0 ? -dx : dx, dy < 0 ? -dy : dy, 1.0})) + 1;
-    for (int k = 0; k <= steps; ++k) {
-      const double share = static_cast<double>(k) / steps;
-      const double nearness = a.nearness + (b.nearness - a.nearness) * share;
-      const double px = a.x + dx * share - width / 2.0, py = a.y + dy * share - width / 2.0;
-      if (px < -width || py < -width || px > view.width() || py > view.height()) continue;
-      // Lines lie on edges of faces: what is behind by less than two samples' size does not hide them.
-      const double slack =
-          view.perspective() ? nearness * nearness * 2 * view.sample_size(nearness) : 2 * view.sample_size(nearness);
-      for (int j = 0; j < width; ++j)
-        for (int i = 0; i < width; ++i) {
-          const int x = static_cast<int>(px + i + 0.5), y = static_cast<int>(py + j + 0.5);
-          if (x < 0 || y < 0 || x >= view.width() || y >= view.height()) continue;
-          const std::size_t at =
-              static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x);
-          if (nearness + slack >= samples.nearness[at]) out[at] = l + 1;
-        }
-    }
-  }
-  return out;
-}
-
 /// Decides where faces meet, end, or pass from one object to the next.
 class Edges {
  public:
@@ -188,7 +151,6 @@ class Shader {
         samples_(samples),
         options_(options),
         light_(options.lit ? light_of(scene, view, samples, options) : Light{}),
-        lines_(draw_lines(scene, view, samples, options.supersampling)),
         edges_(scene, view, samples, options),
         background_(tones_.linear(options.background)) {
     const Point3 sun = to_sun(options);
@@ -205,7 +167,6 @@ class Shader {
     const std::size_t i =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
     const std::uint32_t what = samples_.what[i];
-    if (!lines_.empty() && lines_[i] > 0) return tones_.linear(scene_.lines()[lines_[i] - 1].colour);
     Rgb colour = background_;
     if (what != kNothing && !options_.lit) {
       colour = albedo(what, i, x, y);
@@ -265,7 +226,6 @@ class Shader {
   const RenderOptions& options_;
   Tones tones_;
   Light light_;
-  std::vector<std::uint32_t> lines_;
   Edges edges_;
   Rgb background_;
   Scene::Vector sun_;

@@ -71,8 +71,6 @@ void Scene::add_blended_triangle(const std::array<Point3, 3>& corners, const std
   push(corners, colours, object, false);
 }
 
-void Scene::add_line(Point3 from, Point3 to, Colour colour) { lines_.push_back({local(from), local(to), colour}); }
-
 void Scene::set_ground(double z, Colour colour) { ground_ = Ground{z - origin_.z, colour}; }
 
 void Scene::append(const Scene& other, std::uint32_t first_object) {
@@ -80,7 +78,6 @@ void Scene::append(const Scene& other, std::uint32_t first_object) {
   const std::size_t first = triangles_.size();
   triangles_.insert(triangles_.end(), other.triangles_.begin(), other.triangles_.end());
   for (std::size_t i = first; i < triangles_.size(); ++i) triangles_[i].object += first_object;
-  lines_.insert(lines_.end(), other.lines_.begin(), other.lines_.end());
   if (!ground_) ground_ = other.ground_;
 }
 
@@ -89,10 +86,6 @@ Box Scene::bounds() const {
   const auto add = [&](const Vector& v) { box.include({origin_.x + v.x, origin_.y + v.y, origin_.z + v.z}); };
   for (const Triangle& t : triangles_)
     for (const Vector& v : t.corners) add(v);
-  for (const Line& l : lines_) {
-    add(l.from);
-    add(l.to);
-  }
   return box;
 }
 

@@ -1,4 +1,4 @@
-// What is to be seen: triangles, lines and the ground they stand on.
+// What is to be seen: triangles and the ground they stand on.
 #pragma once
 
 #include <array>
@@ -43,17 +43,15 @@ class Scene {
   /// As above with a colour per corner, blended in between (heat maps).
   void add_blended_triangle(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours,
                             std::uint32_t object);
-  /// A line one pixel wide, hidden by what is in front of it (annotations, sharp edges).
-  void add_line(Point3 from, Point3 to, Colour colour);
   /// A horizontal plane without end, that receives shadows. Seen from above only.
   void set_ground(double z, Colour colour);
   /// Everything of `other`, whose origin must be the same, its objects renumbered by adding `first_object`.
   void append(const Scene& other, std::uint32_t first_object = 0);
 
   Point3 origin() const { return origin_; }
-  /// Of triangles and lines, in the coordinates of what was added.
+  /// Of the triangles, in the coordinates of what was added.
   Box bounds() const;
-  bool empty() const { return triangles_.empty() && lines_.empty(); }
+  bool empty() const { return triangles_.empty(); }
   std::size_t triangle_count() const { return triangles_.size(); }
   /// Every corner of every triangle, in the coordinates of what was added: fits cameras tighter than bounds().
   std::vector<Point3> points() const;
@@ -71,16 +69,11 @@ class Scene {
     bool blended = false;  ///< its corners differ in colour
     std::uint32_t object = 0;
   };
-  struct Line {
-    Vector from, to;
-    Colour colour;
-  };
   struct Ground {
     double z = 0;  ///< relative to the origin
     Colour colour;
   };
   std::span<const Triangle> triangles() const { return triangles_; }
-  std::span<const Line> lines() const { return lines_; }
   const std::optional<Ground>& ground() const { return ground_; }
 
  private:
@@ -90,7 +83,6 @@ class Scene {
 
   Point3 origin_;
   std::vector<Triangle> triangles_;
-  std::vector<Line> lines_;
   std::optional<Ground> ground_;
 };
 

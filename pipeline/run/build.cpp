@@ -225,11 +225,11 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   LocatedExtract located = locate_extract(options, tile, progress);
   Extract& extract = located.extract;
   const georef::Projection& projection = located.projection;
-  record_extract(options, inputs, located, record);
   if (located.area) warn_of_heights(options, inputs, progress);
 
   // The whole extract: footprints, context, evidence.
   model::Report report = override_extract(options, inputs, extract, progress);
+  record_extract(options, inputs, located, record);
   PreparedExtract prepared = prepare_extract(located, options, tile, inputs.tables, inputs.rules.book, progress);
   const std::vector<footprints::Shard>& shards = prepared.shards;
   const footprints::RepairedExtract& repaired = prepared.repaired;
@@ -242,10 +242,18 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const footprints::BuildingNumbers numbers(repaired.footprints);
   const context::TaggedNeighbours neighbours(attributes::tagged_buildings(extract, inputs.defaults, projection),
                                              options.generate.neighbour_reach);
-  const attributes::DistrictAssigner assigner(
-      inputs.rules.book,
-      {extract, repaired.footprints, context, prepared.styles, projection, inputs.defaults, neighbours,
-       options.generate.neighbour_minimum, &inputs.overrides, located.facts.areas, options.seed});
+  const attributes::DistrictAssigner assigner(inputs.rules.book,
+                                              {.extract = extract,
+                                               .footprints = repaired.footprints,
+                                               .context = context,
+                                               .styles = prepared.styles,
+                                               .projection = projection,
+                                               .defaults = inputs.defaults,
+                                               .neighbours = neighbours,
+                                               .neighbour_minimum = options.generate.neighbour_minimum,
+                                               .overrides = &inputs.overrides,
+                                               .pinned = located.facts.areas,
+                                               .seed = options.seed});
   if (!tile) {  // a tile alone does not see what lies elsewhere
     record.facts.areas = assigner.to_pin();
     for (const std::string& what : assigner.unanswered()) progress.warn(what);

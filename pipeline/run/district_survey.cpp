@@ -10,6 +10,7 @@
 #include "pipeline/attributes/defaults.h"
 #include "pipeline/attributes/tagged_buildings.h"
 #include "pipeline/base/parallel.h"
+#include "pipeline/evidence/region_priors.h"
 #include "pipeline/footprints/load.h"
 #include "pipeline/layer_file/layer_file.h"
 #include "pipeline/layer_file/well_known_binary.h"
@@ -109,17 +110,17 @@ std::string map_png(const DistrictSurvey& survey, const std::vector<std::uint32_
 }  // namespace
 
 attributes::AssignInputs DistrictSurvey::inputs(const evidence::StyleExtract& styles) const {
-  return {located.extract,
-          prepared->repaired.footprints,
-          prepared->context,
-          styles,
-          located.projection,
-          defaults,
-          *neighbours,
-          neighbour_minimum,
-          &overrides,
-          {},
-          seed};
+  return {.extract = located.extract,
+          .footprints = prepared->repaired.footprints,
+          .context = prepared->context,
+          .styles = styles,
+          .projection = located.projection,
+          .defaults = defaults,
+          .neighbours = *neighbours,
+          .neighbour_minimum = neighbour_minimum,
+          .overrides = &overrides,
+          .pinned = {},
+          .seed = seed};
 }
 
 std::vector<std::uint32_t> DistrictSurvey::buildings() const {
@@ -140,15 +141,15 @@ std::unique_ptr<DistrictSurvey> survey_districts(const BuildOptions& options, co
     for (const districts::Preset& p : rules.book.presets) names.presets.push_back(p.name);
     overrides = attributes::read_overrides(options.overrides, defaults, names);
   }
-  auto survey = std::unique_ptr<DistrictSurvey>(new DistrictSurvey{locate_extract(options, {}, progress),
-                                                                   {},
-                                                                   std::move(defaults),
-                                                                   std::move(overrides),
-                                                                   {},
-                                                                   {},
-                                                                   options.seed,
-                                                                   options.generate.neighbour_minimum,
-                                                                   classify::Tables::read(options.configs)});
+  std::unique_ptr<DistrictSurvey> survey(new DistrictSurvey{.located = locate_extract(options, {}, progress),
+                                                            .prepared = {},
+                                                            .defaults = std::move(defaults),
+                                                            .overrides = std::move(overrides),
+                                                            .neighbours = {},
+                                                            .positions = {},
+                                                            .seed = options.seed,
+                                                            .neighbour_minimum = options.generate.neighbour_minimum,
+                                                            .tables = classify::Tables::read(options.configs)});
   model::Report unmatched;
   attributes::apply_overrides(survey->overrides, survey->located.extract, unmatched);
   for (const model::ReportRow& row : unmatched.rows) progress.warn(row.object.text() + ": " + row.detail);
@@ -252,21 +253,22 @@ DistrictView show_districts(const DistrictSurvey& survey, const RuleSets& book, 
 std::vector<DistrictChange> diff_districts(const DistrictSurvey& survey, const RuleSets& a, const RuleSets& b,
                                            int workers, base::Progress& progress) {
   const PreparedExtract& prepared = *survey.prepared;
-  const evidence::StyleExtract by_b =
-      classify_by_rule_sets(survey.located.extract, prepared.repaired.footprints, prepared.facts, prepared.tags,
-                            survey.tables, b, workers, progress);
+  const evidence::StyleExtract by_b = evidence::classify_extract(
+      prepared.facts, prepared.tags, survey.tables,
+      evidence::prior_by_place(survey.located.extract, prepared.repaired.footprints, b, survey.tables), {}, workers,
+      progress);
   const attributes::DistrictAssigner first(a, survey.inputs(prepared.styles)), second(b, survey.inputs(by_b));
   std::vector<DistrictChange> out;
   for (const std::uint32_t building : survey.buildings()) {
     const Assignment x = first.assign(building, survey.positions[building]),
                      y = second.assign(building, survey.positions[building]);
-    DistrictChange change{survey.prepared->repaired.footprints[building].id,
-                          preset_of(a, x.decision),
-                          preset_of(b, y.decision),
-                          rule_of(a, x.decision),
-                          rule_of(b, y.decision),
-                          parameters_text(x),
-                          parameters_text(y)};
+    DistrictChange change{.id = prepared.repaired.footprints[building].id,
+                          .preset_a = preset_of(a, x.decision),
+                          .preset_b = preset_of(b, y.decision),
+                          .rule_a = rule_of(a, x.decision),
+                          .rule_b = rule_of(b, y.decision),
+                          .parameters_a = parameters_text(x),
+                          .parameters_b = parameters_text(y)};
     if (change.preset_a != change.preset_b || change.parameters_a != change.parameters_b)
       out.push_back(std::move(change));
   }

@@ -8,6 +8,7 @@
 #include "importers/osm/read_extract.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/parallel.h"
+#include "pipeline/evidence/region_priors.h"
 #include "pipeline/footprints/load.h"
 
 namespace blockrand::run {
@@ -44,40 +45,6 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
   return {std::move(extract), area, std::move(facts), crs, round_trip, std::move(projection)};
 }
 
-std::vector<classify::RegionPrior> region_priors(const districts::RuleSets& book, const classify::Tables& tables) {
-  std::vector<classify::RegionPrior> out;
-  for (const districts::RuleSet& set : book.sets) {
-    classify::RegionPrior prior;
-    prior.style = set.prior.style;
-    prior.era = set.prior.era;
-    if (!set.prior.substyle.empty()) {
-      prior.substyle.assign(tables.catalogue.size(), 1);
-      for (const auto& [id, weight] : set.prior.substyle)
-        if (const auto index = tables.catalogue.index(id)) prior.substyle[*index] = classify::kNamedSubstyle * weight;
-    }
-    for (std::size_t i = 0; i < prior.storeys.size(); ++i)
-      if (const auto usual = set.prior.storeys.find(std::string(districts::kStoreyPriorNames[i]));
-          usual != set.prior.storeys.end())
-        prior.storeys[i] = usual->second;
-    out.push_back(std::move(prior));
-  }
-  return out;
-}
-
-evidence::StyleExtract classify_by_rule_sets(const model::Extract& extract,
-                                             const footprints::FootprintStore& footprints,
-                                             const evidence::FactsExtract& facts, const evidence::TagFacts& tags,
-                                             const classify::Tables& tables, const districts::RuleSets& book,
-                                             int workers, base::Progress& progress) {
-  const std::vector<classify::RegionPrior> priors = region_priors(book, tables);
-  const evidence::PriorOf prior = [&](std::uint32_t building) -> const classify::RegionPrior* {
-    const std::uint32_t set =
-        book.choose(footprints::box_centre(extract, extract.buildings[footprints[building].lead]));
-    return set == districts::RuleSets::kNoSet ? nullptr : &priors[set];
-  };
-  return evidence::classify_extract(facts, tags, tables, prior, {}, workers, progress);
-}
-
 PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& options,
                                 const std::optional<TileChoice>& tile, const classify::Tables& tables,
                                 const districts::RuleSets& book, base::Progress& progress) {
@@ -86,11 +53,14 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   model::Report report;
   std::vector<footprints::Shard> shards =
       footprints::make_shards(extract, report, tile ? tile->id.level : footprints::kTileLevel);
-  if (!tile) located.facts.coverage = context::coverage_of(footprints::building_places(extract, located.projection));
   repair::KeptNodes kept(extract);
   footprints::RepairedExtract repaired =
       footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress);
   malloc_trim(0);
+  if (!tile) {
+    const std::vector<model::Point2> places = footprints::building_places(extract, located.projection);
+    located.facts.coverage = context::coverage_of(places);
+  }
   const context::UseOfTags use_of = [&](const std::function<std::string_view(std::string_view)>& tag) {
     const auto category = tables.ground_floor.category(tag);
     return category ? std::string_view(tables.ground_floor.categories[*category].name) : std::string_view();
@@ -104,10 +74,16 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   evidence::TagFacts tags =
       evidence::tag_facts(extract, repaired.footprints, context, tables, located.projection, facts);
   malloc_trim(0);
-  evidence::StyleExtract styles =
-      classify_by_rule_sets(extract, repaired.footprints, facts, tags, tables, book, workers, progress);
-  return {std::move(shards),  std::move(report), std::move(kept), std::move(repaired),
-          std::move(context), std::move(facts),  std::move(tags), std::move(styles)};
+  evidence::StyleExtract styles = evidence::classify_extract(
+      facts, tags, tables, evidence::prior_by_place(extract, repaired.footprints, book, tables), {}, workers, progress);
+  return {.shards = std::move(shards),
+          .report = std::move(report),
+          .kept = std::move(kept),
+          .repaired = std::move(repaired),
+          .context = std::move(context),
+          .facts = std::move(facts),
+          .tags = std::move(tags),
+          .styles = std::move(styles)};
 }
 
 }  // namespace blockrand::run

@@ -51,17 +51,6 @@ struct PreparedExtract {
   evidence::StyleExtract styles;
 };
 
-/// What may be assumed of the regions of a rule book's sets, parallel to them.
-std::vector<classify::RegionPrior> region_priors(const districts::RuleSets& book, const classify::Tables& tables);
-
-/// Classifies by what a rule book lets assume of its places; everything else that classification looks at is the same
-/// for all books.
-evidence::StyleExtract classify_by_rule_sets(const model::Extract& extract,
-                                             const footprints::FootprintStore& footprints,
-                                             const evidence::FactsExtract& facts, const evidence::TagFacts& tags,
-                                             const classify::Tables& tables, const districts::RuleSets& book,
-                                             int workers, base::Progress& progress);
-
 /// Cuts into shards, repairs, finds the context, measures, classifies; fills facts.coverage where no earlier build
 /// pinned it. \param located  stays where it is while the result is used
 PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& options,

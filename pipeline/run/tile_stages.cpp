@@ -61,10 +61,24 @@ Region prepare(const footprints::Shard& shard, std::span<const std::uint32_t> nu
   return region;
 }
 
-void resolve(Region& region, const TileInputs& in) {
-  attributes::resolve_attributes(
-      region, {in.defaults, in.neighbours, in.seed, in.ground, &in.overrides, &in.styles.tables.catalogue},
-      in.generate);
+/// The tile's buildings with all attributes but those of their style; as well of neighbours beside it.
+/// \param explain  what spoke for each style is kept
+Region resolve_buildings(const footprints::Shard& shard, std::span<const std::uint32_t> numbers, const TileInputs& in,
+                         bool explain) {
+  const auto start = std::chrono::steady_clock::now();
+  Region region = prepare(shard, numbers, in);
+  in.vicinity.label_wall_segments(region, numbers);  // party walls turn ridges, and with them heights
+  in.context_time += std::chrono::nanoseconds(std::chrono::steady_clock::now() - start).count();
+  evidence::put_styles(region, numbers, in.styles, explain);
+  attributes::resolve_attributes(region,
+                                 {.defaults = in.defaults,
+                                  .neighbours = in.neighbours,
+                                  .seed = in.seed,
+                                  .ground = in.ground,
+                                  .overrides = &in.overrides,
+                                  .catalogue = &in.styles.tables.catalogue},
+                                 in.generate);
+  return region;
 }
 
 /// m above the height reference up to which a building's outer walls reach.
@@ -104,12 +118,7 @@ void cover_party_walls(Region& region, const TileInputs& in) {
     numbers.push_back(number);
   }
   Region halo;
-  if (!beside.seeds.empty()) {
-    halo = prepare(beside, numbers, in);
-    in.vicinity.label_wall_segments(halo, numbers);  // party walls turn ridges, and with them heights
-    evidence::put_styles(halo, numbers, in.styles, false);
-    resolve(halo, in);
-  }
+  if (!beside.seeds.empty()) halo = resolve_buildings(beside, numbers, in, false);
   for (Building& building : region.buildings)
     for (model::WallSegment& edge : building.edges) {
       if (edge.kind != model::WallSegmentKind::party_wall || edge.neighbour.number == 0) continue;
@@ -125,12 +134,7 @@ Region run_tile(std::size_t shard, const TileInputs& in) {
   std::vector<std::uint32_t> numbers(in.shards[shard].seeds.size());
   for (std::size_t i = 0; i < numbers.size(); ++i)
     numbers[i] = in.repaired.first[shard] + static_cast<std::uint32_t>(i);
-  const auto start = std::chrono::steady_clock::now();
-  Region region = prepare(in.shards[shard], numbers, in);
-  in.vicinity.label_wall_segments(region, numbers);
-  in.context_time += std::chrono::nanoseconds(std::chrono::steady_clock::now() - start).count();
-  evidence::put_styles(region, numbers, in.styles, in.explain);
-  resolve(region, in);
+  Region region = resolve_buildings(in.shards[shard], numbers, in, in.explain);
   evidence::put_style_attributes(region, numbers, in.styles);
   attributes::assign_region(region, numbers, in.assigner);
   attributes::mark_overrides(region, in.overrides, &in.styles.tables.catalogue);

@@ -194,11 +194,6 @@ const Style* Catalogue::find(std::string_view id) const {
   return i ? &styles_[*i] : nullptr;
 }
 
-std::optional<model::StyleClass> Catalogue::class_of(std::string_view id) const {
-  const Style* style = find(id);
-  return style ? std::optional(style->style_class) : std::nullopt;
-}
-
 Catalogue read_catalogue(const std::string& configs) {
   const std::vector<std::string> materials = material_classes(configs + "/materials/materials.toml");
   TomlTable file = TomlTable::read(configs + "/styles/catalogue.toml");

@@ -73,7 +73,6 @@ class Catalogue {
   const std::vector<std::uint8_t>& of_class(model::StyleClass c) const {
     return by_class_[static_cast<std::size_t>(c)];
   }
-  std::optional<model::StyleClass> class_of(std::string_view id) const;
 
  private:
   std::vector<Style> styles_;

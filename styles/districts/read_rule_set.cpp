@@ -384,9 +384,4 @@ void read_rule_set(const std::string& path, RuleSets& book) {
   book.sets.push_back(Reader(path, book).read(std::move(root)));
 }
 
-void parse_rule_set(std::string_view text, const std::string& name, RuleSets& book) {
-  TomlTable root = TomlTable::parse(text, name);
-  book.sets.push_back(Reader(name, book).read(std::move(root)));
-}
-
 }  // namespace blockrand::districts

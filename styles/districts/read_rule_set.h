@@ -11,7 +11,8 @@ namespace blockrand::districts {
 inline constexpr double kMaxNear = 2000;
 inline constexpr double kMaxPlaceRadius = 30000;  ///< m; places are region data
 
-/// Reads a rule set and adds it, and the presets it declares itself, to the book. The language: docs/districts.md.
+/// Reads a rule set and adds it, and the presets it declares itself, to the book. Files that it names are relative to its
+/// folder. The language: docs/districts.md.
 ///
 /// \throws base::InputError  with file, line and column: not TOML, unknown keys and names (with the nearest known),
 /// values
@@ -20,8 +21,5 @@ inline constexpr double kMaxPlaceRadius = 30000;  ///< m; places are region data
 ///                           not positive or do not sum to 1, two rules of one name, a rule that can have no effect
 ///                           because stronger ones without conditions take all it gives
 void read_rule_set(const std::string& path, RuleSets& book);
-
-/// The same from text; files that it names are relative to the folder of `name`.
-void parse_rule_set(std::string_view text, const std::string& name, RuleSets& book);
 
 }  // namespace blockrand::districts

@@ -107,20 +107,4 @@ ElementMesh MeshBuilder::take() {
   return std::exchange(mesh_, {});
 }
 
-std::size_t triangle_count(const ElementMesh& mesh) {
-  std::size_t triangles = 0;
-  for (const ElementFace& f : mesh.faces) triangles += f.count - 2;
-  return triangles;
-}
-
-Bounds3 bounds_of(const ElementMesh& mesh) {
-  if (mesh.vertices.empty()) return {};
-  Bounds3 b{mesh.vertices[0], mesh.vertices[0]};
-  for (const Point3& p : mesh.vertices) {
-    b.least = {std::min(b.least.x, p.x), std::min(b.least.y, p.y), std::min(b.least.z, p.z)};
-    b.most = {std::max(b.most.x, p.x), std::max(b.most.y, p.y), std::max(b.most.z, p.z)};
-  }
-  return b;
-}
-
 }  // namespace blockrand::elements

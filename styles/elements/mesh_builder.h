@@ -53,13 +53,4 @@ class MeshBuilder {
   std::map<model::Point3, std::uint32_t> corner_at_;
 };
 
-/// Triangles that the mesh takes when each face is cut into a fan.
-std::size_t triangle_count(const ElementMesh& mesh);
-
-/// Smallest and largest coordinates of an element's mesh, m.
-struct Bounds3 {
-  model::Point3 least, most;
-};
-Bounds3 bounds_of(const ElementMesh& mesh);
-
 }  // namespace blockrand::elements

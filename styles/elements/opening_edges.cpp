@@ -1,4 +1,4 @@
-// Rough openings and the edge language.
+// The edge language of openings.
 #include "styles/elements/opening_edges.h"
 
 #include <fmt/format.h>
@@ -18,21 +18,6 @@ constexpr double kLeastOpening = 0.05;
 bool share(double v) { return v >= 0 && v <= 1; }
 
 }  // namespace
-
-tl::expected<OpeningRectangle, std::string> rough_opening(const RoughOpening& o, double width, double height) {
-  OpeningRectangle r;
-  if (o.relative)
-    r = {o.left * width, o.bottom * height, o.right * width, o.top * height};
-  else
-    r = {o.left, o.bottom, width - o.right, o.top};
-  const double slack = 1e-9;
-  if (!(r.left >= -slack && r.bottom >= -slack && r.right <= width + slack && r.top <= height + slack))
-    return tl::unexpected<std::string>("the opening leaves its wall");
-  if (!(r.width() >= kLeastOpening && r.height() >= kLeastOpening))
-    return tl::unexpected(
-        fmt::format("the opening is {:.2f} x {:.2f} m: less than {} m", r.width(), r.height(), kLeastOpening));
-  return r;
-}
 
 tl::expected<Outline, std::string> opening_outline(const OpeningRectangle& r, const OpeningEdges& given, bool door) {
   OpeningEdges edges = given;

@@ -1,4 +1,4 @@
-// Openings drawn edge by edge: a rough rectangle whose four edges are moved, shortened and shaped
+// Openings drawn edge by edge: a rectangle whose four edges are moved, shortened and shaped
 // (docs/sources.md, Finkenzeller 3.11).
 #pragma once
 
@@ -11,24 +11,12 @@
 
 namespace blockrand::elements {
 
-/// Where the rough opening lies in its wall. Shares of the wall's height and width, or metres.
-struct RoughOpening {
-  bool relative = true;
-  double bottom = 0.2, top = 0.8;  ///< shares of the wall's height (v_s, v_e), or m above the wall's foot
-  double left = 0.25,
-         right = 0.75;  ///< shares of the wall's width (h_s, h_e), or m of wall left and right of the opening
-};
-
 /// Axis-parallel rectangle in the wall's plane, m.
 struct OpeningRectangle {
   double left = 0, bottom = 0, right = 0, top = 0;
   double width() const { return right - left; }
   double height() const { return top - bottom; }
 };
-
-/// Error: the opening leaves the wall or has no size.
-tl::expected<OpeningRectangle, std::string> rough_opening(const RoughOpening& opening, double wall_width,
-                                                          double wall_height);
 
 /// What becomes of one edge. Shares in [0, 1]: along the edge of its length, across it of the opening's extent there.
 /// Everything grows into the opening.

@@ -1,13 +1,6 @@
 // Reads profile presets and checks that they can be built.
 #include "styles/elements/profile_library.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <vector>
-
-#include "pipeline/base/error.h"
 #include "pipeline/base/toml_file.h"
 #include "styles/elements/built_in_profiles.h"
 
@@ -41,18 +34,6 @@ void read_preset(base::TomlTable table, const std::string& name, ProfileLibrary&
 }
 
 }  // namespace
-
-void read_profiles(const std::string& folder, ProfileLibrary& library) {
-  std::vector<std::filesystem::path> files;
-  std::error_code problem;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, problem))
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
-  if (problem)
-    throw base::InputError(folder, "", "cannot list the profiles: " + problem.message(),
-                           "Name the configs folder of Blockrand");
-  std::sort(files.begin(), files.end());
-  for (const auto& file : files) read_preset(base::TomlTable::read(file.string()), file.stem().string(), library);
-}
 
 void parse_profile_preset(std::string_view text, const std::string& file, const std::string& name,
                           ProfileLibrary& library) {

@@ -18,12 +18,8 @@ struct ProfilePreset {
 /// By name: the file's name without its ending.
 using ProfileLibrary = std::map<std::string, ProfilePreset, std::less<>>;
 
-/// Adds every *.toml file of a folder; a name that is there already is replaced.
-/// \throws base::InputError  with file, line, column: unreadable files, unknown keys, programs that do not parse or
-/// draw no section
-void read_profiles(const std::string& folder, ProfileLibrary& library);
-
-/// Adds one preset from text. \throws base::InputError as above
+/// Adds one preset from the text of a file; a name that is there already is replaced.
+/// \throws base::InputError  with file, line, column: unknown keys, programs that do not parse or draw no section
 void parse_profile_preset(std::string_view text, const std::string& file, const std::string& name,
                           ProfileLibrary& library);
 

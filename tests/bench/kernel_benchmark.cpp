@@ -2,8 +2,6 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <boost/geometry.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <iterator>
 #include <utility>
 #include <vector>
@@ -95,58 +93,24 @@ std::vector<geometry::PlanBox> town(std::int64_t houses) {
   return out;
 }
 
-namespace bg = boost::geometry;
-using Corner = bg::model::point<double, 2, bg::cs::cartesian>;
-using TreeBox = bg::model::box<Corner>;
-using Tree = bg::index::rtree<std::pair<TreeBox, std::uint32_t>, bg::index::rstar<16>>;
-
-TreeBox tree_box(const geometry::PlanBox& b, double grown) {
-  return {{b.minimum.x - grown, b.minimum.y - grown}, {b.maximum.x + grown, b.maximum.y + grown}};
-}
-Tree tree_of(const std::vector<geometry::PlanBox>& boxes) {
-  std::vector<std::pair<TreeBox, std::uint32_t>> entries;
-  for (std::uint32_t i = 0; i < boxes.size(); ++i) entries.emplace_back(tree_box(boxes[i], 0), i);
-  return Tree(entries);  // packed: the best an R-tree can be
-}
-
 void near_by_box_index(benchmark::State& state) {
   const auto boxes = town(state.range(0));
-  const geometry::BoxIndex index(boxes, geometry::BoxIndex::kHouseCell);
+  const geometry::BoxIndex index(boxes);
   std::size_t i = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(index.near(boxes[i], static_cast<double>(state.range(1))));
     i = (i + 7919) % boxes.size();
   }
 }
-void near_by_rtree(benchmark::State& state) {
-  const auto boxes = town(state.range(0));
-  const Tree tree = tree_of(boxes);
-  std::size_t i = 0;
-  for (auto _ : state) {
-    std::vector<std::uint32_t> out;
-    const auto around = bg::index::intersects(tree_box(boxes[i], static_cast<double>(state.range(1))));
-    for (auto found = tree.qbegin(around); found != tree.qend(); ++found) out.push_back(found->second);
-    std::sort(out.begin(), out.end());
-    benchmark::DoNotOptimize(out);
-    i = (i + 7919) % boxes.size();
-  }
-}
 void make_box_index(benchmark::State& state) {
   const auto boxes = town(state.range(0));
-  for (auto _ : state) benchmark::DoNotOptimize(geometry::BoxIndex(boxes, geometry::BoxIndex::kHouseCell));
+  for (auto _ : state) benchmark::DoNotOptimize(geometry::BoxIndex(boxes));
 }
-void make_rtree(benchmark::State& state) {
-  const auto boxes = town(state.range(0));
-  for (auto _ : state) benchmark::DoNotOptimize(tree_of(boxes));
-}
-
 }  // namespace
 
 // Houses; metres around one of them.
 BENCHMARK(near_by_box_index)->ArgsProduct({{1000, 100000}, {1, 40, 250}});
-BENCHMARK(near_by_rtree)->ArgsProduct({{1000, 100000}, {1, 40, 250}});
 BENCHMARK(make_box_index)->Arg(100000);
-BENCHMARK(make_rtree)->Arg(100000);
 // 0: four corners, 1: L, 2: courtyard.
 BENCHMARK(weighted_skeleton)->DenseRange(0, 2);
 BENCHMARK(hipped_roof)->DenseRange(0, 2);

@@ -4,7 +4,7 @@ import gzip
 import os
 import unittest
 
-import judges
+import validators
 from blockrand_run import SAMPLE, BuildTest, blockrand, hashes, main, read_json, stray_siblings
 from model_files import citygml_trees
 from osm_files import Node, house, pbf_bytes, read_xml, write_pbf, write_xml
@@ -135,10 +135,10 @@ class EmptyExtracts(BuildTest):
         build, _ = self.counts_add_up(out)
         self.assertEqual((build['counts']['models'], build['counts']['represented']), (0, 0))
         self.hashes_match(out)
-        self.assertEqual(judges.xmllint(out), '')
-        self.assertEqual(judges.tileset(out), '')
-        self.assertEqual(judges.khronos(out), '')
-        self.assertEqual(judges.validate(out), '')
+        self.assertEqual(validators.xmllint(out), '')
+        self.assertEqual(validators.tileset(out), '')
+        self.assertEqual(validators.khronos(out), '')
+        self.assertEqual(validators.validate(out), '')
         self.assertEqual(sum(len(root.findall('.//{*}Building')) for _, root in citygml_trees(out)), 0)
         return build
 

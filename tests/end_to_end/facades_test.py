@@ -6,7 +6,7 @@ import shutil
 import struct
 import unittest
 
-import judges
+import validators
 from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, files_of, main, read_json
 from damage import Damaged
 from glb_files import glb_json, places
@@ -29,8 +29,8 @@ def lod2_polygons(text):
 
 class Facades(BuildTest):
     def sound(self, out):
-        self.assertEqual(judges.xmllint(out), '')
-        self.assertEqual(judges.khronos(out), '')
+        self.assertEqual(validators.xmllint(out), '')
+        self.assertEqual(validators.khronos(out), '')
         issues = read_json(out, 'build.json')['issues']
         self.assertNotIn('FACADE_FAILED', issues)
         self.assertNotIn('GRAMMAR_ERROR', issues)
@@ -81,7 +81,7 @@ class Facades(BuildTest):
         self.assertEqual((ext['nodes'], nodes['ext']), (0, 0))
         self.assertEqual(ext['ext'], nodes['nodes'])
         self.assertEqual((baked['ext'], baked['nodes']), (0, 0))
-        self.assertEqual(judges.khronos(baked_folder), '')
+        self.assertEqual(validators.khronos(baked_folder), '')
 
     def test_one_file(self):
         out = self.build(SAMPLE, 'single', *LOD3, '--formats', 'gltf', '--single-glb')
@@ -108,13 +108,13 @@ class Facades(BuildTest):
         ways = (['citygml', 'ext'], ['cityjson', 'nodes'], ['citygml', 'baked'], ['cityjson', 'ext', '--compress', 'meshopt'])
         for number, (form, *how) in enumerate(ways):
             out = self.build(SAMPLE, f'way{number}', '--lod', '3', '--formats', f'gltf,{form}', '--no-report', '--instancing', *how)
-            self.assertEqual(judges.validate(out), '')
-            self.assertEqual(judges.khronos(out), '')
+            self.assertEqual(validators.validate(out), '')
+            self.assertEqual(validators.khronos(out), '')
 
     def test_levels_of_detail(self):
         out = self.build(SAMPLE, 'levels', *LOD3, '--formats', 'gltf')
-        self.assertEqual(judges.tileset(out), '')
-        self.assertEqual(judges.metadata(out), '')
+        self.assertEqual(validators.tileset(out), '')
+        self.assertEqual(validators.metadata(out), '')
         for name in files_of(out, '.glb'):
             if '_lod' not in name:
                 for level in ('_lod1', '_lod2'):

@@ -3,7 +3,7 @@ import glob
 import os
 import unittest
 
-import judges
+import validators
 from blockrand_run import SOURCE, BuildTest, blockrand, main
 
 GRAMMARS = os.path.join(SOURCE, 'configs', 'grammars')
@@ -43,7 +43,7 @@ class Grammar(BuildTest):
             run = blockrand('grammar', 'run', self.path('house.cga'), '--lot', '24x18', '--seed', str(seed),
                             '-o', self.path('models', f'{seed}.glb'))
             self.assertEqual(run.code, 0, run)
-        self.assertEqual(judges.khronos(self.path('models')), '')
+        self.assertEqual(validators.khronos(self.path('models')), '')
 
 
 if __name__ == '__main__':

@@ -2,7 +2,7 @@
 import math
 import resource
 
-import judges
+import validators
 from blockrand_run import BuildTest, main, read_json
 from model_files import attributes, buildings
 from osm_files import METRE, Node, Relation, Way, house, ring, write_pbf, write_xml
@@ -14,7 +14,7 @@ class OddExtracts(BuildTest):
         out = self.build(write_xml(self.path(name + '.osm'), objects), name, *options)
         self.counts_add_up(out)
         self.hashes_match(out)
-        self.assertEqual(judges.problems(out), '')
+        self.assertEqual(validators.problems(out), '')
         twin = self.build(write_pbf(self.path(name + '.osm.pbf'), objects), name + '-pbf', *options)
         self.same_files(out, twin, 'tiles', 'tileset.json', 'citygml', 'report.json')
         return out
@@ -121,7 +121,7 @@ class OddShapes(OddExtracts):
                 self.assertLess(read_json(out, 'run.json')['peak_rss_bytes'], 1e9)
                 self.counts_add_up(out)
                 self.assertEqual(self.ends(out), {})
-                self.assertEqual(judges.problems(out), '')
+                self.assertEqual(validators.problems(out), '')
 
     def test_a_self_intersecting_ring(self):
         d = 20 * METRE
@@ -198,7 +198,7 @@ class OddObjects(OddExtracts):
         objects = house(1, 11, 51.5, {'name': 'a\0b', 'bad\0key': 'v', 'height': '1\x002', 'note': 'bell\x07 \ufffe \x1b[31m'})
         out = self.build(write_pbf(self.path('nul.osm.pbf'), objects), 'nul')
         self.counts_add_up(out)
-        self.assertEqual(judges.problems(out), '')
+        self.assertEqual(validators.problems(out), '')
         self.assertIn(('w1001', 'TEXT_CLEANED'), self.notices(out))
 
     def test_invalid_utf8_in_a_tag(self):
@@ -206,7 +206,7 @@ class OddObjects(OddExtracts):
         objects[-1].tags['name'] = b'Caf\xe9 \xff\xfe'
         out = self.build(write_pbf(self.path('latin.osm.pbf'), objects), 'latin')
         self.counts_add_up(out)
-        self.assertEqual(judges.problems(out), '')
+        self.assertEqual(validators.problems(out), '')
 
     def test_negative_ids(self):
         """JOSM gives new objects negative ids."""

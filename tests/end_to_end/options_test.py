@@ -2,7 +2,7 @@
 import json
 import os
 
-import judges
+import validators
 from blockrand_run import SAMPLE, BuildTest, blockrand, files_of, main, read_json, sha256
 from model_files import NAMES, Glb, attributes, buildings, citygml_trees, points, tile_contents
 
@@ -22,7 +22,7 @@ class Options(BuildTest):
     def valid(self, folder):
         self.counts_add_up(folder)
         self.hashes_match(folder)
-        self.assertEqual(judges.problems(folder), '')
+        self.assertEqual(validators.problems(folder), '')
 
     # ---- level of detail
 

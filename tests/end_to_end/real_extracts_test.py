@@ -10,7 +10,7 @@ import shutil
 import sys
 import unittest
 
-import judges
+import validators
 from blockrand_run import NO_WHOLE_GEOMETRY, NOT_STANDING, BuildTest, Setup, call, extract, files_of, main, read_json
 from glb_files import places
 
@@ -120,21 +120,21 @@ class RealExtract:
         self.hashes_match(self.out)
 
     def test_validate(self):
-        self.assertEqual(judges.validate(self.out), '')
+        self.assertEqual(validators.validate(self.out), '')
 
     def test_schema(self):
-        self.assertEqual(judges.xmllint(self.out), '')
+        self.assertEqual(validators.xmllint(self.out), '')
 
     def test_khronos(self):
         files = len(files_of(self.out, '.glb'))
-        self.assertEqual(judges.khronos(self.out, every=-(-files // KHRONOS_FILES)), '')
+        self.assertEqual(validators.khronos(self.out, every=-(-files // KHRONOS_FILES)), '')
 
     def test_tileset(self):
-        self.assertEqual(judges.tileset(self.out), '')
+        self.assertEqual(validators.tileset(self.out), '')
 
     def test_metadata(self):
         files = files_of(self.out, '.glb')
-        self.assertEqual(judges.metadata(self.out, *files[::-(-len(files) // KHRONOS_FILES)]), '')
+        self.assertEqual(validators.metadata(self.out, *files[::-(-len(files) // KHRONOS_FILES)]), '')
 
 
 class RealFacades(RealExtract):

@@ -1,5 +1,5 @@
 """Roof tags from the file to the model: ridges and hips that are drawn, tags that contradict each other."""
-import judges
+import validators
 from blockrand_run import BuildTest, main, read_json
 from osm_files import METRE, Node, Way, write_xml
 
@@ -23,7 +23,7 @@ class RoofTags(BuildTest):
     def make(self, name, objects):
         out = self.build(write_xml(self.path(name + '.osm'), objects), name)
         self.counts_add_up(out)
-        self.assertEqual(judges.problems(out), '')
+        self.assertEqual(validators.problems(out), '')
         return out
 
     def said(self, out):

@@ -8,7 +8,7 @@ import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-import judges
+import validators
 from blockrand_run import SAMPLE, BuildTest, Setup, call, main, read_json, sha256
 from model_files import GML_ID, attributes, buildings
 from osm_files import Node, Way, read_xml
@@ -163,24 +163,24 @@ class Sample(BuildTest):
         diff = '\n'.join(difflib.unified_diff(*texts, 'golden/sample_summary.json', 'this build', lineterm='', n=2))
         self.assertFalse(diff, f'\n{diff}\nIf the new values are right: python3 {os.path.relpath(__file__)} --update')
 
-    # ---- judges
+    # ---- validators
 
     def test_schema(self):
-        self.assertEqual(judges.xmllint(self.out), '')
+        self.assertEqual(validators.xmllint(self.out), '')
 
     def test_khronos(self):
-        self.assertEqual(judges.khronos(self.out), '')
+        self.assertEqual(validators.khronos(self.out), '')
 
     def test_tileset(self):
-        self.assertEqual(judges.tileset(self.out), '')
+        self.assertEqual(validators.tileset(self.out), '')
 
     def test_metadata(self):
-        self.assertEqual(judges.metadata(self.out), '')
+        self.assertEqual(validators.metadata(self.out), '')
 
     def test_validate(self):
-        self.assertEqual(judges.validate(self.out), '')
+        self.assertEqual(validators.validate(self.out), '')
 
-    # ---- the judges themselves: each must notice damage
+    # ---- the validators themselves: each must notice damage
 
     def damaged(self, name, path, change):
         """A copy of the build with one file changed."""
@@ -198,7 +198,7 @@ class Sample(BuildTest):
         return max((p for p in read_json(self.out, 'build.json')['files'] if p.endswith(end)),
                    key=lambda p: os.path.getsize(os.path.join(self.out, p)))
 
-    def test_judges_notice_a_moved_vertex(self):
+    def test_validators_notice_a_moved_vertex(self):
         def lift(data):
             at = data.index(b'<bldg:RoofSurface')
             at = data.index(b'<gml:posList>', at) + 13
@@ -207,24 +207,24 @@ class Sample(BuildTest):
             for i in (2, len(n) - 1):
                 n[i] = b'%.4f' % (float(n[i]) + 3)
             return data[:at] + b' '.join(n) + data[end:]
-        said = judges.validate(self.damaged('moved', self.some_file('.gml'), lift))
+        said = validators.validate(self.damaged('moved', self.some_file('.gml'), lift))
         self.assertIn('NOT SOUND', said)
         self.assertIn('own checker: ', said)
         self.assertNotIn('CGAL: valid', said)
 
-    def test_judges_notice_a_lost_building(self):
+    def test_validators_notice_a_lost_building(self):
         def drop(data):
             a, b = data.index(b'<cityObjectMember>'), data.index(b'</cityObjectMember>')
             return data[:a] + data[b + len(b'</cityObjectMember>'):]
-        self.assertIn('build.json', judges.validate(self.damaged('lost', self.some_file('.gml'), drop)))
+        self.assertIn('build.json', validators.validate(self.damaged('lost', self.some_file('.gml'), drop)))
 
-    def test_judges_notice_a_wrong_element(self):
+    def test_validators_notice_a_wrong_element(self):
         folder = self.damaged('element', self.some_file('.gml'), lambda d: d.replace(b'bldg:RoofSurface', b'bldg:Rooof'))
-        self.assertIn('Rooof', judges.xmllint(folder))
+        self.assertIn('Rooof', validators.xmllint(folder))
 
-    def test_judges_notice_a_tile_out_of_its_box(self):
+    def test_validators_notice_a_tile_out_of_its_box(self):
         folder = self.damaged('box', 'tileset.json', lambda d: self.narrower(d))
-        self.assertIn('outside', judges.tileset(folder))
+        self.assertIn('outside', validators.tileset(folder))
 
     @staticmethod
     def narrower(data):
@@ -238,9 +238,9 @@ class Sample(BuildTest):
         shrink(tileset['root'])
         return json.dumps(tileset).encode()
 
-    def test_judges_notice_a_broken_glb(self):
+    def test_validators_notice_a_broken_glb(self):
         folder = self.damaged('glb', self.some_file('.glb'), lambda d: d.replace(b'"VEC3"', b'"VEC2"', 1))
-        self.assertNotEqual(judges.khronos(folder), '')
+        self.assertNotEqual(validators.khronos(folder), '')
 
 
 class SampleFile(unittest.TestCase):

@@ -14,7 +14,7 @@ import statistics
 import sys
 import unittest
 
-import judges
+import validators
 from blockrand_run import SAMPLE, BuildTest, Setup, call, extract, files_of, first_present, main, read_json
 from geodesy import Proj, metres_between
 from model_files import NAMES, GML_ID, Glb, buildings, citygml_trees, tile_contents
@@ -98,7 +98,7 @@ class InBrowser:
             self.skipTest('node is not installed')
         if not Setup.node_modules:
             self.skipTest('no node_modules: npm install with tests/validators/package.json')
-        run = call([tool, os.path.join(judges.VALIDATORS, 'tiles_viewer.mjs'), os.path.abspath(folder),
+        run = call([tool, os.path.join(validators.VALIDATORS, 'tiles_viewer.mjs'), os.path.abspath(folder),
                     os.path.abspath(Setup.node_modules), picture or self.path('picture.png')], timeout=850)
         if run.code == 77:
             self.skipTest(run.err.strip())

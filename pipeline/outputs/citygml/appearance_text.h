@@ -36,8 +36,8 @@ class AppearanceText {
   void add(const model::ColouredElement& element, std::string_view id) {
     const auto& faces = element.element->mesh.faces;
     for (std::size_t f = 0; f < faces.size(); ++f) {
-      const model::PartMaterial& look = element.materials[static_cast<std::size_t>(faces[f].part)];
-      append_polygon_id(target(look.material, look.colour), id, f);
+      const model::PartMaterial& material = element.materials[static_cast<std::size_t>(faces[f].part)];
+      append_polygon_id(target(material.material, material.colour), id, f);
       close();
     }
   }
@@ -51,15 +51,15 @@ class AppearanceText {
     out += "</app:theme>\n";
     for (std::size_t i = 0; i < targets_.size(); ++i) {
       const std::uint32_t key = numbers_.keys()[i];
-      const X3dMaterial look = x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
+      const X3dMaterial material = x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
       out += "<app:surfaceDataMember><app:X3DMaterial><gml:name>";
-      append_xml(out, look.name);
+      append_xml(out, material.name);
       out += "</gml:name><app:diffuseColor>";
-      append_ten_thousandths(out, look.diffuse, ' ');
+      append_ten_thousandths(out, material.diffuse, ' ');
       out += "</app:diffuseColor><app:specularColor>";
-      append_ten_thousandths(out, look.specular, ' ');
+      append_ten_thousandths(out, material.specular, ' ');
       out += "</app:specularColor><app:shininess>";
-      append_ten_thousandths(out, look.shininess);
+      append_ten_thousandths(out, material.shininess);
       out += "</app:shininess>\n";
       write(out);
       write(targets_[i]);

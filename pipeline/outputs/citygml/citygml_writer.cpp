@@ -84,8 +84,8 @@ bool is_year(std::string_view text) {
 /// a time through the XML library costs several times as much.
 class BuildingText {
  public:
-  BuildingText(const model::Region& region, const CityGmlOptions& options, AppearanceText& looks)
-      : region_(region), options_(options), tags_(region.extract), geometry_(out_), looks_(looks) {}
+  BuildingText(const model::Region& region, const CityGmlOptions& options, AppearanceText& appearance)
+      : region_(region), options_(options), tags_(region.extract), geometry_(out_), appearance_(appearance) {}
 
   /// The text of one cityObjectMember; valid until the next call.
   std::string_view member(const model::Building& building) {
@@ -291,13 +291,13 @@ class BuildingText {
       out_ += "<bldg:lod1Solid>";
       geometry_.solid(part.lod1, solid_id, !lod2);
       out_ += "</bldg:lod1Solid>\n";
-      if (!lod2) looks_.add(part.lod1, solid_id);
+      if (!lod2) appearance_.add(part.lod1, solid_id);
     }
     if (lod2) {
       out_ += "<bldg:lod2Solid>";
       geometry_.solid_of_references(part.lod2, id + "_lod2", id);
       out_ += "</bldg:lod2Solid>\n";
-      looks_.add(part.lod2, id);
+      appearance_.add(part.lod2, id);
       if (options_.lod >= 3 && part.lod >= 3 && !part.lod3.solid.empty())
         detail(part, id);
       else
@@ -325,7 +325,7 @@ class BuildingText {
       out_ += "<bldg:lod3Geometry>";
       geometry_.multi_surface(solid, body_id);
       out_ += "</bldg:lod3Geometry>\n</bldg:BuildingInstallation></bldg:outerBuildingInstallation>\n";
-      looks_.add(solid, body_id);
+      appearance_.add(solid, body_id);
     };
     for (const model::WallInstallation& body : lod3.installations) body_of_its_own(body.solid, body.kind);
     for (const model::RoofInstallation& body : lod3.roof_installations)
@@ -333,7 +333,7 @@ class BuildingText {
     geometry_.surfaces(part.lod2, lod3, id, [&](std::size_t o) {
       if (in_opening[o]) implicit(*in_opening[o]);
     });
-    looks_.add_detail(part.lod2, lod3.solid, id);
+    appearance_.add_detail(part.lod2, lod3.solid, id);
     out_ += "<bldg:lod3Solid>";
     geometry_.solid_of_detail(part.lod2, lod3.solid, id + "_lod3", id);
     out_ += "</bldg:lod3Solid>\n";
@@ -373,7 +373,7 @@ class BuildingText {
       out_ += '>';
       geometry_.multi_surface(region_.elements[p.element].element->mesh, id);
       out_ += "</relativeGMLGeometry>";
-      looks_.add(region_.elements[p.element], id);
+      appearance_.add(region_.elements[p.element], id);
     }
     out_ += "<referencePoint><gml:Point><gml:pos>";
     append_grid(out_, p.origin.x);
@@ -430,7 +430,7 @@ class BuildingText {
   TagReader tags_;
   std::string out_;
   GeometryText geometry_;
-  AppearanceText& looks_;
+  AppearanceText& appearance_;
   std::vector<bool> written_;  ///< elements whose geometry stands in the file
 };
 
@@ -540,14 +540,14 @@ void write_citygml(const model::Region& region, const CityGmlOptions& options, c
   const auto write_raw = [&](std::string_view piece) {
     if (!state.error) xmlTextWriterWriteRawLen(writer, xml(piece.data()), static_cast<int>(piece.size()));
   };
-  AppearanceText looks;
-  BuildingText text(region, options, looks);
+  AppearanceText appearance;
+  BuildingText text(region, options, appearance);
   for (const model::Building& building : region.buildings) {
     if (!is_written(building)) continue;
     if (state.error) break;
     write_raw(text.member(building));
   }
-  looks.write(region.materials, write_raw);
+  appearance.write(region.materials, write_raw);
   xmlTextWriterEndDocument(writer);
   xmlTextWriterFlush(writer);
   if (state.error) std::rethrow_exception(state.error);

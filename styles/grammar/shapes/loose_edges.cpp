@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "pipeline/base/portable_math.h"
 #include "styles/grammar/shapes/mesh_tools.h"
@@ -26,11 +27,8 @@ bool inside(const std::vector<Vector2>& ring, Vector2 p) {
   return in;
 }
 
-}  // namespace
-
-std::vector<MeshFace> faces_of_edges(const std::vector<Vector3>& vertices, std::vector<LooseEdge> edges,
-                                     Vector3 normal) {
-  // Opposite edges cancel.
+/// What is left where opposite edges cancel, by their vertices.
+std::vector<LooseEdge> without_opposites(std::vector<LooseEdge> edges) {
   std::sort(edges.begin(), edges.end(), [](const LooseEdge& a, const LooseEdge& b) {
     return std::tuple(std::min(a.from, a.to), std::max(a.from, a.to), a.from, a.order) <
            std::tuple(std::min(b.from, b.to), std::max(b.from, b.to), b.from, b.order);
@@ -47,6 +45,14 @@ std::vector<MeshFace> faces_of_edges(const std::vector<Vector3>& vertices, std::
     kept.insert(kept.end(), up.begin() + static_cast<std::ptrdiff_t>(common), up.end());
     kept.insert(kept.end(), down.begin() + static_cast<std::ptrdiff_t>(common), down.end());
   }
+  return kept;
+}
+
+}  // namespace
+
+std::vector<MeshFace> faces_of_edges(const std::vector<Vector3>& vertices, std::vector<LooseEdge> edges,
+                                     Vector3 normal) {
+  std::vector<LooseEdge> kept = without_opposites(std::move(edges));
   if (kept.empty()) return {};
   std::sort(kept.begin(), kept.end(), [](const LooseEdge& a, const LooseEdge& b) {
     return std::tie(a.from, a.to, a.order) < std::tie(b.from, b.to, b.order);

@@ -1,7 +1,8 @@
 #include "styles/grammar/shapes/operations.h"
 
 #include <algorithm>
-#include <array>
+#include <functional>
+#include <iterator>
 
 #include "styles/grammar/shapes/operation_list.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kFirst = 1, kSecond = 2, kThird = 4, kAll = 0xffffffff;
 
-/// Sorted by name (a test checks it).
+/// Sorted by name.
 constexpr OperationEntry kOperations[] = {
     {"alignScopeToAxes", 0, 1, kFirst, run_align_scope_to_axes},
     {"alignScopeToGeometry", 2, 3, kFirst | kSecond | kThird, run_align_scope_to_geometry},
@@ -70,10 +71,11 @@ constexpr OperationEntry kOperations[] = {
     {"translateUV", 3, 3, 0, run_translate_uv},
     {"trim", 0, 0, 0, run_trim},
 };
+static_assert(std::ranges::adjacent_find(kOperations, std::ranges::greater_equal(), &OperationEntry::name) ==
+                  std::ranges::end(kOperations),
+              "find_operation() searches by halves");
 
 }  // namespace
-
-std::span<const OperationEntry> operations() { return kOperations; }
 
 const OperationEntry* find_operation(std::string_view name) {
   const auto it = std::lower_bound(std::begin(kOperations), std::end(kOperations), name,

@@ -42,12 +42,9 @@ struct OperationEntry {
   Operation run = nullptr;
 };
 
-/// Every operation that runs here, sorted by name. What is not in the table is not there yet; operations with blocks
-/// have functions of their own (split.h, components.h, pieces.h), and NIL, print, report, label and symbols are the
-/// evaluator's. `set` is set_attribute() for what this folder knows, and the evaluator's for generic attributes.
-std::span<const OperationEntry> operations();
-
-/// Null for names that are not in the table.
+/// An operation that runs here. Null for what is not there yet; operations with blocks have functions of their own
+/// (split.h, components.h, pieces.h), and NIL, print, report, label and symbols are the evaluator's. `set` is
+/// set_attribute() for what this folder knows, and the evaluator's for generic attributes.
 const OperationEntry* find_operation(std::string_view name);
 
 /// `set(name, value)` for scope.{tx…sz}, trim.{vertical,horizontal}, seedian and material.*

@@ -73,14 +73,6 @@ Frame system_in_world(const Shape& shape, CoordinateSystem system) {
   return {};
 }
 
-Vector3 convert(const Shape& shape, CoordinateSystem from, CoordinateSystem to, bool orientation, Vector3 value) {
-  const Frame way = relative_to(system_in_world(shape, to), system_in_world(shape, from));
-  if (!orientation) return place(way, value);
-  Frame turned;
-  turned.axes = axes_of_angles(value);
-  return angles_of_axes(compose(way, turned).axes);
-}
-
 double scope_elevation(const Shape& shape) {
   return place(object_in_world(shape), place(shape.pivot, shape.scope.origin)).y;
 }

@@ -55,10 +55,6 @@ enum class CoordinateSystem : std::uint8_t { scope, pivot, object, world };
 /// The named frame in world coordinates: `convert(…)` (docs/rule_language.md §3.2).
 Frame system_in_world(const Shape& shape, CoordinateSystem system);
 
-/// convert(from, to, pos|orient, xyz): a position or Euler angles (degrees) given in one system, in the other. All
-/// three components; rules ask for one.
-Vector3 convert(const Shape& shape, CoordinateSystem from, CoordinateSystem to, bool orientation, Vector3 value);
-
 /// `scope.elevation`: the height of the scope's origin in the world, in metres.
 double scope_elevation(const Shape& shape);
 

@@ -21,6 +21,7 @@
 #include "pipeline/context/context_extract.h"
 #include "pipeline/evidence/building_facts.h"
 #include "pipeline/evidence/classify_extract.h"
+#include "pipeline/evidence/region_priors.h"
 #include "pipeline/footprints/area.h"
 #include "pipeline/footprints/load.h"
 #include "pipeline/footprints/repair/kept_nodes.h"
@@ -111,11 +112,7 @@ void write_table(const std::string& input, const std::string& configs, const std
   Answers a;
   if (answers) {
     const auto rules = attributes::read_rule_sets(configs, "");
-    const std::vector<classify::RegionPrior> priors = run::region_priors(rules.book, tables);
-    const evidence::PriorOf prior = [&](std::uint32_t b) -> const classify::RegionPrior* {
-      const std::uint32_t set = rules.book.choose(footprints::box_centre(extract, extract.buildings[store[b].lead]));
-      return set == districts::RuleSets::kNoSet ? nullptr : &priors[set];
-    };
+    const evidence::PriorOf prior = evidence::prior_by_place(extract, store, rules.book, tables);
     constexpr evidence::ClassifyOptions kUntagged{.tags = false, .dates = false, .smooth = true},
         kAlone{.tags = false, .dates = false, .smooth = false};
     a.tagged = evidence::classify_extract(facts, tags, tables, prior, {}, kWorkers, progress);

@@ -8,6 +8,7 @@
 
 #include "pipeline/attributes/resolve.h"
 #include "pipeline/base/error.h"
+#include "tests/unit/base/text_file.h"
 
 namespace blockrand::attributes {
 namespace {
@@ -25,7 +26,8 @@ const Defaults& defaults() {
 }
 
 Overrides parse(const std::string& text) {
-  return parse_overrides(text, "folder/overrides.toml", defaults(), {{"gz_plain", "postwar"}, {"gz_high"}});
+  const base::test::TextFile file("overrides.toml", text);
+  return read_overrides(file.path(), defaults(), {{"gz_plain", "postwar"}, {"gz_high"}});
 }
 
 std::string error_of(const std::string& text) {

@@ -75,8 +75,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Range{"log_near_one", base::log, logl, 0.999, 1.001},
                       Range{"log_wide", base::log, logl, 1, 1e300}, Range{"log1p", base::log1p, log1pl, -0.99, 4},
                       Range{"log1p_small", base::log1p, log1pl, -1e-3, 1e-3}, Range{"sinh", base::sinh, sinhl, -3, 3},
-                      Range{"sinh_wide", base::sinh, sinhl, -700, 700}, Range{"cosh", base::cosh, coshl, -3, 3},
-                      Range{"asinh", base::asinh, asinhl, -2, 2}, Range{"asinh_wide", base::asinh, asinhl, -1e12, 1e12},
+                      Range{"sinh_wide", base::sinh, sinhl, -700, 700}, Range{"asinh", base::asinh, asinhl, -2, 2},
+                      Range{"asinh_wide", base::asinh, asinhl, -1e12, 1e12},
                       Range{"atanh", base::atanh, atanhl, -0.999, 0.999},
                       Range{"atanh_small", base::atanh, atanhl, -0.1, 0.1}),
     [](const auto& info) { return info.param.name; });
@@ -128,12 +128,10 @@ TEST(PortableMath, SpecialValuesFollowTheStandard) {
   EXPECT_NEAR(base::log(0x1p-1074), -744.4400719213812, 1e-12);
   EXPECT_EQ(base::log1p(-1), -kInfinity);
   EXPECT_EQ(base::sinh(kInfinity), kInfinity);
-  EXPECT_EQ(base::cosh(711), kInfinity);
-  EXPECT_NEAR(base::cosh(710) / 1.1169973830808557e308, 1, 1e-15);
+  EXPECT_EQ(base::sinh(711), kInfinity);
+  EXPECT_NEAR(base::sinh(710) / 1.1169973830808557e308, 1, 1e-15);
   EXPECT_EQ(base::sinh(-kInfinity), -kInfinity);
-  EXPECT_EQ(base::cosh(-kInfinity), kInfinity);
   EXPECT_TRUE(std::isnan(base::sinh(kNaN)));
-  EXPECT_TRUE(std::isnan(base::cosh(kNaN)));
   EXPECT_EQ(base::asinh(-kInfinity), -kInfinity);
   EXPECT_TRUE(std::isnan(base::asinh(kNaN)));
   EXPECT_EQ(base::atanh(1), kInfinity);
@@ -166,8 +164,8 @@ TEST(PortableMath, BitsAreTheOnesOnRecord) {
   };
   for (int i = 1; i <= 20000; ++i) {
     const double x = i * 3.7e-4;
-    for (const auto f : {base::sin, base::cos, base::tan, base::atan, base::exp, base::log, base::log1p, base::sinh,
-                         base::cosh, base::asinh}) {
+    for (const auto f :
+         {base::sin, base::cos, base::tan, base::atan, base::exp, base::log, base::log1p, base::sinh, base::asinh}) {
       eat(f(x));
     }
     eat(base::asin(x / 8));
@@ -175,7 +173,7 @@ TEST(PortableMath, BitsAreTheOnesOnRecord) {
     eat(base::pow(x, 2.4));
     eat(base::atan2(x, 1 - x));
   }
-  EXPECT_EQ(sum, 13670104899964596659u);
+  EXPECT_EQ(sum, 18095757971825899665u);
 }
 
 }  // namespace

@@ -67,14 +67,15 @@ TEST(Progress, NoneKeepsMessagesAndTimes) {
   progress.end();
   EXPECT_THAT(out.text, IsEmpty());
   EXPECT_EQ(progress.times().size(), 1u);
-  progress.info("hello");
-  EXPECT_EQ(out.text, "hello\n");
+  progress.error("gone");
+  EXPECT_EQ(out.text, "blockrand: error: gone\n");
 }
 
-TEST(Progress, QuietDropsInfoButNoWarning) {
+TEST(Progress, QuietDropsPhasesButNoWarning) {
   Output out;
-  Progress progress(ProgressStyle::none, LogFormat::text, true, out.sink());
-  progress.info("hello");
+  Progress progress(ProgressStyle::plain, LogFormat::text, true, out.sink());
+  progress.begin("read", 5, "objects");
+  progress.end();
   progress.warn("careful");
   EXPECT_EQ(out.text, "blockrand: warning: careful\n");
 }

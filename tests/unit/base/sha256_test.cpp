@@ -16,6 +16,12 @@ constexpr char kEmpty[] = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca4959
 constexpr char kAbc[] = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
 constexpr char kMillionA[] = "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0";
 
+std::string sha256(const std::string& bytes) {
+  Sha256 digest;
+  digest.add(bytes);
+  return digest.finish();
+}
+
 TEST(Sha256, MatchesTheStandardsExamples) {
   EXPECT_EQ(sha256(""), kEmpty);
   EXPECT_EQ(sha256("abc"), kAbc);

@@ -82,11 +82,11 @@ TEST(Catalogue, OrderIsAlphabeticalAndFindable) {
       EXPECT_LT(catalogue[i - 1].id, catalogue[i].id);
     }
     EXPECT_EQ(catalogue.index(catalogue[i].id), i);
-    EXPECT_EQ(catalogue.class_of(catalogue[i].id), catalogue[i].style_class);
+    EXPECT_EQ(catalogue.find(catalogue[i].id), &catalogue[i]);
   }
   EXPECT_FALSE(catalogue.find("gz"));
   EXPECT_FALSE(catalogue.index(""));
-  EXPECT_FALSE(catalogue.class_of("zzz"));
+  EXPECT_FALSE(catalogue.find("zzz"));
 }
 
 TEST(Catalogue, EveryStyleHasOneClassAndClassesFollowTheirDefinition) {
@@ -112,12 +112,12 @@ TEST(Catalogue, EveryStyleHasOneClassAndClassesFollowTheirDefinition) {
       EXPECT_EQ(s.style_class, StyleClass::tenement) << s.id;
     }
   }
-  EXPECT_EQ(catalogue.class_of("gz_mk_front"), StyleClass::gruenderzeit);
-  EXPECT_EQ(catalogue.class_of("villa"), StyleClass::gruenderzeit);
-  EXPECT_EQ(catalogue.class_of("gz_mk_works"), StyleClass::tenement);
-  EXPECT_EQ(catalogue.class_of("reform_block"), StyleClass::modern);
-  EXPECT_EQ(catalogue.class_of("burgher_eaves"), StyleClass::other);
-  EXPECT_EQ(catalogue.class_of("ancillary"), StyleClass::other);
+  EXPECT_EQ(catalogue.find("gz_mk_front")->style_class, StyleClass::gruenderzeit);
+  EXPECT_EQ(catalogue.find("villa")->style_class, StyleClass::gruenderzeit);
+  EXPECT_EQ(catalogue.find("gz_mk_works")->style_class, StyleClass::tenement);
+  EXPECT_EQ(catalogue.find("reform_block")->style_class, StyleClass::modern);
+  EXPECT_EQ(catalogue.find("burgher_eaves")->style_class, StyleClass::other);
+  EXPECT_EQ(catalogue.find("ancillary")->style_class, StyleClass::other);
 }
 
 TEST(Catalogue, NumbersAreThoseOfTheReference) {

@@ -10,6 +10,7 @@
 #include "pipeline/base/error.h"
 #include "styles/districts/assign.h"
 #include "styles/districts/read_rule_set.h"
+#include "tests/unit/base/text_file.h"
 
 namespace blockrand::districts {
 namespace {
@@ -18,13 +19,17 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+void add_rule_set(const std::string& text, const std::string& name, RuleSets& book) {
+  read_rule_set(base::test::TextFile(name, text).path(), book);
+}
+
 RuleSets book_of(const std::string& text) {
   RuleSets book;
   for (const char* name : {"a", "b", "c"}) book.presets.push_back({name, "one", model::StyleClass::gruenderzeit, {}});
   book.presets[1].style = model::StyleClass::modern;
   book.presets[1].substyles = {"reform_block"};
   book.substyles = {"gz_high", "reform_block"};
-  parse_rule_set(text, "rules.toml", book);
+  add_rule_set(text, "rules.toml", book);
   return book;
 }
 
@@ -278,9 +283,9 @@ TEST(Choice, TheSmallestPolygonThatHoldsTheBuildingWins) {
   RuleSets book;
   book.presets.push_back({"a", "one", model::StyleClass::other, {}});
   const std::string rule = "[[rule]]\nname = \"r\"\npreset = \"a\"\n";
-  parse_rule_set("polygon = [[10, 50], [11, 50], [11, 51], [10, 51]]\n" + rule, "town.toml", book);
-  parse_rule_set(rule, "anywhere.toml", book);
-  parse_rule_set("polygon = [[10.4, 50.4], [10.6, 50.4], [10.6, 50.6], [10.4, 50.6]]\n" + rule, "old_town.toml", book);
+  add_rule_set("polygon = [[10, 50], [11, 50], [11, 51], [10, 51]]\n" + rule, "town.toml", book);
+  add_rule_set(rule, "anywhere.toml", book);
+  add_rule_set("polygon = [[10.4, 50.4], [10.6, 50.4], [10.6, 50.6], [10.4, 50.6]]\n" + rule, "old_town.toml", book);
   const auto at = [&](double lon, double lat) {
     return book.sets[book.choose({static_cast<std::int32_t>(lon * 1e7), static_cast<std::int32_t>(lat * 1e7)})].name;
   };
@@ -355,7 +360,7 @@ TEST(Errors, EveryMistakeIsToldAtItsPlace) {
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.near = { railway = \"\", within = 50 }\n",
        {"rules.toml:4", "is empty"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhere.polygon = \"nowhere.geojson\"\n",
-       {"rules.toml:4", "not there: nowhere.geojson"}},
+       {"rules.toml:4", "not there: ", "/nowhere.geojson"}},
       {"[[rule]]\nname = \"r\"\npreset = \"a\"\nwhich.style = \"tenement\"\nwhich.substyle = \"reform_block\"\n",
        {"rules.toml:5", "another class than tenement"}},
       {"", {"rules.toml:1", "no rule"}},

@@ -13,6 +13,7 @@
 #include "styles/elements/make_element.h"
 #include "styles/elements/mesh_builder.h"
 #include "styles/elements/sweep.h"
+#include "tests/unit/elements/mesh_measures.h"
 
 namespace blockrand::elements {
 namespace {

@@ -12,6 +12,7 @@
 #include "pipeline/base/text.h"
 #include "styles/elements/make_element.h"
 #include "styles/elements/mesh_builder.h"
+#include "tests/unit/elements/mesh_measures.h"
 
 namespace blockrand::elements {
 namespace {

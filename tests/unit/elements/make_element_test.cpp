@@ -8,6 +8,7 @@
 
 #include "styles/elements/mesh_builder.h"
 #include "tests/unit/elements/element_checks.h"
+#include "tests/unit/elements/mesh_measures.h"
 
 namespace blockrand::elements {
 namespace {

@@ -19,20 +19,6 @@ Profile arch() {
   return trace(program.value(), 4);
 }
 
-TEST(RoughOpening, SharesAndMetres) {
-  const auto shares = rough_opening({true, 0.25, 0.75, 0.1, 0.6}, 10, 4);
-  ASSERT_TRUE(shares.has_value());
-  EXPECT_DOUBLE_EQ(shares->left, 1);
-  EXPECT_DOUBLE_EQ(shares->right, 6);
-  EXPECT_DOUBLE_EQ(shares->bottom, 1);
-  EXPECT_DOUBLE_EQ(shares->top, 3);
-  const auto metres = rough_opening({false, 0.9, 2.4, 1.5, 2.5}, 5, 3);
-  ASSERT_TRUE(metres.has_value());
-  EXPECT_DOUBLE_EQ(metres->width(), 1.0);
-  EXPECT_THAT(rough_opening({true, 0.25, 1.1, 0.1, 0.6}, 10, 4).error(), HasSubstr("leaves its wall"));
-  EXPECT_THAT(rough_opening({true, 0.5, 0.5, 0.1, 0.6}, 10, 4).error(), HasSubstr("less than"));
-}
-
 TEST(OpeningOutline, PlainEdgesGiveTheRectangle) {
   const auto outline = opening_outline(kRectangle, {}, false);
   ASSERT_TRUE(outline.has_value()) << outline.error();

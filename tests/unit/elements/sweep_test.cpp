@@ -9,6 +9,7 @@
 #include "pipeline/base/portable_math.h"
 #include "pipeline/base/random.h"
 #include "tests/unit/elements/element_checks.h"
+#include "tests/unit/elements/mesh_measures.h"
 
 namespace blockrand::elements {
 namespace {

@@ -15,10 +15,10 @@
 #include "pipeline/footprints/repair_extract.h"
 #include "pipeline/footprints/terrace_rows.h"
 #include "pipeline/geometry/polygon_measures.h"
-#include "pipeline/geometry/slivers.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/projection.h"
+#include "tests/unit/geometry/find_slivers.h"
 
 namespace blockrand::footprints {
 namespace {

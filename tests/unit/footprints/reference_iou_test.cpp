@@ -107,6 +107,23 @@ Point2 constant_offset(const FootprintStore& as_mapped, const std::vector<Survey
   return median(std::move(differences));
 }
 
+/// IoU at the best place that `shape` can be moved to (to 1 cm, found by descent from where it is): how well the forms
+/// agree, wherever they lie.
+double best_intersection_over_union(const PlanShape& shape, const PlanShape& other) {
+  Point2 at;
+  double best = shape.intersection_over_union(other);
+  for (double step = 0.64; step >= 0.01; step /= 2)
+    for (bool better = true; better;) {
+      better = false;
+      for (const Point2 d : {Point2{step, 0}, Point2{-step, 0}, Point2{0, step}, Point2{0, -step}}) {
+        const Point2 next{at.x + d.x, at.y + d.y};
+        const double iou = shape.moved(next).intersection_over_union(other);
+        if (iou > best) best = iou, at = next, better = true;
+      }
+    }
+  return best;
+}
+
 Measured measure(const std::array<FootprintStore, kSteps>& steps, const SurveyMatch& match, Point2 offset) {
   Measured out;
   out.buildings = match.buildings.size();
@@ -124,7 +141,7 @@ Measured measure(const std::array<FootprintStore, kSteps>& steps, const SurveyMa
   const PlanShape there = match.ground.moved(offset);
   const auto place = [&](const PlanShape& shape) {
     return std::array{shape.intersection_over_union(match.ground), shape.intersection_over_union(there),
-                      shape.best_intersection_over_union(there)};
+                      best_intersection_over_union(shape, there)};
   };
   const PlanShape shape = shape_of(steps[mapped], match.buildings);
   out.area = shape.area();

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "pipeline/geometry/slivers.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "tests/unit/geometry/find_slivers.h"
 #include "tests/unit/geometry/shapes.h"
 
 namespace blockrand::geometry {

@@ -51,8 +51,8 @@ inline void add_box(Scene& scene, Point3 low, Point3 high, Colour colour, std::u
 
 /// Straight down, north up, `height` metres from edge to edge, (0, 0) in the middle.
 inline Camera plan_camera(double height) {
-  const std::array<Point3, 1> middle{Point3{0, 0, 100}};
-  Camera camera = fit_orthographic(middle, {180, 90}, 1);
+  Camera camera = look_at({0, 0, 101}, {0, 0, 0});
+  camera.projection = Projection::orthographic;
   camera.height = height;
   return camera;
 }

@@ -12,6 +12,7 @@
 #include "pipeline/context/context_extract.h"
 #include "pipeline/context/vicinity_finder.h"
 #include "pipeline/evidence/classify_extract.h"
+#include "pipeline/evidence/region_priors.h"
 #include "pipeline/evidence/style_values.h"
 #include "pipeline/footprints/area.h"
 #include "pipeline/footprints/load.h"
@@ -93,15 +94,9 @@ struct BuiltTown::State {
 
   /// With the priors of its region, as a build does.
   evidence::StyleExtract classified() {
-    const std::vector<classify::RegionPrior> priors = region_priors(rules.book, tables);
-    return evidence::classify_extract(
-        facts, tags, tables,
-        [&](std::uint32_t b) -> const classify::RegionPrior* {
-          const std::uint32_t set =
-              rules.book.choose(footprints::box_centre(extract, extract.buildings[repaired.footprints[b].lead]));
-          return set == blockrand::districts::RuleSets::kNoSet ? nullptr : &priors[set];
-        },
-        {}, workers, progress);
+    return evidence::classify_extract(facts, tags, tables,
+                                      evidence::prior_by_place(extract, repaired.footprints, rules.book, tables), {},
+                                      workers, progress);
   }
 };
 

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/geometry/footprint_overlap.h"
-#include "pipeline/geometry/slivers.h"
 #include "tests/unit/footprints/repair/row_support.h"
+#include "tests/unit/geometry/find_slivers.h"
 
 namespace blockrand::repair::test {
 namespace {

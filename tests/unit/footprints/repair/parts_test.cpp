@@ -9,8 +9,8 @@
 #include "pipeline/footprints/repair/parts_follow.h"
 #include "pipeline/footprints/repair/rings.h"
 #include "pipeline/geometry/polygon_measures.h"
-#include "pipeline/geometry/slivers.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "tests/unit/geometry/find_slivers.h"
 #include "tests/unit/geometry/shapes.h"
 
 namespace blockrand::repair {

@@ -320,6 +320,9 @@ TEST(Telling, ConvertsCoordinates) {
                    "pos, 0, 0, 0))\n"
                    "print(convert(y, object, scope, pos, 0, 0, 0))"),
             "2 -17 -2");
+  EXPECT_EQ(prints("Lot --> r(0,30,0) print(rint(convert(y, scope, object, orient, 0, 0, 0))) "
+                   "print(rint(convert(y, object, scope, orient, 0, 0, 0)))"),
+            "30 -30");
 }
 
 TEST(Telling, TheTreeIsKeptOnDemand) {

@@ -200,16 +200,5 @@ TEST(Envelope, StepsBackFromTheStreet) {
   EXPECT_NEAR(volume(all), 5.0 / 3 * (400 + 100 + 200), 1e-2);
 }
 
-TEST(Convert, BetweenSystems) {
-  const Shape wall = facade();
-  const Vector3 p = convert(wall, CoordinateSystem::scope, CoordinateSystem::world, false, {1, 2, 0});
-  EXPECT_NEAR(p.x, 10, 1e-9);
-  EXPECT_NEAR(p.y, 2, 1e-9);
-  EXPECT_NEAR(p.z, -1, 1e-9);
-  const Vector3 q = convert(wall, CoordinateSystem::world, CoordinateSystem::scope, false, p);
-  EXPECT_NEAR(q.x, 1, 1e-9);
-  EXPECT_NEAR(convert(wall, CoordinateSystem::scope, CoordinateSystem::world, true, {0, 0, 0}).y, 90, 1e-9);
-}
-
 }  // namespace
 }  // namespace blockrand::grammar

@@ -13,6 +13,7 @@
 #include "importers/reference/read_model.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/run/build.h"
+#include "tests/unit/importers/reference/level_of_detail.h"
 
 namespace blockrand::importers::reference::test {
 namespace {
@@ -53,7 +54,7 @@ void add(const ReferenceModel& m, Town& town) {
     if (b.parent >= 0) told.parent = m.buildings[static_cast<std::size_t>(b.parent)].id;
     told.height = b.measured_height;
     for (const Geometry& g : b.geometries) {
-      if (g.lod != b.lod() || g.kind == GeometryKind::footprint) continue;
+      if (g.lod != lod_of(b) || g.kind == GeometryKind::footprint) continue;
       const Point3 o = m.polygons[g.faces[0].polygon].outer[0];
       for (const Face& f : g.faces) {
         const Polygon3& p = m.polygons[f.polygon];

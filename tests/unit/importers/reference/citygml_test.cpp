@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/unit/importers/reference/level_of_detail.h"
 #include "tests/unit/importers/reference/support.h"
 
 namespace blockrand::importers::reference::test {
@@ -67,8 +68,8 @@ TEST(CityGml, PartsFollowTheirBuilding) {
   EXPECT_EQ(m.buildings[0].measured_height, 9);
   EXPECT_EQ(m.buildings[1].roof_type, "1030");
   EXPECT_THAT(m.buildings[1].surfaces, SizeIs(1));
-  EXPECT_EQ(m.buildings[1].lod(), 2);
-  EXPECT_EQ(m.buildings[0].lod(), -1);
+  EXPECT_EQ(lod_of(m.buildings[1]), 2);
+  EXPECT_EQ(lod_of(m.buildings[0]), -1);
 }
 
 TEST(CityGml, SurfacesWithHolesAndOpenings) {
@@ -100,7 +101,7 @@ TEST(CityGml, SurfacesWithHolesAndOpenings) {
   EXPECT_TRUE(wall.openings[1].door);
   EXPECT_THAT(wall.openings[1].geometries, IsEmpty());
   EXPECT_EQ(m.buildings[0].surfaces[1].surface_class, SurfaceClass::outer_ceiling);
-  EXPECT_EQ(m.buildings[0].lod(), 3);
+  EXPECT_EQ(lod_of(m.buildings[0]), 3);
 }
 
 TEST(CityGml, InstallationsAndRoomsAreKeptApart) {
@@ -170,7 +171,7 @@ TEST(CityGml, FootprintsOfLevel0InTwoDimensions) {
   EXPECT_THAT(m.polygons[0].outer,
               ElementsAre(Point3{390000, 5820000, 0}, Point3{390010, 5820000, 0}, Point3{390010, 5820008, 0}));
   EXPECT_EQ(m.count(NoteKind::two_dimensional), 1u);
-  EXPECT_EQ(m.buildings[0].lod(), 0);
+  EXPECT_EQ(lod_of(m.buildings[0]), 0);
 }
 
 TEST(CityGml, SolidsWithVoidsAndSeveralSolids) {

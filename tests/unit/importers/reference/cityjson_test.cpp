@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "importers/reference/footprints.h"
+#include "tests/unit/importers/reference/level_of_detail.h"
 #include "tests/unit/importers/reference/support.h"
 
 namespace blockrand::importers::reference::test {
@@ -208,7 +209,7 @@ TEST(CityJson, TemplatesArePlaced) {
   const Building& b = m.buildings[0];
   ASSERT_THAT(b.surfaces, SizeIs(3));
   EXPECT_EQ(b.surfaces[0].surface_class, SurfaceClass::roof);
-  EXPECT_EQ(b.lod(), 3);
+  EXPECT_EQ(lod_of(b), 3);
   EXPECT_THAT(m.polygons[b.surfaces[0].geometries[0].faces[0].polygon].outer,
               ElementsAre(Point3{84610, 447800, 0.5}, Point3{84610, 447802, 0.5}, Point3{84610, 447802, 2.5}));
   EXPECT_EQ(b.surfaces[1].surface_class, SurfaceClass::installation);

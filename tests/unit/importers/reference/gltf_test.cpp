@@ -12,6 +12,7 @@
 #include "pipeline/georef/frames.h"
 #include "pipeline/georef/transform.h"
 #include "tests/unit/importers/reference/gltf_support.h"
+#include "tests/unit/importers/reference/level_of_detail.h"
 #include "tests/unit/importers/reference/support.h"
 
 namespace blockrand::importers::reference::test {
@@ -283,8 +284,8 @@ TEST(Gltf, PropertyTablesNameBuildings) {
   EXPECT_THAT(a.attributes, ElementsAre(Pair("gml_id", "A"), Pair("heated", "true"), Pair("height", "12.5"),
                                         Pair("kind", "church"), Pair("lod", "1"), Pair("name", "Rathaus"),
                                         Pair("number", "9007199254740993"), Pair("sure", "1")));
-  EXPECT_EQ(a.lod(), 1);
-  EXPECT_EQ(m.buildings[1].lod(), 3);
+  EXPECT_EQ(lod_of(a), 1);
+  EXPECT_EQ(lod_of(m.buildings[1]), 3);
   EXPECT_FALSE(m.buildings[1].measured_height);
   EXPECT_NEAR(volume(m, m.buildings[1]), 8000, 12);
   EXPECT_THAT(m.buildings[2].geometries, IsEmpty());

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/unit/importers/reference/level_of_detail.h"
 #include "tests/unit/importers/reference/support.h"
 
 namespace blockrand::importers::reference::test {
@@ -105,7 +106,7 @@ TEST(ImplicitGeometry, OfAWindow) {
                                       "</bldg:Window></bldg:opening></bldg:WallSurface></bldg:boundedBy>" + kSurface)));
   ASSERT_THAT(m.buildings[0].surfaces[0].openings, SizeIs(1));
   EXPECT_THAT(points(m, m.buildings[0].surfaces[0].openings[0].geometries), SizeIs(3));
-  EXPECT_EQ(m.buildings[0].lod(), 3);
+  EXPECT_EQ(lod_of(m.buildings[0]), 3);
 }
 
 TEST(ImplicitGeometry, OfFurnitureIsLeftOutButItsTemplateIsKnown) {

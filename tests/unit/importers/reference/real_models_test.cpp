@@ -20,6 +20,7 @@
 #include "importers/reference/read_model.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/georef/projection.h"
+#include "tests/unit/importers/reference/level_of_detail.h"
 #include "tests/unit/importers/reference/support.h"
 
 namespace blockrand::importers::reference::test {
@@ -297,7 +298,7 @@ TEST(RealModels, TheTextbookHouseInEveryLevel) {
     EXPECT_NEAR(footprints[0].area, expected, 0.01);
     const std::size_t level = name.find("LOD");
     if (level != std::string::npos) {
-      EXPECT_EQ(m.buildings[0].lod(), name[level + 3] - '0');
+      EXPECT_EQ(lod_of(m.buildings[0]), name[level + 3] - '0');
     }
   }
 }

@@ -1,4 +1,4 @@
-"""Judges of a build: blockrand validate, and those that are no part of the program (OGC schemas, Khronos, tile checks).
+"""Validators of a build: blockrand validate, and those that are no part of the program (OGC schemas, Khronos, tile checks).
 
 Each returns '' when all is well, else what is wrong. Absent tools raise unittest.SkipTest with the reason.
 """
@@ -68,13 +68,13 @@ def metadata(folder, *files):
 
 
 def validate(folder, *options):
-    """The program's own judges, which share no code with what writes: blockrand validate."""
+    """The program's own validators, which share no code with what writes: blockrand validate."""
     run = blockrand('validate', folder, '--progress', 'none', *options, timeout=7200)
     return '' if run.code == 0 else str(run)
 
 
 def problems(folder, khronos_every=1):
-    """All judges that apply to what the build holds. Tools that are absent are named on stdout and passed over."""
+    """All validators that apply to what the build holds. Tools that are absent are named on stdout and passed over."""
     wrong = []
     checks = [lambda: validate(folder)]
     if files_of(folder, '.gml', '.gml.gz'):

@@ -1,0 +1,164 @@
+#!/usr/bin/python3
+"""Finds out which sources can be compiled as one, and writes cmake/compiled_together.cmake.
+
+    cmake -S . -B build/apart -G Ninja -DCMAKE_BUILD_TYPE=Release -DBLOCKRAND_TOGETHER=OFF -DBLOCKRAND_TESTS=OFF
+    python3 cmake/compiled_together.py build/apart
+
+Most of a first build reads and instantiates the same templates once for each source; sources that are compiled as one do
+it once. Sources of a target go together where none hides a name of another: names in anonymous namespaces, `static`
+functions, macros and `using namespace` are compared first, then the compiler is asked. A source that goes with no other
+is compiled alone, as every source is that the list does not name: who adds a file needs not touch the list, who adds a
+name that another file of the group has takes the file out of it, or renames. The list is made anew once in a while.
+"""
+import argparse
+import concurrent.futures
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+MOST_FILES, MOST_LINES = 12, 2600  # of a group: one change compiles all of it again
+HEAVY = re.compile(r'#include <CGAL/|#include "pipeline/geometry/cgal')  # memory and time enough by themselves
+HEADER = '''# Made by cmake/compiled_together.py, which says how and why: sources that are compiled as one, by target. A source that
+# stands nowhere is compiled alone. Does a name of yours collide with one of another source? Take yours out.
+'''
+
+
+def hidden_names(text):
+    """Names that a source declares for itself alone, and a word for what must not be shared at all."""
+    names = set()
+    for match in re.finditer(r'^\s*#define (\w+)', text, re.M):
+        names.add('#' + match.group(1))
+    if re.search(r'^using namespace ', text, re.M):
+        names.add('using namespace')
+    inside = False
+    for line in text.split('\n'):
+        if re.match(r'namespace( \w+)* \{$', line) and not re.match(r'namespace \w', line):
+            inside = True
+        elif re.match(r'\}  // namespace$', line):
+            inside = False
+        if line.startswith((' ', '/', '}', '#')) or not (inside or line.startswith('static ')):
+            continue
+        kind = re.match(r'(?:struct|class|enum class|enum|union) (\w+)', line)
+        alias = re.match(r'(?:using (\w+) =|namespace (\w+) =)', line)
+        value = re.match(r'(?:static |inline )*(?:constexpr|const) [^=({]*?\b(\w+)(?:\[[^\]]*\])*(?: = | ?\{)', line)
+        function = re.match(r'[\w:<>,&*\s\[\]()]*?\b(\w+)\(', line)
+        for match in (kind, alias, value, function):
+            if match:
+                names.add(next(g for g in match.groups() if g))
+                break
+    return names
+
+
+class Target:
+    def __init__(self, name):
+        self.name, self.sources = name, []
+
+
+def read_targets(build):
+    targets = {}
+    for entry in json.load(open(os.path.join(build, 'compile_commands.json'))):
+        match = re.search(r'CMakeFiles/blockrand_(\w+)\.dir/', entry.get('output', '') or entry['command'])
+        if not match or '_headers' in match.group(1) or '/tests/' in entry['file'] or entry['file'].startswith(build):
+            continue
+        targets.setdefault(match.group(1), Target(match.group(1))).sources.append(entry)
+    return targets
+
+
+def flags(entry):
+    words = shlex.split(entry['command'])
+    words = words[next(i for i, w in enumerate(words) if re.search(r'(\+\+|cc|clang)(-\d+)?$', w)):]
+    out, skip = [], False
+    for word in words:
+        if skip:
+            skip = False
+        elif word in ('-o', '-MF', '-MT'):
+            skip = True
+        elif word not in ('-c', '-MD', entry['file']):
+            out.append(word)
+    return out
+
+
+def compiles(entry, files):
+    """Whether the files go as one. Templates are instantiated too: some collisions show there."""
+    with tempfile.NamedTemporaryFile('w', suffix='.cxx', delete=False) as unit:
+        unit.write(''.join(f'#include "{f}"\n' for f in files))
+    try:
+        result = subprocess.run(flags(entry) + ['-fsyntax-only', unit.name], cwd=entry['directory'], capture_output=True)
+        return result.returncode == 0
+    finally:
+        os.unlink(unit.name)
+
+
+def groups_of(target):
+    """Packs by names, then lets the compiler decide: what breaks a group is compiled alone."""
+    by_flags = {}
+    for entry in target.sources:
+        by_flags.setdefault(tuple(flags(entry)), []).append(entry)
+    out = []
+    for entries in by_flags.values():
+        open_groups = []
+        for entry in entries:
+            text = open(entry['file']).read()
+            names, lines = hidden_names(text), text.count('\n')
+            if HEAVY.search(text) or 'using namespace' in names:
+                continue
+            for group in open_groups:
+                if len(group['files']) < MOST_FILES and group['lines'] + lines <= MOST_LINES and not names & group['names']:
+                    break
+            else:
+                group = {'files': [], 'names': set(), 'lines': 0}
+                open_groups.append(group)
+            group['files'].append(entry['file'])
+            group['names'] |= names
+            group['lines'] += lines
+        for group in open_groups:
+            files = group['files']
+            if len(files) > 1 and not compiles(entries[0], files):
+                good = files[:1]
+                for file in files[1:]:
+                    if compiles(entries[0], good + [file]):
+                        good.append(file)
+                files = good
+            if len(files) > 1:
+                out.append(files)
+    return out
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
+    parser.add_argument('build', help='configured with -DBLOCKRAND_TOGETHER=OFF')
+    parser.add_argument('--jobs', type=int, default=2)
+    parser.add_argument('--target', help='prints the groups of one target and writes nothing')
+    args = parser.parse_args()
+    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    targets = [t for t in read_targets(os.path.abspath(args.build)).values() if args.target in (None, t.name)]
+    with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+        found = list(pool.map(groups_of, targets))
+    text, together, alone = HEADER, 0, 0
+    for target, groups in zip(targets, found):
+        folder = os.path.commonpath([os.path.dirname(e['file']) for e in target.sources])
+        together += sum(map(len, groups))
+        alone += len(target.sources) - sum(map(len, groups))
+        for group in groups:
+            text += f'blockrand_compile_together({target.name}\n'
+            line = ' '
+            for name in (os.path.relpath(f, folder) for f in group):
+                if len(line) + 1 + len(name) > 120:
+                    text += line + '\n'
+                    line = ' '
+                line += ' ' + name
+            text += line + ')\n'
+    if args.target:
+        print(text)
+    else:
+        with open(os.path.join(root, 'cmake', 'compiled_together.cmake'), 'w') as file:
+            file.write(text)
+    print(f'{together} sources in {sum(map(len, found))} groups, {alone} alone', file=sys.stderr)
+
+
+if __name__ == '__main__':
+    main()
