@@ -9,7 +9,8 @@
 
 namespace blockrand::importers::osm {
 
-/// Reads every key of the scheme. Of synonyms the first that is there and readable counts, in this order:
+/// Reads every key of the scheme. Of synonyms the first counts that can be read and lies within the limits, in this
+/// order. Materials are text, which can always be read: the first that is there counts.
 ///
 /// | attribute             | keys                                                                    | limits     |
 /// |-----------------------|-------------------------------------------------------------------------|------------|

@@ -36,8 +36,11 @@ double attic_height(double storey_height);
 std::uint8_t neighbour_group(const Defaults& defaults, std::string_view use, double area);
 
 /// Fills `attributes` of all buildings and parts. Per value, strongest first: the part's or building's own tag; what
-/// follows from another tag; the outline's tag (for parts); the median or majority of at least `neighbour_minimum`
-/// tagged neighbours; the defaults of the building's use; the defaults of all. Conventions: `MappedAttributes`.
+/// follows from another tag; the outline's tag (for parts); for storeys and roof shapes what classification offers
+/// (Building::inferred), where it offers nothing the median or majority of at least `neighbour_minimum` tagged
+/// neighbours; what is usual for the likeliest sub-style, else for the building's use; the defaults of all. What the plan
+/// or a tagged height rules out goes before the offers (Resolver::roof_shape, Resolver::divide_height in resolver.h).
+/// Conventions: `MappedAttributes`.
 ///
 /// Heights hang together: height = plinth + storeys x storey height + roof height. The plinth is what lies between the
 /// lowest ground and the ground floor's level, which is the ground at the entrance, but at most one storey below the

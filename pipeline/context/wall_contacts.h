@@ -10,7 +10,7 @@ namespace blockrand::context {
 
 /// A straight edge of an outline, the building on its left.
 struct OutlineEdge {
-  std::uint32_t polygon = 0, ring = 0, edge = 0;  ///< as in model::FacadeEdge
+  std::uint32_t polygon = 0, ring = 0, edge = 0;  ///< as in model::WallSegment
   std::int64_t from_node = 0, to_node = 0;
   model::Point2 a, b;
   model::Point2 along, outward;  ///< unit vectors
@@ -35,7 +35,7 @@ std::vector<Contact> contacts_of(const OutlineEdge& edge, model::OsmId own, bool
 /// A wall segment of an edge that is the portal of a passage.
 struct Portal {
   double start = 0, end = 0;  ///< m along the edge
-  std::uint32_t passage = 0;  ///< index into Surroundings::passages
+  std::uint32_t passage = 0;  ///< index into Vicinity::passages
 };
 
 /// The portals in all edges, parallel to `edges`, each in order and without overlaps. The portal of an arcade reaches to the

@@ -25,7 +25,7 @@ BuildingView view_of(const model::Building& building, const VicinityIndex& index
 struct WallSample {
   double at = 0;                    ///< m along the edge
   std::array<Sight, kFanRays> fan;  ///< from right to left, as fan_around
-  /// party_wall (within another building), street, courtyard (a closed one), or unknown: surroundings_of tells
+  /// party_wall (within another building), street, courtyard (a closed one), or unknown: enclosure_at tells
   model::WallSegmentKind kind = model::WallSegmentKind::unknown;
   double ahead = 0;                 ///< [0, 1]: how much of the view straight ahead ends in a street it may front
   double street_share = 0;          ///< [0, 1]: how much of the whole view ends in a street, by cosine

@@ -64,7 +64,7 @@ struct WallSegmentOptions {
   double rear_distance = 18;
 };
 
-/// The surroundings of a tile made ready for queries. Read-only after construction, safe to share between threads. Keeps
+/// The vicinity of a tile made ready for queries. Read-only after construction, safe to share between threads. Keeps
 /// the spans: what they show must outlive it.
 class VicinityIndex {
  public:
@@ -94,9 +94,9 @@ class VicinityIndex {
 
   std::vector<std::uint32_t> yards_near(const Box& box) const;     ///< indices into yards()
   std::vector<std::uint32_t> squares_near(const Box& box) const;   ///< indices into squares()
-  std::vector<std::uint32_t> passages_near(const Box& box) const;  ///< indices into Surroundings::passages
-  std::vector<std::uint32_t> points_near(const Box& box) const;    ///< indices into Surroundings::points, ascending
-  /// Footprints whose box holds a place, grown by `margin` metres: indices into Surroundings::footprints, ascending.
+  std::vector<std::uint32_t> passages_near(const Box& box) const;  ///< indices into Vicinity::passages
+  std::vector<std::uint32_t> points_near(const Box& box) const;    ///< indices into Vicinity::points, ascending
+  /// Footprints whose box holds a place, grown by `margin` metres: indices into Vicinity::footprints, ascending.
   std::vector<std::uint32_t> footprints_at(model::Point2 place, double margin) const;
   const std::vector<Yard>& yards() const { return yards_; }
   const std::vector<Square>& squares() const { return squares_; }

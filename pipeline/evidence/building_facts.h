@@ -56,7 +56,7 @@ class PlaceIndex {
 };
 
 /// Measures all buildings. Deterministic for any number of workers. What a building gets depends on data within
-/// BlockOptions::max_extent + kNearReach + kEdgeReach of it.
+/// BlockOptions::max_extent + kNearReach + kWallSegmentReach of it.
 FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& footprints,
                            const context::ContextExtract& context, const context::VicinityFinder& vicinity, int workers,
                            base::Progress& progress);

@@ -22,7 +22,7 @@ inline constexpr double kSameEaves = 0.002;
 inline constexpr double kSameLevel = 0.02;
 
 /// Fills in turn_left, turn_right, kind_left and kind_right.
-/// \param wall segments  of facade_stretches() for the same walls, after take_mouths()
+/// \param segments  of facade_segments() for the same walls, after take_portals()
 /// \param eaves      m above the height reference
 void link_corners(std::span<FacadeSegment> segments, std::span<const WallFrame> walls, double eaves);
 

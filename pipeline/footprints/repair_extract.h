@@ -40,7 +40,7 @@ struct RepairedExtract {
 };
 
 /// Repairs every outline of the shards. Deterministic for any number of workers. A building's outline depends on data
-/// within kMaxRowExtent of its row (rows.h).
+/// within kMaxTerraceRowExtent of its row (terrace_rows.h).
 RepairedExtract repair_extract(const model::Extract& extract, std::span<const Shard> shards,
                                const georef::Projection& projection, const repair::KeptNodes& kept,
                                const repair::RepairOptions& options, int workers, base::Progress& progress);

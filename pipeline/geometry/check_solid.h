@@ -40,8 +40,8 @@ SolidCheck check_solid(const model::Solid& solid, const model::SolidTriangles& t
 /// As above; triangulates by itself once that is safe. For solids that may hold anything.
 SolidCheck check_solid(const model::Solid& solid);
 
-/// As above for a mesh of triangles (counter-clockwise from outside) that was read from a file: vertices in units of
-/// `1 / steps_per_metre`, equal positions merged by the caller.
+/// As above for a mesh of triangles (counter-clockwise from outside) that was read from a file: vertices in whole
+/// steps of any size, equal positions merged by the caller.
 SolidCheck check_mesh(std::span<const Grid3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
 
 /// The judge's test of two triangles of different faces, given by indices into `vertices`: whether they share more than

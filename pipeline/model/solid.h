@@ -36,7 +36,7 @@ struct MaterialClass {
 /// outside, holes clockwise; no vertex is repeated within a loop.
 struct Face {
   SurfaceKind kind = SurfaceKind::wall;
-  std::uint8_t material = 0;  ///< index into TileModel::materials
+  std::uint8_t material = 0;  ///< index into Region::materials
   Colour colour;
   std::uint32_t first_loop = 0, loop_count = 0;  ///< into Solid::loops; the first loop is the outer one
   std::int32_t edge = -1;                        ///< the plan edge that this wall or roof face rises from; -1 for none

@@ -28,7 +28,7 @@ struct Statistics {
   std::uint64_t installations = 0;                                       ///< bodies of their own on walls and roofs
   std::map<std::string, std::map<std::string, std::uint64_t>> sources;   ///< attribute → source → parts
   std::map<std::string, std::uint64_t> roofs;                            ///< built roof shape → parts
-  std::array<std::uint64_t, model::kWallSegmentKindCount> edges{};       ///< stretches of outlines by model::EdgeKind
+  std::array<std::uint64_t, model::kWallSegmentKindCount> edges{};       ///< wall segments by model::WallSegmentKind
   std::array<double, model::kWallSegmentKindCount> edge_length{};        ///< m
   std::array<std::uint64_t, model::kBuildingPositionCount> positions{};  ///< buildings by model::BuildingPosition
   masses::Roofscape roofscape;

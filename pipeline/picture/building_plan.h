@@ -36,7 +36,7 @@ PlanTile plan_tile(const model::Region& region);
 PlanBox box_of(std::span<const PlanTile> tiles, double margin = 20);
 
 /// Draws tiles, in this order for all of them: streets, courtyards pale green, buildings light grey, borders of blocks as
-/// thin lines, edges in the colours of model/edge_colours.h along the inside of their walls.
+/// thin lines, edges in the colours of model/wall_segment_colours.h along the inside of their walls.
 void draw(Plan& plan, std::span<const PlanTile> tiles);
 
 /// The colours of draw() besides those of edges, for legends.

@@ -48,7 +48,7 @@ struct GroundFloorFacts {
   const Style* style = nullptr;   ///< its likeliest style; nullptr: not known
   bool faces_street = false;      ///< a front house, not a wing or rear building
   bool corner_house = false;      ///< fronts on two streets that meet
-  std::string_view street_class;  ///< of the street it fronts on, as FacadeEdge::street_class
+  std::string_view street_class;  ///< of the street it fronts on, as WallSegment::street_class
   std::optional<double> storeys;  ///< resolved
 };
 

@@ -11,7 +11,7 @@ namespace blockrand::repair {
 /// are left to resolve_overlaps.
 ///
 /// 1. Two outlines of which each covers nearly all of the other (kSameShare) are one house: the weaker one becomes a
-///    duplicate of the other (NEAR_DUPLICATE, RowBuilding::settled). Stronger is who has mapped parts, more tags, the
+///    duplicate of the other (NEAR_DUPLICATE, TerraceBuilding::settled). Stronger is who has mapped parts, more tags, the
 ///    lower id. An outline with parts is nobody's duplicate: its parts would be lost with it. From the strongest to the
 ///    weakest each is compared with those that stay, so that nobody is a duplicate of a duplicate.
 /// 2. An outline without parts that others, each of them (by kWithinShare) within it, cover by more than `max_loss` sums

@@ -11,7 +11,7 @@ namespace blockrand::repair {
 
 inline constexpr std::uint32_t kNoFrame = 0xffffffff;
 
-/// An edge of a footprint before sharing: the run of a ring's edges that have one `RowRing::wall`.
+/// An edge of a footprint before sharing: the run of a ring's edges that have one `TerraceRing::wall`.
 struct RingWall {
   std::uint32_t ring = 0;   ///< index into TerraceGraph::rings
   std::uint32_t first = 0;  ///< its first edge
@@ -27,14 +27,14 @@ struct WallLine {
   double length = 0;                     ///< m
   double weight = 0;                     ///< m². Noise of s m at a corner turns the line by s / sqrt(weight) radians
   bool free = false;                     ///< a chord of a curve, or not straight: gets no direction
-  std::uint32_t frame = kNoFrame;  ///< index into RowDirections::frames; its direction where the evidence is strong
+  std::uint32_t frame = kNoFrame;  ///< index into TerraceDirections::frames; its direction where the evidence is strong
   bool across = false;             ///< a quarter turn from the frame's axis
 };
 
 struct TerraceLines {
   std::vector<RingWall> walls;  ///< by ring, along it
   std::vector<WallLine> lines;
-  std::vector<std::uint32_t> buildings;  ///< those of the rings, ascending: indices into Row::buildings
+  std::vector<std::uint32_t> buildings;  ///< those of the rings, ascending: indices into TerraceRow::buildings
 };
 
 /// Walls and lines of the rings `rings` (indices into graph.rings, ascending), none with a frame; chords of curves

@@ -13,7 +13,7 @@ namespace blockrand::repair {
 /// neighbour at the same level has point for point; a closed gap is one of them where a corner of either footprint was
 /// mapped more than 2 cm off the other's boundary (SHARED_WALL_MADE).
 /// \param mapped  the buildings' polygons before repair, as many as the row has buildings
-/// \param said    from apply_row_graph
+/// \param said    from apply_terrace_graph
 void record_walls(TerraceRow& row, const std::vector<std::vector<model::Polygon>>& mapped,
                   const std::vector<std::vector<SaidPoint>>& said, model::Report& report);
 

@@ -1,8 +1,8 @@
-// A row: footprints that touch or almost touch, repaired together; and its topology while that happens.
+// A terrace row: footprints that touch or almost touch, repaired together; and its topology while that happens.
 //
-// The way of a row: build_row_graph makes one corner of what several footprints mean as one, and puts corners where a
-// neighbour ends in the middle of a wall; square_row moves corners, and with them every ring that has them;
-// apply_row_graph writes the rings back. A wall is shared when two rings have the same corners.
+// The way of a row: build_terrace_graph makes one corner of what several footprints mean as one, and puts corners where a
+// neighbour ends in the middle of a wall; square_terrace_row moves corners, and with them every ring that has them;
+// apply_terrace_graph writes the rings back. A wall is shared when two rings have the same corners.
 #pragma once
 
 #include <cstdint>
@@ -60,7 +60,7 @@ struct Corner {
 
 /// A ring of a footprint as a list of corners.
 struct TerraceRing {
-  std::uint32_t building = 0;  ///< index into Row::buildings
+  std::uint32_t building = 0;  ///< index into TerraceRow::buildings
   std::uint32_t polygon = 0;   ///< index into its polygons
   std::uint32_t ring = 0;      ///< 0: outer; k: holes[k - 1]
   std::vector<std::uint32_t> corners;

@@ -11,7 +11,7 @@ namespace blockrand::repair {
 /// Vertices by building, polygon, ring and place in the ring. The edge from a vertex to the next one has the vertex's index.
 struct TerraceVertices {
   struct RingPlace {
-    std::uint32_t building = 0, polygon = 0, ring = 0;  ///< as in RowRing
+    std::uint32_t building = 0, polygon = 0, ring = 0;  ///< as in TerraceRing
     std::uint32_t first = 0, count = 0;                 ///< its vertices
   };
   std::vector<model::Point2> point;  ///< m

@@ -27,7 +27,7 @@ struct CityGmlOptions {
 /// taken from a tag also has `<attribute>_source` and `<attribute>_confidence`; OSM tags are `osm.<key>`.
 ///
 /// After the city objects stands one app:Appearance of the theme "visual" with an app:X3DMaterial per pair of material
-/// class and colour (see materials.h). Its targets are the gml:Polygons of each part's highest solid: polygons, since
+/// class and colour (appearance_text.h). Its targets are the gml:Polygons of each part's highest solid: polygons, since
 /// those have ids already and every reader resolves them.
 ///
 /// Coordinates have four decimals (see append_grid). The same region gives the same bytes; no date is written, since an

@@ -6,7 +6,7 @@
 
 namespace blockrand::outputs {
 
-/// Appends a row for each of wall segments(building), in the order of facade_edge_columns().
+/// Appends a row for each of wall_segments(building), in the order of wall_segment_columns().
 void append_edges(RowWriter& row, const model::Building& building);
 
 /// The cells of situation_columns(); NULL where context found nothing.

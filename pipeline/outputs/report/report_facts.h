@@ -40,10 +40,10 @@ struct ReportPicture {
 struct ContextFacts {
   /// What repair did, as people read it: {"Corners moved", "12,345 of 67,890"}.
   std::vector<std::pair<std::string, std::string>> repair;
-  std::array<std::uint64_t, model::kWallSegmentKindCount> edges{};  ///< wall segments of outlines by model::EdgeKind
-  std::array<double, model::kWallSegmentKindCount> edge_length{};   ///< m
+  std::array<std::uint64_t, model::kWallSegmentKindCount> edges{};       ///< wall segments by model::WallSegmentKind
+  std::array<double, model::kWallSegmentKindCount> edge_length{};        ///< m
   std::array<std::uint64_t, model::kBuildingPositionCount> positions{};  ///< buildings by model::BuildingPosition
-  std::optional<ReportPicture> plan;  ///< from above, edges in the colours of model/edge_colours.h
+  std::optional<ReportPicture> plan;  ///< from above, edges in the colours of model/wall_segment_colours.h
   std::string plan_note;              ///< what the plan shows, where it is not the whole build; may be empty
 };
 

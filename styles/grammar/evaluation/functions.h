@@ -57,7 +57,7 @@ using Function = FunctionResult (*)(std::span<const Value> arguments, FunctionCo
 /// A function with one list of parameter types.
 struct FunctionEntry {
   std::string_view name;
-  /// One letter a parameter: n number, b truth, s text, N B S arrays of them (as in names.h);
+  /// One letter a parameter: n number, b truth, s text, N B S arrays of them (as in known_names.h);
   /// "a+": one value or more, of any type.
   std::string_view parameters;
   Function run = nullptr;

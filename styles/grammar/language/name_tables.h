@@ -1,4 +1,4 @@
-// The rows that names.cpp is made of; nobody else includes this.
+// The rows that known_names.cpp is made of; nobody else includes this.
 #pragma once
 
 #include <span>

@@ -70,7 +70,7 @@ BLOCKRAND_OPERATION(run_footprint);
 BLOCKRAND_OPERATION(run_shading);  // softenNormals: faces here are flat shaded, the geometry is what it was
 // normals.cpp
 BLOCKRAND_OPERATION(run_set_normals);
-// materials.cpp
+// shape_materials.cpp
 BLOCKRAND_OPERATION(run_color);
 BLOCKRAND_OPERATION(run_texture);
 BLOCKRAND_OPERATION(run_reset_material);
