@@ -32,17 +32,6 @@ LonLat centre(const model::TileId& tile) {
   return {0.5 * (b.west + b.east), 0.5 * (b.south + b.north)};
 }
 
-model::TileId parent(const model::TileId& tile) {
-  assert(tile.level > 0);
-  return {tile.level - 1, tile.x / 2, tile.y / 2};
-}
-
-std::array<model::TileId, 4> children(const model::TileId& tile) {
-  const int level = tile.level + 1;
-  const std::uint32_t x = 2 * tile.x, y = 2 * tile.y;
-  return {{{level, x, y}, {level, x + 1, y}, {level, x, y + 1}, {level, x + 1, y + 1}}};
-}
-
 bool contains(const model::TileId& ancestor, const model::TileId& tile) {
   const int steps = tile.level - ancestor.level;
   return steps >= 0 && (tile.x >> steps) == ancestor.x && (tile.y >> steps) == ancestor.y;

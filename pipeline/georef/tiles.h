@@ -1,7 +1,6 @@
 // The geodetic quadtree that cuts the world into units of work (ARCHITECTURE.md, "Coordinates").
 #pragma once
 
-#include <array>
 
 #include "pipeline/georef/lon_lat.h"
 #include "pipeline/model/point.h"
@@ -22,12 +21,6 @@ GeoBox bounds(const model::TileId& tile);
 
 /// Degrees; exact in doubles at every level.
 LonLat centre(const model::TileId& tile);
-
-/// Requires level > 0.
-model::TileId parent(const model::TileId& tile);
-
-/// South-west, south-east, north-west, north-east: the Morton order of implicit 3D Tiles.
-std::array<model::TileId, 4> children(const model::TileId& tile);
 
 /// Whether `tile` is `ancestor` or lies in it.
 bool contains(const model::TileId& ancestor, const model::TileId& tile);
