@@ -6,7 +6,9 @@
 
 Most of a first build reads and instantiates the same templates once for each source; sources that are compiled as one do
 it once. Sources of a target go together where none hides a name of another: names in anonymous namespaces, `static`
-functions, macros and `using namespace` are compared first, then the compiler is asked. A source that goes with no other
+functions, macros and `using namespace` are compared first, then the compiler is asked. The compiler does not see all: a
+function that one source has for itself may suit a call in another better than the function that is meant. So no source
+goes with one that calls anything by a name that it hides. A source that goes with no other
 is compiled alone, as every source is that the list does not name: who adds a file needs not touch the list, who adds a
 name that another file of the group has takes the file out of it, or renames. The list is made anew once in a while.
 """
@@ -43,7 +45,7 @@ def hidden_names(text):
         if line.startswith((' ', '/', '}', '#')) or not (inside or line.startswith('static ')):
             continue
         kind = re.match(r'(?:struct|class|enum class|enum|union) (\w+)', line)
-        alias = re.match(r'(?:using (\w+) =|namespace (\w+) =)', line)
+        alias = re.match(r'(?:using (\w+) =|namespace (\w+) =|using [\w:]+::([a-z_]\w*);)', line)
         value = re.match(r'(?:static |inline )*(?:constexpr|const) [^=({]*?\b(\w+)(?:\[[^\]]*\])*(?: = | ?\{)', line)
         function = re.match(r'[\w:<>,&*\s\[\]()]*?\b(\w+)\(', line)
         for match in (kind, alias, value, function):
@@ -51,6 +53,11 @@ def hidden_names(text):
                 names.add(next(g for g in match.groups() if g))
                 break
     return names
+
+
+def called_names(text):
+    """Functions that a source calls without naming their class or namespace."""
+    return set(re.findall(r'(?<![\w.:>])([A-Za-z_]\w*)\(', re.sub(r'//.*', '', text)))
 
 
 class Target:
@@ -103,17 +110,19 @@ def groups_of(target):
         open_groups = []
         for entry in entries:
             text = open(entry['file']).read()
-            names, lines = hidden_names(text), text.count('\n')
+            names, lines, calls = hidden_names(text), text.count('\n'), called_names(text)
             if HEAVY.search(text) or 'using namespace' in names:
                 continue
             for group in open_groups:
-                if len(group['files']) < MOST_FILES and group['lines'] + lines <= MOST_LINES and not names & group['names']:
+                apart = names & (group['names'] | group['calls']) or calls & group['names']
+                if len(group['files']) < MOST_FILES and group['lines'] + lines <= MOST_LINES and not apart:
                     break
             else:
-                group = {'files': [], 'names': set(), 'lines': 0}
+                group = {'files': [], 'names': set(), 'calls': set(), 'lines': 0}
                 open_groups.append(group)
             group['files'].append(entry['file'])
             group['names'] |= names
+            group['calls'] |= calls
             group['lines'] += lines
         for group in open_groups:
             files = group['files']
@@ -144,7 +153,7 @@ def main():
         together += sum(map(len, groups))
         alone += len(target.sources) - sum(map(len, groups))
         for group in groups:
-            text += f'blockrand_compile_together({target.name}\n'
+            text += f'blockrand_compile_together({target.name}  # {os.path.relpath(folder, root)}\n'
             line = ' '
             for name in (os.path.relpath(f, folder) for f in group):
                 if len(line) + 1 + len(name) > 120:

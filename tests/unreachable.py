@@ -5,9 +5,9 @@
 
 PROGRAM holds all product objects, those that nothing refers to as well (whole archives). The call graph is read from its
 machine code: calls, jumps and addresses taken in code, and addresses in data that reached code refers to. Templates and
-inline functions (weak symbols) and functions of one file (local symbols) are not listed: the ones that only tests call
-hang on a listed one. A function that its callers took in (inlined) leaves no call behind: a function is listed only when its
-own source does not call it either. Sources are searched for its bare name: a dead function that calls itself, or whose
+inline functions (weak symbols), functions of one file (local symbols), destructors and assignments are not listed: the
+ones that only tests call hang on a listed one. A function that its callers took in (inlined) leaves no call behind: a function is listed only when its
+own source, and those that are compiled as one with it, do not call it either. Sources are searched for its bare name: a dead function that calls itself, or whose
 namesake is called in a source, is missed.
 Ends with 1 when a function is missing from the allowlist or an entry of the list is reached or gone, and with 77 (skipped)
 for programs of other processors than x86-64. unreachable_test.py proves it.
@@ -109,11 +109,16 @@ def called_in_its_source(name, sources):
 
 
 def product_sources():
-    texts = []
+    """Their texts; those of sources that are compiled as one (cmake/compiled_together.cmake) as one text besides."""
+    texts = {}
     for folder in ("pipeline", "importers", "styles"):
         for path in sorted((ROOT / folder).rglob("*.cpp")):
-            texts.append(re.sub(r"//.*", "", path.read_text(encoding="utf-8")))
-    return texts
+            texts[path] = re.sub(r"//.*", "", path.read_text(encoding="utf-8"))
+    groups = (ROOT / "cmake" / "compiled_together.cmake").read_text(encoding="utf-8")
+    together = []
+    for folder, files in re.findall(r"^blockrand_compile_together\(\w+  # (\S+)\n([^)]*)\)", groups, re.M):
+        together.append("\n".join(texts.get(ROOT / folder / file, "") for file in files.split()))
+    return [*texts.values(), *together]
 
 
 def unreachable(program, sources):
@@ -121,7 +126,8 @@ def unreachable(program, sources):
     refers, nameless = references(program, symbols)
     seen = reached(symbols, refers, nameless)
     left = [name for address, (_, kind, name) in symbols.at.items()
-            if kind == "T" and address not in seen and name.startswith("_ZN") and "9blockrand" in name[:16]]
+            if kind == "T" and address not in seen and name.startswith("_ZN") and "9blockrand" in name[:16]
+            and not re.search(r"D[012]Ev$|aSEOS_$|aSERKS_$", name)]
     names = subprocess.run(["c++filt"], input="\n".join(left), check=True, capture_output=True, text=True).stdout
     return sorted({n for n in names.splitlines()
                    if n and n.startswith("blockrand::") and not called_in_its_source(n, sources)})

@@ -1,7 +1,6 @@
 // The geodetic quadtree that cuts the world into units of work (ARCHITECTURE.md, "Coordinates").
 #pragma once
 
-
 #include "pipeline/georef/lon_lat.h"
 #include "pipeline/model/point.h"
 #include "pipeline/model/region.h"

@@ -18,29 +18,11 @@ namespace blockrand::outputs {
 /// Which polygons have which material. Kept until all buildings are written: about 40 bytes a face.
 class AppearanceText {
  public:
-  void add(const model::Solid& solid, std::string_view id) {
-    for (std::size_t f = 0; f < solid.faces.size(); ++f) {
-      append_polygon_id(target(solid.faces[f].material, solid.faces[f].colour), id, f);
-      close();
-    }
-  }
+  void add(const model::Solid& solid, std::string_view id);
 
   /// The polygons of a LoD3 solid that its LoD2 solid does not have.
-  void add_detail(const model::Solid& lod2, const model::Solid& lod3, std::string_view id) {
-    for (std::size_t f = 0; f < lod3.faces.size(); ++f)
-      if (!is_shared_face(lod2, lod3, f)) {
-        append_detail_polygon_id(target(lod3.faces[f].material, lod3.faces[f].colour), id, f);
-        close();
-      }
-  }
-  void add(const model::ColouredElement& element, std::string_view id) {
-    const auto& faces = element.element->mesh.faces;
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-      const model::PartMaterial& material = element.materials[static_cast<std::size_t>(faces[f].part)];
-      append_polygon_id(target(material.material, material.colour), id, f);
-      close();
-    }
-  }
+  void add_detail(const model::Solid& lod2, const model::Solid& lod3, std::string_view id);
+  void add(const model::ColouredElement& element, std::string_view id);
 
   /// Hands the appearanceMember to `write` in pieces; nothing when nothing was added.
   template <class Write>
@@ -51,7 +33,8 @@ class AppearanceText {
     out += "</app:theme>\n";
     for (std::size_t i = 0; i < targets_.size(); ++i) {
       const std::uint32_t key = numbers_.keys()[i];
-      const X3dMaterial material = x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
+      const X3dMaterial material =
+          x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
       out += "<app:surfaceDataMember><app:X3DMaterial><gml:name>";
       append_xml(out, material.name);
       out += "</gml:name><app:diffuseColor>";
@@ -71,12 +54,7 @@ class AppearanceText {
 
  private:
   /// Opens a target of this look; the caller appends the id and closes it.
-  std::string& target(std::uint8_t material, model::Colour colour) {
-    last_ = numbers_.number(MaterialNumbers::key(material, colour));
-    if (last_ == targets_.size()) targets_.emplace_back();
-    targets_[last_] += "<app:target>#";
-    return targets_[last_];
-  }
+  std::string& target(std::uint8_t material, model::Colour colour);
   void close() { targets_[last_] += "</app:target>\n"; }
 
   MaterialNumbers numbers_;
