@@ -156,8 +156,13 @@ std::vector<Geometry>& CityGmlParser::geometries_of(std::size_t building, int su
 void CityGmlParser::begin_geometry(GeometryKind kind, const std::string& id) {
   const OpenThing& here = open_.back();
   auto& geometries = geometries_of(here.building, here.surface, here.opening);
-  pending_.push_back({here.building, here.surface, here.opening, geometries.size(), links_.size(),
-                      static_cast<std::size_t>(-1), links_.size()});
+  pending_.push_back({.building = here.building,
+                      .surface = here.surface,
+                      .opening = here.opening,
+                      .geometry = geometries.size(),
+                      .begin = links_.size(),
+                      .voids = static_cast<std::size_t>(-1),
+                      .end = links_.size()});
   Geometry g;
   g.lod = property_lod_;
   g.kind = kind;

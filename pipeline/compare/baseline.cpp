@@ -244,7 +244,13 @@ BaselineResult compare_with_baseline(const Comparison& comparison, const std::st
   }
   for (const auto& [id, area] : {std::pair("missing_area", footprint_area(comparison.reference, comparison.missing)),
                                  std::pair("extra_area", footprint_area(comparison.model, comparison.extra))}) {
-    const MeasureInfo measure{id, "m²", Better::lower, Pool::sum, Scope::plan, "", ""};
+    const MeasureInfo measure{.id = id,
+                              .unit = "m²",
+                              .better = Better::lower,
+                              .pool = Pool::sum,
+                              .scope = Scope::plan,
+                              .title = "",
+                              .text = ""};
     if (const auto before = baseline.count(id))
       verdict.lines.push_back(judge(measure, *before, finite(area).value_or(0), allowed));
   }

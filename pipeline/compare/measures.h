@@ -111,8 +111,14 @@ struct MeasureInfo {
   std::string_view title, text;
 };
 inline constexpr MeasureInfo kMeasures[] = {
-#define X(id, unit, better, pool, scope, title, text) \
-  {#id, unit, Better::better, Pool::pool, Scope::scope, title, text},
+#define X(ID, UNIT, BETTER, POOL, SCOPE, TITLE, TEXT) \
+  {.id = #ID,                                         \
+   .unit = UNIT,                                      \
+   .better = Better::BETTER,                          \
+   .pool = Pool::POOL,                                \
+   .scope = Scope::SCOPE,                             \
+   .title = TITLE,                                    \
+   .text = TEXT},
     BLOCKRAND_COMPARE_MEASURES(X)
 #undef X
 };

@@ -73,7 +73,13 @@ void VicinityFinder::label_wall_segments(model::Region& region, std::span<const 
       figures[found->second].courtyards.push_back(yard.courtyard);
   }
 
-  const context::VicinityIndex index({footprints, lines, blocks, figures, passages, points, addresses});
+  const context::VicinityIndex index({.footprints = footprints,
+                                      .lines = lines,
+                                      .blocks = blocks,
+                                      .figures = figures,
+                                      .passages = passages,
+                                      .points = points,
+                                      .addresses = addresses});
   for (model::Building& building : region.buildings)
     context::label_wall_segments(building, index, context::address_street(extract_, building.tags));
 }

@@ -111,7 +111,7 @@ std::vector<OutlineEdge> edges_of(const std::vector<model::Polygon>& outline) {
     const auto add = [&](const model::Ring& ring, std::uint32_t number) {
       for (std::uint32_t i = 0; i < ring.size(); ++i) {
         const std::size_t next = (i + 1) % ring.size();
-        OutlineEdge e{p, number, i, 0, 0, ring.points[i], ring.points[next], {}, {}, 0};
+        OutlineEdge e{.polygon = p, .ring = number, .edge = i, .a = ring.points[i], .b = ring.points[next]};
         if (next < ring.nodes.size() && i < ring.nodes.size()) {
           e.from_node = ring.nodes[i];
           e.to_node = ring.nodes[next];

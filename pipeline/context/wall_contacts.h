@@ -13,8 +13,8 @@ struct OutlineEdge {
   std::uint32_t polygon = 0, ring = 0, edge = 0;  ///< as in model::WallSegment
   std::int64_t from_node = 0, to_node = 0;
   model::Point2 a, b;
-  model::Point2 along, outward;  ///< unit vectors
-  double length = 0;             ///< m
+  model::Point2 along = {}, outward = {};  ///< unit vectors
+  double length = 0;                       ///< m
   model::Point2 at(double metres) const { return {a.x + along.x * metres, a.y + along.y * metres}; }
 };
 

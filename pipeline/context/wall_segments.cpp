@@ -21,9 +21,9 @@ using model::WallSegmentKind;
 struct Piece {
   double start = 0, end = 0;  ///< m
   WallSegmentKind kind = WallSegmentKind::unknown;
-  model::OsmId neighbour;
+  model::OsmId neighbour = {};
   std::uint32_t passage = kNothing;
-  std::vector<WallSample> samples;
+  std::vector<WallSample> samples = {};
   double margin = 0;  ///< side and courtyard: of the view around, how far from the other label
   double length() const { return end - start; }
 };
@@ -92,7 +92,7 @@ class Labeller {
   std::vector<Piece> pieces_of(const OutlineEdge& edge, const std::vector<Portal>& portals) const {
     std::vector<Piece> fixed;
     for (const Contact& c : contacts_of(edge, building_.osm, canopy_, index_, options_))
-      fixed.push_back({c.start, c.end, WallSegmentKind::party_wall, c.neighbour, kNothing, {}, 0});
+      fixed.push_back({.start = c.start, .end = c.end, .kind = WallSegmentKind::party_wall, .neighbour = c.neighbour});
     const std::size_t contacts = fixed.size();
     for (const Portal& m : canopy_ ? std::vector<Portal>{} : portals) {
       // What a neighbour's wall leaves of the portal.
@@ -100,10 +100,12 @@ class Labeller {
       for (std::size_t c = 0; c < contacts; ++c) {
         if (fixed[c].end <= start || fixed[c].start >= m.end) continue;
         if (fixed[c].start > start)
-          fixed.push_back({start, fixed[c].start, WallSegmentKind::passage, {}, m.passage, {}, 0});
+          fixed.push_back(
+              {.start = start, .end = fixed[c].start, .kind = WallSegmentKind::passage, .passage = m.passage});
         start = fixed[c].end;
       }
-      if (start < m.end) fixed.push_back({start, m.end, WallSegmentKind::passage, {}, m.passage, {}, 0});
+      if (start < m.end)
+        fixed.push_back({.start = start, .end = m.end, .kind = WallSegmentKind::passage, .passage = m.passage});
     }
     std::sort(fixed.begin(), fixed.end(), [](const Piece& a, const Piece& b) { return a.start < b.start; });
     std::vector<Piece> out;
@@ -132,7 +134,7 @@ class Labeller {
     std::vector<Piece> pieces;
     for (int i = 0; i < n; ++i) {
       WallSample sample = look_out(edge, start + (i + 0.5) * step, view_, options_);
-      Piece piece{start + i * step, start + (i + 1) * step, sample.kind, {}, kNothing, {}, 0};
+      Piece piece{.start = start + i * step, .end = start + (i + 1) * step, .kind = sample.kind};
       if (sample.inside != kNothing) piece.neighbour = index_.all().footprints[sample.inside].id;
       piece.samples.push_back(std::move(sample));
       if (!pieces.empty() && !same_situation(pieces.back(), piece))
@@ -160,13 +162,10 @@ class Labeller {
     for (int i = 0; i < n; ++i) {
       const double start = piece.start + i * step, end = i + 1 == n ? piece.end : start + step;
       const Enclosure around = enclosure_at(edge, start + step / 2, building_.osm, in_yard, view_, options_);
-      Piece part{start,
-                 end,
-                 around.is_court(options_) ? WallSegmentKind::courtyard : WallSegmentKind::side,
-                 {},
-                 kNothing,
-                 {},
-                 around.margin(options_)};
+      Piece part{.start = start,
+                 .end = end,
+                 .kind = around.is_court(options_) ? WallSegmentKind::courtyard : WallSegmentKind::side,
+                 .margin = around.margin(options_)};
       for (const WallSample& sample : piece.samples)
         if (sample.at >= start && (sample.at < end || i + 1 == n)) part.samples.push_back(sample);
       out.push_back(std::move(part));

@@ -61,8 +61,8 @@ std::pair<double, double> ElementLibrary::size(const elements::ElementKind* kind
     const double coarse = std::floor(metres * steps + kRounding) / steps;
     return coarse >= least ? coarse : size(metres);
   };
-  return {opening(width, kOpeningWidthSteps, kind->least_width),
-          opening(height, kOpeningHeightSteps, kind->least_height)};
+  return {opening(width, kOpeningWidthSteps, kind->width.least),
+          opening(height, kOpeningHeightSteps, kind->height.least)};
 }
 
 PartMaterials ElementLibrary::usual_materials(const model::BuildingPart& part) const {

@@ -140,7 +140,7 @@ class FacadeBuilder {
     const double left = frame.origin.x, low = frame.origin.y, width = leaf.shape.size.x, height = leaf.shape.size.y;
     if (!(ElementLibrary::size(width) > 0 && ElementLibrary::size(height) > 0)) return;
     const elements::ElementKind* kind = elements::find_element_kind(std::get<std::string>(order.arguments[0]));
-    const bool run = kind && kind->width_is == "run";
+    const bool run = kind && kind->width.measures == "run";
     std::vector<std::pair<double, double>>& pieces = pieces_;
     pieces.assign({{left, left + width}});
     for (const PassagePortal& m : portals_) {
@@ -162,8 +162,8 @@ class FacadeBuilder {
         }
         const auto at = pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(i));
         std::size_t kept = 0;
-        if (b - to >= kind->least_width) pieces.insert(at, {to, b}), ++kept;
-        if (from - a >= kind->least_width)
+        if (b - to >= kind->width.least) pieces.insert(at, {to, b}), ++kept;
+        if (from - a >= kind->width.least)
           pieces.insert(pieces.begin() + static_cast<std::ptrdiff_t>(i), {a, from}), ++kept;
         i += kept;
       }
@@ -255,9 +255,9 @@ class FacadeBuilder {
       const bool cart = m.right - m.left >= kLeastGate;
       const std::string_view name = open ? "surround" : cart ? "carriage_gateway" : "house_door";
       const elements::ElementKind& kind = *elements::find_element_kind(name);
-      const double width = std::min(ElementLibrary::size(m.right - m.left), kind.most_width);
-      const double height = std::min(ElementLibrary::size(m.high - m.low), kind.most_height);
-      if (width < kind.least_width || height < kind.least_height) continue;
+      const double width = std::min(ElementLibrary::size(m.right - m.left), kind.width.most);
+      const double height = std::min(ElementLibrary::size(m.high - m.low), kind.height.most);
+      if (width < kind.width.least || height < kind.height.least) continue;
       library_.ask(name, width, height, usual_materials_);
       library_.add("head", std::string_view("straight"));
       library_.add("surround", std::string_view(open ? "plain" : "none"));

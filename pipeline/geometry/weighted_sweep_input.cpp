@@ -117,8 +117,9 @@ bool Sweep::add_corner_eaves(const CornerEaves& eaves) {
   if (vertex(first).reflex || !stays_upright(before) || !stays_upright(after)) return false;
   const std::int32_t outwards = plane_beside(after, eaves), back = plane_beside(before, eaves);
   const auto middle = static_cast<std::int32_t>(vertices_.size()), last = middle + 1;
-  vertices_.push_back({first, last, outwards, back, eaves.corner, true, true, false});
-  vertices_.push_back({middle, next, back, after, eaves.corner, true, false, false});
+  vertices_.push_back(
+      {.prev = first, .next = last, .left = outwards, .right = back, .node = eaves.corner, .reflex = true});
+  vertices_.push_back({.prev = middle, .next = next, .left = back, .right = after, .node = eaves.corner});
   vertex(first).right = outwards;
   vertex(first).next = middle;
   vertex(next).prev = last;

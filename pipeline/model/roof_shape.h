@@ -111,94 +111,88 @@ struct RoofTraits {
   std::array<std::string_view, 5> synonyms = {};  ///< other values of roof:shape: lower case, gaps as underscores
 };
 
-// X(identifier, designated initialisers of RoofTraits). The order is that of the numbers in outputs: new shapes go to
-// the end. Sources of the usual pitches: docs/style_measures.md 2.7.
+// X(identifier, "name", designated initialisers of the other members of RoofTraits). The order is that of the numbers in
+// outputs: new shapes go to the end. Sources of the usual pitches: docs/style_measures.md 2.7.
 #define BLOCKRAND_ROOF_SHAPES(X)                                                                                       \
-  X(flat, .name = "flat", .group = RoofGroup::flat, .construction = LevelRoof{}, .one_pitch = false, .lent = true,     \
+  X(flat, "flat", .group = RoofGroup::flat, .construction = LevelRoof{}, .one_pitch = false, .lent = true,             \
     .ornament = OrnamentalGable::attic, .synonyms = {"flat_roof"})                                                     \
-  X(gabled, .name = "gabled", .group = RoofGroup::gabled,                                                              \
-    .construction = EdgeRoof{EavesProfile::one_pitch, WingEnds::gables}, .one_pitch = true, .lent = true,              \
-    .ornament = OrnamentalGable::gable, .synonyms = {"gable", "pitched", "saddle", "dual_pitched"})                    \
-  X(gabled_height_moved, .name = "gabled_height_moved", .group = RoofGroup::gabled,                                    \
+  X(gabled, "gabled", .group = RoofGroup::gabled, .construction = EdgeRoof{EavesProfile::one_pitch, WingEnds::gables}, \
+    .one_pitch = true, .lent = true, .ornament = OrnamentalGable::gable,                                               \
+    .synonyms = {"gable", "pitched", "saddle", "dual_pitched"})                                                        \
+  X(gabled_height_moved, "gabled_height_moved", .group = RoofGroup::gabled,                                            \
     .construction = ProfileRoof{CrossProfile::gabled_height_moved, false}, .one_pitch = false, .lent = false,          \
     .ornament = OrnamentalGable::none, .pitch = {.most = 30})                                                          \
   /* The usual pitch is that of the lean-to roofs of side wings: 5 to 20. */                                           \
-  X(skillion, .name = "skillion", .group = RoofGroup::shed, .construction = ProfileRoof{CrossProfile::skillion, true}, \
+  X(skillion, "skillion", .group = RoofGroup::shed, .construction = ProfileRoof{CrossProfile::skillion, true},         \
     .one_pitch = true, .lent = true, .ornament = OrnamentalGable::none, .pitch = {.most = 10},                         \
     .synonyms = {"shed", "lean_to", "monopitch", "mono_pitched", "single_pitch"})                                      \
-  X(hipped, .name = "hipped", .group = RoofGroup::hipped,                                                              \
-    .construction = EdgeRoof{EavesProfile::one_pitch, WingEnds::hips}, .one_pitch = true, .lent = true,                \
-    .ornament = OrnamentalGable::attic, .synonyms = {"hip"})                                                           \
-  X(half_hipped, .name = "half-hipped", .group = RoofGroup::hipped,                                                    \
+  X(hipped, "hipped", .group = RoofGroup::hipped, .construction = EdgeRoof{EavesProfile::one_pitch, WingEnds::hips},   \
+    .one_pitch = true, .lent = true, .ornament = OrnamentalGable::attic, .synonyms = {"hip"})                          \
+  X(half_hipped, "half-hipped", .group = RoofGroup::hipped,                                                            \
     .construction = EdgeRoof{EavesProfile::one_pitch, WingEnds::half_hips}, .one_pitch = true, .lent = true,           \
     .ornament = OrnamentalGable::gable, .synonyms = {"half_hip", "jerkinhead"})                                        \
-  X(side_hipped, .name = "side_hipped", .group = RoofGroup::hipped,                                                    \
+  X(side_hipped, "side_hipped", .group = RoofGroup::hipped,                                                            \
     .construction = EdgeRoof{EavesProfile::one_pitch, WingEnds::one_hip}, .one_pitch = true, .lent = true,             \
     .ornament = OrnamentalGable::attic)                                                                                \
-  X(side_half_hipped, .name = "side_half-hipped", .group = RoofGroup::hipped,                                          \
+  X(side_half_hipped, "side_half-hipped", .group = RoofGroup::hipped,                                                  \
     .construction = EdgeRoof{EavesProfile::one_pitch, WingEnds::one_half_hip}, .one_pitch = true, .lent = false,       \
     .ornament = OrnamentalGable::gable)                                                                                \
-  X(hipped_and_gabled, .name = "hipped-and-gabled", .group = RoofGroup::hipped,                                        \
+  X(hipped_and_gabled, "hipped-and-gabled", .group = RoofGroup::hipped,                                                \
     .construction = EdgeRoof{EavesProfile::one_pitch, WingEnds::gablets}, .one_pitch = true, .lent = false,            \
     .ornament = OrnamentalGable::none, .synonyms = {"hipped_gabled"})                                                  \
   /* The usual pitch stands where the roof is too low for an attic storey. */                                          \
-  X(mansard, .name = "mansard", .group = RoofGroup::mansard,                                                           \
-    .construction = EdgeRoof{EavesProfile::broken, WingEnds::hips}, .one_pitch = false, .lent = true,                  \
-    .ornament = OrnamentalGable::gable, .pitch = {.own = 65})                                                          \
-  X(gambrel, .name = "gambrel", .group = RoofGroup::mansard,                                                           \
-    .construction = EdgeRoof{EavesProfile::broken, WingEnds::gables}, .one_pitch = false, .lent = true,                \
-    .ornament = OrnamentalGable::gable, .pitch = {.own = 65}, .synonyms = {"gambrel_roof"})                            \
-  X(pyramidal, .name = "pyramidal", .group = RoofGroup::pyramidal,                                                     \
+  X(mansard, "mansard", .group = RoofGroup::mansard, .construction = EdgeRoof{EavesProfile::broken, WingEnds::hips},   \
+    .one_pitch = false, .lent = true, .ornament = OrnamentalGable::gable, .pitch = {.own = 65})                        \
+  X(gambrel, "gambrel", .group = RoofGroup::mansard, .construction = EdgeRoof{EavesProfile::broken, WingEnds::gables}, \
+    .one_pitch = false, .lent = true, .ornament = OrnamentalGable::gable, .pitch = {.own = 65},                        \
+    .synonyms = {"gambrel_roof"})                                                                                      \
+  X(pyramidal, "pyramidal", .group = RoofGroup::pyramidal,                                                             \
     .construction = ApexRoof{ApexProfile::pyramid, RoofShape::hipped}, .one_pitch = true, .lent = true,                \
     .ornament = OrnamentalGable::none, .synonyms = {"pyramid", "tented"})                                              \
-  X(crosspitched, .name = "crosspitched", .group = RoofGroup::cross_gabled,                                            \
-    .construction = CrossedRoof{1, RoofShape::gabled}, .one_pitch = false, .lent = false,                              \
-    .ornament = OrnamentalGable::none, .synonyms = {"cross_gabled"})                                                   \
+  X(crosspitched, "crosspitched", .group = RoofGroup::cross_gabled, .construction = CrossedRoof{1, RoofShape::gabled}, \
+    .one_pitch = false, .lent = false, .ornament = OrnamentalGable::none, .synonyms = {"cross_gabled"})                \
   /* Workshops: 30 to 60 degrees, over teeth of 5 m. */                                                                \
-  X(sawtooth, .name = "sawtooth", .group = RoofGroup::folded,                                                          \
-    .construction = ProfileRoof{CrossProfile::sawtooth, true}, .one_pitch = false, .lent = false,                      \
-    .ornament = OrnamentalGable::none, .pitch = {.own = 30}, .synonyms = {"saw_tooth"})                                \
-  X(butterfly, .name = "butterfly", .group = RoofGroup::folded,                                                        \
-    .construction = ProfileRoof{CrossProfile::butterfly, false}, .one_pitch = false, .lent = false,                    \
-    .ornament = OrnamentalGable::none, .pitch = {.most = 10})                                                          \
-  X(cone, .name = "cone", .group = RoofGroup::round,                                                                   \
-    .construction = ApexRoof{ApexProfile::pyramid, RoofShape::hipped}, .one_pitch = false, .lent = false,              \
-    .ornament = OrnamentalGable::none, .pitch = {.own = 55}, .synonyms = {"conical"})                                  \
+  X(sawtooth, "sawtooth", .group = RoofGroup::folded, .construction = ProfileRoof{CrossProfile::sawtooth, true},       \
+    .one_pitch = false, .lent = false, .ornament = OrnamentalGable::none, .pitch = {.own = 30},                        \
+    .synonyms = {"saw_tooth"})                                                                                         \
+  X(butterfly, "butterfly", .group = RoofGroup::folded, .construction = ProfileRoof{CrossProfile::butterfly, false},   \
+    .one_pitch = false, .lent = false, .ornament = OrnamentalGable::none, .pitch = {.most = 10})                       \
+  X(cone, "cone", .group = RoofGroup::round, .construction = ApexRoof{ApexProfile::pyramid, RoofShape::hipped},        \
+    .one_pitch = false, .lent = false, .ornament = OrnamentalGable::none, .pitch = {.own = 55},                        \
+    .synonyms = {"conical"})                                                                                           \
   /* Half a sphere. */                                                                                                 \
-  X(dome, .name = "dome", .group = RoofGroup::round, .construction = ApexRoof{ApexProfile::dome, RoofShape::dome},     \
+  X(dome, "dome", .group = RoofGroup::round, .construction = ApexRoof{ApexProfile::dome, RoofShape::dome},             \
     .one_pitch = false, .lent = false, .ornament = OrnamentalGable::none, .pitch = {.own = 45})                        \
-  X(onion, .name = "onion", .group = RoofGroup::round, .construction = ApexRoof{ApexProfile::onion, RoofShape::dome},  \
+  X(onion, "onion", .group = RoofGroup::round, .construction = ApexRoof{ApexProfile::onion, RoofShape::dome},          \
     .one_pitch = false, .lent = false, .ornament = OrnamentalGable::none, .pitch = {.own = 55})                        \
   /* Halls: the rise is a quarter to a third of the span. */                                                           \
-  X(round, .name = "round", .group = RoofGroup::round,                                                                 \
-    .construction = EdgeRoof{EavesProfile::vaulted, WingEnds::gables}, .one_pitch = false, .lent = false,              \
-    .ornament = OrnamentalGable::none, .pitch = {.own = 30}, .synonyms = {"barrel", "rounded"})                        \
-  X(saltbox, .name = "saltbox", .group = RoofGroup::saltbox, .construction = ProfileRoof{CrossProfile::saltbox, true}, \
+  X(round, "round", .group = RoofGroup::round, .construction = EdgeRoof{EavesProfile::vaulted, WingEnds::gables},      \
+    .one_pitch = false, .lent = false, .ornament = OrnamentalGable::none, .pitch = {.own = 30},                        \
+    .synonyms = {"barrel", "rounded"})                                                                                 \
+  X(saltbox, "saltbox", .group = RoofGroup::saltbox, .construction = ProfileRoof{CrossProfile::saltbox, true},         \
     .one_pitch = false, .lent = true, .ornament = OrnamentalGable::none, .pitch = {.most = 30})                        \
   /* A steep strip 2 to 5 m high: over 0.6 of half a house's depth 45 degrees give 3 to 4 m. */                        \
-  X(double_saltbox, .name = "double_saltbox", .group = RoofGroup::saltbox,                                             \
+  X(double_saltbox, "double_saltbox", .group = RoofGroup::saltbox,                                                     \
     .construction = EdgeRoof{EavesProfile::decked, WingEnds::gables}, .one_pitch = false, .lent = true,                \
     .ornament = OrnamentalGable::none, .pitch = {.own = 45})                                                           \
-  X(quadruple_saltbox, .name = "quadruple_saltbox", .group = RoofGroup::saltbox,                                       \
+  X(quadruple_saltbox, "quadruple_saltbox", .group = RoofGroup::saltbox,                                               \
     .construction = EdgeRoof{EavesProfile::decked, WingEnds::hips}, .one_pitch = false, .lent = true,                  \
     .ornament = OrnamentalGable::none, .pitch = {.own = 45})                                                           \
-  X(spire, .name = "spire", .group = RoofGroup::round,                                                                 \
-    .construction = ApexRoof{ApexProfile::spire, RoofShape::hipped}, .one_pitch = false, .lent = false,                \
-    .ornament = OrnamentalGable::none, .pitch = {.own = 70})                                                           \
-  X(helm, .name = "helm", .group = RoofGroup::other, .construction = CrossedRoof{0.5, RoofShape::hipped},              \
-    .one_pitch = false, .lent = false, .ornament = OrnamentalGable::none, .pitch = {.own = 60})                        \
-  X(many, .name = "many", .group = RoofGroup::other, .construction = UnknownRoof{}, .one_pitch = false, .lent = false, \
+  X(spire, "spire", .group = RoofGroup::round, .construction = ApexRoof{ApexProfile::spire, RoofShape::hipped},        \
+    .one_pitch = false, .lent = false, .ornament = OrnamentalGable::none, .pitch = {.own = 70})                        \
+  X(helm, "helm", .group = RoofGroup::other, .construction = CrossedRoof{0.5, RoofShape::hipped}, .one_pitch = false,  \
+    .lent = false, .ornament = OrnamentalGable::none, .pitch = {.own = 60})                                            \
+  X(many, "many", .group = RoofGroup::other, .construction = UnknownRoof{}, .one_pitch = false, .lent = false,         \
     .ornament = OrnamentalGable::none, .synonyms = {"multiple"})                                                       \
   /* A value of roof:shape that no row knows. */                                                                       \
-  X(other, .name = "other", .group = RoofGroup::other, .construction = UnknownRoof{}, .one_pitch = false,              \
-    .lent = false, .ornament = OrnamentalGable::none)                                                                  \
+  X(other, "other", .group = RoofGroup::other, .construction = UnknownRoof{}, .one_pitch = false, .lent = false,       \
+    .ornament = OrnamentalGable::none)                                                                                 \
   /* From ways tagged roof:ridge and roof:edge. */                                                                     \
-  X(lined, .name = "lined", .group = RoofGroup::other, .construction = LinedRoof{}, .one_pitch = false, .lent = false, \
+  X(lined, "lined", .group = RoofGroup::other, .construction = LinedRoof{}, .one_pitch = false, .lent = false,         \
     .ornament = OrnamentalGable::none, .is_tag_value = false)                                                          \
   /* The Berliner Dach has no value of its own in OSM. Its slopes have pitches of their own. */                        \
-  X(berlin, .name = "berlin", .group = RoofGroup::saltbox,                                                             \
-    .construction = EdgeRoof{EavesProfile::berlin, WingEnds::gables}, .one_pitch = false, .lent = false,               \
-    .ornament = OrnamentalGable::none, .pitch = {.own = 45}, .is_tag_value = false)
+  X(berlin, "berlin", .group = RoofGroup::saltbox, .construction = EdgeRoof{EavesProfile::berlin, WingEnds::gables},   \
+    .one_pitch = false, .lent = false, .ornament = OrnamentalGable::none, .pitch = {.own = 45}, .is_tag_value = false)
 
 enum class RoofShape : std::uint8_t {
 #define X(id, ...) id,
@@ -208,7 +202,7 @@ enum class RoofShape : std::uint8_t {
 
 /// The table, by shape.
 inline constexpr RoofTraits kRoofTraits[] = {
-#define X(id, ...) RoofTraits{__VA_ARGS__},
+#define X(id, text, ...) RoofTraits{.name = text, __VA_ARGS__},
     BLOCKRAND_ROOF_SHAPES(X)
 #undef X
 };

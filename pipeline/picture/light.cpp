@@ -140,8 +140,13 @@ Light light_of(const Scene& scene, const View& view, const Samples& samples, con
       askers.clear();
       each_sample(scene, view, samples, receivers, ss, phase, [&](std::size_t i, int x, int y, const Scene::Vector& n) {
         const Point3 p = view.position(x + 0.5, y + 0.5, samples.nearness[i]);
-        askers.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), n, 0, 0,
-                          static_cast<std::uint32_t>(i)});
+        askers.push_back({.x = static_cast<float>(p.x),
+                          .y = static_cast<float>(p.y),
+                          .z = static_cast<float>(p.z),
+                          .normal = n,
+                          .got = 0,
+                          .open = 0,
+                          .index = static_cast<std::uint32_t>(i)});
       });
       for (int d = phase; d < count; d += phases) {
         const Point3& to_light = directions[static_cast<std::size_t>(d)];

@@ -280,8 +280,12 @@ std::vector<GeoPackageReportedRow> GeoPackageReader::reported() {
   const std::int64_t srs_id = state_->srs_id();
   state_->db.each("SELECT id, kind, state, code, detail, related, geom FROM reported ORDER BY fid",
                   [&](const SqliteRow& row) {
-                    GeoPackageReportedRow r{
-                        row.string(0), row.string(1), row.string(2), row.string(3), row.string(4), row.string(5), {}};
+                    GeoPackageReportedRow r{.id = row.string(0),
+                                            .kind = row.string(1),
+                                            .state = row.string(2),
+                                            .code = row.string(3),
+                                            .detail = row.string(4),
+                                            .related = row.string(5)};
                     if (!row.null(6)) {
                       const GeoPackageGeometry g = read_geopackage_geometry(row.text(6), WkbType::point, srs_id);
                       if (g.errors.empty()) r.place = g.point;

@@ -36,7 +36,7 @@ struct GeoPackageTileRows {
 /// A row of the layer `reported`: empty where the file says NULL.
 struct GeoPackageReportedRow {
   std::string id, kind, state, code, detail, related;
-  std::optional<model::Point2> place;
+  std::optional<model::Point2> place = std::nullopt;
 };
 
 /// A row of the layer `tiles`.

@@ -11,17 +11,32 @@ using Parameters = std::vector<ParameterInfo>;
 
 ParameterInfo number(std::string name, std::string unit, double initial, double least, double most,
                      std::string meaning) {
-  return {std::move(name), std::move(unit), Type::number, initial, least, most, {}, std::move(meaning)};
+  return {.name = std::move(name),
+          .unit = std::move(unit),
+          .type = Type::number,
+          .initial = initial,
+          .least = least,
+          .most = most,
+          .meaning = std::move(meaning)};
 }
 ParameterInfo whole(std::string name, double initial, double least, double most, std::string meaning) {
-  return {std::move(name), "", Type::whole, initial, least, most, {}, std::move(meaning)};
+  return {.name = std::move(name),
+          .type = Type::whole,
+          .initial = initial,
+          .least = least,
+          .most = most,
+          .meaning = std::move(meaning)};
 }
 ParameterInfo word(std::string name, std::vector<std::string> words, std::string_view initial, std::string meaning) {
   const auto at = std::find(words.begin(), words.end(), initial) - words.begin();
-  return {std::move(name), "", Type::word, static_cast<double>(at), 0, 0, std::move(words), std::move(meaning)};
+  return {.name = std::move(name),
+          .type = Type::word,
+          .initial = static_cast<double>(at),
+          .words = std::move(words),
+          .meaning = std::move(meaning)};
 }
 ParameterInfo profile(std::string name, std::string preset, std::string meaning) {
-  return {std::move(name), "", Type::profile, 0, 0, 0, {std::move(preset)}, std::move(meaning)};
+  return {.name = std::move(name), .type = Type::profile, .words = {std::move(preset)}, .meaning = std::move(meaning)};
 }
 
 void add(Parameters& to, Parameters more) {
@@ -87,18 +102,11 @@ Parameters leaves(int count, double transom, int bars) {
 }
 
 ElementKind casement() {
-  ElementKind k{"casement_window",
-                ElementClass::window,
-                "window of one to three leaves in one frame",
-                "opening",
-                "opening",
-                0.40,
-                1.10,
-                3.50,
-                0.40,
-                1.60,
-                4.50,
-                {}};
+  ElementKind k{.name = "casement_window",
+                .semantic = ElementClass::window,
+                .meaning = "window of one to three leaves in one frame",
+                .width = {.measures = "opening", .least = 0.40, .usual = 1.10, .most = 3.50},
+                .height = {.measures = "opening", .least = 0.40, .usual = 1.60, .most = 4.50}};
   add(k.parameters, opening(0.12, 0, "straight"));
   add(k.parameters, leaves(2, 0, 0));
   add(k.parameters, surround("none", 0.14));
@@ -109,18 +117,11 @@ ElementKind casement() {
 }
 
 ElementKind double_casement() {
-  ElementKind k{"double_casement",
-                ElementClass::window,
-                "box window: outer and inner leaves with an air gap (Kastenfenster)",
-                "opening",
-                "opening",
-                0.50,
-                1.10,
-                3.50,
-                0.60,
-                2.20,
-                4.50,
-                {}};
+  ElementKind k{.name = "double_casement",
+                .semantic = ElementClass::window,
+                .meaning = "box window: outer and inner leaves with an air gap (Kastenfenster)",
+                .width = {.measures = "opening", .least = 0.50, .usual = 1.10, .most = 3.50},
+                .height = {.measures = "opening", .least = 0.60, .usual = 2.20, .most = 4.50}};
   add(k.parameters, opening(0.14, 0, "straight"));
   k.parameters.push_back(number("gap", "m", 0.12, 0.04, 0.20, "air between outer and inner leaves"));
   add(k.parameters, leaves(2, 0.66, 1));
@@ -132,18 +133,11 @@ ElementKind double_casement() {
 }
 
 ElementKind shop_window() {
-  ElementKind k{"shop_window",
-                ElementClass::window,
-                "shop front: glass between mullions on a base, lights above, a sign over it",
-                "opening",
-                "opening",
-                1.00,
-                3.20,
-                9.00,
-                1.80,
-                2.80,
-                5.00,
-                {}};
+  ElementKind k{.name = "shop_window",
+                .semantic = ElementClass::window,
+                .meaning = "shop front: glass between mullions on a base, lights above, a sign over it",
+                .width = {.measures = "opening", .least = 1.00, .usual = 3.20, .most = 9.00},
+                .height = {.measures = "opening", .least = 1.80, .usual = 2.80, .most = 5.00}};
   k.parameters = {number("reveal", "m", 0.10, 0, 0.40, "depth of the opening: wall's plane to the front of the frame"),
                   number("frame", "m", 0.07, 0.04, 0.15, "width of frame, mullions and transom"),
                   whole("mullions", 1, 0, 8, "uprights between the panes, besides the door's"),
@@ -160,18 +154,11 @@ ElementKind shop_window() {
 }
 
 ElementKind cellar_window() {
-  ElementKind k{"cellar_window",
-                ElementClass::window,
-                "small window in the plinth, often with iron bars",
-                "opening",
-                "opening",
-                0.30,
-                0.80,
-                1.60,
-                0.25,
-                0.45,
-                1.40,
-                {}};
+  ElementKind k{.name = "cellar_window",
+                .semantic = ElementClass::window,
+                .meaning = "small window in the plinth, often with iron bars",
+                .width = {.measures = "opening", .least = 0.30, .usual = 0.80, .most = 1.60},
+                .height = {.measures = "opening", .least = 0.25, .usual = 0.45, .most = 1.40}};
   add(k.parameters, opening(0.12, 0.05, "straight"));
   add(k.parameters,
       {number("frame", "m", 0.05, 0.03, 0.10, "width of the frame"), whole("leaves", 1, 1, 3, "leaves side by side"),
@@ -183,18 +170,11 @@ ElementKind cellar_window() {
 }
 
 ElementKind house_door() {
-  ElementKind k{"house_door",
-                ElementClass::door,
-                "door of one or two panelled leaves with a top light",
-                "opening",
-                "opening",
-                0.75,
-                1.50,
-                3.00,
-                1.80,
-                3.00,
-                5.00,
-                {}};
+  ElementKind k{.name = "house_door",
+                .semantic = ElementClass::door,
+                .meaning = "door of one or two panelled leaves with a top light",
+                .width = {.measures = "opening", .least = 0.75, .usual = 1.50, .most = 3.00},
+                .height = {.measures = "opening", .least = 1.80, .usual = 3.00, .most = 5.00}};
   add(k.parameters, opening(0.20, 0, "straight"));
   add(k.parameters,
       {number("frame", "m", 0.08, 0.04, 0.20, "width of the frame and of the transom"),
@@ -212,18 +192,13 @@ ElementKind house_door() {
 }
 
 ElementKind carriage_gateway() {
-  ElementKind k{"carriage_gateway",
-                ElementClass::door,
-                "gate of a passage for carts (Durchfahrt): jambs, arch and leaves; the passage is made by the building",
-                "opening",
-                "opening",
-                1.80,
-                2.80,
-                5.00,
-                2.20,
-                3.40,
-                6.00,
-                {}};
+  ElementKind k{
+      .name = "carriage_gateway",
+      .semantic = ElementClass::door,
+      .meaning =
+          "gate of a passage for carts (Durchfahrt): jambs, arch and leaves; the passage is made by the building",
+      .width = {.measures = "opening", .least = 1.80, .usual = 2.80, .most = 5.00},
+      .height = {.measures = "opening", .least = 2.20, .usual = 3.40, .most = 6.00}};
   add(k.parameters, opening(0.30, 0.05, "segmental"));
   add(k.parameters, {word("leaves", {"closed", "open", "absent"}, "closed",
                           "how the two leaves stand; open ones lie along the passage"),
@@ -241,18 +216,11 @@ ElementKind carriage_gateway() {
 }
 
 ElementKind reveal() {
-  ElementKind k{"reveal",
-                ElementClass::window,
-                "opening without a window: blind, with wall at its end, or bare",
-                "opening",
-                "opening",
-                0.20,
-                1.00,
-                6.00,
-                0.30,
-                2.00,
-                6.00,
-                {}};
+  ElementKind k{.name = "reveal",
+                .semantic = ElementClass::window,
+                .meaning = "opening without a window: blind, with wall at its end, or bare",
+                .width = {.measures = "opening", .least = 0.20, .usual = 1.00, .most = 6.00},
+                .height = {.measures = "opening", .least = 0.30, .usual = 2.00, .most = 6.00}};
   add(k.parameters, opening(0.10, 0.01, "straight"));
   k.parameters.push_back(word("filling", {"blind", "none"}, "blind", "what closes the opening"));
   add(k.parameters, surround("none", 0.14));
@@ -263,18 +231,11 @@ ElementKind reveal() {
 }
 
 ElementKind sill_kind() {
-  ElementKind k{"sill",
-                ElementClass::installation,
-                "sill on its own (Sohlbank); its upper edge at the wall is 0.012 m above y = height",
-                "opening above it",
-                "front",
-                0.30,
-                1.10,
-                12.0,
-                0.05,
-                0.10,
-                0.30,
-                {}};
+  ElementKind k{.name = "sill",
+                .semantic = ElementClass::installation,
+                .meaning = "sill on its own (Sohlbank); its upper edge at the wall is 0.012 m above y = height",
+                .width = {.measures = "opening above it", .least = 0.30, .usual = 1.10, .most = 12.0},
+                .height = {.measures = "front", .least = 0.05, .usual = 0.10, .most = 0.30}};
   k.parameters = {word("sill", {"plain", "moulded"}, "moulded", "section: a slab, or a moulding"),
                   number("reveal", "m", 0, 0, 0.40, "how deep it reaches into the opening"),
                   number("sill_projection", "m", 0.08, 0.03, 0.30, "how far it stands out of the wall"),
@@ -285,18 +246,11 @@ ElementKind sill_kind() {
 }
 
 ElementKind surround_kind() {
-  ElementKind k{"surround",
-                ElementClass::installation,
-                "band round an opening on its own, with keystone; lower edge open",
-                "opening",
-                "opening",
-                0.40,
-                1.10,
-                6.00,
-                0.40,
-                2.20,
-                6.00,
-                {}};
+  ElementKind k{.name = "surround",
+                .semantic = ElementClass::installation,
+                .meaning = "band round an opening on its own, with keystone; lower edge open",
+                .width = {.measures = "opening", .least = 0.40, .usual = 1.10, .most = 6.00},
+                .height = {.measures = "opening", .least = 0.40, .usual = 2.20, .most = 6.00}};
   k.parameters = {
       word("head", {"straight", "segmental", "round", "gabled"}, "straight", "shape of the opening's upper edge"),
       number("rise", "of the width", 0.12, 0.04, 0.50, "height of segmental and gabled heads"),
@@ -310,18 +264,11 @@ ElementKind surround_kind() {
 }
 
 ElementKind pediment_kind() {
-  ElementKind k{"pediment",
-                ElementClass::installation,
-                "straight, triangular or segmental hood (Verdachung) on its own",
-                "span of its cornice",
-                "cornice without the gable",
-                0.40,
-                1.60,
-                8.00,
-                0.08,
-                0.18,
-                0.60,
-                {}};
+  ElementKind k{.name = "pediment",
+                .semantic = ElementClass::installation,
+                .meaning = "straight, triangular or segmental hood (Verdachung) on its own",
+                .width = {.measures = "span of its cornice", .least = 0.40, .usual = 1.60, .most = 8.00},
+                .height = {.measures = "cornice without the gable", .least = 0.08, .usual = 0.18, .most = 0.60}};
   k.parameters = {word("pediment", {"straight", "triangular", "segmental"}, "triangular", "shape"),
                   number("pediment_projection", "m", 0.18, 0.05, 0.50, "how far it stands out of the wall"),
                   number("pediment_rise", "of its span", 0.22, 0.08, 0.35,
@@ -345,36 +292,22 @@ Parameters course(const char* preset, double projection) {
 }
 
 ElementKind string_course() {
-  ElementKind k{"string_course",
-                ElementClass::installation,
-                "band or moulding along the wall between storeys or through the sills (Gurtgesims)",
-                "run",
-                "profile",
-                0.20,
-                4.00,
-                100,
-                0.05,
-                0.26,
-                1.00,
-                {}};
+  ElementKind k{.name = "string_course",
+                .semantic = ElementClass::installation,
+                .meaning = "band or moulding along the wall between storeys or through the sills (Gurtgesims)",
+                .width = {.measures = "run", .least = 0.20, .usual = 4.00, .most = 100},
+                .height = {.measures = "profile", .least = 0.05, .usual = 0.26, .most = 1.00}};
   add(k.parameters, course("string_course", 0.12));
   k.parameters.push_back(detail());
   return k;
 }
 
 ElementKind main_cornice() {
-  ElementKind k{"main_cornice",
-                ElementClass::installation,
-                "crowning cornice under the roof, with or without brackets (Hauptgesims)",
-                "run",
-                "profile",
-                0.20,
-                4.00,
-                100,
-                0.15,
-                0.85,
-                2.00,
-                {}};
+  ElementKind k{.name = "main_cornice",
+                .semantic = ElementClass::installation,
+                .meaning = "crowning cornice under the roof, with or without brackets (Hauptgesims)",
+                .width = {.measures = "run", .least = 0.20, .usual = 4.00, .most = 100},
+                .height = {.measures = "profile", .least = 0.15, .usual = 0.85, .most = 2.00}};
   add(k.parameters, course("main_cornice_brackets", 0.60));
   add(k.parameters,
       {number("bracket_spacing", "m", 0.60, 0, 5, "from bracket to bracket; 0: none"),
@@ -386,54 +319,33 @@ ElementKind main_cornice() {
 }
 
 ElementKind plinth() {
-  ElementKind k{"plinth",
-                ElementClass::installation,
-                "foot of the wall, proud of it, with a bevel or moulding on top (Sockel)",
-                "run",
-                "plinth",
-                0.20,
-                4.00,
-                100,
-                0.10,
-                0.80,
-                3.00,
-                {}};
+  ElementKind k{.name = "plinth",
+                .semantic = ElementClass::installation,
+                .meaning = "foot of the wall, proud of it, with a bevel or moulding on top (Sockel)",
+                .width = {.measures = "run", .least = 0.20, .usual = 4.00, .most = 100},
+                .height = {.measures = "plinth", .least = 0.10, .usual = 0.80, .most = 3.00}};
   add(k.parameters, course("plinth", 0.06));
   k.parameters.push_back(detail());
   return k;
 }
 
 ElementKind console_kind() {
-  ElementKind k{"console",
-                ElementClass::installation,
-                "bracket under cornices, pediments and balconies (Konsole)",
-                "bracket",
-                "bracket",
-                0.05,
-                0.16,
-                1.00,
-                0.08,
-                0.30,
-                1.50,
-                {}};
+  ElementKind k{.name = "console",
+                .semantic = ElementClass::installation,
+                .meaning = "bracket under cornices, pediments and balconies (Konsole)",
+                .width = {.measures = "bracket", .least = 0.05, .usual = 0.16, .most = 1.00},
+                .height = {.measures = "bracket", .least = 0.08, .usual = 0.30, .most = 1.50}};
   k.parameters = {number("projection", "m", 0.25, 0.05, 2.00, "how far it stands out of the wall"), detail()};
   return k;
 }
 
 // Sizes and ranges of the following four: docs/style_measures.md 2.6 (balconies, bays), 2.5 (quoins, pilasters).
 ElementKind balcony() {
-  ElementKind k{"balcony",
-                ElementClass::installation,
-                "balcony: slab on brackets with a railing; y = 0 is the slab's upper side",
-                "slab",
-                "railing",
-                1.00,
-                2.60,
-                8.00,
-                0.80,
-                0.95,
-                1.30,
-                {}};
+  ElementKind k{.name = "balcony",
+                .semantic = ElementClass::installation,
+                .meaning = "balcony: slab on brackets with a railing; y = 0 is the slab's upper side",
+                .width = {.measures = "slab", .least = 1.00, .usual = 2.60, .most = 8.00},
+                .height = {.measures = "railing", .least = 0.80, .usual = 0.95, .most = 1.30}};
   k.parameters = {number("depth", "m", 1.00, 0.40, 1.80, "how far the slab stands out of the wall"),
                   number("slab", "m", 0.18, 0.10, 0.35, "thickness of the slab"),
                   whole("consoles", 2, 0, 5, "brackets under the slab"),
@@ -447,18 +359,12 @@ ElementKind balcony() {
 
 ElementKind bay() {
   ElementKind k{
-      "bay",
-      ElementClass::installation,
-      "bay (Erker) over one or more storeys with windows of its own; y = 0 is its underside, without the base",
-      "bay at the wall",
-      "bay without base and roof",
-      1.20,
-      2.80,
-      5.00,
-      2.20,
-      7.00,
-      24.0,
-      {}};
+      .name = "bay",
+      .semantic = ElementClass::installation,
+      .meaning =
+          "bay (Erker) over one or more storeys with windows of its own; y = 0 is its underside, without the base",
+      .width = {.measures = "bay at the wall", .least = 1.20, .usual = 2.80, .most = 5.00},
+      .height = {.measures = "bay without base and roof", .least = 2.20, .usual = 7.00, .most = 24.0}};
   k.parameters = {word("plan", {"rectangular", "polygonal"}, "rectangular", "plan; polygonal: slanting cheeks"),
                   number("depth", "m", 0.90, 0.30, 1.50, "how far it stands out of the wall"),
                   whole("storeys", 2, 1, 6, "storeys, all as high"),
@@ -477,18 +383,11 @@ ElementKind bay() {
 }
 
 ElementKind quoin() {
-  ElementKind k{"quoin",
-                ElementClass::installation,
-                "corner stones (Eckquaderung), long and short ones in turn",
-                "long stones",
-                "stack",
-                0.30,
-                0.60,
-                1.20,
-                0.30,
-                3.00,
-                40.0,
-                {}};
+  ElementKind k{.name = "quoin",
+                .semantic = ElementClass::installation,
+                .meaning = "corner stones (Eckquaderung), long and short ones in turn",
+                .width = {.measures = "long stones", .least = 0.30, .usual = 0.60, .most = 1.20},
+                .height = {.measures = "stack", .least = 0.30, .usual = 3.00, .most = 40.0}};
   k.parameters = {
       word("corner", {"left", "right", "middle"}, "left", "the straight side; middle: toothed on both sides"),
       number("short", "of the width", 0.66, 0.40, 0.95, "width of the short stones"),
@@ -500,18 +399,11 @@ ElementKind quoin() {
 }
 
 ElementKind pilaster() {
-  ElementKind k{"pilaster",
-                ElementClass::installation,
-                "flat upright strip: a lesene, or a pilaster with base and capital",
-                "shaft",
-                "whole",
-                0.12,
-                0.50,
-                1.20,
-                0.80,
-                3.60,
-                24.0,
-                {}};
+  ElementKind k{.name = "pilaster",
+                .semantic = ElementClass::installation,
+                .meaning = "flat upright strip: a lesene, or a pilaster with base and capital",
+                .width = {.measures = "shaft", .least = 0.12, .usual = 0.50, .most = 1.20},
+                .height = {.measures = "whole", .least = 0.80, .usual = 3.60, .most = 24.0}};
   k.parameters = {word("order", {"tuscan", "lesene"}, "tuscan", "with base and capital, or without"),
                   number("projection", "m", 0.10, 0.03, 0.30, "how far the shaft stands out of the wall"),
                   number("base_height", "m", 0.30, 0.10, 0.80, "height of the base"),

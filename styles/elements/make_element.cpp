@@ -49,8 +49,8 @@ tl::expected<Element, std::string> make_element(std::string_view name, double wi
     return fmt::format("{}: the {} is {} m; it goes from {} to {} m", kind.name, what, base::shortest(v),
                        base::shortest(least), base::shortest(most));
   };
-  if (auto e = in_range(width, kind.least_width, kind.most_width, "width"); !e.empty()) return tl::unexpected(e);
-  if (auto e = in_range(height, kind.least_height, kind.most_height, "height"); !e.empty()) return tl::unexpected(e);
+  if (auto e = in_range(width, kind.width.least, kind.width.most, "width"); !e.empty()) return tl::unexpected(e);
+  if (auto e = in_range(height, kind.height.least, kind.height.most, "height"); !e.empty()) return tl::unexpected(e);
   const auto values = Values::check(kind, parameters, profiles);
   if (!values) return tl::unexpected(values.error());
   Element element;

@@ -28,21 +28,25 @@ struct ParameterInfo {
     profile,  ///< the name of a moulding in the library, or a program of the profile language
   };
   std::string name;
-  std::string unit;  ///< "m", "degrees", "of the width"; empty for words and counts
+  std::string unit = {};  ///< "m", "degrees", "of the width"; empty for words and counts
   Type type = Type::number;
   double initial = 0, least = 0, most = 0;  ///< of numbers; of words `initial` is the index
-  std::vector<std::string> words;           ///< allowed words; of profiles the default's name alone
+  std::vector<std::string> words = {};      ///< allowed words; of profiles the default's name alone
   std::string meaning;
+};
+
+/// What the width or the height of make_element() may be.
+struct SizeRange {
+  std::string measures;       ///< what of the element: "opening", "run"
+  double least, usual, most;  ///< m
 };
 
 struct ElementKind {
   std::string name;
   ElementClass semantic = ElementClass::installation;
   std::string meaning;
-  std::string width_is, height_is;                                ///< what width and height of make_element() measure
-  double least_width = 0.3, usual_width = 1, most_width = 10;     ///< m
-  double least_height = 0.3, usual_height = 1, most_height = 10;  ///< m
-  std::vector<ParameterInfo> parameters;
+  SizeRange width, height;
+  std::vector<ParameterInfo> parameters = {};
 };
 
 /// Every kind, in the order of docs/elements.md.

@@ -132,7 +132,11 @@ std::optional<Cut> cut(const Frame& frame, double across) {
         if (s != 0) return s > 0 ? 1 : 3;
         return frame.along(frame.corners[other].point) > along ? 0 : 2;
       };
-      Item item{along, corner.point, c, false, direction(corner.next), direction(corner.previous)};
+      Item item{.along = along,
+                .point = corner.point,
+                .corner = c,
+                .out = direction(corner.next),
+                .in = direction(corner.previous)};
       if (item.out == item.in) {
         const bool convex = geometry::orientation(geometry::to_grid(frame.corners[corner.previous].point),
                                                   geometry::to_grid(corner.point),
@@ -152,7 +156,12 @@ std::optional<Cut> cut(const Frame& frame, double across) {
       const double t = (across - corner.across) / (next.across - corner.across);
       const Point2 p = model::snap(Point2{corner.point.x + t * (next.point.x - corner.point.x),
                                           corner.point.y + t * (next.point.y - corner.point.y)});
-      Item item{frame.along(p), p, c, true, there > 0 ? 1 : 3, there > 0 ? 3 : 1};
+      Item item{.along = frame.along(p),
+                .point = p,
+                .corner = c,
+                .crossing = true,
+                .out = there > 0 ? 1 : 3,
+                .in = there > 0 ? 3 : 1};
       (there > 0 ? item.backwards : item.forwards) = true;
       out.items.push_back(item);
     }
@@ -251,7 +260,12 @@ class Subdivision {
     for (const Corner& c : frame_.corners) {
       std::uint32_t strip = 0;
       while (strip < cuts_.size() && cuts_[strip].across < c.across) ++strip;
-      vertices_.push_back({c.point, c.across, -1, c.previous, c.next, strip, strip});
+      vertices_.push_back({.point = c.point,
+                           .across = c.across,
+                           .previous = c.previous,
+                           .next = c.next,
+                           .out_strip = strip,
+                           .in_strip = strip});
     }
     crossings_.resize(corners);
     for (std::uint32_t k = 0; k < cuts_.size(); ++k) {
@@ -260,7 +274,7 @@ class Subdivision {
         std::uint32_t v = item.corner;
         if (item.crossing) {
           v = static_cast<std::uint32_t>(vertices_.size());
-          vertices_.push_back({item.point, cuts_[k].across, -1, 0, 0, 0, 0});
+          vertices_.push_back({.point = item.point, .across = cuts_[k].across});
           crossings_[item.corner].push_back(v);
         }
         Vertex& vertex = vertices_[v];

@@ -196,8 +196,13 @@ std::vector<model::Arc> find_arcs(const std::vector<model::Polygon>& polygons) {
     for (std::size_t r = 0; r <= polygons[p].holes.size(); ++r) {
       const model::Ring& ring = r == 0 ? polygons[p].outer : polygons[p].holes[r - 1];
       for (const ArcRun& run : find_arc_runs(ring.points))
-        out.push_back({static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(r), run.first, run.count, run.centre,
-                       run.radius, run.left});
+        out.push_back({.polygon = static_cast<std::uint32_t>(p),
+                       .ring = static_cast<std::uint32_t>(r),
+                       .first = run.first,
+                       .count = run.count,
+                       .centre = run.centre,
+                       .radius = run.radius,
+                       .convex = run.left});
     }
   }
   return out;

@@ -160,7 +160,13 @@ class Builder {
         const Point2 p = vertices_.point[end.of_e], q = vertices_.point[end.of_f];
         const std::uint32_t inner = end.e_inside ? end.of_e : end.of_f, edge = end.e_inside ? w.f : w.e;
         if (std::fabs(end.along) <= reach)
-          pairs.push_back({distance(p, q), std::min(p, q), std::max(p, q), end.of_e, end.of_f, inner, edge});
+          pairs.push_back({.distance = distance(p, q),
+                           .least = std::min(p, q),
+                           .most = std::max(p, q),
+                           .a = end.of_e,
+                           .b = end.of_f,
+                           .inner = inner,
+                           .edge = edge});
         else
           feet.emplace_back(inner, edge);
       }

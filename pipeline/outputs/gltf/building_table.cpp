@@ -36,8 +36,9 @@ class Builder {
   Builder(const model::Region& region, bool evidence) : region_(region), tags_(region.extract), evidence_(evidence) {
     id_ = text("id", "Part id: stable from build to build", true);
     building_ = text("building", "Id of the building it belongs to", true);
-    osm_type_ = add({"osm_type", Kind::enumeration, "", "OsmType", true});
-    osm_id_ = add({"osm_id", Kind::int64, "The object whose tags it carries", "", true});
+    osm_type_ = add({.name = "osm_type", .kind = Kind::enumeration, .enum_type = "OsmType", .required = true});
+    osm_id_ = add(
+        {.name = "osm_id", .kind = Kind::int64, .description = "The object whose tags it carries", .required = true});
     name_ = text("name", "");
     address_ = text("address", "");
     // The visitor needs a value of every type, absent ones included.
@@ -49,23 +50,39 @@ class Builder {
       const bool optional = name == "roof_direction" || name == "ridge_direction";
       const Kind kind = KindOf{}(sourced.value);
       AttributeColumns c;
-      PropertyTable::Column value{base, kind, std::string(unit), enum_of(sourced.value),
-                                  !optional && kind != Kind::text};
+      PropertyTable::Column value{.name = base,
+                                  .kind = kind,
+                                  .description = std::string(unit),
+                                  .enum_type = enum_of(sourced.value),
+                                  .required = !optional && kind != Kind::text};
       // A direction is never negative, so -1 can say that there is none; other numbers always have a value, or 0 when
       // something upstream left a NaN.
       if (optional) value.no_data = -1;
       value.required = value.required && kind == Kind::enumeration;
       if (kind == Kind::float64 && !optional) value.no_data = kAbsentNumber;
       c.value = add(std::move(value));
-      c.source = add({base + "_source", Kind::enumeration, "", "Source", !optional, kNone, optional ? "none" : ""});
+      c.source = add({.name = base + "_source",
+                      .kind = Kind::enumeration,
+                      .enum_type = "Source",
+                      .required = !optional,
+                      .no_data = kNone,
+                      .no_data_name = optional ? "none" : ""});
       // Nobody is 0 % sure of a value that is there.
-      c.confidence = add({base + "_confidence", Kind::unit_interval, "", "", false,
-                          optional ? std::optional<double>(0) : std::nullopt});
+      c.confidence = add({.name = base + "_confidence",
+                          .kind = Kind::unit_interval,
+                          .no_data = optional ? std::optional<double>(0) : std::nullopt});
       attributes_.push_back(c);
     };
     model::for_each_attribute(all, column, [](std::string_view, std::string_view) {});
-    built_roof_ = add({"built_roof", Kind::enumeration, "The roof that stands", "RoofShape", true});
-    lod_ = add({"lod", Kind::int8, "Highest level of detail built; -1: none", "", true});
+    built_roof_ = add({.name = "built_roof",
+                       .kind = Kind::enumeration,
+                       .description = "The roof that stands",
+                       .enum_type = "RoofShape",
+                       .required = true});
+    lod_ = add({.name = "lod",
+                .kind = Kind::int8,
+                .description = "Highest level of detail built; -1: none",
+                .required = true});
     fallbacks_ = text("fallbacks", "Codes of what was built simpler than asked");
     tags_column_ = text("tags", "JSON object of the OSM tags");
     building_tags_ = text("building_tags", "The building's own tags, on its first part, where parts are mapped apart");
@@ -90,7 +107,7 @@ class Builder {
 
   int add(PropertyTable::Column column) { return table_.add(std::move(column)); }
   int text(const char* name, const char* description, bool required = false) {
-    return add({name, Kind::text, description, "", required});
+    return add({.name = name, .kind = Kind::text, .description = description, .required = required});
   }
 
   void set(int column, double value) { table_.set_float64(column, value); }

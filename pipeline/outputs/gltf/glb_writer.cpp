@@ -118,14 +118,24 @@ class MeshWriter {
 
   int add_indices(const MeshPrimitive& p) {
     const std::size_t at = document_.append<std::uint16_t>(Stream::indices, p.indices);
-    return document_.add_accessor({Stream::indices, at, Component::uint16, "SCALAR", p.indices.size()});
+    return document_.add_accessor({.stream = Stream::indices,
+                                   .offset = at,
+                                   .component = Component::uint16,
+                                   .type = "SCALAR",
+                                   .count = p.indices.size()});
   }
 
   template <class T>
   int add(Stream stream, std::span<const T> values, Component component, std::string_view type, const MeshPrimitive& p,
           bool normalised, std::optional<std::array<std::array<double, 3>, 2>> bounds = std::nullopt) {
     const std::size_t at = document_.append(stream, values);
-    return document_.add_accessor({stream, at, component, type, p.vertices.size(), normalised, bounds});
+    return document_.add_accessor({.stream = stream,
+                                   .offset = at,
+                                   .component = component,
+                                   .type = type,
+                                   .count = p.vertices.size(),
+                                   .normalised = normalised,
+                                   .bounds = bounds});
   }
 
   static std::string feature_ids(const MeshPrimitive& p) {

@@ -156,25 +156,36 @@ class InstanceWriter {
     }
     const Stream to = far ? Stream::far_translations : Stream::translations;
     std::string json = "{\"extensions\":{\"EXT_instance_features\":{\"featureIds\":[{\"attribute\":0,\"featureCount\":";
+    const auto append_accessor = [&](const GlbAccessor& accessor) {
+      append_number(json, std::int64_t{document_.add_accessor(accessor)});
+    };
     number(json, rows.size());
     json += ",\"propertyTable\":0}]},\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"ROTATION\":";
     const std::size_t r = document_.append<std::int16_t>(Stream::rotations, rotations);
-    append_number(json,
-                  std::int64_t{document_.add_accessor({Stream::rotations, r, Component::int16, "VEC4", n, true})});
+    append_accessor({.stream = Stream::rotations,
+                     .offset = r,
+                     .component = Component::int16,
+                     .type = "VEC4",
+                     .count = n,
+                     .normalised = true});
     if (stored.stretched) {
       json += ",\"SCALE\":";
       const std::size_t s = document_.append<float>(Stream::scales, scales);
-      append_number(json, std::int64_t{document_.add_accessor({Stream::scales, s, Component::float32, "VEC3", n})});
+      append_accessor(
+          {.stream = Stream::scales, .offset = s, .component = Component::float32, .type = "VEC3", .count = n});
     }
     json += ",\"TRANSLATION\":";
     const std::size_t t = document_.append<float>(to, translations);
-    append_number(json, std::int64_t{document_.add_accessor({to, t, Component::float32, "VEC3", n})});
+    append_accessor({.stream = to, .offset = t, .component = Component::float32, .type = "VEC3", .count = n});
     json += ",\"_FEATURE_ID_0\":";
     const Stream ids = wide_features_ ? Stream::wide_instance_features : Stream::instance_features;
     const std::size_t f =
         wide_features_ ? document_.append<float>(ids, wide) : document_.append<std::uint16_t>(ids, narrow);
-    append_number(json, std::int64_t{document_.add_accessor(
-                            {ids, f, wide_features_ ? Component::float32 : Component::uint16, "SCALAR", n})});
+    append_accessor({.stream = ids,
+                     .offset = f,
+                     .component = wide_features_ ? Component::float32 : Component::uint16,
+                     .type = "SCALAR",
+                     .count = n});
     json += "}}},\"mesh\":";
     append_number(json, std::int64_t{mesh});
     document_.use("EXT_mesh_gpu_instancing", true);

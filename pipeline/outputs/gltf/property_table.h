@@ -22,9 +22,9 @@ class PropertyTable {
   struct Column {
     std::string name;  ///< property id: [a-zA-Z_][a-zA-Z0-9_]*
     Kind kind = Kind::text;
-    std::string description;  ///< may be empty
-    std::string enum_type;    ///< for `enumeration`
-    bool required = false;    ///< set in every row; the column then has no noData
+    std::string description = {};  ///< may be empty
+    std::string enum_type = {};    ///< for `enumeration`
+    bool required = false;         ///< set in every row; the column then has no noData
     /// What stands for "absent": enumerations give the value's name as well. Texts always use the empty string.
     std::optional<double> no_data = std::nullopt;
     std::string no_data_name = {};

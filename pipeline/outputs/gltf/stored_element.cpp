@@ -148,9 +148,18 @@ int StoredElements::store(ElementGeometry geometry, double steps, bool stretched
     }
     const std::size_t p = document_.append<std::int16_t>(Stream::element_positions, positions);
     const std::size_t n = document_.append<std::int8_t>(Stream::normals, normals);
-    out.blocks.push_back(
-        {document_.add_accessor({Stream::element_positions, p, Component::int16, "VEC3", count, false, bounds}),
-         document_.add_accessor({Stream::normals, n, Component::int8, "VEC3", count, true})});
+    out.blocks.push_back({document_.add_accessor({.stream = Stream::element_positions,
+                                                  .offset = p,
+                                                  .component = Component::int16,
+                                                  .type = "VEC3",
+                                                  .count = count,
+                                                  .bounds = bounds}),
+                          document_.add_accessor({.stream = Stream::normals,
+                                                  .offset = n,
+                                                  .component = Component::int8,
+                                                  .type = "VEC3",
+                                                  .count = count,
+                                                  .normalised = true})});
     first = last;
   }
   return place->second;
@@ -162,8 +171,11 @@ int StoredElements::indices(int stored, std::size_t first, std::size_t last) {
   for (std::size_t i = first; i <= last; ++i) count += e.parts[i].indices;
   const auto [place, added] = e.ranges.try_emplace({e.parts[first].first_index, count}, 0);
   if (added)
-    place->second =
-        document_.add_accessor({Stream::indices, e.parts[first].first_index, Component::uint16, "SCALAR", count});
+    place->second = document_.add_accessor({.stream = Stream::indices,
+                                            .offset = e.parts[first].first_index,
+                                            .component = Component::uint16,
+                                            .type = "SCALAR",
+                                            .count = count});
   return place->second;
 }
 

@@ -181,7 +181,8 @@ Derivation Run::go() {
   root.symbol = program_.qualified_name(definition);
   root.location = program_.declaration(definition).location;
   links_.push_back({});
-  if (options_.keep_tree) out_.tree.push_back({kNone, 0, 0, root.symbol, start, root.location, root.shape});
+  if (options_.keep_tree)
+    out_.tree.push_back({.symbol = root.symbol, .definition = start, .location = root.location, .shape = root.shape});
   level_.push_back(std::move(root));
   while (!level_.empty()) {
     for (Node& node : level_) apply(std::move(node));
@@ -213,7 +214,8 @@ void Run::apply(Node node) {
   work.shape = node.shape;
   work.base = &node.shape;
   work.lineage = node.lineage;
-  Place place{definition.module, 0, &work.shape, &rule_, true, nullptr, node.lineage};
+  Place place{
+      .module = definition.module, .shape = &work.shape, .rule = &rule_, .own_text = true, .lineage = node.lineage};
   push_bindings(declaration, place);
   if (declaration.successor != kNone) execute(declaration.successor, work, place, true);
   if (work.alive && !work.produced)

@@ -106,11 +106,11 @@ void Run::evaluate_slot(std::uint32_t index) {
                                    0, slot.name);
     shape.draws = 0;
     const std::size_t frame = locals_.size();
-    Place place{slot.module, frame, &shape, nullptr, false, nullptr};
+    Place place{.module = slot.module, .frame = frame, .shape = &shape};
     if (phase.importer != nullptr && phase.importer->module == slot.module && !own) place.frame = phase.importer->frame;
     ++function_depth_;
     if (slot.reads_itself) {  // h = imp.h + 1: the file's own value first
-      Place file{definition.module, frame, &shape, nullptr, false, nullptr};
+      Place file{.module = definition.module, .frame = frame, .shape = &shape};
       push_bindings(declaration, file);
       phase.values[index] = declaration.value == kNone ? Value(0.0) : evaluate(declaration.value, file);
       locals_.resize(frame);

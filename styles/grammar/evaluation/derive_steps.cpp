@@ -124,7 +124,13 @@ void Run::execute_symbol(const Call& call, const Target& found, Work& work, Plac
   if (child.definition != kNone && found.dynamic_module != kNone)
     enter_dynamic(found.dynamic_module, child.shape, place);
   if (options_.keep_tree)
-    out_.tree.push_back({node_->number, ordinals_, child.depth, child.symbol, child.definition, location, child.shape});
+    out_.tree.push_back({.parent = node_->number,
+                         .ordinal = ordinals_,
+                         .depth = child.depth,
+                         .symbol = child.symbol,
+                         .definition = child.definition,
+                         .location = location,
+                         .shape = child.shape});
   ++ordinals_;
   child.number = number;
   if (child.definition != kNone)
@@ -237,7 +243,7 @@ void Run::step_report(const Call& call, Work&, Place& place) {
                          : type == Type::truth ? std::get<bool>(value)
                                                : 0;
   Report& report = reports_[{key, type}];
-  if (report.count == 0) report = {std::move(key), type, 0, 0, 0, counted, counted};
+  if (report.count == 0) report = {.key = std::move(key), .type = type, .minimum = counted, .maximum = counted};
   ++report.count;
   report.sum += counted;
   report.minimum = std::min(report.minimum, counted);

@@ -369,7 +369,11 @@ Value Run::call_own(const Expression& e, const Target& found, Place& place) {
   } else {
     const Definition& definition = program_.definitions[chosen];
     const Declaration& declaration = program_.declaration(definition);
-    Place inner{definition.module, first, place.shape, place.rule, false, nullptr, place.lineage};
+    Place inner{.module = definition.module,
+                .frame = first,
+                .shape = place.shape,
+                .rule = place.rule,
+                .lineage = place.lineage};
     ++function_depth_;
     push_bindings(declaration, inner);
     if (declaration.value != kNone) out = evaluate(declaration.value, inner);

@@ -7,7 +7,12 @@ namespace {
 
 constexpr BuiltIn function(std::string_view name, std::string_view signature, Tier tier, std::uint32_t files = 0,
                            Status status = Status::runs) {
-  return {NameKind::function, name, signature, tier, status, BlockKind::none, false, files};
+  return {.kind = NameKind::function,
+          .name = name,
+          .signature = signature,
+          .tier = tier,
+          .status = status,
+          .corpus_files = files};
 }
 constexpr BuiltIn answered(std::string_view name, std::string_view signature, Tier tier, std::uint32_t files = 0) {
   return function(name, signature, tier, files, Status::default_answer);

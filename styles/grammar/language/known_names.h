@@ -39,7 +39,7 @@ struct BuiltIn {
   /// at the end. A parameter is a type letter, or words in angle brackets; "?" after it: it and what follows may be
   /// left out; "+": once or more. Types: n number, b truth, s text, N B S arrays, v any single value, V any array, a
   /// any value, r a number that may have ' or ~, e what selects components. "<axis>" is a set of words (word_set).
-  std::string_view signature;
+  std::string_view signature = "";
   Tier tier = Tier::b;
   Status status = Status::runs;
   BlockKind block = BlockKind::none;  ///< operations: what stands in the braces

@@ -7,7 +7,13 @@ namespace {
 
 constexpr BuiltIn operation(std::string_view name, std::string_view signature, Tier tier, std::uint32_t files = 0,
                             BlockKind block = BlockKind::none, Status status = Status::runs) {
-  return {NameKind::operation, name, signature, tier, status, block, false, files};
+  return {.kind = NameKind::operation,
+          .name = name,
+          .signature = signature,
+          .tier = tier,
+          .status = status,
+          .block = block,
+          .corpus_files = files};
 }
 constexpr BuiltIn missing(std::string_view name, std::string_view signature, Tier tier, std::uint32_t files = 0,
                           BlockKind block = BlockKind::none) {

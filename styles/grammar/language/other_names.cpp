@@ -13,35 +13,40 @@ namespace {
 
 using enum Tier;
 
-constexpr BuiltIn row(NameKind kind, std::string_view name, std::string_view signature, Tier tier, std::uint32_t files,
-                      bool settable = false, Status status = Status::runs) {
-  return {kind, name, signature, tier, status, BlockKind::none, settable, files};
+constexpr BuiltIn attribute(std::string_view name, std::string_view signature, Tier tier, std::uint32_t files) {
+  return {.kind = NameKind::attribute, .name = name, .signature = signature, .tier = tier, .corpus_files = files};
 }
-constexpr BuiltIn attribute(std::string_view name, std::string_view signature, Tier tier, std::uint32_t files,
-                            bool settable = false) {
-  return row(NameKind::attribute, name, signature, tier, files, settable);
+/// An attribute that `set` may change.
+constexpr BuiltIn settable(std::string_view name, std::string_view signature, Tier tier, std::uint32_t files) {
+  return {.kind = NameKind::attribute,
+          .name = name,
+          .signature = signature,
+          .tier = tier,
+          .settable = true,
+          .corpus_files = files};
 }
 constexpr BuiltIn selector(std::string_view name, Tier tier, std::uint32_t files = 0) {
-  return row(NameKind::selector, name, "", tier, files);
+  return {.kind = NameKind::selector, .name = name, .tier = tier, .corpus_files = files};
 }
 constexpr BuiltIn annotation(std::string_view name, std::uint32_t files = 0) {
-  return row(NameKind::annotation, name, "", a, files);
+  return {.kind = NameKind::annotation, .name = name, .tier = a, .corpus_files = files};
 }
-constexpr BuiltIn keyword(std::string_view name) { return row(NameKind::keyword, name, "", a, 0); }
+constexpr BuiltIn word(std::string_view name) { return {.kind = NameKind::word, .name = name, .tier = b}; }
+constexpr BuiltIn keyword(std::string_view name) { return {.kind = NameKind::keyword, .name = name, .tier = a}; }
 constexpr BuiltIn form(std::string_view name, Tier tier, std::uint32_t files, Status status = Status::runs) {
-  return row(NameKind::syntax, name, "", tier, files, false, status);
+  return {.kind = NameKind::syntax, .name = name, .tier = tier, .status = status, .corpus_files = files};
 }
 
 constexpr BuiltIn kRows[] = {
-    attribute("scope.tx", "-> n", g, 5, true),
-    attribute("scope.ty", "-> n", g, 5, true),
-    attribute("scope.tz", "-> n", g, 5, true),
-    attribute("scope.rx", "-> n", g, 0, true),
-    attribute("scope.ry", "-> n", g, 0, true),
-    attribute("scope.rz", "-> n", g, 0, true),
-    attribute("scope.sx", "-> n", b, 219, true),
-    attribute("scope.sy", "-> n", b, 219, true),
-    attribute("scope.sz", "-> n", b, 219, true),
+    settable("scope.tx", "-> n", g, 5),
+    settable("scope.ty", "-> n", g, 5),
+    settable("scope.tz", "-> n", g, 5),
+    settable("scope.rx", "-> n", g, 0),
+    settable("scope.ry", "-> n", g, 0),
+    settable("scope.rz", "-> n", g, 0),
+    settable("scope.sx", "-> n", b, 219),
+    settable("scope.sy", "-> n", b, 219),
+    settable("scope.sz", "-> n", b, 219),
     attribute("scope.elevation", "-> n", b, 24),
     attribute("pivot.px", "-> n", g, 2),
     attribute("pivot.py", "-> n", g, 2),
@@ -54,7 +59,7 @@ constexpr BuiltIn kRows[] = {
     attribute("comp.sel", "-> s", d, 16),
     attribute("comp.index", "-> n", d, 16),
     attribute("comp.total", "-> n", d, 7),
-    attribute("seedian", "-> n", g, 2, true),
+    settable("seedian", "-> n", g, 2),
     attribute("uid", "-> n", g, 2),
     attribute("initialShape.name", "-> s", g, 1),
     attribute("initialShape.startRule", "-> s", d, 13),
@@ -65,36 +70,36 @@ constexpr BuiltIn kRows[] = {
     attribute("initialShape.origin.ox", "-> n", d, 0),
     attribute("initialShape.origin.oy", "-> n", d, 0),
     attribute("initialShape.origin.oz", "-> n", d, 0),
-    attribute("trim.vertical", "-> b", b, 50, true),
-    attribute("trim.horizontal", "-> b", b, 18, true),
-    attribute("material.name", "-> s", c, 0, true),
-    attribute("material.shader", "-> s", c, 0, true),
-    attribute("material.color.r", "-> n", b, 179, true),
-    attribute("material.color.g", "-> n", b, 179, true),
-    attribute("material.color.b", "-> n", b, 179, true),
-    attribute("material.color.a", "-> n", b, 179, true),
-    attribute("material.color.rgb", "-> s", b, 0, true),
-    attribute("material.ambient.r", "-> n", c, 0, true),
-    attribute("material.ambient.g", "-> n", c, 0, true),
-    attribute("material.ambient.b", "-> n", c, 0, true),
-    attribute("material.ambient.rgb", "-> s", c, 0, true),
-    attribute("material.specular.r", "-> n", c, 0, true),
-    attribute("material.specular.g", "-> n", c, 0, true),
-    attribute("material.specular.b", "-> n", c, 0, true),
-    attribute("material.specular.rgb", "-> s", c, 0, true),
-    attribute("material.emissive.r", "-> n", c, 0, true),
-    attribute("material.emissive.g", "-> n", c, 0, true),
-    attribute("material.emissive.b", "-> n", c, 0, true),
-    attribute("material.emissive.rgb", "-> s", c, 0, true),
-    attribute("material.opacity", "-> n", b, 0, true),
-    attribute("material.reflectivity", "-> n", c, 0, true),
-    attribute("material.shininess", "-> n", c, 0, true),
-    attribute("material.bumpValue", "-> n", c, 0, true),
-    attribute("material.metallic", "-> n", c, 0, true),
-    attribute("material.roughness", "-> n", c, 0, true),
-    attribute("material.doubleSided", "-> b", c, 0, true),
-    attribute("material.opacitymap.mode", "-> s", c, 0, true),
-    attribute("material.opacitymap.cutoff", "-> n", c, 0, true),
+    settable("trim.vertical", "-> b", b, 50),
+    settable("trim.horizontal", "-> b", b, 18),
+    settable("material.name", "-> s", c, 0),
+    settable("material.shader", "-> s", c, 0),
+    settable("material.color.r", "-> n", b, 179),
+    settable("material.color.g", "-> n", b, 179),
+    settable("material.color.b", "-> n", b, 179),
+    settable("material.color.a", "-> n", b, 179),
+    settable("material.color.rgb", "-> s", b, 0),
+    settable("material.ambient.r", "-> n", c, 0),
+    settable("material.ambient.g", "-> n", c, 0),
+    settable("material.ambient.b", "-> n", c, 0),
+    settable("material.ambient.rgb", "-> s", c, 0),
+    settable("material.specular.r", "-> n", c, 0),
+    settable("material.specular.g", "-> n", c, 0),
+    settable("material.specular.b", "-> n", c, 0),
+    settable("material.specular.rgb", "-> s", c, 0),
+    settable("material.emissive.r", "-> n", c, 0),
+    settable("material.emissive.g", "-> n", c, 0),
+    settable("material.emissive.b", "-> n", c, 0),
+    settable("material.emissive.rgb", "-> s", c, 0),
+    settable("material.opacity", "-> n", b, 0),
+    settable("material.reflectivity", "-> n", c, 0),
+    settable("material.shininess", "-> n", c, 0),
+    settable("material.bumpValue", "-> n", c, 0),
+    settable("material.metallic", "-> n", c, 0),
+    settable("material.roughness", "-> n", c, 0),
+    settable("material.doubleSided", "-> b", c, 0),
+    settable("material.opacitymap.mode", "-> s", c, 0),
+    settable("material.opacitymap.cutoff", "-> n", c, 0),
 
     selector("top", b, 175),
     selector("bottom", b, 88),
@@ -343,20 +348,19 @@ std::vector<BuiltIn> with_material_maps() {
   std::vector<BuiltIn> rows(std::begin(kRows), std::end(kRows));
   for (const W map : {"colormap", "bumpmap", "dirtmap", "specularmap", "opacitymap", "normalmap", "emissivemap",
                       "occlusionmap", "roughnessmap", "metallicmap"}) {
-    rows.push_back(attribute(names.emplace_back("material." + std::string(map)), "-> s", b, 0, true));
+    rows.push_back(settable(names.emplace_back("material." + std::string(map)), "-> s", b, 0));
     for (const W part : {".su", ".sv", ".tu", ".tv", ".rw"})
-      rows.push_back(
-          attribute(names.emplace_back("material." + std::string(map) + std::string(part)), "-> n", c, 0, true));
+      rows.push_back(settable(names.emplace_back("material." + std::string(map) + std::string(part)), "-> n", c, 0));
   }
   // Every word once, whatever sets it stands in.
   std::vector<W> words;
   for (const WordSet& set : kSets)
-    for (const W word : set.words) {
+    for (const W name : set.words) {
       bool known = false;
-      for (const W other : words) known = known || other == word;
-      if (!known) words.push_back(word);
+      for (const W other : words) known = known || other == name;
+      if (!known) words.push_back(name);
     }
-  for (const W word : words) rows.push_back(row(NameKind::word, word, "", b, 0));
+  for (const W name : words) rows.push_back(word(name));
   return rows;
 }
 

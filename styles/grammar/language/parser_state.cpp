@@ -191,12 +191,23 @@ void Parser::recover(std::size_t begin, std::size_t error) {
 }
 
 Parser::Sizes Parser::sizes() const {
-  return {
-      unit_.expressions.size(),  unit_.expression_lists.size(), unit_.rows.size(),       unit_.arguments.size(),
-      unit_.branches.size(),     unit_.component_values.size(), unit_.successors.size(), unit_.steps.size(),
-      unit_.calls.size(),        unit_.blocks.size(),           unit_.items.size(),      unit_.parameters.size(),
-      unit_.declarations.size(), unit_.overrides.size(),        unit_.imports.size(),    unit_.dynamic_imports.size(),
-      unit_.style_names.size()};
+  return {.expressions = unit_.expressions.size(),
+          .expression_lists = unit_.expression_lists.size(),
+          .rows = unit_.rows.size(),
+          .arguments = unit_.arguments.size(),
+          .branches = unit_.branches.size(),
+          .component_values = unit_.component_values.size(),
+          .successors = unit_.successors.size(),
+          .steps = unit_.steps.size(),
+          .calls = unit_.calls.size(),
+          .blocks = unit_.blocks.size(),
+          .items = unit_.items.size(),
+          .parameters = unit_.parameters.size(),
+          .declarations = unit_.declarations.size(),
+          .overrides = unit_.overrides.size(),
+          .imports = unit_.imports.size(),
+          .dynamic_imports = unit_.dynamic_imports.size(),
+          .style_names = unit_.style_names.size()};
 }
 
 void Parser::shrink(const Sizes& s) {

@@ -133,7 +133,7 @@ struct Shown {
 
 /// What the figure of a kind shows beside its default: left to right.
 std::vector<Shown> shown_of(const ElementKind& kind) {
-  const double w = kind.usual_width, h = kind.usual_height;
+  const double w = kind.width.usual, h = kind.height.usual;
   const char* const detail = std::getenv("ELEMENTS_DETAIL");
   const auto full = Parameter{"detail", detail ? std::atof(detail) : 2.0};
   const std::string n = kind.name;

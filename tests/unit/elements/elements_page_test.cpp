@@ -47,9 +47,9 @@ std::string table(const ElementKind& kind) {
       kind.semantic == ElementClass::window ? "Window"
       : kind.semantic == ElementClass::door ? "Door"
                                             : "On the wall",
-      kind.width_is, base::shortest(kind.least_width), base::shortest(kind.most_width),
-      base::shortest(kind.usual_width), kind.height_is, base::shortest(kind.least_height),
-      base::shortest(kind.most_height), base::shortest(kind.usual_height));
+      kind.width.measures, base::shortest(kind.width.least), base::shortest(kind.width.most),
+      base::shortest(kind.width.usual), kind.height.measures, base::shortest(kind.height.least),
+      base::shortest(kind.height.most), base::shortest(kind.height.usual));
   for (const ParameterInfo& p : kind.parameters) {
     const std::string initial = p.type == ParameterInfo::Type::word
                                     ? "`" + p.words[static_cast<std::size_t>(p.initial)] + "`"
@@ -60,7 +60,7 @@ std::string table(const ElementKind& kind) {
   out += "\nTriangles at detail 0, 1, 2:";
   for (const double detail : {0.0, 1.0, 2.0}) {
     const std::vector<Parameter> parameters{{"detail", detail}};
-    const auto e = make_element(kind.name, kind.usual_width, kind.usual_height, parameters);
+    const auto e = make_element(kind.name, kind.width.usual, kind.height.usual, parameters);
     out += fmt::format("{} {}", detail > 0 ? "," : "", e ? triangle_count(e->mesh) : 0);
   }
   return out + ".\n";

@@ -175,7 +175,7 @@ TEST(AllKinds, DetailLowersTheCountOfFaces) {
   for (const ElementKind& kind : element_kinds()) {
     std::size_t before = 0;
     for (const double detail : {0.0, 1.0, 2.0}) {
-      const Element e = made(kind.name, kind.usual_width, kind.usual_height, {{"detail", detail}});
+      const Element e = made(kind.name, kind.width.usual, kind.height.usual, {{"detail", detail}});
       const std::size_t triangles = triangle_count(e.mesh);
       EXPECT_GE(triangles, before) << kind.name << detail;
       before = triangles;
@@ -187,8 +187,8 @@ TEST(AllKinds, ParametersAreNamedOnceAndKeepTheirRanges) {
   std::set<std::string> kinds;
   for (const ElementKind& kind : element_kinds()) {
     EXPECT_TRUE(kinds.insert(kind.name).second);
-    EXPECT_TRUE(kind.least_width <= kind.usual_width && kind.usual_width <= kind.most_width) << kind.name;
-    EXPECT_TRUE(kind.least_height <= kind.usual_height && kind.usual_height <= kind.most_height) << kind.name;
+    EXPECT_TRUE(kind.width.least <= kind.width.usual && kind.width.usual <= kind.width.most) << kind.name;
+    EXPECT_TRUE(kind.height.least <= kind.height.usual && kind.height.usual <= kind.height.most) << kind.name;
     std::set<std::string> names;
     for (const ParameterInfo& p : kind.parameters) {
       EXPECT_TRUE(names.insert(p.name).second) << kind.name << p.name;
@@ -270,8 +270,8 @@ TEST(AllKinds, EveryParameterCounts) {
           other.push_back({p.name, p.words[0] == "cyma" ? "drip" : "cyma"});
           break;
       }
-      const double w = kind.name == "shop_window" ? 5 : kind.usual_width, h = kind.usual_height * 1.2;
-      const double height = std::min(h, kind.most_height);
+      const double w = kind.name == "shop_window" ? 5 : kind.width.usual, h = kind.height.usual * 1.2;
+      const double height = std::min(h, kind.height.most);
       const Element a = made(kind.name, w, height, base), b = made(kind.name, w, height, other);
       const bool same = a.mesh.vertices == b.mesh.vertices && a.opening.outline == b.opening.outline &&
                         a.opening.reveal == b.opening.reveal;

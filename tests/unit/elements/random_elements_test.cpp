@@ -87,11 +87,11 @@ TEST_P(RandomElements, KeepTheirPromises) {
     Draws draws(seed + 1);
     // Sizes around the usual, and the extremes.
     const double w = draws.unit() < 0.1
-                         ? kind.least_width
-                         : draws.between(kind.least_width, std::min(kind.most_width, 2.5 * kind.usual_width));
-    const double h = draws.unit() < 0.1 ? kind.least_height
-                                        : draws.between(0.6 * kind.usual_height + 0.4 * kind.least_height,
-                                                        std::min(kind.most_height, 1.8 * kind.usual_height));
+                         ? kind.width.least
+                         : draws.between(kind.width.least, std::min(kind.width.most, 2.5 * kind.width.usual));
+    const double h = draws.unit() < 0.1 ? kind.height.least
+                                        : draws.between(0.6 * kind.height.usual + 0.4 * kind.height.least,
+                                                        std::min(kind.height.most, 1.8 * kind.height.usual));
     const auto parameters = drawn(kind, draws);
     const std::string what = fmt::format("{} {:.3f} x {:.3f}{}", kind.name, w, h, text(parameters));
     const auto made = make_element(kind.name, w, h, parameters);
