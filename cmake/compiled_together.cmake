@@ -53,7 +53,7 @@ blockrand_compile_together(grammar  # styles/grammar
   language/known_names.cpp language/operation_names.cpp language/parse_expressions.cpp language/parse_successors.cpp
   language/parser_state.cpp language/program.cpp language/resolve_names.cpp language/types.cpp shapes/mesh_triangles.cpp)
 blockrand_compile_together(grammar  # styles/grammar
-  language/other_names.cpp shapes/component_shapes.cpp shapes/components.cpp shapes/shape_envelope.cpp
+  shapes/component_shapes.cpp shapes/components.cpp shapes/shape_envelope.cpp
   shapes/extrude.cpp shapes/flat_face.cpp shapes/initial_shape.cpp shapes/inner_rectangle.cpp shapes/insert.cpp
   shapes/shape_materials.cpp shapes/normals.cpp)
 blockrand_compile_together(grammar  # styles/grammar

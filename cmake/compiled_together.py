@@ -3,6 +3,7 @@
 
     cmake -S . -B build/apart -G Ninja -DCMAKE_BUILD_TYPE=Release -DBLOCKRAND_TOGETHER=OFF -DBLOCKRAND_TESTS=OFF
     python3 cmake/compiled_together.py build/apart
+    python3 cmake/compiled_together.py --check       # a test: that no group of the list has such names
 
 Most of a first build reads and instantiates the same templates once for each source; sources that are compiled as one do
 it once. Sources of a target go together where none hides a name of another: names in anonymous namespaces, `static`
@@ -137,13 +138,40 @@ def groups_of(target):
     return out
 
 
+def check(root):
+    """Groups of the list, one of whose sources hides a name that another has or calls; how many."""
+    with open(os.path.join(root, 'cmake', 'compiled_together.cmake')) as file:
+        groups = re.findall(r'^blockrand_compile_together\(\w+  # (\S+)\n([^)]*)\)', file.read(), re.M)
+    wrong = 0
+    for folder, files in groups:
+        sources = {f: open(os.path.join(root, folder, f)).read() for f in files.split()}
+        hidden = {f: hidden_names(text) for f, text in sources.items()}
+        called = {f: called_names(text) for f, text in sources.items()}
+        for a in sources:
+            for b in sources:
+                common = hidden[a] & (hidden[b] | called[b]) if a != b else set()
+                if 'using namespace' in hidden[a] and a != b:
+                    common.add('using namespace')
+                if common:
+                    wrong += 1
+                    print(f'{folder}: {a} has {", ".join(sorted(common))} for itself, which {b} uses as well: rename it, '
+                          f'or take one of the two out of cmake/compiled_together.cmake')
+    print(f'{len(groups)} groups, {wrong} collisions')
+    return 1 if wrong or not groups else 0
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
-    parser.add_argument('build', help='configured with -DBLOCKRAND_TOGETHER=OFF')
+    parser.add_argument('--check', action='store_true')
+    parser.add_argument('build', nargs='?', help='configured with -DBLOCKRAND_TOGETHER=OFF')
     parser.add_argument('--jobs', type=int, default=2)
     parser.add_argument('--target', help='prints the groups of one target and writes nothing')
     args = parser.parse_args()
     root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    if args.check:
+        sys.exit(check(root))
+    if not args.build:
+        parser.error('a build folder, or --check')
     targets = [t for t in read_targets(os.path.abspath(args.build)).values() if args.target in (None, t.name)]
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
         found = list(pool.map(groups_of, targets))

@@ -50,12 +50,6 @@ double PlanShape::common_area(const PlanShape& other) const {
   return area_of(held(GEOSIntersection_r(context(), raw(shape_), raw(other.shape_))));
 }
 
-double PlanShape::intersection_over_union(const PlanShape& other) const {
-  if (empty() || other.empty()) return 0;
-  const double common = common_area(other);
-  return common / (area_ + other.area_ - common);
-}
-
 double PlanShape::outline_distance(const PlanShape& other) const {
   if (empty() || other.empty()) return 0;
   // GEOS measures from points of the lines; between corners they are walked in steps.

@@ -19,8 +19,6 @@ class PlanShape {
   double area() const { return area_; }
   model::Point2 centroid() const;
   double common_area(const PlanShape& other) const;
-  /// Area in common over area together; 0 where one is empty.
-  double intersection_over_union(const PlanShape& other) const;
   /// The largest distance of one outline from the other, both ways (Hausdorff; outlines are walked in steps of at most
   /// 0.5 m); 0 where one is empty.
   double outline_distance(const PlanShape& other) const;

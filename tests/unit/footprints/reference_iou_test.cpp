@@ -23,6 +23,7 @@ namespace blockrand::footprints::test {
 namespace {
 
 using geometry::PlanShape;
+using run::test::intersection_over_union;
 using run::test::match_survey;
 using run::test::read_survey;
 using run::test::shape_of;
@@ -100,7 +101,7 @@ Point2 constant_offset(const FootprintStore& as_mapped, const std::vector<Survey
   std::vector<Point2> differences;
   for (const SurveyMatch& m : matches) {
     const PlanShape shape = shape_of(as_mapped, m.buildings);
-    if (shape.intersection_over_union(m.ground) < 0.8) continue;
+    if (intersection_over_union(shape, m.ground) < 0.8) continue;
     const Point2 a = m.ground.centroid(), b = shape.centroid();
     differences.push_back({b.x - a.x, b.y - a.y});
   }
@@ -111,13 +112,13 @@ Point2 constant_offset(const FootprintStore& as_mapped, const std::vector<Survey
 /// agree, wherever they lie.
 double best_intersection_over_union(const PlanShape& shape, const PlanShape& other) {
   Point2 at;
-  double best = shape.intersection_over_union(other);
+  double best = intersection_over_union(shape, other);
   for (double step = 0.64; step >= 0.01; step /= 2)
     for (bool better = true; better;) {
       better = false;
       for (const Point2 d : {Point2{step, 0}, Point2{-step, 0}, Point2{0, step}, Point2{0, -step}}) {
         const Point2 next{at.x + d.x, at.y + d.y};
-        const double iou = shape.moved(next).intersection_over_union(other);
+        const double iou = intersection_over_union(shape.moved(next), other);
         if (iou > best) best = iou, at = next, better = true;
       }
     }
@@ -137,10 +138,10 @@ Measured measure(const std::array<FootprintStore, kSteps>& steps, const SurveyMa
         std::max(out.outline_shift, shape_of(steps[mapped], {b}).outline_distance(shape_of(steps[repaired], {b})));
   }
   for (std::size_t s = 0; s < kSteps; ++s)
-    out.iou[s] = shape_of(steps[s], match.buildings).intersection_over_union(match.ground);
+    out.iou[s] = intersection_over_union(shape_of(steps[s], match.buildings), match.ground);
   const PlanShape there = match.ground.moved(offset);
   const auto place = [&](const PlanShape& shape) {
-    return std::array{shape.intersection_over_union(match.ground), shape.intersection_over_union(there),
+    return std::array{intersection_over_union(shape, match.ground), intersection_over_union(shape, there),
                       best_intersection_over_union(shape, there)};
   };
   const PlanShape shape = shape_of(steps[mapped], match.buildings);

@@ -330,7 +330,7 @@ std::vector<Match> match(const SurveySet& set) {
   std::size_t pairs = 0;
   for (const SurveyMatch& m : match_survey(town.footprints(), grounds)) {
     if (m.buildings.size() != 1 || m.surveyed.size() != 1) continue;
-    if (shape_of(town.footprints(), m.buildings).intersection_over_union(m.ground) <= 0.5) continue;
+    if (intersection_over_union(shape_of(town.footprints(), m.buildings), m.ground) <= 0.5) continue;
     ++pairs;
     const std::size_t shard = town.shard_of(m.buildings[0]);
     if (!tiles.contains(shard)) tiles.emplace(shard, town.tile(shard, 2));

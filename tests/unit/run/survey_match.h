@@ -15,6 +15,13 @@ namespace blockrand::run::test {
 
 using geometry::PlanShape;
 
+/// Area in common over area together; 0 where one is empty.
+inline double intersection_over_union(const PlanShape& a, const PlanShape& b) {
+  if (a.empty() || b.empty()) return 0;
+  const double common = a.common_area(b);
+  return common / (a.area() + b.area() - common);
+}
+
 /// The ground of a building in a surveyed model.
 struct SurveyedBuilding {
   std::string id;
