@@ -2,6 +2,8 @@
 # every folder's headers stand behind an include directory of their own (a link farm in the build tree), so an include
 # across the arrows of ARCHITECTURE.md, "Targets that cannot see too far", does not compile.
 #
+#   COLD: code that nobody waits for: commands, options, orchestration. It is optimised less, and compiled in two thirds of
+#   the time.
 #   HEADERS standard | own | none: which precompiled header; `model` where nothing is said. `own` for targets with flags of
 #   their own, which compile it again.
 #   blockrand_library(NAME base FOLDER pipeline/base SOURCES a.cpp ... LINKS blockrand::model ... PRIVATE_LINKS CGAL::CGAL ...)
@@ -89,7 +91,7 @@ function(blockrand_group_sources target name)
 endfunction()
 
 function(blockrand_library)
-  cmake_parse_arguments(ARG "" "NAME;FOLDER;HEADERS" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "COLD" "NAME;FOLDER;HEADERS" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
   set(target blockrand_${ARG_NAME})
   set(farm ${CMAKE_BINARY_DIR}/include/${ARG_NAME})
   get_filename_component(parent ${farm}/${ARG_FOLDER} DIRECTORY)
@@ -103,6 +105,9 @@ function(blockrand_library)
     target_link_libraries(${target} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS} blockrand_options)
     blockrand_use_headers(${target} "${ARG_HEADERS}")
     blockrand_group_sources(${target} ${ARG_NAME})
+    if(ARG_COLD)
+      target_compile_options(${target} PRIVATE $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU,Clang>>:-O1>)
+    endif()
     set_property(GLOBAL APPEND PROPERTY blockrand_archives ${target})
   else()
     add_library(${target} INTERFACE)
