@@ -2,8 +2,8 @@
 # every folder's headers stand behind an include directory of their own (a link farm in the build tree), so an include
 # across the arrows of ARCHITECTURE.md, "Targets that cannot see too far", does not compile.
 #
-#   COLD: code that nobody waits for: commands, options, orchestration. It is optimised less, and compiled in two thirds of
-#   the time.
+#   COLD: code that nobody waits for: commands, options, orchestration. It is compiled with -O1 in two thirds of the time.
+#   The rest has -O2: -O3 takes a seventh longer to compile, and builds of cities are not faster (docs/internal/RESULTS.md).
 #   HEADERS standard | own | none: which precompiled header; `model` where nothing is said. `own` for targets with flags of
 #   their own, which compile it again.
 #   blockrand_library(NAME base FOLDER pipeline/base SOURCES a.cpp ... LINKS blockrand::model ... PRIVATE_LINKS CGAL::CGAL ...)
@@ -105,9 +105,11 @@ function(blockrand_library)
     target_link_libraries(${target} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS} blockrand_options)
     blockrand_use_headers(${target} "${ARG_HEADERS}")
     blockrand_group_sources(${target} ${ARG_NAME})
+    set(level -O2)
     if(ARG_COLD)
-      target_compile_options(${target} PRIVATE $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU,Clang>>:-O1>)
+      set(level -O1)
     endif()
+    target_compile_options(${target} PRIVATE $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU,Clang>>:${level}>)
     set_property(GLOBAL APPEND PROPERTY blockrand_archives ${target})
   else()
     add_library(${target} INTERFACE)
