@@ -1,5 +1,5 @@
-// How one building or part is resolved, value by value: what speaks for each, in the order of its strength. Of resolve.cpp and the two
-// sources that implement the rest; resolve.h is for everybody else.
+// How one building or part is resolved, value by value: what speaks for each, in the order of its strength. Of resolve.cpp
+// and the two sources that implement the rest; everybody else takes resolve.h.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// The sweep of a weighted straight skeleton: planes that rise over the edges of a polygon, and the corners between them that move until
-// they meet. Of weighted_skeleton.cpp and the three sources that implement it; weighted_skeleton.h is for everybody else.
+// The sweep of a weighted straight skeleton: planes rise over the edges of a polygon, corners move along their
+// intersections until they meet. Of weighted_skeleton.cpp and the three sources that implement it; everybody else takes
+// weighted_skeleton.h.
 #pragma once
 
 #include <algorithm>

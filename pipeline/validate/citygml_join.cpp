@@ -1,4 +1,5 @@
-// What CityGML says by reference: solids get the polygons of their boundary surfaces, polygons their colours, placed elements their shapes.
+// What CityGML says by reference: solids get the polygons of their boundary surfaces, polygons their colours, placed
+// elements their shapes.
 #include <algorithm>
 #include <charconv>
 #include <iterator>
