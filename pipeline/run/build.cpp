@@ -89,6 +89,23 @@ model::Report override_extract(const BuildOptions& options, BuildInputs& inputs,
   return report;
 }
 
+/// What district rules may ask for. \param inputs, located, prepared, neighbours  outlive the result
+attributes::AssignInputs assign_inputs(const BuildOptions& options, const BuildInputs& inputs,
+                                       const LocatedExtract& located, const PreparedExtract& prepared,
+                                       const context::TaggedNeighbours& neighbours) {
+  return {.extract = located.extract,
+          .footprints = prepared.repaired.footprints,
+          .context = prepared.context,
+          .styles = prepared.styles,
+          .projection = located.projection,
+          .defaults = inputs.defaults,
+          .neighbours = neighbours,
+          .neighbour_minimum = options.generate.neighbour_minimum,
+          .overrides = &inputs.overrides,
+          .pinned = located.facts.areas,
+          .seed = options.seed};
+}
+
 /// \throws base::OutputError  too little space, with a reserve of a quarter
 void check_free_space(const BuildOptions& options, std::uint64_t buildings, const base::StagedFolder& folder) {
   const double each = outputs::bytes_per_building(options.outputs, options.lod);
@@ -243,17 +260,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const context::TaggedNeighbours neighbours(attributes::tagged_buildings(extract, inputs.defaults, projection),
                                              options.generate.neighbour_reach);
   const attributes::DistrictAssigner assigner(inputs.rules.book,
-                                              {.extract = extract,
-                                               .footprints = repaired.footprints,
-                                               .context = context,
-                                               .styles = prepared.styles,
-                                               .projection = projection,
-                                               .defaults = inputs.defaults,
-                                               .neighbours = neighbours,
-                                               .neighbour_minimum = options.generate.neighbour_minimum,
-                                               .overrides = &inputs.overrides,
-                                               .pinned = located.facts.areas,
-                                               .seed = options.seed});
+                                              assign_inputs(options, inputs, located, prepared, neighbours));
   if (!tile) {  // a tile alone does not see what lies elsewhere
     record.facts.areas = assigner.to_pin();
     for (const std::string& what : assigner.unanswered()) progress.warn(what);
