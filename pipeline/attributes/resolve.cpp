@@ -73,7 +73,7 @@ std::string text_of(const std::string& value) { return value; }
 
 Sourced<double> Resolver::storeys() {
   std::vector<Choice<double>> choices;
-  if (const double below = storeys_below(own, preset.storey_height); below > 0)
+  if (const double below = storeys_below(own, usual.storey_height); below > 0)
     choices.push_back({below + *own.storeys, Source::implied, kImpliedConfidence,
                        fmt::format("{:g} tagged storeys above {:g} skipped ones", *own.storeys, below)});
   else if (own.storeys)
@@ -87,30 +87,30 @@ Sourced<double> Resolver::storeys() {
            vote && !is_non_house())
     choices.push_back({vote->value, Source::neighbours, 0.3 + 0.4 * vote->share,
                        fmt::format("median of {} neighbours within {:.0f} m", vote->voices, in.neighbours.reach())});
-  choices.push_back({preset.storeys, preset_source(), preset_confidence(), preset_name()});
+  choices.push_back({usual.storeys, usual_source(), usual_confidence(), usual_name()});
   return first(std::move(choices));
 }
 
 template <class Pick>
 Sourced<Colour> Resolver::colour(std::optional<Colour> tagged, std::optional<Colour> outline_tagged,
                                  const Sourced<std::string>& material, const std::vector<Colour>& palette,
-                                 const char* choice, Pick&& preset_applies) {
+                                 const char* choice, Pick&& usual_applies) {
   std::vector<Choice<Colour>> choices;
   if (tagged) choices.push_back({*tagged, Source::tag, kTagConfidence, "tagged"});
   if (outline_tagged) choices.push_back({*outline_tagged, Source::implied, kOutlineConfidence, "the outline's colour"});
   const int index = in.defaults.material(material.value);
-  if (!preset_applies() && index >= 0)
+  if (!usual_applies() && index >= 0)
     choices.push_back({in.defaults.materials[static_cast<std::size_t>(index)].colour, Source::implied, 0.5,
                        "colour of " + material.value});
   // All parts of a building are painted alike: the key is the building's.
   const std::uint64_t bits = base::random_bits(in.seed, building.osm.key(), choice);
-  choices.push_back({palette[bits % palette.size()], preset_source(), kDefaultConfidence,
-                     "drawn from the palette, " + preset_name()});
+  choices.push_back(
+      {palette[bits % palette.size()], usual_source(), kDefaultConfidence, "drawn from the palette, " + usual_name()});
   return first(std::move(choices));
 }
 
 Sourced<std::string> Resolver::material(base::StringId tagged, base::StringId outline_tagged,
-                                        const std::string& preset_material) {
+                                        const std::string& usual_material) {
   const auto known = [&](base::StringId value) -> int { return value == 0 ? -1 : in.defaults.material(text(value)); };
   const auto class_name = [&](int index) {
     return in.defaults.materials[static_cast<std::size_t>(index)].material_class.name;
@@ -120,22 +120,22 @@ Sourced<std::string> Resolver::material(base::StringId tagged, base::StringId ou
     choices.push_back({class_name(m), Source::tag, kTagConfidence, "tagged " + std::string(text(tagged))});
   if (const int m = known(outline_tagged); m >= 0)
     choices.push_back({class_name(m), Source::implied, kOutlineConfidence, "the outline's material"});
-  choices.push_back({preset_material, preset_source(), kDefaultConfidence, preset_name()});
+  choices.push_back({usual_material, usual_source(), kDefaultConfidence, usual_name()});
   return first(std::move(choices));
 }
 
 void Resolver::surfaces(Attributes& a) {
   const base::StringId outline_wall = outline ? outline->wall_material : 0,
                        outline_roof = outline ? outline->roof_material : 0;
-  a.wall_material = material(own.wall_material, outline_wall, preset.wall_material);
+  a.wall_material = material(own.wall_material, outline_wall, usual.wall_material);
   const bool flat = a.roof_shape.value == RoofShape::flat;
-  a.roof_material = material(own.roof_material, outline_roof, flat ? preset.flat_roof_material : preset.roof_material);
+  a.roof_material = material(own.roof_material, outline_roof, flat ? usual.flat_roof_material : usual.roof_material);
   a.wall_colour = colour(own.wall_colour, outline ? outline->wall_colour : std::nullopt, a.wall_material,
-                         preset.wall_colours, "wall_colour", [&] {
+                         usual.wall_colours, "wall_colour", [&] {
                            return a.wall_material.source != Source::tag && a.wall_material.source != Source::implied;
                          });
   a.roof_colour = colour(
-      own.roof_colour, outline ? outline->roof_colour : std::nullopt, a.roof_material, preset.roof_colours,
+      own.roof_colour, outline ? outline->roof_colour : std::nullopt, a.roof_material, usual.roof_colours,
       "roof_colour",
       [&] { return !flat && a.roof_material.source != Source::tag && a.roof_material.source != Source::implied; });
 }
@@ -172,7 +172,7 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
     // An outline of a few square metres that says nothing but `yes` is no house.
     const bool small = use == "yes" && !building.outline.empty() && area < in.defaults.small_area;
     UseDefaults styled, changed;
-    const UseDefaults& preset = with_overrides(
+    const UseDefaults& usual = with_overrides(
         entry_of_building, with_style(building, in, small ? in.defaults.small : in.defaults.use(use), styled), changed);
     const std::uint8_t group = neighbour_group(in.defaults, use, area);
 
@@ -191,7 +191,7 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
                    .part = nullptr,
                    .own = building.mapped,
                    .outline = nullptr,
-                   .preset = preset,
+                   .usual = usual,
                    .group = group,
                    .plans = building.outline,
                    .id = building.osm,
@@ -206,9 +206,9 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
       // building:part=yes says nothing; a use of its own does.
       const bool own_use = own_tags && in.defaults.uses.contains(part_use) && part_use != "yes";
       UseDefaults part_styled, part_changed;
-      const UseDefaults& part_preset = with_overrides(
+      const UseDefaults& part_usual = with_overrides(
           own_tags && in.overrides ? in.overrides->find(part.osm) : nullptr,
-          own_use ? with_style(building, in, in.defaults.use(part_use), part_styled) : preset, part_changed);
+          own_use ? with_style(building, in, in.defaults.use(part_use), part_styled) : usual, part_changed);
       const std::vector<model::Polygon> plan{part.roof_plan};
       Resolver r{.region = region,
                  .in = in,
@@ -217,7 +217,7 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
                  .part = &part,
                  .own = part.mapped,
                  .outline = own_tags && building.osm != part.osm ? &building.mapped : nullptr,
-                 .preset = part_preset,
+                 .usual = part_usual,
                  .group = group,
                  .plans = plan,
                  .id = building.osm,
@@ -228,7 +228,7 @@ void resolve_attributes(Region& region, const ResolveInputs& in, const GenerateO
       const Source measured = part.attributes.roof_height.source;
       if (measured == Source::preset || measured == Source::default_) part.usual_pitch = r.usual_pitch_asked;
       tell(part.osm, tag_conflicts(part.mapped, {part.attributes.roof_shape.value, part.roof_plan,
-                                                 r.preset.storey_height, !part.roof_lines.empty(), part.roof_edges}));
+                                                 r.usual.storey_height, !part.roof_lines.empty(), part.roof_edges}));
       tell(part.osm, std::move(r.against_terrain));
       part.canopy = part_use == "roof" || (own_tags && part_use == "yes" && use == "roof");
     }

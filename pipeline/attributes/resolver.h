@@ -17,8 +17,8 @@
 
 namespace blockrand::attributes {
 
-// How far each kind of source is trusted. Own tags may be wrong, too; the rest is experience, to be replaced by measured
-// hit rates when the classifier is fitted.
+// How far each kind of source is trusted. Own tags may be wrong, too. All of these are experience, none is a measured hit
+// rate; what classification offers brings its own confidence (offers_of_style).
 inline constexpr float kTagConfidence = 0.95f;
 inline constexpr float kImpliedConfidence = 0.8f;
 inline constexpr float kOutlineConfidence = 0.7f;
@@ -55,7 +55,7 @@ struct Resolver {
   const model::BuildingPart* part;         ///< null when the building as a whole is resolved
   const model::MappedAttributes& own;      ///< tags of the part, or of the building
   const model::MappedAttributes* outline;  ///< tags of the outline when a part is resolved
-  const UseDefaults& preset;
+  const UseDefaults& usual;  ///< of its use (configs/defaults/uses.toml) and style: what it gets where nothing is known
   std::uint8_t group;
   const std::vector<model::Polygon>& plans;
   model::OsmId id;
@@ -72,7 +72,7 @@ struct Resolver {
             region.evidence.add({std::move(why), std::move(other_candidates)})};
   }
   template <class T>
-  model::Candidate other_candidates(const Choice<T>& choice) {
+  model::Candidate other_candidate(const Choice<T>& choice) {
     return {choice.source, static_cast<float>(choice.confidence), text_of(choice.value), choice.why};
   }
   /// The first of `choices`, which stand in the order of their strength; the others are noted as what lost.
@@ -80,7 +80,7 @@ struct Resolver {
   model::Sourced<T> first(std::vector<Choice<T>> choices) {
     std::vector<model::Candidate> others;
     others.reserve(choices.size() - 1);
-    for (std::size_t i = 1; i < choices.size(); ++i) others.push_back(other_candidates(choices[i]));
+    for (std::size_t i = 1; i < choices.size(); ++i) others.push_back(other_candidate(choices[i]));
     Choice<T>& won = choices.front();
     return make<T>(std::move(won.value), won.source, won.confidence, std::move(won.why), std::move(others));
   }
@@ -90,17 +90,17 @@ struct Resolver {
     return plans.empty() || plans[0].outer.points.empty() ? model::Point2{} : plans[0].outer.points[0];
   }
 
-  model::Source preset_source() const {
-    return preset.name == "default" && preset.style.empty() ? model::Source::default_ : model::Source::preset;
+  model::Source usual_source() const {
+    return usual.name == "default" && usual.style.empty() ? model::Source::default_ : model::Source::preset;
   }
-  double preset_confidence() const {
-    if (!preset.style.empty())
+  double usual_confidence() const {
+    if (!usual.style.empty())
       return std::max<double>(kDefaultConfidence, 0.6 * static_cast<double>(building.inferred.style_confidence));
-    return preset.name == "default" ? kDefaultConfidence : kPresetConfidence;
+    return usual.name == "default" ? kDefaultConfidence : kPresetConfidence;
   }
-  std::string preset_name() const {
-    if (!preset.style.empty()) return "usual for the style " + preset.style;
-    return preset.name == "default" ? "default for all buildings" : "usual for building=" + preset.name;
+  std::string usual_name() const {
+    if (!usual.style.empty()) return "usual for the style " + usual.style;
+    return usual.name == "default" ? "default for all buildings" : "usual for building=" + usual.name;
   }
 
   /// A monument, a garage, a tank: houses around it say nothing of it.
@@ -142,7 +142,7 @@ struct Resolver {
   bool is_canopy() const { return text(own.use) == "roof"; }
 
   /// Whether the building's ground floor would lie more than a storey above all ground under this body.
-  bool leaves_common_floor() const { return floor && *floor - rise > preset.storey_height; }
+  bool leaves_common_floor() const { return floor && *floor - rise > usual.storey_height; }
 
   /// Where the ground floor should lie, m above the lowest ground: at the entrance, and at most a storey below the
   /// highest ground. A canopy has no storey to lie in: the ground goes on under it.
@@ -183,10 +183,10 @@ struct Resolver {
   model::Sourced<model::Colour> colour(std::optional<model::Colour> tagged, std::optional<model::Colour> outline_tagged,
                                        const model::Sourced<std::string>& material,
                                        const std::vector<model::Colour>& palette, const char* choice,
-                                       Pick&& preset_applies);
+                                       Pick&& usual_applies);
 
   model::Sourced<std::string> material(base::StringId tagged, base::StringId outline_tagged,
-                                       const std::string& preset_material);
+                                       const std::string& usual_material);
 
   /// Materials and colours of walls and roof.
   void surfaces(model::Attributes& a);

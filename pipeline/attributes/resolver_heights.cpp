@@ -27,7 +27,7 @@ double Resolver::wished_plinth() const {
   if (leaves_common_floor()) return rise;
   if (floor) return *floor;
   if (is_canopy()) return rise;
-  return std::max({ground.entrance, rise - preset.storey_height, 0.0}) + preset.plinth;
+  return std::max({ground.entrance, rise - usual.storey_height, 0.0}) + usual.plinth;
 }
 
 void Resolver::set_plinth(Attributes& a, double height, std::string why) {
@@ -40,16 +40,16 @@ void Resolver::set_plinth(Attributes& a, double height, std::string why) {
                         *floor - rise);
     if (floor && height == *floor && part) why = "the building's ground floor; " + why;
   }
-  const bool usual = preset.plinth > 0 && height > 0;
-  if (usual && terrain) why += fmt::format("; {:.1f} m up to the ground floor, {}", preset.plinth, preset_name());
-  if (!terrain) why = usual ? "no terrain; " + preset_name() : "no terrain";
+  const bool raised = usual.plinth > 0 && height > 0;
+  if (raised && terrain) why += fmt::format("; {:.1f} m up to the ground floor, {}", usual.plinth, usual_name());
+  if (!terrain) why = raised ? "no terrain; " + usual_name() : "no terrain";
   a.plinth_height = make<double>(height,
-                                 terrain ? Source::terrain
-                                 : usual ? Source::preset
-                                         : Source::default_,
-                                 terrain ? kPlinthConfidence
-                                 : usual ? preset_confidence()
-                                         : kDefaultConfidence,
+                                 terrain  ? Source::terrain
+                                 : raised ? Source::preset
+                                          : Source::default_,
+                                 terrain  ? kPlinthConfidence
+                                 : raised ? usual_confidence()
+                                          : kDefaultConfidence,
                                  std::move(why));
 }
 
@@ -83,15 +83,15 @@ void Resolver::divide_height(Attributes& a, bool storeys_known, bool in_terrain)
   if (counted > 0) {
     a.storey_height =
         first<double>({{walls / a.storeys.value, Source::implied, kImpliedConfidence, "height over storeys"},
-                       {preset.storey_height, preset_source(), preset_confidence(), preset_name()}});
+                       {usual.storey_height, usual_source(), usual_confidence(), usual_name()}});
   } else {
-    double whole = std::max(1.0, std::floor(walls / preset.storey_height + 0.5));
+    double whole = std::max(1.0, std::floor(walls / usual.storey_height + 0.5));
     while (whole > 1 && in_terrain && context::stands_on_ground(own) && plinth + walls / whole < rise) --whole;
     a.storeys = make<double>(
-        whole, Source::implied, 0.6, fmt::format("{:.1f} m of wall at {:.1f} m a storey", walls, preset.storey_height),
+        whole, Source::implied, 0.6, fmt::format("{:.1f} m of wall at {:.1f} m a storey", walls, usual.storey_height),
         {{a.storeys.source, a.storeys.confidence, text_of(a.storeys.value), region.evidence[a.storeys.evidence].text}});
     a.storey_height = first<double>({{walls / whole, Source::implied, 0.6, "height over storeys"},
-                                     {preset.storey_height, preset_source(), preset_confidence(), preset_name()}});
+                                     {usual.storey_height, usual_source(), usual_confidence(), usual_name()}});
   }
   if (!in_terrain) return;
   const double wished = wished_plinth();
@@ -127,10 +127,10 @@ void Resolver::heights(Attributes& a) {
   a.roof_shape = roof_shape();
   a.roof_orientation = roof_orientation(a.roof_shape.value);
   a.storeys = storeys();
-  a.storey_height = make<double>(preset.storey_height, preset_source(), preset_confidence(), preset_name());
+  a.storey_height = make<double>(usual.storey_height, usual_source(), usual_confidence(), usual_name());
   a.roof_storeys = own.roof_storeys ? make<double>(*own.roof_storeys, Source::tag, kTagConfidence, "tagged")
                                     : make<double>(0, Source::default_, kDefaultConfidence, "none tagged");
-  a.roof_height = roof_height(a.roof_shape.value, a.roof_orientation.value, std::min(preset.storey_height, 3.0));
+  a.roof_height = roof_height(a.roof_shape.value, a.roof_orientation.value, std::min(usual.storey_height, 3.0));
   const MappedAttributes* height_from = own.height                                        ? &own
                                         : outline && !has_own_height() && outline->height ? outline
                                                                                           : nullptr;

@@ -74,12 +74,12 @@ Sourced<RoofShape> Resolver::roof_shape() {
   if (outline && has_own_height())
     choices.push_back(
         {RoofShape::flat, Source::implied, kGeometryConfidence, "a part with a height and no roof tags ends flat"});
-  const bool wide = width() > preset.pitched_width;
+  const bool wide = width() > usual.pitched_width;
   const auto& counted = own.storeys || !outline || has_own_height() ? own.storeys : outline->storeys;
-  if (preset.roof_shape != RoofShape::flat && counted && *counted > kMostStoreysUnderRafters)
+  if (usual.roof_shape != RoofShape::flat && counted && *counted > kMostStoreysUnderRafters)
     choices.push_back({RoofShape::flat, Source::geometry, kImpliedConfidence,
                        fmt::format("{:g} storeys are too many for rafters", *counted)});
-  if (preset.roof_shape != RoofShape::flat && part && roofs::is_enclosed(plan(), part->roof_edges))
+  if (usual.roof_shape != RoofShape::flat && part && roofs::is_enclosed(plan(), part->roof_edges))
     choices.push_back(
         {RoofShape::flat, Source::geometry, kImpliedConfidence, "neighbours stand at all sides: no side for eaves"});
   if (agreed && (vote->value == RoofShape::flat || !wide))
@@ -87,10 +87,10 @@ Sourced<RoofShape> Resolver::roof_shape() {
                        inferred_candidate.confidence > 0 ? static_cast<double>(inferred_candidate.confidence)
                                                          : 0.2 + 0.5 * vote->share,
                        std::move(vote_why)});
-  if (preset.roof_shape != RoofShape::flat && wide)
+  if (usual.roof_shape != RoofShape::flat && wide)
     choices.push_back({RoofShape::flat, Source::geometry, kGeometryConfidence,
                        fmt::format("the plan is {:.0f} m wide, too wide for rafters", width())});
-  choices.push_back({preset.roof_shape, preset_source(), preset_confidence(), preset_name()});
+  choices.push_back({usual.roof_shape, usual_source(), usual_confidence(), usual_name()});
   return first(std::move(choices));
 }
 
@@ -132,26 +132,26 @@ Choice<double> Resolver::usual_height(RoofShape shape, RoofOrientation orientati
       plan().outer.size() < 3 ? roofs::MainSlope{} : roofs::main_slope(plan(), request, true);
   const auto* edges = model::constructed_as<model::EdgeRoof>(shape);
   if (edges && edges->eaves == model::EavesProfile::berlin)
-    return {slope.run, preset_source(), preset_confidence(),
+    return {slope.run, usual_source(), usual_confidence(),
             "60 degrees to the street, 8 to the yard, a knee wall there"};
   if (edges && edges->eaves == model::EavesProfile::broken) {
-    const double run = roofs::main_slope(plan(), request, false).run, attic = attic_height(preset.storey_height);
+    const double run = roofs::main_slope(plan(), request, false).run, attic = attic_height(usual.storey_height);
     // Below an attic's height there is no storey in it: the pitch alone counts.
     if (run * roofs::kMansardSteep > 2 * attic)
       return {
-          roofs::mansard_height(run, attic), preset_source(), preset_confidence(),
+          roofs::mansard_height(run, attic), usual_source(), usual_confidence(),
           fmt::format("an attic storey of {:.1f} m behind 68 degrees, 26 above, over a run of {:.1f} m", attic, run)};
   }
-  double pitch = std::min(usual_pitch(shape, preset.roof_pitch), options.max_roof_pitch);
-  if (slope.leans && pitch <= preset.roof_pitch) pitch = std::min(pitch, kLeanPitch);
+  double pitch = std::min(usual_pitch(shape, usual.roof_pitch), options.max_roof_pitch);
+  if (slope.leans && pitch <= usual.roof_pitch) pitch = std::min(pitch, kLeanPitch);
   const double height = slope.run * tangent(pitch) / slope.rise;
   usual_pitch_asked = pitch;
-  if (height > options.max_usual_roof_height && pitch <= preset.roof_pitch) {
+  if (height > options.max_usual_roof_height && pitch <= usual.roof_pitch) {
     usual_pitch_asked = 0;
-    return {options.max_usual_roof_height, preset_source(), preset_confidence(),
+    return {options.max_usual_roof_height, usual_source(), usual_confidence(),
             fmt::format("the highest usual roof, over a run of {:.1f} m", slope.run)};
   }
-  return {height, preset_source(), preset_confidence(),
+  return {height, usual_source(), usual_confidence(),
           fmt::format("pitch of {:.0f} degrees over a run of {:.1f} m", pitch, slope.run)};
 }
 
@@ -170,7 +170,7 @@ void Resolver::fit_roof_height(Attributes& a, bool storeys_known, double plinth,
     } else {
       roof = std::min(wanted, 0.6 * whole);
       if (storeys_known && a.storeys.value > 0) {
-        const double left = a.height.value - plinth - a.storeys.value * preset.storey_height;
+        const double left = a.height.value - plinth - a.storeys.value * usual.storey_height;
         roof = std::clamp(left, wanted * 2 / 3, wanted * 4 / 3);
         roof = std::min(roof, std::max(a.height.value - plinth - a.storeys.value * kLowestStorey, 0.1 * whole));
       }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "pipeline/base/error.h"
 #include "pipeline/cli/exit_codes.h"
@@ -18,18 +20,26 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// A source (pipeline/model/sourced.h) as people say it.
 std::string in_words(const std::string& source) {
-  if (source == "override") return "as you ordered";
-  if (source == "tag") return "tagged";
-  if (source == "implied") return "follows from what is known";
-  if (source == "part") return "from its parts";
-  if (source == "imagery") return "seen in the aerial image";
-  if (source == "terrain") return "from the terrain model";
-  if (source == "geometry") return "from the shape of the plan";
-  if (source == "neighbours") return "from the neighbours";
-  if (source == "preset") return "usual for such buildings";
-  if (source == "default") return "assumed, nothing is known";
-  return "from the " + source;  // block, cell, district, region
+  static const std::map<std::string_view, std::string_view> words = {
+      {"override", "as you ordered"},
+      {"tag", "tagged"},
+      {"implied", "follows from what is known"},
+      {"part", "from its parts"},
+      {"imagery", "seen in the aerial image"},
+      {"terrain", "from the terrain model"},
+      {"geometry", "from the shape of the plan"},
+      {"neighbours", "from the neighbours"},
+      {"block", "from the block"},
+      {"cell", "from the cell"},
+      {"district", "from the district"},
+      {"region", "from the region"},
+      {"preset", "usual for such buildings"},
+      {"default", "assumed, nothing is known"},
+  };
+  const auto found = words.find(source);
+  return found == words.end() ? "from the " + source : std::string(found->second);  // of a newer build
 }
 
 std::string spaced(std::string name) {

@@ -37,7 +37,7 @@ struct Vicinity {
 };
 
 struct WallSegmentOptions {
-  /// m. Walls nearer than this touch: party walls. As RepairOptions::snap_distance unless that is set.
+  /// m. Walls nearer than this touch: party walls. The default of RepairOptions::snap_distance; it does not follow that option.
   double touching = 0.40;
   double min_contact = 0.5;       ///< m. Shorter contacts are corners that touch
   double min_wall_segment = 0.3;  ///< m. Shorter pieces are not made
@@ -118,7 +118,8 @@ VicinityIndex::Box box_of(const model::Building& building, double margin);
 /// with their entrances and addresses (wall_points.h), `building.trees` and `building.situation`.
 ///
 /// Labels, each the first that applies to a wall segment:
-/// * `party_wall`: another building's wall runs against it within WallSegmentOptions::touching, or it lies in another building.
+/// * `party_wall`: another building's wall runs the other way within WallSegmentOptions::touching of it, on at least
+///   `min_contact` or half of the edge (contacts_of), or it lies in another building.
 ///   Canopies (building=roof) are no neighbours of a wall, but walls are of a canopy.
 /// * `passage`: the portal of a way through the building.
 /// * `street`: from most of the wall segment the view straight ahead meets a street, or the wall segment stands on a square.

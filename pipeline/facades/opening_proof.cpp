@@ -18,7 +18,7 @@ using geometry::Grid3;
 using model::Point3;
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// m across a wall that its corners may take up: as much as the judge lets pass without looking for folds.
+/// m across a wall that its corners may take up: as much as the validator lets pass without looking for folds.
 constexpr double kThickest = 4 / model::kGridStepsPerMetre;
 /// Cosine of the angle between a reveal's direction and the wall's normal: rounding turns reveals of a centimetre by 4
 /// degrees.

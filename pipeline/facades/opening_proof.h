@@ -31,12 +31,12 @@ namespace blockrand::facades {
 ///    rings go round it: no triangle covers a point of the hole, and so none meets a reveal, which lies over the hole's
 ///    border, but in the edges they share. Of flush openings the view is along the axis next to the normal.
 /// 3. Its triangles conflict with no triangle of another wall with holes, or of the faces that stayed as they were, by
-///    the judge's own test (geometry::triangles_conflict). Faces that lie on one side of the wall's corners are out of
+///    check_solid's own test (geometry::triangles_conflict). Faces that lie on one side of the wall's corners are out of
 ///    the question at once; this leaves its neighbours' borders.
-/// Pairs of faces that stayed as they were have been judged with the closed solid.
-/// Solids with passages, whose sides are no prisms, are left to the judge.
+/// Pairs of faces that stayed as they were have been checked with the closed solid.
+/// Solids with passages, whose sides are no prisms, are left to check_solid.
 ///
-/// \param triangles  of opened.solid, by geometry::triangulate; of faces that are not opened those that were judged
+/// \param triangles  of opened.solid, by geometry::triangulate; of faces that are not opened those that were checked
 bool proved_valid(const OpenedSolid& opened, const model::SolidTriangles& triangles);
 
 inline constexpr double kMostLean = 0.1;  ///< tangent; keeps what rounding shifts in a view along the normal small

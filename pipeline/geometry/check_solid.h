@@ -1,4 +1,4 @@
-// The project's own judge of solids: closed, manifold, oriented, planar, free of self-intersections.
+// The project's own validator of solids: closed, manifold, oriented, planar, free of self-intersections.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ SolidCheck check_solid(const model::Solid& solid);
 /// steps of any size, equal positions merged by the caller.
 SolidCheck check_mesh(std::span<const Grid3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
 
-/// The judge's test of two triangles of different faces, given by indices into `vertices`: whether they share more than
+/// Its test of two triangles of different faces, given by indices into `vertices`: whether they share more than
 /// the corners and edges that they have in common by index. Exact.
 bool triangles_conflict(std::span<const Grid3> vertices, const std::array<std::uint32_t, 3>& a,
                         const std::array<std::uint32_t, 3>& b);

@@ -1,5 +1,5 @@
 // Areas in plan for measuring: common area, overlap, distance of outlines. Raw GEOS on the coordinates as they are: a
-// judge that shares nothing with repair but how polygons are handed to GEOS.
+// validator that shares nothing with repair but how polygons are handed to GEOS.
 #pragma once
 
 #include <memory>

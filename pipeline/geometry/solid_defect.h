@@ -8,9 +8,9 @@
 namespace blockrand::geometry {
 
 /// X(enumerator, number, "name", "what it means"). The numbers are val3dity's (Ledoux 2013 and 2018,
-/// https://val3dity.readthedocs.io): 1xx rings, 2xx polygons, 3xx shells, 4xx solids, 9xx what cannot be judged.
+/// https://val3dity.readthedocs.io): 1xx rings, 2xx polygons, 3xx shells, 4xx solids, 9xx what cannot be checked.
 /// 304 was withdrawn there: both kinds of non-manifold are 303. 401 to 404 are about solids with several shells, which
-/// no solid here has. Lower levels come first: a shell is judged when all of its polygons are sound.
+/// no solid here has. Lower levels come first: a shell is checked when all of its polygons are sound.
 #define BLOCKRAND_SOLID_DEFECTS(X)                                                                                    \
   X(none, 0, "none", "sound")                                                                                         \
   X(too_few_points, 101, "too few points", "a ring of fewer than three points")                                       \

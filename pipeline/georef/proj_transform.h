@@ -1,4 +1,4 @@
-// PROJ itself as a witness of where things stand: for judges, which must not use the series and frames they judge.
+// PROJ itself as a witness of where things stand: for validators, which must not use the series and frames they check.
 #pragma once
 
 #include <memory>

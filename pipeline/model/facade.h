@@ -29,8 +29,8 @@ struct Opening {
   std::uint32_t wall = 0;  ///< face of the solid that it opens
   std::uint32_t first_reveal =
       0;  ///< faces of the reveal: this one and the following; for passages those of the tunnel
-  std::uint32_t reveal_count = 0;  ///< 0 for flush openings, and for the second mouth of a passage
-  std::uint32_t polygon = 0;       ///< face of kind window or door; of passages the face of the other mouth's wall
+  std::uint32_t reveal_count = 0;  ///< 0 for flush openings, and for the second portal of a passage
+  std::uint32_t polygon = 0;       ///< face of kind window or door; of passages the face of the other portal's wall
   std::int32_t storey = 0;         ///< 0: ground floor
 };
 

@@ -28,7 +28,7 @@ namespace blockrand::model {
   X(kLevels, "levels", "the same, older")                                                                         \
   X(kBuildingMinLevel, "building:min_level", "storeys left out below")                                            \
   X(kMinLevel, "min_level", "the same, older")                                                                    \
-  X(kBuildingLevelsUnderground, "building:levels:underground", "storeys below ground")                            \
+  X(kBuildingLevelsUnderground, "building:levels:underground", "storeys below ground: read and checked, not built")\
   X(kRoofLevels, "roof:levels", "storeys in the roof")                                                            \
   X(kBuildingRoofLevels, "building:roof:levels", "the same, older")                                               \
   X(kRoofShape, "roof:shape", "shape of the roof")                                                                \

@@ -1,4 +1,4 @@
-// Earth-centred coordinates to longitude, latitude and height, and 4 x 4 matrices: written for the judges, so that an
+// Earth-centred coordinates to longitude, latitude and height, and 4 x 4 matrices: written for the validators, so that an
 // error in georef or export cannot hide behind itself.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the two judges of solids say: our own checker, in exact arithmetic, and CGAL.
+// What the two validators of solids say: our own checker, in exact arithmetic, and CGAL.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct ReadMesh {
   std::vector<model::Point3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
-/// Nothing where a face cannot be triangulated, or the body is larger than the judges take.
+/// Nothing where a face cannot be triangulated, or the body is larger than the validators take.
 std::optional<ReadMesh> read_mesh(const ReadSolid& solid);
 std::optional<ReadMesh> read_mesh(const std::vector<GlbTriangle>& triangles);
 

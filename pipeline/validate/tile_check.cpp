@@ -507,7 +507,7 @@ class Checker {
   const TileContext& context_;
   TileResult out_;
   TileContents tile_;
-  std::set<std::string> unsound_;  // bodies with a solid that a judge refused
+  std::set<std::string> unsound_;  // bodies with a solid that a validator refused
 };
 
 }  // namespace

@@ -56,7 +56,7 @@ struct TileResult {
   FormatCounts counts[kTileFormats];
   std::uint64_t pairs = 0;                                    ///< pairs of parts that may overlap
   std::vector<std::string> told_overlaps;                     ///< "w1.w2 601 overlaps …": the report says so as well
-  std::uint64_t validated = 0;                                ///< solids that were given to both judges
+  std::uint64_t validated = 0;                                ///< solids that were given to both validators
   std::uint64_t triangles = 0, attributes = 0, compared = 0;  ///< pairs of bodies in two formats
   std::uint64_t explained = 0;                                ///< records in explain/
   FormatCounts geopackage;

@@ -1,4 +1,4 @@
-// Chimneys: stacks on ridges, along party walls, in slopes and on flat roofs.
+// Chimneys: stacks along party walls, on ridges, on level roofs and in slopes, in this order (chimney_places.cpp).
 #pragma once
 
 #include <optional>
@@ -73,8 +73,8 @@ std::vector<ChimneyPlace> flat_places(const Roof& roof, const ChimneyParameters&
 
 /// The chimneys of a house: chimney_count() of them at the first places that take one; party walls first, then ridges,
 /// then flat roofs, then slopes (high up those that reach highest; not the lower ones of mansards). A place that takes
-/// none is moved along its line by up to a third of a step; two stacks are no nearer than five sixths of a step ("every
-/// 5-7 m").
+/// none is moved along its line by up to a third of a step; two stacks are no nearer than five sixths of a step. The caller
+/// may refuse a stack for what stands around it (RoofInstaller::add); no other takes its place then.
 std::vector<model::RoofInstallation> chimneys(const model::Polygon& plan, std::span<const model::RoofEdge> edges,
                                               const Roof& roof, double frontage,
                                               const ChimneyParameters& parameters = {},

@@ -22,6 +22,7 @@ std::vector<Column> block_columns();
 std::vector<Column> courtyard_columns();
 std::vector<Column> cell_columns();
 
+// In context_columns.cpp:
 std::vector<Column> style_columns();      ///< probabilities of classification
 std::vector<Column> situation_columns();  ///< how a building stands to its neighbours and its block
 std::vector<Column> repair_columns();     ///< what repair did to its outline

@@ -31,10 +31,11 @@ void write_attributes(RowWriter& row, const model::Attributes& attributes) {
       });
 }
 
-/// Probabilities to a ten-thousandth, as other shares.
+/// style_columns(): `style_p`, `p_*`, `morphology`. Probabilities to a ten-thousandth, as other shares.
 void write_style(RowWriter& row, const model::BuildingStyle& style) {
   if (!is_classified(style)) {
-    for (int i = 0; i < model::kStyleClassCount + 2; ++i) row.null();
+    static const std::size_t columns = style_columns().size();
+    for (std::size_t i = 0; i < columns; ++i) row.null();
     return;
   }
   const auto share = [](float p) { return std::nearbyint(static_cast<double>(p) * 10000) / 10000; };

@@ -131,10 +131,35 @@ TEST(OsmKeys, EveryKeyIsReadSomewhereAndStandsOnce) {
 
 /// A call that asks an object for a tag names the key by its constant.
 TEST(OsmKeys, NoSourceSpellsAKeyThatItAsksFor) {
-  const std::regex asked("\\b(?:tag|told)\\((?:[^()\"]*, )?\"([a-z_:]+)\"");
+  const std::regex asked("\\b(?:tag|told|read\\.[a-z_]+)\\((?:[^()\"]*, )?\\{?\"([a-z_:]+)\"");
   for (const auto& [path, text] : sources())
     for (std::sregex_iterator at(text.begin(), text.end(), asked), end; at != end; ++at)
       ADD_FAILURE() << path << " asks for " << (*at)[1] << ": add it to pipeline/model/osm_keys.h";
+}
+
+/// What the importer reads is used by a stage or an output; else a tag would be dropped in silence. By word: a field named as others are
+/// (`height`) passes unseen.
+TEST(OsmKeys, EveryMappedAttributeIsUsed) {
+  // Read and checked, but no stage builds below the ground yet.
+  const std::set<std::string> waiting = {"storeys_underground"};
+  const std::string header = text_of(kRoot + "/pipeline/model/extract.h");
+  const std::size_t from = header.find("struct MappedAttributes {"), to = header.find("\n};", from);
+  ASSERT_NE(from, std::string::npos);
+  const std::regex declaration("\n  [\\w:<>]+ ([^;]+);"), field("(\\w+)(?: = \\w+)?(?:, |$)");
+  const std::string fields = header.substr(from, to - from);
+  int count = 0;
+  for (std::sregex_iterator line(fields.begin(), fields.end(), declaration), end; line != end; ++line) {
+    const std::string list = (*line)[1];
+    for (std::sregex_iterator at(list.begin(), list.end(), field); at != end; ++at, ++count) {
+      const std::string name = (*at)[1];
+      const bool used = std::any_of(sources().begin(), sources().end(), [&](const auto& source) {
+        return !source.first.starts_with("importers/") && source.first != "pipeline/model/extract.h" &&
+               names(source.second, name);
+      });
+      EXPECT_EQ(used, !waiting.contains(name)) << name << (used ? " is used now" : " is read, and nothing uses it");
+    }
+  }
+  EXPECT_GE(count, 18) << "fields of MappedAttributes";
 }
 
 TEST(OsmKeys, RulesOfInterestNameKeysOfTheTable) {
