@@ -17,13 +17,15 @@ import argparse
 import concurrent.futures
 import json
 import os
+import random
 import re
 import shlex
 import subprocess
 import sys
 import tempfile
 
-MOST_FILES, MOST_LINES = 12, 2600  # of a group: one change compiles all of it again
+MOST_FILES, MOST_LINES = 16, 3600  # of a group: one change compiles all of it again
+TRIES = 300  # orders of the sources; the one with the fewest groups is taken
 HEAVY = re.compile(r'#include <CGAL/|#include "pipeline/geometry/cgal')  # memory and time enough by themselves
 HEADER = '''# Made by cmake/compiled_together.py, which says how and why: sources that are compiled as one, by target. A source that
 # stands nowhere is compiled alone. Does a name of yours collide with one of another source? Take yours out.
@@ -69,7 +71,7 @@ class Target:
 def read_targets(build):
     targets = {}
     for entry in json.load(open(os.path.join(build, 'compile_commands.json'))):
-        match = re.search(r'CMakeFiles/blockrand_(\w+)\.dir/', entry.get('output', '') or entry['command'])
+        match = re.search(r'-o \S*CMakeFiles/blockrand_(\w+)\.dir/', entry['command'])
         if not match or '_headers' in match.group(1) or '/tests/' in entry['file'] or entry['file'].startswith(build):
             continue
         targets.setdefault(match.group(1), Target(match.group(1))).sources.append(entry)
@@ -101,6 +103,32 @@ def compiles(entry, files):
         os.unlink(unit.name)
 
 
+def packed(sources):
+    """Each of (file, lines, names, calls) goes to the first group that has room and none of its names."""
+    groups = []
+    for file, lines, names, calls in sources:
+        for group in groups:
+            apart = names & (group['names'] | group['calls']) or calls & group['names']
+            if len(group['files']) < MOST_FILES and group['lines'] + lines <= MOST_LINES and not apart:
+                break
+        else:
+            group = {'files': [], 'names': set(), 'calls': set(), 'lines': 0}
+            groups.append(group)
+        group['files'].append(file)
+        group['names'] |= names
+        group['calls'] |= calls
+        group['lines'] += lines
+    return groups
+
+
+def fewest_groups(sources):
+    orders = random.Random(len(sources))
+    best = packed(sources)
+    for _ in range(TRIES):
+        best = min(best, packed(orders.sample(sources, len(sources))), key=len)
+    return best
+
+
 def groups_of(target):
     """Packs by names, then lets the compiler decide: what breaks a group is compiled alone."""
     by_flags = {}
@@ -108,33 +136,26 @@ def groups_of(target):
         by_flags.setdefault(tuple(flags(entry)), []).append(entry)
     out = []
     for entries in by_flags.values():
-        open_groups = []
+        order, sources = [e['file'] for e in entries], []
         for entry in entries:
             text = open(entry['file']).read()
-            names, lines, calls = hidden_names(text), text.count('\n'), called_names(text)
-            if HEAVY.search(text) or 'using namespace' in names:
-                continue
-            for group in open_groups:
-                apart = names & (group['names'] | group['calls']) or calls & group['names']
-                if len(group['files']) < MOST_FILES and group['lines'] + lines <= MOST_LINES and not apart:
-                    break
-            else:
-                group = {'files': [], 'names': set(), 'calls': set(), 'lines': 0}
-                open_groups.append(group)
-            group['files'].append(entry['file'])
-            group['names'] |= names
-            group['calls'] |= calls
-            group['lines'] += lines
-        for group in open_groups:
-            files = group['files']
-            if len(files) > 1 and not compiles(entries[0], files):
-                good = files[:1]
-                for file in files[1:]:
-                    if compiles(entries[0], good + [file]):
-                        good.append(file)
-                files = good
-            if len(files) > 1:
-                out.append(files)
+            names = hidden_names(text)
+            if not HEAVY.search(text) and 'using namespace' not in names:
+                sources.append((entry['file'], text.count('\n'), names, called_names(text)))
+        while len(sources) > 1:
+            refused = []  # by the compiler: they get another chance among themselves
+            for group in fewest_groups(sources):
+                files = sorted(group['files'], key=order.index)  # as CMake will have them
+                if len(files) > 1 and not compiles(entries[0], files):
+                    good = files[:1]
+                    for file in files[1:]:
+                        if compiles(entries[0], good + [file]):
+                            good.append(file)
+                    refused += [f for f in files if f not in good]
+                    files = good
+                if len(files) > 1:
+                    out.append(files)
+            sources = [s for s in sources if s[0] in refused]
     return out
 
 

@@ -21,12 +21,12 @@ constexpr std::string_view kTypographicQuotes[] = {"\u2019", "\u2018", "\u00b4"}
 constexpr std::string_view kOddBlanks[] = {"\u00a0", "\ufeff", "\u200b", "\u2003", "\u2002", "\u2009"};
 constexpr std::string_view kTypographicDoubleQuotes[] = {"\u201c", "\u201d", "\u201e"};
 
-struct Mark {
+struct MarkText {
   std::string_view text;
   K kind;
 };
 /// Longer ones first.
-constexpr Mark kMarks[] = {
+constexpr MarkText kMarks[] = {
     {"-->", K::arrow},
     {".==", K::each_equal},
     {".!=", K::each_not_equal},
@@ -163,7 +163,7 @@ class Lexer {
     if (is_name_start(c)) return read_name();
     if (is_digit(c) || (c == '.' && is_digit(peek(1)))) return read_number();
     if (c == '"') return read_text();
-    for (const Mark& mark : kMarks)
+    for (const MarkText& mark : kMarks)
       if (mark.text.front() == c && starts(mark.text)) {
         // "./" before a comment is a dot.
         if (mark.kind == K::each_divide && (peek(2) == '/' || peek(2) == '*')) continue;
