@@ -52,6 +52,31 @@ std::string format_by_content(std::string_view head) {
   return "";
 }
 
+/// The name of the root element of an XML text; empty where `head` ends before it or holds none.
+std::string_view root_element(std::string_view head) {
+  std::size_t at = 0;
+  while ((at = head.find('<', at)) != std::string_view::npos) {
+    std::string_view rest = head.substr(at + 1);
+    if (rest.starts_with("!--")) {
+      at = head.find("-->", at);
+    } else if (rest.starts_with('?') || rest.starts_with('!')) {
+      at = head.find('>', at);
+    } else {
+      const std::size_t end = rest.find_first_of(" \t\r\n/>");
+      return end == std::string_view::npos ? std::string_view() : rest.substr(0, end);
+    }
+    if (at == std::string_view::npos) break;
+  }
+  return {};
+}
+
+/// A change file holds what was done between two states of the map, not a state.
+void refuse_changes(const std::string& path, std::string_view head) {
+  if (root_element(head) == "osmChange")
+    throw base::InputError(path, "", "this is a change file (osmChange), not an extract",
+                           "Apply it to an extract first: osmium apply-changes EXTRACT CHANGES -o NEW.osm.pbf");
+}
+
 std::string words_for(std::string_view format) {
   for (const Kind& kind : kKinds)
     if (kind.format == format) return std::string(kind.words);
@@ -145,7 +170,8 @@ void OsmFile::find_deletions() {
     {
       const auto source = open();
       std::string text, tail;
-      while (!found && !(text = source->read()).empty()) {
+      for (bool first = true; !found && !(text = source->read()).empty(); first = false) {
+        if (first) refuse_changes(path_, text);
         tail += text.substr(0, 16);
         found = text.find(" action=") != std::string::npos || tail.find(" action=") != std::string::npos;
         tail = text.size() > 16 ? text.substr(text.size() - 16) : text;
@@ -157,6 +183,8 @@ void OsmFile::find_deletions() {
     std::string text;
     while (!(text = source->read()).empty())
       if (!finder.feed(text)) return;
+  } catch (const base::InputError&) {
+    throw;
   } catch (const std::exception& error) {
     throw base::InputError(path_, "", error.what(), kFetchAgain);
   }

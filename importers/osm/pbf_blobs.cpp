@@ -106,13 +106,39 @@ std::string clean_block(std::string_view block, std::unordered_set<std::string>&
   return dirty ? out : std::string();
 }
 
+/// A granularity of 0 puts all nodes of a block at one place. Writers use one granularity for a file: the first block tells.
+/// What cannot be unpacked is left to libosmium, which says so.
+void check_granularity(const std::string& path, std::ifstream& in, const BlobPlace& place) {
+  constexpr protozero::pbf_tag_type kGranularity = 17;  // of PrimitiveBlock, nanodegrees
+  std::string blob(static_cast<std::size_t>(place.size), '\0'), unpacked;
+  in.read(blob.data(), place.size);
+  std::int32_t granularity = 100;
+  try {
+    const auto block = osmium::io::detail::decode_blob(blob, unpacked);
+    protozero::pbf_reader reader(block.data(), block.size());
+    while (reader.next())
+      if (reader.tag() == kGranularity && reader.has_wire_type(protozero::pbf_wire_type::varint))
+        granularity = reader.get_int32();
+      else
+        reader.skip();
+  } catch (const std::exception&) {
+    return;
+  }
+  if (granularity <= 0)
+    fail(path, place.begin,
+         "the granularity of coordinates is " + std::to_string(granularity) + ", so nodes have no place");
+}
+
 }  // namespace
 
 void check_pbf_structure(const std::string& path) {
-  bool first = true;
-  for_each_blob(path, [&](std::ifstream&, const BlobPlace& place) {
+  bool first = true, first_data = true;
+  for_each_blob(path, [&](std::ifstream& in, const BlobPlace& place) {
     if (first && place.type != "OSMHeader") fail(path, 0, "this is not an OSM PBF file");
     first = false;
+    if (place.type != "OSMData" || !first_data) return;
+    first_data = false;
+    check_granularity(path, in, place);
   });
 }
 

@@ -6,8 +6,9 @@
 
 namespace blockrand::importers::osm {
 
-/// Walks over the blobs without unpacking them. libosmium takes a file that ends within the length field of a blob, or
-/// with zero bytes, as complete; a download cut there would lose objects silently.
+/// Walks over the blobs, unpacking the first with data only. libosmium takes a file that ends within the length field of a blob, or
+/// with zero bytes, as complete; a download cut there would lose objects silently. Nor does it
+/// mind coordinates of granularity 0.
 /// \throws base::InputError with the byte where the file stops making sense
 void check_pbf_structure(const std::string& path);
 

@@ -22,6 +22,7 @@
 #include <thread>
 
 #include "pipeline/base/error.h"
+#include "pipeline/base/progress.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/text.h"
 
@@ -168,6 +169,22 @@ std::string resolve_target(const std::string& given) {
   return path.string();
 }
 
+/// "a.txt, b.txt and 3 more files"
+std::string listed(const std::vector<std::string>& files) {
+  constexpr std::size_t kNamed = 10;
+  std::string out;
+  for (std::size_t i = 0; i < files.size() && i < kNamed; ++i) out += (i > 0 ? ", " : "") + files[i];
+  return files.size() <= kNamed ? out : out + fmt::format(" and {} more files", files.size() - kNamed);
+}
+
+std::uint64_t size_of_tree(const std::string& path) {
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
+    if (std::error_code no_size; entry->is_regular_file(no_size)) bytes += entry->file_size(no_size);
+  return bytes;
+}
+
 void check_target(const std::string& target, bool force, const FolderKind& kind) {
   struct stat info {};
   if (::lstat(target.c_str(), &info) != 0) {
@@ -193,6 +210,12 @@ void check_target(const std::string& target, bool force, const FolderKind& kind)
   if (!force)
     throw UsageError(target + " holds a " + kind.name +
                      " already. Add --force to replace it, or choose another folder.");
+  if (kind.foreign)
+    if (const std::vector<std::string> foreign = kind.foreign(target); !foreign.empty())
+      throw UsageError(target + " holds " + listed(foreign) +
+                       ", which the program did not write; --force would remove " +
+                       (foreign.size() == 1 ? "it" : "them") + " with the old " + kind.name + ". Move " +
+                       (foreign.size() == 1 ? "it" : "them") + " away, or choose another output folder.");
 }
 
 }  // namespace
@@ -292,7 +315,7 @@ StagedFolder::~StagedFolder() {
   if (lock_ >= 0) ::close(lock_);
 }
 
-void StagedFolder::remove_stale() const {
+void StagedFolder::remove_stale() {
   const fs::path path(target_);
   const std::string part = fs::path(sibling(target_, ".part-")).filename().string();
   const std::string old = fs::path(sibling(target_, ".old-")).filename().string();
@@ -315,7 +338,10 @@ void StagedFolder::remove_stale() const {
     if (!fs::exists(target_, error) && ::rename(build.c_str(), target_.c_str()) == 0) continue;
     remove_tree(build);
   }
-  for (const std::string& folder : stale) remove_tree(folder);
+  for (const std::string& folder : stale) {
+    const std::string size = with_byte_unit(size_of_tree(folder));
+    if (remove_tree(folder)) removed_.push_back(folder + " (" + size + ")");
+  }
 }
 
 StagedFile StagedFolder::create(const std::string& relative_path) {
@@ -397,6 +423,33 @@ std::string StagedFolder::publish() {
   }
   if (!old.empty() && !remove_tree(old)) return old;
   return {};
+}
+
+std::string StagedFolder::publish_beside(const std::string& word) {
+  std::error_code error;
+  if (fs::exists(target_, error) && !is_empty_folder(target_)) {
+    target_ += "." + word;
+    force_ = true;
+  }
+  publish();
+  return target_;
+}
+
+void tell_removed(const StagedFolder& folder, Progress& progress) {
+  for (const std::string& left : folder.removed()) progress.warn("removed what a run that died left: " + left);
+}
+
+void refuse_inputs_in(const std::string& target, const std::vector<std::string>& inputs) {
+  if (target.empty()) return;  // refused elsewhere
+  const fs::path folder = resolve_target(target);
+  for (const std::string& path : inputs) {
+    std::error_code error;
+    if (path.empty() || !fs::exists(path, error)) continue;
+    const fs::path inner = fs::weakly_canonical(fs::absolute(path), error);
+    if (!error && std::mismatch(folder.begin(), folder.end(), inner.begin(), inner.end()).first == folder.end())
+      throw UsageError(path + " lies in the output folder " + target +
+                       ", which is replaced as a whole. Move it, or choose another output folder.");
+  }
 }
 
 void abandon_staged_folders() noexcept {

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace blockrand::base {
+
+class Progress;
 
 struct PublishedFile {
   std::string path;  ///< relative to the output folder, '/' separated
@@ -37,6 +40,8 @@ class StagedFile {
 /// What an output folder holds, for messages, and the file in it by which an earlier one is known.
 struct FolderKind {
   std::string name = "build", marker = "build.json";
+  /// Files in an earlier one that the program did not write, relative to it. Empty: nobody looks.
+  std::function<std::vector<std::string>(const std::string& folder)> foreign = {};
 };
 
 /// A folder in the making. Files go to a staging folder `.<name>.part-<pid>` beside the target; publish() swaps it in.
@@ -47,7 +52,8 @@ class StagedFolder {
  public:
   /// \param target  the folder to be; its parent must exist or be creatable. A link to a folder stands for the folder.
   /// \param force   replace an existing, non-empty folder. Without it such a target is a UsageError. Even with `force`
-  ///                a folder that is neither empty nor an earlier one of its kind is refused.
+  ///                a folder that is neither empty nor an earlier one of its kind is refused, or that holds files which
+  ///                the program did not write.
   /// \throws UsageError when the target's place cannot be used (parent is a file, target is a file, no permission)
   /// \throws OutputError when the disk is full
   /// \param kind    what such folders hold, and the file that tells an earlier one
@@ -76,19 +82,35 @@ class StagedFolder {
   /// \throws OutputError; the old build is then back in its place
   std::string publish();
 
+  /// publish() for a result that must not replace an earlier one: where the target holds one, the new folder lies beside
+  /// it, as `<target>.<word>`, else in its place. What lay under that name is replaced as publish() does.
+  /// \returns where it lies
+  std::string publish_beside(const std::string& word);
+
+  /// Staging folders of processes that died, removed when this one was made: with their size, for the user to know.
+  const std::vector<std::string>& removed() const { return removed_; }
+
   const std::string& staging_path() const { return staging_; }
   /// The folder to be, as an absolute path without links.
   const std::string& target_path() const { return target_; }
 
  private:
-  void remove_stale() const;
+  void remove_stale();
 
   std::string target_, staging_;
   std::vector<std::string> made_parents_;  ///< outermost first
+  std::vector<std::string> removed_;
   bool force_ = false, published_ = false;
   FolderKind kind_;
   int lock_ = -1;  ///< descriptor of the locked staging folder: others see that its process lives
 };
+
+/// Warns of what StagedFolder::removed() lists.
+void tell_removed(const StagedFolder& folder, Progress& progress);
+
+/// \param inputs  paths; empty ones, and such as name no file (rule sets have names, too), do not count
+/// \throws UsageError  one of them lies in the folder `target`, which would be replaced with it
+void refuse_inputs_in(const std::string& target, const std::vector<std::string>& inputs);
 
 /// For a signal handler's thread that ends the process next: removes the staging folders of all StagedFolders of this
 /// process and stops every further write (writers then wait for the end of the process). A publish() that is already

@@ -57,9 +57,8 @@ int run_build(const std::vector<std::string>& arguments) {
     std::fputs(build_report_json(s.build, summary).c_str(), stdout);
   else if (!s.quiet)
     std::fputs(build_report(s.build, summary).c_str(), stdout);
-  if (const std::int64_t lost = unaccounted(summary); lost != 0) {
-    progress.error(fmt::format(
-        "internal error: {} objects of the extract are in no state. This is a bug: please report it.", lost));
+  if (!summary.unaccounted.empty()) {
+    progress.error(unaccounted_text(s.build, summary));
     return kInternalError;
   }
   if (summary.below_quality && s.build.strict) {

@@ -65,18 +65,34 @@ std::string roofscape_rows(const masses::Roofscape& r) {
   return text;
 }
 
+std::string folder_of(const run::BuildOptions& options, const run::BuildSummary& s) {
+  return s.folder.empty() ? options.output : s.folder;
+}
+
 double rate(const run::BuildSummary& s) {
   return s.seconds > 0 ? static_cast<double>(s.buildings_in + s.parts_in) / s.seconds : 0;
 }
 
 }  // namespace
 
-std::int64_t unaccounted(const run::BuildSummary& s) {
-  return static_cast<std::int64_t>(s.buildings_in + s.parts_in) -
-         static_cast<std::int64_t>(s.models + s.represented + s.duplicates + s.reported);
+std::string unaccounted_text(const run::BuildOptions& options, const run::BuildSummary& s) {
+  constexpr std::size_t kNamed = 20;
+  std::vector<std::string> named = s.unaccounted;
+  if (named.size() > kNamed) named.resize(kNamed);
+  const std::string rest =
+      named.size() < s.unaccounted.size() ? fmt::format(" and {} more", s.unaccounted.size() - kNamed) : "";
+  return fmt::format(
+      "internal error: no stage decided on {} of the extract: {}{} (UNACCOUNTED in report.json). {} This is a bug: "
+      "please "
+      "report it with the command.",
+      s.unaccounted.size() == 1 ? "an object" : with_thousands(s.unaccounted.size()) + " objects",
+      fmt::join(named, ", "), rest,
+      s.folder == options.output ? "The build lies in " + s.folder + "."
+                                 : "The earlier build stays as it was, the new one lies in " + s.folder + ".");
 }
 
 std::string build_report(const run::BuildOptions& options, const run::BuildSummary& s) {
+  const std::string folder = folder_of(options, s);
   std::string text = "Objects\n";
   text += row("in", s.buildings_in + s.parts_in,
               fmt::format("{} buildings, {} parts", with_thousands(s.buildings_in), with_thousands(s.parts_in)));
@@ -98,7 +114,7 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
   text += fmt::format("{} in {} files:\n", with_byte_unit(s.bytes), with_thousands(s.files));
   std::vector<std::pair<std::string, std::string_view>> places;
   const auto place = [&](std::string_view name, std::string_view what) {
-    places.emplace_back((std::filesystem::path(options.output) / name).string(), what);
+    places.emplace_back((std::filesystem::path(folder) / name).string(), what);
   };
   for (const outputs::OutputFormat& format : outputs::all_outputs()) {
     if (!format.asked(options.outputs)) continue;
@@ -110,13 +126,13 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
   for (const auto& [path, what] : places) width = std::max(width, path.size());
   for (const auto& [path, what] : places) text += fmt::format("  {:<{}}  {}\n", path, width, what);
   if (options.outputs.explain)
-    text += fmt::format("  why a building looks as it does: blockrand explain {} w123\n", options.output);
+    text += fmt::format("  why a building looks as it does: blockrand explain {} w123\n", folder);
   return text;
 }
 
 std::string build_report_json(const run::BuildOptions& options, const run::BuildSummary& s) {
   nlohmann::ordered_json j;
-  j["output"] = options.output;
+  j["output"] = folder_of(options, s);
   j["buildings_in"] = s.buildings_in;
   j["parts_in"] = s.parts_in;
   j["models"] = s.models;

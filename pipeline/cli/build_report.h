@@ -14,7 +14,7 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
 /// The same as one line of JSON.
 std::string build_report_json(const run::BuildOptions& options, const run::BuildSummary& summary);
 
-/// Objects that went in and came out in no state at all; 0 in a program without bugs (ARCHITECTURE.md, law 1).
-std::int64_t unaccounted(const run::BuildSummary& summary);
+/// Of a build with objects that are unaccounted for (ARCHITECTURE.md, law 1): which, and where the build lies.
+std::string unaccounted_text(const run::BuildOptions& options, const run::BuildSummary& summary);
 
 }  // namespace blockrand::cli

@@ -111,9 +111,14 @@ int run_compare(const std::vector<std::string>& arguments) {
     compare::compare_with_baseline({}, baseline, s.baseline, 0);
   }
   std::optional<base::StagedFolder> folder;
-  if (!s.build.output.empty())
-    folder.emplace(s.build.output, s.build.force, base::FolderKind{"comparison", "compare.json"});
   base::Progress progress(s.progress, s.log_format, s.quiet);
+  if (!s.build.output.empty()) {
+    std::vector<std::string> inputs = s.comparison.reference;
+    inputs.insert(inputs.end(), {s.comparison.model, s.baseline});
+    base::refuse_inputs_in(s.build.output, inputs);
+    folder.emplace(s.build.output, s.build.force, base::FolderKind{.name = "comparison", .marker = "compare.json"});
+    tell_removed(*folder, progress);
+  }
   s.comparison.crs = s.build.crs;
   s.comparison.jobs = s.build.jobs;
   s.comparison.surface.seed = s.build.seed;

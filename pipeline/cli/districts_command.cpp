@@ -121,8 +121,11 @@ int show(Settings& s) {
   if (s.build.output.empty()) throw base::UsageError("districts show needs --output FOLDER.");
   s.build.input = s.files.front();
   clean_up_on_signals(s.log_format);
-  base::StagedFolder folder(s.build.output, s.build.force, base::FolderKind{"map of districts", "districts.json"});
+  base::refuse_inputs_in(s.build.output, {s.build.input, s.build.configs, s.build.districts});
+  base::StagedFolder folder(s.build.output, s.build.force,
+                            base::FolderKind{.name = "map of districts", .marker = "districts.json"});
   base::Progress progress(s.progress, s.log_format, s.quiet);
+  tell_removed(folder, progress);
   const attributes::ReadRuleSets book = attributes::read_rule_sets(s.build.configs, s.build.districts);
   const auto survey = run::survey_districts(s.build, book, progress);
   const run::DistrictView view =

@@ -171,6 +171,7 @@ double equivalent_width(const Polygon& polygon) {
 }
 
 Extent extent_along(std::span<const Point2> ring, Point2 direction) {
+  if (ring.empty()) return {0, 0};
   Extent e{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const Point2 p : ring) {
     const double d = p.x * direction.x + p.y * direction.y;

@@ -29,6 +29,7 @@ enum class IssueClass : std::uint8_t {
   X(lifecycle, "LIFECYCLE", reported, "The building is planned, under construction, ruined or gone.")                \
   X(relation_type, "RELATION_TYPE", reported, "A relation of this type carries no outline of its own.")              \
   X(no_solid, "NO_SOLID", reported, "No valid solid could be made, not even a block.")                               \
+  X(unaccounted, "UNACCOUNTED", reported, "No stage decided on the object. This is a bug: please report it.")        \
   /* simpler than asked */                                                                                           \
   X(roof_shape_adapted, "ROOF_SHAPE_ADAPTED", fallback, "The plan does not take this shape; a relative was built.")  \
   X(roof_shape_unknown, "ROOF_SHAPE_UNKNOWN", fallback, "The value of roof:shape is in no list; flat was built.")    \

@@ -24,6 +24,14 @@ struct PartFailure {
   IssueCode code = IssueCode::none;
 };
 
+/// A mapped part of a building without an outline of its own, whose head turned out to be drawn elsewhere: it goes the
+/// head's way.
+struct SettledPart {
+  std::uint32_t mapped_index = kNoIndex;  ///< into Extract::buildings
+  ObjectState state = ObjectState::duplicate;
+  OsmId related;  ///< who stands for it
+};
+
 struct Region {
   TileId tile;
   const Extract* extract = nullptr;       ///< for tags; outlives the region
@@ -32,6 +40,7 @@ struct Region {
   std::vector<ColouredElement> elements;  ///< what Placement::element indexes
   EvidenceTable evidence;
   std::vector<PartFailure> part_failures;
+  std::vector<SettledPart> settled_parts;
   Report report;
 };
 

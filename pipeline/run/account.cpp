@@ -53,7 +53,12 @@ void Account::take(const Outcomes& outcomes, std::vector<model::ReportRow> rows,
 
 void Account::close(const std::optional<TileChoice>& tile, BuildSummary& summary) {
   if (tile) forget_others(extract_, tile->id, rows_);
-  for (const MappedBuilding& b : extract_.buildings) {
+  for (MappedBuilding& b : extract_.buildings) {
+    if (b.state == ObjectState::pending) {
+      b.state = ObjectState::reported;
+      b.code = IssueCode::unaccounted;
+      summary.unaccounted.push_back(b.id.text());
+    }
     ++(b.kind == model::ObjectKind::building ? summary.buildings_in : summary.parts_in);
     switch (b.state) {
       case ObjectState::modelled:
@@ -65,7 +70,7 @@ void Account::close(const std::optional<TileChoice>& tile, BuildSummary& summary
       case ObjectState::represented:
         ++summary.represented;
         break;
-      case ObjectState::pending:
+      case ObjectState::pending:  // none is left
       case ObjectState::reported:
         ++summary.reported;
         break;

@@ -28,7 +28,8 @@ class Account {
 
   /// Takes over what a tile decided, in tile order.
   void take(const Outcomes& outcomes, std::vector<model::ReportRow> rows, BuildSummary& summary);
-  /// Counts states and rows. \param tile  built alone: objects of other tiles were read as surroundings only
+  /// Counts states and rows. An object in no state is a bug of a stage: it is reported as UNACCOUNTED and named in the
+  /// summary. \param tile  built alone: objects of other tiles were read as surroundings only
   void close(const std::optional<TileChoice>& tile, BuildSummary& summary);
 
   /// Of all objects; sorted once the account is closed.

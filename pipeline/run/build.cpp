@@ -29,6 +29,7 @@
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/documents.h"
 #include "pipeline/run/outcome.h"
+#include "pipeline/run/output_place.h"
 #include "pipeline/run/prepare_extract.h"
 #include "pipeline/run/tile_choice.h"
 #include "pipeline/run/tile_stages.h"
@@ -55,6 +56,23 @@ std::uint64_t current_rss_bytes() {
 }
 
 // ---- before the tiles
+
+const std::string& checked_output(const BuildOptions& options) {
+  base::refuse_inputs_in(options.output, {options.input, options.terrain, options.overrides, options.pinned,
+                                          options.configs, options.districts});
+  return options.output;
+}
+
+/// The folder in the making, and how many models the build has that it would replace.
+struct Place {
+  Place(const BuildOptions& options, base::Progress& progress)
+      : folder(checked_output(options), options.force, {.foreign = foreign_files}),
+        earlier(earlier_models(folder.target_path())) {
+    tell_removed(folder, progress);
+  }
+  base::StagedFolder folder;
+  std::optional<std::uint64_t> earlier;
+};
 
 /// What reading found, for build.json.
 void record_extract(const BuildOptions& options, const BuildInputs& inputs, const LocatedExtract& located,
@@ -228,6 +246,16 @@ RunRecord run_record(std::chrono::steady_clock::time_point start, double context
   return run;
 }
 
+void publish(base::StagedFolder& folder, const BuildOptions& options, BuildSummary& summary, base::Progress& progress) {
+  summary.folder = options.output;
+  if (!summary.unaccounted.empty()) {
+    const std::string asked = folder.target_path(), place = folder.publish_beside("unaccounted");
+    if (place != asked) summary.folder = place;
+  } else if (const std::string left = folder.publish(); !left.empty()) {
+    progress.warn("the old build could not be removed: " + left);
+  }
+}
+
 }  // namespace
 
 BuildSummary build(const BuildOptions& options, base::Progress& progress) {
@@ -236,7 +264,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   BuildSummary& summary = record.summary;
 
   // Everything that can be refused without reading the extract is refused first.
-  base::StagedFolder folder(options.output, options.force);
+  Place place(options, progress);
+  base::StagedFolder& folder = place.folder;
   BuildInputs inputs(options);
   const std::optional<TileChoice>& tile = inputs.tile;
   LocatedExtract located = locate_extract(options, tile, progress);
@@ -335,6 +364,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   base::ordered_parallel(todo.size(), workers, in_flight, work, consume);
   sums.settle(record);
   account.close(tile, summary);
+  refuse_shrunk(options, summary, place.earlier);
 
   progress.begin("documents");
   finish_outputs(open, sums.whole, account, record, progress);
@@ -344,8 +374,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   summary.tiles_in_flight = std::min<std::uint64_t>(in_flight, todo.size());
   const double context_seconds = 1e-9 * static_cast<double>(context_time.load());
   folder.write("run.json", run_json(run_record(start, context_seconds, workers, progress, summary), summary));
-  if (const std::string left = folder.publish(); !left.empty())
-    progress.warn("the old build could not be removed: " + left);
+  publish(folder, options, summary, progress);
   return summary;
 }
 

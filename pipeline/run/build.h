@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "pipeline/base/progress.h"
 #include "pipeline/masses/roofscape.h"
@@ -19,12 +20,15 @@ struct BuildSummary : outputs::ObjectCounts {
   std::uint64_t files = 0, bytes = 0;           ///< written
   double seconds = 0;
   std::uint64_t peak_rss_bytes = 0;
-  std::uint64_t store_bytes = 0;      ///< of it: the extract and its indices before the first tile
-  std::uint64_t tiles_in_flight = 0;  ///< at most this many tiles share the rest
-  bool below_quality = false;         ///< a building is simpler than asked, or has no solid
+  std::uint64_t store_bytes = 0;         ///< of it: the extract and its indices before the first tile
+  std::uint64_t tiles_in_flight = 0;     ///< at most this many tiles share the rest
+  bool below_quality = false;            ///< a building is simpler than asked, or has no solid
+  std::vector<std::string> unaccounted;  ///< objects that no stage decided on: a bug
+  std::string folder;  ///< where the build lies: beside the output folder where it must not replace it
 };
 
-/// Builds and publishes. An existing output folder stays untouched until the new one is complete.
+/// Builds and publishes. An existing output folder stays untouched until the new one is complete. A build with objects that
+/// are unaccounted for replaces none: it lies beside, as `<output>.unaccounted`.
 /// \throws base::InputError   unreadable or invalid input
 /// \throws base::UsageError   options that contradict each other; an output place that cannot be used
 /// \throws base::OutputError  the disk is full or cannot be written

@@ -205,7 +205,21 @@ base::OptionTable<B> how_it_runs() {
                 .commands = kBuild | kCompare | kDistricts | kGrammar,
                 .help = "replace an existing build, comparison, map or file",
                 .record = OptionRecord::none},
-               &B::force)};
+               &B::force),
+          flag({.name = "allow-empty",
+                .key = "allow_empty",
+                .help = "with --force: a build without any model may replace one that has some",
+                .record = OptionRecord::none},
+               &B::allow_empty),
+          number({.name = "allow-shrink",
+                  .key = "allow_shrink",
+                  .argument = "PERCENT",
+                  .minimum = 0,
+                  .maximum = 100,
+                  .help = "with --force: how many percent fewer models than the build that is replaced the new one may "
+                          "have",
+                  .record = OptionRecord::none},
+                 &B::allow_shrink)};
 }
 
 }  // namespace

@@ -24,6 +24,8 @@ struct BuildOptions {
   std::string crs;                            ///< "EPSG:…"; empty: chosen from the extent
   int lod = 2;                                ///< highest level of detail, 0 to 3
   bool force = false;                         ///< replace an existing build
+  bool allow_empty = false;                   ///< a build without models may replace one with some
+  double allow_shrink = 50;                   ///< percent fewer models than the build that is replaced
   bool strict = false;                        ///< exit code 3 when a building is below the asked quality
   int jobs = 0;                               ///< worker threads; 0: one per core
   std::uint64_t seed = 1;                     ///< of all random choices

@@ -55,6 +55,8 @@ Outcomes decide_outcomes(const Region& region, int asked) {
     else
       decide(building.mapped_index, own, building.failure);
   }
+  for (const model::SettledPart& part : region.settled_parts)
+    out.list.push_back({part.mapped_index, part.state, IssueCode::none, part.related, -1});
   for (const model::PartFailure& failure : region.part_failures) {
     out.list.push_back({failure.mapped_index, ObjectState::reported, failure.code, {}, -1});
     out.below_quality = true;

@@ -52,6 +52,9 @@ Region prepare(const footprints::Shard& shard, std::span<const std::uint32_t> nu
     building.settled = stored.settled;
     building.related = stored.related;
     if (building.settled != model::ObjectState::pending) {
+      for (const model::BuildingPart& part : building.parts)
+        if (part.mapped_index != building.mapped_index)
+          region.settled_parts.push_back({part.mapped_index, building.settled, building.related});
       building.parts.clear();
       continue;
     }

@@ -77,9 +77,9 @@ bool ridge_leaves(const std::vector<geometry::RoofSurfaces::Surface>& surfaces, 
   return false;
 }
 
-/// The plan's area by that of its convex hull; 0 with holes.
+/// The plan's area by that of its convex hull; 0 with holes, and where no hull encloses an area.
 double compactness(const Polygon& plan) {
-  if (!plan.holes.empty()) return 0;
+  if (!plan.holes.empty() || plan.outer.size() < 3) return 0;
   std::vector<Point2> points = plan.outer.points;
   std::sort(points.begin(), points.end());
   std::vector<Point2> hull;
@@ -92,7 +92,8 @@ double compactness(const Polygon& plan) {
     hull.pop_back();
     std::reverse(points.begin(), points.end());
   }
-  return geometry::signed_area(plan.outer.points) / geometry::signed_area(hull);
+  const double around = geometry::signed_area(hull);
+  return around > 0 ? geometry::signed_area(plan.outer.points) / around : 0;
 }
 
 /// The two ends of a plan that is one wing: the walls that look along its axis and against it.

@@ -2,12 +2,13 @@
 import bz2
 import gzip
 import os
+import shutil
 import unittest
 
 import validators
 from blockrand_run import SAMPLE, BuildTest, blockrand, hashes, main, read_json, stray_siblings
 from model_files import citygml_trees
-from osm_files import Node, house, pbf_bytes, read_xml, write_pbf, write_xml
+from osm_files import Node, blob, house, number_field, pbf_bytes, primitive_block, read_xml, town, write_pbf, write_xml
 
 
 class BadExtracts(BuildTest):
@@ -34,6 +35,21 @@ class BadExtracts(BuildTest):
             with self.subTest(name):
                 os.mkdir(self.path(name))
                 self.refuse(self.path(name))
+
+    def test_change_files(self):
+        """What was done between two states of the map is no map; under any name, packed or not."""
+        change = (b'<?xml version="1.0"?>\n<!-- <osm> -->\n<osmChange version="0.6"><create>'
+                  b'<node id="1" version="1" lat="51.5" lon="11"/></create></osmChange>\n')
+        for name, data in (('c.osm', change), ('c.osm.gz', gzip.compress(change)), ('c.osm.bz2', bz2.compress(change))):
+            with self.subTest(name):
+                self.refuse(self.place(name, data), 'osmChange', 'apply-changes')
+
+    def test_coordinates_without_granularity(self):
+        """All nodes of such a file stand at one place: no empty success."""
+        objects = [o for o in house(1, 11, 51.5)]
+        block = primitive_block(objects) + number_field(17, 0)
+        data = pbf_bytes([])[0] + blob(b'OSMData', block)
+        self.refuse(self.place('g.osm.pbf', data), 'granularity')
 
     def test_truncated_pbf(self):
         blocks = pbf_bytes(read_xml(SAMPLE), block_size=300)
@@ -292,6 +308,60 @@ class WrongPlaces(BuildTest):
             self.refused(blockrand('build', SAMPLE, '-o', precious, *options), 1, 'build.json')
         self.assertEqual(os.listdir(precious), ['holiday.jpg'])
         self.assertEqual(stray_siblings(precious), [])
+
+    def test_inputs_in_the_output_folder(self):
+        """--force replaces the folder as a whole: what the build reads must not go with it."""
+        out = self.build(SAMPLE, 'own', '--lod', '0')
+        inner = shutil.copy(SAMPLE, os.path.join(out, 'inner.osm'))
+        os.symlink(out, self.path('own-link'))
+        for target in (out, out + '/', self.path('own-link')):
+            self.refused(blockrand('build', inner, '-o', target, '--force'), 1, 'inner.osm', 'lies in the output folder')
+        os.remove(inner)
+        self.place('own/order.toml', '')
+        self.refused(blockrand('build', SAMPLE, '-o', out, '--force', '--overrides', os.path.join(out, 'order.toml')), 1,
+                     'order.toml')
+        os.remove(os.path.join(out, 'order.toml'))
+        record = os.path.join(out, 'build.json')
+        self.refused(blockrand('build', SAMPLE, '-o', out, '--force', '--tile', '15/0/0', '--pinned', record), 1, 'build.json')
+        self.hashes_match(out)
+
+    def test_files_of_others_in_the_output_folder(self):
+        """Told by name and kept; what GDAL and SQLite leave beside our files is no reason."""
+        out = self.build(SAMPLE, 'shared', '--lod', '0')
+        self.place('shared/notes.txt', 'mine')
+        os.mkdir(os.path.join(out, 'maps'))
+        self.place('shared/maps/plan.qgz', 'mine')
+        self.refused(blockrand('build', SAMPLE, '-o', out, '--force'), 1, 'maps/plan.qgz, notes.txt', 'did not write')
+        self.assertTrue(os.path.exists(os.path.join(out, 'maps', 'plan.qgz')))
+        os.remove(os.path.join(out, 'notes.txt'))
+        os.remove(os.path.join(out, 'maps', 'plan.qgz'))
+        for name in ('plan.png.aux.xml', 'citygml/a.gfs', 'buildings.gpkg-wal', 'buildings.gpkg-shm'):
+            self.place('shared/' + name, '')
+        self.build(SAMPLE, 'shared', '--lod', '0', '--force')
+        self.hashes_match(out)
+
+    def test_a_good_build_is_not_replaced_by_an_empty_one(self):
+        out = self.build(write_xml(self.path('forty.osm'), town(40)), 'good', '--lod', '0')
+        before = hashes(out)
+        for count, options, words in ((0, [], ('no models', '--allow-empty')),
+                                      (19, [], ('19 models', '52.5 %', '--allow-shrink 53')),
+                                      (30, ['--allow-shrink', '20'], ('25.0 %', '--allow-shrink 25'))):
+            small = write_xml(self.path('few.osm'), town(count))
+            with self.subTest(count=count):
+                self.refused(blockrand('build', small, '-o', out, '--force', '--lod', '0', *options), 2, *words)
+                self.assertEqual(hashes(out), before)
+                self.assertEqual(stray_siblings(out), [])
+        few = write_xml(self.path('few.osm'), town(19))
+        self.build(few, 'good', '--lod', '0', '--force', '--allow-shrink', '53')
+        self.build(write_xml(self.path('none.osm'), town(0)), 'good', '--lod', '0', '--force', '--allow-empty')
+        self.build(few, 'good', '--lod', '0', '--force')
+
+    def test_what_a_dead_run_left_is_told_and_removed(self):
+        os.mkdir(self.path('.dead.part-999999999'))
+        self.place('.dead.part-999999999/tile.glb', b'x' * 5_000_000)
+        self.build(SAMPLE, 'dead', '--lod', '0')
+        self.assertIn('.dead.part-999999999 (5.0 MB)', self.last.err)
+        self.assertEqual(stray_siblings(self.path('dead')), [])
 
     def test_empty_folder_is_used(self):
         os.mkdir(self.path('empty'))

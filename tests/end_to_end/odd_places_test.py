@@ -133,6 +133,38 @@ class OddShapes(OddExtracts):
                 self.assertEqual(self.ends(out), {})
                 self.assertTrue(any(code in ('RING_REPAIRED', 'SPLIT_OUTLINE') for _, code in self.notices(out)))
 
+    def test_houses_drawn_twice_with_any_roof(self):
+        """One of two nearly equal outlines gives way, whatever its roof: what is left of it has no plan at all."""
+        shapes = ['flat', 'gabled', 'half-hipped', 'hipped', 'pyramidal', 'gambrel', 'mansard', 'dome', 'onion', 'round',
+                  'skillion', 'saltbox', 'sawtooth', 'butterfly', 'cone', 'side_hipped', 'gablet', 'crosspitched', 'berlin']
+        objects = []
+        for i, shape in enumerate(shapes):
+            for j, (outer, inner) in enumerate(({'roof:shape': shape}, {}), ({}, {'roof:shape': shape}),
+                                               ({'roof:shape': shape}, {'height': '9', 'name': 'x', 'roof:colour': 'red'})):
+                lon, lat, k = 11 + i * 60 * METRE, 51.5 + j * 60 * METRE, 100 * i + 10 * j
+                objects += house(k, lon, lat, outer, stretch=1.6)
+                objects += house(k + 1, lon + 0.2 * METRE, lat + 0.1 * METRE, inner, size=11.7, stretch=1.6)
+        for lod in ('0', '2', '3'):
+            with self.subTest(lod=lod):
+                out = self.make('twice-' + lod, objects, '--lod', lod)
+                states = [state for state, _ in self.ends(out).values()]
+                self.assertEqual(states.count('duplicate'), 3 * len(shapes), self.ends(out))
+
+    def test_parts_drawn_twice_without_an_outline(self):
+        """Parts that touch become a building; where they are drawn twice all parts of one drawing give way together."""
+        def parts(number, lon, lat, size):
+            e = size * 1.6
+            low = [(lon, lat), (lon + e, lat), (lon + e, lat + size), (lon, lat + size)]
+            high = [(x, y + size) for x, y in low]
+            return (ring(20000 + 100 * number, 10 * number, low, {'building:part': 'yes'}) +
+                    ring(20050 + 100 * number, 10 * number + 1, high, {'building:part': 'yes'}))
+        size = 6 * METRE
+        objects = parts(1, 11, 51.5, size) + parts(2, 11 + 0.02 * METRE, 51.5 + 0.02 * METRE, size)
+        out = self.make('parts-twice', objects)
+        ends = self.ends(out)
+        self.assertEqual(read_json(out, 'build.json')['counts']['parts_in'], 4)
+        self.assertEqual(sorted(state for state, _ in ends.values()).count('duplicate'), 2, ends)
+
     def test_rings_without_area(self):
         d = 20 * METRE
         objects = house(50, 11.01, 51.5)

@@ -76,6 +76,36 @@ TEST_F(Publish, FilesAppearUnderTheTargetAtTheEndOnly) {
   EXPECT_THAT(names(), UnorderedElementsAre("out"));
 }
 
+TEST_F(Publish, ForeignFilesKeepAFolderFromBeingReplaced) {
+  make_build("old");
+  FolderKind kind;
+  kind.foreign = [](const std::string&) { return std::vector<std::string>(12, "a.txt"); };
+  EXPECT_THAT(error_of<UsageError>([&] { StagedFolder(target, true, kind); }),
+              AllOf(HasSubstr("a.txt, a.txt"), HasSubstr("and 2 more files"), HasSubstr("did not write")));
+  kind.foreign = [](const std::string&) { return std::vector<std::string>(); };
+  StagedFolder folder(target, true, kind);
+  folder.write("build.json", "new");
+  folder.publish();
+  EXPECT_EQ(slurp(target / "build.json"), "new");
+}
+
+TEST_F(Publish, AResultThatMustNotReplaceLiesBeside) {
+  make_build("old");
+  for (const char* text : {"new", "newer"}) {
+    StagedFolder folder(target, true);
+    folder.write("build.json", text);
+    EXPECT_EQ(folder.publish_beside("unaccounted"), target.string() + ".unaccounted");
+    EXPECT_EQ(slurp(here / "out.unaccounted/build.json"), text);
+  }
+  EXPECT_EQ(slurp(target / "build.json"), "old");
+  EXPECT_THAT(names(), UnorderedElementsAre("out", "out.unaccounted"));
+  fs::remove_all(target);
+  StagedFolder folder(target, true);
+  folder.write("build.json", "first");
+  EXPECT_EQ(folder.publish_beside("unaccounted"), target.string());
+  EXPECT_EQ(slurp(target / "build.json"), "first");
+}
+
 TEST_F(Publish, PiecewiseFilesAreHashedAsAWhole) {
   StagedFolder folder(target, false);
   StagedFile file = folder.create("model.glb");

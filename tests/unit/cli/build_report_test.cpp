@@ -35,13 +35,16 @@ run::BuildOptions options() {
   return o;
 }
 
-TEST(BuildReport, AccountsForEveryObject) {
-  EXPECT_EQ(unaccounted(summary()), 0);
+TEST(BuildReport, NamesObjectsThatNoStageDecidedOn) {
   run::BuildSummary lost = summary();
-  lost.models -= 2;
-  EXPECT_EQ(unaccounted(lost), 2);
-  lost.models += 3;
-  EXPECT_EQ(unaccounted(lost), -1);
+  lost.folder = options().output;
+  lost.unaccounted = {"w7"};
+  EXPECT_THAT(unaccounted_text(options(), lost),
+              HasSubstr("an object of the extract: w7 (UNACCOUNTED in report.json). The build lies in out/leipzig."));
+  lost.unaccounted.assign(25, "w8");
+  lost.folder = "/data/out/leipzig.unaccounted";
+  EXPECT_THAT(unaccounted_text(options(), lost),
+              ContainsRegex("25 objects of .* and 5 more .*earlier build stays .*leipzig.unaccounted"));
 }
 
 TEST(BuildReport, SaysWhatBecameOfTheObjects) {

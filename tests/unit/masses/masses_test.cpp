@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/attributes/defaults.h"
 #include "pipeline/attributes/resolve.h"
@@ -96,6 +97,40 @@ TEST(Defaults, ReadsTheShippedTables) {
   EXPECT_EQ(d.use("no such use").name, "default");
   EXPECT_EQ(d.materials[static_cast<std::size_t>(d.material("sandstone"))].material_class.name, "stone");
   EXPECT_EQ(d.material("unobtainium"), -1);
+}
+
+/// Whatever a building lacks (outline, parts, the plan of a part, the ground under its parts), attributes and masses are
+/// numbers and nothing crashes: with every roof shape, with and without a height, storeys and a direction.
+TEST(Resolve, BuildingsThatLackSomethingPassThrough) {
+  const model::Polygon plan{ring(kHouse), {}};
+  for (std::size_t shape = 0; shape < model::kRoofShapeCount; ++shape)
+    for (int tags = 0; tags < 8; ++tags) {
+      Town t;
+      t.region.extract = &t.extract;
+      for (const attributes::Material& m : t.defaults.materials) t.region.materials.push_back(m.material_class);
+      const auto describe = [&](MappedAttributes& mapped) {
+        mapped.roof_shape = static_cast<RoofShape>(shape);
+        if (tags & 1) mapped.height = 9.0f;
+        if (tags & 2) mapped.storeys = 0.0f;
+        if (tags & 4) mapped.roof_direction = 90.0f;
+      };
+      for (int lacks = 0; lacks < 5; ++lacks) {
+        describe(t.add(kHouse));
+        model::Building& b = t.region.buildings.back();
+        if (lacks == 0) b.settled = model::ObjectState::duplicate;  // has nothing at all
+        if (lacks == 1 || lacks == 4) b.outline = {plan};
+        if (lacks >= 2) describe(t.add_part(10 + lacks, kHouse));  // of 2 and 4 without a plan
+        if (lacks == 3) b.parts.back().plan = plan;
+      }
+      const context::TaggedNeighbours index(t.neighbours, 100);
+      attributes::resolve_attributes(t.region, {t.defaults, index, 1, [&](const model::Building&) { return t.ground; }},
+                                     {});
+      build_masses(t.region, t.defaults, {}, 2);
+      for (const model::Building& b : t.region.buildings)
+        for (const double height :
+             {b.attributes.height.value, b.attributes.roof_height.value, b.attributes.storeys.value})
+          EXPECT_TRUE(std::isfinite(height)) << b.id() << " shape " << shape << " tags " << tags;
+    }
 }
 
 TEST(Resolve, HeightTagRunsToTheTopOfTheRoof) {

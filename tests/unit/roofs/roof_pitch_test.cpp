@@ -37,6 +37,23 @@ TEST(MainSlope, RunsHalfTheWidthBelowARidge) {
   EXPECT_NEAR(run(plans().at("L"), request(RoofShape::gabled, 90)), 4, 0.6) << "a wing's";
 }
 
+/// A house that gave way to its second drawing has no plan left, and is asked all the same.
+TEST(MainSlope, IsANumberOnPlansThatAreNone) {
+  const std::vector<Polygon> none = {{},
+                                     polygon({{1, 2}}),
+                                     polygon({{1, 2}, {5, 2}}),
+                                     polygon({{1, 2}, {5, 2}, {9, 2}}),
+                                     polygon({{1, 2}, {1, 2}, {1, 2}, {1, 2}}),
+                                     polygon({{0, 0}, {4, 4}, {4, 0}, {0, 4}})};
+  for (const Polygon& plan : none)
+    for (std::size_t shape = 0; shape < model::kRoofShapeCount; ++shape)
+      for (const bool steep : {false, true})
+        for (const bool across : {false, true}) {
+          const MainSlope slope = main_slope(plan, request(static_cast<RoofShape>(shape), {}, across), steep);
+          EXPECT_TRUE(std::isfinite(slope.run) && std::isfinite(slope.rise)) << plan.outer.size() << " corners";
+        }
+}
+
 TEST(MainSlope, RunsAllTheWayDownALeanTo) {
   EXPECT_NEAR(run(kHouse, request(RoofShape::skillion)), 10, 1e-9);
   EXPECT_NEAR(run(kHouse, request(RoofShape::skillion, 180)), 10, 1e-9);

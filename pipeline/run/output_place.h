@@ -1,0 +1,26 @@
+// What a build must not do to the place it goes to: replace files that it did not write, or a good build by an empty one.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/run/build.h"
+#include "pipeline/run/options.h"
+
+namespace blockrand::run {
+
+/// Files and links below `folder`, relative to it and sorted, that are not in the list of its build.json. Side files that
+/// other programs leave when they open ours (GDAL's .aux.xml and .gfs, SQLite's -wal, -shm and -journal) do not count.
+/// A build.json that cannot be read lists nothing.
+std::vector<std::string> foreign_files(const std::string& folder);
+
+/// Models of the build that `folder` holds, by its build.json; nothing where there is none, or it cannot be read.
+std::optional<std::uint64_t> earlier_models(const std::string& folder);
+
+/// \param earlier  models of the build that is to be replaced
+/// \throws base::InputError  the new build has no models, or fewer than BuildOptions::allow_shrink lets go
+void refuse_shrunk(const BuildOptions& options, const BuildSummary& summary, std::optional<std::uint64_t> earlier);
+
+}  // namespace blockrand::run
