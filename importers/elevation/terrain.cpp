@@ -29,6 +29,10 @@ constexpr GIntBig kMaxGdalCache = 32 << 20;  // bytes; GDAL's default is a twent
 /// Pixel positions are rounded to this fraction, so that the last bits of a projection decide nothing.
 constexpr double kPixelSteps = 65536;
 
+/// m, in whatever height system: land lies between the shore of the Dead Sea (-440) and Everest (8,849); mines and geoids
+/// have room. What lies beyond is no height but a mark for "unknown" that the file does not declare.
+constexpr double kLowest = -1000, kHighest = 10000;
+
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 using Block = std::vector<double>;  // row by row, kMissing where there is no value
@@ -72,6 +76,7 @@ struct Terrain::Impl {
 
   // GDAL's datasets are for one thread at a time.
   std::mutex reading;
+  std::optional<Implausible> implausible;
   std::unique_ptr<void, gdal::CloseDataset> dataset;
   GDALRasterBandH band = nullptr;
   GDALRasterBandH mask = nullptr;
@@ -141,6 +146,13 @@ std::shared_ptr<const Block> Terrain::Impl::read(long long block_column, long lo
   for (std::size_t i = 0; i < block->size(); ++i) {
     double& value = (*block)[i];
     value = valid[i] == 0 || !std::isfinite(value) ? kMissing : value * factor + shift;
+    if (value < kLowest || value > kHighest) {
+      const auto pixel = static_cast<long long>(i);
+      const long long column = x + pixel % kBlockSize, row = y + pixel / kBlockSize;
+      if (!implausible || std::pair(row, column) < std::pair(implausible->row, implausible->column))
+        implausible = {column, row, value};
+      value = kMissing;
+    }
   }
   return block;
 }
@@ -369,6 +381,11 @@ Terrain::Terrain(Terrain&&) noexcept = default;
 Terrain& Terrain::operator=(Terrain&&) noexcept = default;
 
 const TerrainDescription& Terrain::describe() const { return impl_->description; }
+
+std::optional<Terrain::Implausible> Terrain::implausible() const {
+  const std::lock_guard lock(impl_->reading);
+  return impl_->implausible;
+}
 
 std::optional<GroundRange> Terrain::range_along(std::span<const georef::LonLat> line) const {
   Impl& impl = *impl_;

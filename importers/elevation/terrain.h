@@ -33,7 +33,7 @@ struct GroundRange {
 ///
 /// Safe for const use from any number of threads: GDAL is read under a lock into blocks of 256 x 256 pixels, of which
 /// at most 32 MB are kept (GDAL's own cache is held to the same size). Results do not depend on what the cache holds.
-/// Nodata, masked and NaN pixels count as missing; the band's scale, offset and unit are applied.
+/// Nodata, masked, NaN and implausible pixels count as missing; the band's scale, offset and unit are applied.
 class Terrain {
  public:
   /// \param metres_per_unit  of the values where the band names no unit; else that of the raster's vertical CRS, or 1
@@ -59,6 +59,14 @@ class Terrain {
   std::optional<GroundRange> range_along(std::span<const georef::LonLat> line) const;
 
   const TerrainDescription& describe() const;
+
+  /// A pixel whose value is no height on Earth (below -1,000 or above 10,000 m).
+  struct Implausible {
+    long long column = 0, row = 0;
+    double metres = 0;
+  };
+  /// The first of those, by row and column, in all that was read so far. They count as missing.
+  std::optional<Implausible> implausible() const;
 
  private:
   struct Impl;

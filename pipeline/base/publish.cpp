@@ -267,7 +267,13 @@ StagedFolder::StagedFolder(std::string target, bool force, FolderKind kind)
   if (abandon().ended) wait_for_the_end();
   const std::unique_lock gate(abandon().gate);
   remove_stale();
-  check_target(target_, force, kind_);
+  try {
+    check_target(target_, force, kind_);
+  } catch (const UsageError& error) {
+    std::string also;
+    for (const std::string& left : removed_) also += ". Removed what a run that died left: " + left;
+    throw UsageError(error.what() + also);
+  }
   const auto undo = [this] {
     for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) ::rmdir(parent->c_str());
   };

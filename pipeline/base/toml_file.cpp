@@ -55,6 +55,44 @@ char folded(char c) {
   return c == '_' ? '-' : c;
 }
 
+/// toml++ makes, walks and frees a table for each part of a dotted key by recursion.
+constexpr int kMostKeyParts = 64;
+
+/// \throws InputError  a dotted key, of a header, a line or an inline table, has more parts than the parser bears
+void refuse_deep_keys(std::string_view text, const std::string& name) {
+  int line = 1, dots = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"' || c == '\'') {  // to the end of the string: of one line, or of several between three quotes
+      const std::string_view rest = text.substr(i);
+      const bool several = rest.size() > 2 && rest[1] == c && rest[2] == c;
+      std::size_t end = several ? i + 3 : i + 1;
+      for (; end < text.size(); ++end) {
+        if (text[end] == '\n') {
+          if (!several) break;  // the parser will say so
+          ++line;
+        }
+        if (text[end] == '\\' && c == '"') {
+          ++end;
+        } else if (text[end] == c && (!several || text.substr(end, 3) == std::string(3, c))) {
+          break;
+        }
+      }
+      i = std::min(text.size(), several ? end + 2 : end);
+      if (i < text.size() && text[i] == '\n') --i;
+    } else if (c == '#') {
+      i = std::min(text.size(), text.find('\n', i)) - 1;
+    } else if (c == '.') {
+      if (++dots >= kMostKeyParts)
+        throw InputError(name, "line " + std::to_string(line),
+                         "a key has more than " + std::to_string(kMostKeyParts) + " parts", "No option is that deep.");
+    } else if (std::string_view("=,{}[]\n").find(c) != std::string_view::npos) {
+      dots = 0;
+      if (c == '\n') ++line;
+    }
+  }
+}
+
 }  // namespace
 
 struct TomlTable::Data {
@@ -109,6 +147,7 @@ TomlTable TomlTable::read(const std::string& path) {
 }
 
 TomlTable TomlTable::parse(std::string_view text, const std::string& name) {
+  refuse_deep_keys(text, name);
   try {
     auto data = std::make_unique<Data>();
     data->root = std::make_shared<const toml::table>(toml::parse(text, name));

@@ -212,6 +212,15 @@ struct Sums {
 
 // ---- after the tiles
 
+void warn_of_terrain(const BuildInputs& inputs, base::Progress& progress) {
+  if (!inputs.terrain) return;
+  if (const auto pixel = inputs.terrain->implausible())
+    progress.warn(fmt::format(
+        "{}: pixel {},{} holds {:g} m, which is no height on Earth: such pixels count as missing. Declare them with "
+        "gdal_edit.py -a_nodata VALUE",
+        inputs.terrain->describe().path, pixel->column, pixel->row, pixel->metres));
+}
+
 void finish_outputs(const OpenOutputs& open, const Region& whole, const Account& account, BuildRecord& record,
                     base::Progress& progress) {
   const outputs::FinishedBuild finished{.counts = record.summary,
@@ -363,6 +372,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   };
   base::ordered_parallel(todo.size(), workers, in_flight, work, consume);
   sums.settle(record);
+  warn_of_terrain(inputs, progress);
   account.close(tile, summary);
   refuse_shrunk(options, summary, place.earlier);
 

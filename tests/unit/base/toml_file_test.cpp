@@ -54,6 +54,23 @@ h = -3
   EXPECT_EQ(t.plain("c"), "true");
 }
 
+/// toml++ walks them by recursion: fifty thousand overflowed the stack.
+TEST(TomlTable, KeysOfManyPartsAreRefused) {
+  std::string deep = "a";
+  for (int i = 0; i < 50'000; ++i) deep += ".a";
+  for (const std::string& text :
+       {"x = 1\n[" + deep + "]\n", "x = 1\n" + deep + " = 1\n", "x = 1\ny = {" + deep + " = 1}\n"})
+    EXPECT_THAT(error_of([&] { TomlTable::parse(text, "t.toml"); }),
+                AllOf(StartsWith("t.toml:"), HasSubstr("2"), HasSubstr("more than 64 parts")));
+  // Dots of texts, comments and numbers are none of a key.
+  const std::string dots(200, '.');
+  TomlTable t = TomlTable::parse("a = \"" + dots + "\\\"" + dots + "\" # " + dots + "\nb = '" + dots + "'\nc = \"\"\"" +
+                                     dots + "\n\"" + dots + "\"\"\"\nd = 1.5 #" + dots,
+                                 "t.toml");
+  EXPECT_EQ(t.text("b"), dots);
+  EXPECT_EQ(t.number("d", 0, 2), 1.5);
+}
+
 TEST(TomlTable, ErrorsNameFileLineColumnAndKey) {
   TomlTable t = TomlTable::parse("\n[roof]\npitch = \"steep\"\nheight = 300\ncount = 1.5\n", "t.toml");
   TomlTable roof = *t.table("roof");
