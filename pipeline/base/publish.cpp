@@ -96,13 +96,12 @@ OutputError output_error(const std::string& path, int error, const std::string& 
   return OutputError(path + ": cannot write: " + std::strerror(error) + ". " + remedy(error, folder));
 }
 
-/// The same for the place that the user chose: full disks are the machine's fault, everything else is wrong usage.
+/// The same for the place that the user chose: a path that can be no folder is wrong usage.
 [[noreturn]] void throw_place_error(const std::string& path, int error) {
-  const std::string folder = fs::path(path).parent_path().string();
-  if (error == ENOSPC || error == EDQUOT || error == EIO) throw output_error(path, error, folder);
+  if (error != ENOTDIR && error != ENAMETOOLONG) throw output_error(path, error, fs::path(path).parent_path().string());
   throw UsageError(
       path + ": cannot be made: " + std::strerror(error) + ". " +
-      (error == ENOTDIR ? "A part of its path is a file: choose another output folder." : remedy(error, folder)));
+      (error == ENOTDIR ? "A part of its path is a file: choose another output folder." : remedy(error, "")));
 }
 
 bool is_empty_folder(const std::string& path) {
@@ -195,7 +194,7 @@ void check_target(const std::string& target, bool force, const FolderKind& kind)
     throw UsageError(target + ": " + std::strerror(errno) + ". Choose another output folder.");
   }
   if (S_ISLNK(info.st_mode))
-    throw UsageError(target + " is a link to nothing. Remove it, or choose another output folder.");
+    throw OutputError(target + " is a link to nothing. Remove it, or choose another output folder.");
   if (!S_ISDIR(info.st_mode)) throw UsageError(target + " is a file, not a folder. Choose another output folder.");
   std::error_code error;
   if (fs::equivalent(target, fs::current_path(error), error) && !error)

@@ -54,8 +54,8 @@ class StagedFolder {
   /// \param force   replace an existing, non-empty folder. Without it such a target is a UsageError. Even with `force`
   ///                a folder that is neither empty nor an earlier one of its kind is refused, or that holds files which
   ///                the program did not write.
-  /// \throws UsageError when the target's place cannot be used (parent is a file, target is a file, no permission)
-  /// \throws OutputError when the disk is full
+  /// \throws UsageError when the target's place cannot be used (parent is a file, target is a file, files of others)
+  /// \throws OutputError when nothing can be written there: permission, a full disk, a link to nothing
   /// \param kind    what such folders hold, and the file that tells an earlier one
   StagedFolder(std::string target, bool force, FolderKind kind = {});
   ~StagedFolder();

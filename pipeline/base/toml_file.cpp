@@ -84,8 +84,8 @@ void refuse_deep_keys(std::string_view text, const std::string& name) {
       i = std::min(text.size(), text.find('\n', i)) - 1;
     } else if (c == '.') {
       if (++dots >= kMostKeyParts)
-        throw InputError(name, "line " + std::to_string(line),
-                         "a key has more than " + std::to_string(kMostKeyParts) + " parts", "No option is that deep.");
+        throw InputError(name, std::to_string(line), "a key has more than " + std::to_string(kMostKeyParts) + " parts",
+                         "No option is that deep.");
     } else if (std::string_view("=,{}[]\n").find(c) != std::string_view::npos) {
       dots = 0;
       if (c == '\n') ++line;

@@ -5,7 +5,7 @@ namespace blockrand::cli {
 
 enum ExitCode : int {
   kSuccess = 0,
-  kWrongUsage = 1,     ///< options, or an output place that cannot be used
+  kWrongUsage = 1,     ///< options, or an output place that can be none: a file, the root, a folder of others
   kInvalidInput = 2,   ///< an input that is unreadable or invalid
   kBelowQuality = 3,   ///< finished with buildings below the asked quality; only with --strict
   kInternalError = 4,  ///< the output could not be written, or a bug
