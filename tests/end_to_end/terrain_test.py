@@ -370,6 +370,18 @@ class Reference(OnTerrain):
         for g in said:
             self.assertTrue(143 + 155 < g['origin']['height'] < 148 + 158, g)
 
+    def test_values_that_are_no_heights(self):
+        """Marks for "unknown" that a raster does not declare count as missing, and are told once."""
+        for value in (1e38, -1e38, -32768.0, 12000.0):
+            with self.subTest(value=value):
+                rows = [[100.0] * 20 for _ in range(20)]
+                rows[7] = [value] * 20
+                terrain = self.raster('holes', rows, 11.02, 51.46, 1e-3, DEGREES_PRJ)
+                _, _, _, said = self.build_with('ellipsoid', f'holes{value:g}', terrain)
+                self.assertIn('which is no height on Earth', self.last.err)
+                self.assertRegex(self.last.err, r'pixel \d+,7 ')
+                self.assertTrue(all(g['origin']['height'] == 100 for g in said), said)
+
     def test_what_the_raster_says(self):
         if not shutil.which('gdal_translate'):
             self.skipTest('no gdal_translate')
