@@ -383,8 +383,8 @@ class Bookkeeper {
       }
     if (outline != nullptr && outline->state == ObjectState::reported)
       return reject(own, outline->code, "so is its outline " + outline->id.text());
-    if (absent || area.code == IssueCode::missing_members)
-      return reject(own, IssueCode::missing_members,
+    if (absent || area.code == IssueCode::outline_incomplete)
+      return reject(own, IssueCode::outline_incomplete,
                     area.detail.empty() ? "outline or parts are not in the file" : area.detail);
     if (area.code != IssueCode::none) return reject(own, area.code, area.detail);
     reject(own, IssueCode::relation_type, "type=building without an outline or parts");

@@ -269,7 +269,7 @@ Area assemble_way(const RawData& data, const RawWay& way) {
   if (lost > 0)
     area.detail = std::to_string(lost) + " of " + std::to_string(way.refs.count - 1) + " nodes are not known";
   if (distinct_points(line.vertices) < 3) {
-    area.code = line.missing > 0   ? IssueCode::missing_members
+    area.code = line.missing > 0   ? IssueCode::outline_incomplete
                 : line.invalid > 0 ? IssueCode::invalid_location
                                    : IssueCode::too_few_points;
     return area;
@@ -342,7 +342,7 @@ Area assemble_members(const RawData& data, std::int64_t relation_id, const std::
       return area;
     }
   }
-  area.code = !absent.empty() || missing_nodes > 0 ? IssueCode::missing_members
+  area.code = !absent.empty() || missing_nodes > 0 ? IssueCode::outline_incomplete
               : invalid_nodes > 0                  ? IssueCode::invalid_location
                                                    : IssueCode::ring_broken;
   if (area.detail.empty()) area.detail = lines.empty() ? "no member ways" : "the member ways form no closed ring";

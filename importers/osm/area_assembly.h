@@ -38,13 +38,13 @@ struct WayLine {
 WayLine locate(const RawData& data, const RawWay& way);
 
 /// The area of a closed way: one ring, not checked for crossings (that is the repair stage's trade).
-/// Codes: OPEN_WAY, TOO_FEW_POINTS, MISSING_MEMBERS, INVALID_LOCATION; MEMBERS_MISSING when three or more points are
+/// Codes: OPEN_WAY, TOO_FEW_POINTS, OUTLINE_INCOMPLETE, INVALID_LOCATION; MEMBERS_MISSING when three or more points are
 /// left.
 Area assemble_way(const RawData& data, const RawWay& way);
 
 /// The area of a multipolygon's member ways, by libosmium's assembler, which decides from geometry alone which rings
 /// are inner. Where it refuses or members are missing, the closed rings that the rest forms are built, by node ids,
-/// then by positions; crossing rings stay as mapped with the roles of the members. Codes: RING_BROKEN, MISSING_MEMBERS,
+/// then by positions; crossing rings stay as mapped with the roles of the members. Codes: RING_BROKEN, OUTLINE_INCOMPLETE,
 /// INVALID_LOCATION; MEMBERS_MISSING and RELATION_REPAIRED with rings. \param roles_only  take only members with role
 /// outer, inner or outline (relations of unknown type)
 Area assemble_relation(const RawData& data, const RawRelation& relation, bool roles_only = false);

@@ -61,7 +61,7 @@ class Planner {
       if (area.code != IssueCode::none) notices_.push_back({f.id, area.code, area.detail});
       f.rings = std::move(area.rings);
     } else {
-      const bool lost = area.code == IssueCode::missing_members || area.code == IssueCode::invalid_location;
+      const bool lost = area.code == IssueCode::outline_incomplete || area.code == IssueCode::invalid_location;
       for (const RawMember& m : data_.members_of(relation))
         if (const RawWay* way = m.type == OsmType::way ? data_.way(m.ref) : nullptr) add_lines(*way, f.rings);
       if (f.rings.empty()) return;

@@ -20,7 +20,7 @@ enum class IssueClass : std::uint8_t {
   X(node_only, "NODE_ONLY", reported, "A building mapped as a point has no outline to build from.")                  \
   X(open_way, "OPEN_WAY", reported, "The way is not closed; close it in an editor.")                                 \
   X(ring_broken, "RING_BROKEN", reported, "The relation's members do not form closed rings.")                        \
-  X(missing_members, "MISSING_MEMBERS", reported, "Ways or nodes of the outline are not in the extract.")            \
+  X(outline_incomplete, "OUTLINE_INCOMPLETE", reported, "Ways or nodes of the outline are not in the extract.")      \
   X(too_few_points, "TOO_FEW_POINTS", reported, "The outline has fewer than three distinct points.")                 \
   X(zero_area, "ZERO_AREA", reported, "The outline encloses no area.")                                               \
   X(invalid_location, "INVALID_LOCATION", reported, "A node lies outside the range of longitude and latitude.")      \

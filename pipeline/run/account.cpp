@@ -26,7 +26,7 @@ outputs::FinalState Account::final_state_of(const Outcome& o) const {
   // Where members of a relation are missing, that is why nothing is enclosed.
   const bool no_area = o.code == IssueCode::zero_area || o.code == IssueCode::too_few_points;
   const bool lacks_members = no_area && incomplete_.contains(extract_.buildings[o.index].id);
-  return {o.state, lacks_members ? IssueCode::missing_members : o.code, o.related};
+  return {o.state, lacks_members ? IssueCode::outline_incomplete : o.code, o.related};
 }
 
 std::function<outputs::FinalState(std::uint32_t)> Account::final_states(const std::vector<Outcome>& outcomes) const {

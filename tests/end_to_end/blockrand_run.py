@@ -23,7 +23,7 @@ SAMPLE = os.path.join(SOURCE, 'samples', 'blockrand-viertel.osm')
 SKIPPED = 77
 
 # What report.json may say about an object whose outline cannot be built at all, or that is not there to be built.
-NO_WHOLE_GEOMETRY = {'NODE_ONLY', 'OPEN_WAY', 'RING_BROKEN', 'MISSING_MEMBERS', 'TOO_FEW_POINTS', 'ZERO_AREA',
+NO_WHOLE_GEOMETRY = {'NODE_ONLY', 'OPEN_WAY', 'RING_BROKEN', 'OUTLINE_INCOMPLETE', 'TOO_FEW_POINTS', 'ZERO_AREA',
                      'INVALID_LOCATION', 'RELATION_TYPE'}
 NOT_STANDING = {'UNDERGROUND', 'LIFECYCLE'}
 

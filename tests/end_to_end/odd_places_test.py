@@ -93,7 +93,7 @@ class EndsOfTheEarth(OddExtracts):
         self.counts_add_up(out)
         state, code = self.ends(out)['w1']
         self.assertEqual(state, 'reported')
-        self.assertIn(code, ('INVALID_LOCATION', 'MISSING_MEMBERS', 'TOO_FEW_POINTS'))
+        self.assertIn(code, ('INVALID_LOCATION', 'OUTLINE_INCOMPLETE', 'TOO_FEW_POINTS'))
 
     def test_null_island_stray(self):
         """One stray at 0/0 does not choose the coordinate system of a German village."""
@@ -187,8 +187,8 @@ class OddShapes(OddExtracts):
         ends = self.ends(out)
         for i in ('r1', 'r2', 'r3', 'w5'):
             self.assertEqual(ends[i][0], 'reported', ends)
-        self.assertEqual(ends['r1'][1], 'MISSING_MEMBERS')
-        self.assertEqual(ends['w5'][1], 'MISSING_MEMBERS')
+        self.assertEqual(ends['r1'][1], 'OUTLINE_INCOMPLETE')
+        self.assertEqual(ends['w5'][1], 'OUTLINE_INCOMPLETE')
 
     def test_holes(self):
         """A court touches the outer ring, lies outside of it, or covers it: one end for each, all valid."""

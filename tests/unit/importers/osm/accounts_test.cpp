@@ -104,7 +104,7 @@ TEST(Accounts, MissingNodesLeaveWhatIsThere) {
   EXPECT_EQ(state(e, "w1"), "pending");
   EXPECT_EQ(rows(e, "w1", IssueCode::members_missing), "1 of 5 nodes are not known");
   EXPECT_EQ(ring_sizes(e, building(e, "w2")->rings), (std::vector<int>{3}));
-  EXPECT_EQ(state(e, "w3"), "MISSING_MEMBERS");
+  EXPECT_EQ(state(e, "w3"), "OUTLINE_INCOMPLETE");
   EXPECT_EQ(state(e, "w4"), "INVALID_LOCATION");
   EXPECT_EQ(state(e, "w5"), "OPEN_WAY");
   EXPECT_EQ(e.counts.missing_nodes, 2u);
@@ -197,7 +197,7 @@ TEST(Accounts, AnInnerRingWithoutItsOuterOneIsNoBuilding) {
           .way(1, {10, 11, 12})
           .relation(3, {"w99 outer", "w1 outer", "w3 inner"}, {{"type", "multipolygon"}, {"building", "yes"}})
           .read();
-  EXPECT_EQ(state(e, "r3"), "MISSING_MEMBERS");
+  EXPECT_EQ(state(e, "r3"), "OUTLINE_INCOMPLETE");
 }
 
 TEST(Accounts, CrossingRingsAreKeptAsMapped) {
@@ -307,7 +307,7 @@ TEST(Accounts, ABuildingRelationWithoutOutlineIsRepresentedByItsParts) {
                      .read();
   expect_books_balance(e);
   EXPECT_EQ(state(e, "r1"), "represented by w2");
-  EXPECT_EQ(state(e, "r2"), "MISSING_MEMBERS");
+  EXPECT_EQ(state(e, "r2"), "OUTLINE_INCOMPLETE");
   EXPECT_EQ(state(e, "r3"), "RELATION_TYPE");
 }
 

@@ -120,8 +120,8 @@ TEST(OldStyle, ABrokenRelationLeavesTheClosedWayAlone) {
                      .read();
   EXPECT_EQ(state(e, "w1"), "pending");
   EXPECT_EQ(rows(e, "w1", IssueCode::members_missing), "not in the file: w99");
-  EXPECT_EQ(state(e, "w2"), "MISSING_MEMBERS");
-  EXPECT_EQ(rows(e, "w2", IssueCode::missing_members), "r2: not in the file: w98");
+  EXPECT_EQ(state(e, "w2"), "OUTLINE_INCOMPLETE");
+  EXPECT_EQ(rows(e, "w2", IssueCode::outline_incomplete), "r2: not in the file: w98");
 }
 
 TEST(OldStyle, LandUseIsTreatedAlike) {
