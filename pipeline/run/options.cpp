@@ -213,7 +213,7 @@ base::OptionTable<B> how_it_runs() {
                &B::allow_empty),
           number({.name = "allow-shrink",
                   .key = "allow_shrink",
-                  .argument = "PERCENT",
+                  .argument = "NUMBER",
                   .minimum = 0,
                   .maximum = 100,
                   .help = "with --force: how many percent fewer models than the build that is replaced the new one may "
