@@ -12,8 +12,11 @@ namespace blockrand::roofs {
 struct PlanSide {
   model::Point2 from, to, before, after;
   double length = 0;  ///< m
-  model::Point2 along() const { return {(to.x - from.x) / length, (to.y - from.y) / length}; }
-  model::Point2 outwards() const { return {(to.y - from.y) / length, -(to.x - from.x) / length}; }
+  /// Unit vectors; nothing of an edge without length.
+  model::Point2 along() const {
+    return length > 0 ? model::Point2{(to.x - from.x) / length, (to.y - from.y) / length} : model::Point2{};
+  }
+  model::Point2 outwards() const { return {along().y, -along().x}; }
 };
 
 /// All edges, ring by ring, outer ring first.
