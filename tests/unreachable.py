@@ -7,9 +7,9 @@ PROGRAM holds all product objects, those that nothing refers to as well (whole a
 machine code: calls, jumps and addresses taken in code, and addresses in data that reached code refers to. Templates and
 inline functions (weak symbols), functions of one file (local symbols), constructors, destructors and assignments are not
 listed: the ones that only tests call hang on a listed one. A function that its callers took in (inlined) leaves no call
-behind: a function is listed only when its own source, and those that are compiled as one with it, do not call it either.
-Sources are searched for its bare name: a dead function that calls itself, or whose namesake is called in a source, is
-missed.
+behind: a function is listed only when no source of its folder calls it either, since any of them may be compiled as one
+with it. Sources are searched for its bare name: a dead function that calls itself, or whose namesake is called in its
+folder, is missed.
 Ends with 1 when a function is missing from the allowlist or an entry of the list is reached or gone, and with 77 (skipped)
 for programs of other processors than x86-64. unreachable_test.py proves it.
 """
@@ -110,16 +110,13 @@ def called_in_its_source(name, sources):
 
 
 def product_sources():
-    """Their texts; those of sources that are compiled as one (cmake/compiled_together.cmake) as one text besides."""
-    texts = {}
-    for folder in ("pipeline", "importers", "styles"):
-        for path in sorted((ROOT / folder).rglob("*.cpp")):
-            texts[path] = re.sub(r"//.*", "", path.read_text(encoding="utf-8"))
-    groups = (ROOT / "cmake" / "compiled_together.cmake").read_text(encoding="utf-8")
-    together = []
-    for folder, files in re.findall(r"^blockrand_compile_together\(\w+  # (\S+)\n([^)]*)\)", groups, re.M):
-        together.append("\n".join(texts.get(ROOT / folder / file, "") for file in files.split()))
-    return [*texts.values(), *together]
+    """Their texts; those of a folder of the second level as one text besides: any of them may be compiled as one."""
+    texts, folders = [], collections.defaultdict(list)
+    for top in ("pipeline", "importers", "styles"):
+        for path in sorted((ROOT / top).rglob("*.cpp")):
+            texts.append(re.sub(r"//.*", "", path.read_text(encoding="utf-8")))
+            folders[path.relative_to(ROOT).parts[:2]].append(texts[-1])
+    return texts + ["\n".join(parts) for parts in folders.values()]
 
 
 def unreachable(program, sources):
