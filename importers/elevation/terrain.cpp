@@ -29,10 +29,6 @@ constexpr GIntBig kMaxGdalCache = 32 << 20;  // bytes; GDAL's default is a twent
 /// Pixel positions are rounded to this fraction, so that the last bits of a projection decide nothing.
 constexpr double kPixelSteps = 65536;
 
-/// m, in whatever height system: land lies between the shore of the Dead Sea (-440) and Everest (8,849); mines and geoids
-/// have room. What lies beyond is no height but a mark for "unknown" that the file does not declare.
-constexpr double kLowest = -1000, kHighest = 10000;
-
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 using Block = std::vector<double>;  // row by row, kMissing where there is no value
@@ -76,6 +72,7 @@ struct Terrain::Impl {
 
   // GDAL's datasets are for one thread at a time.
   std::mutex reading;
+  PlausibleHeights plausible;
   std::optional<Implausible> implausible;
   std::unique_ptr<void, gdal::CloseDataset> dataset;
   GDALRasterBandH band = nullptr;
@@ -146,7 +143,7 @@ std::shared_ptr<const Block> Terrain::Impl::read(long long block_column, long lo
   for (std::size_t i = 0; i < block->size(); ++i) {
     double& value = (*block)[i];
     value = valid[i] == 0 || !std::isfinite(value) ? kMissing : value * factor + shift;
-    if (value < kLowest || value > kHighest) {
+    if (value < plausible.lowest || value > plausible.highest) {
       const auto pixel = static_cast<long long>(i);
       const long long column = x + pixel % kBlockSize, row = y + pixel / kBlockSize;
       if (!implausible || std::pair(row, column) < std::pair(implausible->row, implausible->column))
@@ -271,8 +268,10 @@ void Terrain::Impl::scan(Reader& read, std::span<const std::vector<Pixel>> rings
   }
 }
 
-Terrain::Terrain(const std::string& path, std::optional<double> metres_per_unit) : impl_(std::make_unique<Impl>()) {
+Terrain::Terrain(const std::string& path, std::optional<double> metres_per_unit, PlausibleHeights plausible)
+    : impl_(std::make_unique<Impl>()) {
   Impl& impl = *impl_;
+  impl.plausible = plausible;
   impl.description.path = path;
   const auto refuse = [&path](const std::string& what, const std::string& remedy) {
     throw base::InputError(path, "", what, remedy);

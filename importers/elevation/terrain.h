@@ -29,6 +29,12 @@ struct GroundRange {
   double lowest = 0, highest = 0;
 };
 
+/// m, in whatever height system: land lies between the shore of the Dead Sea (-440) and Everest (8,849); mines and geoids
+/// have room. What lies beyond is no height but a mark for "unknown" that the file does not declare.
+struct PlausibleHeights {
+  double lowest = -1000, highest = 10000;
+};
+
 /// A terrain raster (its first band), opened for reading.
 ///
 /// Safe for const use from any number of threads: GDAL is read under a lock into blocks of 256 x 256 pixels, of which
@@ -39,7 +45,9 @@ class Terrain {
   /// \param metres_per_unit  of the values where the band names no unit; else that of the raster's vertical CRS, or 1
   /// \throws base::InputError  with remedy: no such file, a directory, no raster, no band, no georeference, no CRS, a
   ///                           CRS that PROJ cannot reach from WGS 84, a unit that is no length
-  explicit Terrain(const std::string& path, std::optional<double> metres_per_unit = {});
+  /// \param plausible        what is beyond counts as missing
+  explicit Terrain(const std::string& path, std::optional<double> metres_per_unit = {},
+                   PlausibleHeights plausible = {});
   ~Terrain();
   Terrain(Terrain&&) noexcept;
   Terrain& operator=(Terrain&&) noexcept;
@@ -60,7 +68,7 @@ class Terrain {
 
   const TerrainDescription& describe() const;
 
-  /// A pixel whose value is no height on Earth (below -1,000 or above 10,000 m).
+  /// A pixel whose value is beyond PlausibleHeights.
   struct Implausible {
     long long column = 0, row = 0;
     double metres = 0;

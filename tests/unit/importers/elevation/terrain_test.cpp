@@ -32,6 +32,7 @@ using ::testing::HasSubstr;
 
 constexpr double kGridStep = 1.0 / 1024;    // m; results are rounded to it
 constexpr double kPixelStep = 1.0 / 65536;  // positions are rounded to it; the test plane rises 1000 m a pixel
+constexpr PlausibleHeights kAnyHeight{-1e30, 1e30};
 
 /// A folder that goes with the test.
 class TerrainTest : public ::testing::Test {
@@ -85,7 +86,7 @@ class TerrainTest : public ::testing::Test {
 
   static std::string refusal(const std::string& path) {
     try {
-      Terrain terrain(path);
+      Terrain terrain(path, {}, kAnyHeight);
     } catch (const base::InputError& error) {
       return error.what();
     }
@@ -117,7 +118,7 @@ double height_at(const Terrain& terrain, double lon, double lat) {
 TEST_F(TerrainTest, FindsTheLowestPixelInsideARing) {
   Raster r;
   r.value = [](int column, int row) { return column == 50 && row == 40 ? 7.0 : 100.0; };
-  const Terrain terrain(make("pit.tif", r));
+  const Terrain terrain(make("pit.tif", r), {}, kAnyHeight);
   // The pit's centre is at (13.0505, 52.5595).
   EXPECT_EQ(lowest(terrain, box(13.048, 52.558, 13.053, 52.561)), 7.0);
   EXPECT_EQ(lowest(terrain, box(13.060, 52.558, 13.065, 52.561)), 100.0);
@@ -128,7 +129,7 @@ TEST_F(TerrainTest, FindsTheLowestPixelInsideARing) {
 }
 
 TEST_F(TerrainTest, InterpolatesAtVertices) {
-  const Terrain terrain(make("plane.tif", {}));
+  const Terrain terrain(make("plane.tif", {}), {}, kAnyHeight);
   // Between pixel centres the plane column + 1000 row holds exactly: (13.0105, 52.5895) is the centre of (10, 10).
   EXPECT_NEAR(height_at(terrain, 13.0110, 52.5893), 10.5 + 1000 * 10.2, kPixelStep * 1000);
   // A ring smaller than a pixel takes its lowest vertex.
@@ -141,7 +142,7 @@ TEST_F(TerrainTest, InterpolatesAtVertices) {
 }
 
 TEST_F(TerrainTest, KnowsNothingOutside) {
-  const Terrain terrain(make("plane.tif", {}));
+  const Terrain terrain(make("plane.tif", {}), {}, kAnyHeight);
   EXPECT_EQ(lowest(terrain, box(14, 52.5, 14.1, 52.6)), std::nullopt);
   EXPECT_EQ(lowest(terrain, box(-170, -52.5, -169, -52.4)), std::nullopt);
   EXPECT_EQ(lowest(terrain, {}), std::nullopt);
@@ -154,7 +155,7 @@ TEST_F(TerrainTest, SkipsNodataInIntegerRasters) {
   r.type = GDT_Int16;
   r.nodata = -32768;
   r.value = [](int column, int row) { return column < 50 ? -32768.0 : row == 10 ? -3.0 : 12.0; };
-  const Terrain terrain(make("int16.tif", r));
+  const Terrain terrain(make("int16.tif", r), {}, kAnyHeight);
   EXPECT_EQ(terrain.describe().nodata, -32768);
   EXPECT_EQ(lowest(terrain, box(13.01, 52.55, 13.02, 52.56)), std::nullopt);
   EXPECT_EQ(lowest(terrain, box(13.04, 52.55, 13.06, 52.56)), 12.0);
@@ -168,6 +169,24 @@ TEST_F(TerrainTest, SkipsNotANumber) {
   r.type = GDT_Float32;
   r.value = [](int column, int) { return column % 2 == 0 ? NAN : 5.0; };
   EXPECT_EQ(lowest(Terrain(make("nan.tif", r)), box(13.01, 52.55, 13.02, 52.56)), 5.0);
+}
+
+/// Marks for "unknown" that the file does not declare.
+TEST_F(TerrainTest, SkipsWhatIsNoHeightOnEarth) {
+  for (const double mark : {1e38, -1e38, -9999.0, -32768.0, 12000.0}) {
+    Raster r;
+    r.value = [mark](int column, int row) { return row == 50 && column > 20 ? mark : 5.0; };
+    const Terrain terrain(make("marks.tif", r));
+    EXPECT_EQ(lowest(terrain, box(13.03, 52.54, 13.05, 52.56)), 5.0);
+    const std::optional<Terrain::Implausible> told = terrain.implausible();
+    ASSERT_TRUE(told);
+    EXPECT_EQ(told->row, 50);
+    EXPECT_EQ(told->column, 21);
+    EXPECT_EQ(told->metres, mark);
+  }
+  const Terrain sound(make("sound.tif", {.value = [](int, int) { return -430.0; }}));
+  EXPECT_EQ(lowest(sound, box(13.03, 52.54, 13.05, 52.56)), -430.0);
+  EXPECT_FALSE(sound.implausible());
 }
 
 TEST_F(TerrainTest, AppliesScaleOffsetAndUnit) {
@@ -189,7 +208,7 @@ TEST_F(TerrainTest, ReadsProjectedRasters) {
   Raster r;
   r.epsg = 25833;
   r.geotransform = {std::floor(centre.x) - 250, 5, 0, std::floor(centre.y) + 250, 0, -5};
-  const Terrain terrain(make("utm.tif", r));
+  const Terrain terrain(make("utm.tif", r), {}, kAnyHeight);
   const double column = (centre.x - r.geotransform[0]) / 5 - 0.5, row = (r.geotransform[3] - centre.y) / 5 - 0.5;
   const Line point{{13.4, 52.5}};
   EXPECT_NEAR(*lowest(terrain, point), column + 1000 * row, 1000 * kPixelStep);
@@ -202,7 +221,7 @@ TEST_F(TerrainTest, ReadsRotatedRasters) {
   Raster r;
   const double c = 0.001 * std::cos(0.5), s = 0.001 * std::sin(0.5);
   r.geotransform = {13.0, c, s, 52.6, -s, -c};
-  const Terrain terrain(make("rotated.tif", r));
+  const Terrain terrain(make("rotated.tif", r), {}, kAnyHeight);
   const double column = 30.5, row = 60.5;  // the centre of pixel (30, 60)
   const Line point{{13.0 + c * column + s * row, 52.6 - s * column - c * row}};
   EXPECT_NEAR(*lowest(terrain, point), 30 + 1000.0 * 60, 1000 * kPixelStep);
@@ -213,7 +232,7 @@ TEST_F(TerrainTest, ReadsGlobalRastersFrom0To360) {
   Raster r;
   r.columns = 360, r.rows = 180;
   r.geotransform = {0, 1, 0, 90, 0, -1};
-  const Terrain terrain(make("globe.tif", r));
+  const Terrain terrain(make("globe.tif", r), {}, kAnyHeight);
   const Line new_york{{-73.5, 40.5}};
   EXPECT_NEAR(*lowest(terrain, new_york), 286 + 1000.0 * 49, kGridStep);
 }
@@ -241,7 +260,7 @@ TEST_F(TerrainTest, ReadsAsciiGridsWithAPrjFile) {
   std::ofstream((folder_ / "grid.prj").string()) << wkt;
   CPLFree(wkt);
   OSRDestroySpatialReference(reference);
-  const Terrain terrain(path);
+  const Terrain terrain(path, {}, kAnyHeight);
   const georef::GeoBox extent{13.3, 52.4, 13.5, 52.6};
   const georef::Projection utm(georef::open_crs("EPSG:25833", extent), extent);
   const auto place = [&](double x, double y) {
@@ -277,7 +296,7 @@ TEST_F(TerrainTest, ReportsATruncatedFileWhenItReads) {
     EXPECT_THAT(refused, HasSubstr("cut.tif"));
     return;
   }
-  const Terrain terrain(path);
+  const Terrain terrain(path, {}, kAnyHeight);
   EXPECT_THROW(lowest(terrain, box(13.0, 52.5, 13.1, 52.6)), base::InputError);
 }
 
@@ -287,7 +306,7 @@ TEST_F(TerrainTest, GivesTheSameFromManyThreadsAndWhenTheCacheIsFull) {
   r.type = GDT_Float32;
   r.geotransform = {13.0, 0.0001, 0, 52.6, 0, -0.0001};
   r.value = [](int column, int row) { return (column * 7919 + row * 104729) % 5003 * 0.25; };
-  const Terrain terrain(make("large.tif", r));
+  const Terrain terrain(make("large.tif", r), {}, kAnyHeight);
   std::vector<Line> rings;
   for (int i = 0; i < 3000; ++i) {
     const double west = 13.0 + (i * 37 % 2990) * 0.0001, south = 52.3 + (i * 91 % 2990) * 0.0001;
@@ -310,7 +329,7 @@ TEST_F(TerrainTest, GivesTheSameFromManyThreadsAndWhenTheCacheIsFull) {
 }
 
 TEST_F(TerrainTest, FollowsAPlane) {
-  const Terrain terrain(make("plane.tif", {}));
+  const Terrain terrain(make("plane.tif", {}), {}, kAnyHeight);
   // Extremes of a plane are those of the vertices: column + 1000 row, with (13.0205, 52.5795) the centre of (20, 20).
   const std::vector<Line> triangle{{{13.0205, 52.5795}, {13.0555, 52.5745}, {13.0305, 52.5445}}};
   const auto range = terrain.range_under(triangle);
@@ -323,7 +342,7 @@ TEST_F(TerrainTest, FollowsAPlane) {
 TEST_F(TerrainTest, SeesARidgeThatCrossesAnEdge) {
   Raster r;
   r.value = [](int column, int) { return column == 50 ? 9.0 : column == 60 ? 1.0 : 5.0; };  // a ridge and a ditch
-  const Terrain terrain(make("ridge.tif", r));
+  const Terrain terrain(make("ridge.tif", r), {}, kAnyHeight);
   // A narrow house across both, no vertex and no pixel centre near them.
   const std::vector<Line> across{box(13.0452, 52.55462, 13.0653, 52.55478)};
   const auto range = terrain.range_under(across);
@@ -338,7 +357,7 @@ TEST_F(TerrainTest, SeesARidgeThatCrossesAnEdge) {
 TEST_F(TerrainTest, LeavesCourtyardsOut) {
   Raster r;
   r.value = [](int column, int row) { return column == 50 && row == 40 ? -7.0 : 100.0; };
-  const Terrain terrain(make("court.tif", r));
+  const Terrain terrain(make("court.tif", r), {}, kAnyHeight);
   const Line outer = box(13.040, 52.550, 13.060, 52.570), court = box(13.0480, 52.5570, 13.0530, 52.5620);
   EXPECT_EQ(lowest(terrain, outer), -7.0);
   EXPECT_EQ(terrain.range_under(std::vector<Line>{outer, court})->lowest, 100.0);
@@ -352,7 +371,7 @@ TEST_F(TerrainTest, FollowsAPlaneInARotatedRaster) {
   Raster r;
   const double c = 0.001 * std::cos(0.5), s = 0.001 * std::sin(0.5);
   r.geotransform = {13.0, c, s, 52.6, -s, -c};
-  const Terrain terrain(make("rotated.tif", r));
+  const Terrain terrain(make("rotated.tif", r), {}, kAnyHeight);
   const auto place = [&](double column, double row) {
     return georef::LonLat{13.0 + c * column + s * row, 52.6 - s * column - c * row};
   };
@@ -390,7 +409,7 @@ TEST_F(TerrainTest, HoldsUnderHousesInVienna) {
     return (z[j * n + i] * (1 - u) + z[j * n + i + 1] * u) * (1 - v) +
            (z[(j + 1) * n + i] * (1 - u) + z[(j + 1) * n + i + 1] * u) * v;
   };
-  const Terrain terrain(path);
+  const Terrain terrain(path, {}, kAnyHeight);
   const georef::Transform to_raster("EPSG:4326", "EPSG:31256", georef::GeoBox{16.30, 48.18, 16.32, 48.19});
   std::mt19937 random(1);
   const auto between = [&random](double low, double high) {
@@ -436,7 +455,7 @@ TEST_F(TerrainTest, ReadsTheTerrainOfVienna) {
 #ifdef BLOCKRAND_SHARED_DIR
   const std::string path = std::string(BLOCKRAND_SHARED_DIR) + "/data/imagery/wien-schoenbrunn/44_2_dgm.tif";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
-  const Terrain terrain(path);
+  const Terrain terrain(path, {}, kAnyHeight);
   const TerrainDescription& d = terrain.describe();
   RecordProperty("crs", d.crs_name + ' ' + d.crs_code + ", " + d.operation);
   // Schoenbrunn palace stands at about 178 m above the Adriatic (city datum: Wiener Null is 156.68 m), the Gloriette
