@@ -211,7 +211,7 @@ class FacadeBuilder {
     for (PassagePortal& m : portals_)
       if (m.state == PortalState::open && opened.refusals[i++] != OpeningRefusal::none) m.state = PortalState::blocked;
     const auto triangles = geometry::triangulate(opened.solid, part.lod2, part.lod2_triangles);
-    return triangles && geometry::check_solid(opened.solid, *triangles).valid();
+    return triangles && geometry::check_solid(opened.solid, *triangles, geometry::kBuilt).valid();
   }
 
   /// Leaves open what the solid takes: all passages together, else one after another.
@@ -294,7 +294,7 @@ class FacadeBuilder {
     out.opened = cut_openings(part.lod2, walls, openings);
     auto triangles = geometry::triangulate(out.opened.solid, part.lod2, part.lod2_triangles);
     if (!triangles ||
-        !(proved_valid(out.opened, *triangles) || geometry::check_solid(out.opened.solid, *triangles).valid()))
+        !(proved_valid(out.opened, *triangles) || geometry::check_solid(out.opened.solid, *triangles, geometry::kBuilt).valid()))
       return std::nullopt;
     out.triangles = std::move(*triangles);
     return out;

@@ -9,6 +9,7 @@
 
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/grid.h"
+#include "pipeline/geometry/normal_deviation.h"
 
 namespace blockrand::facades {
 namespace {
@@ -18,7 +19,7 @@ using geometry::Grid3;
 using model::Point3;
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// m across a wall that its corners may take up: as much as the validator lets pass without looking for folds.
+/// m across a wall that its corners may take up: more than rounding costs.
 constexpr double kThickest = 4 / model::kGridStepsPerMetre;
 /// Cosine of the angle between a reveal's direction and the wall's normal: rounding turns reveals of a centimetre by 4
 /// degrees.
@@ -45,6 +46,7 @@ class Proof {
       : opened_(opened), solid_(opened.solid), triangles_(triangles) {}
 
   bool holds() {
+    if (opened_.borders_changed) return false;
     for (const model::Opening& o : opened_.openings)
       if (o.kind == model::OpeningKind::passage) return false;
     if (triangles_.first.size() != solid_.faces.size() + 1) return false;
@@ -58,7 +60,8 @@ class Proof {
       if (wall_of_[o.wall] != kNone) continue;
       wall_of_[o.wall] = static_cast<std::uint32_t>(walls_.size());
       auto wall = thin_wall(o.wall);
-      if (!wall) return false;
+      if (!wall || geometry::normal_deviation(solid_, solid_.faces[o.wall]) > geometry::kBuilt.normal_deviation)
+        return false;
       walls_.push_back(std::move(*wall));
     }
     for (const model::Opening& o : opened_.openings) {

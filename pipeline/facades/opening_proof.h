@@ -24,8 +24,8 @@ namespace blockrand::facades {
 ///
 /// What is left are walls with holes, since their corners lie off one plane by the rounding and they have new
 /// triangles. Tested of each of them here, in integers unless said otherwise:
-/// 1. Its corners lie within 4/1024 m across its plane, and that leans by less than kMostLean (doubles). So it is plane
-///    and not folded, and simple along its normal, as its border has been before.
+/// 1. Its corners lie within 4/1024 m across its plane, and that leans by less than kMostLean; its triangles look
+///    apart by no more than geometry::kBuilt allows (doubles). So it is plane and not folded, and simple along its normal, as its border has been before.
 /// 2. Seen along each `in` of its openings all its triangles are counter-clockwise, and so are those of the polygons at
 ///    their ends. A drawing of a polygon with holes by triangles of one orientation covers each point as often as the
 ///    rings go round it: no triangle covers a point of the hole, and so none meets a reveal, which lies over the hole's
@@ -34,7 +34,7 @@ namespace blockrand::facades {
 ///    check_solid's own test (geometry::triangles_conflict). Faces that lie on one side of the wall's corners are out of
 ///    the question at once; this leaves its neighbours' borders.
 /// Pairs of faces that stayed as they were have been checked with the closed solid.
-/// Solids with passages, whose sides are no prisms, are left to check_solid.
+/// Solids with passages, whose sides are no prisms, and those whose borders changed are left to check_solid.
 ///
 /// \param triangles  of opened.solid, by geometry::triangulate; of faces that are not opened those that were checked
 bool proved_valid(const OpenedSolid& opened, const model::SolidTriangles& triangles);

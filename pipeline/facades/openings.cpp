@@ -4,11 +4,14 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "pipeline/facades/opening_blocks.h"
 #include "pipeline/facades/outlines.h"
+#include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/normal_deviation.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 
@@ -22,6 +25,8 @@ using model::Point3;
 constexpr double kSideMargin = kOpeningClearance / 2;
 /// Off the plane through three of its corners, a tunnel's quadrangle is cut in two. Rounding alone costs half of it.
 constexpr double kPlaneTunnel = 0.002;
+/// m over the foot of a wall up to which openings make it fold.
+constexpr double kLowSill = 0.5;
 /// Points of two portals that shall be at one height.
 constexpr double kSameHeight = 0.01;
 
@@ -186,6 +191,8 @@ class Assembly {
   const model::Face& face(std::uint32_t wall) const { return solid_.faces[walls_[wall].face]; }
 
   model::Solid take() {
+    for (std::uint32_t f = 0; f < solid_.faces.size(); ++f)
+      if (!holes_[f].empty() && folds(f)) add_feet(f);
     for (std::size_t f = 0; f < solid_.faces.size(); ++f) {
       model::Face face = solid_.faces[f];
       const auto loops = solid_.loops_of(face);
@@ -205,10 +212,66 @@ class Assembly {
     return std::move(out_);
   }
 
+  /// Points that were put into borders of faces.
+  bool borders_changed() const { return !feet_.empty(); }
+
  private:
+  using Edge = std::pair<std::uint32_t, std::uint32_t>;  ///< the smaller index first
+
   void add_loop(std::span<const std::uint32_t> ring) {
-    out_.loops.push_back({static_cast<std::uint32_t>(out_.indices.size()), static_cast<std::uint32_t>(ring.size())});
-    out_.indices.insert(out_.indices.end(), ring.begin(), ring.end());
+    const auto first = static_cast<std::uint32_t>(out_.indices.size());
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const std::uint32_t from = ring[i], to = ring[(i + 1) % ring.size()];
+      out_.indices.push_back(from);
+      const auto feet = feet_.find(std::minmax(from, to));
+      if (feet == feet_.end()) continue;
+      if (from < to)
+        out_.indices.insert(out_.indices.end(), feet->second.begin(), feet->second.end());
+      else
+        out_.indices.insert(out_.indices.end(), feet->second.rbegin(), feet->second.rend());
+    }
+    out_.loops.push_back({first, static_cast<std::uint32_t>(out_.indices.size()) - first});
+  }
+
+  bool folds(std::uint32_t face) const {
+    std::vector<std::vector<Point3>> rings;
+    const auto add_ring = [&](std::span<const std::uint32_t> ring) {
+      auto& points = rings.emplace_back();
+      for (const std::uint32_t i : ring) points.push_back(out_.vertices[i]);
+    };
+    for (const auto& loop : solid_.loops_of(solid_.faces[face])) add_ring(solid_.indices_of(loop));
+    for (const auto& hole : holes_[face]) add_ring(hole);
+    const auto found = geometry::normal_deviation(rings);
+    return found && found->angle > geometry::kBuilt.normal_deviation;
+  }
+
+  /// Between thresholds and the foot of a wall stays a strip of a few centimetres. Triangles as long as the wall fold
+  /// there by what rounding moves a corner; points below the corners of low openings keep them short.
+  void add_feet(std::uint32_t face) {
+    for (const auto& loop : solid_.loops_of(solid_.faces[face])) {
+      const auto ring = solid_.indices_of(loop);
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Edge edge = std::minmax(ring[i], ring[(i + 1) % ring.size()]);
+        const Point3 a = out_.vertices[edge.first], b = out_.vertices[edge.second];
+        if (a.z != b.z || feet_.count(edge)) continue;
+        const double length = distance(a.xy(), b.xy());
+        std::vector<std::pair<double, Point2>> below;
+        for (const auto& hole : holes_[face])
+          for (const std::uint32_t k : hole) {
+            const Point3 p = out_.vertices[k];
+            if (!(p.z > a.z && p.z <= a.z + kLowSill)) continue;
+            const double way = ((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / length;
+            const double off = ((p.x - a.x) * (b.y - a.y) - (p.y - a.y) * (b.x - a.x)) / length;
+            if (way > kOpeningClearance / 2 && way < length - kOpeningClearance / 2 && std::fabs(off) < kPlaneTunnel)
+              below.emplace_back(way, p.xy());
+          }
+        std::sort(below.begin(), below.end());
+        below.erase(std::unique(below.begin(), below.end(),
+                                [](const auto& p, const auto& q) { return q.first - p.first < kOpeningClearance / 2; }),
+                    below.end());
+        for (const auto& [way, at] : below) feet_[edge].push_back(add({at.x, at.y, a.z}));
+      }
+    }
   }
 
   const model::Solid& solid_;
@@ -216,6 +279,7 @@ class Assembly {
   model::Solid out_;
   std::vector<std::vector<std::vector<std::uint32_t>>> holes_;
   std::vector<std::pair<std::vector<std::uint32_t>, model::Face>> added_;
+  std::map<Edge, std::vector<std::uint32_t>> feet_;  ///< points on an edge, from its first end on
 };
 
 /// m that `d` lies off the plane of the other three.
@@ -322,6 +386,7 @@ OpenedSolid cut_openings(const model::Solid& solid, std::span<const WallFrame> w
     out.given.push_back(o.through);
   }
   out.solid = assembly.take();
+  out.borders_changed = assembly.borders_changed();
   return out;
 }
 

@@ -13,6 +13,7 @@
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/plan_shape.h"
 #include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/geometry/solid_overlap.h"
 #include "pipeline/geometry/triangulate.h"
 #include "styles/roofs/chimneys.h"
 #include "styles/roofs/element_layout.h"
@@ -38,6 +39,10 @@ constexpr double kDetachedWithChimney = 0.85;
 constexpr double kConvertedLofts = 1.0 / 3;
 /// m between roof windows: every second window axis (docs/style_measures.md §2.7: dormer_step).
 constexpr double kRoofWindowStep = 4.8;
+/// m by which an installation is raised at a time where the roof below it is not quite plane; whole steps of the grid.
+constexpr double kRaise = 3 / model::kGridStepsPerMetre;
+/// Times it is raised at most: to 1.2 cm, CityGML's usual tolerance of planes.
+constexpr int kMostRaised = 4;
 /// m that roof windows keep from a chimney: rafters on both sides of a trimmer (own choice).
 constexpr double kFromChimney = 0.5;
 
@@ -165,12 +170,34 @@ class RoofInstaller {
     return false;
   }
 
+  /// Whether the interiors of an installation and of a body, or of what stands on one, meet.
+  static bool meets_a_body(const model::Building& building, const model::RoofInstallation& installation) {
+    const auto view = [](const model::Solid& solid, const model::SolidTriangles& triangles) {
+      return geometry::ClosedMesh{solid.vertices, triangles.triangles};
+    };
+    const geometry::ClosedMesh mine = view(installation.solid, installation.triangles);
+    for (const BuildingPart& part : building.parts) {
+      const bool detailed = !part.lod3.solid.empty();
+      if (geometry::interiors_meet(mine, detailed ? view(part.lod3.solid, part.lod3.triangles)
+                                                  : view(part.lod2, part.lod2_triangles)))
+        return true;
+      for (const model::RoofInstallation& other : part.lod3.roof_installations)
+        if (geometry::interiors_meet(mine, view(other.solid, other.triangles))) return true;
+    }
+    return false;
+  }
+
   /// \return false where it is left out
   bool add(const model::Building& building, BuildingPart& body, model::RoofInstallation installation) const {
     auto triangles = geometry::triangulate(installation.solid);
-    if (!triangles || !geometry::check_solid(installation.solid, *triangles).valid()) return false;
+    if (!triangles || !geometry::check_solid(installation.solid, *triangles, geometry::kBuilt).valid()) return false;
     if (in_another(building, body, installation.solid)) return false;
     installation.triangles = std::move(*triangles);
+    // Faces of roofs are plane by a centimetre only: what cuts into one is raised.
+    for (int raised = 0; meets_a_body(building, installation); ++raised) {
+      if (raised == kMostRaised) return false;
+      for (Point3& p : installation.solid.vertices) p.z += kRaise;
+    }
     body.lod3.roof_installations.push_back(std::move(installation));
     return true;
   }

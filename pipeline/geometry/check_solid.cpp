@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "pipeline/geometry/normal_deviation.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/ring_defects.h"
 #include "pipeline/geometry/triangle_conflicts.h"
@@ -132,25 +133,6 @@ double off_plane(const Solid& solid, const Face& face, const FacePlane& plane) {
   for (const auto& loop : solid.loops_of(face))
     for (const std::uint32_t i : solid.indices_of(loop))
       most = std::max(most, std::fabs(plane.height(solid.vertices[i])));
-  return most;
-}
-
-// A fold: val3dity's own tolerance. Folds are told from rounding by the heights of a triangle's corners above the plane.
-// Rounding a point moves it up to 0.87 steps; roofs round twice, in plan and in height: two corners come to lie up to 3.5
-// steps apart. So thin triangles may lean as they like as long as their corners stay within four.
-constexpr double kFoldCosine = 0.93969262078590838;          // cos(20 degrees)
-constexpr double kRounding = 4 / model::kGridStepsPerMetre;  // m between the highest and the lowest corner
-
-/// How far the corners of the most folded triangle lie apart along the normal, in metres; 0 where none is folded.
-double fold(const Solid& solid, std::span<const std::array<std::uint32_t, 3>> triangles, const FacePlane& plane) {
-  double most = 0;
-  for (const auto& t : triangles) {
-    const model::Point3 &a = solid.vertices[t[0]], &b = solid.vertices[t[1]], &c = solid.vertices[t[2]];
-    const auto [low, high] = std::minmax({plane.height(a), plane.height(b), plane.height(c)});
-    if (high - low <= std::max(kRounding, most)) continue;
-    const Vector n = cross(b - a, c - a);
-    if (dot(n, plane.normal) < kFoldCosine * length(n)) most = high - low;
-  }
   return most;
 }
 
@@ -334,12 +316,8 @@ SolidCheck check_faces(const Solid& solid, const SolidTriangles& triangles, std:
       const SolidCheck c = classify_face(solid, f, grid, options);
       return c.valid() ? SolidCheck{SolidDefect::ring_crosses, f} : c;
     }
-    if (2 * off > kRounding) {
-      const std::span all(triangles.triangles);
-      const double most =
-          fold(solid, all.subspan(triangles.first[f], triangles.first[f + 1] - triangles.first[f]), plane);
-      if (most > 0) return {SolidDefect::folded, f, -1, most};
-    }
+    if (const double angle = normal_deviation(solid, face); angle > options.normal_deviation)
+      return {SolidDefect::folded, f, -1, angle};
     if (face.loop_count > 1)
       if (const std::int64_t hole = turned_hole(solid, face, plane, grid)) return {SolidDefect::hole_turned, f, hole};
   }
@@ -379,12 +357,18 @@ SolidCheck check_repetitions(const Solid& solid, std::span<const Grid3> grid) {
 
 }  // namespace
 
+namespace {
+constexpr double kDegree = 0.017453292519943295;  // rad
+}
+
 std::string SolidCheck::text() const {
   std::string out = code() > 0 ? std::to_string(code()) + ' ' : std::string();
   out += name(defect);
   if (first >= 0) out += " at " + std::to_string(first);
   if (second >= 0) out += " and " + std::to_string(second);
-  if (measure > 0) out += ", " + std::to_string(measure) + " m";
+  if (measure > 0)
+    out += ", " + (defect == SolidDefect::folded ? std::to_string(measure / kDegree) + " degrees"
+                                                 : std::to_string(measure) + " m");
   return out;
 }
 

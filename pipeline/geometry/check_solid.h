@@ -17,15 +17,20 @@ struct SolidCheck {
   /// What is concerned, where that makes sense: of 1xx and 2xx a face and one of its loops (0: the outer one), of 302 to
   /// 303 and 307 vertices, of 305 and 306 faces.
   std::int64_t first = -1, second = -1;
-  double measure = 0;  ///< m off the plane for not_planar and folded; m apart for rings that all but touch
+  double measure = 0;  ///< m off the plane for not_planar; rad for folded; m apart for rings that all but touch
   bool valid() const { return defect == SolidDefect::none; }
   int code() const { return iso_code(defect); }
   std::string text() const;  ///< "302 shell not closed at 3 and 4"; "none" for sound solids
 };
 
 struct SolidCheckOptions {
-  double planarity = 0.01;  ///< m. CityGML's usual tolerance; rounding to the grid alone costs up to 0.001.
+  double planarity = 0.01;  ///< m. val3dity's tolerance of 203; rounding to the grid alone costs up to 0.001.
+  /// rad between any two triangles of a face (geometry::normal_deviation): val3dity's tolerance of 204, 20 degrees.
+  double normal_deviation = 0.3490658503988659;
 };
+
+/// For solids that are to be written: what val3dity finds may not hang on how it rounds.
+inline constexpr SolidCheckOptions kBuilt{.normal_deviation = 0.2617993877991494};  // 15 degrees
 
 /// Checks a solid whose vertices lie on the 1/1024 m grid: its rings, then its polygons, then its shell; the first
 /// defect is told. All decisions are exact (integer arithmetic) but planarity (203), folds (204), and the view of a

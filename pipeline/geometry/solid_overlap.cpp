@@ -227,6 +227,8 @@ double common_volume(const ClosedMesh& a, const ClosedMesh& b) {
   return std::max(sum, 0.0);
 }
 
+bool interiors_meet(const ClosedMesh& a, const ClosedMesh& b) { return common_volume(a, b) > kLeastCommonVolume; }
+
 SolidOverlap overlap_of(const ClosedMesh& a, const ClosedMesh& b, const OverlapOptions& options) {
   if (a.triangles.empty() || b.triangles.empty()) return {};
   const Box box_a = box_of(a.vertices), box_b = box_of(b.vertices);

@@ -20,6 +20,13 @@ struct ClosedMesh {
 /// boxes meet in plan, at most the product of both counts.
 double common_volume(const ClosedMesh& a, const ClosedMesh& b);
 
+/// m³. Doubles are wrong by a thousandth of it; the thinnest slivers that rounding to the grid makes have ten times as
+/// much.
+inline constexpr double kLeastCommonVolume = 1e-10;
+
+/// Whether the interiors of two solids meet: val3dity's 601 without a tolerance. Walls, corners and faces may be common.
+bool interiors_meet(const ClosedMesh& a, const ClosedMesh& b);
+
 struct OverlapOptions {
   double depth = 0.01;   ///< m. What is thinner than this on every side is rounding, or walls joined by repair.
   double volume = 0.01;  ///< m³ that is deeper.

@@ -204,6 +204,15 @@ std::optional<std::vector<Triangle>> triangulate_with_lines(std::span<const Grid
   return out;
 }
 
+bool same_face(const model::Solid& before, const model::Solid& after, std::size_t face) {
+  if (face >= before.faces.size() || face >= after.faces.size()) return false;
+  const auto was = before.loops_of(before.faces[face]), is = after.loops_of(after.faces[face]);
+  return std::equal(was.begin(), was.end(), is.begin(), is.end(), [&](const auto& a, const auto& b) {
+    const auto p = before.indices_of(a), q = after.indices_of(b);
+    return std::equal(p.begin(), p.end(), q.begin(), q.end());
+  });
+}
+
 std::optional<model::SolidTriangles> triangulate(const model::Solid& solid) { return triangulate(solid, {}, {}); }
 
 std::optional<model::SolidTriangles> triangulate(const model::Solid& solid, const model::Solid& before,
@@ -217,7 +226,7 @@ std::optional<model::SolidTriangles> triangulate(const model::Solid& solid, cons
   for (std::size_t f = 0; f < solid.faces.size(); ++f) {
     const model::Face& face = solid.faces[f];
     out.first.push_back(static_cast<std::uint32_t>(out.triangles.size()));
-    if (f + 1 < known.first.size() && f < before.faces.size() && face.loop_count == before.faces[f].loop_count) {
+    if (f + 1 < known.first.size() && same_face(before, solid, f)) {
       out.triangles.insert(out.triangles.end(), known.triangles.begin() + known.first[f],
                            known.triangles.begin() + known.first[f + 1]);
       continue;

@@ -31,8 +31,12 @@ std::optional<std::vector<Triangle>> triangulate_with_lines(std::span<const Grid
 /// simple polygon there.
 std::optional<model::SolidTriangles> triangulate(const model::Solid& solid);
 
-/// As above for a solid that begins with the faces and vertices of another, of which some got more loops: faces with
-/// as many loops as before take their triangles from `known`.
+/// Whether a solid that was made of another by adding faces and points still has its face f: the same loops of the same
+/// points. Vertices keep their numbers. False for faces that the other does not have.
+bool same_face(const model::Solid& before, const model::Solid& after, std::size_t face);
+
+/// As above for a solid that begins with the faces and vertices of another, of which some got more loops or points:
+/// faces that are the same as before (same_face) take their triangles from `known`.
 /// \param known  triangulate(before)
 std::optional<model::SolidTriangles> triangulate(const model::Solid& solid, const model::Solid& before,
                                                  const model::SolidTriangles& known);

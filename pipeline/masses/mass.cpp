@@ -52,7 +52,7 @@ struct Checked {
 std::optional<Checked> checked(Solid solid) {
   auto triangles = geometry::triangulate(solid);
   if (!triangles) return std::nullopt;
-  if (!geometry::check_solid(solid, *triangles).valid()) return std::nullopt;
+  if (!geometry::check_solid(solid, *triangles, geometry::kBuilt).valid()) return std::nullopt;
   return Checked{std::move(solid), std::move(*triangles)};
 }
 

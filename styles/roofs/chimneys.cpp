@@ -157,16 +157,16 @@ std::optional<model::RoofInstallation> chimney(const Roof& roof, ChimneyPlace pl
     level = level && lies_level(roof.surfaces[piece.surface]);
   }
   top += level ? p.above_flat : p.above_ridge;
-  // The height of the underside: of the lower piece where both planes end, so that it hangs over neither.
+  // The height of the underside: of the higher piece where both planes end, so that it cuts into neither.
   const auto under = [&](Point2 q) {
-    double z = 1e300;
+    double z = -1e300;
     for (const Piece& piece : pieces)
       if (std::find(piece.outline.begin(), piece.outline.end(), q) != piece.outline.end())
-        z = std::min(z, piece.height.at(q));
-    return Point3{q.x, q.y, z - p.sunk};
+        z = std::max(z, piece.height.at(q) + p.gap / piece.height.plane.normal.z);
+    return Point3{q.x, q.y, z};
   };
   double highest = -1e300;
-  for (const Point2 q : ring) highest = std::max(highest, under(q).z + p.sunk);
+  for (const Point2 q : ring) highest = std::max(highest, under(q).z);
   if (top - highest > p.tallest) return std::nullopt;
   const auto upper = [&](Point2 q) { return Point3{q.x, q.y, top}; };
 

@@ -175,7 +175,7 @@ std::optional<model::Solid> wall_on(const Bed& bed, const PlanEdge& edge, const 
   }
   model::Solid solid = builder.take();
   const auto triangles = geometry::triangulate(solid);
-  if (!triangles || !geometry::check_solid(solid, *triangles).valid()) return std::nullopt;
+  if (!triangles || !geometry::check_solid(solid, *triangles, geometry::kBuilt).valid()) return std::nullopt;
   return solid;
 }
 

@@ -364,7 +364,7 @@ class Assembly {
     }
     model::Solid solid = builder.take();
     const auto triangles = geometry::triangulate(solid);
-    if (!triangles || !geometry::check_solid(solid, *triangles).valid()) return std::nullopt;
+    if (!triangles || !geometry::check_solid(solid, *triangles, geometry::kBuilt).valid()) return std::nullopt;
     return solid;
   }
 

@@ -23,7 +23,7 @@ std::vector<Point2> rectangle(double left, double low, double right, double high
 std::vector<Point2> roof_window_outline(const RoofWindowParameters& p) {
   if (!(p.width >= kLeastSide && p.height >= kLeastSide) || !(p.frame >= kLeastStep) ||
       !(2 * p.frame <= std::min(p.width, p.height) - kLeastPane) || !(p.reveal >= kLeastStep) ||
-      !(p.raised >= p.reveal + kLeastStep))
+      !(p.raised >= p.gap + p.reveal + kLeastStep))
     return {};
   return rectangle(-p.width / 2, 0, p.width / 2, p.height);
 }
@@ -48,7 +48,7 @@ std::optional<model::RoofInstallation> roof_window(const RoofSlope& plane, const
     }
     return out;
   };
-  const auto bottom = at(0, 0), face = at(0, p.raised), edge = at(p.frame, p.raised),
+  const auto bottom = at(0, p.gap), face = at(0, p.raised), edge = at(p.frame, p.raised),
              pane = at(p.frame, p.raised - p.reveal);
   const auto loop = [](const std::array<Point3, 4>& corners, bool turned) {
     return turned ? std::vector<Point3>{corners[3], corners[2], corners[1], corners[0]}

@@ -17,6 +17,7 @@ struct RoofWindowParameters {
   double raised = 0.06;  ///< m from the plane of the roof to the face of the frame: over battens and tiles (own choice)
   double frame = 0.08;   ///< m that the frame shows around the pane (own choice)
   double reveal = 0.02;  ///< m from the face of the frame down to the pane (own choice)
+  double gap = 0.003;    ///< m from the plane of the roof to the underside, as of chimneys (ChimneyParameters::gap)
 };
 
 /// Looks of its faces: material and colour; kinds are set.
@@ -25,14 +26,13 @@ struct RoofWindowMaterials {
 };
 
 /// Its outline about the middle of its lower edge, for lay_out(); empty when the measures make no body: sides under 0.2
-/// m, a frame that leaves no pane, a pane below the roof.
+/// m, a frame that leaves no pane, a pane below the underside.
 std::vector<model::Point2> roof_window_outline(const RoofWindowParameters& parameters);
 
-/// A roof window whose underside lies on the plane: 11 faces (underside, four sides, frame, four reveals, pane). Its
+/// A roof window whose underside lies `gap` over the plane: 11 faces (underside, four sides, frame, four reveals, pane). Its
 /// faces are of kind roof, the underside closure. occupy() the plane with it before the next.
-/// \param place  middle of
-/// the lower edge of the frame Empty when the plane takes no elements (takes_elements) or it does not fit there with
-/// its distances.
+/// Empty when the plane takes no elements (takes_elements) or it does not fit there with its distances.
+/// \param place  middle of the lower edge of the frame
 std::optional<model::RoofInstallation> roof_window(const RoofSlope& plane, const RoofWindowParameters& parameters,
                                                    model::Point2 place, const RoofWindowMaterials& materials = {},
                                                    const ElementDistances& distances = {});

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "pipeline/geometry/triangulate.h"
 #include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
@@ -25,7 +26,7 @@ void append_detail_polygon_id(std::string& out, std::string_view id, std::size_t
 }
 
 bool is_shared_face(const model::Solid& lod2, const model::Solid& lod3, std::size_t face) {
-  return face < lod2.faces.size() && lod2.faces[face].loop_count == lod3.faces[face].loop_count;
+  return geometry::same_face(lod2, lod3, face);
 }
 
 void GeometryText::ring(const model::Ring& ring, std::string_view z) {
