@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "pipeline/attributes/roof_plan_corners.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/model/vector.h"
@@ -126,11 +127,12 @@ std::optional<Polygon> simpler_plan(const Polygon& plan, double tolerance) {
 
 void prepare_roof_plans(model::Building& building, double tolerance) {
   const OutlineSegments segments(building);
-  for (model::BuildingPart& part : building.parts) {
-    if (part.plan.outer.size() < 3) continue;
-    part.roof_plan = simpler_plan(part.plan, tolerance).value_or(part.plan);
-    part.roof_edges = building.edges.empty() ? std::vector<RoofEdge>{} : edges_on(segments, part.roof_plan);
-  }
+  for (model::BuildingPart& part : building.parts)
+    if (part.plan.outer.size() >= 3) part.roof_plan = simpler_plan(part.plan, tolerance).value_or(part.plan);
+  keep_corners_out(building.parts, tolerance);
+  for (model::BuildingPart& part : building.parts)
+    if (part.plan.outer.size() >= 3)
+      part.roof_edges = building.edges.empty() ? std::vector<RoofEdge>{} : edges_on(segments, part.roof_plan);
 }
 
 }  // namespace blockrand::attributes

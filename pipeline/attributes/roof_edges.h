@@ -32,7 +32,8 @@ class OutlineSegments {
   std::optional<model::Point2> street_;  ///< which way the longest street front looks
 };
 
-/// Fills roof_plan and roof_edges of all parts. \param tolerance  m, GenerateOptions::collinear_tolerance
+/// Fills roof_plan and roof_edges of all parts: plans without points that bend no wall, whose corners stay out of each
+/// other (keep_corners_out). \param tolerance  m, GenerateOptions::collinear_tolerance
 void prepare_roof_plans(model::Building& building, double tolerance);
 
 /// The plan without points that bend no wall; none when that is no simple polygon any more.

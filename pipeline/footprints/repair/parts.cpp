@@ -29,16 +29,6 @@ double area_of(std::span<const Polygon> polygons) {
   return sum;
 }
 
-/// Bodies that are pieces of one thing: a single one keeps the plain id.
-void add_pieces(std::vector<BuildingPart>& parts, const BuildingPart& pattern, std::vector<Polygon> polygons) {
-  for (std::size_t i = 0; i < polygons.size(); ++i) {
-    BuildingPart piece = pattern;
-    if (polygons.size() > 1) piece.id += "." + std::to_string(i + 1);
-    piece.plan = std::move(polygons[i]);
-    parts.push_back(std::move(piece));
-  }
-}
-
 BuildingPart whole(const Building& building) {
   BuildingPart part;
   part.id = building.id();
@@ -166,6 +156,15 @@ std::vector<PartBody> repaired_bodies(const Building& building, const KeptNodes&
 
 }  // namespace
 
+void add_pieces(std::vector<BuildingPart>& parts, const BuildingPart& pattern, std::vector<Polygon> polygons) {
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    BuildingPart piece = pattern;
+    if (polygons.size() > 1) piece.id += "." + std::to_string(i + 1);
+    piece.plan = std::move(polygons[i]);
+    parts.push_back(std::move(piece));
+  }
+}
+
 std::vector<Polygon> outline_of_parts(const Building& building, const KeptNodes& kept, const RepairOptions& options) {
   std::vector<model::PartFailure> failures;
   model::Report report;
@@ -227,7 +226,9 @@ void fit_parts(Building& building, std::span<const Polygon> outline_before, cons
     add_pieces(parts, part, body.polygons);
   }
   building.parts = std::move(parts);
-  if (options.fit_parts) add_rest(building, bodies, options, report);
+  if (!options.fit_parts) return;
+  add_rest(building, bodies, options, report);
+  separate_parts(building.parts, building.mapped, options, report);
 }
 
 }  // namespace blockrand::repair

@@ -33,6 +33,7 @@ std::vector<model::Polygon> outline_of_parts(const model::Building& building, co
 ///    area, the other gives way (PARTS_OVERLAP); where it would vanish the overlap stays and is reported.
 /// 6. What the parts leave of the outline is built as part "….rest" when it is larger than `parts_free_area` and wider
 ///    than `parts_free_width` (PARTS_INCOMPLETE).
+/// 7. What still overlaps or almost meets is cut apart on the grid (separate_parts).
 ///
 /// Without RepairOptions::fit_parts only 1 and 4 are done.
 ///

@@ -48,6 +48,22 @@ int share_part_walls(std::vector<PartBody>& bodies, std::span<const model::Polyg
 std::vector<model::Polygon> plan_without(std::span<const model::Polygon> plan, std::span<const model::Polygon> taken,
                                          const RepairOptions& options);
 
+/// False of slivers: polygons narrower than 0.3 m or smaller than 0.5 m².
+bool worth_a_part(const model::Polygon& polygon);
+
+/// Appends bodies that are pieces of one thing: a single one keeps the plain id, of several each gets a number.
+void add_pieces(std::vector<model::BuildingPart>& parts, const model::BuildingPart& pattern,
+                std::vector<model::Polygon> polygons);
+
+/// Cuts the plans of parts that stand at one height apart, exactly: all rings are noded against each other on the
+/// 1/1024 m grid (geometry::noded_edges), so that a corner on another part's wall becomes a corner of that wall; ground
+/// that several plans cover goes to the smallest, of equal ones to that of the lower id. After it two such plans share
+/// points and walls or nothing. A part that would vanish keeps its plan, and so does one whose ring would touch itself.
+/// Rows PARTS_OVERLAP where a part loses more than 0.01 m².
+/// \param parts  with their plans
+void separate_parts(std::vector<model::BuildingPart>& parts, const model::MappedAttributes& building,
+                    const RepairOptions& options, model::Report& report);
+
 /// Resolves overlaps of more than `min_overlap_area` between parts at overlapping heights: in order of area (smaller
 /// first), then id, each part loses what those before it cover (plan_without); a part of which nothing would be left
 /// keeps its plan. A PARTS_OVERLAP row each.

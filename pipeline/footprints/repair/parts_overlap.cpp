@@ -92,6 +92,10 @@ bool heights_meet(const HeightSpan& a, const HeightSpan& b) {
   return high - low > (one_kind ? kSameKindMargin : kMixedMargin);
 }
 
+bool worth_a_part(const Polygon& polygon) {
+  return geometry::area(polygon) >= kLeastPartArea && geometry::equivalent_width(polygon) >= kLeastPartWidth;
+}
+
 std::vector<Polygon> plan_without(std::span<const Polygon> plan, std::span<const Polygon> taken,
                                   const RepairOptions& options) {
   geometry::ValidPolygons rest = geometry::difference(plan, taken, kLeastPartArea, options.ring_clearance);

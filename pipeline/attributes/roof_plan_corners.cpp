@@ -1,0 +1,127 @@
+#include "pipeline/attributes/roof_plan_corners.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "pipeline/geometry/grid.h"
+#include "pipeline/geometry/valid_polygon.h"
+
+namespace blockrand::attributes {
+
+namespace {
+
+using geometry::Grid2;
+using model::BuildingPart;
+using model::Point2;
+using model::Polygon;
+using model::Ring;
+
+/// A corner that moves may come to lie inside a third part; each move makes its own part smaller, so this ends soon.
+constexpr int kRounds = 6;
+/// Grid points around the foot of the perpendicular that are tried: the nearest one outside is at most 1.5 steps away.
+constexpr std::int64_t kAround = 2;
+
+struct Box {
+  Point2 low, high;
+};
+
+Box box_of(const Polygon& plan) {
+  Box box{plan.outer.points[0], plan.outer.points[0]};
+  for (const Point2 p : plan.outer.points) {
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y)};
+  }
+  return box;
+}
+
+template <class Plan, class Visit>
+void for_each_ring(Plan& plan, Visit&& visit) {
+  visit(plan.outer);
+  for (auto& hole : plan.holes) visit(hole);
+}
+
+/// Where a corner goes that lies on the inner side of the wall from a to b, no farther than `reach` from it; nothing
+/// for all others.
+std::optional<Point2> outside(Point2 corner, Point2 a, Point2 b, double reach) {
+  const double dx = b.x - a.x, dy = b.y - a.y, length2 = dx * dx + dy * dy;
+  const double px = corner.x - a.x, py = corner.y - a.y, inside = dx * py - dy * px;
+  if (!(inside > 0) || inside * inside > reach * reach * length2) return std::nullopt;
+  const double along = (px * dx + py * dy) / length2;
+  if (along <= 0 || along >= 1) return std::nullopt;
+  const Grid2 from = geometry::to_grid(a), to = geometry::to_grid(b);
+  const Grid2 foot = geometry::to_grid(model::snap(Point2{a.x + along * dx, a.y + along * dy}));
+  const double steps = model::kGridStepsPerMetre;
+  std::optional<Grid2> best;
+  double nearest = 0;
+  for (std::int64_t x = -kAround; x <= kAround; ++x)
+    for (std::int64_t y = -kAround; y <= kAround; ++y) {
+      const Grid2 at{foot.x + x, foot.y + y};
+      if (geometry::orientation(from, to, at) > 0) continue;
+      const double ex = static_cast<double>(at.x) / steps - (a.x + along * dx),
+                   ey = static_cast<double>(at.y) / steps - (a.y + along * dy), distance = ex * ex + ey * ey;
+      if (best && distance >= nearest) continue;
+      best = at;
+      nearest = distance;
+    }
+  if (!best) return std::nullopt;
+  return Point2{static_cast<double>(best->x) / steps, static_cast<double>(best->y) / steps};
+}
+
+/// Corners of one plan inside another's walls, and where they go.
+void find_moves(const Polygon& plan, const Polygon& other, double reach, std::map<Point2, Point2>& moves) {
+  for_each_ring(plan, [&](const Ring& corners) {
+    for (const Point2 corner : corners.points)
+      for_each_ring(other, [&](const Ring& walls) {
+        for (std::size_t i = 0; i < walls.size(); ++i) {
+          const Point2 a = walls.points[i], b = walls.points[(i + 1) % walls.size()];
+          if (corner == a || corner == b) continue;
+          if (const auto to = outside(corner, a, b, reach)) moves.emplace(corner, *to);
+        }
+      });
+  });
+}
+
+}  // namespace
+
+void keep_corners_out(std::vector<BuildingPart>& parts, double tolerance) {
+  std::vector<std::size_t> with_plan;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (parts[i].roof_plan.outer.size() >= 3) with_plan.push_back(i);
+  if (with_plan.size() < 2) return;
+  // Both walls may have been straightened.
+  const double reach = 2 * tolerance + 2 / model::kGridStepsPerMetre;
+  std::vector<Box> boxes(parts.size());
+  for (const std::size_t i : with_plan) boxes[i] = box_of(parts[i].roof_plan);
+  const auto meet = [&](const Box& a, const Box& b) {
+    return a.low.x <= b.high.x + reach && b.low.x <= a.high.x + reach && a.low.y <= b.high.y + reach &&
+           b.low.y <= a.high.y + reach;
+  };
+  for (int round = 0; round < kRounds; ++round) {
+    std::map<Point2, Point2> moves;
+    for (const std::size_t i : with_plan)
+      for (const std::size_t k : with_plan)
+        if (i != k && meet(boxes[i], boxes[k])) find_moves(parts[i].roof_plan, parts[k].roof_plan, reach, moves);
+    if (moves.empty()) return;
+    bool moved = false;
+    for (const std::size_t i : with_plan) {
+      Polygon trial = parts[i].roof_plan;
+      bool changed = false;
+      for_each_ring(trial, [&](Ring& ring) {
+        for (Point2& p : ring.points)
+          if (const auto to = moves.find(p); to != moves.end()) {
+            p = to->second;
+            changed = true;
+          }
+      });
+      if (!changed || !geometry::strictly_simple(trial)) continue;
+      parts[i].roof_plan = std::move(trial);
+      moved = true;
+    }
+    if (!moved) return;
+  }
+}
+
+}  // namespace blockrand::attributes
