@@ -6,14 +6,13 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/geometry/grid.h"
+#include "pipeline/geometry/grid_side.h"
 #include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::attributes {
 
 namespace {
 
-using geometry::Grid2;
 using model::BuildingPart;
 using model::Point2;
 using model::Polygon;
@@ -21,8 +20,6 @@ using model::Ring;
 
 /// A corner that moves may come to lie inside a third part; each move makes its own part smaller, so this ends soon.
 constexpr int kRounds = 6;
-/// Grid points around the foot of the perpendicular that are tried: the nearest one outside is at most 1.5 steps away.
-constexpr std::int64_t kAround = 2;
 
 struct Box {
   Point2 low, high;
@@ -51,23 +48,7 @@ std::optional<Point2> outside(Point2 corner, Point2 a, Point2 b, double reach) {
   if (!(inside > 0) || inside * inside > reach * reach * length2) return std::nullopt;
   const double along = (px * dx + py * dy) / length2;
   if (along <= 0 || along >= 1) return std::nullopt;
-  const Grid2 from = geometry::to_grid(a), to = geometry::to_grid(b);
-  const Grid2 foot = geometry::to_grid(model::snap(Point2{a.x + along * dx, a.y + along * dy}));
-  const double steps = model::kGridStepsPerMetre;
-  std::optional<Grid2> best;
-  double nearest = 0;
-  for (std::int64_t x = -kAround; x <= kAround; ++x)
-    for (std::int64_t y = -kAround; y <= kAround; ++y) {
-      const Grid2 at{foot.x + x, foot.y + y};
-      if (geometry::orientation(from, to, at) > 0) continue;
-      const double ex = static_cast<double>(at.x) / steps - (a.x + along * dx),
-                   ey = static_cast<double>(at.y) / steps - (a.y + along * dy), distance = ex * ex + ey * ey;
-      if (best && distance >= nearest) continue;
-      best = at;
-      nearest = distance;
-    }
-  if (!best) return std::nullopt;
-  return Point2{static_cast<double>(best->x) / steps, static_cast<double>(best->y) / steps};
+  return geometry::grid_point_on_left({a.x + along * dx, a.y + along * dy}, b, a);
 }
 
 /// Corners of one plan inside another's walls, and where they go.

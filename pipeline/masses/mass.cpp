@@ -17,6 +17,7 @@
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/masses/envelope.h"
+#include "pipeline/masses/walls_inside.h"
 #include "styles/roofs/eaves_lines.h"
 #include "styles/roofs/roof.h"
 #include "styles/roofs/skeleton_roofs.h"
@@ -170,7 +171,12 @@ class MassBuilder {
 
   bool accept(BuildingPart& part, const Polygon& plan, const Levels& levels, const EnvelopeMaterials& materials,
               const roofs::Roof& roof, RoofShape built) {
-    auto result = checked(envelope(plan, levels.bottom, roof, materials));
+    Solid solid = envelope(plan, levels.bottom, roof, materials);
+    std::optional<Checked> result;
+    // Parts that share a wall share no room, however the corners of a gable between them are rounded.
+    if (building_->parts.size() > 1)
+      if (Solid inside = solid; keep_walls_inside(inside)) result = checked(std::move(inside));
+    if (!result) result = checked(std::move(solid));
     if (!result) return false;
     part.lod2 = std::move(result->solid);
     part.lod2_triangles = std::move(result->triangles);
