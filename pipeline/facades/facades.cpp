@@ -58,6 +58,7 @@ class FacadeBuilder {
     std::vector<WallFrame> walls;
     for (std::uint32_t f = 0; f < part.lod2.faces.size(); ++f)
       if (auto wall = wall_frame(part.lod2, f)) walls.push_back(std::move(*wall));
+    rounding_ = building.parts.size() > 1 ? CornerRounding::behind_wall : CornerRounding::nearest;
     asked_.clear();
     told_.clear();
     usual_materials_ = library_.usual_materials(part);
@@ -206,7 +207,7 @@ class FacadeBuilder {
   bool takes_passages(const BuildingPart& part, const std::vector<WallFrame>& walls) {
     const std::vector<WallOpening> openings = passage_openings();
     if (openings.empty()) return true;
-    const OpenedSolid opened = cut_openings(part.lod2, walls, openings);
+    const OpenedSolid opened = cut_openings(part.lod2, walls, openings, rounding_);
     std::size_t i = 0;
     for (PassagePortal& m : portals_)
       if (m.state == PortalState::open && opened.refusals[i++] != OpeningRefusal::none) m.state = PortalState::blocked;
@@ -291,7 +292,7 @@ class FacadeBuilder {
       openings.push_back(std::move(o));
       out.of_asked.push_back(i);
     }
-    out.opened = cut_openings(part.lod2, walls, openings);
+    out.opened = cut_openings(part.lod2, walls, openings, rounding_);
     auto triangles = geometry::triangulate(out.opened.solid, part.lod2, part.lod2_triangles);
     if (!triangles ||
         !(proved_valid(out.opened, *triangles) || geometry::check_solid(out.opened.solid, *triangles, geometry::kBuilt).valid()))
@@ -383,6 +384,7 @@ class FacadeBuilder {
   const GrammarLibrary& grammars_;
   const FacadeOptions& options_;
   ElementLibrary library_;
+  CornerRounding rounding_ = CornerRounding::nearest;  ///< of the part at work
   std::vector<Asked> asked_;
   std::vector<PassagePortal> portals_;
   std::size_t portal_elements_ = 0;  ///< the first of asked_: what close_portals() put there

@@ -11,6 +11,7 @@
 #include "pipeline/facades/opening_blocks.h"
 #include "pipeline/facades/outlines.h"
 #include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/grid_side.h"
 #include "pipeline/geometry/normal_deviation.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
@@ -164,15 +165,22 @@ class Cutter {
 /// Puts the solid together anew, loop by loop: walls get more loops than they had.
 class Assembly {
  public:
-  Assembly(const model::Solid& solid, std::span<const WallFrame> walls)
-      : solid_(solid), walls_(walls), holes_(solid.faces.size()) {
+  Assembly(const model::Solid& solid, std::span<const WallFrame> walls, CornerRounding rounding)
+      : solid_(solid), walls_(walls), rounding_(rounding), holes_(solid.faces.size()) {
     out_.vertices = solid.vertices;
   }
 
   std::vector<std::uint32_t> add_points(const WallFrame& wall, std::span<const Point2> outline) {
     std::vector<std::uint32_t> at;
-    for (const Point2& p : outline) at.push_back(add(model::snap(wall.at(p))));
+    for (const Point2& p : outline) at.push_back(add(on_grid(wall, p)));
     return at;
+  }
+  Point3 on_grid(const WallFrame& wall, Point2 p) const {
+    Point3 out = model::snap(wall.at(p));
+    if (rounding_ == CornerRounding::nearest) return out;
+    const Point2 behind =
+        geometry::grid_point_on_left(wall.at(p).xy(), wall.start, model::snap(wall.at({wall.length, 0})).xy());
+    return {behind.x, behind.y, out.z};
   }
   std::uint32_t add(Point3 p) {
     out_.vertices.push_back(p);
@@ -276,6 +284,7 @@ class Assembly {
 
   const model::Solid& solid_;
   std::span<const WallFrame> walls_;
+  CornerRounding rounding_;
   model::Solid out_;
   std::vector<std::vector<std::vector<std::uint32_t>>> holes_;
   std::vector<std::pair<std::vector<std::uint32_t>, model::Face>> added_;
@@ -301,10 +310,10 @@ model::SurfaceKind tunnel_kind(const Point3& a, const Point3& b, const Point3& c
 }  // namespace
 
 OpenedSolid cut_openings(const model::Solid& solid, std::span<const WallFrame> walls,
-                         std::span<const WallOpening> openings) {
+                         std::span<const WallOpening> openings, CornerRounding rounding) {
   OpenedSolid out;
   Cutter cutter(solid, walls, openings);
-  Assembly assembly(solid, walls);
+  Assembly assembly(solid, walls, rounding);
   out.refusals.assign(openings.size(), OpeningRefusal::none);
   for (std::uint32_t i = 0; i < openings.size(); ++i) {
     const WallOpening& o = openings[i];
@@ -353,7 +362,7 @@ OpenedSolid cut_openings(const model::Solid& solid, std::span<const WallFrame> w
     const auto match = cutter.partners(o, other);
     std::vector<std::uint32_t> end(n), far_ring(n);
     for (std::size_t k = 0; k < n; ++k) {
-      Point3 p = model::snap(far_wall.at(other.outline[(*match)[k]]));
+      Point3 p = assembly.on_grid(far_wall, other.outline[(*match)[k]]);
       p.z = assembly.point(portal[k]).z;  // one level, to the last bit
       end[k] = assembly.add(p);
       far_ring[(*match)[k]] = end[k];

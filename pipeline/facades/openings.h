@@ -48,6 +48,12 @@ inline constexpr double kLeastFeature = 0.005;
 inline constexpr double kLeastPassage = 0.6;  ///< m across a tunnel, at both portals: a person's width
 inline constexpr double kLeastBehind = 0.05;  ///< m between a reveal's end and what stands behind it
 
+/// Which grid point a corner of an opening becomes.
+enum class CornerRounding : std::uint8_t {
+  nearest,
+  behind_wall,  ///< the nearest in the wall's plane or behind: another part of the building may stand before the wall
+};
+
 /// A solid with openings.
 struct OpenedSolid {
   model::Solid solid;                    ///< faces of the closed one first, in their order; walls have holes
@@ -71,7 +77,8 @@ struct OpenedSolid {
 ///
 /// \param solid  valid (geometry::check_solid)
 /// \param walls  some of its walls, as wall_frame() makes them
+/// \param rounding  of the corners of openings
 OpenedSolid cut_openings(const model::Solid& solid, std::span<const WallFrame> walls,
-                         std::span<const WallOpening> openings);
+                         std::span<const WallOpening> openings, CornerRounding rounding = CornerRounding::nearest);
 
 }  // namespace blockrand::facades
