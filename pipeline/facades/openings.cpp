@@ -26,8 +26,8 @@ using model::Point3;
 constexpr double kSideMargin = kOpeningClearance / 2;
 /// Off the plane through three of its corners, a tunnel's quadrangle is cut in two. Rounding alone costs half of it.
 constexpr double kPlaneTunnel = 0.002;
-/// m over the foot of a wall up to which openings make it fold.
-constexpr double kLowSill = 0.5;
+/// m from the border of a wall within which openings make it fold.
+constexpr double kNearBorder = 0.5;
 /// Points of two portals that shall be at one height.
 constexpr double kSameHeight = 0.01;
 
@@ -253,31 +253,35 @@ class Assembly {
     return found && found->angle > geometry::kBuilt.normal_deviation;
   }
 
-  /// Between thresholds and the foot of a wall stays a strip of a few centimetres. Triangles as long as the wall fold
-  /// there by what rounding moves a corner; points below the corners of low openings keep them short.
+  /// Between openings and the border of a wall, at thresholds above all, stay strips of a few centimetres. Triangles as
+  /// long as the wall fold there by what rounding moves a corner; points on the border next to the corners of openings
+  /// keep them short.
   void add_feet(std::uint32_t face) {
     for (const auto& loop : solid_.loops_of(solid_.faces[face])) {
       const auto ring = solid_.indices_of(loop);
       for (std::size_t i = 0; i < ring.size(); ++i) {
         const Edge edge = std::minmax(ring[i], ring[(i + 1) % ring.size()]);
         const Point3 a = out_.vertices[edge.first], b = out_.vertices[edge.second];
-        if (a.z != b.z || feet_.count(edge)) continue;
-        const double length = distance(a.xy(), b.xy());
-        std::vector<std::pair<double, Point2>> below;
+        const bool level = a.z == b.z, upright = a.x == b.x && a.y == b.y;
+        if (level == upright || feet_.count(edge)) continue;
+        const Point3 way{b.x - a.x, b.y - a.y, b.z - a.z};
+        const double length = std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+        std::vector<std::pair<double, Point3>> feet;
         for (const auto& hole : holes_[face])
           for (const std::uint32_t k : hole) {
             const Point3 p = out_.vertices[k];
-            if (!(p.z > a.z && p.z <= a.z + kLowSill)) continue;
-            const double way = ((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / length;
-            const double off = ((p.x - a.x) * (b.y - a.y) - (p.y - a.y) * (b.x - a.x)) / length;
-            if (way > kOpeningClearance / 2 && way < length - kOpeningClearance / 2 && std::fabs(off) < kPlaneTunnel)
-              below.emplace_back(way, p.xy());
+            const double along = ((p.x - a.x) * way.x + (p.y - a.y) * way.y + (p.z - a.z) * way.z) / length;
+            const double off = level ? std::fabs(p.z - a.z) : distance(p.xy(), a.xy());
+            if (along > kOpeningClearance / 2 && along < length - kOpeningClearance / 2 && off <= kNearBorder)
+              feet.emplace_back(along, level ? Point3{p.x, p.y, a.z} : Point3{a.x, a.y, p.z});
           }
-        std::sort(below.begin(), below.end());
-        below.erase(std::unique(below.begin(), below.end(),
-                                [](const auto& p, const auto& q) { return q.first - p.first < kOpeningClearance / 2; }),
-                    below.end());
-        for (const auto& [way, at] : below) feet_[edge].push_back(add({at.x, at.y, a.z}));
+        std::sort(feet.begin(), feet.end());
+        double last = 0;
+        for (const auto& [along, at] : feet) {
+          if (along - last < kOpeningClearance / 2) continue;
+          feet_[edge].push_back(add(at));
+          last = along;
+        }
       }
     }
   }
@@ -288,7 +292,7 @@ class Assembly {
   model::Solid out_;
   std::vector<std::vector<std::vector<std::uint32_t>>> holes_;
   std::vector<std::pair<std::vector<std::uint32_t>, model::Face>> added_;
-  std::map<Edge, std::vector<std::uint32_t>> feet_;  ///< points on an edge, from its first end on
+  std::map<Edge, std::vector<std::uint32_t>> feet_;  ///< points put on an edge, from its first end on
 };
 
 /// m that `d` lies off the plane of the other three.

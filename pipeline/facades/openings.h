@@ -60,8 +60,8 @@ struct OpenedSolid {
   std::vector<model::Opening> openings;  ///< those that were cut, in the order given
   std::vector<std::uint32_t> given;      ///< for each of them its index among those given
   std::vector<OpeningRefusal> refusals;  ///< for each one given; `none` for those that were cut
-  /// Walls that would fold by rounding (geometry::normal_deviation) got points at their foot below low openings, and so
-  /// did the faces there.
+  /// Walls that would fold by rounding (geometry::normal_deviation) got points on their border next to openings, and so
+  /// did the faces that they share it with.
   bool borders_changed = false;
 };
 

@@ -21,7 +21,8 @@ namespace blockrand::validate {
   X(attribute_differs, "ATTRIBUTE_DIFFERS", "a body's attribute has different values in two formats")           \
   X(source_wrong, "SOURCE_WRONG", "an attribute's source or confidence is missing or out of range")             \
   X(solid_invalid, "SOLID_INVALID", "a solid is not closed, oriented and free of self-intersections")           \
-  X(solids_overlap, "SOLIDS_OVERLAP", "601: parts of a building overlap, and the report does not say so")       \
+  X(solids_overlap, "SOLIDS_OVERLAP",                                                                           \
+    "601: parts of a building, or what stands on them, overlap, and the report does not say so")                \
   X(validators_disagree, "JUDGES_DISAGREE", "the two judges of solids contradict each other")                   \
   X(off_grid, "OFF_GRID", "a coordinate is not on the 1/1024 m grid")                                           \
   X(geometry_differs, "GEOMETRY_DIFFERS", "a body has different geometry in two formats")                       \

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -58,16 +59,34 @@ class BoxMaker {
   bool empty_ = true;
 };
 
-bool meet(const Box& a, const Box& b, double depth) {
-  return std::min(a.max.x, b.max.x) - std::max(a.min.x, b.min.x) > depth &&
-         std::min(a.max.y, b.max.y) - std::max(a.min.y, b.min.y) > depth &&
-         std::min(a.max.z, b.max.z) - std::max(a.min.z, b.min.z) > depth;
+bool meet(const Box& a, const Box& b) {
+  return a.max.x > b.min.x && b.max.x > a.min.x && a.max.y > b.min.y && b.max.y > a.min.y && a.max.z > b.min.z &&
+         b.max.z > a.min.z;
 }
 
 geometry::ClosedMesh view(const ReadMesh& mesh) { return {mesh.vertices, mesh.triangles}; }
 
-std::vector<PartsOverlap> compare(std::map<std::string_view, std::vector<Body>>& buildings, std::uint64_t& pairs) {
-  const geometry::OverlapOptions options;
+/// How much two meshes of one level of detail have in common, in m³; 0 where that is tolerated.
+using Common = double (*)(const ReadMesh& a, const ReadMesh& b);
+
+/// Of coordinates on the grid: nothing is tolerated.
+double common_exactly(const ReadMesh& a, const ReadMesh& b) {
+  const double volume = geometry::common_volume(view(a), view(b));
+  return volume > geometry::kLeastCommonVolume ? volume : 0;
+}
+
+/// Of coordinates that are rounded to floats.
+double common_roughly(const ReadMesh& a, const ReadMesh& b) {
+  const geometry::SolidOverlap found = geometry::overlap_of(view(a), view(b));
+  return found.overlap ? found.volume : 0;
+}
+
+std::string volume_text(double volume) {
+  return volume >= 0.01 ? fmt::format("{:.2f} m³", volume) : fmt::format("{:.2g} cm³", volume * 1e6);
+}
+
+std::vector<PartsOverlap> compare(std::map<std::string_view, std::vector<Body>>& buildings, Common common,
+                                  std::uint64_t& pairs) {
   std::vector<PartsOverlap> out;
   for (auto& [building, bodies] : buildings)
     for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -77,13 +96,12 @@ std::vector<PartsOverlap> compare(std::map<std::string_view, std::vector<Body>>&
         bool compared = false;
         for (Shape& a : bodies[i].shapes)
           for (Shape& b : bodies[j].shapes) {
-            if (a.lod != b.lod || !meet(a.box, b.box, options.depth)) continue;
+            if (a.lod != b.lod || !meet(a.box, b.box)) continue;
             const ReadMesh *one = a.get(), *other = b.get();
             if (!one || !other) continue;
             compared = true;
-            const geometry::SolidOverlap found = geometry::overlap_of(view(*one), view(*other), options);
-            if (found.overlap)
-              where += fmt::format("{} {:.2f} m³ in {}", where.empty() ? ":" : ",", found.volume, a.lod);
+            if (const double volume = common(*one, *other); volume > 0)
+              where += fmt::format("{} {} in {}", where.empty() ? ":" : ",", volume_text(volume), a.lod);
           }
         pairs += compared;
         if (!where.empty())
@@ -97,17 +115,24 @@ std::vector<PartsOverlap> compare(std::map<std::string_view, std::vector<Body>>&
 
 std::vector<PartsOverlap> find_overlaps(const Contents& contents, std::uint64_t& pairs) {
   std::map<std::string_view, std::vector<Body>> buildings;
+  // Polygons of installations are no ReadSolid yet; they must not move while bodies point to them.
+  std::deque<ReadSolid> installations;
+  const auto add = [](Body& body, const ReadSolid& solid) {
+    BoxMaker box;
+    for (const ReadPolygon& polygon : solid.polygons)
+      for (const auto& ring : polygon.rings)
+        for (const Point3& p : ring) box.add(p);
+    if (!box.empty()) body.shapes.push_back({fmt::format("LoD {}", solid.lod), box.box(), &solid});
+  };
   for (const ReadBody& body : contents.bodies) {
-    Body& made = buildings[body.building].emplace_back(Body{body.id, {}});
-    for (const ReadSolid& solid : body.solids) {
-      BoxMaker box;
-      for (const ReadPolygon& polygon : solid.polygons)
-        for (const auto& ring : polygon.rings)
-          for (const Point3& p : ring) box.add(p);
-      if (!box.empty()) made.shapes.push_back({fmt::format("LoD {}", solid.lod), box.box(), &solid});
-    }
+    std::vector<Body>& of_building = buildings[body.building];
+    Body& made = of_building.emplace_back(Body{body.id, {}});
+    for (const ReadSolid& solid : body.solids) add(made, solid);
+    for (const ReadInstallation& installation : body.detail.installations)
+      add(of_building.emplace_back(Body{installation.id, {}}),
+          installations.emplace_back(ReadSolid{3, installation.polygons}));
   }
-  return compare(buildings, pairs);
+  return compare(buildings, common_exactly, pairs);
 }
 
 std::vector<PartsOverlap> find_overlaps(const Glb& glb, std::uint64_t& pairs) {
@@ -123,7 +148,7 @@ std::vector<PartsOverlap> find_overlaps(const Glb& glb, std::uint64_t& pairs) {
     Body& made = buildings[body.building].emplace_back(Body{body.id, {}});
     made.shapes.push_back({"the mesh", box.box(), nullptr, &glb.triangles[i]});
   }
-  return compare(buildings, pairs);
+  return compare(buildings, common_roughly, pairs);
 }
 
 }  // namespace blockrand::validate

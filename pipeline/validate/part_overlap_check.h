@@ -1,4 +1,4 @@
-// Parts of one building that overlap: val3dity's 601.
+// Parts and installations of one building that overlap: val3dity's 601.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,13 @@ struct PartsOverlap {
   std::string detail;         ///< "601 overlaps w1.w3: 2.30 m³ in LoD 2"
 };
 
-/// All pairs of bodies of a building whose solids of one level of detail overlap by more than a tolerance (1 cm deep,
-/// 0.01 m³; geometry/solid_overlap.h). What solids that are invalid give means nothing.
+/// All pairs of bodies of a building, and of what stands on its roofs, whose solids of one level of detail have room in
+/// common: val3dity's 601 without a tolerance (geometry::kLeastCommonVolume). What solids that are invalid give means
+/// nothing.
 /// \param pairs  increased by the pairs whose boxes meet, which were compared
 std::vector<PartsOverlap> find_overlaps(const Contents& contents, std::uint64_t& pairs);
-/// The same for the meshes of a GLB.
+/// The same for the meshes of a GLB, whose coordinates are floats: only what is 1 cm deep and more than 0.01 m³ counts
+/// (geometry::overlap_of).
 std::vector<PartsOverlap> find_overlaps(const Glb& glb, std::uint64_t& pairs);
 
 }  // namespace blockrand::validate

@@ -261,11 +261,8 @@ bool separate_once(std::vector<BuildingPart>& parts, const model::MappedAttribut
       const BuildingPart& part = parts[group[i].part];
       const double lost = drawing.drawn(i) - drawing.kept(i);
       std::vector<Polygon> polygons = drawing.united(i, lost <= 0);
-      if (lost > 0) {
-        geometry::cut_slivers(polygons, options.spike_width);
-        std::erase_if(polygons, [](const Polygon& p) { return !worth_a_part(p); });
-        again = true;
-      }
+      if (geometry::cut_slivers(polygons, options.spike_width) > 0 || lost > 0) again = true;
+      if (lost > 0) std::erase_if(polygons, [](const Polygon& p) { return !worth_a_part(p); });
       // What would vanish stays, and so does what would touch itself.
       if (polygons.empty()) polygons = drawing.united(i, true);
       if (polygons.empty() || (polygons.size() == 1 && same(polygons[0], part.plan))) continue;

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "pipeline/attributes/roof_plan_corners.h"
+#include "pipeline/geometry/grid.h"
+#include "pipeline/geometry/grid_side.h"
 #include "pipeline/masses/roofscape.h"
 #include "tests/unit/geometry/shapes.h"
 
@@ -112,6 +117,71 @@ TEST(Roofscape, SlopesMeetWhenTheyAreOnePlane) {
   EXPECT_EQ(met(left, end_at(7, 12.5, {0, 1}, {1, 0}, 0.8, 38)), Result(0, 0, 2)) << "other eaves";
   EXPECT_EQ(met(left, end_at(7, 12, {0, 1}, {0.8, 0.6}, 0.8, 38)), Result(0, 0, 2)) << "the row bends";
   EXPECT_EQ(met(left, end_at(8, 12, {0, 1}, {1, 0}, 0.8, 38)), Result(0, 0, 2)) << "another corner: both wait";
+}
+
+TEST(GridPoints, OnTheLeftAreNearAndNeverOnTheRight) {
+  testing_shapes::Random random(7);
+  for (int i = 0; i < 20000; ++i) {
+    const model::Point2 a = model::snap(Point2{40 * random.unit(), 40 * random.unit()}),
+                        b = model::snap(Point2{40 * random.unit(), 40 * random.unit()});
+    if (a == b) continue;
+    const double t = random.unit();
+    const Point2 on{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+    const Point2 p = geometry::grid_point_on_left(on, a, b);
+    EXPECT_GE(geometry::orientation(geometry::to_grid(a), geometry::to_grid(b), geometry::to_grid(p)), 0);
+    EXPECT_LE(std::hypot(p.x - on.x, p.y - on.y), 1.5 / model::kGridStepsPerMetre);
+  }
+}
+
+/// Corners of each plan that lie strictly inside a wall of another, no farther than 3 cm from it.
+int corners_inside(const std::vector<model::BuildingPart>& parts) {
+  int n = 0;
+  for (const auto& mine : parts)
+    for (const auto& other : parts) {
+      if (&mine == &other) continue;
+      for (const Point2 p : mine.roof_plan.outer.points)
+        for (std::size_t i = 0; i < other.roof_plan.outer.size(); ++i) {
+          const Point2 a = other.roof_plan.outer.points[i],
+                       b = other.roof_plan.outer.points[(i + 1) % other.roof_plan.outer.size()];
+          const double dx = b.x - a.x, dy = b.y - a.y, length = std::hypot(dx, dy);
+          const double along = ((p.x - a.x) * dx + (p.y - a.y) * dy) / length,
+                       inside = (dx * (p.y - a.y) - dy * (p.x - a.x)) / length;
+          n += inside > 0 && inside < 0.03 && along > 0 && along < length;
+        }
+    }
+  return n;
+}
+
+TEST(RoofPlanCorners, StayOutOfOtherParts) {
+  testing_shapes::Random random(3);
+  int before = 0;
+  for (int turn = 0; turn < 50; ++turn) {
+    SCOPED_TRACE(turn);
+    const double angle = 0.12 * turn, c = std::cos(angle), s = std::sin(angle);
+    const auto turned = [&](std::vector<Point2> points) {
+      for (Point2& p : points) p = model::snap(Point2{c * p.x - s * p.y, s * p.x + c * p.y});
+      return model::Polygon{ring(std::move(points)), {}};
+    };
+    const auto off = [&] { return 0.018 * (random.unit() - 0.5); };  // what straightening a wall leaves
+    // A house, two wings against its front, which share a wall, and one against the side of a wing.
+    const double x = off();
+    std::vector<model::BuildingPart> parts(4);
+    parts[0].roof_plan = turned({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
+    parts[1].roof_plan = turned({{2, -6}, {9, -6}, {9, x}, {2, off()}});
+    parts[2].roof_plan = turned({{9, -6}, {15, -6}, {15, off()}, {9, x}});
+    parts[3].roof_plan = turned({{15 + off(), -5}, {18, -5}, {18, -3}, {15 + off(), -3}});
+    before += corners_inside(parts);
+    const std::vector<model::BuildingPart> old = parts;
+    keep_corners_out(parts, 0.01);
+    EXPECT_EQ(corners_inside(parts), 0);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_LE(std::hypot(parts[i].roof_plan.outer.points[k].x - old[i].roof_plan.outer.points[k].x,
+                             parts[i].roof_plan.outer.points[k].y - old[i].roof_plan.outer.points[k].y),
+                  0.02);
+    EXPECT_EQ(parts[1].roof_plan.outer.points[2], parts[2].roof_plan.outer.points[3]) << "a common corner moves in both";
+  }
+  EXPECT_GT(before, 50);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "pipeline/facades/opening_proof.h"
 #include "pipeline/geometry/cgal_validator.h"
 #include "pipeline/geometry/check_solid.h"
+#include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/masses/envelope.h"
 #include "styles/roofs/roof.h"
@@ -122,6 +123,49 @@ TEST(WallFrames, SpeakOfTheViewersRight) {
   EXPECT_NEAR(inside.y, 0.5, 1e-9);
   EXPECT_NEAR(inside.z, kBase + 2, 1e-9);
   EXPECT_EQ(walls[facing(walls, {0, 1})].start, (Point2{20, 10}));
+}
+
+TEST(Openings, ThresholdsDoNotFoldLongWalls) {
+  // Doors 3 cm over the ground in a front of 40 m, at many angles: triangles from their sills to the far corner are
+  // millimetres high, and rounding turns them.
+  int folded = 0;
+  for (int turn = 1; turn <= 25; ++turn) {
+    SCOPED_TRACE(turn);
+    const double angle = 0.11 * turn, c = std::cos(angle), s = std::sin(angle);
+    std::vector<Point2> plan{{0, 0}, {40, 0}, {40, 10}, {0, 10}};
+    for (Point2& p : plan) p = model::snap(Point2{c * p.x - s * p.y, s * p.x + c * p.y});
+    const Solid solid = house(polygon(plan));
+    const auto walls = walls_of(solid);
+    const std::uint32_t front = facing(walls, {s, -c});
+    std::vector<WallOpening> wanted;
+    for (double u = 1.5; u < 38; u += 2.6) wanted.push_back(window(front, rectangle(u, 0.03, 1.1, 2.2), 0.2));
+    const OpenedSolid opened = cut_openings(solid, walls, wanted);
+    EXPECT_EQ(opened.openings.size(), wanted.size());
+    EXPECT_EQ(validity(opened.solid), "none");
+    EXPECT_EQ(cgal_validity(opened.solid), "");
+    folded += opened.borders_changed;
+  }
+  EXPECT_GT(folded, 3) << "the walls of this test do not fold without points on their border";
+}
+
+TEST(Openings, CornersBehindTheWallComeNowhereBeforeIt) {
+  const Solid solid = house(turned(polygon({{0, 0}, {20, 0}, {20, 10}, {0, 10}})));
+  const auto walls = walls_of(solid);
+  for (const CornerRounding rounding : {CornerRounding::nearest, CornerRounding::behind_wall}) {
+    std::vector<WallOpening> wanted;
+    for (std::uint32_t w = 0; w < walls.size(); ++w)
+      for (double u = 1; u + 1.2 < walls[w].length; u += 1.7) wanted.push_back(window(w, rectangle(u, 1, 1.1, 1.9), 0.2));
+    const OpenedSolid opened = cut_openings(solid, walls, wanted, rounding);
+    int before = 0;
+    for (const WallFrame& wall : walls) {
+      const auto a = geometry::to_grid(wall.start), b = geometry::to_grid(model::snap(wall.at({wall.length, 0})).xy());
+      for (const auto& loop : opened.solid.loops_of(opened.solid.faces[wall.face]))
+        for (const std::uint32_t i : opened.solid.indices_of(loop))
+          before += geometry::orientation(a, b, geometry::to_grid(opened.solid.vertices[i].xy())) < 0;
+    }
+    EXPECT_EQ(before > 0, rounding == CornerRounding::nearest) << before;
+    EXPECT_EQ(validity(opened.solid), "none");
+  }
 }
 
 TEST(Openings, RowsOfWindowsOnEveryWall) {
@@ -367,7 +411,8 @@ TEST(Openings, RandomHousesStayValid) {
   std::printf("\n");
   // What is no prism is left to the judge; nearly everything else is proved.
   std::printf("%d proved, %d with passages\n", proved, with_passage);
-  EXPECT_GT(proved, (houses - with_passage) * 99 / 100);
+  // Walls with openings a few centimetres from their border get points there; that is left to check_solid.
+  EXPECT_GT(proved, (houses - with_passage) * 95 / 100);
   EXPECT_LE(proved, houses - with_passage);
   EXPECT_GT(houses, 600);
   EXPECT_GT(cut, 5000);

@@ -8,6 +8,7 @@
 #include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/geometry/solid_overlap.h"
 #include "pipeline/masses/mass.h"
 #include "tests/unit/footprints/repair/repair_alone.h"
 #include "tests/unit/geometry/shapes.h"
@@ -415,6 +416,40 @@ TEST(Parts, InheritColoursFromTheOutline) {
   t.build();
   EXPECT_EQ(t.part().attributes.wall_colour.value, (model::Colour{170, 51, 51}));
   EXPECT_EQ(t.part().attributes.wall_colour.source, Source::implied);
+}
+
+TEST(Mass, PartsThatShareAGableShareNoRoom) {
+  int gables = 0;
+  for (int turn = 0; turn < 40; ++turn) {
+    SCOPED_TRACE(turn);
+    const double angle = 0.157 * turn, c = std::cos(angle), s = std::sin(angle);
+    const auto turned = [&](std::vector<Point2> points) {
+      for (Point2& p : points) p = model::snap(Point2{c * p.x - s * p.y, s * p.x + c * p.y});
+      return points;
+    };
+    Town t;
+    t.add(turned({{0, 0}, {31, 0}, {31, 11}, {0, 11}}));
+    for (int part = 0; part < 3; ++part) {
+      const double from = 10.3 * part, to = part == 2 ? 31 : from + 10.3;
+      MappedAttributes& tags = t.add_part(2 + part, turned({{from, 0}, {to, 0}, {to, 11}, {from, 11}}));
+      tags.height = static_cast<float>(12 + part);
+      tags.roof_shape = RoofShape::gabled;
+      tags.roof_height = 3.7f;
+    }
+    t.build();
+    ASSERT_EQ(t.region.buildings[0].parts.size(), 3u);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < a; ++b) {
+        const model::BuildingPart &p = t.part(0, a), &q = t.part(0, b);
+        gables += p.built_roof == RoofShape::gabled;
+        EXPECT_EQ(geometry::common_volume({p.lod2.vertices, p.lod2_triangles.triangles},
+                                          {q.lod2.vertices, q.lod2_triangles.triangles}) >
+                      geometry::kLeastCommonVolume,
+                  false)
+            << p.id << " and " << q.id;
+      }
+  }
+  EXPECT_GT(gables, 60);
 }
 
 }  // namespace

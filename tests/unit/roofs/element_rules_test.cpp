@@ -72,7 +72,7 @@ TEST(TapeMeasure, FindsWhatBreaksARule) {
   EXPECT_THAT(complaints(plan, RoofShape::gabled, {{10, 1}, {12.79, 1}}), ElementsAre(HasSubstr("from dormer 1")));
   EXPECT_THAT(complaints(plan, RoofShape::gabled, {{10, 1}, {12.8, 1}}), ElementsAre());
   EXPECT_THAT(complaints(plan, RoofShape::hipped, {{3, 1}}), ElementsAre(HasSubstr("from a fold")));
-  // An element turned out of its slope, one in another's place, a chimney in the air.
+  // An element turned out of its slope, one in another's place, a chimney in the air, one in the roof.
   GabledHouse house(1);
   ASSERT_TRUE(add_dormer(house.roof, house.south(), flat_dormer(), {10, 1}));
   Roof bent = house.roof;
@@ -81,7 +81,9 @@ TEST(TapeMeasure, FindsWhatBreaksARule) {
   auto stack = chimney(house.roof, {{5, 5}, {1, 0}}).value();
   EXPECT_THAT(broken_rules(house.roof, {stack}), ElementsAre());
   for (Point3& p : stack.solid.vertices) p.z += 0.03;
-  EXPECT_THAT(broken_rules(house.roof, {stack}), testing::Contains(HasSubstr("hangs")));
+  EXPECT_THAT(broken_rules(house.roof, {stack}), testing::Contains(HasSubstr("off its slope")));
+  for (Point3& p : stack.solid.vertices) p.z -= 0.035;
+  EXPECT_THAT(broken_rules(house.roof, {stack}), testing::Contains(HasSubstr("cuts")));
   for (Point3& p : stack.solid.vertices) p = {p.x + 5, p.y - 3.5, p.z};
   EXPECT_THAT(broken_rules(house.roof, {stack}), testing::Contains(HasSubstr("stands over dormer")));
 }

@@ -317,9 +317,9 @@ std::vector<std::string> broken_rules(const Roof& roof, const std::vector<RoofIn
       } else {
         const Point3 n = doubled_area(roof.surfaces[slope].loops[0]);
         for (const Point3& p : loop)
-          if (dot(n, minus(p, roof.surfaces[slope].loops[0][0])) > 0)
-            complain(name + " hangs " + metres(off) + " over its slope");
-        if (off > 0.03) complain(name + " lies " + metres(off) + " off its slope");
+          if (dot(n, minus(p, roof.surfaces[slope].loops[0][0])) <= 0)
+            complain(name + " cuts " + metres(off) + " into its slope");
+        if (off > 0.015) complain(name + " lies " + metres(off) + " off its slope");
       }
     }
   }

@@ -265,6 +265,50 @@ TEST(PartsShare, CanBeSwitchedOff) {
   EXPECT_TRUE(s.has_point("w1.w2", {9.875, 0}));
 }
 
+// ---- plans apart on the grid ----------------------------------------------------------------------------------------
+
+/// Edges of both that run the same line in opposite directions.
+int common_walls(const Polygon& a, const Polygon& b) {
+  int n = 0;
+  for (std::size_t i = 0; i < a.outer.size(); ++i)
+    for (std::size_t k = 0; k < b.outer.size(); ++k)
+      n += a.outer.points[i] == b.outer.points[(k + 1) % b.outer.size()] &&
+           a.outer.points[(i + 1) % a.outer.size()] == b.outer.points[k];
+  return n;
+}
+
+TEST(PartsApart, WallsInPartDrawnOverEachOtherBecomeOne) {
+  // Overlaps below half a square metre, at many angles: corners of one part on walls of another, a hair inside.
+  for (int turn = 1; turn <= 12; ++turn) {
+    SCOPED_TRACE(turn);
+    const double slope = 0.013 * turn * turn, scale = 1 / std::sqrt(1 + slope * slope);
+    const auto box = [&](double x0, double y0, double x1, double y1) {
+      std::vector<Point2> out;
+      for (const Point2 p : {Point2{x0, y0}, Point2{x1, y0}, Point2{x1, y1}, Point2{x0, y1}})
+        out.push_back(model::snap(Point2{(p.x - slope * p.y) * scale, (slope * p.x + p.y) * scale}));
+      return out;
+    };
+    Scene s(box(0, 0, 30, 12));
+    RepairOptions options;
+    options.share_walls = false;
+    s.part(2, box(0, 0, 10.004, 12)).part(3, box(10, 0, 20, 5)).part(4, box(10.002, 5, 20.003, 12.0)).fit(options);
+    const std::vector<std::string> ids = s.ids();
+    for (std::size_t a = 0; a < ids.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b) EXPECT_EQ(s.common(ids[a], ids[b]), 0) << ids[a] << " and " << ids[b];
+    EXPECT_GE(common_walls(s.plan("w1.w2"), s.plan("w1.w3")), 1);
+    EXPECT_GE(common_walls(s.plan("w1.w2"), s.plan("w1.w4")), 1);
+    EXPECT_NEAR(s.area("w1.w2") + s.area("w1.w3") + s.area("w1.w4"), 240, 0.1);
+  }
+}
+
+TEST(PartsApart, PartsOneAboveTheOtherStayAsTheyAre) {
+  Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
+  s.part(2, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {10.0f, {}, {}, {}})
+      .part(3, {{0.003, 2}, {8, 2}, {8, 8}, {0.003, 8}}, {30.0f, 10.0f, {}, {}})
+      .fit();
+  EXPECT_NEAR(s.common("w1.w2", "w1.w3"), s.area("w1.w3"), 1e-9);
+}
+
 // ---- overlaps -------------------------------------------------------------------------------------------------------
 
 TEST(PartsOverlap, TheSmallerPartKeepsTheCommonArea) {
