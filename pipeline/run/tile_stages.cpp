@@ -58,7 +58,7 @@ Region prepare(const footprints::Shard& shard, std::span<const std::uint32_t> nu
       building.parts.clear();
       continue;
     }
-    repair::fit_parts(building, before, in.kept, in.repair, region.part_failures, region.report);
+    repair::fit_parts(building, before, in.kept, in.repair, region.part_failures, region.settled_parts, region.report);
   }
   in.roof_lines.fit(region);
   return region;

@@ -172,7 +172,8 @@ std::vector<Polygon> outline_of_parts(const Building& building, const KeptNodes&
 }
 
 void fit_parts(Building& building, std::span<const Polygon> outline_before, const KeptNodes& kept,
-               const RepairOptions& options, std::vector<model::PartFailure>& failures, model::Report& report) {
+               const RepairOptions& options, std::vector<model::PartFailure>& failures,
+               std::vector<model::SettledPart>& settled, model::Report& report) {
   if (!building.has_mapped_parts) {
     building.parts.clear();
     add_pieces(building.parts, whole(building), building.outline);
@@ -228,7 +229,7 @@ void fit_parts(Building& building, std::span<const Polygon> outline_before, cons
   building.parts = std::move(parts);
   if (!options.fit_parts) return;
   add_rest(building, bodies, options, report);
-  separate_parts(building.parts, building.mapped, options, report);
+  separate_parts(building, options, settled, report);
 }
 
 }  // namespace blockrand::repair

@@ -30,20 +30,23 @@ std::vector<model::Polygon> outline_of_parts(const model::Building& building, co
 /// 4. What sticks out of the outline stays as mapped, since nothing mapped is lost and overhanging storeys are real,
 ///    and is reported (PARTS_OUTSIDE).
 /// 5. Parts that overlap at overlapping heights: the smaller part, of equal ones that of the lower id, keeps the common
-///    area, the other gives way (PARTS_OVERLAP); where it would vanish the overlap stays and is reported.
+///    area, the other gives way (PARTS_OVERLAP).
 /// 6. What the parts leave of the outline is built as part "….rest" when it is larger than `parts_free_area` and wider
 ///    than `parts_free_width` (PARTS_INCOMPLETE).
-/// 7. What still overlaps or almost meets is cut apart on the grid (separate_parts).
+/// 7. What still overlaps or almost meets is cut apart on the grid (separate_parts). A part that smaller ones cover to the
+///    last is represented by one of them.
 ///
 /// Without RepairOptions::fit_parts only 1 and 4 are done.
 ///
-/// Guarantees: plans are strictly simple; no part vanishes but by 1; points that two parts have in common stay so, and
+/// Guarantees: plans are strictly simple; no part vanishes but by 1 and 7; points that two parts have in common stay so, and
 /// where the outline did not move step 2 moves nothing; the result does not depend on where rings start.
 /// \param outline_before  the outline after repair_rings, before shared walls and squaring; equal to the building's
 ///                        `outline` where these moved nothing. Ignored where the building has no outline
 /// \param building        parts with their `rings` as mapped; `canopy` may be set for building:part=roof. A building
 ///                        whose outline failed has its `failure` set, which is taken back when its parts stand
+/// \param settled  gets parts that others stand for
 void fit_parts(model::Building& building, std::span<const model::Polygon> outline_before, const KeptNodes& kept,
-               const RepairOptions& options, std::vector<model::PartFailure>& failures, model::Report& report);
+               const RepairOptions& options, std::vector<model::PartFailure>& failures,
+               std::vector<model::SettledPart>& settled, model::Report& report);
 
 }  // namespace blockrand::repair

@@ -135,11 +135,7 @@ void resolve_part_overlaps(std::vector<PartBody>& bodies, const RepairOptions& o
     if (taken.empty()) continue;
     const double overlap = geometry::common_area(weak.polygons, taken);
     std::vector<Polygon> rest = plan_without(weak.polygons, taken, options);
-    if (rest.empty()) {
-      report.add(weak.osm, IssueCode::parts_overlap,
-                 square_metres(overlap) + " with " + takers + "; stays, nothing else is left");
-      continue;
-    }
+    if (rest.empty()) continue;  // separate_parts decides and tells
     weak.polygons = std::move(rest);
     report.add(weak.osm, IssueCode::parts_overlap, square_metres(overlap) + " given to " + takers);
   }

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -24,6 +26,8 @@ using model::Ring;
 
 /// Tips that are cut off leave new corners, which rounding may put into another part; so it is done again.
 constexpr int kRounds = 3;
+constexpr double kLeastShare = 0.05;  // of a plan; of one that keeps less, only slivers are left
+constexpr double kHigher = 1.0;      // m; less is one storey counted and measured
 constexpr double kTold = 0.01;  // m²; less is what rounding and two drawings of one wall make
 
 struct Piece {
@@ -106,6 +110,23 @@ class Drawing {
   /// Of a plan as it is drawn, and of what it keeps. m²
   double drawn(std::size_t piece) const { return area([&](std::size_t f) { return winding_[f][piece] > 0; }); }
   double kept(std::size_t piece) const { return area([&](std::size_t f) { return kept_[f][piece]; }); }
+
+  /// Who keeps most of the ground that a piece loses; nobody where the piece is known to reach higher than one of those
+  /// who take it.
+  std::optional<std::size_t> strongest_over(std::size_t piece) const {
+    std::vector<double> areas(group_.size(), 0);
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      if (winding_[f].empty() || winding_[f][piece] <= 0 || kept_[f][piece]) continue;
+      for (std::size_t k = 0; k < group_.size(); ++k) {
+        if (!kept_[f][k] || !heights_meet(group_[k].heights, group_[piece].heights)) continue;
+        const HeightSpan &mine = group_[piece].heights, &its = group_[k].heights;
+        if (std::isfinite(mine.high) && mine.high > its.high + kHigher) return std::nullopt;
+        areas[k] += geometry::area(faces_[f].polygon);
+      }
+    }
+    const auto most = std::max_element(areas.begin(), areas.end());
+    return *most > 0 ? std::optional(static_cast<std::size_t>(most - areas.begin())) : std::nullopt;
+  }
 
   /// The faces that a piece keeps, or all of its own, united; empty where a ring would touch itself.
   std::vector<Polygon> united(std::size_t piece, bool all) const {
@@ -250,12 +271,31 @@ bool same(const Polygon& a, const Polygon& b) {
                     [](const Ring& g, const Ring& h) { return g.points == h.points; });
 }
 
+/// Whether nothing that is worth a part is left to a piece.
+bool vanishes(const Drawing& drawing, std::size_t piece) {
+  return drawing.kept(piece) < kLeastShare * drawing.drawn(piece);
+}
+
+/// Mapped parts of which no piece is left.
+void settle(const model::Building& building, const std::map<std::size_t, model::OsmId>& represented,
+            std::vector<model::SettledPart>& settled) {
+  for (const auto& [part, by] : represented) {
+    const std::uint32_t mapped = building.parts[part].mapped_index;
+    bool stands = mapped == building.mapped_index;  // its state is the building's
+    for (std::size_t i = 0; i < building.parts.size() && !stands; ++i)
+      stands = building.parts[i].mapped_index == mapped && (i < part || !represented.contains(i)) && i != part;
+    if (!stands) settled.push_back({mapped, model::ObjectState::represented, by});
+  }
+}
+
 /// One round. \return whether plans changed so that another may find something
-bool separate_once(std::vector<BuildingPart>& parts, const model::MappedAttributes& building,
-                   const RepairOptions& options, model::Report& report) {
+bool separate_once(model::Building& building, const RepairOptions& options, std::vector<model::SettledPart>& settled,
+                   model::Report& report) {
+  std::vector<BuildingPart>& parts = building.parts;
   bool again = false;
   std::map<std::size_t, std::vector<Polygon>> fresh;  // by part
-  for (const std::vector<Piece>& group : groups_of(parts, building)) {
+  std::map<std::size_t, model::OsmId> represented;    // by part
+  for (const std::vector<Piece>& group : groups_of(parts, building.mapped)) {
     const Drawing drawing(parts, group);
     for (std::size_t i = 0; i < group.size(); ++i) {
       const BuildingPart& part = parts[group[i].part];
@@ -263,7 +303,18 @@ bool separate_once(std::vector<BuildingPart>& parts, const model::MappedAttribut
       std::vector<Polygon> polygons = drawing.united(i, lost <= 0);
       if (geometry::cut_slivers(polygons, options.spike_width) > 0 || lost > 0) again = true;
       if (lost > 0) std::erase_if(polygons, [](const Polygon& p) { return !worth_a_part(p); });
-      // What would vanish stays, and so does what would touch itself.
+      if (polygons.empty() && lost > 0 && vanishes(drawing, i)) {
+        if (const auto taker = drawing.strongest_over(i)) {
+          const BuildingPart& other = parts[group[*taker].part];
+          report.add(part.osm, model::IssueCode::parts_overlap,
+                     square_metres(lost) + " with " + other.osm.text() + ", which stands for it");
+          represented[group[i].part] = other.osm;
+          continue;
+        }
+        report.add(part.osm, model::IssueCode::parts_overlap, square_metres(lost) + " with others; stays, it is higher");
+        continue;
+      }
+      // What would touch itself stays.
       if (polygons.empty()) polygons = drawing.united(i, true);
       if (polygons.empty() || (polygons.size() == 1 && same(polygons[0], part.plan))) continue;
       restore_nodes(polygons, std::vector<Polygon>{part.plan});
@@ -272,9 +323,11 @@ bool separate_once(std::vector<BuildingPart>& parts, const model::MappedAttribut
       fresh[group[i].part] = std::move(polygons);
     }
   }
-  if (fresh.empty()) return false;
+  if (fresh.empty() && represented.empty()) return false;
+  settle(building, represented, settled);
   std::vector<BuildingPart> out;
   for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (represented.contains(i)) continue;
     const auto found = fresh.find(i);
     if (found == fresh.end())
       out.push_back(std::move(parts[i]));
@@ -287,10 +340,10 @@ bool separate_once(std::vector<BuildingPart>& parts, const model::MappedAttribut
 
 }  // namespace
 
-void separate_parts(std::vector<BuildingPart>& parts, const model::MappedAttributes& building,
-                    const RepairOptions& options, model::Report& report) {
-  for (int round = 0; round < kRounds && parts.size() > 1; ++round)
-    if (!separate_once(parts, building, options, report)) return;
+void separate_parts(model::Building& building, const RepairOptions& options, std::vector<model::SettledPart>& settled,
+                    model::Report& report) {
+  for (int round = 0; round < kRounds && building.parts.size() > 1; ++round)
+    if (!separate_once(building, options, settled, report)) return;
 }
 
 }  // namespace blockrand::repair

@@ -80,9 +80,9 @@ TEST(TapeMeasure, FindsWhatBreaksARule) {
   EXPECT_THAT(broken_rules(bent, {}), testing::Not(ElementsAre()));
   auto stack = chimney(house.roof, {{5, 5}, {1, 0}}).value();
   EXPECT_THAT(broken_rules(house.roof, {stack}), ElementsAre());
-  for (Point3& p : stack.solid.vertices) p.z += 0.03;
+  for (Point3& p : stack.solid.vertices) p.z += 0.05;
   EXPECT_THAT(broken_rules(house.roof, {stack}), testing::Contains(HasSubstr("off its slope")));
-  for (Point3& p : stack.solid.vertices) p.z -= 0.035;
+  for (Point3& p : stack.solid.vertices) p.z -= 0.055;
   EXPECT_THAT(broken_rules(house.roof, {stack}), testing::Contains(HasSubstr("cuts")));
   for (Point3& p : stack.solid.vertices) p = {p.x + 5, p.y - 3.5, p.z};
   EXPECT_THAT(broken_rules(house.roof, {stack}), testing::Contains(HasSubstr("stands over dormer")));

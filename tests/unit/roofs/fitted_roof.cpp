@@ -319,7 +319,7 @@ std::vector<std::string> broken_rules(const Roof& roof, const std::vector<RoofIn
         for (const Point3& p : loop)
           if (dot(n, minus(p, roof.surfaces[slope].loops[0][0])) <= 0)
             complain(name + " cuts " + metres(off) + " into its slope");
-        if (off > 0.015) complain(name + " lies " + metres(off) + " off its slope");
+        if (off > 0.03) complain(name + " lies " + metres(off) + " off its slope");
       }
     }
   }

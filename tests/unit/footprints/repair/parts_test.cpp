@@ -35,6 +35,7 @@ struct Scene {
   Building building;
   std::vector<Polygon> before;
   std::vector<model::PartFailure> failures;
+  std::vector<model::SettledPart> settled;
   model::Report report;
 
   explicit Scene(std::vector<Point2> outline) {
@@ -62,7 +63,7 @@ struct Scene {
     return *this;
   }
   Scene& fit(const RepairOptions& options = {}) {
-    fit_parts(building, before, {}, options, failures, report);
+    fit_parts(building, before, {}, options, failures, settled, report);
     for (const BuildingPart& p : building.parts) EXPECT_TRUE(geometry::strictly_simple(p.plan)) << p.id;
     return *this;
   }
@@ -340,11 +341,27 @@ TEST(PartsOverlap, AtOtherHeightsPartsOverlapFreely) {
   EXPECT_EQ(s.detail(IssueCode::parts_overlap), "-");
 }
 
-TEST(PartsOverlap, NoPartVanishes) {
+TEST(PartsOverlap, OfAPartDrawnTwiceOneStandsForTheOther) {
   Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
   s.part(2, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}).part(3, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}).fit();
-  EXPECT_EQ(s.ids(), (Ids{"w1.w2", "w1.w3"}));
-  EXPECT_EQ(s.detail(IssueCode::parts_overlap), "w3 200.00 m2 with w2; stays, nothing else is left");
+  EXPECT_EQ(s.ids(), (Ids{"w1.w2"}));
+  ASSERT_EQ(s.settled.size(), 1u);
+  EXPECT_EQ(s.settled[0].mapped_index, 3u);
+  EXPECT_EQ(s.settled[0].state, model::ObjectState::represented);
+  EXPECT_EQ(s.settled[0].related, (model::OsmId{model::OsmType::way, 2}));
+  EXPECT_EQ(s.detail(IssueCode::parts_overlap), "w3 200.00 m2 with w2, which stands for it");
+}
+
+TEST(PartsOverlap, AHigherPartOverOthersStays) {
+  // A tower drawn over two parts that fill its plan: its upper half is nobody else's.
+  Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
+  s.part(2, {{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {10.0f, {}, {}, {}})
+      .part(3, {{10, 0}, {20, 0}, {20, 10}, {10, 10}}, {10.0f, {}, {}, {}})
+      .part(4, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {30.0f, {}, {}, {}})
+      .fit();
+  EXPECT_EQ(s.ids(), (Ids{"w1.w2", "w1.w3", "w1.w4"}));
+  EXPECT_TRUE(s.settled.empty());
+  EXPECT_EQ(s.detail(IssueCode::parts_overlap), "w4 200.00 m2 with others; stays, it is higher");
 }
 
 TEST(PartsOverlap, APartCutInTwoIsTwoPieces) {

@@ -71,12 +71,13 @@ void run(const fs::path& file) {
       std::set<std::uint32_t> mapped;
       for (const auto& p : b.parts) mapped.insert(p.mapped_index);
       from = Clock::now();
-      fit_parts(b, before, kept, options, tile.part_failures, tile.report);
+      fit_parts(b, before, kept, options, tile.part_failures, tile.settled_parts, tile.report);
       f.parts_s += seconds(from);
-      // Nothing lost: every mapped part is a body or a failure, every building has a body or a reason.
+      // Nothing lost: every mapped part is a body, a failure or represented by another, every building has a body or a reason.
       for (const auto& p : b.parts) mapped.erase(p.mapped_index);
       for (std::size_t i = failures_before; i < tile.part_failures.size(); ++i)
         mapped.erase(tile.part_failures[i].mapped_index);
+      for (const model::SettledPart& p : tile.settled_parts) mapped.erase(p.mapped_index);
       EXPECT_TRUE(mapped.empty()) << b.id();
       EXPECT_EQ(b.parts.empty(), b.failure != model::IssueCode::none) << b.id();
       f.failed += b.parts.empty();
@@ -153,7 +154,8 @@ struct Fit {
 Fit fit_of(model::Building b, const std::vector<model::Polygon>& before, const KeptNodes& kept) {
   std::vector<model::PartFailure> failures;
   model::Report report;
-  fit_parts(b, before, kept, {}, failures, report);
+  std::vector<model::SettledPart> settled;
+  fit_parts(b, before, kept, {}, failures, settled, report);
   std::vector<model::Polygon> plans;
   for (const model::BuildingPart& part : b.parts) {
     EXPECT_TRUE(geometry::strictly_simple(part.plan)) << part.id;

@@ -19,7 +19,7 @@ inline void repair_alone(model::Region& region, const RepairOptions& given = {})
       building.failure = outline.failure;
     }
     const std::vector<model::Polygon> before = building.outline;
-    fit_parts(building, before, {}, options, region.part_failures, region.report);
+    fit_parts(building, before, {}, options, region.part_failures, region.settled_parts, region.report);
   }
 }
 
