@@ -17,6 +17,7 @@
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/masses/envelope.h"
+#include "pipeline/masses/stacked_parts.h"
 #include "pipeline/masses/walls_inside.h"
 #include "styles/roofs/eaves_lines.h"
 #include "styles/roofs/roof.h"
@@ -39,11 +40,6 @@ using model::RoofShape;
 using model::Solid;
 using model::SolidTriangles;
 using model::SurfaceKind;
-
-/// Vertical extent of a mass, all z above the build's height reference.
-struct Levels {
-  double bottom = 0, eaves = 0, top = 0;
-};
 
 struct Checked {
   Solid solid;
@@ -77,25 +73,41 @@ class MassBuilder {
   MassBuilder(Region& region, const attributes::Defaults& defaults, const attributes::GenerateOptions& options)
       : region_(region), defaults_(defaults), options_(options) {}
 
-  void build(BodyIndex body, int lod) {
-    model::Building& building = region_.buildings[body.building];
-    BuildingPart& part = building.parts[body.part];
-    if (part.plan.outer.size() < 3) return;
-    building_ = &building;
-    body_ = body;
-    if (part.roof_plan.outer.size() < 3) attributes::prepare_roof_plans(building, options_.collinear_tolerance);
-    part.lod = 0;
-    const EnvelopeMaterials materials = materials_of(part);
-    const Levels levels = levels_of(part);
-    if (lod >= 1) build_lod1(part, part.roof_plan, levels, materials);
-    if (lod >= 2) build_lod2(part, part.roof_plan, levels, materials);
-    if (part.lod < lod) note(part, part.lod == 1 ? IssueCode::lod1_only : IssueCode::no_solid);
+  void build(std::uint32_t building, int lod) {
+    building_ = &region_.buildings[building];
+    std::vector<Levels> levels;
+    std::vector<Polygon> plans;
+    for (BuildingPart& part : building_->parts) {
+      const bool planned = part.plan.outer.size() >= 3;
+      if (planned && part.roof_plan.outer.size() < 3)
+        attributes::prepare_roof_plans(*building_, options_.collinear_tolerance);
+      levels.push_back(planned ? levels_of(part) : Levels{});
+      plans.push_back(planned ? part.roof_plan : Polygon{});
+    }
+    if (levels.size() > 1)
+      for (const GivenWay& g : settle_stacks(plans, levels)) {
+        const BuildingPart &part = building_->parts[g.part], &other = building_->parts[g.other];
+        region_.report.add(part.osm, IssueCode::parts_overlap,
+                           fmt::format("{}: {:.2f} m of its height given to {}", part.id, g.metres, other.id));
+      }
+    for (std::uint32_t p = 0; p < levels.size(); ++p) {
+      body_ = {building, p};
+      if (!plans[p].outer.points.empty()) build(building_->parts[p], levels[p], lod);
+    }
   }
 
   /// What was built; the builder has nothing left.
   BuiltMasses take() { return BuiltMasses(std::move(built_)); }
 
  private:
+  void build(BuildingPart& part, const Levels& levels, int lod) {
+    part.lod = 0;
+    const EnvelopeMaterials materials = materials_of(part);
+    if (lod >= 1) build_lod1(part, part.roof_plan, levels, materials);
+    if (lod >= 2) build_lod2(part, part.roof_plan, levels, materials);
+    if (part.lod < lod) note(part, part.lod == 1 ? IssueCode::lod1_only : IssueCode::no_solid);
+  }
+
   void note(BuildingPart& part, IssueCode code, std::string detail = {}) {
     part.fallbacks.push_back(code);
     region_.report.add(part.osm, code, detail.empty() ? part.id : part.id + ": " + detail);
@@ -302,7 +314,7 @@ BuiltMasses build_masses(Region& region, const attributes::Defaults& defaults,
   MassBuilder builder(region, defaults, options);
   for (std::uint32_t b = 0; b < region.buildings.size(); ++b) {
     if (!region.buildings[b].owned) continue;
-    for (std::uint32_t p = 0; p < region.buildings[b].parts.size(); ++p) builder.build({b, p}, lod);
+    builder.build(b, lod);
   }
   return builder.take();
 }

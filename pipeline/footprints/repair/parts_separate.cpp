@@ -27,6 +27,7 @@ using model::Ring;
 /// Tips that are cut off leave new corners, which rounding may put into another part; so it is done again.
 constexpr int kRounds = 3;
 constexpr double kLeastShare = 0.05;  // of a plan; of one that keeps less, only slivers are left
+constexpr double kStrip = 0.1;       // m; two drawings of one wall lie that near
 constexpr double kHigher = 1.0;      // m; less is one storey counted and measured
 constexpr double kTold = 0.01;  // m²; less is what rounding and two drawings of one wall make
 
@@ -54,7 +55,12 @@ bool near(const Piece& a, const Piece& b) {
          b.low.y <= a.high.y + kReach;
 }
 
-/// Pieces that stand at one height and come near each other, and what hangs together by such; the stronger first: the
+/// Whether two stand at one height by some reading: metres and storeys of 3 m without a margin.
+bool may_meet(const HeightSpan& a, const HeightSpan& b) {
+  return std::min(a.high, b.high) > std::max(a.low, b.low);
+}
+
+/// Pieces that may stand at one height and come near each other, and what hangs together by such; the stronger first: the
 /// smaller, of equal ones that of the lower id.
 std::vector<std::vector<Piece>> groups_of(const std::vector<BuildingPart>& parts,
                                           const model::MappedAttributes& building) {
@@ -72,7 +78,7 @@ std::vector<std::vector<Piece>> groups_of(const std::vector<BuildingPart>& parts
   };
   for (std::size_t i = 0; i < pieces.size(); ++i)
     for (std::size_t k = 0; k < i; ++k)
-      if (near(pieces[i], pieces[k]) && heights_meet(pieces[i].heights, pieces[k].heights)) group[root(i)] = root(k);
+      if (near(pieces[i], pieces[k]) && may_meet(pieces[i].heights, pieces[k].heights)) group[root(i)] = root(k);
   std::map<std::size_t, std::vector<Piece>> out;
   for (std::size_t i = 0; i < pieces.size(); ++i) out[root(i)].push_back(pieces[i]);
   std::vector<std::vector<Piece>> several;
@@ -193,17 +199,21 @@ class Drawing {
     }
   }
 
-  /// Each face goes to the strongest, and to those that stand at other heights.
+  /// Each face goes to the strongest, and to those that stand at other heights. Strips between two drawings of one wall
+  /// go to one even where heights that are counted and measured leave it open.
   void share_out() {
     kept_.assign(faces_.size(), std::vector<bool>(group_.size(), false));
-    for (std::size_t f = 0; f < faces_.size(); ++f)
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      const bool slim = geometry::equivalent_width(faces_[f].polygon) < kStrip;
       for (std::size_t i = 0; i < group_.size(); ++i) {
         if (winding_[f].empty() || winding_[f][i] <= 0) continue;
         bool free = true;
         for (std::size_t k = 0; k < i && free; ++k)
-          free = !kept_[f][k] || !heights_meet(group_[k].heights, group_[i].heights);
+          free = !kept_[f][k] || !(heights_meet(group_[k].heights, group_[i].heights) ||
+                                   (slim && may_meet(group_[k].heights, group_[i].heights)));
         kept_[f][i] = free;
       }
+    }
   }
 
   std::vector<std::size_t> connected(std::size_t first, const std::vector<bool>& in, std::vector<bool>& done) const {

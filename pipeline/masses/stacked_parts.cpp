@@ -1,0 +1,50 @@
+#include "pipeline/masses/stacked_parts.h"
+
+#include <algorithm>
+
+#include "pipeline/geometry/valid_polygon.h"
+
+namespace blockrand::masses {
+
+namespace {
+
+constexpr double kLeastCommon = 1e-4;     // m²; less is no ground that two parts share
+constexpr double kLeastThickness = 0.01;  // m, of a slab
+
+bool share_ground(const model::Polygon& a, const model::Polygon& b) {
+  const auto box = [](const model::Polygon& p) {
+    model::Point2 low = p.outer.points[0], high = low;
+    for (const model::Point2 q : p.outer.points) {
+      low = {std::min(low.x, q.x), std::min(low.y, q.y)};
+      high = {std::max(high.x, q.x), std::max(high.y, q.y)};
+    }
+    return std::pair(low, high);
+  };
+  const auto [low_a, high_a] = box(a);
+  const auto [low_b, high_b] = box(b);
+  if (low_a.x >= high_b.x || low_b.x >= high_a.x || low_a.y >= high_b.y || low_b.y >= high_a.y) return false;
+  return geometry::common_area(std::vector{a}, std::vector{b}) > kLeastCommon;
+}
+
+}  // namespace
+
+std::vector<GivenWay> settle_stacks(std::span<const model::Polygon> plans, std::span<Levels> levels) {
+  std::vector<GivenWay> out;
+  for (std::size_t i = 0; i < levels.size(); ++i)
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+      // i below k; of equal bottoms neither is below.
+      if (i == k || plans[i].outer.points.size() < 3 || plans[k].outer.points.size() < 3) continue;
+      Levels &lower = levels[i], &upper = levels[k];
+      if (!(lower.bottom < upper.bottom && lower.top > upper.bottom) || !share_ground(plans[i], plans[k])) continue;
+      if (lower.eaves == lower.top && upper.bottom - lower.bottom >= kLeastThickness) {
+        out.push_back({i, k, lower.top - upper.bottom});
+        lower.eaves = lower.top = upper.bottom;
+      } else if (2 * (upper.top - lower.top) >= upper.top - upper.bottom && upper.eaves - lower.top >= kLeastThickness) {
+        out.push_back({k, i, lower.top - upper.bottom});
+        upper.bottom = lower.top;
+      }
+    }
+  return out;
+}
+
+}  // namespace blockrand::masses
