@@ -469,6 +469,28 @@ SolidCheck check_mesh(std::span<const Grid3> vertices, std::span<const std::arra
   return check_shell(vertices, triangles, face_of, half_edges, triangles.size(), doubled_place(vertices));
 }
 
+SolidCheck check_polygon(std::span<const std::vector<model::Point3>> rings) {
+  Solid solid;
+  Face face;
+  face.loop_count = static_cast<std::uint32_t>(rings.size());
+  for (const auto& ring : rings) {
+    solid.loops.push_back({static_cast<std::uint32_t>(solid.indices.size()), static_cast<std::uint32_t>(ring.size())});
+    for (const model::Point3& p : ring) {
+      solid.indices.push_back(static_cast<std::uint32_t>(solid.vertices.size()));
+      solid.vertices.push_back(model::snap(p));
+    }
+  }
+  solid.faces.push_back(face);
+  std::vector<HalfEdge> half_edges;
+  if (const SolidCheck c = walk_loops(solid, half_edges); !c.valid()) return c;
+  const std::vector<Grid3> grid = on_grid(solid);
+  if (!doubled_place(grid).valid()) return check_repetitions(solid, grid);
+  const auto triangles = triangulate(solid);
+  const SolidCheck c = check_faces(solid, triangles ? *triangles : SolidTriangles{}, grid, {});
+  const bool narrow = c.measure > 0 && (c.defect == SolidDefect::ring_crosses || c.defect == SolidDefect::rings_meet);
+  return narrow ? SolidCheck{} : c;  // that rule is ours, for what a grid rounds
+}
+
 double volume(const Solid& solid, const SolidTriangles& triangles) {
   if (solid.vertices.empty()) return 0;
   std::vector<Grid3> grid(solid.vertices.size());

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/solid_defect.h"
@@ -48,6 +49,11 @@ SolidCheck check_solid(const model::Solid& solid);
 /// As above for a mesh of triangles (counter-clockwise from outside) that was read from a file: vertices in whole
 /// steps of any size, equal positions merged by the caller.
 SolidCheck check_mesh(std::span<const Grid3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
+
+/// The rules of rings and polygons alone, 1xx and 2xx, for one polygon that bounds nothing: a face of a window.
+/// Rings that only come near each other are sound.
+/// \param rings  m, rounded to the grid here: the outer one, then holes
+SolidCheck check_polygon(std::span<const std::vector<model::Point3>> rings);
 
 /// Its test of two triangles of different faces, given by indices into `vertices`: whether they share more than
 /// the corners and edges that they have in common by index. Exact.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "pipeline/geometry/check_solid.h"
 #include "pipeline/validate/detail_check.h"
 
 namespace blockrand::validate {
@@ -60,7 +61,10 @@ class TemplateReader {
     for (std::size_t i = 0; i < boundaries->size(); ++i) {
       ReadPolygon polygon;
       for (const Json& r : (*boundaries)[i].is_array() ? (*boundaries)[i] : Json::array()) ring(r, polygon);
-      if (polygon.rings.empty()) rule("has a surface without rings");
+      if (polygon.rings.empty())
+        rule("has a surface without rings");
+      else if (const geometry::SolidCheck c = geometry::check_polygon(polygon.rings); !c.valid())
+        rule(fmt::format("has a surface that is invalid: {}", c.text()));
       if (const Json* value = element(values, i); value && !value->is_null()) {
         const auto m = whole(value);
         if (m && *m < colours_.size())

@@ -58,6 +58,21 @@ TEST(CheckSolid, NumbersAreThoseOfVal3dity) {
   EXPECT_EQ(SolidCheck{SolidDefect::open_edge}.text(), "302 shell not closed");
 }
 
+TEST(CheckPolygon, KnowsRingsAndPlanes) {
+  using Rings = std::vector<std::vector<model::Point3>>;
+  const auto code = [](const Rings& rings) { return check_polygon(rings).code(); };
+  const std::vector<model::Point3> frame{{0, 0, 0}, {2, 0, 0}, {2, 0, 1}, {0, 0, 1}};
+  const std::vector<model::Point3> pane{{0.5, 0, 0.2}, {0.5, 0, 0.8}, {1.5, 0, 0.8}, {1.5, 0, 0.2}};
+  EXPECT_EQ(code({frame}), 0);
+  EXPECT_EQ(code({frame, pane}), 0);
+  EXPECT_EQ(code({frame, {pane.rbegin(), pane.rend()}}), 208);
+  EXPECT_EQ(code({frame, {{1.5, 0, 0.2}, {1.5, 0, 0.8}, {2.5, 0, 0.8}, {2.5, 0, 0.2}}}), 201);
+  EXPECT_EQ(code({{{0, 0, 0}, {2, 0, 1}, {2, 0, 0}, {0, 0, 1}}}), 104);
+  EXPECT_EQ(code({{{0, 0, 0}, {2, 0, 0}}}), 101);
+  EXPECT_EQ(code({{{0, 0, 0}, {2, 0, 0}, {2, 0, 0}, {0, 0, 1}}}), 102);
+  EXPECT_EQ(code({{{0, 0, 0}, {2, 0.1, 0}, {2, 0, 1}, {0, 0.1, 1}}}), 203);
+}
+
 TEST(CheckSolid, TellsWhatIsConcerned) {
   const auto of = [&](const std::string& name) {
     for (const auto& b : testing_shapes::broken_solids())
