@@ -452,5 +452,46 @@ TEST(Mass, PartsThatShareAGableShareNoRoom) {
   EXPECT_GT(gables, 60);
 }
 
+TEST(Mass, PartsThatStandOnEachOtherShareNoHeight) {
+  Town t;
+  t.add({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
+  const std::vector<Point2> plan{{0, 0}, {20, 0}, {20, 10}, {0, 10}};
+  const auto part = [&](std::int64_t number, float bottom, float top) {
+    MappedAttributes& tags = t.add_part(number, plan);
+    if (bottom > 0) tags.min_height = bottom;
+    tags.height = top;
+    tags.roof_shape = RoofShape::flat;
+  };
+  part(2, 0, 9.5f);
+  part(3, 9.5f, 9.53f);  // a slab of 3 cm, which would be thickened to a wall's least height
+  part(4, 9.53f, 14);
+  t.build();
+  ASSERT_EQ(t.region.buildings[0].parts.size(), 3u);
+  for (std::size_t a = 0; a < 3; ++a) {
+    EXPECT_EQ(t.part(0, a).lod, 2);
+    for (std::size_t b = 0; b < a; ++b)
+      EXPECT_FALSE(geometry::interiors_meet({t.part(0, a).lod2.vertices, t.part(0, a).lod2_triangles.triangles},
+                                            {t.part(0, b).lod2.vertices, t.part(0, b).lod2_triangles.triangles}));
+  }
+}
+
+TEST(Mass, ATowerOnAPitchedRoofBeginsAtItsRidge) {
+  Town t;
+  t.add({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
+  MappedAttributes& house = t.add_part(2, {{0, 0}, {20, 0}, {20, 10}, {0, 10}});
+  house.height = 12.0f;
+  house.roof_shape = RoofShape::gabled;
+  house.roof_height = 1.0f;
+  MappedAttributes& tower = t.add_part(3, {{5, 3}, {9, 3}, {9, 7}, {5, 7}});
+  tower.min_storey = 4.0f;  // by its storeys it begins at the eaves
+  tower.height = 20.0f;
+  tower.roof_shape = RoofShape::flat;
+  t.build();
+  ASSERT_EQ(t.region.buildings[0].parts.size(), 2u);
+  EXPECT_EQ(t.part(0, 0).built_roof, RoofShape::gabled);
+  EXPECT_FALSE(geometry::interiors_meet({t.part(0, 0).lod2.vertices, t.part(0, 0).lod2_triangles.triangles},
+                                        {t.part(0, 1).lod2.vertices, t.part(0, 1).lod2_triangles.triangles}));
+}
+
 }  // namespace
 }  // namespace blockrand::masses
