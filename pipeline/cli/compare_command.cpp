@@ -15,6 +15,7 @@
 #include "pipeline/cli/signals.h"
 #include "pipeline/compare/compare.h"
 #include "pipeline/compare/comparison_report.h"
+#include "pipeline/run/output_place.h"
 #include "pipeline/settings/command_line.h"
 
 namespace blockrand::cli {
@@ -116,7 +117,11 @@ int run_compare(const std::vector<std::string>& arguments) {
     std::vector<std::string> inputs = s.comparison.reference;
     inputs.insert(inputs.end(), {s.comparison.model, s.baseline});
     base::refuse_inputs_in(s.build.output, inputs);
-    folder.emplace(s.build.output, s.build.force, base::FolderKind{.name = "comparison", .marker = "compare.json"});
+    const auto foreign = [](const std::string& at) {
+      return run::files_other_than({"compare.json", "compare.csv", "compare.gpkg", "compare.html"}, at);
+    };
+    folder.emplace(s.build.output, s.build.force,
+                   base::FolderKind{.name = "comparison", .marker = "compare.json", .foreign = foreign});
     tell_removed(*folder, progress);
   }
   s.comparison.crs = s.build.crs;

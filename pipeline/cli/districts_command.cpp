@@ -21,6 +21,7 @@
 #include "pipeline/cli/signals.h"
 #include "pipeline/cli/staged_file.h"
 #include "pipeline/run/district_survey.h"
+#include "pipeline/run/output_place.h"
 #include "pipeline/settings/command_line.h"
 #include "styles/classify/catalogue.h"
 #include "styles/districts/presets.h"
@@ -122,8 +123,12 @@ int show(Settings& s) {
   s.build.input = s.files.front();
   clean_up_on_signals(s.log_format);
   base::refuse_inputs_in(s.build.output, {s.build.input, s.build.configs, s.build.districts});
-  base::StagedFolder folder(s.build.output, s.build.force,
-                            base::FolderKind{.name = "map of districts", .marker = "districts.json"});
+  const auto foreign = [](const std::string& at) {
+    return run::files_other_than({"districts.json", "districts.gpkg", "map.png"}, at);
+  };
+  base::StagedFolder folder(
+      s.build.output, s.build.force,
+      base::FolderKind{.name = "map of districts", .marker = "districts.json", .foreign = foreign});
   base::Progress progress(s.progress, s.log_format, s.quiet);
   tell_removed(folder, progress);
   const attributes::ReadRuleSets book = attributes::read_rule_sets(s.build.configs, s.build.districts);

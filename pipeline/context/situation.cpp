@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "pipeline/base/portable_math.h"
+#include "pipeline/context/wall_samples.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 
@@ -266,19 +268,21 @@ std::vector<std::string> courtyards_of(const model::Building& building, const Ed
   std::vector<std::string> out;
   const std::vector<std::uint32_t> near = index.yards_near(box_of(building, 1));
   if (near.empty()) return out;
+  const geometry::BoxIndex boxes = yard_boxes(near, index);
+  std::set<std::uint32_t> found;
   constexpr double kBefore = 0.45;  // m; walls and yards are mapped that well
   for (const WallSegment& f : building.edges) {
     if (f.kind == WallSegmentKind::party_wall || f.kind == WallSegmentKind::street) continue;
     const OutlineEdge& edge = outline[f];
     const Point2 wall = edge.at((f.start + f.end) / 2);
     const Point2 p{wall.x + edge.outward.x * kBefore, wall.y + edge.outward.y * kBefore};
-    for (const std::uint32_t y : near) {
-      const Courtyard& yard = index.courtyard(index.yards()[y]);
-      if (std::find(out.begin(), out.end(), yard.id) == out.end() && geometry::contains(yard.polygon, p))
-        out.push_back(yard.id);
-    }
+    for (const std::uint32_t n : boxes.near({p, p}, 0))
+      if (!found.contains(near[n]) && geometry::contains(index.courtyard(index.yards()[near[n]]).polygon, p))
+        found.insert(near[n]);
   }
+  for (const std::uint32_t y : found) out.push_back(index.courtyard(index.yards()[y]).id);
   std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/polygon_measures.h"
@@ -103,9 +104,17 @@ bool may_front(const OutlineEdge& edge, const Sight& sight, const Scene& scene) 
 
 }  // namespace
 
+geometry::BoxIndex yard_boxes(std::span<const std::uint32_t> yards, const VicinityIndex& index) {
+  std::vector<geometry::PlanBox> boxes;
+  for (const std::uint32_t y : yards) boxes.push_back({index.yards()[y].box.low, index.yards()[y].box.high});
+  return geometry::BoxIndex(std::move(boxes));
+}
+
 BuildingView view_of(const model::Building& building, const VicinityIndex& index) {
   const VicinityIndex::Box box = box_of(building, 2 * kAsk);
-  return {&index, building.osm, index.yards_near(box), index.squares_near(box)};
+  std::vector<std::uint32_t> yards = index.yards_near(box);
+  geometry::BoxIndex boxes = yard_boxes(yards, index);
+  return {&index, building.osm, std::move(yards), std::move(boxes), index.squares_near(box)};
 }
 
 WallSample look_out(const OutlineEdge& edge, double at, const BuildingView& view, const WallSegmentOptions& options) {
@@ -141,10 +150,10 @@ WallSample look_out(const OutlineEdge& edge, double at, const BuildingView& view
     if (out.square == kNothing && index.squares()[s].box.meets({front, front}) &&
         index.contains(index.squares()[s], front))
       out.square = s;
-  for (const std::uint32_t y : view.yards)
-    if (out.yard == kNothing && index.yards()[y].box.meets({front, front}) &&
-        geometry::contains(index.courtyard(index.yards()[y]).polygon, front))
-      out.yard = y;
+  for (const std::uint32_t near : view.yard_boxes.near({front, front}, 0)) {
+    const std::uint32_t y = view.yards[near];
+    if (out.yard == kNothing && geometry::contains(index.courtyard(index.yards()[y]).polygon, front)) out.yard = y;
+  }
 
   const bool closed_yard = out.yard != kNothing && index.courtyard(index.yards()[out.yard]).closed;
   if (out.inside != kNothing)

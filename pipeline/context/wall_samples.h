@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "pipeline/context/wall_contacts.h"
+#include "pipeline/geometry/box_index.h"
 
 namespace blockrand::context {
 
@@ -17,8 +19,11 @@ struct BuildingView {
   const VicinityIndex* index = nullptr;
   model::OsmId own;                    ///< of the building
   std::vector<std::uint32_t> yards;    ///< into VicinityIndex::yards
+  geometry::BoxIndex yard_boxes;       ///< of `yards`: a house may have a thousand of them
   std::vector<std::uint32_t> squares;  ///< into VicinityIndex::squares
 };
+/// The boxes of courtyards, in the order of `yards`, which are indices into VicinityIndex::yards.
+geometry::BoxIndex yard_boxes(std::span<const std::uint32_t> yards, const VicinityIndex& index);
 BuildingView view_of(const model::Building& building, const VicinityIndex& index);
 
 /// What is seen from one place.

@@ -158,23 +158,22 @@ void ElementLibrary::add_request(const grammar::ElementRequest& order, bool keep
 std::uint32_t ElementLibrary::take(std::string& error) {
   auto made = made_.find(key_);
   if (made == made_.end()) {
-    auto element = elements::make_element(kind_, width_, height_, parameters_);
+    auto fitted = elements::make_fitting_element(kind_, width_, height_, parameters_);
     Made entry;
-    if (element) {
-      for (const model::ElementFace& face : element->mesh.faces)
-        entry.parts[static_cast<std::size_t>(face.part)] = true;
+    if (fitted) {
+      model::Element& element = fitted->element;
+      for (const model::ElementFace& face : element.mesh.faces) entry.parts[static_cast<std::size_t>(face.part)] = true;
       // Outputs add the reveal, which looks like the wall.
-      if (element->opening.reveal > 0) entry.parts[static_cast<std::size_t>(ElementPart::wall)] = true;
-      entry.element = std::make_shared<const model::Element>(std::move(*element));
+      if (element.opening.reveal > 0) entry.parts[static_cast<std::size_t>(ElementPart::wall)] = true;
+      entry.element = std::make_shared<const model::Element>(std::move(element));
+      entry.error = std::move(fitted->told);
     } else {
-      entry.error = element.error();
+      entry.error = fitted.error();
     }
     made = made_.emplace(key_, std::move(entry)).first;
   }
-  if (!made->second.element) {
-    error = made->second.error;
-    return kNone;
-  }
+  error = made->second.error;
+  if (!made->second.element) return kNone;
   // A part that the form lacks has no look: windows without trim are the same on walls of all colours.
   for (std::size_t p = 0; p < materials_of_parts_.size(); ++p)
     if (!made->second.parts[p]) materials_of_parts_[p] = {};

@@ -44,7 +44,8 @@ class ElementLibrary {
   /// \param complaints  gets what is no colour
   void add_request(const grammar::ElementRequest& order, bool keep_left, bool keep_right,
                    std::vector<std::string>& complaints);
-  /// The number of the element asked for in Region::elements; kNone when it cannot be made, for the reason in `error`.
+  /// The number of the element asked for in Region::elements; kNone when it cannot be made, for the reason in `error`. Where
+  /// a simpler one was made, `error` says so.
   std::uint32_t take(std::string& error);
 
   const model::Element& element(std::uint32_t number) const { return *region_.elements[number].element; }

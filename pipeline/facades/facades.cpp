@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -129,6 +130,19 @@ class FacadeBuilder {
     return shape;
   }
 
+  /// Runs along the wall cut into equal pieces, where they are longer than elements can be.
+  static std::vector<std::pair<double, double>> no_longer_than(double most,
+                                                               std::span<const std::pair<double, double>> runs) {
+    std::vector<std::pair<double, double>> out;
+    for (const auto& [from, to] : runs) {
+      const int count = std::max(1, static_cast<int>(std::ceil((to - from) / most)));
+      for (int i = 0; i < count; ++i)
+        out.emplace_back(i == 0 ? from : from + (to - from) * i / count,
+                         i + 1 == count ? to : from + (to - from) * (i + 1) / count);
+    }
+    return out;
+  }
+
   /// An order of a leaf: an element where its scope is. What would stand in the portal of a passage yields: runs along
   /// the wall are interrupted, the rest is left out.
   void take(const FacadeContext& context, const grammar::Leaf& leaf) {
@@ -169,6 +183,7 @@ class FacadeBuilder {
         i += kept;
       }
     }
+    if (run) pieces = no_longer_than(kind->width.most, pieces);
     const double storey_height = context.part.attributes.storey_height.value;
     const double above = low + context.wall.base - context.part.attributes.ground_height.value -
                          context.part.attributes.plinth_height.value;
@@ -196,10 +211,8 @@ class FacadeBuilder {
   void place(std::uint32_t wall, Point2 at, std::int32_t storey) {
     std::string error;
     const std::uint32_t element = library_.take(error);
-    if (element == ElementLibrary::kNone)
-      tell(error);
-    else
-      asked_.push_back({wall, element, at, storey});
+    if (!error.empty()) tell(error);
+    if (element != ElementLibrary::kNone) asked_.push_back({wall, element, at, storey});
   }
 
   /// Cuts all open passages alone; portals of those that cannot be cut are blocked.

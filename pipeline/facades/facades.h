@@ -24,8 +24,8 @@ struct FacadeOptions {
 ///
 /// LoD2 is not touched: rebuilding with another preset leaves it byte for byte. What an opening may not do is decided
 /// by cut_openings(); those that do not fit are left out and counted (OPENING_LEFT_OUT); a solid that fails its check
-/// is tried again without passages, and else keeps closed walls (FACADE_FAILED). Elements that cannot be made are told
-/// as GRAMMAR_ERROR.
+/// is tried again without passages, and else keeps closed walls (FACADE_FAILED). Elements that cannot be made as a
+/// rule asks are made simpler or left out, and told as GRAMMAR_ERROR with what was made instead.
 void build_facades(model::Region& region, const GrammarLibrary& grammars, const attributes::Defaults& defaults,
                    const FacadeOptions& options);
 

@@ -37,6 +37,36 @@ bool Block::meets(const Block& other) const {
   return contains(other.plan[0]);
 }
 
+namespace {
+
+constexpr double kCell = 4;            ///< m; about a window with its wall
+constexpr std::int64_t kLong = 1000;   ///< cells
+constexpr double kBoxRounding = 1e-6;  ///< m; more than predicates about points on a border round
+
+geometry::PlanBox plan_box(const Box2& box) { return {{box.left, box.low}, {box.right, box.high}}; }
+
+}  // namespace
+
+GrowingCells::Range GrowingCells::range_of(const Box2& box, double low, double high, double distance) {
+  const auto cell = [](double metres) { return static_cast<std::int64_t>(std::floor(metres / kCell)); };
+  return {{cell(box.left - distance), cell(box.low - distance), cell(low - distance)},
+          {cell(box.right + distance), cell(box.high + distance), cell(high + distance)}};
+}
+
+void GrowingCells::add(const Box2& box, double low, double high, std::uint32_t item) {
+  const Range range = range_of(box, low, high, 0);
+  std::int64_t count = 1;
+  for (int i = 0; i < 3; ++i)
+    count = std::min(kLong + 1, count * std::min(kLong + 1, range.high[i] - range.low[i] + 1));
+  if (count > kLong) {
+    long_ones_.push_back(item);
+    return;
+  }
+  for (std::int64_t x = range.low[0]; x <= range.high[0]; ++x)
+    for (std::int64_t y = range.low[1]; y <= range.high[1]; ++y)
+      for (std::int64_t z = range.low[2]; z <= range.high[2]; ++z) cells_[{x, y, z}].push_back(item);
+}
+
 Obstacles::Obstacles(const model::Solid& solid) {
   for (std::uint32_t f = 0; f < solid.faces.size(); ++f) {
     if (const auto frame = wall_frame(solid, f)) {
@@ -46,6 +76,11 @@ Obstacles::Obstacles(const model::Solid& solid) {
       add_slope(solid, f);
     }
   }
+  std::vector<geometry::PlanBox> uprights, slopes;
+  for (const Upright& wall : uprights_) uprights.push_back(plan_box(wall.box));
+  for (const Slope& slope : slopes_) slopes.push_back(plan_box(slope.box));
+  upright_boxes_ = geometry::BoxIndex(std::move(uprights));
+  slope_boxes_ = geometry::BoxIndex(std::move(slopes));
 }
 
 void Obstacles::add_slope(const model::Solid& solid, std::uint32_t f) {
@@ -83,11 +118,21 @@ void Obstacles::add_slope(const model::Solid& solid, std::uint32_t f) {
 }
 
 bool Obstacles::blocked(const Block& block, std::uint32_t own, std::uint32_t other) const {
-  for (const Upright& wall : uprights_)
+  const geometry::PlanBox here = plan_box(block.box);
+  for (const std::uint32_t u : upright_boxes_.near(here, kBoxRounding)) {
+    const Upright& wall = uprights_[u];
     if (wall.face != own && wall.face != other && wall.low <= block.high && wall.high >= block.low &&
         !wall.box.apart(block.box, 0) && block.meets_segment(wall.a, wall.b))
       return true;
-  for (const Slope& slope : slopes_) {
+  }
+  const Box2 around{block.box.left - kBoxRounding, block.box.right + kBoxRounding, block.box.low - kBoxRounding,
+                    block.box.high + kBoxRounding};
+  const auto beside = [&](Point2 a, Point2 b) {
+    return std::max(a.x, b.x) < around.left || std::min(a.x, b.x) > around.right || std::max(a.y, b.y) < around.low ||
+           std::min(a.y, b.y) > around.high;
+  };
+  for (const std::uint32_t s : slope_boxes_.near(here, kBoxRounding)) {
+    const Slope& slope = slopes_[s];
     if (slope.low > block.high || slope.high < block.low || slope.box.apart(block.box, 0)) continue;
     double low = slope.z(block.plan[0]), high = low;
     for (const Point2& p : block.plan) {
@@ -95,8 +140,10 @@ bool Obstacles::blocked(const Block& block, std::uint32_t own, std::uint32_t oth
       high = std::max(high, slope.z(p));
     }
     if (!slope.steep && (low - slope.slack > block.high || high + slope.slack < block.low)) continue;
-    for (std::size_t i = 0; i < slope.ring.size(); ++i)
-      if (block.meets_segment(slope.ring[i], slope.ring[(i + 1) % slope.ring.size()])) return true;
+    for (std::size_t i = 0; i < slope.ring.size(); ++i) {
+      const Point2 a = slope.ring[i], b = slope.ring[(i + 1) % slope.ring.size()];
+      if (!beside(a, b) && block.meets_segment(a, b)) return true;
+    }
     if (geometry::contains(slope.ring, block.plan[0])) return true;
   }
   return false;

@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "pipeline/facades/outlines.h"
 #include "pipeline/facades/wall_frame.h"
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/model/solid.h"
 
 namespace blockrand::facades {
@@ -24,6 +26,40 @@ struct Block {
   bool contains(model::Point2 p) const;
   bool meets_segment(model::Point2 a, model::Point2 b) const;
   bool meets(const Block& other) const;
+};
+
+/// Boxes that come one by one, and which of them may meet another. Walls of towers have a hundred thousand openings, each
+/// of which is held against the others near it.
+class GrowingCells {
+ public:
+  /// \param low, high  m, of the third direction; 0 and 0 where there are but two
+  void add(const Box2& box, double low, double high, std::uint32_t item);
+
+  /// Calls `visit(item)` for all whose box may come within `distance` of this one, some of them more than once, until it
+  /// returns true; tells whether it did.
+  template <class Visit>
+  bool any_near(const Box2& box, double low, double high, double distance, Visit&& visit) const {
+    const Range range = range_of(box, low, high, distance);
+    for (const std::uint32_t item : long_ones_)
+      if (visit(item)) return true;
+    for (std::int64_t x = range.low[0]; x <= range.high[0]; ++x)
+      for (std::int64_t y = range.low[1]; y <= range.high[1]; ++y)
+        for (auto cell = cells_.lower_bound({x, y, range.low[2]});
+             cell != cells_.end() && cell->first <= Cell{x, y, range.high[2]}; ++cell)
+          for (const std::uint32_t item : cell->second)
+            if (visit(item)) return true;
+    return false;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  struct Range {
+    Cell low, high;
+  };
+  static Range range_of(const Box2& box, double low, double high, double distance);
+
+  std::map<Cell, std::vector<std::uint32_t>> cells_;
+  std::vector<std::uint32_t> long_ones_;  ///< of very many cells: tunnels through whole blocks
 };
 
 /// The faces of a solid, each by something that is never smaller: upright ones by the rectangle around them, others by
@@ -58,6 +94,7 @@ class Obstacles {
 
   std::vector<Upright> uprights_;
   std::vector<Slope> slopes_;
+  geometry::BoxIndex upright_boxes_, slope_boxes_;
 };
 
 }  // namespace blockrand::facades

@@ -86,16 +86,13 @@ class Cutter {
   }
 
  private:
-  struct Cut {
-    Box2 box;
-    std::uint32_t opening = 0;
-  };
-
   OpeningRefusal take(const Block& block, std::initializer_list<std::uint32_t> openings) {
-    for (const Block& b : blocks_)
-      if (b.meets(block)) return OpeningRefusal::meets_opening;
+    if (block_cells_.any_near(block.box, block.low, block.high, 0,
+                              [&](std::uint32_t b) { return blocks_[b].meets(block); }))
+      return OpeningRefusal::meets_opening;
+    block_cells_.add(block.box, block.low, block.high, static_cast<std::uint32_t>(blocks_.size()));
     blocks_.push_back(block);
-    for (const std::uint32_t o : openings) cut_[all_[o].wall].push_back({box_of(all_[o].outline), o});
+    for (const std::uint32_t o : openings) cut_[all_[o].wall].add(box_of(all_[o].outline), 0, 0, o);
     return OpeningRefusal::none;
   }
 
@@ -115,14 +112,14 @@ class Cutter {
       // A hole of the wall inside the opening.
       if (l > 0 && surely_inside(o.outline, wall.loops[l][0])) return OpeningRefusal::beyond_wall;
     }
-    for (const Cut& cut : cut_[o.wall]) {
-      if (cut.box.apart(box, kOpeningClearance)) continue;
-      const auto& other = all_[cut.opening].outline;
-      if (rings_nearer_than(kOpeningClearance, o.outline, box, other) || surely_inside(other, o.outline[0]) ||
-          surely_inside(o.outline, other[0]))
-        return OpeningRefusal::meets_opening;
-    }
-    return OpeningRefusal::none;
+    const auto meets = [&](std::uint32_t cut) {
+      const auto& other = all_[cut].outline;
+      if (box_of(other).apart(box, kOpeningClearance)) return false;
+      return rings_nearer_than(kOpeningClearance, o.outline, box, other) || surely_inside(other, o.outline[0]) ||
+             surely_inside(o.outline, other[0]);
+    };
+    return cut_[o.wall].any_near(box, 0, 0, 2 * kOpeningClearance, meets) ? OpeningRefusal::meets_opening
+                                                                          : OpeningRefusal::none;
   }
 
   /// From a little before the wall to behind the reveal: an opening that looks into a slit would meet the wall across.
@@ -159,7 +156,8 @@ class Cutter {
   std::span<const WallOpening> all_;
   Obstacles obstacles_;
   std::vector<Block> blocks_;
-  std::vector<std::vector<Cut>> cut_;  ///< by wall
+  GrowingCells block_cells_;
+  std::vector<GrowingCells> cut_;  ///< by wall
 };
 
 /// Puts the solid together anew, loop by loop: walls get more loops than they had.

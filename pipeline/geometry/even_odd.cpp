@@ -9,6 +9,7 @@
 #include "pipeline/base/random.h"
 #include "pipeline/geometry/footprint_overlap.h"
 #include "pipeline/geometry/geos_scope.h"
+#include "pipeline/geometry/grid.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::geometry {
@@ -85,6 +86,39 @@ double tangled_area(const model::Ring& ring) {
     go_to(1);
   }
   return std::fabs(twice) / 2;
+}
+
+bool hopeless(const model::Ring& ring) {
+  return conflicting_edges({ring, {}}, kMostCrossings + 1).size() > kMostCrossings;
+}
+
+model::Ring convex_hull(const model::Ring& ring) {
+  std::vector<std::pair<Point2, std::int64_t>> points;
+  for (std::size_t i = 0; i < ring.size(); ++i) points.emplace_back(ring.points[i], ring.nodes[i]);
+  std::sort(points.begin(), points.end());
+  points.erase(
+      std::unique(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
+      points.end());
+  model::Ring hull;
+  if (points.size() < 3) return hull;
+  const Grid2 origin = to_grid(points[0].first);
+  const auto at = [&](std::size_t i) { return to_grid(hull.points[i]) - origin; };
+  const auto add = [&](const std::pair<Point2, std::int64_t>& p, std::size_t kept) {
+    const Grid2 place = to_grid(p.first) - origin;
+    while (hull.size() > kept && orientation(at(hull.size() - 2), at(hull.size() - 1), place) <= 0) {
+      hull.points.pop_back();
+      hull.nodes.pop_back();
+    }
+    hull.points.push_back(p.first);
+    hull.nodes.push_back(p.second);
+  };
+  for (const auto& p : points) add(p, 1);  // below, from the least point to the greatest
+  const std::size_t below = hull.size();
+  for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], below);
+  hull.points.pop_back();  // the least point again
+  hull.nodes.pop_back();
+  if (hull.size() < 3) hull = {};
+  return hull;
 }
 
 bool tangled(const model::Ring& ring) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/geos_scope.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon_measures.h"
@@ -214,11 +215,16 @@ bool strictly_simple(const Polygon& polygon) {
   bool simple = true;
   for_each_conflict(polygon, [&](const Edge&, const Edge&) { return simple = false; });
   if (!simple) return false;
+  if (polygon.holes.empty()) return true;
+  constexpr double kBoxRounding = 1e-6;  // m; more than contains() rounds. Walls of towers have thousands of holes
+  std::vector<PlanBox> around;
+  for (const Ring& hole : polygon.holes) around.push_back(box_of(hole.points));
+  const BoxIndex boxes(std::move(around));
   // Without crossings one point of a hole decides on which side the whole hole lies.
   for (std::size_t i = 0; i < polygon.holes.size(); ++i) {
     const Point2 p = polygon.holes[i].points[0];
     if (!contains(std::span<const Point2>(polygon.outer.points), p)) return false;
-    for (std::size_t j = 0; j < polygon.holes.size(); ++j)
+    for (const std::uint32_t j : boxes.near({p, p}, kBoxRounding))
       if (i != j && contains(std::span<const Point2>(polygon.holes[j].points), p)) return false;
   }
   return true;

@@ -40,6 +40,18 @@ struct Event {
   std::uint32_t number = 0;
 };
 
+/// Where a reflex corner may meet edges, the next place first. All corners together have as many as edges times reflex
+/// corners: those of one corner wait here, and only the first of them among the events.
+struct Splits {
+  struct Place {
+    double z = 0, error = 0;  ///< of its Meet
+    std::int32_t plane = -1;
+    std::uint32_t number = 0;  ///< of its Event
+  };
+  std::int32_t left = -1, right = -1;  ///< the corner's planes when the places were found
+  std::vector<Place> heap;
+};
+
 /// One run of weighted_skeleton().
 class Sweep {
  public:
@@ -107,8 +119,21 @@ class Sweep {
       return s.number > t.number;
     }
   };
+  /// The same of splits of one corner.
+  struct LaterSplit {
+    const Planes* planes;
+    std::int32_t left, right;
+    bool operator()(const Splits::Place& s, const Splits::Place& t) const {
+      const auto at = [&](const Splits::Place& p) { return Meet{{left, right, p.plane}, 0, 0, p.z, p.error}; };
+      if (const int c = planes->compare_height(at(s), at(t))) return c > 0;
+      return s.number > t.number;
+    }
+  };
   void push(Event event) {
     event.number = counter_++;
+    push_numbered(event);
+  }
+  void push_numbered(const Event& event) {
     heap_.push_back(event);
     std::push_heap(heap_.begin(), heap_.end(), Later{&planes_});
   }
@@ -127,6 +152,8 @@ class Sweep {
 
   void push_collapse(std::int32_t from, std::int32_t to);
   void push_candidates(std::int32_t number);
+  /// The next split of a reflex corner becomes an event.
+  void push_next_split(std::int32_t number);
 
   /// Where a point on the line of the edge that starts at v lies against that start: +1 beyond, 0 at it, -1 before.
   int from_start(const Vertex& v, const Meet& m) const {
@@ -250,6 +277,7 @@ class Sweep {
   std::vector<FaceRecord> faces_;
   std::vector<std::vector<std::uint32_t>> deck_loops_;
   std::vector<Event> heap_;
+  std::vector<Splits> splits_;  ///< by vertex
   std::vector<std::uint32_t> seen_, marks_;
   std::uint32_t stamp_ = 0, mark_ = 0, counter_ = 0;
   Meet now_;

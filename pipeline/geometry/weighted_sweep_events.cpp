@@ -24,7 +24,11 @@ tl::expected<WeightedSkeleton, SkeletonFailure> Sweep::run() {
       continue;
     }
     const Vertex& v = vertex(event.vertex);
-    if (!v.alive) continue;
+    if (!v.alive) {
+      if (event.kind == Event::Kind::split) splits_[static_cast<std::size_t>(event.vertex)] = {};
+      continue;
+    }
+    if (event.kind == Event::Kind::split) push_next_split(event.vertex);
     if (event.kind == Event::Kind::collapse && (!vertex(event.other).alive || v.next != event.other)) continue;
     now_ = event.at;
     if (!meet_at(event.at)) return tl::unexpected(SkeletonFailure::inconsistent);
@@ -89,6 +93,9 @@ void Sweep::push_candidates(std::int32_t number) {
   const Meet& origin = nodes_[vertex(number).node];
   ++stamp_;
   seen_.resize(planes_.all.size(), 0);
+  splits_.resize(vertices_.size());
+  Splits& splits = splits_[static_cast<std::size_t>(number)];
+  splits = {left, right, {}};
   for (const std::int32_t other : active_) {
     const std::int32_t k = vertex(other).right;
     if (!vertex(other).alive || k == left || k == right || seen_[static_cast<std::size_t>(k)] == stamp_) continue;
@@ -96,8 +103,20 @@ void Sweep::push_candidates(std::int32_t number) {
     const auto m = planes_.meet(left, right, k);
     if (!m || planes_.compare_height(*m, now_) < 0) continue;
     if (planes_.side(k, origin) == 0) continue;  // it has just left that edge
-    push({*m, Event::Kind::split, number, k, 0});
+    splits.heap.push_back({m->z, m->error, k, counter_++});
   }
+  std::make_heap(splits.heap.begin(), splits.heap.end(), LaterSplit{&planes_, left, right});
+  push_next_split(number);
+}
+
+void Sweep::push_next_split(std::int32_t number) {
+  Splits& splits = splits_[static_cast<std::size_t>(number)];
+  if (splits.heap.empty()) return;
+  std::pop_heap(splits.heap.begin(), splits.heap.end(), LaterSplit{&planes_, splits.left, splits.right});
+  const Splits::Place next = splits.heap.back();
+  splits.heap.pop_back();
+  if (const auto m = planes_.meet(splits.left, splits.right, next.plane))
+    push_numbered({*m, Event::Kind::split, number, next.plane, next.number});
 }
 
 void Sweep::finish(std::int32_t number, std::uint32_t node) {

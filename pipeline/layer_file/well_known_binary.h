@@ -28,10 +28,24 @@ inline void append_header(std::string& out, std::uint32_t type, std::size_t coun
   append_raw(out, static_cast<std::uint32_t>(count));
 }
 
-inline void append_ring(std::string& out, const model::Ring& ring) {
-  append_raw(out, static_cast<std::uint32_t>(ring.size() + 1));
-  for (std::size_t i = 0; i <= ring.size(); ++i) {
-    const model::Point2 p = ring.points[i == ring.size() ? 0 : i];
+/// True when the ring runs clockwise; of rings without area either answer.
+inline bool runs_clockwise(const model::Ring& ring) {
+  double twice = 0;
+  for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+    const model::Point2 o = ring.points[0], p = ring.points[i], q = ring.points[i + 1];
+    twice += (p.x - o.x) * (q.y - o.y) - (p.y - o.y) * (q.x - o.x);
+  }
+  return twice < 0;
+}
+
+/// The ring from its first point, clockwise or counter-clockwise, however it runs in memory (OGC 06-103r4, 6.1.11.1: outer
+/// rings counter-clockwise, inner ones the other way).
+inline void append_ring(std::string& out, const model::Ring& ring, bool clockwise) {
+  const std::size_t n = ring.size();
+  append_raw(out, static_cast<std::uint32_t>(n + 1));
+  const bool turn = runs_clockwise(ring) != clockwise;
+  for (std::size_t i = 0; i <= n; ++i) {
+    const model::Point2 p = ring.points[i % n == 0 ? 0 : turn ? n - i : i];
     append_raw(out, p.x);
     append_raw(out, p.y);
   }
@@ -40,8 +54,8 @@ inline void append_ring(std::string& out, const model::Ring& ring) {
 inline void append_polygon(std::string& out, const model::Polygon& polygon) {
   if (polygon.outer.points.empty()) return append_header(out, kPolygon, 0);
   append_header(out, kPolygon, 1 + polygon.holes.size());
-  append_ring(out, polygon.outer);
-  for (const model::Ring& hole : polygon.holes) append_ring(out, hole);
+  append_ring(out, polygon.outer, false);
+  for (const model::Ring& hole : polygon.holes) append_ring(out, hole, true);
 }
 
 inline void append_line(std::string& out, model::Point2 from, model::Point2 to) {

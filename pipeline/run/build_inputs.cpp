@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "pipeline/base/sha256.h"
@@ -26,7 +27,8 @@ attributes::Overrides open_overrides(const std::string& path, const attributes::
 
 InputFile input_file(std::string role, const std::string& path) {
   InputFile f{std::move(role), path, 0, base::sha256_file(path)};
-  f.bytes = std::filesystem::file_size(path);
+  std::error_code no_size;  // of devices: /dev/null is an empty file of corrections
+  if (const auto bytes = std::filesystem::file_size(path, no_size); !no_size) f.bytes = bytes;
   return f;
 }
 

@@ -37,6 +37,10 @@ std::vector<std::string> foreign_files(const std::string& folder) {
   const Json record = record_of(folder);
   if (record.is_object() && record.contains("files") && record["files"].is_object())
     for (const auto& [path, entry] : record["files"].items()) ours.insert(path);
+  return files_other_than(ours, folder);
+}
+
+std::vector<std::string> files_other_than(const std::set<std::string>& ours, const std::string& folder) {
   std::vector<std::string> out;
   std::error_code error;
   for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {

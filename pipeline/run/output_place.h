@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,10 @@ namespace blockrand::run {
 /// other programs leave when they open ours (GDAL's .aux.xml and .gfs, SQLite's -wal, -shm and -journal) do not count.
 /// A build.json that cannot be read lists nothing.
 std::vector<std::string> foreign_files(const std::string& folder);
+
+/// The same for a folder whose files have fixed names.
+/// \param ours  names of what the program writes there, relative to the folder
+std::vector<std::string> files_other_than(const std::set<std::string>& ours, const std::string& folder);
 
 /// Models of the build that `folder` holds, by its build.json; nothing where there is none, or it cannot be read.
 std::optional<std::uint64_t> earlier_models(const std::string& folder);

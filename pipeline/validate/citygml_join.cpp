@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <iterator>
+#include <set>
 
 #include "pipeline/validate/attribute_names.h"
 #include "pipeline/validate/citygml_parser.h"
@@ -58,6 +59,7 @@ void CityGmlParser::end_detail(const Open& open, ReadBody& body) {
   // The first polygon of a surface is the wall, what follows are its reveals; openings come after them.
   std::vector<std::vector<std::size_t>> by_surface(open.boundary_surfaces + 1);
   for (std::size_t i = 0; i < open.members.size(); ++i) by_surface[open.members[i].surface].push_back(polygon_of[i]);
+  std::set<std::size_t> walls_told;
   for (const OpenedWall& o : open.openings) {
     const auto polygon = members.find(o.polygon);
     if (o.polygon.empty() || polygon == members.end()) {
@@ -74,8 +76,9 @@ void CityGmlParser::end_detail(const Open& open, ReadBody& body) {
       continue;
     }
     opening.wall = wall.front();
-    std::copy_if(wall.begin() + 1, wall.end(), std::back_inserter(opening.reveals),
-                 [&](std::size_t p) { return p != nowhere; });
+    if (walls_told.insert(o.surface).second)
+      std::copy_if(wall.begin() + 1, wall.end(), std::back_inserter(opening.reveals),
+                   [&](std::size_t p) { return p != nowhere; });
     opening.placement = o.placement;
     body.detail.openings.push_back(std::move(opening));
   }

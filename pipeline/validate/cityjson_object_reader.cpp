@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "pipeline/base/text.h"
@@ -285,6 +286,7 @@ class ObjectReader {
     std::vector<std::vector<std::size_t>> of_surface(kinds_.size());
     for (std::size_t i = 0; i < polygons_.size(); ++i)
       if (semantic_of_[i] < of_surface.size()) of_surface[semantic_of_[i]].push_back(i);
+    std::set<std::size_t> walls_told;
     for (std::size_t i = 0; i < polygons_.size(); ++i) {
       if (polygons_[i].kind != "window" && polygons_[i].kind != "door") continue;
       const std::size_t parent = parents_[semantic_of_[i]];
@@ -293,8 +295,9 @@ class ObjectReader {
         continue;
       }
       const auto& wall = of_surface[parent];
-      body.detail.openings.push_back(
-          {fmt::format("{}_p{}", id_, i), i, wall.front(), {wall.begin() + 1, wall.end()}, std::nullopt});
+      ReadOpening opening{fmt::format("{}_p{}", id_, i), i, wall.front(), {}, std::nullopt};
+      if (walls_told.insert(parent).second) opening.reveals.assign(wall.begin() + 1, wall.end());
+      body.detail.openings.push_back(std::move(opening));
     }
   }
 
@@ -307,6 +310,16 @@ class ObjectReader {
       rule(where_ + " has semantics without surfaces or values");
       return nullptr;
     }
+    // Numbers that surfaces name as their children; a wall may have a hundred thousand.
+    std::map<std::uint64_t, std::set<double>> named;
+    const auto children_of = [&](std::uint64_t surface) -> const std::set<double>& {
+      const auto [found, fresh] = named.try_emplace(surface);
+      const Json* children = fresh ? member(element(list, surface), "children") : nullptr;
+      if (children && children->is_array())
+        for (const Json& child : *children)
+          if (child.is_number()) found->second.insert(child.get<double>());
+      return found->second;
+    };
     for (const Json& surface : *list) {
       const std::string type = text(member(surface, "type"));
       const auto found = std::find_if(std::begin(kSurfaces), std::end(kSurfaces),
@@ -316,12 +329,7 @@ class ObjectReader {
       kinds_.emplace_back(found == std::end(kSurfaces) ? "" : found->kind);
       const auto parent = whole(member(surface, "parent"));
       parents_.push_back(parent ? static_cast<std::size_t>(*parent) : kNoSurface);
-      const auto names = [&](const Json* other, std::size_t own) {
-        const Json* children = member(other, "children");
-        return children && children->is_array() &&
-               std::find(children->begin(), children->end(), Json(own)) != children->end();
-      };
-      if (parent && !names(element(list, *parent), kinds_.size() - 1))
+      if (parent && !children_of(*parent).contains(static_cast<double>(kinds_.size() - 1)))
         rule(fmt::format("{} has a surface whose parent does not name it as a child", where_));
     }
     return values->is_null() ? nullptr : values;

@@ -31,7 +31,7 @@ struct ReadOpening {
   std::string id;
   std::size_t polygon = 0;  ///< into the LoD3 solid's polygons: what closes the opening, its kind is "window" or "door"
   std::size_t wall = 0;     ///< the polygon that it opens
-  std::vector<std::size_t> reveals;      ///< the other polygons of the wall's surface: of all its openings
+  std::vector<std::size_t> reveals;      ///< the other polygons of the wall's surface, at its first opening alone
   std::optional<std::size_t> placement;  ///< into ReadDetail::placements: the element that stands in it
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -76,8 +77,7 @@ void check_detail(const ReadBody& body, const Complain& complain) {
     if (!body.detail.openings.empty()) complain("openings without a LoD3 solid", body.id);
     return;
   }
-  std::set<Edge> edges;
-  std::size_t wall_of_edges = solid->polygons.size();
+  std::map<std::size_t, std::set<Edge>> edges_of_wall;
   for (const ReadOpening& opening : body.detail.openings) {
     if (opening.polygon >= solid->polygons.size() || opening.wall >= solid->polygons.size()) continue;
     const ReadPolygon &polygon = solid->polygons[opening.polygon], &wall_polygon = solid->polygons[opening.wall];
@@ -94,14 +94,12 @@ void check_detail(const ReadBody& body, const Complain& complain) {
       complain(fmt::format("lies {:.3f} to {:.3f} m behind its wall", nearest, deepest), opening.id);
     else if (cosine < 0.99)
       complain("does not look the way its wall looks", opening.id);
-    // All openings of one wall have the same reveals and follow each other.
-    if (wall_of_edges != opening.wall) {
-      edges.clear();
-      add_edges(wall_polygon, edges);
-      for (const std::size_t r : opening.reveals)
-        if (r < solid->polygons.size()) add_edges(solid->polygons[r], edges);
-      wall_of_edges = opening.wall;
-    }
+    // The first opening of a wall lists the reveals of all.
+    const auto [of_wall, fresh] = edges_of_wall.try_emplace(opening.wall);
+    std::set<Edge>& edges = of_wall->second;
+    if (fresh) add_edges(wall_polygon, edges);
+    for (const std::size_t r : opening.reveals)
+      if (r < solid->polygons.size()) add_edges(solid->polygons[r], edges);
     for (std::size_t i = 0; i < outline.size(); ++i)
       if (!edges.count({outline[(i + 1) % outline.size()], outline[i]})) {
         complain("an edge of it is none of its reveal nor of its wall", opening.id);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 #include <string_view>
 #include <tuple>
 #include <unordered_map>
@@ -352,19 +353,27 @@ static std::vector<ReadPolygon> seen_polygons(const ReadBody& body, const ReadSo
   const auto& openings = body.detail.openings;
   const bool told =
       std::any_of(openings.begin(), openings.end(), [](const ReadOpening& o) { return o.placement.has_value(); });
+  // By wall: the reveals of all its openings, and the outlines of those that elements stand for. Other openings of the wall
+  // may have no element, and keep their reveals.
+  std::map<std::size_t, std::span<const std::size_t>> reveals;
+  std::map<std::size_t, std::set<std::pair<Point3, Point3>>> outlines;
   for (const ReadOpening& opening : openings) {
+    if (!opening.reveals.empty()) reveals.emplace(opening.wall, opening.reveals);
     if (told ? !opening.placement : body.detail.placements.empty()) continue;
-    if (opening.polygon < hidden.size()) hidden[opening.polygon] = true;
-    // Its own reveals: other openings of the wall may have no element.
     if (opening.polygon >= hidden.size()) continue;
-    std::set<std::pair<Point3, Point3>> outline;
+    hidden[opening.polygon] = true;
     for (const auto& ring : solid.polygons[opening.polygon].rings)
-      for (std::size_t i = 0; i < ring.size(); ++i) outline.emplace(ring[(i + 1) % ring.size()], ring[i]);
-    for (const std::size_t reveal : opening.reveals) {
+      for (std::size_t i = 0; i < ring.size(); ++i)
+        outlines[opening.wall].emplace(ring[(i + 1) % ring.size()], ring[i]);
+  }
+  for (const auto& [wall, of_wall] : reveals) {
+    const auto outline = outlines.find(wall);
+    if (outline == outlines.end()) continue;
+    for (const std::size_t reveal : of_wall) {
       if (reveal >= hidden.size() || hidden[reveal]) continue;
       for (const auto& ring : solid.polygons[reveal].rings)
         for (std::size_t i = 0; i < ring.size(); ++i)
-          if (outline.count({ring[i], ring[(i + 1) % ring.size()]})) hidden[reveal] = true;
+          if (outline->second.count({ring[i], ring[(i + 1) % ring.size()]})) hidden[reveal] = true;
     }
   }
   std::vector<ReadPolygon> out;

@@ -387,7 +387,7 @@ ElementKind quoin() {
                 .semantic = ElementClass::installation,
                 .meaning = "corner stones (Eckquaderung), long and short ones in turn",
                 .width = {.measures = "long stones", .least = 0.30, .usual = 0.60, .most = 1.20},
-                .height = {.measures = "stack", .least = 0.30, .usual = 3.00, .most = 40.0}};
+                .height = {.measures = "stack", .least = 0.30, .usual = 3.00, .most = 320}};
   k.parameters = {
       word("corner", {"left", "right", "middle"}, "left", "the straight side; middle: toothed on both sides"),
       number("short", "of the width", 0.66, 0.40, 0.95, "width of the short stones"),
@@ -403,7 +403,7 @@ ElementKind pilaster() {
                 .semantic = ElementClass::installation,
                 .meaning = "flat upright strip: a lesene, or a pilaster with base and capital",
                 .width = {.measures = "shaft", .least = 0.12, .usual = 0.50, .most = 1.20},
-                .height = {.measures = "whole", .least = 0.80, .usual = 3.60, .most = 24.0}};
+                .height = {.measures = "whole", .least = 0.80, .usual = 3.60, .most = 320}};
   k.parameters = {word("order", {"tuscan", "lesene"}, "tuscan", "with base and capital, or without"),
                   number("projection", "m", 0.10, 0.03, 0.30, "how far the shaft stands out of the wall"),
                   number("base_height", "m", 0.30, 0.10, 0.80, "height of the base"),

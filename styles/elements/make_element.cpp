@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <utility>
+
 #include "pipeline/base/text.h"
 #include "pipeline/base/toml_file.h"
 #include "styles/elements/parameters.h"
@@ -27,7 +31,66 @@ std::string title(const ElementKind& kind, double width, double height, const Va
   return out;
 }
 
+const ParameterInfo* find_parameter(const ElementKind& kind, std::string_view name) {
+  for (const ParameterInfo& info : kind.parameters)
+    if (info.name == name) return &info;
+  return nullptr;
+}
+
+/// Numbers out of range brought back into it.
+std::vector<Parameter> in_range(const ElementKind& kind, std::span<const Parameter> given) {
+  std::vector<Parameter> out(given.begin(), given.end());
+  for (Parameter& p : out) {
+    const ParameterInfo* info = find_parameter(kind, p.name);
+    double* const number = std::get_if<double>(&p.value);
+    if (!info || !number || info->type == ParameterInfo::Type::word || info->type == ParameterInfo::Type::profile)
+      continue;
+    if (*number >= info->least && *number <= info->most) continue;
+    *number = info->unit == "degrees" ? info->initial : std::clamp(*number, info->least, info->most);
+  }
+  return out;
+}
+
+/// Parameters under which an element lacks all that it may lack.
+std::vector<Parameter> bare(const ElementKind& kind, std::vector<Parameter> given) {
+  const auto set = [&](const ParameterInfo& info, std::variant<double, std::string> value) {
+    for (Parameter& p : given)
+      if (p.name == info.name) {
+        p.value = std::move(value);
+        return;
+      }
+    given.push_back({info.name, std::move(value)});
+  };
+  constexpr std::array<std::string_view, 4> kOptionalLengths = {"transom", "top_light", "sign", "bracket_spacing"};
+  for (const ParameterInfo& info : kind.parameters) {
+    const bool none = std::find(info.words.begin(), info.words.end(), "none") != info.words.end();
+    if (info.type == ParameterInfo::Type::word && none && info.name != "filling") set(info, "none");
+    if (info.type == ParameterInfo::Type::whole && info.least == 0 && info.name != "detail") set(info, 0.0);
+    if (info.name == "leaves" && info.type == ParameterInfo::Type::whole) set(info, 1.0);
+    if (std::find(kOptionalLengths.begin(), kOptionalLengths.end(), info.name) != kOptionalLengths.end())
+      set(info, 0.0);
+  }
+  return given;
+}
+
 }  // namespace
+
+tl::expected<FittedElement, std::string> make_fitting_element(std::string_view name, double width, double height,
+                                                              std::span<const Parameter> parameters,
+                                                              const ProfileLibrary& profiles) {
+  auto asked = make_element(name, width, height, parameters, profiles);
+  if (asked) return FittedElement{std::move(*asked), {}};
+  const ElementKind* kind = find_element_kind(name);
+  if (!kind) return tl::unexpected(asked.error());
+  width = std::min(width, kind->width.most);
+  height = std::min(height, kind->height.most);
+  const std::vector<Parameter> limited = in_range(*kind, parameters);
+  auto made = make_element(name, width, height, limited, profiles);
+  if (!made) made = make_element(name, width, height, bare(*kind, limited), profiles);
+  if (!made) return tl::unexpected(asked.error());
+  std::string told = asked.error() + "; made instead: " + made->name;
+  return FittedElement{std::move(*made), std::move(told)};
+}
 
 tl::expected<Element, std::string> make_element(std::string_view name, double width, double height,
                                                 std::span<const Parameter> parameters, const ProfileLibrary& profiles) {

@@ -69,4 +69,18 @@ tl::expected<Element, std::string> make_element(std::string_view kind, double wi
                                                 std::span<const Parameter> parameters = {},
                                                 const ProfileLibrary& profiles = built_in_profiles());
 
+/// An element that may be simpler than what was asked for.
+struct FittedElement {
+  Element element;
+  std::string told;  ///< what was asked for and why it cannot be made; empty where it was
+};
+
+/// The same for rules that do not know every limit, so that one measure costs no more than itself: where an element cannot be
+/// made as asked, sizes above their range get its end, numbers out of range their nearest, angles out of range their default;
+/// where that does not do, what it may lack is left off as well (doors of shop windows, pediments, bars).
+/// Error: as make_element() as asked, where all of that leaves nothing: unknown names, sizes below their range.
+tl::expected<FittedElement, std::string> make_fitting_element(std::string_view kind, double width, double height,
+                                                              std::span<const Parameter> parameters = {},
+                                                              const ProfileLibrary& profiles = built_in_profiles());
+
 }  // namespace blockrand::elements

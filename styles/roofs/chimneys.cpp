@@ -93,6 +93,13 @@ std::optional<model::RoofInstallation> chimney(const Roof& roof, ChimneyPlace pl
   if (!(p.width >= 2 * kLeastPart && p.length >= 2 * kLeastPart)) return std::nullopt;
   const Outline stack = chimney_outline(place, p), inner = grown(place, p, -kOverWall),
                 around = grown(place, p, p.clearance);
+  // Most of a large roof's edges lie far away; the margin is more than within() rounds.
+  const double reach = p.length + p.width + 2 * std::max(0.0, p.clearance) + 1;
+  const Point2 m = place.middle;
+  const auto beside = [&](const Point3& a, const Point3& b) {
+    return std::max(a.x, b.x) < m.x - reach || std::min(a.x, b.x) > m.x + reach || std::max(a.y, b.y) < m.y - reach ||
+           std::min(a.y, b.y) > m.y + reach;
+  };
   std::vector<Crossing> crossings;
   for (std::size_t s = 0; s < roof.surfaces.size(); ++s) {
     const Roof::Surface& surface = roof.surfaces[s];
@@ -100,6 +107,7 @@ std::optional<model::RoofInstallation> chimney(const Roof& roof, ChimneyPlace pl
     for (const auto& loop : surface.loops)
       for (std::size_t i = 0; i < loop.size(); ++i) {
         const Point3 &a = loop[i], &b = loop[(i + 1) % loop.size()];
+        if (beside(a, b)) continue;
         if (surface.element != -1 && within(around, a.xy(), b.xy())) return std::nullopt;
         if (!within(inner, a.xy(), b.xy())) continue;
         if (foreign) return std::nullopt;

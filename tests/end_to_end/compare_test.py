@@ -163,6 +163,16 @@ class Command(CompareTest):
         run = blockrand('compare', self.model, self.reference, '-o', self.path('build'), '--force')
         self.refused(run, 1, 'build', 'compare.json')
 
+    def test_files_of_others_in_the_output_folder(self):
+        self.compare('shared', self.model, self.reference)
+        self.place('shared/notes.txt', 'mine')
+        run = blockrand('compare', self.model, self.reference, '-o', self.path('shared'), '--force')
+        self.refused(run, 1, 'notes.txt', 'did not write', 'comparison')
+        self.assertTrue(os.path.exists(self.path('shared', 'notes.txt')))
+        os.remove(self.path('shared', 'notes.txt'))
+        self.place('shared/compare.gpkg-wal', '')
+        self.compare('shared', self.model, self.reference, '--force')
+
     def test_output_is_looked_at_before_the_work(self):
         """As `build` does: the wrong folder is said at once, not after minutes. Told by which error comes first."""
         broken = self.place('broken2.xml', '<core:CityModel')

@@ -56,6 +56,15 @@ class Districts(BuildTest):
         self.refused(blockrand('districts', 'show', SAMPLE, '--districts', 'leipzg', '-o', self.path('never')), 1, 'leipzig')
         self.refused(blockrand('districts', 'paint'), 1, 'paint')
 
+    def test_files_of_others_in_the_output_folder(self):
+        out = self.path('shared')
+        self.districts('show', SAMPLE, '-o', out)
+        self.place('shared/notes.txt', 'mine')
+        self.refused(blockrand('districts', 'show', SAMPLE, '-o', out, '--force'), 1, 'notes.txt', 'did not write')
+        self.assertTrue(os.path.exists(os.path.join(out, 'notes.txt')))
+        os.remove(os.path.join(out, 'notes.txt'))
+        self.districts('show', SAMPLE, '-o', out, '--force')
+
     def test_show_and_diff_agree_with_a_build(self):
         rules = self.place('rules.toml', RULES)
         out = self.path('map')

@@ -229,7 +229,7 @@ class Resolver {
       Polygon welded = p;
       weld_ring(welded.outer);
       for (Ring& hole : welded.holes) weld_ring(hole);
-      if (geometry::strictly_simple(welded)) p = std::move(welded);
+      if (geometry::strictly_simple(welded) && well_wound(welded)) p = std::move(welded);
     }
   }
 

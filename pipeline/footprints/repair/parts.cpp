@@ -54,6 +54,7 @@ std::vector<Polygon> united(const std::vector<PartBody>& bodies, const RepairOpt
 
 /// Mends polygons whose corners moved; false where that is not the same plan any more.
 bool mended(std::vector<Polygon>& moved, double area, const RepairOptions& options) {
+  if (!std::all_of(moved.begin(), moved.end(), well_wound)) return false;
   if (std::all_of(moved.begin(), moved.end(), geometry::strictly_simple)) return true;
   std::vector<Ring> rings;
   std::vector<bool> inner;

@@ -123,8 +123,15 @@ void make_canonical(std::vector<Polygon>& polygons) {
   for (std::size_t i = 0; i < sorted.size(); ++i) polygons[i] = std::move(sorted[i].second);
 }
 
-/// Of a scribble the outlines of what it encloses, as far as they come out strictly simple. Its courts mean nothing.
+/// Of a scribble the outlines of what it encloses, as far as they come out strictly simple. Its courts mean nothing. Where
+/// it crosses itself too often even for that, the ground that it covers: its convex hull.
 void mend_tangled(Polygon p, const RepairOptions& options, Mending& done, std::vector<Polygon>& out) {
+  if (geometry::hopeless(p.outer)) {
+    done.tangled = true;
+    done.remark("a ring that crosses itself more than ten thousand times taken as its convex hull");
+    if (Polygon hull{geometry::convex_hull(p.outer), {}}; sound(hull, options)) out.push_back(std::move(hull));
+    return;
+  }
   geometry::ValidPolygons valid = geometry::outlines_of(p.outer, options.min_piece_area, options.ring_clearance);
   done.tangled = true;
   done.remark("a ring that crosses itself everywhere taken as the outlines of its largest pieces");
@@ -261,6 +268,12 @@ void write_rows(const Mending& done, const RepairedRings& result, model::OsmId i
 }
 
 }  // namespace
+
+bool well_wound(const Polygon& polygon) {
+  return geometry::signed_area(polygon.outer.points) > 0 &&
+         std::all_of(polygon.holes.begin(), polygon.holes.end(),
+                     [](const Ring& hole) { return geometry::signed_area(hole.points) < 0; });
+}
 
 std::string square_metres(double area) {
   const long long hundredths = std::llround(area * 100);

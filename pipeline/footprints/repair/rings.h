@@ -23,6 +23,7 @@ struct RepairedRings {
 /// dropped where `simplify` says so (without_collinear_points), self-intersections, holes outside, across or along the
 /// outer ring mended by geometry::make_valid, slivers dropped, overlapping or touching outer rings united.
 ///
+/// A ring that crosses itself more often than geometry::kMostCrossings becomes its convex hull, without holes.
 /// A hole that leaves nothing of its building is ignored; one whose outer ring has no area vanishes with it. Every
 /// polygon returned has passed geometry::strictly_simple. Rings start at their least point, and the result depends
 /// neither on where they started nor on the order of holes; points that survive keep their nodes. A change of the area
@@ -31,6 +32,10 @@ struct RepairedRings {
 /// SPLIT_OUTLINE. Cost of clean rings: O(n log n), no call of GEOS.
 RepairedRings repair_rings(model::MappedRings rings, model::OsmId id, const KeptNodes& kept,
                            const RepairOptions& options, model::Report& report);
+
+/// True when the outer ring runs counter-clockwise and every hole clockwise. Where corners move, a hole that is narrower than
+/// their way turns inside out without that any edges cross: strictly_simple() alone does not see it.
+bool well_wound(const model::Polygon& polygon);
 
 /// An area for report rows: "12.30 m2".
 std::string square_metres(double area);

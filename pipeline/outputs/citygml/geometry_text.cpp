@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/outputs/number_text.h"
 
@@ -29,7 +30,9 @@ bool is_shared_face(const model::Solid& lod2, const model::Solid& lod3, std::siz
   return geometry::same_face(lod2, lod3, face);
 }
 
-void GeometryText::ring(const model::Ring& ring, std::string_view z) {
+void GeometryText::ring(const model::Ring& plan, bool counter_clockwise, std::string_view z) {
+  model::Ring ring = plan;
+  geometry::orient(ring, counter_clockwise);
   out_ += "<gml:LinearRing><gml:posList>";
   for (std::size_t i = 0; i <= ring.points.size(); ++i) {
     const model::Point2& p = ring.points[i == ring.points.size() ? 0 : i];
@@ -47,11 +50,11 @@ void GeometryText::footprint(const model::Polygon& plan, double z) {
   std::string height;
   append_grid(height, z);
   out_ += "<gml:Polygon><gml:exterior>";
-  ring(plan.outer, height);
+  ring(plan.outer, true, height);
   out_ += "</gml:exterior>";
   for (const model::Ring& hole : plan.holes) {
     out_ += "<gml:interior>";
-    ring(hole, height);
+    ring(hole, false, height);
     out_ += "</gml:interior>";
   }
   out_ += "</gml:Polygon>";

@@ -54,7 +54,8 @@ class GeometryText {
   void polygon(const model::Solid& solid, const model::Face& face, std::string_view id, std::size_t number,
                bool detail = false);
   void open_surface(std::string_view name, std::string_view id, std::size_t face);
-  void ring(const model::Ring& ring, std::string_view z);
+  /// gml:LinearRing at a height, running as it is told, however the plan's ring runs.
+  void ring(const model::Ring& plan, bool counter_clockwise, std::string_view z);
 
   std::string& out_;
   std::string vertex_text_;

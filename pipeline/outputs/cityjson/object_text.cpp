@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/outputs/citygml/codes.h"
 
 namespace blockrand::outputs {
@@ -268,7 +269,9 @@ void ObjectText::geometry(const model::BuildingPart& part) {
   *out_ += ']';
 }
 
-void ObjectText::ring(const model::Ring& ring, double z) {
+void ObjectText::ring(const model::Ring& plan, bool counter_clockwise, double z) {
+  model::Ring ring = plan;
+  geometry::orient(ring, counter_clockwise);
   *out_ += '[';
   for (std::size_t i = 0; i < ring.points.size(); ++i) {
     if (i) *out_ += ',';
@@ -281,10 +284,10 @@ void ObjectText::footprint(const model::BuildingPart& part) {
   const double ground = part.attributes.ground_height.value;
   const double z = std::isfinite(ground) ? model::snap(ground) : 0;
   *out_ += "{\"type\":\"MultiSurface\",\"lod\":\"0\",\"boundaries\":[[";
-  ring(part.plan.outer, z);
+  ring(part.plan.outer, true, z);
   for (const model::Ring& hole : part.plan.holes) {
     *out_ += ',';
-    ring(hole, z);
+    ring(hole, false, z);
   }
   // The semantics tell a footprint from a roof's outline, which is LoD 0 as well.
   *out_ += "]],\"semantics\":{\"surfaces\":[{\"type\":\"GroundSurface\"}],\"values\":[0]}}";

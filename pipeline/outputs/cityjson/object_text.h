@@ -70,7 +70,8 @@ class ObjectText {
   void solid_material(const model::Solid& solid);
   void footprint(const model::BuildingPart& part);
   void solid(const model::Solid& solid, int lod, bool materials);
-  void ring(const model::Ring& ring, double z);
+  /// A ring at a height, running as it is told, however the plan's ring runs.
+  void ring(const model::Ring& plan, bool counter_clockwise, double z);
 
   void key(std::string_view name, std::string_view suffix = "");
   void text(std::string_view name, std::string_view value, std::string_view suffix = "");

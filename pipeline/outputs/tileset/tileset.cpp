@@ -29,6 +29,9 @@ struct Bounds {
   }
 };
 
+/// Degrees of latitude, beyond which bounds are those of a polar cap: 10 bulges are enough for the box's corners while the tangent of the latitude is below 20.
+constexpr double kPolar = 87;
+
 Bounds widened_bounds(const TileEntry& tile) {
   const double e = std::max(std::abs(tile.min.x), std::abs(tile.max.x));
   const double n = std::max(std::abs(tile.min.y), std::abs(tile.max.y));
@@ -38,6 +41,17 @@ Bounds widened_bounds(const TileEntry& tile) {
   const double latitude = std::max(std::abs(tile.south), std::abs(tile.north));
   // cos(latitude) >= 1 - latitude/90: a bound that needs no cosine.
   const double shrink = std::max(1 - latitude / 90, 1e-3);
+  if (latitude > kPolar) {
+    // Corners of the box lie on any meridian here, and farther from the pole than what is in it; no farther from that than
+    // across the circle around the box.
+    const double across = (2 * std::sqrt(e * e + n * n) + 0.05) / kEarthRadius / kRadians + horizontal;
+    return {-180,
+            std::max(tile.south - across, -90.0),
+            180,
+            std::min(tile.north + across, 90.0),
+            tile.min_height - vertical,
+            tile.max_height + vertical};
+  }
   Bounds b{tile.west - horizontal / shrink, tile.south - horizontal,    tile.east + horizontal / shrink,
            tile.north + horizontal,         tile.min_height - vertical, tile.max_height + vertical};
   if (tile.west > tile.east || b.west < -180 || b.east > 180) {

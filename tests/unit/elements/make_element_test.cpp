@@ -80,6 +80,43 @@ TEST(MakeElement, TellsWhatDoesNotFit) {
   EXPECT_THAT(error("main_cornice", 4, 0.8, {{"bracket_spacing", 0.1}}), HasSubstr("do not fit every 0.10 m"));
 }
 
+TEST(MakeFittingElement, WhatFitsIsMadeAsAsked) {
+  const auto made = make_fitting_element("casement_window", 1.1, 1.6);
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->told, "");
+  EXPECT_EQ(made->element.name, make_element("casement_window", 1.1, 1.6)->name);
+}
+
+TEST(MakeFittingElement, WhatDoesNotFitIsMadeSimplerAndTold) {
+  const auto shop = make_fitting_element("shop_window", 3.0, 2.2, std::vector<Parameter>{{"door", "middle"}});
+  ASSERT_TRUE(shop) << shop.error();
+  EXPECT_THAT(shop->told, HasSubstr("no room for its door below the transom; made instead: shop window 3.00 x 2.20"));
+  const auto pilaster = make_fitting_element("pilaster", 0.5, 900);
+  ASSERT_TRUE(pilaster) << pilaster.error();
+  EXPECT_THAT(pilaster->told, HasSubstr("the height is 900 m"));
+  const auto needle = make_fitting_element("plinth", 4, 0.8, std::vector<Parameter>{{"left_turn", 180.0}});
+  ASSERT_TRUE(needle) << needle.error();
+  EXPECT_THAT(needle->told, HasSubstr("\"left_turn\" is 180 degrees"));
+  EXPECT_EQ(needle->element.mesh.vertices.size(), make_element("plinth", 4, 0.8)->mesh.vertices.size()) << "cut square";
+}
+
+TEST(MakeFittingElement, WhatHasNoRoomAtAllIsLeftOut) {
+  EXPECT_FALSE(make_fitting_element("casement_window", 0.2, 1.6));
+  EXPECT_FALSE(make_fitting_element("spaceship", 1, 1));
+  EXPECT_FALSE(make_fitting_element("casement_window", 1.1, 1.6, std::vector<Parameter>{{"leafs", 2.0}}));
+}
+
+/// Anything from a hand's breadth to a tower is asked of every kind: what is not made is too small for it.
+TEST(MakeFittingElement, SizesAboveTheRangeAlwaysGiveSomething) {
+  for (const ElementKind& kind : element_kinds())
+    for (const double width : {kind.width.usual, kind.width.most, kind.width.most * 3, 200.0})
+      for (const double height : {kind.height.usual, kind.height.most, kind.height.most * 3, 300.0}) {
+        if (width < kind.width.least || height < kind.height.least) continue;
+        const auto made = make_fitting_element(kind.name, width, height);
+        EXPECT_TRUE(made) << kind.name << " " << width << " x " << height << ": " << made.error();
+      }
+}
+
 TEST(MakeElement, ProfilesMayBePrograms) {
   const Element e = made(
       "string_course", 2, 0.3,

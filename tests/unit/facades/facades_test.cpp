@@ -105,7 +105,8 @@ const GrammarLibrary& shipped() {
        {{"ornament", "0.35"}, {"stripped", "0"}, {"bay_share", "0.03"}, {"balcony_share", "0.08"}}},
       {"tenement", "workers_tenement.cga", {}},
       {"slab", "slab.cga", {}},
-      {"plain", "plain.cga", {}}};
+      {"plain", "plain.cga", {}},
+      {"bilke", "bilke/tenement.cga", {}}};
   static const GrammarLibrary book((kSource / "configs/grammars").string(), presets);
   return book;
 }
@@ -461,6 +462,50 @@ TEST(Facades, LowStoreysKeepTheirWindows) {
         }
       EXPECT_GE(windows, 2 * 5 * 4) << "four axes in five storeys on both sides";
       EXPECT_LE(balconies, french) << "no balcony without a door to it";
+    }
+}
+
+/// Rules of the shipped presets ask for nothing that elements refuse, from kiosks to towers and along whole streets: each
+/// measure that a rule hands on is one that the element can have.
+TEST(Facades, NoBuildingIsTooLargeOrTooSmallForTheRules) {
+  struct Case {
+    double width, storey_height;
+    int storeys;
+  };
+  std::vector<Case> cases;
+  for (const double width : {0.3, 0.9, 1.9, 2.6, 3.7, 5.2, 9.0, 24.0, 60.0})
+    for (const double storey_height : {2.0, 2.7, 3.3, 4.5, 7.0})
+      for (const int storeys : {1, 2, 5}) cases.push_back({width, storey_height, storeys});
+  for (const double width : {8.0, 30.0})
+    for (const int storeys : {12, 40, 80}) cases.push_back({width, 3.75, storeys});
+  cases.push_back({200, 3.4, 3});  // 20,000 shapes a wall is another limit: it comes first beyond that
+  cases.push_back({200, 12, 1});
+  cases.push_back({45, 20, 15});
+  for (const char* preset : {"gruenderzeit", "late", "early", "tenement", "slab", "plain", "bilke"})
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      const Case& c = cases[i];
+      House house;
+      house.width = c.width;
+      house.storey_height = c.storey_height;
+      house.storeys = c.storeys;
+      house.plinth = i % 3 == 0 ? 0 : 0.3 * static_cast<double>(i % 5);
+      house.edges[1] = house.edges[3] = i % 2 == 0 ? WallSegmentKind::street : WallSegmentKind::party_wall;
+      model::Region region = region_of(house, preset, 1000 + static_cast<std::int64_t>(i));
+      model::Building& b = region.buildings[0];
+      if (i % 4 < 2) {
+        const Point2 from = b.outline[0].outer.points[0];
+        for (const double along : {0.2, 0.5, 0.8}) {
+          model::WallPoint shop;
+          shop.id = {model::OsmType::node, 9};
+          shop.use = "gastronomy";
+          shop.place = {from.x + along * c.width, from.y + 0.5};
+          b.edges[0].points.push_back(shop);
+        }
+      }
+      build_facades(region, shipped(), attributes::Defaults{}, {42});
+      for (const model::ReportRow& row : region.report.rows)
+        EXPECT_NE(row.code, model::IssueCode::grammar_error) << preset << ", " << c.width << " m wide, " << c.storeys
+                                                             << " x " << c.storey_height << " m: " << row.detail;
     }
 }
 

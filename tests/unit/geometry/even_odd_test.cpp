@@ -22,6 +22,16 @@ model::Ring scribble(std::size_t corners, std::uint64_t seed) {
   return ring(std::move(points));
 }
 
+TEST(ConvexHull, KeepsCornersAndTheirNodes) {
+  model::Ring r = ring({{4, 4}, {0, 0}, {8, 0}, {4, 0}, {8, 8}, {4, 7}, {0, 8}, {0, 0}, {0, 3}});
+  for (std::size_t i = 0; i < r.size(); ++i) r.nodes[i] = static_cast<std::int64_t>(10 + i);
+  const model::Ring hull = convex_hull(r);
+  EXPECT_EQ(hull.points, (std::vector<Point2>{{0, 0}, {8, 0}, {8, 8}, {0, 8}}));
+  EXPECT_EQ(hull.nodes, (std::vector<std::int64_t>{11, 12, 14, 16}));
+  EXPECT_EQ(convex_hull(ring({{0, 0}, {1, 1}, {2, 2}, {3, 3}})).size(), 0u) << "no area";
+  EXPECT_EQ(convex_hull(ring({{0, 0}, {0, 0}})).size(), 0u);
+}
+
 TEST(EvenOdd, WalkingAlongTheRingMeasuresTheSame) {
   EXPECT_NEAR(tangled_area(ring({{0, 0}, {10, 8}, {10, 0}, {0, 8}})), 40, 1e-3) << "a figure eight";
   EXPECT_NEAR(tangled_area(ring({{0, 0}, {10, 0}, {10, 8}, {0, 8}})), 80, 1e-3) << "a house";

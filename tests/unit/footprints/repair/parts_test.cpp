@@ -64,7 +64,10 @@ struct Scene {
   }
   Scene& fit(const RepairOptions& options = {}) {
     fit_parts(building, before, {}, options, failures, settled, report);
-    for (const BuildingPart& p : building.parts) EXPECT_TRUE(geometry::strictly_simple(p.plan)) << p.id;
+    for (const BuildingPart& p : building.parts) {
+      EXPECT_TRUE(geometry::strictly_simple(p.plan)) << p.id;
+      EXPECT_TRUE(well_wound(p.plan)) << p.id;
+    }
     return *this;
   }
   const Polygon& plan(const std::string& id) const {
@@ -248,6 +251,27 @@ TEST(PartsShare, ASetbackOfAnUpperStoreyIsNoGap) {
       .fit();
   EXPECT_NEAR(s.area("w1.w3"), 19.5 * 9.5, 1e-9);
   EXPECT_NEAR(s.area("w1.w2"), 200, 1e-9);
+}
+
+TEST(PartsShare, NoCourtTurnsInsideOut) {
+  // A shaft narrower than corners may move, with the walls of other parts on either side: drawn to them it would change sides.
+  Random random(8);
+  for (int round = 0; round < 300; ++round) {
+    const double x = 8 + 2 * random.unit(), width = 0.06 + 0.5 * random.unit(), low = 2 + random.unit(),
+                 high = low + 1 + 5 * random.unit(), left = x + 0.8 * (random.unit() - 0.5),
+                 right = x + 0.8 * (random.unit() - 0.5);
+    const auto on = [](std::vector<Point2> points) {
+      for (Point2& p : points) p = model::snap(p);
+      return points;
+    };
+    Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
+    s.part(2, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {12.0f, {}, {}, {}});
+    s.building.parts.back().rings.rings.push_back(ring(on({{x, low}, {x, high}, {x + width, high}, {x + width, low}})));
+    s.building.parts.back().rings.inner.push_back(true);
+    s.part(3, on({{left, low}, {19, low}, {19, high}, {left, high}}), {15.0f, 12.0f, {}, {}});
+    s.part(4, on({{1, low}, {right, low}, {right, high}, {1, high}}), {18.0f, 15.0f, {}, {}});
+    s.moved_to({{0.25, 0}, {20, 0.25}, {20, 10}, {0, 9.75}}).fit();
+  }
 }
 
 TEST(PartsShare, SmallPartsDoNotCollapse) {

@@ -18,6 +18,7 @@
 #include <thread>
 
 #include "pipeline/base/error.h"
+#include "pipeline/layer_file/well_known_binary.h"
 #include "pipeline/model/issue_codes.h"
 #include "pipeline/outputs/geopackage/columns.h"
 #include "pipeline/outputs/geopackage/geopackage_writer.h"
@@ -135,6 +136,29 @@ class GeoPackage : public testing::Test {
   static inline Folder* folder = nullptr;
   static inline std::string path;
 };
+
+TEST(WellKnownBinary, RingsRunAsTheStandardWantsHoweverTheyCome) {
+  const std::vector<model::Point2> outer{{0, 0}, {9, 0}, {9, 9}, {0, 9}}, court{{3, 3}, {3, 6}, {6, 6}, {6, 3}};
+  const auto turned = [](std::vector<model::Point2> points) {
+    std::reverse(points.begin() + 1, points.end());
+    return points;
+  };
+  const auto bytes = [](const std::vector<model::Point2>& outer_ring, const std::vector<model::Point2>& hole) {
+    std::string out;
+    layer_file::append_polygon(out, {{outer_ring, {}}, {{hole, {}}}});
+    return out;
+  };
+  const std::string right = bytes(outer, court);
+  ASSERT_EQ(right.size(), 9 + 2 * (4 + 5 * 16u));
+  double second[2];
+  std::memcpy(second, right.data() + 9 + 4 + 16, sizeof second);
+  EXPECT_EQ(second[0], 9) << "counter-clockwise";
+  std::memcpy(second, right.data() + 9 + 4 + 5 * 16 + 4 + 16, sizeof second);
+  EXPECT_EQ(second[1], 6) << "clockwise";
+  EXPECT_EQ(bytes(turned(outer), court), right);
+  EXPECT_EQ(bytes(outer, turned(court)), right);
+  EXPECT_EQ(bytes(turned(outer), turned(court)), right);
+}
 
 TEST_F(GeoPackage, HoldsEveryOwnedBuildingAndBodyOnce) {
   EXPECT_THAT(column(path, "SELECT id FROM buildings"), ElementsAre("w-7", "w12", "w30", "w40", "w50", "w60"));

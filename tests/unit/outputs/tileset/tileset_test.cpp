@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
@@ -124,6 +125,24 @@ TEST(Tileset, CrossesTheAntimeridianWithTheWholeCircle) {
   const json j = json::parse(write_tileset(std::vector{t}, {}));
   EXPECT_EQ(j["root"]["boundingVolume"]["region"][0], -std::numbers::pi);
   EXPECT_EQ(j["root"]["boundingVolume"]["region"][2], std::numbers::pi);
+}
+
+/// 56 m from a pole corners of the box lie on all meridians, and farther from the pole than what is in it.
+TEST(Tileset, HoldsBoxesAtThePoles) {
+  for (const bool north : {true, false}) {
+    TileEntry t = tile(18659, north ? 32767 : 0);
+    t.min = {-30, -30, 0};
+    t.max = {30, 30, 25.5};
+    (north ? t.south : t.north) = north ? 89.9995 : -89.9995;
+    (north ? t.north : t.south) = north ? 89.99951 : -89.99951;
+    const json region = json::parse(write_tileset(std::vector{t}, {}))["root"]["boundingVolume"]["region"];
+    constexpr double kDegree = std::numbers::pi / 180;
+    EXPECT_EQ(region[0], -std::numbers::pi);
+    EXPECT_EQ(region[2], std::numbers::pi);
+    const double equatorwards = north ? region[1].get<double>() : -region[3].get<double>();
+    EXPECT_LT(equatorwards, (89.9995 - 0.0004) * kDegree) << "42 m more are 0.0004 degrees";
+    EXPECT_LE(std::fabs(region[north ? 3 : 1].get<double>()), 90 * kDegree);
+  }
 }
 
 TEST(Tileset, WithoutTilesIsStillValid) {
