@@ -307,8 +307,8 @@ class FacadeBuilder {
     }
     out.opened = cut_openings(part.lod2, walls, openings, rounding_);
     auto triangles = geometry::triangulate(out.opened.solid, part.lod2, part.lod2_triangles);
-    if (!triangles ||
-        !(proved_valid(out.opened, *triangles) || geometry::check_solid(out.opened.solid, *triangles, geometry::kBuilt).valid()))
+    if (!triangles || !(proved_valid(out.opened, *triangles) ||
+                        geometry::check_solid(out.opened.solid, *triangles, geometry::kBuilt).valid()))
       return std::nullopt;
     out.triangles = std::move(*triangles);
     return out;

@@ -178,8 +178,8 @@ class RoofInstaller {
     const geometry::ClosedMesh mine = view(installation.solid, installation.triangles);
     for (const BuildingPart& part : building.parts) {
       const bool detailed = !part.lod3.solid.empty();
-      if (geometry::interiors_meet(mine, detailed ? view(part.lod3.solid, part.lod3.triangles)
-                                                  : view(part.lod2, part.lod2_triangles)))
+      if (geometry::interiors_meet(
+              mine, detailed ? view(part.lod3.solid, part.lod3.triangles) : view(part.lod2, part.lod2_triangles)))
         return true;
       for (const model::RoofInstallation& other : part.lod3.roof_installations)
         if (geometry::interiors_meet(mine, view(other.solid, other.triangles))) return true;

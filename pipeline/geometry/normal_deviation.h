@@ -12,8 +12,8 @@
 namespace blockrand::geometry {
 
 struct NormalDeviation {
-  double angle = 0;                        ///< rad: the largest between the normals of two triangles
-  std::array<model::Point3, 3> triangle;   ///< the one that leans most off the plane
+  double angle = 0;                       ///< rad: the largest between the normals of two triangles
+  std::array<model::Point3, 3> triangle;  ///< the one that leans most off the plane
 };
 
 /// The constrained Delaunay triangulation of a polygon in the plane that fits all of its points best (least squares),

@@ -21,7 +21,7 @@ namespace blockrand::geometry {
   X(rings_meet, 201, "rings intersect", "two rings of a polygon that cross or touch")                                 \
   X(rings_equal, 202, "duplicated rings", "two rings of a polygon that are the same")                                 \
   X(not_planar, 203, "not planar", "a point farther than 1 cm from its polygon's plane")                              \
-  X(folded, 204, "normals deviate", "a fold: two triangles of the polygon look more than 20 degrees apart")              \
+  X(folded, 204, "normals deviate", "a fold: two triangles of the polygon look more than 20 degrees apart")           \
   X(face_split, 205, "polygon interior disconnected", "rings that touch in several points and cut the polygon apart") \
   X(hole_outside, 206, "inner ring outside", "a hole that is not within the outer ring")                              \
   X(hole_in_hole, 207, "inner rings nested", "a hole within another hole")                                            \

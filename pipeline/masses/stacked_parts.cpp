@@ -39,7 +39,8 @@ std::vector<GivenWay> settle_stacks(std::span<const model::Polygon> plans, std::
       if (lower.eaves == lower.top && upper.bottom - lower.bottom >= kLeastThickness) {
         out.push_back({i, k, lower.top - upper.bottom});
         lower.eaves = lower.top = upper.bottom;
-      } else if (2 * (upper.top - lower.top) >= upper.top - upper.bottom && upper.eaves - lower.top >= kLeastThickness) {
+      } else if (2 * (upper.top - lower.top) >= upper.top - upper.bottom &&
+                 upper.eaves - lower.top >= kLeastThickness) {
         out.push_back({k, i, lower.top - upper.bottom});
         upper.bottom = lower.top;
       }

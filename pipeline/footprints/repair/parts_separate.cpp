@@ -27,9 +27,9 @@ using model::Ring;
 /// Tips that are cut off leave new corners, which rounding may put into another part; so it is done again.
 constexpr int kRounds = 3;
 constexpr double kLeastShare = 0.05;  // of a plan; of one that keeps less, only slivers are left
-constexpr double kStrip = 0.1;       // m; two drawings of one wall lie that near
-constexpr double kHigher = 1.0;      // m; less is one storey counted and measured
-constexpr double kTold = 0.01;  // m²; less is what rounding and two drawings of one wall make
+constexpr double kStrip = 0.1;        // m; two drawings of one wall lie that near
+constexpr double kHigher = 1.0;       // m; less is one storey counted and measured
+constexpr double kTold = 0.01;        // m²; less is what rounding and two drawings of one wall make
 
 struct Piece {
   std::size_t part = 0;
@@ -56,9 +56,7 @@ bool near(const Piece& a, const Piece& b) {
 }
 
 /// Whether two stand at one height by some reading: metres and storeys of 3 m without a margin.
-bool may_meet(const HeightSpan& a, const HeightSpan& b) {
-  return std::min(a.high, b.high) > std::max(a.low, b.low);
-}
+bool may_meet(const HeightSpan& a, const HeightSpan& b) { return std::min(a.high, b.high) > std::max(a.low, b.low); }
 
 /// Pieces that may stand at one height and come near each other, and what hangs together by such; the stronger first: the
 /// smaller, of equal ones that of the lower id.
@@ -114,8 +112,12 @@ class Drawing {
   }
 
   /// Of a plan as it is drawn, and of what it keeps. m²
-  double drawn(std::size_t piece) const { return area([&](std::size_t f) { return winding_[f][piece] > 0; }); }
-  double kept(std::size_t piece) const { return area([&](std::size_t f) { return kept_[f][piece]; }); }
+  double drawn(std::size_t piece) const {
+    return area([&](std::size_t f) { return winding_[f][piece] > 0; });
+  }
+  double kept(std::size_t piece) const {
+    return area([&](std::size_t f) { return kept_[f][piece]; });
+  }
 
   /// Who keeps most of the ground that a piece loses; nobody where the piece is known to reach higher than one of those
   /// who take it.
@@ -321,7 +323,8 @@ bool separate_once(model::Building& building, const RepairOptions& options, std:
           represented[group[i].part] = other.osm;
           continue;
         }
-        report.add(part.osm, model::IssueCode::parts_overlap, square_metres(lost) + " with others; stays, it is higher");
+        report.add(part.osm, model::IssueCode::parts_overlap,
+                   square_metres(lost) + " with others; stays, it is higher");
         continue;
       }
       // What would touch itself stays.

@@ -179,7 +179,8 @@ TEST(RoofPlanCorners, StayOutOfOtherParts) {
         EXPECT_LE(std::hypot(parts[i].roof_plan.outer.points[k].x - old[i].roof_plan.outer.points[k].x,
                              parts[i].roof_plan.outer.points[k].y - old[i].roof_plan.outer.points[k].y),
                   0.02);
-    EXPECT_EQ(parts[1].roof_plan.outer.points[2], parts[2].roof_plan.outer.points[3]) << "a common corner moves in both";
+    EXPECT_EQ(parts[1].roof_plan.outer.points[2], parts[2].roof_plan.outer.points[3])
+        << "a common corner moves in both";
   }
   EXPECT_GT(before, 50);
 }

@@ -154,7 +154,8 @@ TEST(Openings, CornersBehindTheWallComeNowhereBeforeIt) {
   for (const CornerRounding rounding : {CornerRounding::nearest, CornerRounding::behind_wall}) {
     std::vector<WallOpening> wanted;
     for (std::uint32_t w = 0; w < walls.size(); ++w)
-      for (double u = 1; u + 1.2 < walls[w].length; u += 1.7) wanted.push_back(window(w, rectangle(u, 1, 1.1, 1.9), 0.2));
+      for (double u = 1; u + 1.2 < walls[w].length; u += 1.7)
+        wanted.push_back(window(w, rectangle(u, 1, 1.1, 1.9), 0.2));
     const OpenedSolid opened = cut_openings(solid, walls, wanted, rounding);
     int before = 0;
     for (const WallFrame& wall : walls) {

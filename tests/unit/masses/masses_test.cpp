@@ -443,8 +443,7 @@ TEST(Mass, PartsThatShareAGableShareNoRoom) {
         const model::BuildingPart &p = t.part(0, a), &q = t.part(0, b);
         gables += p.built_roof == RoofShape::gabled;
         EXPECT_EQ(geometry::common_volume({p.lod2.vertices, p.lod2_triangles.triangles},
-                                          {q.lod2.vertices, q.lod2_triangles.triangles}) >
-                      geometry::kLeastCommonVolume,
+                                          {q.lod2.vertices, q.lod2_triangles.triangles}) > geometry::kLeastCommonVolume,
                   false)
             << p.id << " and " << q.id;
       }
