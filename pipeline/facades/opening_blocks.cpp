@@ -127,7 +127,7 @@ bool Obstacles::blocked(const Block& block, std::uint32_t own, std::uint32_t oth
   }
   const Box2 around{block.box.left - kBoxRounding, block.box.right + kBoxRounding, block.box.low - kBoxRounding,
                     block.box.high + kBoxRounding};
-  const auto beside = [&](Point2 a, Point2 b) {
+  const auto far_from = [&](Point2 a, Point2 b) {
     return std::max(a.x, b.x) < around.left || std::min(a.x, b.x) > around.right || std::max(a.y, b.y) < around.low ||
            std::min(a.y, b.y) > around.high;
   };
@@ -142,7 +142,7 @@ bool Obstacles::blocked(const Block& block, std::uint32_t own, std::uint32_t oth
     if (!slope.steep && (low - slope.slack > block.high || high + slope.slack < block.low)) continue;
     for (std::size_t i = 0; i < slope.ring.size(); ++i) {
       const Point2 a = slope.ring[i], b = slope.ring[(i + 1) % slope.ring.size()];
-      if (!beside(a, b) && block.meets_segment(a, b)) return true;
+      if (!far_from(a, b) && block.meets_segment(a, b)) return true;
     }
     if (geometry::contains(slope.ring, block.plan[0])) return true;
   }
