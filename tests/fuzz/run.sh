@@ -42,12 +42,14 @@ corpus=build/fuzz/corpus
 mkdir -p "$corpus/reference" build/fuzz/found build/fuzz/logs
 python3 tests/fuzz/seeds.py "$program" "$corpus"
 sh tests/fuzz/reference_seeds.sh "$corpus/reference"
+for name in $targets; do
+  [ -n "$(ls -A "$corpus/$name" 2>/dev/null)" ] || { echo "fuzz: no seeds for $name: add them to tests/fuzz/seeds.py" >&2; exit 1; }
+done
 
 # One target. Inputs are as long as the seeds at most: what is larger is slower and finds nothing else.
 cat >build/fuzz/run_target.sh <<'TARGET'
 set -eu
 name=$1
-mkdir -p "build/fuzz/corpus/$name"
 longest=$(find "build/fuzz/corpus/$name" -type f -size +4 -printf '%s\n' | sort -n | tail -1)
 set -- -max_total_time="$seconds" -runs="$runs" -max_len="${longest:-4096}" -timeout=20 -rss_limit_mb=2048 \
   -print_final_stats=1 -artifact_prefix="build/fuzz/found/$name-"

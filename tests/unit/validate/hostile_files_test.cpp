@@ -68,8 +68,7 @@ TEST(HostileFiles, ABuildingInsideOfASolidHasNotThatSolid) {
     const CityGml read = city_of(solid_around("<bldg:Building gml:id=\"w2\">" + inside + "</bldg:Building>"));
     ASSERT_TRUE(read.readable);
     EXPECT_FALSE(read.contents.findings.empty());
-    for (const ReadBody& body : read.contents.bodies)
-      if (body.id == "w2") EXPECT_TRUE(body.solids.empty());
+    for (const ReadBody& body : read.contents.bodies) EXPECT_TRUE(body.id == "w1" || body.solids.empty());
   }
 }
 
