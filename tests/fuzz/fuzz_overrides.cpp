@@ -1,5 +1,4 @@
-// libFuzzer target: whatever a user's overrides.toml holds, it is read to entries in order, which act on objects as
-// tags do, or there is an InputError.
+// libFuzzer target: whatever a user's overrides.toml holds, it is read to entries in order, or there is an InputError.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -8,31 +7,19 @@
 
 #include "pipeline/attributes/overrides.h"
 #include "pipeline/base/error.h"
-#include "pipeline/model/extract.h"
-#include "pipeline/model/report.h"
 #include "tests/fuzz/input_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace blockrand;
   static const attributes::Defaults defaults = attributes::read_defaults(BLOCKRAND_SOURCE_DIR "/configs");
   try {
-    attributes::Overrides read = attributes::read_overrides(fuzz::write_file("overrides.toml", data, size), defaults,
-                                                            {{"gz_plain", "postwar"}, {"gz_high"}});
+    const attributes::Overrides read = attributes::read_overrides(fuzz::write_file("overrides.toml", data, size),
+                                                                  defaults, {{"gz_plain", "postwar"}, {"gz_high"}});
     for (std::size_t i = 0; i < read.entries.size(); ++i) {
       if (i > 0 && !(read.entries[i - 1].object < read.entries[i].object)) std::abort();
       for (const auto& [attribute, value] : read.entries[i].values)
         if (const double* number = std::get_if<double>(&value.value); number && !std::isfinite(*number)) std::abort();
     }
-    model::Extract extract;
-    for (const std::int64_t number : {1, 2, 3}) {
-      model::MappedBuilding& b = extract.buildings.emplace_back();
-      b.id = {model::OsmType::way, number};
-      if (number == 3) b.kind = model::ObjectKind::building_part;
-      b.attributes.use = extract.strings.intern("apartments");
-      b.attributes.storeys = 3.0f;
-    }
-    model::Report report;
-    attributes::apply_overrides(read, extract, report);
   } catch (const base::InputError&) {
   }
   return 0;

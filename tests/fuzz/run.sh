@@ -3,7 +3,7 @@
 #   tests/fuzz/run.sh [--seconds N] [--runs N] [--jobs N] [TARGET …]
 #   --seconds N   for each target, default 60; 0: until --runs is reached
 #   --runs N      inputs for each target at most; default: as many as fit
-#   --jobs N      targets that run at a time, default 2
+#   --jobs N      targets that run at a time, default 2 where memory allows
 #   TARGET        as tests/fuzz/CMakeLists.txt names them; default: all
 # BLOCKRAND_PROGRAM makes the seeds, default build/release/blockrand. Corpora stay in build/fuzz/corpus and grow; inputs
 # that fail are written to build/fuzz/found, logs to build/fuzz/logs.
@@ -11,7 +11,9 @@
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/../.." && pwd)
 cd "$root"
-seconds=60 runs=-1 jobs=2
+. samples/build_settings.sh
+[ "$jobs" -le 2 ] || jobs=2
+seconds=60 runs=-1
 while [ $# -gt 0 ]; do
   case $1 in
     --seconds) seconds=$2; shift 2 ;;
@@ -27,14 +29,13 @@ command -v clang++-16 >/dev/null 2>&1 ||
 program=${BLOCKRAND_PROGRAM:-build/release/blockrand}
 [ -x "$program" ] || { echo "fuzz: no $program, which makes the seeds: skipped"; exit 77; }
 
-. samples/build_settings.sh
 cmake --preset fuzz >/dev/null
 targets=$*
 if [ -z "$targets" ]; then
   targets=$(cat build/fuzz/tests/fuzz/targets.txt)
   cmake --build --preset fuzz --parallel "$jobs" --target fuzz_targets
 else
-  # shellcheck disable=SC2046 # a list
+  # shellcheck disable=SC2046,SC2086 # a list
   cmake --build --preset fuzz --parallel "$jobs" --target $(printf 'fuzz_%s ' $targets)
 fi
 
