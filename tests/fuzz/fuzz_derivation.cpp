@@ -1,11 +1,11 @@
-// libFuzzer target: whatever rules say, deriving them on a lot ends within its limits, with leaves of finite size.
-#include <cmath>
+// libFuzzer target: whatever rules say, deriving them on a lot ends within its limits, with leaves that can be drawn.
 #include <cstdint>
 #include <cstdlib>
 
 #include "styles/grammar/evaluation/derive.h"
 #include "styles/grammar/shapes/initial_shape.h"
 #include "styles/grammar/shapes/mesh_triangles.h"
+#include "styles/grammar/shapes/occlusion.h"
 #include "tests/fuzz/rule_text.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
