@@ -1,22 +1,26 @@
 #!/bin/sh
 # The test suite: installs what is missing, builds preset `release` as quickstart.sh does, runs ctest. Can be run from any folder.
-#   sh tests/run.sh [--full] [ctest arguments …]
-#   --full   with the tests of label `long` (whole cities; needs ../shared/data) and with foreign viewers, which it
-#            installs; without them their tests skip
+#   sh tests/run.sh [--full | --fuzz] [ctest arguments …]
+#   --fuzz   with the fuzz targets, a minute each (tests/fuzz/run.sh), and the compiler that they need
+#   --full   with the fuzz targets, the tests of label `long` (whole cities; needs ../shared/data) and foreign viewers,
+#            which it installs; without them their tests skip
 # Ends with ctest's summary, what was skipped and why, and ctest's exit code.
 set -eu
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
 full=no
+fuzz=no
 while [ $# -gt 0 ]; do
   case $1 in
-    --full) full=yes; shift ;;
-    -h | --help) sed -n '2,6p' "$0"; exit 0 ;;
+    --full) full=yes fuzz=yes; shift ;;
+    --fuzz) fuzz=yes; shift ;;
+    -h | --help) sed -n '2,7p' "$0"; exit 0 ;;
     *) break ;;
   esac
 done
 
 sections='build test package'
 [ $full = no ] || sections="$sections viewers picture"
+[ $fuzz = no ] || sections="$sections fuzz"
 # shellcheck disable=SC2086 # a list
 sh "$root/samples/setup.sh" $sections
 
@@ -46,7 +50,10 @@ cmake --preset release -UBLOCKRAND_WERROR -DBLOCKRAND_TESTS=ON
 cmake --build --preset release --parallel "$jobs"
 
 [ -d ../shared/data ] || echo "tests: no ../shared/data: tests on real extracts skip"
-if [ $full = no ]; then set -- -LE long "$@"; fi
+without=
+[ $full = yes ] || without=long
+[ $fuzz = yes ] || without=${without:+$without|}fuzz
+if [ -n "$without" ]; then set -- -LE "^($without)\$" "$@"; fi
 log=$build/Testing/Temporary/LastTest.log
 rm -f "$log"
 code=0

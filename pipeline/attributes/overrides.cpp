@@ -399,22 +399,6 @@ bool is_there(const model::DetailOverride& d, const model::Building& building, c
 
 }  // namespace
 
-const double* OverrideEntry::number(const std::string& attribute) const {
-  const auto found = values.find(attribute);
-  return found == values.end() ? nullptr : std::get_if<double>(&found->second.value);
-}
-
-const std::string* OverrideEntry::text(const std::string& attribute) const {
-  const auto found = values.find(attribute);
-  return found == values.end() ? nullptr : std::get_if<std::string>(&found->second.value);
-}
-
-const OverrideEntry* Overrides::find(OsmId object) const {
-  const auto found = std::lower_bound(entries.begin(), entries.end(), object,
-                                      [](const OverrideEntry& e, OsmId id) { return e.object < id; });
-  return found != entries.end() && found->object == object ? &*found : nullptr;
-}
-
 void apply_overrides(Overrides& overrides, model::Extract& extract, model::Report& report) {
   for (OverrideEntry& entry : overrides.entries) {
     const auto tell = [&](const std::string& why) {

@@ -311,6 +311,22 @@ class Reader {
 
 }  // namespace
 
+const double* OverrideEntry::number(const std::string& attribute) const {
+  const auto found = values.find(attribute);
+  return found == values.end() ? nullptr : std::get_if<double>(&found->second.value);
+}
+
+const std::string* OverrideEntry::text(const std::string& attribute) const {
+  const auto found = values.find(attribute);
+  return found == values.end() ? nullptr : std::get_if<std::string>(&found->second.value);
+}
+
+const OverrideEntry* Overrides::find(OsmId object) const {
+  const auto found = std::lower_bound(entries.begin(), entries.end(), object,
+                                      [](const OverrideEntry& e, OsmId id) { return e.object < id; });
+  return found != entries.end() && found->object == object ? &*found : nullptr;
+}
+
 std::optional<model::YearRange> parse_years(std::string_view text) {
   model::YearRange years;
   auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), years.from);

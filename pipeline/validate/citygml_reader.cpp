@@ -101,8 +101,10 @@ void CityGmlParser::start(xmlTextReaderPtr reader) {
   const std::string_view name = view(xmlTextReaderConstLocalName(reader)),
                          space = view(xmlTextReaderConstNamespaceUri(reader));
   text_.clear();
-  stack_.push_back(name);
-  if (!known_element(space, name)) rule(fmt::format("unexpected element {}", name), object());
+  const bool known = known_element(space, name);
+  // What only has the name of one of ours must not end it.
+  stack_.push_back(known && space != kAddress ? name : std::string_view());
+  if (!known) rule(fmt::format("unexpected element {}", name), object());
   std::string id;
   if (xmlTextReaderHasAttributes(reader) == 1) {
     id = attribute(reader, "id", kGml);
@@ -204,6 +206,7 @@ void CityGmlParser::start_building(std::string_view name, const std::string& id)
     opening_.clear();
     surface_.clear();
     target_ = Target::footprint;
+    in_solid_ = false;
     open_.emplace_back();
     open_.back().body = out_.contents.bodies.size();
     out_.contents.bodies.push_back(std::move(body));

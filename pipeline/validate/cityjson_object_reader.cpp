@@ -416,6 +416,7 @@ class ObjectReader {
         return wrong(fmt::format("has the vertex index {} of {}", v.dump().substr(0, 20), scope_.vertices.size()));
       indices.push_back(*index);
       scope_.used[*index] = true;
+      if (!scope_.lies_somewhere(*index)) return wrong(fmt::format("has the vertex {}, which is no point", *index));
     }
     if (std::set<std::uint64_t>(indices.begin(), indices.end()).size() < 3)
       return defect(geometry::SolidDefect::too_few_points);
@@ -461,7 +462,8 @@ void read_city_objects(const Json& objects, const std::vector<std::string>& orde
   ObjectReader reader(objects, scope, templates, out, findings);
   for (const std::string& id : order) {
     if (!ids.insert(id).second) findings.rule(id, "its id is given twice in the file");
-    reader.read(id, objects.at(id));
+    // Of city objects that are given twice only the last ones are there.
+    if (const Json* object = member(objects, id)) reader.read(id, *object);
   }
 }
 

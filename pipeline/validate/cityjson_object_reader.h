@@ -1,6 +1,8 @@
 // City objects of one CityJSON object or feature: their rules, and what they hold.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,6 +39,14 @@ struct CityJsonScope {
   std::vector<bool> used;               ///< by vertex
   std::vector<std::string> colours;     ///< "#rrggbb" by material; empty for one without
   std::string theme;                    ///< of materials, to be preferred
+
+  /// Whether there is such a vertex, of finite coordinates. Others have no order: what sorts points would not end where
+  /// they end.
+  bool lies_somewhere(std::uint64_t vertex) const {
+    if (vertex >= vertices.size()) return false;
+    const model::Point3& p = vertices[vertex];
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  }
 };
 
 struct CityJsonTemplates;

@@ -18,6 +18,29 @@ using model::Point3;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
+/// Levels of arrays and objects. Those of CityJSON have a dozen.
+constexpr int kDeepest = 256;
+
+/// Whether a JSON text is nested deeper than kDeepest: copying and printing values takes stack for each level.
+bool is_too_deep(std::string_view text) {
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '\\') ++i;
+      quoted = c != '"';
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > kDeepest) return true;
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return false;
+}
+
 /// Parses one JSON text and notices what the document forgets: members given twice, and the order of city objects.
 struct Document {
   Json json;
@@ -26,6 +49,10 @@ struct Document {
   std::string error;
 
   explicit Document(std::string_view text) {
+    if (is_too_deep(text)) {
+      error = fmt::format("nested deeper than {} levels", kDeepest);
+      return;
+    }
     std::vector<std::unordered_set<std::string>> names;  // by depth
     bool in_objects = false;
     const auto look = [&](int depth, Json::parse_event_t event, Json& value) {

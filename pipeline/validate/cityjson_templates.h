@@ -39,11 +39,11 @@ std::optional<ReadPlacement> read_instance(const Json& g, CityJsonScope& scope, 
   templates.used[*number] = true;
   const Json* corner = member(g, "boundaries");
   const auto vertex = corner && corner->is_array() && corner->size() == 1 ? whole(element(corner, 0)) : std::nullopt;
-  if (!vertex || *vertex >= scope.vertices.size()) {
+  if (vertex && *vertex < scope.used.size()) scope.used[*vertex] = true;
+  if (!vertex || !scope.lies_somewhere(*vertex)) {
     complain("has an instance that stands at no vertex");
     return std::nullopt;
   }
-  scope.used[*vertex] = true;
   const auto m = numbers(member(g, "transformationMatrix"), 16);
   if (!m || !turns_about_the_vertical(*m)) {
     complain("has an instance whose matrix is no rotation about the vertical");

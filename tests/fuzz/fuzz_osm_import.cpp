@@ -1,36 +1,18 @@
 // libFuzzer target: whatever an OSM file holds, reading it gives an extract whose books balance, or an InputError.
 // The first byte chooses the format, the rest is the file. Seeds: any small OSM file behind one of the bytes 0 to 3.
-#include <stdlib.h>
-#include <unistd.h>
-
 #include <cstdint>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 
 #include "importers/osm/read_extract.h"
-
-namespace {
-
-/// A folder per process: libFuzzer runs several side by side.
-const std::string& folder() {
-  static const std::string path = [] {
-    std::string pattern = "/tmp/blockrand-fuzz-XXXXXX";
-    if (mkdtemp(pattern.data()) == nullptr) std::abort();
-    return pattern;
-  }();
-  return path;
-}
-
-}  // namespace
+#include "pipeline/base/error.h"
+#include "tests/fuzz/input_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace blockrand;
   if (size == 0) return 0;
-  static constexpr const char* kNames[] = {"/f.osm", "/f.osm.pbf", "/f.osm.gz", "/f.osm.bz2"};
-  const std::string path = folder() + kNames[data[0] % 4];
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
+  static constexpr const char* kNames[] = {"f.osm", "f.osm.pbf", "f.osm.gz", "f.osm.bz2"};
+  const std::string path = fuzz::write_file(kNames[data[0] % 4], data + 1, size - 1);
   try {
     const model::Extract e = importers::osm::read_extract(path);
     if (e.counts.buildings() + e.counts.parts() != e.buildings.size()) std::abort();

@@ -1,13 +1,9 @@
 // libFuzzer target: whatever a reference model holds, reading it gives a model whose numbers point to what is there, or
 // an InputError. The first byte chooses the reader, the rest is the file. Seeds: any small model behind one of the
 // bytes 0 to 4; where a tileset names content, it is the last GLB that was tried.
-#include <stdlib.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 
 #include "importers/reference/citygml.h"
@@ -15,20 +11,11 @@
 #include "importers/reference/gltf.h"
 #include "importers/reference/read_model.h"
 #include "pipeline/base/error.h"
+#include "tests/fuzz/input_file.h"
 
 namespace {
 
 using namespace blockrand::importers::reference;
-
-/// A folder per process: libFuzzer runs several side by side.
-const std::string& folder() {
-  static const std::string path = [] {
-    std::string pattern = "/tmp/blockrand-fuzz-XXXXXX";
-    if (mkdtemp(pattern.data()) == nullptr) std::abort();
-    return pattern;
-  }();
-  return path;
-}
 
 void check(const std::vector<Geometry>& geometries, const ReferenceModel& model) {
   for (const Geometry& g : geometries) {
@@ -59,11 +46,9 @@ void check(const ReferenceModel& model) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  static constexpr const char* kNames[] = {"/f.gml", "/f.city.json", "/f.glb", "/tileset.json", "/f"};
+  static constexpr const char* kNames[] = {"f.gml", "f.city.json", "f.glb", "tileset.json", "f"};
   const int kind = data[0] % 5;
-  const std::string path = folder() + kNames[kind];
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
+  const std::string path = blockrand::fuzz::write_file(kNames[kind], data + 1, size - 1);
   ReadOptions options;
   if (kind < 2) {
     options.reference_crs = "EPSG:25833";
