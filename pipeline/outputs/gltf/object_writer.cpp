@@ -106,7 +106,7 @@ class ObjectWriter {
     json += "\"id\":";
     append_json(json, id);
     if (!name.empty()) {
-      json += ",\"name\":";
+      json += ",\"name_tag\":";
       append_json(json, name);
     }
     json += "},\"name\":";

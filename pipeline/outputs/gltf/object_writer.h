@@ -28,7 +28,7 @@ struct ObjectFigures {
 };
 
 /// Adds a root node for each owned building that shows something: its name is the address ("Kastanienallee 12"), else the
-/// name tag, else the id; its origin is the middle of the house on its lowest point; `extras` hold id, name and address.
+/// name tag, else the id; its origin is the middle of the house on its lowest point; `extras` hold id, address and name_tag.
 /// Its children are the parts, called by their ids: one mesh each, with a primitive for each material and colour, and in
 /// `extras` id and `feature`, the row of the property table.
 ///
