@@ -19,9 +19,12 @@ from model_files import Glb
 
 PICTURES = None  # folder that keeps the pictures
 
-# Tells what Blender has after importing a file: as it is installed, without any help.
+# Tells what Blender has after importing a file. Debian's Blender 3.4 asks numpy for a name that Debian's numpy has no more.
 IN_BLENDER = '''
 import json, sys, time
+import numpy
+if not hasattr(numpy, 'bool'):
+    numpy.bool = bool
 import bpy
 file, out = sys.argv[sys.argv.index('--') + 1:]
 for thing in list(bpy.data.objects):

@@ -326,7 +326,7 @@ class SolidWriter {
   Welder welder_;
 };
 
-void set_bounds(Mesh& mesh) {
+void set_box(Mesh& mesh) {
   bool first = true;
   for (const MeshPrimitive& primitive : mesh.primitives) {
     for (const MeshVertex& v : primitive.vertices) {
@@ -355,7 +355,7 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
       for (const ElementInstance& at : group.instances) bake_element(element, geometry, at, mesh, primitives);
     }
   mesh.primitives = primitives.take();
-  set_bounds(mesh);
+  set_box(mesh);
   return mesh;
 }
 
@@ -387,7 +387,7 @@ void for_each_part_mesh(const model::Region& region, int lod, const Frame& frame
       bake_element(coloured, geometry, *element->at, mesh, primitives);
     }
     mesh.primitives = primitives.take_by_look();
-    set_bounds(mesh);
+    set_box(mesh);
     visit(feature, std::move(mesh));
   }
 }
