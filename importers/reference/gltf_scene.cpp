@@ -245,13 +245,22 @@ void GltfScene::add_node(std::size_t node, const Matrix4& world) {
     notes_.add(NoteKind::bad_index, 0, "the mesh of node " + std::to_string(node) + " does not exist");
     return;
   }
-  const std::vector<Instance> instances = instances_of(stated, world);
+  std::vector<Instance> instances = instances_of(stated, world);
+  if (const auto row = row_of_node(stated); row && instances.size() == 1 && instances[0].features.empty())
+    instances[0].features.push_back({Feature::Kind::row, 0, *row});
   for (const Json& primitive : member(mesh, "primitives")) {
     if ((placed_primitives_ += instances.size()) > kMostInstances) refuse_number(kMostInstances, "instances");
     if (!instances.empty()) count_triangles(primitive, instances.size());
   }
   for (const Instance& instance : instances)
     for (const Json& primitive : member(mesh, "primitives")) add_primitive(primitive, node, instance);
+}
+
+/// Our own files say in `extras.feature` which row of the first table a node shows, where the mesh cannot.
+std::optional<std::size_t> GltfScene::row_of_node(const Json& node) const {
+  const auto row = index(member(member(node, "extras"), "feature"));
+  const bool known = row && !tables_.empty() && is_row_of_parts(tables_[0]) && *row < tables_[0].rows;
+  return known ? row : std::nullopt;
 }
 
 void GltfScene::refuse_number(std::size_t most, const std::string& what) const {

@@ -47,6 +47,7 @@ class GltfScene {
   Owner owner_of(const Feature& feature, std::size_t node);
   std::string name_of_node(std::size_t node) const;
   void walk(const Matrix4& place);
+  std::optional<std::size_t> row_of_node(const Json& node) const;
   void add_node(std::size_t node, const Matrix4& world);
   void count_triangles(const Json& primitive, std::size_t instances);
   [[noreturn]] void refuse_number(std::size_t most, const std::string& what) const;

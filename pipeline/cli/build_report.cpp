@@ -112,9 +112,11 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
                       base::with_time_unit(s.seconds), with_thousands(static_cast<std::uint64_t>(rate(s))),
                       with_byte_unit(s.peak_rss_bytes), with_byte_unit(s.store_bytes), s.tiles_in_flight);
   text += fmt::format("{} in {} files:\n", with_byte_unit(s.bytes), with_thousands(s.files));
-  std::vector<std::pair<std::string, std::string_view>> places;
+  std::vector<std::pair<std::string, std::string>> places;
   const auto place = [&](std::string_view name, std::string_view what) {
-    places.emplace_back((std::filesystem::path(folder) / name).string(), what);
+    const auto figures = s.figures.find(name);
+    places.emplace_back((std::filesystem::path(folder) / name).string(),
+                        std::string(what) + (figures == s.figures.end() ? "" : ": " + figures->second));
   };
   for (const outputs::OutputFormat& format : outputs::all_outputs()) {
     if (!format.asked(options.outputs)) continue;

@@ -110,6 +110,13 @@ std::string Address::line() const {
   return out;
 }
 
+std::string Address::street_line() const {
+  const std::string_view way = street.empty() ? place : street;
+  const std::string_view number = house_number.empty() ? house_name : house_number;
+  if (way.empty() || number.empty()) return {};
+  return std::string(way) + " " + std::string(number);
+}
+
 TagReader::TagReader(const model::Extract* extract) : extract_(extract) {
   if (!extract) return;
   const auto key = [&](std::string_view text) { return extract->strings.find(text); };

@@ -42,6 +42,8 @@ struct Address {
   bool empty() const;
   /// "Kastanienallee 12, 10435 Berlin"; street falls back to place, number to house name.
   std::string line() const;
+  /// "Kastanienallee 12"; empty where street or number, or what stands for it, is missing.
+  std::string street_line() const;
 };
 
 /// Finds tags by their interned keys, which it looks up once: one per writer call.

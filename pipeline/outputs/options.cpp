@@ -50,6 +50,8 @@ std::string listed_formats() {
 const base::Choices<Instancing> kInstancings = {
     {"ext", Instancing::ext}, {"nodes", Instancing::nodes}, {"baked", Instancing::baked}};
 
+const base::Choices<Objects> kObjects = {{"building", Objects::building}, {"tile", Objects::tile}};
+
 const base::Choices<Compression> kCompressions = {{"none", Compression::none}, {"meshopt", Compression::meshopt}};
 
 // Places in the record: build.json keeps the order of its first versions.
@@ -109,6 +111,16 @@ base::OptionTable<O> what_files_hold() {
             .record = OptionRecord::yes,
             .record_place = 9},
            &O::single_glb),
+      choice(
+          {.name = "objects",
+           .key = "objects",
+           .argument = "WHAT",
+           .help = "what model.glb is made of: building makes an object of each house, called by its address, with its "
+                   "parts below it and windows merged in (with --instancing nodes they are shared meshes); tile puts "
+                   "all houses in one mesh, as tiles have them",
+           .record = OptionRecord::yes,
+           .record_place = 14},
+          kObjects, &O::objects),
       flag({.name = "single-cityjson",
             .key = "single_cityjson",
             .help = "also write model.city.json: the whole build as one CityJSON object",

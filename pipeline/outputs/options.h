@@ -8,6 +8,7 @@
 #include "pipeline/base/option_table.h"
 #include "pipeline/outputs/gltf/compression.h"
 #include "pipeline/outputs/gltf/instance_writer.h"
+#include "pipeline/outputs/gltf/object_writer.h"
 
 namespace blockrand::outputs {
 
@@ -18,12 +19,13 @@ struct OutputOptions {
   std::vector<std::string> formats = format_names();  ///< in the order of format_names
   Instancing instancing = Instancing::ext;            ///< how GLBs hold what stands in facades
   Compression compression = Compression::none;        ///< of vertices, indices and places in GLBs
-  bool evidence = false;         ///< GLB, CityGML and CityJSON also say why each attribute has its value
-  bool gzip = false;             ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
-  bool single_glb = false;       ///< also model.glb: the whole build in one frame
-  bool single_cityjson = false;  ///< also model.city.json: the whole build as one CityJSON object
-  bool report = true;            ///< report.html
-  bool explain = true;           ///< explain/: what `blockrand explain` reads
+  bool evidence = false;                ///< GLB, CityGML and CityJSON also say why each attribute has its value
+  bool gzip = false;                    ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
+  bool single_glb = false;              ///< also model.glb: the whole build in one frame
+  Objects objects = Objects::building;  ///< what model.glb is made of
+  bool single_cityjson = false;         ///< also model.city.json: the whole build as one CityJSON object
+  bool report = true;                   ///< report.html
+  bool explain = true;                  ///< explain/: what `blockrand explain` reads
 
   /// \param format  one of format_names
   bool writes(std::string_view format) const;

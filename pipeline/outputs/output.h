@@ -70,6 +70,8 @@ struct FinishedBuild {
   const std::vector<model::ReportRow>& rows;  ///< of all objects, sorted
   std::vector<base::PublishedFile>& files;    ///< written so far; outputs add theirs
   std::function<void(const std::string&)> warn;
+  /// What the list that ends a build tells of a file, behind its purpose: "424 houses, 5,173,355 triangles".
+  std::function<void(std::string_view path, std::string figures)> tell;
 };
 
 /// A format while a build runs. Every function may throw base::OutputError.

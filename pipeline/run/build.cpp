@@ -223,12 +223,15 @@ void warn_of_terrain(const BuildInputs& inputs, base::Progress& progress) {
 
 void finish_outputs(const OpenOutputs& open, const Region& whole, const Account& account, BuildRecord& record,
                     base::Progress& progress) {
-  const outputs::FinishedBuild finished{.counts = record.summary,
-                                        .statistics = record.statistics,
-                                        .whole = whole,
-                                        .rows = account.rows(),
-                                        .files = record.files,
-                                        .warn = [&](const std::string& text) { progress.warn(text); }};
+  const outputs::FinishedBuild finished{
+      .counts = record.summary,
+      .statistics = record.statistics,
+      .whole = whole,
+      .rows = account.rows(),
+      .files = record.files,
+      .warn = [&](const std::string& text) { progress.warn(text); },
+      .tell = [&](std::string_view path,
+                  std::string figures) { record.summary.figures[std::string(path)] = std::move(figures); }};
   for (const auto& output : open.list) output->finish(finished);
   for (const auto& output : open.list) output->conclude(finished);
   std::ranges::sort(record.files, {}, &base::PublishedFile::path);

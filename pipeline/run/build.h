@@ -20,10 +20,11 @@ struct BuildSummary : outputs::ObjectCounts {
   std::uint64_t files = 0, bytes = 0;           ///< written
   double seconds = 0;
   std::uint64_t peak_rss_bytes = 0;
-  std::uint64_t store_bytes = 0;         ///< of it: the extract and its indices before the first tile
-  std::uint64_t tiles_in_flight = 0;     ///< at most this many tiles share the rest
-  bool below_quality = false;            ///< a building is simpler than asked, or has no solid
-  std::vector<std::string> unaccounted;  ///< objects that no stage decided on: a bug
+  std::uint64_t store_bytes = 0;      ///< of it: the extract and its indices before the first tile
+  std::uint64_t tiles_in_flight = 0;  ///< at most this many tiles share the rest
+  std::map<std::string, std::string, std::less<>> figures;  ///< of single files, in words, by path
+  bool below_quality = false;                               ///< a building is simpler than asked, or has no solid
+  std::vector<std::string> unaccounted;                     ///< objects that no stage decided on: a bug
   std::string folder;  ///< where the build lies: beside the output folder where it must not replace it
 };
 

@@ -70,7 +70,10 @@ class Reader {
         if (!is_format(name)) wrong("configuration.formats", "unknown format " + name);
         r_.formats.insert(name);
       }
-    r_.baked = text(member(c, "instancing")) == "baked";
+    const std::string instancing = text(member(c, "instancing"));
+    r_.baked = instancing == "baked";
+    r_.single_objects = text(member(c, "objects")) == "building";
+    r_.single_baked = r_.baked || (r_.single_objects && instancing != "nodes");
     r_.gzip = is_true(member(c, "gzip"));
     r_.single_glb = is_true(member(c, "single_glb"));
     r_.single_cityjson = is_true(member(c, "single_cityjson"));

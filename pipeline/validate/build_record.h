@@ -25,6 +25,8 @@ struct BuildRecord {
   int lod = 2;
   std::set<std::string, std::less<>> formats;  ///< "gltf", "citygml" …
   bool baked = false;                          ///< elements are triangles of their buildings' meshes
+  bool single_objects = false;                 ///< model.glb is made of objects of houses
+  bool single_baked = false;                   ///< the same, in model.glb
   bool gzip = false, single_glb = false, single_cityjson = false, report = false, explain = false;
   std::string crs, pipeline, vertical_crs, height_reference;
   std::string

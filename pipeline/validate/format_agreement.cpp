@@ -18,6 +18,9 @@
 namespace blockrand::validate {
 namespace {
 
+/// Of an area and of a square metre: frames of tiles and of the whole differ by less, rounding to 1/4096 m as well.
+constexpr double kDrawnTolerance = 1e-3;
+
 using model::Point3;
 using Index = std::unordered_map<std::string_view, const ReadBody*>;
 
@@ -229,6 +232,10 @@ void compare_digests(const BodyDigests& tiles, const std::string& format, const 
     }
     if (found->second.geometry != d.geometry)
       findings.push_back({Check::geometry_differs, file, id, "other geometry or colours than in " + format});
+    if (!(std::fabs(found->second.drawn - d.drawn) <= kDrawnTolerance * (1 + d.drawn)))
+      findings.push_back(
+          {Check::geometry_differs, file, id,
+           fmt::format("{:.2f} m² are drawn of it, in {} {:.2f}", found->second.drawn, format, d.drawn)});
     if (found->second.attributes != d.attributes)
       findings.push_back({Check::attribute_differs, file, id, "other attributes than in " + format});
     left.erase(found);

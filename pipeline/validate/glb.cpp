@@ -39,6 +39,7 @@ class Reader {
     read_georeference();
     read_rows();
     read_scene();
+    out_.objects = objects_;
   }
 
  private:
@@ -86,6 +87,7 @@ class Reader {
       c.bodies.push_back(std::move(body));
     }
     out_.triangles.resize(c.bodies.size());
+    buildings_.insert(c.buildings.begin(), c.buildings.end());
   }
 
   void read_scene() {
@@ -96,34 +98,82 @@ class Reader {
     const Json* roots = member(scene, "nodes");
     if (!roots || !roots->is_array() || roots->empty()) return rule("the scene has no nodes");
     std::set<std::uint64_t> seen;
-    for (const Json& root : *roots) read_node(whole(&root).value_or(~0ull), kIdentity, seen);
+    for (const Json& root : *roots) read_node(whole(&root).value_or(~0ull), {}, seen);
   }
 
-  void read_node(std::uint64_t index, const Matrix& parent, std::set<std::uint64_t>& seen, int depth = 0) {
+  /// Where a node hangs.
+  struct Parent {
+    Matrix matrix = kIdentity;
+    int depth = 0;
+    std::string house = {};  ///< the id of the building whose object it is; empty: none
+    bool in_part = false;    ///< below the object of a part
+  };
+
+  void read_node(std::uint64_t index, const Parent& parent, std::set<std::uint64_t>& seen) {
     const Json* node = element(member(glb_.json(), "nodes"), index);
     if (!node) return rule(fmt::format("node {} does not exist", index));
     if (!seen.insert(index).second) return rule(fmt::format("node {} has two parents", index));
-    if (depth > kDeepest) return rule(fmt::format("node {} is nested deeper than any of ours", index));
+    if (parent.depth > kDeepest) return rule(fmt::format("node {} is nested deeper than any of ours", index));
     const auto matrix = node_matrix(*node);
     if (!matrix) return rule(fmt::format("node {} has a transform that is none", index));
-    const Matrix own = parent * *matrix;
-    const Json* instancing = member(member(node, "extensions"), "EXT_mesh_gpu_instancing");
-    const Json* feature = member(member(node, "extras"), "feature");
-    if (instancing || feature) {
+    const Matrix own = parent.matrix * *matrix;
+    const std::string where = fmt::format("node {}", index);
+    Parent here{own, parent.depth + 1, parent.house, parent.in_part};
+    const Json* extras = member(node, "extras");
+    const Json *instancing = member(member(node, "extensions"), "EXT_mesh_gpu_instancing"),
+               *feature = member(extras, "feature"), *id = member(extras, "id");
+    objects_ = objects_ || id;
+    if (id && feature && !parent.in_part) {
+      here.in_part = true;
+      read_part(*node, text(id), number(feature).value_or(-1), here, where);
+    } else if (id) {
+      here.house = read_house(*node, text(id), where);
+    } else if (instancing || feature) {
       const auto placed = placed_mesh(*node, index);
       if (placed && instancing)
-        read_instances(*node, *instancing, own, *placed, fmt::format("node {}", index));
+        read_instances(*node, *instancing, own, *placed, where);
       else if (placed)
-        add_place(*placed, number(feature).value_or(-1), own, fmt::format("node {}", index));
+        add_place(*placed, number(feature).value_or(-1), own, where);
     } else if (member(node, "mesh")) {
-      const Json* mesh = element(member(glb_.json(), "meshes"), whole(member(node, "mesh")).value_or(~0ull));
-      const Json* primitives = member(mesh, "primitives");
-      if (!primitives || !primitives->is_array() || primitives->empty()) return rule("a mesh without primitives");
-      for (std::size_t p = 0; p < primitives->size(); ++p)
-        read_primitive((*primitives)[p], own, fmt::format("primitive {}", p));
+      read_mesh(*node, own, "");
     }
     if (const Json* children = member(node, "children"); children && children->is_array())
-      for (const Json& child : *children) read_node(whole(&child).value_or(~0ull), own, seen, depth + 1);
+      for (const Json& child : *children) read_node(whole(&child).value_or(~0ull), here, seen);
+  }
+
+  void read_mesh(const Json& node, const Matrix& own, const std::string& before,
+                 std::optional<std::size_t> row = std::nullopt) {
+    const Json* mesh = element(member(glb_.json(), "meshes"), whole(member(&node, "mesh")).value_or(~0ull));
+    const Json* primitives = member(mesh, "primitives");
+    if (!primitives || !primitives->is_array() || primitives->empty())
+      return rule(before + "a mesh without primitives");
+    for (std::size_t p = 0; p < primitives->size(); ++p)
+      read_primitive((*primitives)[p], own, fmt::format("{}primitive {}", before, p), nullptr, row);
+  }
+
+  // ---- objects: a node for each house, below it one for each part
+
+  /// \return its id
+  std::string read_house(const Json& node, const std::string& id, const std::string& where) {
+    if (!buildings_.contains(id)) metadata(fmt::format("{}: no row of the table has its building {}", where, id));
+    if (!houses_.insert(id).second) rule(fmt::format("{}: a second object of the building {}", where, id));
+    if (text(member(&node, "name")).empty()) rule(where + ": the object of a building has no name");
+    return id;
+  }
+
+  void read_part(const Json& node, const std::string& id, double row, const Parent& here, const std::string& where) {
+    const auto& bodies = out_.contents.bodies;
+    if (!(row >= 0) || row != std::floor(row) || row >= static_cast<double>(bodies.size()))
+      return metadata(fmt::format("{}: feature id {} in a table of {} rows", where, row, bodies.size()));
+    const auto at = static_cast<std::size_t>(row);
+    const auto said = bodies[at].attributes.find("id");
+    if (said == bodies[at].attributes.end() || said->second != id)
+      metadata(fmt::format("{}: its part is {}, that of row {} another", where, id, at));
+    if (bodies[at].building != here.house)
+      metadata(fmt::format("{}: hangs below {}, but belongs to {}", where, here.house, bodies[at].building));
+    if (!parts_.insert(at).second) rule(fmt::format("{}: a second object of the part {}", where, id));
+    if (text(member(&node, "name")).empty()) rule(where + ": the object of a part has no name");
+    if (member(&node, "mesh")) read_mesh(node, here.matrix, where + " ", at);
   }
 
   static std::optional<Matrix> node_matrix(const Json& node) {
@@ -261,8 +311,9 @@ class Reader {
   }
 
   /// \param placed  the element that the triangles are of; null for those of bodies
+  /// \param row  of the part that the primitive belongs to as a whole
   void read_primitive(const Json& primitive, const Matrix& matrix, const std::string& where,
-                      GlbElement* placed = nullptr) {
+                      GlbElement* placed = nullptr, std::optional<std::size_t> row = std::nullopt) {
     if (const Json* mode = member(primitive, "mode"); mode && whole(mode) != 4u)
       return rule(where + " is no list of triangles");
     const Accessor* position = attribute(primitive, "POSITION", 0, where);
@@ -274,7 +325,9 @@ class Reader {
     if (!position->is_float() && !required("KHR_mesh_quantization"))
       rule(where + ": POSITION needs KHR_mesh_quantization");
     const std::size_t count = position->count;
-    const Accessor* normal = attribute(primitive, "NORMAL", count, where);
+    // Objects may leave normals out: readers take such meshes as flat.
+    const bool flat = objects_ && !member(member(primitive, "attributes"), "NORMAL");
+    const Accessor* normal = flat ? nullptr : attribute(primitive, "NORMAL", count, where);
     // Colours are those of vertices, or of the material.
     const Json* material =
         element(member(glb_.json(), "materials"), whole(member(primitive, "material")).value_or(~0ull));
@@ -283,9 +336,9 @@ class Reader {
     const Accessor* colour = factor ? nullptr : attribute(primitive, "COLOR_0", count, where);
     if (factor && member(member(primitive, "attributes"), "COLOR_0"))
       rule(where + ": its material and its vertices both have colours");
-    const Accessor* feature = placed ? nullptr : attribute(primitive, "_FEATURE_ID_0", count, where);
-    if (placed && member(member(primitive, "attributes"), "_FEATURE_ID_0"))
-      metadata(where + ": a placed mesh with feature ids of its own");
+    const Accessor* feature = placed || row ? nullptr : attribute(primitive, "_FEATURE_ID_0", count, where);
+    if ((placed || row) && member(member(primitive, "attributes"), "_FEATURE_ID_0"))
+      metadata(where + ": the mesh of an element or part with feature ids of its own");
     if (normal && normal->type != "VEC3") rule(where + ": NORMAL is no VEC3"), normal = nullptr;
     if (colour && colour->type != "VEC3" && colour->type != "VEC4")
       rule(where + ": COLOR_0 is no colour"), colour = nullptr;
@@ -302,7 +355,7 @@ class Reader {
     if (indices->count % 3 != 0) rule(fmt::format("{}: {} indices make no triangles", where, indices->count));
     std::array<std::uint8_t, 3> one{};
     for (std::size_t i = 0; factor && i < 3; ++i) one[i] = srgb((*factor)[i]);
-    read_triangles({*position, normal, colour, feature, *indices, one}, matrix, where, placed);
+    read_triangles({*position, normal, colour, feature, *indices, one, row}, matrix, where, placed);
   }
 
   bool required(const char* extension) const {
@@ -350,6 +403,7 @@ class Reader {
     const Accessor *normal, *colour, *feature;
     const Accessor& indices;
     std::array<std::uint8_t, 3> one_colour;  ///< where vertices have none
+    std::optional<std::size_t> row;          ///< of all triangles, where vertices do not say
   };
 
   void read_triangles(const Streams& s, const Matrix& matrix, const std::string& where, GlbElement* placed) {
@@ -421,6 +475,7 @@ class Reader {
         continue;
       }
       out_.vertices.insert(out_.vertices.end(), c.begin(), c.end());
+      if (s.row) out_.triangles[*s.row].push_back(triangle);
       if (!s.feature) continue;
       const double row = glb_.value(*s.feature, corner[0]);
       if (glb_.value(*s.feature, corner[1]) != row || glb_.value(*s.feature, corner[2]) != row) {
@@ -435,6 +490,10 @@ class Reader {
   const GlbContainer& glb_;
   Glb& out_;
   std::map<std::uint64_t, std::size_t> element_of_mesh_;
+  bool objects_ = false;             ///< the scene has objects of houses
+  std::set<std::string> buildings_;  ///< of the table
+  std::set<std::string> houses_;     ///< that have an object
+  std::set<std::size_t> parts_;      ///< rows that have an object
 };
 
 }  // namespace
@@ -444,6 +503,20 @@ Glb read_glb(std::string_view bytes, const std::string& name) {
   const GlbContainer container(bytes, name, out.contents.findings);
   out.readable = container.readable();
   if (out.readable) Reader(container, out).read();
+  return out;
+}
+
+std::vector<double> drawn_areas(const Glb& glb) {
+  const auto area = [](const Point3& a, const Point3& b, const Point3& c) { return length(cross(b - a, c - a)) / 2; };
+  std::vector<double> out;
+  for (const auto& triangles : glb.triangles) {
+    double sum = 0;
+    for (const GlbTriangle& t : triangles) sum += area(t.corners[0], t.corners[1], t.corners[2]);
+    out.push_back(sum);
+  }
+  for (const GlbPlace& place : glb.places)
+    for (const GlbTriangle& t : glb.elements[place.element].triangles)
+      out[place.row] += area(placed(place, t.corners[0]), placed(place, t.corners[1]), placed(place, t.corners[2]));
   return out;
 }
 

@@ -53,6 +53,8 @@ struct Glb {
   std::vector<std::vector<GlbTriangle>> triangles;  ///< parallel to contents.bodies
   std::vector<GlbElement> elements;
   std::vector<GlbPlace> places;  ///< of elements: by EXT_mesh_gpu_instancing, or nodes with extras.feature
+  /// The scene is made of objects: nodes with a building's id in `extras`, below them those of its parts.
+  bool objects = false;
   GlbGeoreference georeference;
   double position_step = 0;             ///< m: positions are multiples of it; 0 where they are floats
   std::vector<model::Point3> vertices;  ///< of all triangles of bodies, z up, repeated ones included
@@ -63,5 +65,8 @@ struct Glb {
 /// georeference is the frame of its origin. Never throws on account of the bytes. \param name  of the file, for
 /// findings
 Glb read_glb(std::string_view bytes, const std::string& name);
+
+/// m², of what is drawn of each body: its triangles and those of its elements. Parallel to contents.bodies.
+std::vector<double> drawn_areas(const Glb& glb);
 
 }  // namespace blockrand::validate

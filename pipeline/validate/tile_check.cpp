@@ -38,7 +38,8 @@ bool has_geometry(const ReadBody& body, int lod) { return lod == 0 ? !body.footp
 
 class Checker {
  public:
-  Checker(const TileFiles& files, const TileContext& context) : files_(files), context_(context) {}
+  Checker(const TileFiles& files, const TileContext& context)
+      : files_(files), context_(context), baked_(context.record.baked) {}
 
   TileResult run() {
     tile_ = read_tile(files_, context_, out_);
@@ -57,6 +58,11 @@ class Checker {
   TileResult run_single_glb() {
     tile_.glb = read_glb_file(files_.path[kGltf], context_, out_);
     if (tile_.glb) {
+      baked_ = context_.record.single_baked;
+      if (tile_.glb->objects != context_.record.single_objects && !tile_.glb->contents.bodies.empty())
+        found(Check::glb_rule, files_.path[kGltf], "",
+              tile_.glb->objects ? "has objects of houses, for which the build did not ask"
+                                 : "has no objects of houses, though the build asked for them");
       tile_.transform = tile_.glb->georeference.local_to_ecef;
       find_doubles({tile_.glb->contents, files_.path[kGltf]}, out_.findings);
       check_sources({tile_.glb->contents, files_.path[kGltf]}, out_.findings);
@@ -146,8 +152,7 @@ class Checker {
 
   void validate_meshes() {
     validate_meshes(*tile_.glb, files_.path[kGltf], context_.record.lod);
-    if (context_.record.lod == 3 && !context_.record.baked)
-      check_openings(*tile_.glb, files_.path[kGltf], out_.findings);
+    if (context_.record.lod == 3 && !baked_) check_openings(*tile_.glb, files_.path[kGltf], out_.findings);
   }
 
   /// \param level  of detail that the file shows; a mesh of LoD3 is several bodies with holes in their walls
@@ -293,10 +298,8 @@ class Checker {
   void compare_with_mesh(const Side& reference) {
     if (!context_.proj_transform) return;
     compare_in_frame(*tile_.glb, [&](const ToLocal& to_local, double tolerance) {
-      compare_meshes(reference, *tile_.glb, files_.path[kGltf], to_local, tolerance, context_.record.baked,
-                     out_.findings);
-      if (!context_.record.baked)
-        compare_places(reference, *tile_.glb, files_.path[kGltf], to_local, tolerance, out_.findings);
+      compare_meshes(reference, *tile_.glb, files_.path[kGltf], to_local, tolerance, baked_, out_.findings);
+      if (!baked_) compare_places(reference, *tile_.glb, files_.path[kGltf], to_local, tolerance, out_.findings);
     });
   }
 
@@ -456,12 +459,22 @@ class Checker {
       n.buildings = std::set<std::string_view>(c->buildings.begin(), c->buildings.end()).size();
       n.bodies = c->bodies.size();
       std::set<std::string> models;
+      const bool digested = f == kGltf       ? context_.record.single_glb
+                            : f == kCityJson ? context_.record.single_cityjson
+                                             : false;
+      const std::vector<double> drawn = f == kGltf && digested ? drawn_areas(*tile_.glb) : std::vector<double>();
+      // Where elements are part of the one mesh and stand apart from the other, numbers of triangles say nothing.
+      const bool countable = context_.record.lod < 3 || (context_.record.baked == context_.record.single_baked &&
+                                                         !(baked_ && context_.record.single_objects));
       for (std::size_t i = 0; i < c->bodies.size(); ++i) {
         const ReadBody& body = c->bodies[i];
         out_.ids[f].push_back(body.id);
-        if (f == kGltf ? context_.record.single_glb : f == kCityJson && context_.record.single_cityjson) {
+        if (digested) {
           BodyDigest d = digest(body);
-          if (f == kGltf) d.geometry = tile_.glb->triangles[i].size();
+          if (f == kGltf) {
+            d.geometry = countable ? tile_.glb->triangles[i].size() : 0;
+            d.drawn = drawn[i];
+          }
           out_.digests[f].emplace_back(body.id, d);
         }
         out_.attributes += body.attributes.size();
@@ -507,6 +520,7 @@ class Checker {
   const TileContext& context_;
   TileResult out_;
   TileContents tile_;
+  bool baked_;                     // elements are triangles of their bodies
   std::set<std::string> unsound_;  // bodies with a solid that a validator refused
 };
 

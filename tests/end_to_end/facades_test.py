@@ -10,6 +10,7 @@ import validators
 from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, files_of, main, read_json
 from damage import Damaged
 from glb_files import glb_json, places
+from model_files import Glb
 
 LOD3 = ('--lod', '3', '--no-report', '--no-explain')
 
@@ -84,11 +85,57 @@ class Facades(BuildTest):
         self.assertEqual(validators.khronos(baked_folder), '')
 
     def test_one_file(self):
-        out = self.build(SAMPLE, 'single', *LOD3, '--formats', 'gltf', '--single-glb')
-        glb = glb_json(os.path.join(out, 'model.glb'))
+        """model.glb as objects, with shared meshes, and as tiles are: all sound, beside tiles of the same bytes."""
+        merged = self.build(SAMPLE, 'single', '--lod', '3', '--no-report', '--formats', 'gltf', '--single-glb')
+        batch = self.build(SAMPLE, 'batch', '--lod', '3', '--no-report', '--formats', 'gltf', '--single-glb', '--objects', 'tile')
+        nodes = self.build(SAMPLE, 'shared', '--lod', '3', '--no-report', '--formats', 'gltf', '--single-glb', '--instancing',
+                           'nodes')
+        self.same_files(merged, batch, 'tiles', 'tileset.json')
+        for out in (merged, batch, nodes):
+            self.assertEqual(validators.validate(out), '')
+            self.assertEqual(validators.khronos(out), '')
+        glb = glb_json(os.path.join(batch, 'model.glb'))
         placed = sum(glb['accessors'][n['extensions']['EXT_mesh_gpu_instancing']['attributes']['TRANSLATION']]['count']
                      for n in glb['nodes'] if 'extensions' in n)
-        self.assertEqual(placed, places(out)['ext'])
+        self.assertEqual(placed, places(batch)['ext'])
+        glb = glb_json(os.path.join(nodes, 'model.glb'))
+        self.assertEqual(sum('id' not in n['extras'] for n in glb['nodes']), placed)
+        self.assertLess(len(glb['meshes']), placed / 4, 'elements are stored once')
+        self.assertNotIn('extensionsRequired', glb)
+
+    def test_objects(self):
+        """A node for each house, below it one for each part: named, with few meshes, and nothing that an importer must know."""
+        out = self.build(SAMPLE, 'objects', *LOD3, '--formats', 'gltf', '--single-glb')
+        counts = read_json(out, 'build.json')['counts']
+        glb = Glb(os.path.join(out, 'model.glb'))
+        self.assertNotIn('extensionsRequired', glb.json)
+        self.assertEqual(glb.json['extensionsUsed'], ['EXT_structural_metadata'])
+        nodes = glb.json['nodes']
+        houses = [nodes[number] for number in glb.json['scenes'][0]['nodes']]
+        parts = [nodes[number] for house in houses for number in house['children']]
+        self.assertEqual((len(houses), len(parts)), (counts['buildings'], counts['bodies']))
+        self.assertEqual(len(nodes), len(houses) + len(parts))
+        self.assertEqual(sorted(p['extras']['id'] for p in parts), sorted(glb.texts('id')))
+        addresses = {a.split(',')[0] for a in glb.texts('address') if a}
+        self.assertGreater(len(addresses), 10)
+        named = sum(house['name'] in addresses for house in houses)
+        self.assertGreater(named, 0.8 * len(addresses))
+        for house in houses:
+            self.assertTrue(house['name'] in addresses or house['name'] in (house['extras'].get('name_tag'), house['extras']['id']), house)
+        colours = {}
+        for mesh in glb.json['meshes']:
+            used = [p['material'] for p in mesh['primitives']]
+            self.assertEqual(len(used), len(set(used)), 'one primitive for each material')
+            for p in mesh['primitives']:
+                self.assertEqual(list(p['attributes']), ['POSITION'])
+                material = glb.json['materials'][p['material']]
+                colours.setdefault(material['name'], set()).add(str(material))
+        self.assertTrue(all(len(same) == 1 for same in colours.values()), 'every material has a name of its own')
+        said = re.search(r'model\.glb .*: ([\d,]+) houses in ([\d,]+) parts, ([\d,]+) triangles, [\d.]+ .B', self.last.out)
+        self.assertTrue(said, self.last)
+        self.assertEqual([int(n.replace(',', '')) for n in said.groups()],
+                         [len(houses), len(parts), sum(glb.json['accessors'][p['indices']]['count'] // 3
+                                                       for mesh in glb.json['meshes'] for p in mesh['primitives'])])
 
     def test_mistakes_in_rules_are_located(self):
         """Before anything is read, and nothing is written."""

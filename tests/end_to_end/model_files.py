@@ -94,15 +94,28 @@ class Glb:
         start = values.get('byteOffset', 0)
         return [self.bin[start + a:start + b].decode('utf-8') for a, b in zip(ends, ends[1:])]
 
+    def placed_meshes(self):
+        """(node, where its origin lies, the mesh) of every node with a mesh, from the scene's roots down. Nodes that turn or
+        scale are none of those that are asked for here."""
+        waiting = [(number, (0, 0, 0)) for number in reversed(self.json.get('scenes', [{'nodes': []}])[0]['nodes'])]
+        while waiting:
+            number, parent = waiting.pop()
+            node = self.json['nodes'][number]
+            assert 'rotation' not in node and 'scale' not in node and 'matrix' not in node, node
+            origin = tuple(a + b for a, b in zip(parent, node.get('translation', (0, 0, 0))))
+            if 'mesh' in node:
+                yield node, origin, self.json['meshes'][node['mesh']]
+            waiting += [(child, origin) for child in reversed(node.get('children', []))]
+
     def vertices(self):
         """(row of the property table, (x, y, z)) of every vertex, in the file's frame with z up."""
-        for node in self.json.get('nodes', []):
-            move, scale = node.get('translation', (0, 0, 0)), node.get('scale', (1, 1, 1))
-            for primitive in self.json['meshes'][node['mesh']]['primitives']:
-                rows = self.accessor(primitive['attributes']['_FEATURE_ID_0'])
+        for node, origin, mesh in self.placed_meshes():
+            for primitive in mesh['primitives']:
                 places = self.accessor(primitive['attributes']['POSITION'])
+                own = primitive['attributes'].get('_FEATURE_ID_0')
+                rows = self.accessor(own) if own is not None else [(node['extras']['feature'],)] * len(places)
                 for (row,), p in zip(rows, places):
-                    x, y, z = (c * s + m for c, s, m in zip(p, scale, move))
+                    x, y, z = (c + o for c, o in zip(p, origin))
                     yield int(row), (x, -z, y)
 
 

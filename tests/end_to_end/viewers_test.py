@@ -252,18 +252,20 @@ class ByAssimp(BuildTest):
             self.assertNotIn('ERROR', run.out + run.err)
             said = {k: [float(n) for n in v.strip(' ()').split()] for k, v in
                     re.findall(r'(?m)^(Meshes|Vertices|Faces|(?:Minimum|Maximum) point):? +([\d.() +e-]+)$', run.out)}
-            positions = [glb.json['accessors'][p['attributes']['POSITION']] for p in primitives(glb)]
+            # Each primitive's accessor of positions, and where its origin lies.
+            positions = [(glb.json['accessors'][p['attributes']['POSITION']], origin)
+                         for _, origin, mesh in glb.placed_meshes() for p in mesh['primitives']]
             self.assertEqual(said['Meshes'], [len(positions)], path)
-            self.assertEqual(said['Vertices'], [sum(a['count'] for a in positions)], path)
+            self.assertEqual(said['Vertices'], [sum(a['count'] for a, _ in positions)], path)
             self.assertEqual(said['Faces'], [triangles(glb)], path)
             for axis in range(3):
-                self.assertAlmostEqual(said['Minimum point'][axis], min(a['min'][axis] for a in positions), delta=1e-3)
-                self.assertAlmostEqual(said['Maximum point'][axis], max(a['max'][axis] for a in positions), delta=1e-3)
+                self.assertAlmostEqual(said['Minimum point'][axis], min(a['min'][axis] + o[axis] for a, o in positions), delta=1e-3)
+                self.assertAlmostEqual(said['Maximum point'][axis], max(a['max'][axis] + o[axis] for a, o in positions), delta=1e-3)
 
     def test_every_vertex_and_colour_arrives(self):
         """Written again by assimp as PLY, which knows no colours of materials. (Its normals are left out: assimp 5.2 takes the bytes of KHR_mesh_quantization
         for floats, though it reads positions and colours rightly.)"""
-        path = os.path.join(self.out, 'model.glb')
+        path = next(f for f in self.files if f != os.path.join(self.out, 'model.glb'))
         glb = Glb(path)
         run = call(['assimp', 'export', path, self.path('model.ply')])
         self.assertEqual(run.code, 0, run)

@@ -121,4 +121,13 @@ std::vector<InstanceGroup> element_instances(const model::Region& region, const 
   return groups;
 }
 
+std::vector<PartElement> elements_by_part(const std::vector<InstanceGroup>& groups) {
+  std::vector<PartElement> out;
+  for (const InstanceGroup& group : groups)
+    for (const ElementInstance& at : group.instances) out.push_back({group.element, &at});
+  std::stable_sort(out.begin(), out.end(),
+                   [](const PartElement& a, const PartElement& b) { return a.at->feature < b.at->feature; });
+  return out;
+}
+
 }  // namespace blockrand::outputs

@@ -50,4 +50,13 @@ struct InstanceGroup {
 /// counts them.
 std::vector<InstanceGroup> element_instances(const model::Region& region, const Frame& frame);
 
+/// An element of one part.
+struct PartElement {
+  std::uint32_t element = 0;  ///< into Region::elements
+  const ElementInstance* at = nullptr;
+};
+
+/// All places by part: by ascending feature, within it in the order of the groups, which must outlive the list.
+std::vector<PartElement> elements_by_part(const std::vector<InstanceGroup>& groups);
+
 }  // namespace blockrand::outputs

@@ -179,14 +179,39 @@ nlohmann::json metadata(GlbDocument& document, const PropertyTable& table) {
   return extension;
 }
 
-}  // namespace
+/// Widens the box of what is drawn; the first one is the box.
+void add_box(Glb& glb, bool first, const model::Point3& min, const model::Point3& max) {
+  glb.min =
+      first ? min : model::Point3{std::min(glb.min.x, min.x), std::min(glb.min.y, min.y), std::min(glb.min.z, min.z)};
+  glb.max =
+      first ? max : model::Point3{std::max(glb.max.x, max.x), std::max(glb.max.y, max.y), std::max(glb.max.z, max.z)};
+}
 
-Glb write_glb(const model::Region& region, const GlbOptions& options) {
-  const PropertyTable table = building_table(region, options.evidence);
+/// All houses as one mesh, and the elements as they are to be placed.
+void write_batch(GlbDocument& document, const model::Region& region, const GlbOptions& options, std::size_t rows,
+                 Glb& glb) {
   const bool bake = options.instancing == Instancing::baked;
   const Mesh mesh = build_mesh(region, options.lod, options.frame, bake);
   std::vector<InstanceGroup> groups;
   if (options.lod >= 3 && !bake) groups = element_instances(region, options.frame);
+  if (!mesh.empty()) {
+    MeshWriter(document, mesh, rows).write(region);
+    document.use("EXT_mesh_features", false);
+    document.use("KHR_mesh_quantization", true);
+    add_box(glb, true, mesh.min, mesh.max);
+  }
+  InstanceFigures instances;
+  if (!groups.empty()) instances = write_instances(document, region, groups, options.instancing, rows);
+  if (instances.places > 0) add_box(glb, mesh.empty(), instances.min, instances.max);
+  glb.triangles = mesh.triangles + instances.triangles;
+  glb.placements = instances.places;
+  glb.elements = instances.elements;
+}
+
+}  // namespace
+
+Glb write_glb(const model::Region& region, const GlbOptions& options) {
+  const PropertyTable table = building_table(region, options.evidence);
   if (table.rows() > (1u << 24)) throw std::length_error("too many building parts for one GLB");
 
   GlbDocument document;
@@ -197,35 +222,23 @@ Glb write_glb(const model::Region& region, const GlbOptions& options) {
   if (!generator.empty()) document.asset()["generator"] = generator;
   if (!attribution.empty()) document.asset()["copyright"] = attribution;
   document.asset()["extras"] = georeference(options);
-  InstanceFigures instances;
-  if (table.rows() > 0) {
-    if (!mesh.empty()) {
-      MeshWriter(document, mesh, table.rows()).write(region);
-      document.use("EXT_mesh_features", false);
-      document.use("KHR_mesh_quantization", true);
-    }
-    if (!groups.empty()) instances = write_instances(document, region, groups, options.instancing, table.rows());
-    document.use("EXT_structural_metadata", false);
-    document.extensions()["EXT_structural_metadata"] = metadata(document, table);
-  }
-
   Glb glb;
   glb.rows = table.rows();
-  glb.triangles = mesh.triangles + instances.triangles;
-  glb.placements = instances.places;
-  glb.elements = instances.elements;
-  if (!mesh.empty()) {
-    glb.min = mesh.min;
-    glb.max = mesh.max;
-  }
-  if (instances.places > 0) {
-    const bool alone = mesh.empty();
-    glb.min = alone ? instances.min
-                    : model::Point3{std::min(glb.min.x, instances.min.x), std::min(glb.min.y, instances.min.y),
-                                    std::min(glb.min.z, instances.min.z)};
-    glb.max = alone ? instances.max
-                    : model::Point3{std::max(glb.max.x, instances.max.x), std::max(glb.max.y, instances.max.y),
-                                    std::max(glb.max.z, instances.max.z)};
+  if (table.rows() > 0) {
+    if (options.objects == Objects::building) {
+      const ObjectFigures objects = write_objects(document, region, options.lod, options.frame, options.instancing);
+      glb.buildings = objects.buildings;
+      glb.parts = objects.parts;
+      glb.triangles = objects.triangles;
+      glb.elements = objects.elements;
+      glb.placements = objects.placements;
+      glb.min = objects.min;
+      glb.max = objects.max;
+    } else {
+      write_batch(document, region, options, table.rows(), glb);
+    }
+    document.use("EXT_structural_metadata", false);
+    document.extensions()["EXT_structural_metadata"] = metadata(document, table);
   }
   glb.bytes = document.write(options.compression);
   return glb;

@@ -8,6 +8,7 @@
 #include "pipeline/outputs/frame.h"
 #include "pipeline/outputs/gltf/compression.h"
 #include "pipeline/outputs/gltf/instance_writer.h"
+#include "pipeline/outputs/gltf/object_writer.h"
 
 namespace blockrand::outputs {
 
@@ -19,6 +20,7 @@ struct GlbOptions {
   std::string attribution;       ///< asset.copyright: "© OpenStreetMap contributors, ODbL 1.0"
   Frame frame;
   Instancing instancing = Instancing::ext;  ///< of what stands in facades, at LoD3
+  Objects objects = Objects::tile;          ///< what the scene consists of
   Compression compression = Compression::none;
   bool evidence = false;  ///< also why each attribute has its value
 };
@@ -28,12 +30,14 @@ struct Glb {
   std::size_t rows = 0;       ///< of the property table: parts of owned buildings
   std::size_t triangles = 0;  ///< as drawn; 0: the file is valid, but shows nothing; a tileset should leave it out
   std::size_t elements = 0, placements = 0;  ///< distinct elements and their places, where they are not baked
+  std::size_t buildings = 0, parts = 0;      ///< nodes of objects; 0 without such
   model::Point3 min, max;                    ///< of the mesh in east, north, up; zero without triangles
 };
 
 /// The owned buildings of `region` as one GLB.
 ///
-/// One mesh, indexed, y up: a primitive for each material class, another for each colour of many vertices
+/// With objects for buildings as write_objects() says, without a required extension but for compression. Otherwise one
+/// mesh, indexed, y up: a primitive for each material class, another for each colour of many vertices
 /// (MeshPrimitive). Attributes lie in streams of their own (glb_document.h): POSITION as floats that are multiples of
 /// 1/4096 m, NORMAL (8 bits), COLOR_0 (16 bits, linear light; where the material has no colour) and _FEATURE_ID_0, the
 /// row of the part in the property table. Extensions: KHR_mesh_quantization (required), EXT_mesh_features,

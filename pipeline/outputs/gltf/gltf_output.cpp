@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
+#include "pipeline/base/error.h"
+#include "pipeline/base/text.h"
 #include "pipeline/georef/frames.h"
 #include "pipeline/georef/tile_frame.h"
 #include "pipeline/georef/tiles.h"
@@ -16,6 +19,7 @@ namespace {
 
 using model::Point3;
 
+constexpr const char* kModelFile = "model.glb";
 /// m. Farther from its origin, the single-precision vertices of model.glb are coarser than 4 mm.
 constexpr double kFineModelRadius = 65'536;
 
@@ -144,12 +148,14 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
   return entry;
 }
 
-/// Writes model.glb. \returns m, how far it reaches from its origin
-double write_model(const model::Region& whole, const OutputContext& context, std::vector<base::PublishedFile>& files) {
+/// Writes model.glb.
+void write_model(const FinishedBuild& build, const OutputContext& context) {
+  const model::Region& whole = build.whole;
   const double origin_height = model::snap(lowest_ground(whole));
   const GeoidPlane plane = geoid_plane(context, context.centre);
   const georef::EnuFrame frame({context.centre.lon, context.centre.lat, origin_height + plane.at});
   GlbOptions o = glb_options(context, frame);
+  o.objects = context.options.objects;
   // One frame for a whole city: every point takes the exact way, and the geoid is asked for each.
   o.frame.to_enu = [&](std::span<const Point3> in, std::span<Point3> out) {
     for (std::size_t i = 0; i < in.size(); ++i) {
@@ -159,11 +165,29 @@ double write_model(const model::Region& whole, const OutputContext& context, std
       out[i] = frame.to_local(g.lon, g.lat, in[i].z + n);
     }
   };
-  const Glb glb = write_glb(whole, o);
+  Glb glb;
+  try {
+    glb = write_glb(whole, o);
+  } catch (const std::length_error&) {
+    throw base::OutputError(
+        fmt::format("{} would have more than the 4 GB that a GLB may have; {}use tileset.json, or a --bbox", kModelFile,
+                    o.objects == Objects::building && o.lod >= 3 ? "--objects tile is a tenth of it; or " : ""));
+  }
+  const auto [bytes, triangles] = std::pair(glb.bytes.size(), base::with_thousands(glb.triangles));
+  std::string figures = fmt::format("{} triangles, {}", triangles, base::with_byte_unit(bytes));
+  if (o.objects == Objects::building)
+    figures = fmt::format("{} houses in {} parts, {}", base::with_thousands(glb.buildings),
+                          base::with_thousands(glb.parts), figures);
+  build.tell(kModelFile, std::move(figures));
+  build.files.push_back(context.folder.write(kModelFile, glb.bytes));
+  if (o.objects == Objects::building) return;  // each house lies about an origin of its own
   double reach = 0;
   for (const double v : {glb.min.x, glb.min.y, glb.max.x, glb.max.y}) reach = std::max(reach, std::fabs(v));
-  files.push_back(context.folder.write("model.glb", glb.bytes));
-  return reach;
+  if (reach > kFineModelRadius)
+    build.warn(fmt::format(
+        "model.glb reaches {:.0f} km from its origin: far from there its vertices are more than 4 mm coarse. "
+        "Use --objects building, tileset.json, or a --bbox",
+        reach / 1000));
 }
 
 class GltfOutput : public Output {
@@ -185,12 +209,7 @@ class GltfOutput : public Output {
       options.attribution = kAttribution;
       build.files.push_back(context_.folder.write("tileset.json", write_tileset(tiles_, options)));
     }
-    if (!context_.options.single_glb) return;
-    if (const double reach = write_model(build.whole, context_, build.files); reach > kFineModelRadius)
-      build.warn(fmt::format(
-          "model.glb reaches {:.0f} km from its origin: far from there its vertices are more than 4 mm coarse. "
-          "Use tileset.json, or a --bbox",
-          reach / 1000));
+    if (context_.options.single_glb) write_model(build, context_);
   }
 
  private:
@@ -207,15 +226,16 @@ OutputFormat gltf_output() {
           .other_names = {"tileset", "3dtiles"},
           .places = {{"tileset.json", "3D Tiles, for CesiumJS, QGIS 3.34+, Unreal, ...; single tiles are in tiles/",
                       [](const OutputOptions& o, std::uint64_t) { return o.writes("gltf"); }},
-                     {"model.glb", "the whole build in one file, for Blender and other editors",
+                     {kModelFile, "the whole build in one file, for Blender and other editors",
                       [](const OutputOptions& o, std::uint64_t) { return o.single_glb; }}},
           .manual = {{"tileset.json, tiles/",
                       "3D Tiles 1.1: one GLB per tile, with every attribute and its source as feature metadata"}},
           .asked = [](const OutputOptions& o) { return o.writes("gltf") || o.single_glb; },
           .bytes_per_building =
-              [](const OutputOptions& o, std::size_t) {
-                constexpr double kBytes = 3000;
-                return (o.writes("gltf") ? kBytes : 0) + (o.single_glb ? kBytes : 0);
+              [](const OutputOptions& o, std::size_t lod) {
+                constexpr double kBytes = 3000, kWithFacade = 300'000;  // of a house whose windows are merged in
+                const bool merged = lod >= 3 && o.objects == Objects::building && o.instancing != Instancing::nodes;
+                return (o.writes("gltf") ? kBytes : 0) + (o.single_glb ? merged ? kWithFacade : kBytes : 0);
               },
           .keeps_whole = [](const OutputOptions& o) { return o.single_glb; },
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<GltfOutput>(c); }};

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "pipeline/outputs/gltf/glb_document.h"
-#include "pipeline/outputs/gltf/material.h"
 #include "pipeline/outputs/gltf/stored_element.h"
 #include "pipeline/outputs/number_text.h"
 
@@ -35,12 +34,15 @@ struct PlacedMesh {
 class InstanceWriter {
  public:
   InstanceWriter(GlbDocument& document, const model::Region& region, std::size_t rows)
-      : document_(document), region_(region), elements_(document), wide_features_(rows > 0xFFFF) {}
+      : document_(document),
+        region_(region),
+        elements_(document, ElementVertices::steps),
+        wide_features_(rows > 0xFFFF) {}
 
   InstanceFigures write(const std::vector<InstanceGroup>& groups, Instancing how) {
     for (const InstanceGroup& group : groups) collect(group);
     for (const PlacedMesh& placed : meshes_) {
-      const int mesh = add_mesh(placed);
+      const int mesh = elements_.add_mesh(placed.stored, *placed.element, region_, MaterialName::plain);
       auto& children = children_[elements_[placed.stored].steps];
       if (how == Instancing::ext)
         children.push_back(add_instanced_node(mesh, placed));
@@ -59,12 +61,7 @@ class InstanceWriter {
     const ElementForm form = elements_.form(*element.element);
     if (form.stored < 0) return;
     const StoredElement& stored = elements_[form.stored];
-    std::vector<int> key{form.stored};
-    for (const StoredElement::Part& part : stored.parts) {
-      const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part.part)];
-      key.insert(key.end(), {look.material, look.colour.r, look.colour.g, look.colour.b});
-    }
-    const auto [place, added] = known_.try_emplace(std::move(key), meshes_.size());
+    const auto [place, added] = known_.try_emplace(elements_.mesh_key(form.stored, element), meshes_.size());
     if (added) meshes_.push_back({&element, form.stored, {}});
     PlacedMesh& mesh = meshes_[place->second];
     for (const ElementInstance& at : group.instances) {
@@ -89,50 +86,11 @@ class InstanceWriter {
       }
   }
 
-  /// Neighbouring parts that look the same are one primitive.
-  int add_mesh(const PlacedMesh& placed) {
-    const StoredElement& stored = elements_[placed.stored];
-    const model::ColouredElement& element = *placed.element;
-    const auto look = [&](std::size_t i) -> const model::PartMaterial& {
-      return element.materials[static_cast<std::size_t>(stored.parts[i].part)];
-    };
-    std::string json = "{\"name\":";
-    append_json(json, stored.stretched ? element.element->kind : element.element->name);
-    json += ",\"primitives\":[";
-    for (std::size_t first = 0; first < stored.parts.size();) {
-      std::size_t last = first;
-      while (last + 1 < stored.parts.size() && stored.parts[last + 1].block == stored.parts[first].block &&
-             look(last + 1) == look(first))
-        ++last;
-      const StoredElement::Block& block = stored.blocks[static_cast<std::size_t>(stored.parts[first].block)];
-      if (first > 0) json += ',';
-      json += "{\"attributes\":{\"NORMAL\":";
-      append_number(json, std::int64_t{block.normal});
-      json += ",\"POSITION\":";
-      append_number(json, std::int64_t{block.position});
-      json += "},\"indices\":";
-      append_number(json, std::int64_t{elements_.indices(placed.stored, first, last)});
-      json += ",\"material\":";
-      append_number(json, std::int64_t{document_.add_material(
-                              material_json(region_.materials.at(look(first).material), look(first).colour))});
-      json += '}';
-      first = last + 1;
-    }
-    return document_.add_mesh(json + "]}");
-  }
-
   /// East, north, up to glTF's y up, in whole steps.
   static std::array<double, 3> translation(const Place& place, double steps) {
     const model::Point3& p = place.instance->origin;
     return {std::nearbyint(p.x * steps), std::nearbyint(p.z * steps), 0.0 - std::nearbyint(p.y * steps)};
   }
-  /// A turn about the upright axis that leads east to `along`, by half angles without trigonometry.
-  static std::array<double, 4> rotation(const Place& place) {
-    const model::Point2& along = place.instance->along;
-    const double c = std::sqrt(std::max(0.0, (1 + along.x) / 2)), s = std::sqrt(std::max(0.0, (1 - along.x) / 2));
-    return {0, along.y < 0 ? -s : s, 0, c};
-  }
-
   int add_instanced_node(int mesh, const PlacedMesh& placed) {
     const StoredElement& stored = elements_[placed.stored];
     const std::size_t n = placed.places.size();
@@ -146,7 +104,8 @@ class InstanceWriter {
         translations.push_back(static_cast<float>(v) + 0.0f);
         far = far || std::fabs(v) > kFinestReach * kGlbStepsPerMetre;
       }
-      for (const double v : rotation(place)) rotations.push_back(static_cast<std::int16_t>(std::nearbyint(v * 32767)));
+      for (const double v : rotation_to(place.instance->along))
+        rotations.push_back(static_cast<std::int16_t>(std::nearbyint(v * 32767)));
       scales.insert(scales.end(), {static_cast<float>(place.stretch), 1.0f, 1.0f});
       rows.insert(place.instance->feature);
       if (wide_features_)
@@ -207,7 +166,7 @@ class InstanceWriter {
       }
       json += ']';
     };
-    auto turn = rotation(place);
+    auto turn = rotation_to(place.instance->along);
     for (double& v : turn) v = std::nearbyint(v * 1e7) / 1e7;
     list(",\"rotation\":[", turn);
     if (stored.stretched) list(",\"scale\":[", std::array<double, 3>{place.stretch, 1, 1});
@@ -241,6 +200,11 @@ class InstanceWriter {
 };
 
 }  // namespace
+
+std::array<double, 4> rotation_to(const model::Point2& along) {
+  const double c = std::sqrt(std::max(0.0, (1 + along.x) / 2)), s = std::sqrt(std::max(0.0, (1 - along.x) / 2));
+  return {0, along.y < 0 ? -s : s, 0, c};
+}
 
 InstanceFigures write_instances(GlbDocument& document, const model::Region& region,
                                 const std::vector<InstanceGroup>& groups, Instancing how, std::size_t rows) {

@@ -1,6 +1,7 @@
 // Placed elements in a GLB: each stored once, placed many times.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -17,6 +18,10 @@ enum class Instancing : std::uint8_t {
   nodes,  ///< a node per place, for programs without that extension; `extras.feature` is the row
   baked,  ///< triangles like all others: the largest file, which every program reads
 };
+
+/// The quaternion of a turn about the upright axis of glTF that leads east to `along`, by half angles without
+/// trigonometry. \param along  unit vector, east and north
+std::array<double, 4> rotation_to(const model::Point2& along);
 
 /// What was written.
 struct InstanceFigures {

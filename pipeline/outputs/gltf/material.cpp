@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/model/building.h"
 #include "pipeline/outputs/gltf/linear_light.h"
 #include "pipeline/outputs/number_text.h"
 
@@ -19,9 +20,11 @@ double linear(std::uint8_t value) { return std::nearbyint(kLinearLight[value] / 
 
 }  // namespace
 
-std::string material_json(const model::MaterialClass& material, const std::optional<model::Colour>& colour) {
+std::string material_json(const model::MaterialClass& material, const std::optional<model::Colour>& colour,
+                          MaterialName name) {
   std::string json = "{\"name\":";
-  append_json(json, material.name);
+  append_json(json, colour && name == MaterialName::with_colour ? material.name + " " + model::text(*colour)
+                                                                : std::string(material.name));
   json += ",\"pbrMetallicRoughness\":{";
   if (colour) {
     json += "\"baseColorFactor\":[";

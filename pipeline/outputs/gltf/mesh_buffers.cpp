@@ -113,6 +113,14 @@ class Primitives {
     return bucket.pieces.back();
   }
 
+  /// One or more for each look.
+  std::vector<MeshPrimitive> take_by_look() {
+    std::vector<MeshPrimitive> out;
+    for (auto& [look, bucket] : buckets_)
+      std::move(bucket.pieces.begin(), bucket.pieces.end(), std::back_inserter(out));
+    return out;
+  }
+
   /// Colours of few vertices share the primitives of their material.
   std::vector<MeshPrimitive> take() {
     std::vector<MeshPrimitive> out, mixed;
@@ -209,89 +217,87 @@ void unify_equal_points(const std::vector<model::Point3>& points, std::uint32_t 
         i > 0 && points[order[i]] == points[order[i - 1]] ? representative[order[i - 1]] : order[i];
 }
 
-/// Puts every placed element's triangles into the mesh.
-void bake_elements(const model::Region& region, const Frame& frame, Mesh& mesh, Primitives& primitives) {
-  for (const InstanceGroup& group : element_instances(region, frame)) {
-    const model::ColouredElement& element = region.elements[group.element];
-    const ElementGeometry geometry = element_geometry(*element.element, false);
-    for (const ElementInstance& at : group.instances) {
-      const model::Point2 out{at.along.y, -at.along.x};
-      const auto turn = [&](double x, double y, double z) {
-        return model::Point3{at.along.x * x + out.x * z, at.along.y * x + out.y * z, y};
-      };
-      for (const ElementGeometry::PartTriangles& part : geometry.parts) {
-        const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part.part)];
-        MeshPrimitive& primitive = primitives.with_room(look, part.vertices.size());
-        const std::size_t first = primitive.vertices.size();
-        for (const ElementVertex& v : part.vertices) {
-          const model::Point3 d = turn(v.position.x, v.position.y, v.position.z);
-          const model::Point3 n = turn(v.exact_normal.x, v.exact_normal.y, v.exact_normal.z);
-          MeshVertex vertex;
-          vertex.position = static_cast<std::uint32_t>(mesh.positions.size());
-          mesh.positions.push_back({at.origin.x + d.x, at.origin.y + d.y, at.origin.z + d.z});
-          vertex.feature = at.feature;
-          const auto quantise = [](double c) { return static_cast<std::int8_t>(std::nearbyint(c * 127)); };
-          vertex.normal = {quantise(n.x), quantise(n.y), quantise(n.z)};
-          primitive.vertices.push_back(vertex);
-        }
-        for (const std::uint32_t i : part.indices) primitive.indices.push_back(static_cast<std::uint16_t>(first + i));
-        mesh.triangles += part.indices.size() / 3;
-      }
+/// Puts the triangles of an element that stands at `at` into the mesh.
+void bake_element(const model::ColouredElement& element, const ElementGeometry& geometry, const ElementInstance& at,
+                  Mesh& mesh, Primitives& primitives) {
+  const model::Point2 out{at.along.y, -at.along.x};
+  const auto turn = [&](double x, double y, double z) {
+    return model::Point3{at.along.x * x + out.x * z, at.along.y * x + out.y * z, y};
+  };
+  for (const ElementGeometry::PartTriangles& part : geometry.parts) {
+    const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part.part)];
+    MeshPrimitive& primitive = primitives.with_room(look, part.vertices.size());
+    const std::size_t first = primitive.vertices.size();
+    for (const ElementVertex& v : part.vertices) {
+      const model::Point3 d = turn(v.position.x, v.position.y, v.position.z);
+      const model::Point3 n = turn(v.exact_normal.x, v.exact_normal.y, v.exact_normal.z);
+      MeshVertex vertex;
+      vertex.position = static_cast<std::uint32_t>(mesh.positions.size());
+      mesh.positions.push_back({at.origin.x + d.x, at.origin.y + d.y, at.origin.z + d.z});
+      vertex.feature = at.feature;
+      const auto quantise = [](double c) { return static_cast<std::int8_t>(std::nearbyint(c * 127)); };
+      vertex.normal = {quantise(n.x), quantise(n.y), quantise(n.z)};
+      primitive.vertices.push_back(vertex);
     }
+    for (const std::uint32_t i : part.indices) primitive.indices.push_back(static_cast<std::uint16_t>(first + i));
+    mesh.triangles += part.indices.size() / 3;
   }
 }
 
-}  // namespace
+/// The solids or footprints that are shown, and their points.
+struct Bodies {
+  std::vector<SolidRef> solids;       ///< by ascending feature
+  std::deque<Footprint> footprints;   ///< a deque keeps its elements in place
+  std::vector<model::Point3> source;  ///< in the build CRS
+  std::vector<model::Point3> local;   ///< the same in the frame
+  std::uint32_t features = 0;
+};
 
-Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake) {
-  std::vector<SolidRef> solids;
-  std::deque<Footprint> footprints;  // a deque keeps its elements in place
-  std::vector<model::Point3> source;
-  std::uint32_t feature = 0;
+Bodies collect_bodies(const model::Region& region, int lod, const Frame& frame, bool bake) {
+  Bodies out;
   for (const model::Building& building : region.buildings) {
     if (!building.owned) continue;
     for (const model::BuildingPart& part : building.parts) {
+      const std::uint32_t feature = out.features++;
       auto [solid, triangles] = solid_of(part, lod);
       if (lod == 0) {
         if (auto footprint = footprint_of(part, region)) {
-          solid = &footprints.emplace_back(std::move(*footprint)).surface;
-          triangles = &footprints.back().triangles;
+          solid = &out.footprints.emplace_back(std::move(*footprint)).surface;
+          triangles = &out.footprints.back().triangles;
         }
       }
-      if (solid) {
-        const bool detailed = solid == &part.lod3.solid;
-        solids.push_back({solid, triangles, feature, static_cast<std::uint32_t>(source.size()),
-                          detailed ? hidden_faces(region, part.lod3, bake) : std::vector<bool>{}});
-        source.insert(source.end(), solid->vertices.begin(), solid->vertices.end());
-        if (detailed) {
-          const auto add_body = [&](const auto& body) {
-            solids.push_back({&body.solid, &body.triangles, feature, static_cast<std::uint32_t>(source.size()), {}});
-            source.insert(source.end(), body.solid.vertices.begin(), body.solid.vertices.end());
-          };
-          for (const model::WallInstallation& body : part.lod3.installations) add_body(body);
-          for (const model::RoofInstallation& body : part.lod3.roof_installations) add_body(body);
-        }
-      }
-      ++feature;
+      if (!solid) continue;
+      const auto add = [&](const model::Solid& shown, const model::SolidTriangles& its, std::vector<bool> hidden) {
+        out.solids.push_back({&shown, &its, feature, static_cast<std::uint32_t>(out.source.size()), std::move(hidden)});
+        out.source.insert(out.source.end(), shown.vertices.begin(), shown.vertices.end());
+      };
+      const bool detailed = solid == &part.lod3.solid;
+      add(*solid, *triangles, detailed ? hidden_faces(region, part.lod3, bake) : std::vector<bool>{});
+      if (!detailed) continue;
+      for (const model::WallInstallation& body : part.lod3.installations) add(body.solid, body.triangles, {});
+      for (const model::RoofInstallation& body : part.lod3.roof_installations) add(body.solid, body.triangles, {});
     }
   }
-
-  Mesh mesh;
-  mesh.positions.resize(source.size());
+  out.local.resize(out.source.size());
   if (frame.to_enu)
-    frame.to_enu(source, mesh.positions);
+    frame.to_enu(out.source, out.local);
   else
-    mesh.positions = source;
+    out.local = out.source;
+  return out;
+}
 
-  Primitives primitives;
-  std::vector<std::uint32_t> representative(source.size()), order;
-  Welder welder;
-  for (const SolidRef& ref : solids) {
+/// Puts solids into meshes.
+class SolidWriter {
+ public:
+  explicit SolidWriter(const std::vector<model::Point3>& source) : source_(source), representative_(source.size()) {}
+
+  /// \param first  the point that is the first one of `mesh.positions`
+  void add(const SolidRef& ref, std::uint32_t first, Mesh& mesh, Primitives& primitives) {
     const model::Solid& solid = *ref.solid;
     assert(ref.triangles->first.size() == solid.faces.size() + 1);
     const auto count = static_cast<std::uint32_t>(solid.vertices.size());
-    unify_equal_points(source, ref.first_position, count, representative, order);
-    welder.start(ref.triangles->triangles.size() * 3);
+    unify_equal_points(source_, ref.first_position, count, representative_, order_);
+    welder_.start(ref.triangles->triangles.size() * 3);
     for (std::size_t f = 0; f < solid.faces.size(); ++f) {
       if (!ref.hidden.empty() && ref.hidden[f]) continue;
       const model::Face& face = solid.faces[f];
@@ -300,23 +306,27 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
       MeshPrimitive* primitive = nullptr;
       MeshVertex vertex;
       vertex.feature = ref.feature;
-      vertex.normal = face_normal(solid, face, mesh.positions.data() + ref.first_position);
+      vertex.normal = face_normal(solid, face, mesh.positions.data() + (ref.first_position - first));
       const model::PartMaterial look{face.material, face.colour};
       for (std::uint32_t t = begin; t < end; ++t) {
         if (!primitive || primitive->vertices.size() + 3 > MeshPrimitive::kMostVertices)
           primitive = &primitives.with_room(look, 3);
         for (const std::uint32_t corner : ref.triangles->triangles[t]) {
-          vertex.position = representative[ref.first_position + corner];
-          primitive->indices.push_back(welder.index(*primitive, vertex));
+          vertex.position = representative_[ref.first_position + corner] - first;
+          primitive->indices.push_back(welder_.index(*primitive, vertex));
         }
         ++mesh.triangles;
       }
     }
   }
 
-  if (bake && lod >= 3) bake_elements(region, frame, mesh, primitives);
+ private:
+  const std::vector<model::Point3>& source_;
+  std::vector<std::uint32_t> representative_, order_;
+  Welder welder_;
+};
 
-  mesh.primitives = primitives.take();
+void set_box(Mesh& mesh) {
   bool first = true;
   for (const MeshPrimitive& primitive : mesh.primitives) {
     for (const MeshVertex& v : primitive.vertices) {
@@ -327,7 +337,59 @@ Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool b
       mesh.max = {std::max(mesh.max.x, p.x), std::max(mesh.max.y, p.y), std::max(mesh.max.z, p.z)};
     }
   }
+}
+
+}  // namespace
+
+Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake) {
+  Bodies bodies = collect_bodies(region, lod, frame, bake);
+  Mesh mesh;
+  mesh.positions = std::move(bodies.local);
+  Primitives primitives;
+  SolidWriter writer(bodies.source);
+  for (const SolidRef& ref : bodies.solids) writer.add(ref, 0, mesh, primitives);
+  if (bake && lod >= 3)
+    for (const InstanceGroup& group : element_instances(region, frame)) {
+      const model::ColouredElement& element = region.elements[group.element];
+      const ElementGeometry geometry = element_geometry(*element.element, false);
+      for (const ElementInstance& at : group.instances) bake_element(element, geometry, at, mesh, primitives);
+    }
+  mesh.primitives = primitives.take();
+  set_box(mesh);
   return mesh;
+}
+
+void for_each_part_mesh(const model::Region& region, int lod, const Frame& frame, bool bake,
+                        const std::function<void(std::uint32_t feature, Mesh mesh)>& visit) {
+  const Bodies bodies = collect_bodies(region, lod, frame, bake);
+  std::vector<InstanceGroup> groups;
+  if (bake && lod >= 3) groups = element_instances(region, frame);
+  const std::vector<PartElement> elements = elements_by_part(groups);
+  SolidWriter writer(bodies.source);
+  auto ref = bodies.solids.begin();
+  auto element = elements.begin();
+  for (std::uint32_t feature = 0; feature < bodies.features; ++feature) {
+    Mesh mesh;
+    Primitives primitives;
+    const auto end = std::find_if(ref, bodies.solids.end(), [&](const SolidRef& r) { return r.feature != feature; });
+    if (ref != end) {
+      const std::uint32_t first = ref->first_position;
+      const std::size_t last = end == bodies.solids.end() ? bodies.local.size() : end->first_position;
+      mesh.positions.assign(bodies.local.begin() + first, bodies.local.begin() + static_cast<std::ptrdiff_t>(last));
+      for (; ref != end; ++ref) writer.add(*ref, first, mesh, primitives);
+    }
+    ElementGeometry geometry;
+    for (std::uint32_t known = model::kNoIndex; element != elements.end() && element->at->feature == feature;
+         ++element) {
+      const model::ColouredElement& coloured = region.elements[element->element];
+      if (known != element->element) geometry = element_geometry(*coloured.element, false);
+      known = element->element;
+      bake_element(coloured, geometry, *element->at, mesh, primitives);
+    }
+    mesh.primitives = primitives.take_by_look();
+    set_box(mesh);
+    visit(feature, std::move(mesh));
+  }
 }
 
 }  // namespace blockrand::outputs

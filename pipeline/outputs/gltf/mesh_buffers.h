@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -53,5 +54,10 @@ struct Mesh {
 /// part with equal position, normal, colour and material become one vertex. Faces are in the order of the parts within
 /// a colour.
 Mesh build_mesh(const model::Region& region, int lod, const Frame& frame, bool bake = false);
+
+/// The same, part by part: `visit` gets every part's row of the table and its mesh, which is empty where the part shows
+/// nothing. Primitives have one colour each, whatever its number of vertices.
+void for_each_part_mesh(const model::Region& region, int lod, const Frame& frame, bool bake,
+                        const std::function<void(std::uint32_t feature, Mesh mesh)>& visit);
 
 }  // namespace blockrand::outputs

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "pipeline/outputs/number_text.h"
+
 namespace blockrand::outputs {
 namespace {
 
@@ -120,11 +122,12 @@ int StoredElements::store(ElementGeometry geometry, double steps, bool stretched
   if (!added) return place->second;
 
   StoredElement& out = stored_.emplace_back();
-  out.steps = steps;
+  const double unit = how_ == ElementVertices::floats ? 1 / steps : 1;
+  out.steps = steps * unit;
   out.stretched = stretched;
   for (std::size_t first = 0; first < geometry.parts.size();) {
     // As many parts as one block of vertices takes.
-    std::vector<std::int16_t> positions;
+    std::vector<float> positions;
     std::vector<std::int8_t> normals;
     std::array<std::array<double, 3>, 2> bounds{};
     std::size_t count = 0;
@@ -138,31 +141,97 @@ int StoredElements::store(ElementGeometry geometry, double steps, bool stretched
       out.triangles += indices.size() / 3;
       for (const Vertex& v : vertices[last]) {
         for (std::size_t i = 0; i < 3; ++i) {
-          bounds[0][i] = count == 0 ? v.position[i] : std::min<double>(bounds[0][i], v.position[i]);
-          bounds[1][i] = count == 0 ? v.position[i] : std::max<double>(bounds[1][i], v.position[i]);
+          const double p = v.position[i] * unit;
+          bounds[0][i] = count == 0 ? p : std::min(bounds[0][i], p);
+          bounds[1][i] = count == 0 ? p : std::max(bounds[1][i], p);
+          positions.push_back(static_cast<float>(p));
         }
         ++count;
-        positions.insert(positions.end(), v.position.begin(), v.position.end());
         normals.insert(normals.end(), v.normal.begin(), v.normal.end());
       }
     }
-    const std::size_t p = document_.append<std::int16_t>(Stream::element_positions, positions);
-    const std::size_t n = document_.append<std::int8_t>(Stream::normals, normals);
-    out.blocks.push_back({document_.add_accessor({.stream = Stream::element_positions,
-                                                  .offset = p,
-                                                  .component = Component::int16,
-                                                  .type = "VEC3",
-                                                  .count = count,
-                                                  .bounds = bounds}),
-                          document_.add_accessor({.stream = Stream::normals,
-                                                  .offset = n,
-                                                  .component = Component::int8,
-                                                  .type = "VEC3",
-                                                  .count = count,
-                                                  .normalised = true})});
+    out.blocks.push_back(store_block(positions, normals, count, bounds));
     first = last;
   }
   return place->second;
+}
+
+StoredElement::Block StoredElements::store_block(const std::vector<float>& positions,
+                                                 const std::vector<std::int8_t>& normals, std::size_t count,
+                                                 const std::array<std::array<double, 3>, 2>& bounds) {
+  if (how_ == ElementVertices::floats) {
+    const std::size_t p = document_.append<float>(Stream::positions, positions);
+    return {document_.add_accessor({.stream = Stream::positions,
+                                    .offset = p,
+                                    .component = Component::float32,
+                                    .type = "VEC3",
+                                    .count = count,
+                                    .bounds = bounds}),
+            -1};
+  }
+  std::vector<std::int16_t> steps;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < 4; ++k)
+      steps.push_back(k < 3 ? static_cast<std::int16_t>(positions[3 * i + k]) : std::int16_t{0});
+  const std::size_t p = document_.append<std::int16_t>(Stream::element_positions, steps);
+  const std::size_t n = document_.append<std::int8_t>(Stream::normals, normals);
+  const int position = document_.add_accessor({.stream = Stream::element_positions,
+                                               .offset = p,
+                                               .component = Component::int16,
+                                               .type = "VEC3",
+                                               .count = count,
+                                               .bounds = bounds});
+  const int normal = document_.add_accessor({.stream = Stream::normals,
+                                             .offset = n,
+                                             .component = Component::int8,
+                                             .type = "VEC3",
+                                             .count = count,
+                                             .normalised = true});
+  return {position, normal};
+}
+
+std::vector<int> StoredElements::mesh_key(int stored, const model::ColouredElement& element) const {
+  std::vector<int> key{stored};
+  for (const StoredElement::Part& part : (*this)[stored].parts) {
+    const model::PartMaterial& look = element.materials[static_cast<std::size_t>(part.part)];
+    key.insert(key.end(), {look.material, look.colour.r, look.colour.g, look.colour.b});
+  }
+  return key;
+}
+
+int StoredElements::add_mesh(int number, const model::ColouredElement& element, const model::Region& region,
+                             MaterialName name) {
+  const StoredElement& stored = (*this)[number];
+  const auto look = [&](std::size_t i) -> const model::PartMaterial& {
+    return element.materials[static_cast<std::size_t>(stored.parts[i].part)];
+  };
+  std::string json = "{\"name\":";
+  append_json(json, stored.stretched ? element.element->kind : element.element->name);
+  json += ",\"primitives\":[";
+  for (std::size_t first = 0; first < stored.parts.size();) {
+    std::size_t last = first;
+    while (last + 1 < stored.parts.size() && stored.parts[last + 1].block == stored.parts[first].block &&
+           look(last + 1) == look(first))
+      ++last;
+    const StoredElement::Block& block = stored.blocks[static_cast<std::size_t>(stored.parts[first].block)];
+    if (first > 0) json += ',';
+    json += "{\"attributes\":{";
+    if (block.normal >= 0) {
+      json += "\"NORMAL\":";
+      append_number(json, std::int64_t{block.normal});
+      json += ',';
+    }
+    json += "\"POSITION\":";
+    append_number(json, std::int64_t{block.position});
+    json += "},\"indices\":";
+    append_number(json, std::int64_t{indices(number, first, last)});
+    json += ",\"material\":";
+    append_number(json, std::int64_t{document_.add_material(
+                            material_json(region.materials.at(look(first).material), look(first).colour, name))});
+    json += '}';
+    first = last + 1;
+  }
+  return document_.add_mesh(json + "]}");
 }
 
 int StoredElements::indices(int stored, std::size_t first, std::size_t last) {

@@ -80,6 +80,15 @@ TEST(BuildReport, NamesTheFilesThatWereAskedFor) {
   EXPECT_THAT(text, Not(HasSubstr("citygml")));
 }
 
+TEST(BuildReport, SaysHowLargeTheOneFileIs) {
+  run::BuildOptions o = options();
+  o.outputs.single_glb = true;
+  run::BuildSummary s = summary();
+  s.figures["model.glb"] = "386 houses in 427 parts, 5,173,349 triangles, 130.2 MB";
+  EXPECT_THAT(build_report(o, s),
+              ContainsRegex("model\\.glb .*editors: 386 houses in 427 parts, 5,173,349 triangles, "));
+}
+
 TEST(BuildReport, ALowerLevelHidesTheRowsAboveIt) {
   run::BuildOptions o = options();
   o.lod = 1;

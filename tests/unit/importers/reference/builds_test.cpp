@@ -163,7 +163,7 @@ void expect_same_in_all_formats(const fs::path& input, std::size_t least, bool g
   }
   {
     SCOPED_TRACE("one GLB");
-    expect_same(gml, read_town(in("model.glb"), "glTF 2.0"), 4e-3);  // floats far from the origin
+    expect_same(gml, read_town(in("model.glb"), "glTF 2.0"), kGltf);
   }
 }
 
