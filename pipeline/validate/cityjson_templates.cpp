@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pipeline/validate/detail_check.h"
+#include "pipeline/validate/polygon_order.h"
 
 namespace blockrand::validate {
 namespace {
@@ -31,7 +32,8 @@ class TemplateReader {
     used_.assign(points_.size(), false);
     for (const Json& t : *templates) {
       where_ = fmt::format("template {}", out.digests.size());
-      const std::vector<ReadPolygon> read = polygons(t);
+      std::vector<ReadPolygon> read = polygons(t);
+      sort_polygons(read);
       out.digests.push_back(element_digest(read));
       out.elements.push_back(element_of(read));
     }
