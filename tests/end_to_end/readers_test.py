@@ -118,6 +118,25 @@ class Readers(BuildTest):
                         self.assertEqual(len(surface.findall('.//gml:Polygon', NAMES)), len(templates),
                                          'surfaces refer to polygons')
 
+    def test_nothing_is_said_again_and_again(self):
+        """Templates refer to polygons that another one has in the same colour; an appearance names surfaces as a whole."""
+        xlink, app = '{http://www.w3.org/1999/xlink}href', '{http://www.opengis.net/citygml/appearance/2.0}'
+        shared = 0
+        for name, root in citygml_trees(self.lod3):
+            seen = set()
+            look = {t.text[1:]: material.findtext('gml:name', '', NAMES) for material in root.iter(app + 'X3DMaterial')
+                      for t in material.iter(app + 'target')}
+            for template in root.iterfind('.//core:relativeGMLGeometry/gml:MultiSurface', NAMES):
+                for group in template.findall('gml:surfaceMember/gml:CompositeSurface', NAMES) or [template]:
+                    shared += len([m for m in group.findall('gml:surfaceMember', NAMES) if m.get(xlink)])
+                    for ring in group.iterfind('gml:surfaceMember/gml:Polygon/gml:exterior/gml:LinearRing/gml:posList', NAMES):
+                        key = look[group.get(GML_ID)], ring.text
+                        self.assertFalse(key in seen, f'{name} {group.get(GML_ID)}: {key}')
+                        seen.add(key)
+            polygons = len(root.findall('.//gml:Polygon', NAMES))
+            self.assertLess(len(look), 0.7 * polygons, name)
+        self.assertGreater(shared, 100)
+
     def test_side_files_are_no_findings(self):
         if not shutil.which('ogrinfo'):
             self.skipTest('ogrinfo is absent (Debian: gdal-bin)')

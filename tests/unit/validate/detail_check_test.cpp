@@ -166,7 +166,8 @@ TEST(Detail, ReferencesToNowhere) {
   EXPECT_THAT(found(replaced("<bldg:lod3MultiSurface><MultiSurface><surfaceMember xlink:href=\"#",
                              "<bldg:lod3MultiSurface><MultiSurface><surfaceMember xlink:href=\"#x")),
               Contains(HasSubstr("which is no polygon of the solid of LoD3")));
-  EXPECT_THAT(found(replaced("<surfaceMember xlink:href=\"#e", "<surfaceMember xlink:href=\"#x")),
+  EXPECT_THAT(found(replaced("</MultiSurface></core:relativeGMLGeometry>",
+                             "<surfaceMember xlink:href=\"#x\"/></MultiSurface></core:relativeGMLGeometry>")),
               Contains(HasSubstr("which is no polygon of an element")));
   EXPECT_THAT(found(replaced("<app:target>#w", "<app:target>#x")), Contains(HasSubstr("which is no surface")));
 }
@@ -311,7 +312,7 @@ TEST(DetailCityJson, DamageIsFound) {
   EXPECT_THAT(found_in_json([](auto&, auto& f) { f["CityObjects"]["w100_casement"]["geometry"][0]["template"] = 99; }),
               Contains(HasSubstr("a template that does not exist")));
   EXPECT_THAT(found_in_json([](auto&, auto& f) {
-                f["CityObjects"]["w100_casement"]["geometry"][0]["core:transformationMatrix"][0] = 2;
+                f["CityObjects"]["w100_casement"]["geometry"][0]["transformationMatrix"][0] = 2;
               }),
               Contains(HasSubstr("no rotation about the vertical")));
   EXPECT_THAT(
