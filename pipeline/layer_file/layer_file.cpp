@@ -73,7 +73,8 @@ std::string sql_text(std::string_view text) {
   return out + "'";
 }
 
-constexpr std::array<OGRwkbGeometryType, 4> kTypes{wkbPoint, wkbLineString, wkbPolygon, wkbMultiPolygon};
+constexpr std::array<OGRwkbGeometryType, 5> kTypes{wkbPoint, wkbLineString, wkbPolygon, wkbMultiPolygon,
+                                                   wkbMultiPolygon25D};
 
 /// Text that holds a JSON object.
 bool is_json(const Column& column) { return column.name == "tags"; }

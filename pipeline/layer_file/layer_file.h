@@ -10,7 +10,7 @@
 
 namespace blockrand::layer_file {
 
-enum class GeometryKind : std::uint8_t { point, line, polygon, multi_polygon };
+enum class GeometryKind : std::uint8_t { point, line, polygon, multi_polygon, multi_polygon_z };
 
 struct LayerSpec {
   std::string table;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "pipeline/model/polygon.h"
+#include "pipeline/model/solid.h"
 
 namespace blockrand::layer_file {
 
@@ -20,7 +21,8 @@ void append_raw(std::string& out, T value) {
   out.append(bytes, sizeof value);
 }
 
-inline constexpr std::uint32_t kPoint = 1, kLineString = 2, kPolygon = 3, kMultiPolygon = 6;
+inline constexpr std::uint32_t kPoint = 1, kLineString = 2, kPolygon = 3, kMultiPolygon = 6, kPolygonZ = 1003,
+                               kMultiPolygonZ = 1006;
 
 inline void append_header(std::string& out, std::uint32_t type, std::size_t count) {
   out += '\1';
@@ -73,6 +75,19 @@ inline void append_point(std::string& out, model::Point2 point) {
 inline void append_multi_polygon(std::string& out, std::span<const model::Polygon> polygons) {
   append_header(out, kMultiPolygon, polygons.size());
   for (const model::Polygon& polygon : polygons) append_polygon(out, polygon);
+}
+
+/// A face of a solid in space.
+inline void append_face(std::string& out, const model::Solid& solid, const model::Face& face) {
+  append_header(out, kPolygonZ, face.loop_count);
+  for (const model::Solid::Loop& loop : solid.loops_of(face)) {
+    const std::span<const std::uint32_t> indices = solid.indices_of(loop);
+    append_raw(out, static_cast<std::uint32_t>(indices.size() + 1));
+    for (std::size_t i = 0; i <= indices.size(); ++i) {
+      const model::Point3& p = solid.vertices[indices[i == indices.size() ? 0 : i]];
+      for (const double v : {p.x, p.y, p.z}) append_raw(out, v);
+    }
+  }
 }
 
 }  // namespace blockrand::layer_file

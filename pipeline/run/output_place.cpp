@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "pipeline/base/error.h"
+#include "pipeline/base/side_files.h"
 #include "pipeline/base/text.h"
 
 namespace blockrand::run {
@@ -17,12 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-/// What other programs write beside a file that they open.
-bool is_side_file(std::string_view path) {
-  constexpr std::array<std::string_view, 6> kEndings = {".aux.xml", ".gfs", ".ovr", "-wal", "-shm", "-journal"};
-  return std::ranges::any_of(kEndings, [&](std::string_view ending) { return path.ends_with(ending); });
-}
 
 /// The build.json of a folder; null where there is none, or it is none.
 Json record_of(const std::string& folder) {
@@ -46,7 +40,7 @@ std::vector<std::string> files_other_than(const std::set<std::string>& ours, con
   for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     if (entry->is_directory(error) && !entry->is_symlink(error)) continue;
     const std::string path = entry->path().lexically_relative(folder).generic_string();
-    if (!ours.contains(path) && !is_side_file(path)) out.push_back(path);
+    if (!ours.contains(path) && !base::is_side_file(path)) out.push_back(path);
   }
   std::sort(out.begin(), out.end());
   return out;

@@ -12,8 +12,8 @@
 
 namespace blockrand::run {
 
-/// Files and links below `folder`, relative to it and sorted, that are not in the list of its build.json. Side files that
-/// other programs leave when they open ours (GDAL's .aux.xml and .gfs, SQLite's -wal, -shm and -journal) do not count.
+/// Files and links below `folder`, relative to it and sorted, that are not in the list of its build.json. Side files of
+/// other programs (base::is_side_file) do not count.
 /// A build.json that cannot be read lists nothing.
 std::vector<std::string> foreign_files(const std::string& folder);
 

@@ -8,6 +8,7 @@
 #include "pipeline/base/error.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/sha256.h"
+#include "pipeline/base/side_files.h"
 #include "pipeline/validate/bytes_of_file.h"
 #include "pipeline/validate/formats.h"
 
@@ -147,7 +148,7 @@ std::optional<BuildRecord> read_build_record(const std::string& folder, FindingL
   return record;
 }
 
-void check_file_list(const std::string& folder, const BuildRecord& record, FindingLog& log) {
+std::vector<std::string> check_file_list(const std::string& folder, const BuildRecord& record, FindingLog& log) {
   std::set<std::string> there;
   std::error_code error;
   for (auto i = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, error);
@@ -159,8 +160,14 @@ void check_file_list(const std::string& folder, const BuildRecord& record, Findi
   }
   for (const auto& [path, file] : record.files)
     if (!there.count(path)) log.add(Check::file_missing, path, "", "listed in build.json");
-  for (const std::string& path : there)
-    if (!record.files.count(path)) log.add(Check::file_unlisted, path, "", "not listed in build.json");
+  std::vector<std::string> beside;
+  for (const std::string& path : there) {
+    if (record.files.count(path)) continue;
+    if (base::is_side_file(path))
+      beside.push_back(path);
+    else
+      log.add(Check::file_unlisted, path, "", "not listed in build.json");
+  }
 
   const auto any = [&](const std::string& folder_name, const std::string& end) {
     return std::any_of(record.files.begin(), record.files.end(),
@@ -180,6 +187,7 @@ void check_file_list(const std::string& folder, const BuildRecord& record, Findi
   agree(record.single_cityjson, record.files.count("model.city.json") > 0, "model.city.json");
   agree(record.report, record.files.count("report.html") > 0, "report.html");
   agree(true, record.files.count("report.json") > 0, "report.json");
+  return beside;
 }
 
 std::uint64_t check_hashes(const std::string& folder, const BuildRecord& record, int workers, base::Progress& progress,

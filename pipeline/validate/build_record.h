@@ -45,7 +45,8 @@ std::optional<BuildRecord> read_build_record(const std::string& folder, FindingL
 
 /// The files below the folder (build.json and run.json left out) against the list: FILE_MISSING, FILE_UNLISTED; and
 /// against the configuration (BUILD_JSON).
-void check_file_list(const std::string& folder, const BuildRecord& record, FindingLog& log);
+/// \return side files of other programs (base::is_side_file), sorted: they are no findings
+std::vector<std::string> check_file_list(const std::string& folder, const BuildRecord& record, FindingLog& log);
 
 /// Sizes and SHA-256 of all listed files that are there: FILE_CHANGED. Phase "hashes" of `progress`.
 /// \return how many files were read

@@ -8,77 +8,103 @@
 #include "pipeline/validate/attribute_names.h"
 #include "pipeline/validate/citygml_parser.h"
 #include "pipeline/validate/detail_check.h"
+#include "pipeline/validate/polygon_order.h"
 
 namespace blockrand::validate {
 
-void CityGmlParser::end_detail(const Open& open, ReadBody& body) {
-  ReadSolid* solid = nullptr;
-  int number = 0;
-  for (std::size_t s = 0; s < body.solids.size(); ++s)
-    if (body.solids[s].lod == 3) solid = &body.solids[s], number = static_cast<int>(s);
-  if (!solid || !open.has_reference_solid[3]) {
-    if (!open.members.empty()) rule("boundary surfaces of LoD3 without a solid", body.id);
-    return;
+CityGmlParser::PolygonIndex CityGmlParser::end_solid(const Open& open, ReadBody& body, std::size_t lod) {
+  PolygonIndex index;
+  const auto solid = std::find_if(body.solids.begin(), body.solids.end(),
+                                  [&](const ReadSolid& s) { return s.lod == static_cast<int>(lod); });
+  if (solid == body.solids.end()) return index;
+  std::unordered_map<std::string_view, const ReadPolygon*> own;
+  for (const auto& members : open.solids)
+    for (const Member& m : members)
+      if (!m.link) own.emplace(m.id, &m.polygon);
+  const int number = static_cast<int>(solid - body.solids.begin());
+  for (const Member& member : open.solids[lod]) {
+    const ReadPolygon* polygon = &member.polygon;
+    if (member.link) {
+      const auto found = own.find(member.id);
+      if (found == own.end()) {
+        rule("a reference to #" + member.id + ", which is no polygon of the building", body.id);
+        continue;
+      }
+      polygon = found->second;
+    }
+    if (!member.id.empty() && !index.emplace(member.id, solid->polygons.size()).second) {
+      rule("polygon " + member.id + " is twice in the solid", body.id);
+      continue;
+    }
+    const Place place{open.body, number, solid->polygons.size()};
+    if (member.link)
+      shared_.push_back({member.id, place});
+    else
+      note_place(member.id, place);
+    solid->polygons.push_back(*polygon);
   }
-  std::unordered_map<std::string_view, std::size_t> lod2, members;
-  for (std::size_t i = 0; i < open.surfaces.size(); ++i) lod2.emplace(open.surfaces[i].first, i);
-  for (std::size_t i = 0; i < open.members.size(); ++i)
-    if (!members.emplace(open.members[i].id, i).second)
-      rule("polygon " + open.members[i].id + " is twice in the surfaces of LoD3", body.id);
-  const std::size_t nowhere = open.members.size();  // of polygons that are not in the solid
-  std::vector<std::size_t> polygon_of(open.members.size(), nowhere);
-  for (const std::string& id : open.references[3]) {
-    const auto place = members.find(id);
-    if (place == members.end()) {
-      rule("a reference to #" + id + ", which is no polygon of LoD3", body.id);
-      continue;
-    }
-    const Member& member = open.members[place->second];
-    if (polygon_of[place->second] != nowhere) {
-      rule("polygon " + id + " is twice in the solid", body.id);
-      continue;
-    }
-    if (!member.link) {
-      polygon_of[place->second] = solid->polygons.size();
-      note_place(id, {open.body, number, solid->polygons.size()});
-      solid->polygons.push_back(member.polygon);
-      continue;
-    }
-    const auto shared = lod2.find(id);
-    if (shared == lod2.end()) {
-      rule("a reference to #" + id + ", which is no polygon of the building", body.id);
-      continue;
-    }
-    polygon_of[place->second] = solid->polygons.size();
-    shared_.push_back({id, {open.body, number, solid->polygons.size()}});
-    solid->polygons.push_back(open.surfaces[shared->second].second);
+  return index;
+}
+
+std::vector<std::size_t> CityGmlParser::end_surfaces(const Open& open, ReadBody& body, std::size_t lod,
+                                                     const PolygonIndex& index) {
+  const std::vector<SurfaceMember>& members = open.surfaces[lod];
+  std::vector<std::size_t> polygon_of(members.size(), kNowhere);
+  const auto solid = std::find_if(body.solids.begin(), body.solids.end(),
+                                  [&](const ReadSolid& s) { return s.lod == static_cast<int>(lod); });
+  if (solid == body.solids.end()) {
+    if (!members.empty()) rule(fmt::format("boundary surfaces of LoD{} without a solid", lod), body.id);
+    return polygon_of;
   }
-  for (std::size_t i = 0; i < polygon_of.size(); ++i)
-    if (polygon_of[i] == nowhere)
-      rule(fmt::format("surface polygon {} is not in the solid of LoD3", open.members[i].id), body.id);
+  std::vector<bool> used(solid->polygons.size(), false);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const auto place = index.find(members[i].id);
+    if (place == index.end()) {
+      rule(fmt::format("a reference to #{}, which is no polygon of the solid of LoD{}", members[i].id, lod), body.id);
+      continue;
+    }
+    if (used[place->second]) {
+      rule(fmt::format("polygon {} is twice in the surfaces of LoD{}", members[i].id, lod), body.id);
+      continue;
+    }
+    used[place->second] = true;
+    polygon_of[i] = place->second;
+    solid->polygons[place->second].kind = members[i].kind;
+  }
+  for (std::size_t p = 0; p < used.size(); ++p)
+    if (!used[p]) rule(fmt::format("face {} of the solid of LoD{} is in no boundary surface", p, lod), body.id);
+  return polygon_of;
+}
+
+void CityGmlParser::end_openings(const Open& open, ReadBody& body, const std::vector<std::size_t>& polygon_of) {
   // The first polygon of a surface is the wall, what follows are its reveals; openings come after them.
+  const std::vector<SurfaceMember>& members = open.surfaces[3];
   std::vector<std::vector<std::size_t>> by_surface(open.boundary_surfaces + 1);
-  for (std::size_t i = 0; i < open.members.size(); ++i) by_surface[open.members[i].surface].push_back(polygon_of[i]);
+  PolygonIndex polygons;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    by_surface[members[i].surface].push_back(polygon_of[i]);
+    polygons.emplace(members[i].id, polygon_of[i]);
+  }
   std::set<std::size_t> walls_told;
   for (const OpenedWall& o : open.openings) {
-    const auto polygon = members.find(o.polygon);
-    if (o.polygon.empty() || polygon == members.end()) {
+    const auto polygon = polygons.find(o.polygon);
+    if (o.polygon.empty() || polygon == polygons.end()) {
       rule("has no polygon", o.id);
       continue;
     }
     const auto& wall = by_surface[o.surface];
     ReadOpening opening;
     opening.id = o.id;
-    opening.polygon = polygon_of[polygon->second];
-    if (opening.polygon == nowhere) continue;  // was said of its polygon
-    if (wall.empty() || wall.front() == nowhere) {
+    opening.polygon = polygon->second;
+    if (opening.polygon == kNowhere) continue;  // was said of its polygon
+    if (wall.empty() || wall.front() == kNowhere) {
       rule("has no wall in the solid of LoD3", o.id);
       continue;
     }
     opening.wall = wall.front();
     if (walls_told.insert(o.surface).second)
       std::copy_if(wall.begin() + 1, wall.end(), std::back_inserter(opening.reveals),
-                   [&](std::size_t p) { return p != nowhere; });
+                   [&](std::size_t p) { return p != kNowhere; });
     opening.placement = o.placement;
     body.detail.openings.push_back(std::move(opening));
   }
@@ -86,35 +112,13 @@ void CityGmlParser::end_detail(const Open& open, ReadBody& body) {
 }
 
 void CityGmlParser::end_body() {
-  Open open = std::move(open_.back());
+  const Open open = std::move(open_.back());
   ReadBody& body = out_.contents.bodies[open.body];
-  end_detail(open, body);
-  ReadSolid* solid = nullptr;
-  int number = -1;
-  for (std::size_t s = 0; s < body.solids.size(); ++s)
-    if (body.solids[s].lod == 2) solid = &body.solids[s], number = static_cast<int>(s);
-  if (open.has_reference_solid[2] && solid) {
-    std::unordered_map<std::string, std::size_t> index;
-    for (std::size_t i = 0; i < open.surfaces.size(); ++i) index.emplace(open.surfaces[i].first, i);
-    std::vector<int> used(open.surfaces.size(), 0);
-    for (const std::string& id : open.references[2]) {
-      const auto place = index.find(id);
-      if (place == index.end()) {
-        rule("a reference to #" + id + ", which is no polygon of the building", body.id);
-        continue;
-      }
-      if (++used[place->second] > 1) {
-        rule("polygon " + id + " is twice in the solid", body.id);
-        continue;
-      }
-      note_place(id, {open.body, number, solid->polygons.size()});
-      solid->polygons.push_back(std::move(open.surfaces[place->second].second));
-    }
-    for (std::size_t i = 0; i < used.size(); ++i)
-      if (used[i] == 0) rule(fmt::format("surface polygon {} is not in the solid", open.surfaces[i].first), body.id);
-  } else if (!open.surfaces.empty()) {
-    rule("boundary surfaces without a solid", body.id);
-  }
+  end_solid(open, body, 1);
+  const PolygonIndex lod2 = end_solid(open, body, 2), lod3 = end_solid(open, body, 3);
+  end_surfaces(open, body, 2, lod2);
+  const std::vector<std::size_t> polygon_of = end_surfaces(open, body, 3, lod3);
+  if (!open.solids[3].empty()) end_openings(open, body, polygon_of);
   for (std::size_t s = 0; s + 1 < body.solids.size(); ++s)
     if (body.solids[s].lod >= body.solids[s + 1].lod)
       rule("solids out of the order of their LoD, or one twice", body.id);
@@ -171,23 +175,49 @@ ReadPolygon& CityGmlParser::polygon_at(const Place& place) {
   return body.solids[static_cast<std::size_t>(place.solid)].polygons[place.polygon];
 }
 
-void CityGmlParser::finish() {
+void CityGmlParser::paint(const Place& place, const std::string& colour, const std::string& id) {
+  std::string& slot = polygon_at(place).colour;
+  if (!slot.empty() && slot != colour) rule("#" + id + " has two colours", out_.contents.bodies[place.body].id);
+  slot = colour;
+}
+
+bool CityGmlParser::paint(const std::string& id, const std::string& colour) {
+  const auto place = places_.find(id);
+  if (place == places_.end()) return false;
+  paint(place->second, colour, id);
+  return true;
+}
+
+void CityGmlParser::finish_colours() {
+  std::unordered_set<std::string_view> targets;
   for (const Material& m : materials_)
     for (const std::string& target : m.targets) {
-      const auto place = places_.find(target);
-      if (place == places_.end()) {
-        rule("an appearance of #" + target + ", which is no polygon", "");
-        continue;
+      if (!targets.insert(target).second) rule("two appearances of #" + target, "");
+      if (const auto group = groups_.find(target); group != groups_.end()) {
+        for (const Place& place : group->second.places) paint(place, m.colour, target);
+        for (const std::string& id : group->second.ids)
+          if (!paint(id, m.colour)) rule("a reference to #" + id + ", which is no polygon", "");
+      } else if (!paint(target, m.colour)) {
+        rule("an appearance of #" + target + ", which is no surface", "");
       }
-      std::string& slot = polygon_at(place->second).colour;
-      if (!slot.empty()) rule("#" + target + " has two colours", out_.contents.bodies[place->second.body].id);
-      slot = m.colour;
     }
   for (const auto& [id, place] : shared_)
     if (const auto original = places_.find(id); original != places_.end())
       polygon_at(place).colour = polygon_at(original->second).colour;
+}
+
+void CityGmlParser::finish_elements() {
+  for (Element& element : elements_)
+    for (const auto& [polygon, id] : element.links) {
+      const auto original = places_.find(id);
+      if (original == places_.end() || original->second.solid != kElement)
+        rule("a reference to #" + id + ", which is no polygon of an element", element.id);
+      else
+        element.polygons[polygon] = polygon_at(original->second);
+    }
   std::vector<std::uint64_t> digests;
-  for (const Element& element : elements_) {
+  for (Element& element : elements_) {
+    sort_polygons(element.polygons);
     digests.push_back(element_digest(element.polygons));
     if (element.polygons.empty()) rule("an element without polygons", element.id);
     out_.contents.elements.try_emplace(digests.back(), element_of(element.polygons));
@@ -200,6 +230,11 @@ void CityGmlParser::finish() {
     else
       place_element(body, body.detail.placements[p.placement], digests[element->second]);
   }
+}
+
+void CityGmlParser::finish() {
+  finish_colours();
+  finish_elements();
   if (!out_.contents.buildings.empty() && (!lower_ || !upper_ || out_.srs_name.empty()))
     rule("no envelope with a reference system", "");
   // Buildings of several parts are no bodies of their own.

@@ -29,12 +29,16 @@ class CityGmlParser {
  private:
   /// Where the polygons of a MultiSurface belong.
   enum class Target { footprint, surface, detail_surface, installation, element };
-  /// A polygon of LoD3's boundary surfaces, or a reference to one of LoD2's.
+  /// A polygon of a solid, or a reference to one of another solid of the body.
   struct Member {
     std::string id;
-    std::size_t surface = 0;  ///< of the body's boundary surfaces, in their order
     bool link = false;
     ReadPolygon polygon;
+  };
+  /// A reference of a boundary surface or opening to a polygon of its solid.
+  struct SurfaceMember {
+    std::string id, kind;
+    std::size_t surface = 0;  ///< of the body's boundary surfaces, in their order
   };
   struct OpenedWall {
     std::string id;
@@ -47,16 +51,15 @@ class CityGmlParser {
     std::size_t body = 0;
     bool has_parts = false;
     std::string function;
-    std::vector<std::pair<std::string, ReadPolygon>> surfaces;  ///< polygon id and polygon
-    std::vector<Member> members;                                ///< of LoD3
+    std::array<std::vector<Member>, 4> solids;           ///< by LoD
+    std::array<std::vector<SurfaceMember>, 4> surfaces;  ///< by LoD
     std::vector<OpenedWall> openings;
-    std::array<std::vector<std::string>, 4> references;  ///< of the solids, by LoD
-    std::array<bool, 4> has_reference_solid{};
     std::size_t boundary_surfaces = 0;
   };
   struct Element {
     std::string id;
     std::vector<ReadPolygon> polygons;
+    std::vector<std::pair<std::size_t, std::string>> links;  ///< polygons that are those of other elements, by their id
   };
   struct Material {
     std::string colour;
@@ -69,6 +72,11 @@ class CityGmlParser {
     std::size_t item = 0;  ///< the installation of the body, or the element
   };
   static constexpr int kFootprint = -1, kInstallation = -2, kElement = -3;
+  /// A MultiSurface or CompositeSurface with an id, which appearances may name.
+  struct Group {
+    std::vector<Place> places;
+    std::vector<std::string> ids;  ///< of polygons whose places are known later
+  };
 
   void found(Check check, std::string what, std::string object, int number = 0) {
     if (++found_ > 1000) return;  // of one file
@@ -90,6 +98,8 @@ class CityGmlParser {
 
   void start_gml(xmlTextReaderPtr reader, std::string_view name, const std::string& id);
 
+  void start_surface_member(const std::string& href);
+
   void start_multi_surface(const std::string& id);
 
   void start_core(xmlTextReaderPtr reader, std::string_view name);
@@ -107,14 +117,31 @@ class CityGmlParser {
   /// Elements are turned about the vertical alone.
   void end_implicit();
 
+  /// Where a polygon is, for appearances.
   void note_place(const std::string& id, Place place) {
     if (!id.empty()) places_.emplace(id, place);
+    for (const std::string& group : group_ids_)
+      if (!group.empty()) groups_[group].places.push_back(place);
+  }
+  /// The same for one whose place is not known yet.
+  void note_link(const std::string& id) {
+    for (const std::string& group : group_ids_)
+      if (!group.empty() && !id.empty()) groups_[group].ids.push_back(id);
   }
 
-  /// The LoD3 solid gets the polygons of its boundary surfaces, those of LoD2 among them.
-  void end_detail(const Open& open, ReadBody& body);
+  using PolygonIndex = std::unordered_map<std::string_view, std::size_t>;
 
-  /// The solids get the polygons of their boundary surfaces.
+  /// The polygons of a body's solid of one LoD. \return where they are, by id
+  PolygonIndex end_solid(const Open& open, ReadBody& body, std::size_t lod);
+
+  /// The polygons of a solid get their kinds from the boundary surfaces. \return by member of the surfaces its polygon;
+  /// kNowhere for those that are not in the solid
+  std::vector<std::size_t> end_surfaces(const Open& open, ReadBody& body, std::size_t lod, const PolygonIndex& index);
+  static constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
+
+  /// The openings get their polygons, walls and reveals.
+  void end_openings(const Open& open, ReadBody& body, const std::vector<std::size_t>& polygon_of);
+
   void end_body();
 
   void finish_attributes(ReadBody& body);
@@ -127,6 +154,13 @@ class CityGmlParser {
 
   /// "#rrggbb" of three numbers from 0 to 1.
   std::string colour(const std::string& text);
+
+  /// Gives the polygon with an id a colour. \return false where there is none
+  bool paint(const std::string& id, const std::string& colour);
+  void paint(const Place& place, const std::string& colour, const std::string& id);
+  /// Colours of polygons: from appearances of them or of surfaces that they are members of.
+  void finish_colours();
+  void finish_elements();
 
   void place_element(const ReadBody& body, ReadPlacement& placement, std::uint64_t element);
 
@@ -147,7 +181,9 @@ class CityGmlParser {
     std::size_t body = 0, placement = 0;
     std::string element;
   };
-  std::vector<std::pair<std::string, Place>> shared_;  ///< polygons of LoD3 that are those of LoD2, by their id
+  std::vector<std::pair<std::string, Place>> shared_;  ///< polygons of a solid that stand in another, by their id
+  std::vector<std::string> group_ids_;                 ///< of the surfaces that are open, outermost first
+  std::unordered_map<std::string, Group> groups_;
   std::vector<Element> elements_;
   std::unordered_map<std::string, std::size_t> element_at_;
   std::vector<Placed> placed_;
@@ -158,7 +194,7 @@ class CityGmlParser {
   bool in_installation_ = false;
   ReadPolygon polygon_;
   std::string text_, surface_, attribute_, polygon_id_, solid_id_;
-  bool in_solid_ = false, in_polygon_ = false, by_reference_ = false, outside_ = false;
+  bool in_solid_ = false, in_polygon_ = false, outside_ = false;
   int line_ = 0, found_ = 0;
 };
 

@@ -139,25 +139,41 @@ void CityGmlParser::start_gml(xmlTextReaderPtr reader, std::string_view name, co
     body()->solids.push_back(std::move(solid));
     in_solid_ = true;
     solid_id_ = id;
-    by_reference_ = false;
-  } else if (name == "surfaceMember" && in_solid_) {
+  } else if (name == "surfaceMember") {
     const std::string href = attribute(reader, "href", kLink);
     if (href.empty()) return;
     if (href[0] != '#') return rule("a reference to another file: " + href, object());
-    open_.back().references[static_cast<std::size_t>(body()->solids.back().lod)].push_back(href.substr(1));
-    by_reference_ = true;
-  } else if (name == "surfaceMember" && target_ == Target::detail_surface && !open_.empty()) {
-    const std::string href = attribute(reader, "href", kLink);
-    if (href.empty()) return;
-    if (href[0] != '#') return rule("a reference to another file: " + href, object());
-    open_.back().members.push_back({href.substr(1), open_.back().boundary_surfaces, true, {}});
+    start_surface_member(href.substr(1));
   } else if (name == "MultiSurface") {
     start_multi_surface(id);
+    group_ids_.push_back(id);
+  } else if (name == "CompositeSurface") {
+    group_ids_.push_back(id);
   } else if (name == "Polygon") {
     polygon_ = {};
-    polygon_.kind = opening_.empty() ? surface_ : opening_;
     polygon_id_ = id;
     in_polygon_ = true;
+  }
+}
+
+void CityGmlParser::start_surface_member(const std::string& href) {
+  if (open_.empty()) return rule("a reference that is nobody's, to #" + href, "");
+  Open& open = open_.back();
+  note_link(href);
+  if (in_solid_) {
+    open.solids[static_cast<std::size_t>(body()->solids.back().lod)].push_back({href, true, {}});
+  } else if (target_ == Target::surface || target_ == Target::detail_surface) {
+    const bool detail = target_ == Target::detail_surface;
+    open.surfaces[detail ? 3 : 2].push_back({href, opening_.empty() ? surface_ : opening_, open.boundary_surfaces});
+    if (opening_.empty() || open.openings.empty()) return;
+    OpenedWall& opening = open.openings.back();
+    if (!opening.polygon.empty()) rule("has two polygons", opening.id);
+    opening.polygon = href;
+  } else if (target_ == Target::element && !elements_.empty()) {
+    elements_.back().links.emplace_back(elements_.back().polygons.size(), href);
+    elements_.back().polygons.emplace_back();
+  } else {
+    rule("a reference out of its place, to #" + href, object());
   }
 }
 
@@ -174,7 +190,7 @@ void CityGmlParser::start_multi_surface(const std::string& id) {
     if (id.empty()) rule("the geometry of an element without a gml:id", object());
     element_ = id;
     element_at_.emplace(id, elements_.size());
-    elements_.push_back({id, {}});
+    elements_.push_back({id, {}, {}});
   }
 }
 
@@ -233,13 +249,11 @@ void CityGmlParser::end() {
   } else if (name == "Polygon") {
     end_polygon();
   } else if (name == "Solid") {
-    if (in_solid_ && by_reference_) {
-      open_.back().has_reference_solid[static_cast<std::size_t>(body()->solids.back().lod)] = true;
-      if (!body()->solids.back().polygons.empty()) rule("a solid half of references, half of polygons", object());
-    } else if (in_solid_ && body()->solids.back().polygons.empty()) {
+    if (in_solid_ && open_.back().solids[static_cast<std::size_t>(body()->solids.back().lod)].empty())
       rule("a solid without faces", object());
-    }
     in_solid_ = false;
+  } else if (name == "MultiSurface" || name == "CompositeSurface") {
+    if (!group_ids_.empty()) group_ids_.pop_back();
   } else if (!surface_kind(name).empty() && parent() == "boundedBy") {
     surface_.clear();
   } else if (!opening_kind(name).empty()) {
@@ -314,24 +328,15 @@ void CityGmlParser::end_polygon() {
   if (!body()) return rule("a polygon that is nobody's", polygon_id_);
   if (polygon_.rings.empty()) return;  // its rings were found wanting
   if (in_solid_) {
-    ReadSolid& solid = body()->solids.back();
-    note_place(polygon_id_, {open_.back().body, static_cast<int>(body()->solids.size()) - 1, solid.polygons.size()});
-    solid.polygons.push_back(std::move(polygon_));
+    note_link(polygon_id_);
+    open_.back().solids[static_cast<std::size_t>(body()->solids.back().lod)].push_back(
+        {polygon_id_, false, std::move(polygon_)});
     return;
   }
   switch (target_) {
     case Target::surface:
-      open_.back().surfaces.emplace_back(polygon_id_, std::move(polygon_));
-      break;
     case Target::detail_surface:
-      if (!opening_.empty() && open_.back().openings.empty()) {
-        rule("a polygon of an opening that is nobody's", polygon_id_);
-      } else if (!opening_.empty()) {
-        OpenedWall& opening = open_.back().openings.back();
-        if (!opening.polygon.empty()) rule("has two polygons", opening.id);
-        opening.polygon = polygon_id_;
-      }
-      open_.back().members.push_back({polygon_id_, open_.back().boundary_surfaces, false, std::move(polygon_)});
+      rule("a polygon of a boundary surface that is not in the solid: " + polygon_id_, object());
       break;
     case Target::installation: {
       auto& installations = body()->detail.installations;

@@ -6,6 +6,7 @@
 
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/validate/detail_check.h"
+#include "pipeline/validate/polygon_order.h"
 
 namespace blockrand::validate {
 namespace {
@@ -32,7 +33,8 @@ class TemplateReader {
     used_.assign(points_.size(), false);
     for (const Json& t : *templates) {
       where_ = fmt::format("template {}", out.digests.size());
-      const std::vector<ReadPolygon> read = polygons(t);
+      std::vector<ReadPolygon> read = polygons(t);
+      sort_polygons(read);
       out.digests.push_back(element_digest(read));
       out.elements.push_back(element_of(read));
     }

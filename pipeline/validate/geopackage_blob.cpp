@@ -32,7 +32,8 @@ class Reader {
     header(srs_id);
     out_.min_x = out_.min_y = std::numeric_limits<double>::infinity();
     out_.max_x = out_.max_y = -std::numeric_limits<double>::infinity();
-    body(type, type == WkbType::multi_polygon);
+    z_ = type == WkbType::multi_polygon_z;
+    body(type, z_ || type == WkbType::multi_polygon);
     if (!rest_.empty()) error(fmt::format("{} bytes behind the geometry", rest_.size()));
     if (!(out_.min_x <= out_.max_x)) {
       error("an empty geometry");
@@ -99,7 +100,7 @@ class Reader {
     if (count == 0 || count > kMostPieces) end(fmt::format("{} {}", count, collection ? "polygons" : "rings"));
     for (std::uint32_t i = 0; i < count; ++i) {
       if (collection) {
-        body(WkbType::polygon, false);
+        body(z_ ? WkbType::polygon_z : WkbType::polygon, false);
       } else {
         if (i == 0) out_.polygons.emplace_back();
         ring(i > 0);
@@ -125,17 +126,19 @@ class Reader {
 
   void ring(bool hole) {
     const auto count = take<std::uint32_t>();
-    if (count > rest_.size() / 16) end("the geometry is cut short");
+    if (count > rest_.size() / (z_ ? 24 : 16)) end("the geometry is cut short");
     std::vector<Point3> points;
     points.reserve(count);
     for (std::uint32_t i = 0; i < count; ++i) {
       const Point2 p = point();
-      points.push_back({p.x, p.y, 0});
+      const double z = z_ ? take<double>() : 0;
+      if (!std::isfinite(z)) end("a height that is no number");
+      points.push_back({p.x, p.y, z});
     }
     if (count < 4) return error(fmt::format("a ring of {} points", count));
     if (points.front() != points.back()) return error("a ring that is not closed");
     points.pop_back();
-    const double area = twice_area(points);
+    const double area = z_ ? (hole ? -1 : 1) : twice_area(points);  // walls have none on the map
     if (area == 0) error("a ring without area");
     if (hole ? area > 0 : area < 0)
       error(hole ? "a hole that runs counter-clockwise" : "an outer ring that runs clockwise");
@@ -144,7 +147,7 @@ class Reader {
 
   std::string_view rest_;
   GeoPackageGeometry& out_;
-  bool little_ = true, has_envelope_ = false;
+  bool little_ = true, has_envelope_ = false, z_ = false;
   double envelope_[4] = {};  // min x, max x, min y, max y
 };
 

@@ -4,7 +4,9 @@
 #include <libxml/tree.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <unordered_set>
 
@@ -18,6 +20,7 @@ namespace blockrand::validate {
 std::vector<std::string> geopackage_columns(std::string_view table) {
   if (table == "reported")
     return {"id", "osm_type", "osm_number", "kind", "state", "code", "meaning", "detail", "related"};
+  if (table == "surfaces") return {"id", "body", "building", "tile", "lod", "class", "colour", "faces"};
   if (table == "tiles") return {"id", "level", "x", "y", "uri", "buildings", "parts", "bytes"};
   if (table != "buildings" && table != "parts") return context_columns(table);
   std::vector<std::string> columns{"id",         "osm_type", "osm_number",     "tile",      "lod",
@@ -55,6 +58,7 @@ class Rules {
     ids();
     reported();
     tile_rows();
+    surfaces();
     check_context(s_, log_);
     beside();
     return true;
@@ -117,7 +121,7 @@ class Rules {
     bool all = true;
     for (const std::string_view table :
          {"gpkg_spatial_ref_sys", "gpkg_contents", "gpkg_geometry_columns", "gpkg_extensions", "buildings", "parts",
-          "reported", "tiles", "facade_edges", "blocks", "courtyards", "cells", "layer_styles"}) {
+          "reported", "tiles", "facade_edges", "blocks", "courtyards", "cells", "surfaces", "layer_styles"}) {
       if (is_table(table)) continue;
       rule(std::string(table), "the table is missing");
       all = false;
@@ -146,7 +150,8 @@ class Rules {
          [&](const SqliteRow& row) {
            ++rows;
            srs_id = row.integer(1);
-           if (row.text(0) != l.geometry_type || row.text(4) != "geom" || row.integer(2) != 0 || row.integer(3) != 0)
+           if (row.text(0) != l.geometry_type || row.text(4) != "geom" ||
+               row.integer(2) != (l.type == WkbType::multi_polygon_z ? 1 : 0) || row.integer(3) != 0)
              rule(table, fmt::format("gpkg_geometry_columns registers {} {} with z {} and m {}, it holds geom {}",
                                      row.text(4), row.text(0), row.integer(2), row.integer(3), l.geometry_type));
          });
@@ -354,12 +359,71 @@ class Rules {
                  fmt::format("the layer tiles lacks it, and {} buildings are of it", count.first));
   }
 
-  /// A journal beside the file means that it was not closed: readers would play it back.
+  /// The faces of each body in space are closed: each edge is run in both directions equally often. All bodies with a
+  /// solid are there, and no others.
+  void surfaces() {
+    struct Body {
+      std::map<std::pair<std::array<double, 3>, std::array<double, 3>>, int> edges;
+    };
+    Body body;
+    std::string id;
+    const auto end = [&] {
+      if (std::any_of(body.edges.begin(), body.edges.end(), [](const auto& e) { return e.second != 0; }))
+        rule(id, "layer surfaces: its faces are not closed");
+      body = {};
+    };
+    const std::int64_t srs_id = s_.srs_id();
+    each(
+        "SELECT s.id, s.body, s.building, s.tile, s.lod, s.class, s.colour, s.faces, s.geom, p.building, p.tile, p.lod "
+        "FROM surfaces s LEFT JOIN parts p ON p.id = s.body ORDER BY s.fid",
+        [&](const SqliteRow& row) {
+          const std::string name = row.string(0);
+          if (row.string(1) != id) {
+            end();
+            id = row.string(1);
+          }
+          if (row.null(9)) return rule(name, "layer surfaces: no body of the layer parts");
+          if (row.text(2) != row.text(9) || row.text(3) != row.text(10))
+            rule(name, "layer surfaces: its building or tile is not that of its body");
+          if (row.integer(4) < 1 || row.integer(4) != std::min<std::int64_t>(2, row.integer(11)))
+            rule(name, fmt::format("layer surfaces: lod {} of a body of lod {}", row.text(4), row.text(11)));
+          constexpr std::string_view kClasses[] = {"ground", "wall", "roof", "outer_ceiling", "outer_floor", "closure"};
+          if (std::find(std::begin(kClasses), std::end(kClasses), row.text(5)) == std::end(kClasses))
+            rule(name, fmt::format("layer surfaces: class \"{}\" is unknown", row.text(5)));
+          const std::string_view colour = row.text(6);
+          if (colour.size() != 7 || colour[0] != '#' ||
+              colour.find_first_not_of("0123456789abcdef", 1) != std::string_view::npos)
+            rule(name, fmt::format("layer surfaces: colour \"{}\" is none", colour));
+          const GeoPackageGeometry g = read_geopackage_geometry(row.text(8), WkbType::multi_polygon_z, srs_id);
+          if (static_cast<std::int64_t>(g.polygons.size()) != row.integer(7))
+            rule(name, fmt::format("layer surfaces: says {} faces, has {}", row.text(7), g.polygons.size()));
+          bool on_grid = true;
+          for (const ReadPolygon& polygon : g.polygons)
+            for (const auto& ring : polygon.rings)
+              for (std::size_t i = 0; i < ring.size(); ++i) {
+                const model::Point3 &a = ring[i], &b = ring[(i + 1) % ring.size()];
+                on_grid = on_grid && a == model::snap(a);
+                const std::array<double, 3> p{a.x, a.y, a.z}, q{b.x, b.y, b.z};
+                if (p < q)
+                  ++body.edges[{p, q}];
+                else
+                  --body.edges[{q, p}];
+              }
+          if (!on_grid) log_.add(Check::off_grid, s_.name, name, "layer surfaces: a point is not on the grid");
+        });
+    end();
+    each("SELECT id FROM parts WHERE lod >= 1 AND id NOT IN (SELECT body FROM surfaces)",
+         [&](const SqliteRow& row) { rule(row.string(0), "the layer surfaces does not have it"); });
+  }
+
+  /// A journal with something in it means that the file was not closed: readers would play it back. An empty one is what
+  /// a program leaves that only looks.
   void beside() {
     std::error_code ignored;
-    for (const char* end : {"-journal", "-wal", "-shm"})
-      if (std::filesystem::exists(s_.path + end, ignored))
-        rule("", std::string("a ") + (end + 1) + " file lies beside it");
+    for (const char* end : {"-journal", "-wal"})
+      if (const auto size = std::filesystem::file_size(s_.path + end, ignored); !ignored && size > 0)
+        rule("",
+             std::string("a ") + (end + 1) + " file lies beside it that was not played back: close what has it open");
   }
 
   State& s_;

@@ -28,6 +28,7 @@ inline constexpr GeoPackageLayer kGeoPackageLayers[] = {
     {"blocks", "POLYGON", WkbType::polygon, true},
     {"courtyards", "POLYGON", WkbType::polygon, true},
     {"cells", "POLYGON", WkbType::polygon, true},
+    {"surfaces", "MULTIPOLYGON", WkbType::multi_polygon_z, true},
 };
 
 /// An attribute's column; the others are `<name>_source` and `<name>_confidence`.

@@ -75,7 +75,13 @@ class Run {
     }
     record_ = std::move(*record);
     geoid_ = georef::Geoid(record_.raised_from);
-    if (!unreadable_) check_file_list(o_.folder, record_, log());
+    if (!unreadable_) {
+      const std::vector<std::string> beside = check_file_list(o_.folder, record_, log());
+      if (!beside.empty())
+        v_.notes.push_back(fmt::format("other programs left {} beside the files of the build, which {}",
+                                       fmt::join(beside, ", "),
+                                       beside.size() == 1 ? "is no part of it" : "are no part of it"));
+    }
     checked("build.json", "fields, sums, configuration against files", 1, "file");
     if (!o_.schemas.empty()) schema_ = std::make_unique<CityGmlSchema>(o_.schemas);
   }

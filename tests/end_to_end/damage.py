@@ -88,7 +88,7 @@ class Damaged:
     def building(self, change, wanted=lambda text: True):
         """Changes the text of the first building that `wanted` accepts; returns its id."""
         data = self.read(self.gml).decode()
-        for found in re.finditer(r'<cityObjectMember>.*?</cityObjectMember>', data, re.S):
+        for found in re.finditer(r'<core:cityObjectMember>.*?</core:cityObjectMember>', data, re.S):
             text = found.group()
             if 'consistsOfBuildingPart' in text or not wanted(text):
                 continue
@@ -101,9 +101,10 @@ class Damaged:
     def ring(self, change, surface='RoofSurface', wanted=lambda text: True):
         """Changes the points of the first ring of a boundary surface."""
         def of(text):
-            at = text.index(f'<bldg:{surface}')
-            start = text.index('<gml:posList>', at) + len('<gml:posList>')
-            end = text.index('</gml:posList>', start)
+            # The surface refers to its polygon, which stands in the solid.
+            polygon = re.search(r'xlink:href="#([^"]*)"', text[text.index(f'<bldg:{surface}'):]).group(1)
+            start = text.index('<posList>', text.index(f'<Polygon gml:id="{polygon}"')) + len('<posList>')
+            end = text.index('</posList>', start)
             n = [float(v) for v in text[start:end].split()]
             points = change([n[i:i + 3] for i in range(0, len(n), 3)])
             return text[:start] + ' '.join(f'{v:.4f}' for p in points for v in p) + text[end:]

@@ -25,7 +25,7 @@ def gml(folder):
 
 def lod2_polygons(text):
     """The polygons that LoD2 solids are made of, by id."""
-    return dict(re.findall(r'<gml:Polygon gml:id="([^"]*_p\d+)">(.*?)</gml:Polygon>', text, re.S))
+    return dict(re.findall(r'<Polygon gml:id="([^"]*_p\d+)">(.*?)</Polygon>', text, re.S))
 
 
 class Facades(BuildTest):
@@ -47,7 +47,7 @@ class Facades(BuildTest):
         self.assertGreater(doors, 0.3 * counts['models'])
         self.assertEqual(windows + doors, text.count('<bldg:opening>'))
         placed = places(out)
-        self.assertEqual(placed['ext'], text.count('<ImplicitGeometry>'))
+        self.assertEqual(placed['ext'], text.count('<core:ImplicitGeometry>'))
         self.assertLess(placed['meshes'], placed['ext'] / 4, 'elements are stored once')
         self.assertGreater(text.count('<bldg:lod3Solid>'), 0.8 * counts['models'])
 

@@ -16,7 +16,8 @@ from osm_files import METRE, Node, Relation, Way, house, write_xml
 
 OGRINFO = shutil.which('ogrinfo')
 LAYERS = {'buildings': 'Multi Polygon', 'parts': 'Polygon', 'facade_edges': 'Line String', 'blocks': 'Polygon',
-          'courtyards': 'Polygon', 'cells': 'Polygon', 'reported': 'Point', 'tiles': 'Polygon'}
+          'courtyards': 'Polygon', 'cells': 'Polygon', 'reported': 'Point', 'tiles': 'Polygon',
+          'surfaces': '3D Multi Polygon'}
 EDGE_KINDS = {'unknown', 'street', 'courtyard', 'side', 'party_wall', 'passage'}
 ATTRIBUTES = ('use', 'storeys', 'storey_height', 'height', 'min_height', 'roof_storeys', 'roof_height', 'roof_shape',
               'roof_orientation', 'roof_direction', 'ground_height', 'plinth_height', 'wall_colour', 'roof_colour', 'wall_material',
@@ -150,6 +151,7 @@ class GeoPackage(BuildTest):
             'buildings': [True, 'graduatedSymbol', 6, 0, []], 'parts': [True, 'categorizedSymbol', 2, 0, []],
             'facade_edges': [True, 'categorizedSymbol', 1, 0, []], 'blocks': [True, 'graduatedSymbol', 2, 0, []],
             'courtyards': [True, 'categorizedSymbol', 1, 0, []], 'cells': [True, 'graduatedSymbol', 2, 0, []],
+            'surfaces': [True, 'categorizedSymbol', 1, 0, []],
             'reported': [True, 'categorizedSymbol', 1, 0, []], 'tiles': [True, 'singleSymbol', 1, 0, []]})
 
     # ---- against the other documents of the build

@@ -2,6 +2,7 @@
 import difflib
 import json
 import os
+import re
 import shutil
 import sys
 import tempfile
@@ -200,9 +201,9 @@ class Sample(BuildTest):
 
     def test_validators_notice_a_moved_vertex(self):
         def lift(data):
-            at = data.index(b'<bldg:RoofSurface')
-            at = data.index(b'<gml:posList>', at) + 13
-            end = data.index(b'</gml:posList>', at)
+            roof = re.search(rb'<bldg:RoofSurface.*?xlink:href="#([^"]*)"', data, re.S).group(1)
+            at = data.index(b'<posList>', data.index(b'<Polygon gml:id="' + roof + b'"')) + 9
+            end = data.index(b'</posList>', at)
             n = data[at:end].split()
             for i in (2, len(n) - 1):
                 n[i] = b'%.4f' % (float(n[i]) + 3)
@@ -214,8 +215,8 @@ class Sample(BuildTest):
 
     def test_validators_notice_a_lost_building(self):
         def drop(data):
-            a, b = data.index(b'<cityObjectMember>'), data.index(b'</cityObjectMember>')
-            return data[:a] + data[b + len(b'</cityObjectMember>'):]
+            a, b = data.index(b'<core:cityObjectMember>'), data.index(b'</core:cityObjectMember>')
+            return data[:a] + data[b + len(b'</core:cityObjectMember>'):]
         self.assertIn('build.json', validators.validate(self.damaged('lost', self.some_file('.gml'), drop)))
 
     def test_validators_notice_a_wrong_element(self):

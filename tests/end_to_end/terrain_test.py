@@ -92,8 +92,11 @@ def bodies(folder):
 
 
 def polygons(body, surface):
+    """Surfaces refer to polygons, which stand in the body's solids."""
+    known = {p.get(GML_ID): p for p in body.iterfind('.//gml:Polygon', NAMES)}
     for s in body.iterfind(f'bldg:boundedBy/bldg:{surface}', NAMES):
-        yield from s.iterfind('.//gml:Polygon', NAMES)
+        for member in s.iterfind('.//gml:surfaceMember', NAMES):
+            yield known[member.get('{http://www.w3.org/1999/xlink}href')[1:]]
 
 
 class OnTerrain(BuildTest):

@@ -51,9 +51,9 @@ class ValidateDetail(BuildTest):
 
         def delete(text):
             opening = re.search(r'<bldg:opening><bldg:Window.*?</bldg:opening>', text, re.S).group()
-            polygon = re.search(r'gml:Polygon gml:id="([^"]*)"', opening).group(1)
+            polygon = re.search(r'xlink:href="#([^"]*)"', opening).group(1)
             text = text.replace(opening, '', 1)
-            return text.replace(f'<gml:surfaceMember xlink:href="#{polygon}"/>', '', 1)
+            return re.sub(f'<surfaceMember><Polygon gml:id="{polygon}">.*?</surfaceMember>', '', text, count=1, flags=re.S)
         d.building(delete, lambda text: '<bldg:Window' in text)
         self.found(d, 'SOLID_INVALID COUNTS_DIFFER EXPLANATION_WRONG GEOMETRY_DIFFERS', 'counts.windows',
                    'shell not closed')
@@ -69,14 +69,14 @@ class ValidateDetail(BuildTest):
 
     def test_a_moved_element(self):
         d = self.damaged()
-        d.building(lambda text: re.sub(r'(<bldg:Window.*?<gml:pos>)([\d.]+)',
+        d.building(lambda text: re.sub(r'(<bldg:Window.*?<pos>)([\d.]+)',
                                        lambda m: m.group(1) + f'{float(m.group(2)) + 8:.4f}', text, count=1, flags=re.S),
                    lambda text: '<bldg:Window' in text)
         self.found(d, 'CITYGML_RULE GEOMETRY_DIFFERS', 'another element, or one at another place')
 
     def test_a_dangling_link(self):
         d = self.damaged()
-        d.replace(d.gml, '<relativeGMLGeometry xlink:href="#element', '<relativeGMLGeometry xlink:href="#nothing')
+        d.replace(d.gml, '<core:relativeGMLGeometry xlink:href="#e', '<core:relativeGMLGeometry xlink:href="#nothing')
         self.found(d, 'CITYGML_RULE', 'which is no element')
 
     def test_a_template_that_is_missing(self):

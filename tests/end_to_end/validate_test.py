@@ -375,9 +375,9 @@ class Damages(Validated):
             def shift(found):
                 n = found.group(2).split()
                 return found.group(1) + ' '.join(f'{float(v) - 0.125:.4f}' if i % 3 == 0 else v for i, v in enumerate(n))
-            return re.sub(r'(<gml:posList>)([^<]*)', shift, text)
-        west = float(re.search(r'<gml:lowerCorner>([0-9.]*)', d.read(d.gml).decode()).group(1))
-        building = d.building(move, lambda text: all(float(x) > west + 1 for x in re.findall(r'<gml:posList>([0-9.]*)', text))
+            return re.sub(r'(<posList>)([^<]*)', shift, text)
+        west = float(re.search(r'<lowerCorner>([0-9.]*)', d.read(d.gml).decode()).group(1))
+        building = d.building(move, lambda text: all(float(x) > west + 1 for x in re.findall(r'<posList>([0-9.]*)', text))
                               and 'gml:id="w1020"' in text)
         self.found(d, 'GEOMETRY_DIFFERS POSITION', building)
 
@@ -388,7 +388,7 @@ class Damages(Validated):
             def turn(found):
                 n = found.group(2).split()
                 return found.group(1) + ' '.join(v for i in range(0, len(n), 3) for v in (n[i + 1], n[i], n[i + 2]))
-            return re.sub(r'(<gml:posList>|<gml:lowerCorner>|<gml:upperCorner>)([^<]*)', turn, data.decode()).encode()
+            return re.sub(r'(<posList>|<lowerCorner>|<upperCorner>)([^<]*)', turn, data.decode()).encode()
         d.change(d.gml, swap)
         self.found(d, 'SOLID_INVALID GEOMETRY_DIFFERS POSITION', d.gml)
 
@@ -397,8 +397,8 @@ class Damages(Validated):
 
         def drop(text):
             at = text.index('<bldg:lod1Solid>')
-            start = text.index('<gml:surfaceMember>', at)
-            end = text.index('</gml:surfaceMember>', start) + len('</gml:surfaceMember>')
+            start = text.index('<surfaceMember>', at)
+            end = text.index('</surfaceMember>', start) + len('</surfaceMember>')
             return text[:start] + text[end:]
         self.found(d, 'SOLID_INVALID GEOMETRY_DIFFERS', d.building(drop), '302 shell not closed')
 
@@ -465,7 +465,7 @@ class Damages(Validated):
         d = self.damaged()
 
         def lower(data):
-            found = re.search(rb'<gml:upperCorner>([^<]*)', data)
+            found = re.search(rb'<upperCorner>([^<]*)', data)
             x, y, z = found.group(1).split()
             return data[:found.start(1)] + b'%s %s %.4f' % (x, y, float(z) - 1) + data[found.end(1):]
         d.change(d.gml, lower)

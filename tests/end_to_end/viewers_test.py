@@ -26,10 +26,9 @@ PICTURES = None  # folder that keeps the screenshots
 AS_MAPPED = ['--no-repair-simplify', '--no-repair-share-walls', '--no-repair-square', '--no-repair-settle-coverings',
              '--no-repair-resolve-overlaps']
 # libcitygml 2.4.3 takes the child of an externalReference for the reference itself (mended upstream later), and does not
-# know these two of CityGML 2.0: it says so and goes on behind them.
+# know this one of CityGML 2.0: it says so and goes on behind it.
 LIBCITYGML_GAPS = {'Expected start tag <core:externalreference> but got <core:informationsystem>',
                    'Skipping element with unexpected start tag <core:externalobject>',
-                   'Found start tag of unknown node <gen:measureAttribute>',
                    'Found start tag of unknown node <bldg:lod0FootPrint>'}
 
 

@@ -97,17 +97,19 @@ class Parser {
       file_.solids.push_back(std::move(solid));
       references_.emplace_back();
       in_solid_ = true;
-    } else if (name == "surfaceMember" && in_solid_) {
+    } else if (name == "surfaceMember") {
       const std::string href = attribute(reader, "xlink:href");
-      if (!href.empty()) {
-        if (href[0] != '#') throw std::runtime_error("a reference to another file: " + href);
+      if (href.empty()) return;
+      if (href[0] != '#') throw std::runtime_error("a reference to another file: " + href);
+      if (in_solid_) {
         references_.back().push_back({file_.solids.back().polygons.size(), href.substr(1)});
         file_.solids.back().polygons.emplace_back();
+      } else if (!surface_.empty()) {
+        surface_of_[href.substr(1)] = surface_;
       }
     } else if (name == "Polygon") {
       polygon_ = {};
       polygon_.id = id;
-      polygon_.surface = surface_;
     } else if (name.size() > 7 && name.ends_with("Surface") && stack_.at(stack_.size() - 2) == "boundedBy") {
       surface_ = name;
     } else if (name.ends_with("Attribute")) {
@@ -126,12 +128,11 @@ class Parser {
       if (exterior != polygon_.rings.empty()) throw std::runtime_error("rings out of order");
       polygon_.rings.push_back(std::move(ring));
     } else if (name == "Polygon") {
-      if (in_solid_)
-        file_.solids.back().polygons.push_back(std::move(polygon_));
-      else if (!surface_.empty())
-        surfaces_[polygon_.id] = std::move(polygon_);
-      else
+      if (!in_solid_)
         building().footprint.push_back(std::move(polygon_));
+      else
+        file_.solids.back().polygons.push_back(polygon_);
+      if (!polygon_.id.empty()) by_id_[polygon_.id] = std::move(polygon_);
     } else if (name == "Solid") {
       in_solid_ = false;
     } else if (name == surface_) {
@@ -159,17 +160,24 @@ class Parser {
   void resolve() {
     for (std::size_t s = 0; s < file_.solids.size(); ++s)
       for (const auto& [slot, id] : references_[s]) {
-        const auto found = surfaces_.find(id);
-        if (found == surfaces_.end()) throw std::runtime_error("no polygon with gml:id " + id);
+        const auto found = by_id_.find(id);
+        if (found == by_id_.end()) throw std::runtime_error("no polygon with gml:id " + id);
         file_.solids[s].polygons[slot] = found->second;
       }
+    for (const auto& [id, surface] : surface_of_)
+      if (by_id_.count(id) == 0) throw std::runtime_error("a surface of no polygon: " + id);
+    for (GmlSolid& solid : file_.solids)
+      for (GmlPolygon& polygon : solid.polygons)
+        if (const auto surface = surface_of_.find(polygon.id); surface != surface_of_.end())
+          polygon.surface = surface->second;
   }
 
   GmlFile file_;
   std::vector<std::string> stack_;
   std::vector<std::size_t> open_;                                             // buildings whose end has not come yet
   std::vector<std::vector<std::pair<std::size_t, std::string>>> references_;  // per solid: slot, polygon id
-  std::map<std::string, GmlPolygon> surfaces_;
+  std::map<std::string, GmlPolygon> by_id_;
+  std::map<std::string, std::string> surface_of_;  // "WallSurface" … by polygon id
   std::set<std::string> ids_;
   GmlPolygon polygon_;
   std::string text_, surface_, attribute_;

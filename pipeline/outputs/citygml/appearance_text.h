@@ -1,4 +1,4 @@
-// The appearance at the end of a CityGML file: which polygons have which material.
+// The appearance at the end of a CityGML file: which surfaces have which material.
 #pragma once
 
 #include <cstdint>
@@ -6,23 +6,32 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/model/facade.h"
 #include "pipeline/model/solid.h"
-#include "pipeline/outputs/citygml/codes.h"
-#include "pipeline/outputs/citygml/geometry_text.h"
 #include "pipeline/outputs/material_classes.h"
 #include "pipeline/outputs/number_text.h"
-#include "pipeline/outputs/placed_element.h"
 
 namespace blockrand::outputs {
 
-/// Which polygons have which material. Kept until all buildings are written: about 40 bytes a face.
+/// Whether all faces of a body have one material and colour.
+bool has_one_look(const model::Solid& solid);
+
+/// Which surfaces have which material. A MultiSurface or CompositeSurface of one look is named instead of its polygons.
+/// Kept until all buildings are written: about 40 bytes a name.
 class AppearanceText {
  public:
+  /// The polygons "<id>_p<face>" of a solid.
   void add(const model::Solid& solid, std::string_view id);
 
-  /// The polygons of a LoD3 solid that its LoD2 solid does not have.
-  void add_detail(const model::Solid& lod2, const model::Solid& lod3, std::string_view id);
-  void add(const model::ColouredElement& element, std::string_view id);
+  /// What a LoD3 solid has beside the polygons of its LoD2 solid: walls with their reveals, windows and doors.
+  void add_detail(const model::Solid& lod2, const model::Detail& detail, std::string_view id);
+
+  /// A body that GeometryText::multi_surface() wrote, with ids of its polygons unless it has one look.
+  void add_body(const model::Solid& solid, std::string_view id);
+
+  /// Opens a target of a look (MaterialNumbers::key); the caller appends the id and closes it.
+  std::string& target(std::uint32_t look);
+  void close() { targets_[last_] += "</app:target>\n"; }
 
   /// Hands the appearanceMember to `write` in pieces; nothing when nothing was added.
   template <class Write>
@@ -35,9 +44,9 @@ class AppearanceText {
       const std::uint32_t key = numbers_.keys()[i];
       const X3dMaterial material =
           x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
-      out += "<app:surfaceDataMember><app:X3DMaterial><gml:name>";
+      out += "<app:surfaceDataMember><app:X3DMaterial><name>";
       append_xml(out, material.name);
-      out += "</gml:name><app:diffuseColor>";
+      out += "</name><app:diffuseColor>";
       append_ten_thousandths(out, material.diffuse, ' ');
       out += "</app:diffuseColor><app:specularColor>";
       append_ten_thousandths(out, material.specular, ' ');
@@ -53,10 +62,6 @@ class AppearanceText {
   }
 
  private:
-  /// Opens a target of this look; the caller appends the id and closes it.
-  std::string& target(std::uint8_t material, model::Colour colour);
-  void close() { targets_[last_] += "</app:target>\n"; }
-
   MaterialNumbers numbers_;
   std::vector<std::string> targets_;  // by number of the material
   std::uint32_t last_ = 0;

@@ -11,6 +11,7 @@
 
 #include "pipeline/outputs/citygml/appearance_text.h"
 #include "pipeline/outputs/citygml/codes.h"
+#include "pipeline/outputs/citygml/element_templates.h"
 #include "pipeline/outputs/citygml/geometry_text.h"
 #include "pipeline/outputs/material_classes.h"
 #include "pipeline/outputs/number_text.h"
@@ -85,14 +86,19 @@ bool is_year(std::string_view text) {
 class BuildingText {
  public:
   BuildingText(const model::Region& region, const CityGmlOptions& options, AppearanceText& appearance)
-      : region_(region), options_(options), tags_(region.extract), geometry_(out_), appearance_(appearance) {}
+      : region_(region),
+        options_(options),
+        tags_(region.extract),
+        geometry_(out_),
+        appearance_(appearance),
+        templates_(region, options.lod) {}
 
   /// The text of one cityObjectMember; valid until the next call.
   std::string_view member(const model::Building& building) {
     out_.clear();
     const std::string id = building.id();
     const bool single = building.parts.size() == 1 && building.parts.front().id == id;
-    out_ += "<cityObjectMember><bldg:Building gml:id=\"";
+    out_ += "<core:cityObjectMember><bldg:Building gml:id=\"";
     out_ += id;
     out_ += "\">\n";
     head(building.osm, building.tags);
@@ -117,20 +123,21 @@ class BuildingText {
       }
     }
     address(building.tags);
-    out_ += "</bldg:Building></cityObjectMember>\n";
+    out_ += "</bldg:Building></core:cityObjectMember>\n";
     return out_;
   }
 
  private:
   /// What every city object starts with: its name and where it comes from.
   void head(const model::OsmId& osm, model::Range tags) {
-    if (const std::string_view name = tags_.name(tags); !name.empty()) element("gml:name", name);
+    if (const std::string_view name = tags_.name(tags); !name.empty()) element("name", name);
     const std::string page = osm_page(osm);
     if (page.empty()) return;
     out_ +=
-        "<externalReference><informationSystem>https://www.openstreetmap.org</informationSystem><externalObject><uri>";
+        "<core:externalReference><core:informationSystem>https://www.openstreetmap.org</core:informationSystem>"
+        "<core:externalObject><core:uri>";
     out_ += page;
-    out_ += "</uri></externalObject></externalReference>\n";
+    out_ += "</core:uri></core:externalObject></core:externalReference>\n";
   }
 
   void element(std::string_view name, std::string_view text) {
@@ -172,21 +179,12 @@ class BuildingText {
   void generic(std::string_view name, std::string_view, model::RoofOrientation value) {
     generic_text(name, value == model::RoofOrientation::along ? "along" : "across");
   }
-  void generic(std::string_view name, std::string_view unit, double value) {
+  /// Without a gen:measureAttribute: GDAL loses its name, and takes all of them for one list.
+  void generic(std::string_view name, std::string_view, double value) {
     if (!std::isfinite(value)) return;
-    if (unit.empty()) {
-      open_generic("doubleAttribute", name);
-      append_number(out_, value);
-      close_generic("doubleAttribute");
-      return;
-    }
-    out_ += "<gen:measureAttribute name=\"";
-    out_ += name;
-    out_ += "\"><gen:value uom=\"";
-    out_ += unit;
-    out_ += "\">";
+    open_generic("doubleAttribute", name);
     append_number(out_, value);
-    close_generic("measureAttribute");
+    close_generic("doubleAttribute");
   }
 
   /// Generic attributes, then the elements of bldg:_AbstractBuilding up to the storeys' heights.
@@ -281,28 +279,31 @@ class BuildingText {
 
   void geometry(const model::BuildingPart& part, const std::string& id) {
     if (part.plan.outer.size() >= 3) {
-      out_ += "<bldg:lod0FootPrint><gml:MultiSurface><gml:surfaceMember>";
+      out_ += "<bldg:lod0FootPrint><MultiSurface><surfaceMember>";
       geometry_.footprint(part.plan, footprint_height(part.attributes));
-      out_ += "</gml:surfaceMember></gml:MultiSurface></bldg:lod0FootPrint>\n";
+      out_ += "</surfaceMember></MultiSurface></bldg:lod0FootPrint>\n";
     }
     const bool lod2 = options_.lod >= 2 && part.lod >= 2 && !part.lod2.empty();
     if (options_.lod >= 1 && part.lod >= 1 && !part.lod1.empty()) {
       const std::string solid_id = id + "_lod1";
       out_ += "<bldg:lod1Solid>";
-      geometry_.solid(part.lod1, solid_id, !lod2);
+      geometry_.solid(part.lod1, solid_id, lod2 ? std::string_view() : solid_id);
       out_ += "</bldg:lod1Solid>\n";
       if (!lod2) appearance_.add(part.lod1, solid_id);
     }
-    if (lod2) {
-      out_ += "<bldg:lod2Solid>";
-      geometry_.solid_of_references(part.lod2, id + "_lod2", id);
-      out_ += "</bldg:lod2Solid>\n";
-      appearance_.add(part.lod2, id);
-      if (options_.lod >= 3 && part.lod >= 3 && !part.lod3.solid.empty())
-        detail(part, id);
-      else
-        geometry_.surfaces(part.lod2, id);
-    }
+    if (!lod2) return;
+    const bool lod3 = options_.lod >= 3 && part.lod >= 3 && !part.lod3.solid.empty();
+    out_ += "<bldg:lod2Solid>";
+    if (lod3)
+      geometry_.solid_beside_detail(part.lod2, part.lod3.solid, id + "_lod2", id);
+    else
+      geometry_.solid(part.lod2, id + "_lod2", id);
+    out_ += "</bldg:lod2Solid>\n";
+    appearance_.add(part.lod2, id);
+    if (lod3)
+      detail(part, id);
+    else
+      geometry_.surfaces(part.lod2, id);
   }
 
   /// What stands on walls, the surfaces of both levels with windows and doors, and the solid of LoD3.
@@ -323,9 +324,9 @@ class BuildingText {
     const auto body_of_its_own = [&](const model::Solid& solid, std::string_view kind) {
       const std::string body_id = open_installation(id, number++, kind);
       out_ += "<bldg:lod3Geometry>";
-      geometry_.multi_surface(solid, body_id);
+      geometry_.multi_surface(solid, body_id, !has_one_look(solid));
       out_ += "</bldg:lod3Geometry>\n</bldg:BuildingInstallation></bldg:outerBuildingInstallation>\n";
-      appearance_.add(solid, body_id);
+      appearance_.add_body(solid, body_id);
     };
     for (const model::WallInstallation& body : lod3.installations) body_of_its_own(body.solid, body.kind);
     for (const model::RoofInstallation& body : lod3.roof_installations)
@@ -333,9 +334,9 @@ class BuildingText {
     geometry_.surfaces(part.lod2, lod3, id, [&](std::size_t o) {
       if (in_opening[o]) implicit(*in_opening[o]);
     });
-    appearance_.add_detail(part.lod2, lod3.solid, id);
+    appearance_.add_detail(part.lod2, lod3, id);
     out_ += "<bldg:lod3Solid>";
-    geometry_.solid_of_detail(part.lod2, lod3.solid, id + "_lod3", id);
+    geometry_.detail_solid(part.lod2, lod3.solid, id + "_lod3", id);
     out_ += "</bldg:lod3Solid>\n";
   }
 
@@ -352,7 +353,7 @@ class BuildingText {
 
   /// An element where it stands; its own geometry is written with the first of its places in the file.
   void implicit(const model::Placement& p) {
-    out_ += "<bldg:lod3ImplicitRepresentation><ImplicitGeometry><transformationMatrix>";
+    out_ += "<bldg:lod3ImplicitRepresentation><core:ImplicitGeometry><core:transformationMatrix>";
     const auto number = [&](double v) {
       append_number(out_, std::nearbyint(v * 1e9) / 1e9 + 0.0);
       out_ += ' ';
@@ -362,32 +363,15 @@ class BuildingText {
     out_ += "0 0 ";
     number(p.along.y);
     number(p.along.x);
-    out_ += "0 0 0 0 1 0 0 0 0 1</transformationMatrix><relativeGMLGeometry";
-    if (written_.size() < region_.elements.size()) written_.resize(region_.elements.size(), false);
-    std::string id = "element_" + region_tile();
-    append_number(id, static_cast<std::int64_t>(p.element));
-    if (written_[p.element]) {
-      out_ += " xlink:href=\"#" + id + "\"/>";
-    } else {
-      written_[p.element] = true;
-      out_ += '>';
-      geometry_.multi_surface(region_.elements[p.element].element->mesh, id);
-      out_ += "</relativeGMLGeometry>";
-      appearance_.add(region_.elements[p.element], id);
-    }
-    out_ += "<referencePoint><gml:Point><gml:pos>";
+    out_ += "0 0 0 0 1 0 0 0 0 1</core:transformationMatrix>";
+    templates_.append(out_, p.element, appearance_);
+    out_ += "<core:referencePoint><Point><pos>";
     append_grid(out_, p.origin.x);
     out_ += ' ';
     append_grid(out_, p.origin.y);
     out_ += ' ';
     append_grid(out_, p.origin.z);
-    out_ += "</gml:pos></gml:Point></referencePoint></ImplicitGeometry></bldg:lod3ImplicitRepresentation>\n";
-  }
-
-  /// Ids of elements differ between the files of a build.
-  std::string region_tile() const {
-    const model::TileId& tile = region_.tile;
-    return std::to_string(tile.level) + "_" + std::to_string(tile.x) + "_" + std::to_string(tile.y) + "_";
+    out_ += "</pos></Point></core:referencePoint></core:ImplicitGeometry></bldg:lod3ImplicitRepresentation>\n";
   }
 
   void address(model::Range tags) {
@@ -395,7 +379,7 @@ class BuildingText {
     const bool locality = !(a.city.empty() && a.suburb.empty() && a.postcode.empty() && a.street.empty() &&
                             a.place.empty() && a.house_number.empty() && a.house_name.empty());
     if (!locality) return;
-    out_ += "<bldg:address><Address><xalAddress><xAL:AddressDetails>";
+    out_ += "<bldg:address><core:Address><core:xalAddress><xAL:AddressDetails>";
     if (!a.country.empty()) {
       out_ += "<xAL:Country>";
       element(a.country.size() == 2 ? "xAL:CountryNameCode" : "xAL:CountryName", a.country);
@@ -422,7 +406,7 @@ class BuildingText {
     }
     out_ += "</xAL:Locality>";
     if (!a.country.empty()) out_ += "</xAL:Country>";
-    out_ += "</xAL:AddressDetails></xalAddress></Address></bldg:address>\n";
+    out_ += "</xAL:AddressDetails></core:xalAddress></core:Address></bldg:address>\n";
   }
 
   const model::Region& region_;
@@ -431,7 +415,7 @@ class BuildingText {
   std::string out_;
   GeometryText geometry_;
   AppearanceText& appearance_;
-  std::vector<bool> written_;  ///< elements whose geometry stands in the file
+  ElementTemplates templates_;
 };
 
 /// What the callback of libxml2 sees: exceptions must not pass through C code. After an error the rest is swallowed;
@@ -479,12 +463,12 @@ void write_envelope(xmlTextWriterPtr writer, const Envelope& box, const std::str
     append_grid(text, p.z);
     xmlTextWriterWriteElement(writer, xml(name), xml(text.c_str()));
   };
-  xmlTextWriterStartElement(writer, xml("gml:boundedBy"));
-  xmlTextWriterStartElement(writer, xml("gml:Envelope"));
+  xmlTextWriterStartElement(writer, xml("boundedBy"));
+  xmlTextWriterStartElement(writer, xml("Envelope"));
   if (!srs_name.empty()) xmlTextWriterWriteAttribute(writer, xml("srsName"), xml(srs_name.c_str()));
   xmlTextWriterWriteAttribute(writer, xml("srsDimension"), xml("3"));
-  corner("gml:lowerCorner", box.min);
-  corner("gml:upperCorner", box.max);
+  corner("lowerCorner", box.min);
+  corner("upperCorner", box.max);
   xmlTextWriterEndElement(writer);
   xmlTextWriterEndElement(writer);
   xmlTextWriterWriteRaw(writer, xml("\n"));
@@ -506,9 +490,9 @@ void write_citygml(const model::Region& region, const CityGmlOptions& options, c
   }
 
   xmlTextWriterWriteRaw(writer, xml("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"));
-  xmlTextWriterStartElement(writer, xml("CityModel"));
+  xmlTextWriterStartElement(writer, xml("core:CityModel"));
   const std::pair<const char*, const char*> namespaces[] = {
-      {"xmlns", "http://www.opengis.net/citygml/2.0"},
+      {"xmlns:core", "http://www.opengis.net/citygml/2.0"},
       {"xmlns:app", "http://www.opengis.net/citygml/appearance/2.0"},
       {"xmlns:bldg", "http://www.opengis.net/citygml/building/2.0"},
       {"xmlns:gen", "http://www.opengis.net/citygml/generics/2.0"},
@@ -521,18 +505,20 @@ void write_citygml(const model::Region& region, const CityGmlOptions& options, c
        "http://schemas.opengis.net/citygml/appearance/2.0/appearance.xsd "
        "http://www.opengis.net/citygml/building/2.0 http://schemas.opengis.net/citygml/building/2.0/building.xsd "
        "http://www.opengis.net/citygml/generics/2.0 http://schemas.opengis.net/citygml/generics/2.0/generics.xsd"},
+      // Last: readers that look prefixes up by their address take the last one of an address.
+      {"xmlns", "http://www.opengis.net/gml"},
   };
   for (const auto& [name, value] : namespaces) xmlTextWriterWriteAttribute(writer, xml(name), xml(value));
   xmlTextWriterWriteRaw(writer, xml("\n"));
   // The description comes before the name in GML's sequence.
   if (const std::string text = description(options); !text.empty()) {
-    xmlTextWriterWriteElement(writer, xml("gml:description"), xml(text.c_str()));
+    xmlTextWriterWriteElement(writer, xml("description"), xml(text.c_str()));
     xmlTextWriterWriteRaw(writer, xml("\n"));
   }
   if (!options.name.empty()) {
     std::string clean;
     append_clean(clean, options.name);
-    xmlTextWriterWriteElement(writer, xml("gml:name"), xml(clean.c_str()));
+    xmlTextWriterWriteElement(writer, xml("name"), xml(clean.c_str()));
     xmlTextWriterWriteRaw(writer, xml("\n"));
   }
   write_envelope(writer, envelope(region, options.lod), options.srs_name);

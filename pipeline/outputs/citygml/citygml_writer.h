@@ -22,13 +22,12 @@ struct CityGmlOptions {
 /// A building is a bldg:Building with gml:id = its id. One whose single part has the building's id carries the geometry
 /// itself; otherwise each part is a bldg:BuildingPart with gml:id = the part's id (a part that has the building's id
 /// beside others becomes "<id>.1"). Each level of detail that a part has reached, up to `lod`, is written:
-/// lod0FootPrint at ground height, lod1Solid, lod2Solid referring to the polygons of its boundary surfaces. Attributes
-/// without an element of their own are generic attributes named as in model::for_each_attribute; each attribute not
+/// lod0FootPrint at ground height, lod1Solid, lod2Solid and lod3Solid with their polygons, to which the boundary
+/// surfaces refer (geometry_text.h says why). Elements are implicit geometries (element_templates.h). Attributes without an element of their own are generic attributes named as in model::for_each_attribute; each attribute not
 /// taken from a tag also has `<attribute>_source` and `<attribute>_confidence`; OSM tags are `osm.<key>`.
 ///
 /// After the city objects stands one app:Appearance of the theme "visual" with an app:X3DMaterial per pair of material
-/// class and colour (appearance_text.h). Its targets are the gml:Polygons of each part's highest solid: polygons, since
-/// those have ids already and every reader resolves them.
+/// class and colour (appearance_text.h). Its targets are polygons, or MultiSurfaces and CompositeSurfaces of one look.
 ///
 /// Coordinates have four decimals (see append_grid). The same region gives the same bytes; no date is written, since an
 /// update may only touch the tiles whose data changed. An empty region gives a valid CityModel without members.

@@ -26,14 +26,25 @@ void append_detail_polygon_id(std::string& out, std::string_view id, std::size_t
   append_id(out, id, "_q", face);
 }
 
+void append_wall_id(std::string& out, std::string_view id, std::size_t face) { append_id(out, id, "_m", face); }
+
 bool is_shared_face(const model::Solid& lod2, const model::Solid& lod3, std::size_t face) {
   return geometry::same_face(lod2, lod3, face);
+}
+
+std::vector<std::vector<std::size_t>> reveals_by_wall(const model::Solid& lod2, const model::Detail& detail) {
+  std::vector<std::vector<std::size_t>> out(lod2.faces.size());
+  for (const model::Opening& opening : detail.openings) {
+    if (opening.kind == model::OpeningKind::passage) continue;
+    for (std::uint32_t i = 0; i < opening.reveal_count; ++i) out[opening.wall].push_back(opening.first_reveal + i);
+  }
+  return out;
 }
 
 void GeometryText::ring(const model::Ring& plan, bool counter_clockwise, std::string_view z) {
   model::Ring ring = plan;
   geometry::orient(ring, counter_clockwise);
-  out_ += "<gml:LinearRing><gml:posList>";
+  out_ += "<LinearRing><posList>";
   for (std::size_t i = 0; i <= ring.points.size(); ++i) {
     const model::Point2& p = ring.points[i == ring.points.size() ? 0 : i];
     if (i) out_ += ' ';
@@ -43,21 +54,21 @@ void GeometryText::ring(const model::Ring& plan, bool counter_clockwise, std::st
     out_ += ' ';
     out_ += z;
   }
-  out_ += "</gml:posList></gml:LinearRing>";
+  out_ += "</posList></LinearRing>";
 }
 
 void GeometryText::footprint(const model::Polygon& plan, double z) {
   std::string height;
   append_grid(height, z);
-  out_ += "<gml:Polygon><gml:exterior>";
+  out_ += "<Polygon><exterior>";
   ring(plan.outer, true, height);
-  out_ += "</gml:exterior>";
+  out_ += "</exterior>";
   for (const model::Ring& hole : plan.holes) {
-    out_ += "<gml:interior>";
+    out_ += "<interior>";
     ring(hole, false, height);
-    out_ += "</gml:interior>";
+    out_ += "</interior>";
   }
-  out_ += "</gml:Polygon>";
+  out_ += "</Polygon>";
 }
 
 void GeometryText::load_vertices(const model::Solid& solid) {
@@ -73,53 +84,69 @@ void GeometryText::load_vertices(const model::Solid& solid) {
   }
 }
 
-void GeometryText::polygon(const model::Solid& solid, const model::Face& face, std::string_view id, std::size_t number,
-                           bool detail) {
-  out_ += "<gml:Polygon";
-  if (!id.empty()) {
+void GeometryText::polygon(const model::Solid& solid, std::size_t face, std::string_view id, Mark mark) {
+  out_ += kPolygonBegin;
+  if (mark != Mark::none) {
     out_ += " gml:id=\"";
-    append_id(out_, id, detail ? "_q" : "_p", number);
+    append_id(out_, id, mark == Mark::detail ? "_q" : "_p", face);
     out_ += '"';
   }
-  out_ += '>';
+  out_ += kRingBegin;
   bool outer = true;
-  for (const model::Solid::Loop& loop : solid.loops_of(face)) {
-    out_ += outer ? "<gml:exterior><gml:LinearRing><gml:posList>" : "<gml:interior><gml:LinearRing><gml:posList>";
+  for (const model::Solid::Loop& loop : solid.loops_of(solid.faces[face])) {
+    if (!outer) out_ += "<interior><LinearRing><posList>";
     const std::span<const std::uint32_t> indices = solid.indices_of(loop);
     for (std::size_t i = 0; i <= indices.size(); ++i) {
       const std::uint32_t v = indices[i == indices.size() ? 0 : i];
       if (i) out_ += ' ';
       out_.append(vertex_text_, vertex_ends_[v], vertex_ends_[v + 1] - vertex_ends_[v]);
     }
-    out_ += outer ? "</gml:posList></gml:LinearRing></gml:exterior>" : "</gml:posList></gml:LinearRing></gml:interior>";
+    out_ += outer ? kRingEnd : "</posList></LinearRing></interior>";
     outer = false;
   }
-  out_ += "</gml:Polygon>";
+  out_ += kPolygonEnd;
 }
 
-void GeometryText::solid(const model::Solid& solid, std::string_view solid_id, bool polygon_ids) {
+void GeometryText::reference(std::string_view id, std::size_t face, Mark mark) {
+  out_ += "<surfaceMember xlink:href=\"#";
+  append_id(out_, id, mark == Mark::detail ? "_q" : "_p", face);
+  out_ += "\"/>\n";
+}
+
+void GeometryText::begin_solid(std::string_view solid_id) {
+  out_ += "<Solid gml:id=\"";
+  out_ += solid_id;
+  out_ += "\"><exterior><CompositeSurface>\n";
+}
+
+void GeometryText::end_solid() { out_ += "</CompositeSurface></exterior></Solid>"; }
+
+void GeometryText::solid(const model::Solid& solid, std::string_view solid_id, std::string_view id) {
   load_vertices(solid);
-  out_ += "<gml:Solid gml:id=\"";
-  out_ += solid_id;
-  out_ += "\"><gml:exterior><gml:CompositeSurface>\n";
-  for (std::size_t f = 0; f < solid.faces.size(); ++f) {
-    out_ += "<gml:surfaceMember>";
-    polygon(solid, solid.faces[f], polygon_ids ? solid_id : std::string_view{}, f);
-    out_ += "</gml:surfaceMember>\n";
-  }
-  out_ += "</gml:CompositeSurface></gml:exterior></gml:Solid>";
+  begin_solid(solid_id);
+  for (std::size_t f = 0; f < solid.faces.size(); ++f) polygon(solid, f, id, id.empty() ? Mark::none : Mark::polygon);
+  end_solid();
 }
 
-void GeometryText::solid_of_references(const model::Solid& solid, std::string_view solid_id, std::string_view id) {
-  out_ += "<gml:Solid gml:id=\"";
-  out_ += solid_id;
-  out_ += "\"><gml:exterior><gml:CompositeSurface>\n";
-  for (std::size_t f = 0; f < solid.faces.size(); ++f) {
-    out_ += "<gml:surfaceMember xlink:href=\"#";
-    append_polygon_id(out_, id, f);
-    out_ += "\"/>\n";
-  }
-  out_ += "</gml:CompositeSurface></gml:exterior></gml:Solid>";
+void GeometryText::solid_beside_detail(const model::Solid& lod2, const model::Solid& lod3, std::string_view solid_id,
+                                       std::string_view id) {
+  load_vertices(lod2);
+  begin_solid(solid_id);
+  for (std::size_t f = 0; f < lod2.faces.size(); ++f)
+    if (is_shared_face(lod2, lod3, f))
+      reference(id, f, Mark::polygon);
+    else
+      polygon(lod2, f, id, Mark::polygon);
+  end_solid();
+}
+
+void GeometryText::detail_solid(const model::Solid& lod2, const model::Solid& lod3, std::string_view solid_id,
+                                std::string_view id) {
+  load_vertices(lod3);
+  begin_solid(solid_id);
+  for (std::size_t f = 0; f < lod3.faces.size(); ++f)
+    polygon(lod3, f, id, is_shared_face(lod2, lod3, f) ? Mark::polygon : Mark::detail);
+  end_solid();
 }
 
 void GeometryText::open_surface(std::string_view name, std::string_view id, std::size_t face) {
@@ -130,69 +157,59 @@ void GeometryText::open_surface(std::string_view name, std::string_view id, std:
   out_ += "\">";
 }
 
+void GeometryText::close_surface(std::string_view name) {
+  out_ += "</bldg:";
+  out_ += name;
+  out_ += "></bldg:boundedBy>\n";
+}
+
+/// A property of one polygon.
+void GeometryText::single_surface(std::string_view property, std::string_view id, std::size_t face, Mark mark) {
+  out_ += "<bldg:";
+  out_ += property;
+  out_ += "><MultiSurface>";
+  reference(id, face, mark);
+  out_ += "</MultiSurface></bldg:";
+  out_ += property;
+  out_ += ">";
+}
+
 void GeometryText::surfaces(const model::Solid& solid, std::string_view id) {
-  load_vertices(solid);
   for (std::size_t f = 0; f < solid.faces.size(); ++f) {
     const std::string_view name = kSurfaceNames[static_cast<std::size_t>(solid.faces[f].kind)];
     open_surface(name, id, f);
-    out_ += "<bldg:lod2MultiSurface><gml:MultiSurface><gml:surfaceMember>";
-    polygon(solid, solid.faces[f], id, f);
-    out_ += "</gml:surfaceMember></gml:MultiSurface></bldg:lod2MultiSurface></bldg:";
-    out_ += name;
-    out_ += "></bldg:boundedBy>\n";
+    single_surface("lod2MultiSurface", id, f, Mark::polygon);
+    close_surface(name);
   }
-}
-
-void GeometryText::solid_of_detail(const model::Solid& lod2, const model::Solid& lod3, std::string_view solid_id,
-                                   std::string_view id) {
-  out_ += "<gml:Solid gml:id=\"";
-  out_ += solid_id;
-  out_ += "\"><gml:exterior><gml:CompositeSurface>\n";
-  for (std::size_t f = 0; f < lod3.faces.size(); ++f) {
-    out_ += "<gml:surfaceMember xlink:href=\"#";
-    append_id(out_, id, is_shared_face(lod2, lod3, f) ? "_p" : "_q", f);
-    out_ += "\"/>\n";
-  }
-  out_ += "</gml:CompositeSurface></gml:exterior></gml:Solid>";
 }
 
 void GeometryText::surfaces(const model::Solid& lod2, const model::Detail& detail, std::string_view id,
                             const std::function<void(std::size_t)>& implicit) {
   const model::Solid& lod3 = detail.solid;
+  const std::vector<std::vector<std::size_t>> reveals = reveals_by_wall(lod2, detail);
   std::vector<std::vector<std::size_t>> openings(lod2.faces.size());  // by wall
   std::vector<bool> written(lod3.faces.size(), false);
   for (std::size_t o = 0; o < detail.openings.size(); ++o)
     if (detail.openings[o].kind != model::OpeningKind::passage) openings[detail.openings[o].wall].push_back(o);
-  // LoD2's polygons first: their vertices are the first ones of LoD3, so that one table of texts serves both.
-  load_vertices(lod3);
   for (std::size_t f = 0; f < lod2.faces.size(); ++f) {
     const std::string_view name = kSurfaceNames[static_cast<std::size_t>(lod2.faces[f].kind)];
     open_surface(name, id, f);
-    out_ += "<bldg:lod2MultiSurface><gml:MultiSurface><gml:surfaceMember>";
-    polygon(lod2, lod2.faces[f], id, f);
-    out_ += "</gml:surfaceMember></gml:MultiSurface></bldg:lod2MultiSurface>\n";
-    out_ += "<bldg:lod3MultiSurface><gml:MultiSurface><gml:surfaceMember";
-    if (is_shared_face(lod2, lod3, f)) {
-      out_ += " xlink:href=\"#";
-      append_id(out_, id, "_p", f);
-      out_ += "\"/>";
-    } else {
-      out_ += '>';
-      polygon(lod3, lod3.faces[f], id, f, true);
-      out_ += "</gml:surfaceMember>\n";
-    }
+    single_surface("lod2MultiSurface", id, f, Mark::polygon);
+    out_ += '\n';
     written[f] = true;
-    for (const std::size_t o : openings[f]) {
-      const model::Opening& opening = detail.openings[o];
-      for (std::uint32_t i = 0; i < opening.reveal_count; ++i) {
-        const std::size_t reveal = opening.first_reveal + i;
-        out_ += "<gml:surfaceMember>";
-        polygon(lod3, lod3.faces[reveal], id, reveal, true);
-        out_ += "</gml:surfaceMember>\n";
+    if (is_shared_face(lod2, lod3, f)) {
+      single_surface("lod3MultiSurface", id, f, Mark::polygon);
+    } else {
+      out_ += "<bldg:lod3MultiSurface><MultiSurface gml:id=\"";
+      append_wall_id(out_, id, f);
+      out_ += "\">";
+      reference(id, f, Mark::detail);
+      for (const std::size_t reveal : reveals[f]) {
+        reference(id, reveal, Mark::detail);
         written[reveal] = true;
       }
+      out_ += "</MultiSurface></bldg:lod3MultiSurface>\n";
     }
-    out_ += "</gml:MultiSurface></bldg:lod3MultiSurface>\n";
     for (const std::size_t o : openings[f]) {
       const std::size_t face = detail.openings[o].polygon;
       const std::string_view kind = kSurfaceNames[static_cast<std::size_t>(lod3.faces[face].kind)];
@@ -200,64 +217,33 @@ void GeometryText::surfaces(const model::Solid& lod2, const model::Detail& detai
       out_ += kind;
       out_ += " gml:id=\"";
       append_id(out_, id, "_s", face);
-      out_ += "\"><bldg:lod3MultiSurface><gml:MultiSurface><gml:surfaceMember>";
-      polygon(lod3, lod3.faces[face], id, face, true);
-      out_ += "</gml:surfaceMember></gml:MultiSurface></bldg:lod3MultiSurface>\n";
+      out_ += "\">";
+      single_surface("lod3MultiSurface", id, face, Mark::detail);
+      out_ += '\n';
       implicit(o);
       out_ += "</bldg:";
       out_ += kind;
       out_ += "></bldg:opening>\n";
       written[face] = true;
     }
-    out_ += "</bldg:";
-    out_ += name;
-    out_ += "></bldg:boundedBy>\n";
+    close_surface(name);
   }
   for (std::size_t f = lod2.faces.size(); f < lod3.faces.size(); ++f) {
     if (written[f]) continue;
     const std::string_view name = kSurfaceNames[static_cast<std::size_t>(lod3.faces[f].kind)];
     open_surface(name, id, f);
-    out_ += "<bldg:lod3MultiSurface><gml:MultiSurface><gml:surfaceMember>";
-    polygon(lod3, lod3.faces[f], id, f, true);
-    out_ += "</gml:surfaceMember></gml:MultiSurface></bldg:lod3MultiSurface></bldg:";
-    out_ += name;
-    out_ += "></bldg:boundedBy>\n";
+    single_surface("lod3MultiSurface", id, f, Mark::detail);
+    close_surface(name);
   }
 }
 
-void GeometryText::multi_surface(const model::Solid& solid, std::string_view id) {
+void GeometryText::multi_surface(const model::Solid& solid, std::string_view id, bool polygon_ids) {
   load_vertices(solid);
-  out_ += "<gml:MultiSurface>";
-  for (std::size_t f = 0; f < solid.faces.size(); ++f) {
-    out_ += "<gml:surfaceMember>";
-    polygon(solid, solid.faces[f], id, f);
-    out_ += "</gml:surfaceMember>\n";
-  }
-  out_ += "</gml:MultiSurface>";
-}
-
-void GeometryText::multi_surface(const model::ElementMesh& mesh, std::string_view id) {
-  out_ += "<gml:MultiSurface gml:id=\"";
-  out_ += id;
+  out_ += "<MultiSurface gml:id=\"";
+  append_wall_id(out_, id, 0);
   out_ += "\">";
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const model::ElementFace& face = mesh.faces[f];
-    out_ += "<gml:surfaceMember><gml:Polygon gml:id=\"";
-    append_id(out_, id, "_p", f);
-    out_ += "\"><gml:exterior><gml:LinearRing><gml:posList>";
-    for (std::uint32_t i = 0; i <= face.count; ++i) {
-      const model::Point3& p = mesh.vertices[mesh.indices[face.first + (i == face.count ? 0 : i)]];
-      if (i) out_ += ' ';
-      // y up and z out of the wall become z up and y into it, which keeps the frame right-handed.
-      append_four_decimals(out_, p.x);
-      out_ += ' ';
-      append_four_decimals(out_, 0.0 - p.z);
-      out_ += ' ';
-      append_four_decimals(out_, p.y);
-    }
-    out_ += "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember>\n";
-  }
-  out_ += "</gml:MultiSurface>";
+  for (std::size_t f = 0; f < solid.faces.size(); ++f) polygon(solid, f, id, polygon_ids ? Mark::polygon : Mark::none);
+  out_ += "</MultiSurface>";
 }
 
 }  // namespace blockrand::outputs

@@ -1,4 +1,4 @@
-// GML text of rings, polygons and solids.
+// GML text of rings, polygons and solids. GML's elements have no prefix, since they are most of a file.
 #pragma once
 
 #include <functional>
@@ -12,49 +12,64 @@
 
 namespace blockrand::outputs {
 
+/// A Polygon within a surfaceMember: between the first two stands the id, after kRingBegin the outer ring.
+inline constexpr std::string_view kPolygonBegin = "<surfaceMember><Polygon",
+                                  kRingBegin = "><exterior><LinearRing><posList>",
+                                  kRingEnd = "</posList></LinearRing></exterior>",
+                                  kPolygonEnd = "</Polygon></surfaceMember>\n";
+
 /// Appends "<id>_p<face>", the gml:id of a polygon.
 void append_polygon_id(std::string& out, std::string_view id, std::size_t face);
 /// Appends "<id>_q<face>", the gml:id of a polygon of a LoD3 solid that its LoD2 solid does not have.
 void append_detail_polygon_id(std::string& out, std::string_view id, std::size_t face);
+/// Appends "<id>_m<face>", the gml:id of the MultiSurface of a LoD3 wall and its reveals; of a body of its own "_m0".
+void append_wall_id(std::string& out, std::string_view id, std::size_t face);
 /// Whether face `face` of a LoD3 solid is, point for point, that of the LoD2 solid which it was made of.
 bool is_shared_face(const model::Solid& lod2, const model::Solid& lod3, std::size_t face);
+/// The faces of the reveals of a wall's windows and doors, by face of the LoD2 solid.
+std::vector<std::vector<std::size_t>> reveals_by_wall(const model::Solid& lod2, const model::Detail& detail);
 
 /// Appends GML 3.1.1 geometry. Keeps the text of a solid's vertices while its faces are written: each vertex is
 /// formatted once and copied into every ring that uses it, so that equal vertices have equal text.
+///
+/// Polygons stand in solids, and surfaces refer to them: GDAL follows no references unless it is told to, and takes a
+/// building's last geometry. A face that two levels of detail have stands in the solid of the higher one.
 class GeometryText {
  public:
   explicit GeometryText(std::string& out) : out_(out) {}
 
-  /// gml:Polygon of a footprint at height z, facing up.
+  /// Polygon of a footprint at height z, facing up.
   void footprint(const model::Polygon& plan, double z);
 
-  /// gml:Solid with its polygons inside; with `polygon_ids` these are "<solid_id>_p<face>".
-  void solid(const model::Solid& solid, std::string_view solid_id, bool polygon_ids);
+  /// Solid with its polygons inside; these are "<id>_p<face>", or have no id where `id` is empty.
+  void solid(const model::Solid& solid, std::string_view solid_id, std::string_view id);
+  /// Solid of LoD2 of a body that has LoD3: polygons that both have are references to those of detail_solid().
+  void solid_beside_detail(const model::Solid& lod2, const model::Solid& lod3, std::string_view solid_id,
+                           std::string_view id);
+  /// Solid of LoD3: "<id>_p<face>" are the polygons that LoD2 has as well, "<id>_q<face>" the others.
+  void detail_solid(const model::Solid& lod2, const model::Solid& lod3, std::string_view solid_id, std::string_view id);
 
-  /// gml:Solid whose members refer to the polygons "<id>_p<face>" of surfaces().
-  void solid_of_references(const model::Solid& solid, std::string_view solid_id, std::string_view id);
-  /// gml:Solid of a LoD3 solid, of references to the polygons that the second surfaces() writes.
-  void solid_of_detail(const model::Solid& lod2, const model::Solid& lod3, std::string_view solid_id,
-                       std::string_view id);
-  /// As surfaces(), with LoD3 beside LoD2: a wall has what is left of it around its openings, their reveals, and as
-  /// bldg:opening the windows and doors themselves; `implicit(o)` writes what stands in opening o. Faces that LoD2 has
-  /// as well refer to its polygons. Tunnels of passages are surfaces of their own.
+  /// One bldg:boundedBy per face of solid(): WallSurface "<id>_s<face>" with a reference to its polygon, and so on.
+  void surfaces(const model::Solid& solid, std::string_view id);
+  /// The same with LoD3 beside LoD2: a wall has what is left of it around its openings, their reveals, and as
+  /// bldg:opening the windows and doors themselves; `implicit(o)` writes what stands in opening o. Tunnels of passages
+  /// are surfaces of their own.
   void surfaces(const model::Solid& lod2, const model::Detail& detail, std::string_view id,
                 const std::function<void(std::size_t)>& implicit);
-  /// gml:MultiSurface of all faces of a body.
-  void multi_surface(const model::Solid& solid, std::string_view id);
-  /// gml:MultiSurface of an element in its own coordinates (x right, y into the wall, z up), polygons "<id>_p<face>".
-  void multi_surface(const model::ElementMesh& mesh, std::string_view id);
-
-  /// One bldg:boundedBy per face: WallSurface "<id>_s<face>" with the polygon "<id>_p<face>", and so on.
-  void surfaces(const model::Solid& solid, std::string_view id);
+  /// MultiSurface "<id>_m0" of all faces of a body; with `polygon_ids` these are "<id>_p<face>".
+  void multi_surface(const model::Solid& solid, std::string_view id, bool polygon_ids);
 
  private:
+  enum class Mark { none, polygon, detail };  ///< id of a polygon: none, "_p", "_q"
   void load_vertices(const model::Solid& solid);
-  void polygon(const model::Solid& solid, const model::Face& face, std::string_view id, std::size_t number,
-               bool detail = false);
+  void begin_solid(std::string_view solid_id);
+  void end_solid();
+  void polygon(const model::Solid& solid, std::size_t face, std::string_view id, Mark mark);
+  void reference(std::string_view id, std::size_t face, Mark mark);
   void open_surface(std::string_view name, std::string_view id, std::size_t face);
-  /// gml:LinearRing at a height, running as it is told, however the plan's ring runs.
+  void close_surface(std::string_view name);
+  void single_surface(std::string_view property, std::string_view id, std::size_t face, Mark mark);
+  /// LinearRing at a height, running as it is told, however the plan's ring runs.
   void ring(const model::Ring& plan, bool counter_clockwise, std::string_view z);
 
   std::string& out_;

@@ -118,6 +118,19 @@ std::vector<Column> part_columns() {
   return c;
 }
 
+std::vector<Column> surface_columns() {
+  return {
+      {"id", ColumnKind::text, "", "Id of the body and a number"},
+      {"body", ColumnKind::text, "", "Id of the body in all outputs, and in the layer parts"},
+      {"building", ColumnKind::text, "", "Id of the building it belongs to"},
+      {"tile", ColumnKind::text, "", "Tile that its building belongs to: level, x, y"},
+      {"lod", ColumnKind::integer, "", "Level of detail of the faces: 2, or 1 where there is no more"},
+      {"class", ColumnKind::text, "", "What the faces are: ground, wall, roof, outer_ceiling, outer_floor, closure"},
+      {"colour", ColumnKind::text, "", "Their colour, #rrggbb in sRGB"},
+      {"faces", ColumnKind::integer, "", "How many they are"},
+  };
+}
+
 std::vector<Column> reported_columns() {
   return {
       {"id", ColumnKind::text, "", "OpenStreetMap object: n, w or r and its number"},

@@ -17,6 +17,7 @@ std::vector<Column> building_columns();
 std::vector<Column> part_columns();
 std::vector<Column> reported_columns();
 std::vector<Column> tile_columns();
+std::vector<Column> surface_columns();
 std::vector<Column> wall_segment_columns();
 std::vector<Column> block_columns();
 std::vector<Column> courtyard_columns();

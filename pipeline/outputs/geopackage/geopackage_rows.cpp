@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/polygon_measures.h"
@@ -120,11 +122,14 @@ class Builder {
     rows_.parts.cells.reserve(parts * part_width);
     static const std::size_t edge_width = wall_segment_columns().size();
     RowWriter building_row(rows_.buildings, building_width), part_row(rows_.parts, part_width),
-        edge_row(rows_.wall_segments, edge_width);
+        edge_row(rows_.wall_segments, edge_width), surface_row(rows_.surfaces, surface_columns().size());
     for (const model::Building& b : region.buildings) {
       if (!b.owned || b.parts.empty()) continue;
       write(building_row, b);
-      for (const model::BuildingPart& p : b.parts) write(part_row, b, p);
+      for (const model::BuildingPart& p : b.parts) {
+        write(part_row, b, p);
+        write_surfaces(surface_row, b, p);
+      }
       append_edges(edge_row, b);
     }
   }
@@ -166,7 +171,7 @@ class Builder {
   void write(RowWriter& row, const model::Building& b, const model::BuildingPart& p) {
     const std::string building = b.id();
     const bool own_object = p.osm != b.osm;
-    row.text(p.id == building && b.parts.size() > 1 ? building + ".1" : p.id);
+    row.text(body_id(b, p));
     row.text(building);
     row.text(name(p.osm.type));
     row.integer(p.osm.number);
@@ -184,6 +189,36 @@ class Builder {
     append_polygon(row.geometry(), p.plan);
     row.end_row();
   }
+
+  static std::string body_id(const model::Building& b, const model::BuildingPart& p) {
+    return p.id == b.id() && b.parts.size() > 1 ? p.id + ".1" : p.id;
+  }
+
+  void write_surfaces(RowWriter& row, const model::Building& b, const model::BuildingPart& p) {
+    const bool lod2 = lod_ >= 2 && p.lod >= 2 && !p.lod2.empty();
+    if (!lod2 && (lod_ < 1 || p.lod < 1 || p.lod1.empty())) return;
+    const model::Solid& solid = lod2 ? p.lod2 : p.lod1;
+    using Look = std::tuple<model::SurfaceKind, std::uint8_t, std::uint8_t, std::uint8_t>;
+    std::map<Look, std::vector<const model::Face*>> faces;
+    for (const model::Face& face : solid.faces)
+      faces[{face.kind, face.colour.r, face.colour.g, face.colour.b}].push_back(&face);
+    int number = 0;
+    for (const auto& [look, those] : faces) {
+      row.text(body_id(b, p) + '/' + std::to_string(number++));
+      row.text(body_id(b, p));
+      row.text(b.id());
+      row.text(tile_);
+      row.integer(lod2 ? 2 : 1);
+      row.text(kClasses[static_cast<std::size_t>(std::get<0>(look))]);
+      row.text(model::text(those.front()->colour));
+      row.integer(static_cast<std::int64_t>(those.size()));
+      append_header(row.geometry(), layer_file::kMultiPolygonZ, those.size());
+      for (const model::Face* face : those) layer_file::append_face(row.geometry(), solid, *face);
+      row.end_row();
+    }
+  }
+  static constexpr std::string_view kClasses[model::kSurfaceKindCount] = {
+      "ground", "wall", "roof", "outer_ceiling", "outer_floor", "closure", "window", "door"};
 
   const model::Region& region_;
   int lod_;

@@ -11,7 +11,7 @@ using layer_file::CellTable;
 
 /// The rows of a tile.
 struct GeoPackageRows {
-  CellTable buildings, parts, wall_segments;
+  CellTable buildings, parts, wall_segments, surfaces;
 };
 
 /// Prepares the rows of the owned buildings of `region` that have at least one part, in their order; of parts and of
@@ -20,6 +20,7 @@ struct GeoPackageRows {
 ///
 /// Parts have the ids of all other outputs: a part that has its building's id beside other parts becomes "<id>.1". The
 /// footprint of a building is its outline, or the plans of its parts where it has none.
+/// Surfaces are the faces of each body's solid of LoD2 (LoD1 where it has no other), a row for each class and colour.
 /// \param lod  the level of detail that was asked for: decides a building's `state`, as in build.json
 GeoPackageRows geopackage_rows(const model::Region& region, int lod);
 

@@ -16,7 +16,17 @@ constexpr std::string_view name(model::OsmType type) {
 }
 
 /// In the order of layers().
-enum LayerIndex : std::size_t { kBuildings, kParts, kFacadeEdges, kBlocks, kCourtyards, kCells, kReported, kTiles };
+enum LayerIndex : std::size_t {
+  kBuildings,
+  kParts,
+  kFacadeEdges,
+  kBlocks,
+  kCourtyards,
+  kCells,
+  kReported,
+  kTiles,
+  kSurfaces
+};
 
 std::vector<layer_file::LayerSpec> layers(const GeoPackageOptions& options) {
   const auto text = [&](std::string what) {
@@ -34,7 +44,9 @@ std::vector<layer_file::LayerSpec> layers(const GeoPackageOptions& options) {
           {"cells", GeometryKind::polygon, cell_columns(), text("Squares of a fixed grid with what is mapped in them")},
           {"reported", GeometryKind::point, reported_columns(),
            text("Mapped objects that are not modelled themselves, and why")},
-          {"tiles", GeometryKind::polygon, tile_columns(), text("Tiles with content")}};
+          {"tiles", GeometryKind::polygon, tile_columns(), text("Tiles with content")},
+          {"surfaces", GeometryKind::multi_polygon_z, surface_columns(),
+           text("Faces of the bodies in space, by class and colour")}};
 }
 
 }  // namespace
@@ -66,6 +78,7 @@ void GeoPackageWriter::add(const GeoPackageRows& rows) {
   impl_->file.put(kBuildings, rows.buildings);
   impl_->file.put(kParts, rows.parts);
   impl_->file.put(kFacadeEdges, rows.wall_segments);
+  impl_->file.put(kSurfaces, rows.surfaces);
 }
 
 void GeoPackageWriter::add_block(const BlockRow& block) { impl_->put_one(kBlocks, block); }

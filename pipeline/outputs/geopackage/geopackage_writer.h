@@ -43,7 +43,7 @@ struct GeoPackageTile {
 };
 
 /// Writes one file with the layers `buildings` (MultiPolygon), `parts` (Polygon), `reported` (Point, NULL where no
-/// place is known), `tiles` (Polygon), `facade_edges` (LineString), `blocks`, `courtyards` and `cells` (Polygon); columns in columns.h, their meaning and unit in the file's gpkg_data_columns.
+/// place is known), `tiles` (Polygon), `facade_edges` (LineString), `blocks`, `courtyards` and `cells` (Polygon), `surfaces` (MultiPolygonZ); columns in columns.h, their meaning and unit in the file's gpkg_data_columns.
 /// The table `layer_styles` holds QGIS styles, one default for each layer.
 ///
 /// The same calls give the same bytes: the file holds no clock and no UUID. One thread at a time, any thread; no GDAL

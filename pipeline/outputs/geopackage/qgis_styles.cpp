@@ -47,7 +47,8 @@ std::string spaced(std::string_view name) {
 }
 
 std::string storeys() {
-  Qml qml(Shape::fill);
+  Qml qml(Shape::fill, true);
+  qml.label("house_number", 2500);
   qml.ranges("storeys");
   // Yellow to dark red; a class a storey where most buildings are. QGIS counts an upper end to its class.
   struct Class {
@@ -137,6 +138,18 @@ std::string outlines() {
   Qml qml(Shape::fill, true);
   qml.single({255, 255, 255}, 0);
   qml.label("id");
+  return std::move(qml).done();
+}
+
+std::string surface_classes() {
+  Qml qml(Shape::fill);
+  qml.categories("class");
+  qml.category("roof", "roof", {178, 84, 66});
+  qml.category("wall", "wall", {232, 222, 200});
+  qml.category("ground", "ground", {150, 150, 140});
+  qml.category("outer_ceiling", "underside of what stands out", {170, 160, 190});
+  qml.category("outer_floor", "terrace", {200, 190, 150});
+  qml.category("", "other", kOthers);
   return std::move(qml).done();
 }
 
@@ -275,6 +288,7 @@ std::vector<QgisStyle> qgis_styles() {
       {"cells", "Storeys", "Mean of the mapped storeys", storeys_mean(), false},
       {"reported", "Reasons", "Why an object was not built itself", codes(), true},
       {"tiles", "Outlines", "Tile borders with their numbers", outlines(), true},
+      {"surfaces", "Classes", "Ground, walls and roofs", surface_classes(), true},
   };
 }
 

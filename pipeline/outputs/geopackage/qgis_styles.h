@@ -12,7 +12,8 @@ using layer_file::QgisStyle;
 /// buildings: by storeys (default), by built roof, by the source of the storeys, by position; parts: by built roof (default), by
 /// level of detail; reported: by code (default); tiles: outlines (default); facade_edges: by kind
 /// (default) in the colours of model/wall_segment_colours.h; blocks: by floor area ratio (default), by closure; courtyards: closed
-/// or open (default); cells: by built share (default), by storeys.
+/// or open (default); cells: by built share (default), by storeys; surfaces: by class (default).
+/// Buildings are labelled with house numbers at 1:2500 and larger.
 std::vector<QgisStyle> qgis_styles();
 
 }  // namespace blockrand::outputs

@@ -59,13 +59,18 @@ class Qml {
     out_ += "<renderer-v2 type=\"singleSymbol\" enableorderby=\"0\" forceraster=\"0\" symbollevels=\"0\">\n";
     symbol(colour, alpha);
   }
-  void label(std::string_view attribute) {
+  /// \param smallest_scale  labels are drawn at 1:smallest_scale and larger; 0: always
+  void label(std::string_view attribute, int smallest_scale = 0) {
     labelling_ = "<labeling type=\"simple\">\n<settings calloutType=\"simple\">\n<text-style fieldName=\"";
     append_xml(labelling_, attribute);
     labelling_ +=
         "\" isExpression=\"0\" fontSize=\"8\" fontSizeUnit=\"Point\" textColor=\"70,70,70,255\" textOpacity=\"1\">\n"
         "<text-buffer bufferDraw=\"1\" bufferSize=\"0.8\" bufferSizeUnits=\"MM\" bufferColor=\"255,255,255,255\" "
-        "bufferOpacity=\"1\"/>\n</text-style>\n</settings>\n</labeling>\n";
+        "bufferOpacity=\"1\"/>\n</text-style>\n";
+    if (smallest_scale > 0)
+      labelling_ += "<rendering scaleVisibility=\"1\" scaleMin=\"1\" scaleMax=\"" + std::to_string(smallest_scale) +
+                    "\" drawLabels=\"1\" obstacle=\"1\"/>\n";
+    labelling_ += "</settings>\n</labeling>\n";
   }
 
   std::string done() && {

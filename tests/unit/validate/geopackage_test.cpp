@@ -233,6 +233,19 @@ INSTANTIATE_TEST_SUITE_P(
                "parts: gpkg_extensions does not register"},
         Damage{"feature_count", "UPDATE gpkg_ogr_contents SET feature_count = 7 WHERE table_name = 'parts'",
                "gpkg_ogr_contents says 7 rows, it has 49"},
+        Damage{"surface_of_nobody", "UPDATE surfaces SET body = 'w999' WHERE body = 'w12'",
+               "no body of the layer parts"},
+        Damage{"surface_lost", "DELETE FROM surfaces WHERE id = 'w12/1'",
+               "w12: layer surfaces: its faces are not closed"},
+        Damage{"surfaces_lost", "DELETE FROM surfaces WHERE body = 'w12'", "w12: the layer surfaces does not have it"},
+        Damage{"surface_class", "UPDATE surfaces SET class = 'attic' WHERE id = 'w12/0'",
+               "w12/0: layer surfaces: class \"attic\" is unknown"},
+        Damage{"surface_colour", "UPDATE surfaces SET colour = 'red' WHERE id = 'w12/0'",
+               "w12/0: layer surfaces: colour \"red\" is none"},
+        Damage{"surface_count", "UPDATE surfaces SET faces = faces + 1 WHERE id = 'w12/0'",
+               "w12/0: layer surfaces: says"},
+        Damage{"surface_moved", bytes_of_geometry("surfaces", "w12/0", 56 + 18 + 16, "0000000000005940"),
+               "w12: layer surfaces: its faces are not closed"},
         Damage{"no_styles", "DROP TABLE layer_styles", "layer_styles: the table is missing"},
         Damage{"style_not_xml", "UPDATE layer_styles SET styleQML = replace(styleQML, '</qgis>', '') WHERE id = 2",
                "style \"Roofs\" of buildings is no well-formed XML"},
@@ -312,8 +325,12 @@ TEST(PlantedBytes, AJournalBesideTheFileIsFound) {
   const Folder folder;
   const std::string path = folder / "a.gpkg";
   fs::copy_file(sound(), path);
+  // A program that only looks leaves an empty one.
+  std::ofstream(path + "-wal") << "";
+  EXPECT_THAT(findings(path), IsEmpty());
   std::ofstream(path + "-wal") << "x";
-  EXPECT_THAT(findings(path), ElementsAre("GEOPACKAGE_RULE : a wal file lies beside it"));
+  EXPECT_THAT(findings(path),
+              ElementsAre(testing::StartsWith("GEOPACKAGE_RULE : a wal file lies beside it that was not played back")));
 }
 
 TEST(PlantedBytes, NoSingleByteEndsTheProgram) {

@@ -161,7 +161,7 @@ std::map<std::string, model::Colour> colours(const std::string& gml) {
     for (std::size_t t = gml.find("<app:target>", at); t < end; t = gml.find("<app:target>", t + 1)) {
       const std::string id = between(t, "<app:target>#", "</app:target>");
       EXPECT_TRUE(out.emplace(id, model::Colour{byte(0), byte(1), byte(2)}).second) << id << " has two materials";
-      EXPECT_NE(gml.find("<gml:Polygon gml:id=\"" + id + "\">"), std::string::npos) << id;
+      EXPECT_NE(gml.find("<Polygon gml:id=\"" + id + "\">"), std::string::npos) << id;
     }
   }
   return out;

@@ -298,7 +298,7 @@ TEST_F(GeoPackage, IsAGeoPackage) {
   EXPECT_THAT(column(path, "PRAGMA foreign_key_check"), ElementsAre());
   EXPECT_THAT(column(path, "PRAGMA journal_mode"), ElementsAre("delete"));
   for (const std::string layer :
-       {"buildings", "parts", "facade_edges", "blocks", "courtyards", "cells", "reported", "tiles"}) {
+       {"buildings", "parts", "facade_edges", "blocks", "courtyards", "cells", "reported", "tiles", "surfaces"}) {
     EXPECT_EQ(column(path, "SELECT count(*) FROM rtree_" + layer + "_geom"),
               column(path, "SELECT count(*) FROM " + layer + " WHERE geom IS NOT NULL"));
     EXPECT_EQ(column(path, "SELECT feature_count FROM gpkg_ogr_contents WHERE table_name = '" + layer + "'"),
@@ -326,7 +326,7 @@ TEST_F(GeoPackage, EveryLayerHasOneDefaultStyle) {
                     "AND f_geometry_column = 'geom' GROUP BY 1 ORDER BY 1"),
               ElementsAre(ElementsAre("blocks", "1"), ElementsAre("buildings", "1"), ElementsAre("cells", "1"),
                           ElementsAre("courtyards", "1"), ElementsAre("facade_edges", "1"), ElementsAre("parts", "1"),
-                          ElementsAre("reported", "1"), ElementsAre("tiles", "1")));
+                          ElementsAre("reported", "1"), ElementsAre("surfaces", "1"), ElementsAre("tiles", "1")));
   EXPECT_EQ(column(path, "SELECT styleQML FROM layer_styles ORDER BY id").size(), qgis_styles().size());
 }
 
@@ -511,6 +511,7 @@ TEST(QgisStyles, AttributesAreColumns) {
   for (const Column& c : block_columns()) columns["blocks"].insert(c.name);
   for (const Column& c : courtyard_columns()) columns["courtyards"].insert(c.name);
   for (const Column& c : cell_columns()) columns["cells"].insert(c.name);
+  for (const Column& c : surface_columns()) columns["surfaces"].insert(c.name);
   for (const QgisStyle& style : qgis_styles()) {
     if (style.layer == "reported") continue;  // an expression of two columns
     for (std::string attribute : xpath(style.qml, "/qgis/renderer-v2/@attr")) {

@@ -1,0 +1,152 @@
+#include "pipeline/outputs/citygml/element_templates.h"
+
+#include <algorithm>
+
+#include "pipeline/outputs/citygml/geometry_text.h"
+#include "pipeline/outputs/number_text.h"
+#include "pipeline/outputs/placed_element.h"
+
+namespace blockrand::outputs {
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffff;
+
+/// Digits and small letters, as ids may have them.
+void append_base36(std::string& out, std::uint64_t number) {
+  std::string digits;
+  do {
+    digits += "0123456789abcdefghijklmnopqrstuvwxyz"[number % 36];
+    number /= 36;
+  } while (number != 0);
+  out.append(digits.rbegin(), digits.rend());
+}
+
+/// A number that no other tile of any level has: all tiles of lower levels come first.
+std::uint64_t number_of(const model::TileId& tile) {
+  const std::uint64_t side = std::uint64_t{1} << std::clamp(tile.level, 0, 28);
+  return (side * side - 1) / 3 + tile.y * side + tile.x;
+}
+
+/// The posList of a face; empty for one that is narrower than the last decimal.
+std::string ring_text(const model::ElementMesh& mesh, const model::ElementFace& face) {
+  std::vector<std::string> points;
+  for (std::uint32_t i = 0; i < face.count; ++i) {
+    const model::Point3& p = mesh.vertices[mesh.indices[face.first + i]];
+    std::string text;
+    // y up and z out of the wall become z up and y into it, which keeps the frame right-handed.
+    append_four_decimals(text, p.x);
+    text += ' ';
+    append_four_decimals(text, 0.0 - p.z);
+    text += ' ';
+    append_four_decimals(text, p.y);
+    if (points.empty() || points.back() != text) points.push_back(std::move(text));
+  }
+  while (points.size() > 1 && points.front() == points.back()) points.pop_back();
+  if (points.size() < 3) return {};
+  std::string ring;
+  for (const std::string& p : points) {
+    ring += p;
+    ring += ' ';
+  }
+  return ring + points.front();
+}
+
+}  // namespace
+
+ElementTemplates::ElementTemplates(const model::Region& region, int lod) : prefix_("e") {
+  append_base36(prefix_, number_of(region.tile));
+  prefix_ += '_';
+  template_of_.assign(region.elements.size(), kNone);
+  if (lod < 3) return;
+  for (const model::Building& building : region.buildings) {
+    if (!building.owned) continue;
+    for (const model::BuildingPart& part : building.parts) {
+      if (part.lod < 3 || part.lod3.solid.empty()) continue;
+      for (const model::Placement& p : part.lod3.placements)
+        if (std::uint32_t& number = template_of_[p.element];
+            number == kNone && has_shape(*region.elements.at(p.element).element))
+          number = add(region.elements[p.element]);
+    }
+  }
+}
+
+std::uint32_t ElementTemplates::add(const model::ColouredElement& coloured) {
+  const model::ElementMesh& mesh = coloured.element->mesh;
+  Template made;
+  for (const model::ElementFace& face : mesh.faces) {
+    const std::string ring = ring_text(mesh, face);
+    if (ring.empty()) continue;
+    const model::PartMaterial& material = coloured.materials[static_cast<std::size_t>(face.part)];
+    const std::uint32_t look = MaterialNumbers::key(material.material, material.colour);
+    const auto [place, added] = polygon_at_.emplace(std::to_string(look) + ' ' + ring, polygons_.size());
+    if (added) polygons_.push_back({std::string_view(place->first).substr(place->first.find(' ') + 1)});
+    auto group = std::find_if(made.groups.begin(), made.groups.end(), [&](const Group& g) { return g.look == look; });
+    if (group == made.groups.end()) group = made.groups.insert(made.groups.end(), Group{look, {}});
+    group->polygons.push_back(place->second);
+  }
+  std::vector<std::uint32_t> key;
+  for (const Group& group : made.groups) key.insert(key.end(), group.polygons.begin(), group.polygons.end());
+  const auto [place, added] = template_at_.emplace(key, templates_.size());
+  if (added) {
+    for (const std::uint32_t p : key) ++polygons_[p].uses;
+    templates_.push_back(std::move(made));
+  }
+  return place->second;
+}
+
+void ElementTemplates::append_id(std::string& out, std::uint32_t id) const {
+  out += prefix_;
+  append_base36(out, id);
+}
+
+void ElementTemplates::append_polygon(std::string& out, Polygon& polygon) {
+  if (polygon.id != 0) {
+    out += "<surfaceMember xlink:href=\"#";
+    append_id(out, polygon.id);
+    out += "\"/>\n";
+    return;
+  }
+  out += kPolygonBegin;
+  if (polygon.uses > 1) {
+    polygon.id = ++last_id_;
+    out += " gml:id=\"";
+    append_id(out, polygon.id);
+    out += '"';
+  }
+  out += kRingBegin;
+  out += polygon.ring;
+  out += kRingEnd;
+  out += kPolygonEnd;
+}
+
+void ElementTemplates::append(std::string& out, std::uint32_t element, AppearanceText& appearance) {
+  Template& written = templates_.at(template_of_.at(element));
+  if (written.id != 0) {
+    out += "<core:relativeGMLGeometry xlink:href=\"#";
+    append_id(out, written.id);
+    out += "\"/>";
+    return;
+  }
+  const auto begin = [&](const char* name) {
+    const std::uint32_t id = ++last_id_;
+    out += name;
+    out += " gml:id=\"";
+    append_id(out, id);
+    out += "\">";
+    return id;
+  };
+  const auto paint = [&](std::uint32_t look, std::uint32_t id) {
+    append_id(appearance.target(look), id);
+    appearance.close();
+  };
+  written.id = begin("<core:relativeGMLGeometry><MultiSurface");
+  for (const Group& group : written.groups) {
+    const bool alone = written.groups.size() == 1;
+    paint(group.look, alone ? written.id : begin("<surfaceMember><CompositeSurface"));
+    for (const std::uint32_t p : group.polygons) append_polygon(out, polygons_[p]);
+    if (!alone) out += "</CompositeSurface></surfaceMember>\n";
+  }
+  out += "</MultiSurface></core:relativeGMLGeometry>";
+}
+
+}  // namespace blockrand::outputs
