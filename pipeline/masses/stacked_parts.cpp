@@ -35,7 +35,10 @@ std::vector<GivenWay> settle_stacks(std::span<const model::Polygon> plans, std::
       // i below k; of equal bottoms neither is below.
       if (i == k || plans[i].outer.points.size() < 3 || plans[k].outer.points.size() < 3) continue;
       Levels &lower = levels[i], &upper = levels[k];
-      if (!(lower.bottom < upper.bottom && lower.top > upper.bottom) || !share_ground(plans[i], plans[k])) continue;
+      // What ends higher does not lie below.
+      if (!(lower.bottom < upper.bottom && lower.top > upper.bottom && lower.top <= upper.top) ||
+          !share_ground(plans[i], plans[k]))
+        continue;
       if (lower.eaves == lower.top && upper.bottom - lower.bottom >= kLeastThickness) {
         out.push_back({i, k, lower.top - upper.bottom});
         lower.eaves = lower.top = upper.bottom;

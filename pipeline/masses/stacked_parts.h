@@ -23,7 +23,8 @@ struct GivenWay {
 /// Takes the parts of a building apart that overlap in plan and in height: repair has left their plans together, since
 /// one stands on the other by its tags, but storeys of one height meet metres, and slabs are thickened. Of a flat-topped
 /// lower part the top comes down to the upper one's bottom; where that would leave less than 1 cm of it, or where it
-/// carries a roof, the upper one's bottom goes up to the lower one's top, if half of the upper stays. All else is left.
+/// carries a roof, the upper one's bottom goes up to the lower one's top, if half of the upper stays. All else is left:
+/// parts that end below the top of the part that they begin in.
 /// \param plans   of the masses, by part; empty where nothing is built
 /// \param levels  by part
 /// \return who gave way, in the order of parts

@@ -58,7 +58,8 @@ void add_pieces(std::vector<model::BuildingPart>& parts, const model::BuildingPa
 
 /// Cuts the plans of parts that stand at one height apart, exactly: all rings are noded against each other on the
 /// 1/1024 m grid (geometry::noded_edges), so that a corner on another part's wall becomes a corner of that wall; ground
-/// that several plans cover goes to the smallest, of equal ones to that of the lower id. After it two such plans share
+/// that several plans cover goes to the smallest, of equal ones to that of the lower id. A slab yields to what reaches
+/// through it. After it two such plans share
 /// points and walls or nothing. A part that others cover to the last and that is nowhere known to be higher is settled:
 /// the one with most of its ground stands for it. One that is higher keeps its plan, and so does one whose ring would
 /// touch itself. Rows PARTS_OVERLAP where a part loses more than 0.01 m².

@@ -58,15 +58,26 @@ bool near(const Piece& a, const Piece& b) {
 /// Whether two stand at one height by some reading: metres and storeys of 3 m without a margin.
 bool may_meet(const HeightSpan& a, const HeightSpan& b) { return std::min(a.high, b.high) > std::max(a.low, b.low); }
 
+/// Whether a part reaches through a slab: it begins below and ends above.
+bool pierces(const HeightSpan& part, const HeightSpan& slab) {
+  constexpr double kMargin = 0.1;  // m; heights are mapped in tenths
+  return slab.slab && !part.slab && part.low < slab.high - kMargin && part.high > slab.high + kMargin;
+}
+
+/// Whether only one of two can have a piece of ground. \param slim  it is a strip between two drawings of one wall
+bool in_each_others_way(const HeightSpan& a, const HeightSpan& b, bool slim) {
+  return heights_meet(a, b) || (slim && may_meet(a, b)) || pierces(a, b) || pierces(b, a);
+}
+
 /// Pieces that may stand at one height and come near each other, and what hangs together by such; the stronger first: the
-/// smaller, of equal ones that of the lower id.
+/// smaller, of equal ones that of the lower id; slabs last.
 std::vector<std::vector<Piece>> groups_of(const std::vector<BuildingPart>& parts,
                                           const model::MappedAttributes& building) {
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (parts[i].plan.outer.size() >= 3) pieces.push_back(piece_of(parts[i], i, building));
   std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
-    return std::tie(a.area, a.osm, a.part) < std::tie(b.area, b.osm, b.part);
+    return std::tie(a.heights.slab, a.area, a.osm, a.part) < std::tie(b.heights.slab, b.area, b.osm, b.part);
   });
   std::vector<std::size_t> group(pieces.size());
   std::iota(group.begin(), group.end(), std::size_t{0});
@@ -126,7 +137,7 @@ class Drawing {
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       if (winding_[f].empty() || winding_[f][piece] <= 0 || kept_[f][piece]) continue;
       for (std::size_t k = 0; k < group_.size(); ++k) {
-        if (!kept_[f][k] || !heights_meet(group_[k].heights, group_[piece].heights)) continue;
+        if (!kept_[f][k] || !in_each_others_way(group_[k].heights, group_[piece].heights, false)) continue;
         const HeightSpan &mine = group_[piece].heights, &its = group_[k].heights;
         if (std::isfinite(mine.high) && mine.high > its.high + kHigher) return std::nullopt;
         areas[k] += geometry::area(faces_[f].polygon);
@@ -211,8 +222,7 @@ class Drawing {
         if (winding_[f].empty() || winding_[f][i] <= 0) continue;
         bool free = true;
         for (std::size_t k = 0; k < i && free; ++k)
-          free = !kept_[f][k] || !(heights_meet(group_[k].heights, group_[i].heights) ||
-                                   (slim && may_meet(group_[k].heights, group_[i].heights)));
+          free = !kept_[f][k] || !in_each_others_way(group_[k].heights, group_[i].heights, slim);
         kept_[f][i] = free;
       }
     }

@@ -376,6 +376,24 @@ TEST(PartsOverlap, OfAPartDrawnTwiceOneStandsForTheOther) {
   EXPECT_EQ(s.detail(IssueCode::parts_overlap), "w3 200.00 m2 with w2, which stands for it");
 }
 
+TEST(PartsOverlap, ASlabYieldsToATowerThroughIt) {
+  Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
+  s.part(2, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {9.0f, {}, {}, {}});
+  s.building.parts.back().canopy = true;
+  s.part(3, {{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {15.0f, {}, {}, {}}).fit();
+  EXPECT_NEAR(s.area("w1.w2"), 100, 0.01);
+  EXPECT_NEAR(s.area("w1.w3"), 100, 1e-9);
+  EXPECT_EQ(s.common("w1.w2", "w1.w3"), 0);
+}
+
+TEST(PartsOverlap, ARoofOverAPartStaysOverIt) {
+  Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
+  s.part(2, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {9.0f, {}, {}, {}});
+  s.building.parts.back().canopy = true;
+  s.part(3, {{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {8.0f, {}, {}, {}}).fit();
+  EXPECT_NEAR(s.common("w1.w2", "w1.w3"), 100, 0.01);
+}
+
 TEST(PartsOverlap, AHigherPartOverOthersStays) {
   // A tower drawn over two parts that fill its plan: its upper half is nobody else's.
   Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
