@@ -14,10 +14,12 @@ namespace {
 
 using model::BuildingPart;
 
+constexpr double kCubicCentimetres = 0.01;  // m³; less is told in cm³
+
 double overlap(const model::Solid& a, const model::SolidTriangles& ta, const model::Solid& b,
                const model::SolidTriangles& tb) {
-  const geometry::SolidOverlap found = geometry::overlap_of({a.vertices, ta.triangles}, {b.vertices, tb.triangles});
-  return found.overlap ? found.volume : 0;
+  const double volume = geometry::common_volume({a.vertices, ta.triangles}, {b.vertices, tb.triangles});
+  return volume > geometry::kLeastCommonVolume ? volume : 0;
 }
 
 struct Box {
@@ -51,11 +53,14 @@ void tell_part_overlaps(model::Region& region) {
       for (std::size_t j = i + 1; j < building.parts.size(); ++j) {
         if (!meet(boxes[i], boxes[j])) continue;
         const BuildingPart &a = building.parts[i], &b = building.parts[j];
-        const double volume = std::max(overlap(a.lod1, a.lod1_triangles, b.lod1, b.lod1_triangles),
-                                       overlap(a.lod2, a.lod2_triangles, b.lod2, b.lod2_triangles));
+        const double volume = std::max({overlap(a.lod1, a.lod1_triangles, b.lod1, b.lod1_triangles),
+                                        overlap(a.lod2, a.lod2_triangles, b.lod2, b.lod2_triangles),
+                                        overlap(a.lod3.solid, a.lod3.triangles, b.lod3.solid, b.lod3.triangles)});
         if (volume > 0)
           region.report.add(a.osm, model::IssueCode::overlap_kept,
-                            fmt::format("{}: {:.2f} m3 in common with {}", a.id, volume, b.id));
+                            volume >= kCubicCentimetres
+                                ? fmt::format("{}: {:.2f} m3 in common with {}", a.id, volume, b.id)
+                                : fmt::format("{}: {:.2g} cm3 in common with {}", a.id, volume * 1e6, b.id));
       }
   }
 }
