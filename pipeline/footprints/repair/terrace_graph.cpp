@@ -20,6 +20,8 @@ using model::Point2;
 using model::Polygon;
 using model::Ring;
 
+/// Share of its area that each piece of a footprint keeps at least: a small one may vanish within what the whole may lose.
+constexpr double kLeastOfPiece = 0.5;
 /// m. What rounding to the grid may add to a shift: half the diagonal of a step.
 constexpr double kRounding = 0.71 / model::kGridStepsPerMetre;
 /// m. A smaller shift is none.
@@ -172,8 +174,14 @@ class Writer {
           }
       }
       first += 1 + polygons[p].holes.size();
-      area += geometry::area(polygons[p]);
-      said_area += geometry::area(row_.buildings[b].polygons[p]);
+      const double mine = geometry::area(polygons[p]), said = geometry::area(row_.buildings[b].polygons[p]);
+      if (v.valid && mine < kLeastOfPiece * said) {
+        v.valid = false;
+        v.whole = true;
+        v.reason = "a piece of it would shrink from " + square_metres(said) + " to " + square_metres(mine);
+      }
+      area += mine;
+      said_area += said;
     }
     if (v.valid && std::fabs(area - said_area) > options_.max_area_change * said_area) {
       v.valid = false;
