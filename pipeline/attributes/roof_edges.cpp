@@ -121,15 +121,13 @@ std::optional<Polygon> simpler_plan(const Polygon& plan, double tolerance) {
   Polygon out = plan;
   geometry::remove_collinear(out.outer, tolerance);
   for (Ring& hole : out.holes) geometry::remove_collinear(hole, tolerance);
-  if (!geometry::strictly_simple(out)) return std::nullopt;
+  if (!geometry::strictly_simple(out) || !geometry::rings_apart(out)) return std::nullopt;
   return out;
 }
 
 void prepare_roof_plans(model::Building& building, double tolerance) {
   const OutlineSegments segments(building);
-  for (model::BuildingPart& part : building.parts)
-    if (part.plan.outer.size() >= 3) part.roof_plan = simpler_plan(part.plan, tolerance).value_or(part.plan);
-  keep_corners_out(building.parts, tolerance);
+  make_roof_plans(building.parts, tolerance);
   for (model::BuildingPart& part : building.parts)
     if (part.plan.outer.size() >= 3)
       part.roof_edges = building.edges.empty() ? std::vector<RoofEdge>{} : edges_on(segments, part.roof_plan);

@@ -4,8 +4,11 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
+#include "pipeline/attributes/roof_edges.h"
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/grid_side.h"
 #include "pipeline/geometry/valid_polygon.h"
 
@@ -20,19 +23,7 @@ using model::Ring;
 
 /// A corner that moves may come to lie inside a third part; each move makes its own part smaller, so this ends soon.
 constexpr int kRounds = 6;
-
-struct Box {
-  Point2 low, high;
-};
-
-Box box_of(const Polygon& plan) {
-  Box box{plan.outer.points[0], plan.outer.points[0]};
-  for (const Point2 p : plan.outer.points) {
-    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y)};
-    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y)};
-  }
-  return box;
-}
+constexpr double kLeastTolerance = 2 / model::kGridStepsPerMetre;  // m; points nearer to a wall make edges of a step
 
 template <class Plan, class Visit>
 void for_each_ring(Plan& plan, Visit&& visit) {
@@ -51,41 +42,46 @@ std::optional<Point2> outside(Point2 corner, Point2 a, Point2 b, double reach) {
   return geometry::grid_point_on_left({a.x + along * dx, a.y + along * dy}, b, a);
 }
 
-/// Corners of one plan inside another's walls, and where they go.
-void find_moves(const Polygon& plan, const Polygon& other, double reach, std::map<Point2, Point2>& moves) {
+/// Corners of one plan inside another's walls, and where they go. \return whether there are any
+bool find_moves(const Polygon& plan, const Polygon& other, double reach, std::map<Point2, Point2>& moves) {
+  bool any = false;
   for_each_ring(plan, [&](const Ring& corners) {
     for (const Point2 corner : corners.points)
       for_each_ring(other, [&](const Ring& walls) {
         for (std::size_t i = 0; i < walls.size(); ++i) {
           const Point2 a = walls.points[i], b = walls.points[(i + 1) % walls.size()];
           if (corner == a || corner == b) continue;
-          if (const auto to = outside(corner, a, b, reach)) moves.emplace(corner, *to);
+          if (const auto to = outside(corner, a, b, reach)) {
+            moves.emplace(corner, *to);
+            any = true;
+          }
         }
       });
   });
+  return any;
 }
 
 }  // namespace
 
-void keep_corners_out(std::vector<BuildingPart>& parts, double tolerance) {
+std::vector<std::size_t> keep_corners_out(std::vector<BuildingPart>& parts, double tolerance) {
   std::vector<std::size_t> with_plan;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (parts[i].roof_plan.outer.size() >= 3) with_plan.push_back(i);
-  if (with_plan.size() < 2) return;
+  if (with_plan.size() < 2) return {};
   // Both walls may have been straightened.
   const double reach = 2 * tolerance + 2 / model::kGridStepsPerMetre;
-  std::vector<Box> boxes(parts.size());
-  for (const std::size_t i : with_plan) boxes[i] = box_of(parts[i].roof_plan);
-  const auto meet = [&](const Box& a, const Box& b) {
-    return a.low.x <= b.high.x + reach && b.low.x <= a.high.x + reach && a.low.y <= b.high.y + reach &&
-           b.low.y <= a.high.y + reach;
-  };
+  std::vector<geometry::PlanBox> boxes(parts.size());
+  for (const std::size_t i : with_plan) boxes[i] = geometry::box_of(parts[i].roof_plan.outer.points);
+  std::set<std::size_t> in_the_way;
   for (int round = 0; round < kRounds; ++round) {
     std::map<Point2, Point2> moves;
+    in_the_way.clear();
     for (const std::size_t i : with_plan)
-      for (const std::size_t k : with_plan)
-        if (i != k && meet(boxes[i], boxes[k])) find_moves(parts[i].roof_plan, parts[k].roof_plan, reach, moves);
-    if (moves.empty()) return;
+      for (const std::size_t k : with_plan) {
+        if (i == k || !boxes[i].near(boxes[k], reach)) continue;
+        if (find_moves(parts[i].roof_plan, parts[k].roof_plan, reach, moves)) in_the_way.insert({i, k});
+      }
+    if (moves.empty()) return {};
     bool moved = false;
     for (const std::size_t i : with_plan) {
       Polygon trial = parts[i].roof_plan;
@@ -97,11 +93,28 @@ void keep_corners_out(std::vector<BuildingPart>& parts, double tolerance) {
             changed = true;
           }
       });
-      if (!changed || !geometry::strictly_simple(trial)) continue;
+      if (!changed || !geometry::strictly_simple(trial) || !geometry::rings_apart(trial)) continue;
       parts[i].roof_plan = std::move(trial);
       moved = true;
     }
-    if (!moved) return;
+    if (!moved) break;
+  }
+  return {in_the_way.begin(), in_the_way.end()};
+}
+
+void make_roof_plans(std::vector<BuildingPart>& parts, double tolerance) {
+  std::vector<double> tolerances(parts.size(), tolerance);
+  for (;;) {
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (parts[i].plan.outer.size() >= 3)
+        parts[i].roof_plan = tolerances[i] > 0 ? simpler_plan(parts[i].plan, tolerances[i]).value_or(parts[i].plan)
+                                               : parts[i].plan;
+    bool again = false;
+    for (const std::size_t i : keep_corners_out(parts, tolerance)) {
+      again = again || tolerances[i] > 0;
+      tolerances[i] = tolerances[i] > kLeastTolerance ? tolerances[i] / 4 : 0;
+    }
+    if (!again) return;
   }
 }
 

@@ -46,6 +46,11 @@ std::string kind_name(const toml::node& node) {
   return "a date or time";
 }
 
+/// A number node as a double. toml++'s own value<double>() has none for whole numbers that a double rounds.
+double as_double(const toml::node& number) {
+  return number.is_integer() ? static_cast<double>(number.ref<std::int64_t>()) : number.ref<double>();
+}
+
 std::string range_text(const std::string& minimum, const std::string& maximum) {
   return "Write a number from " + minimum + " to " + maximum + ".";
 }
@@ -167,7 +172,7 @@ std::optional<double> TomlTable::number(std::string_view key, double minimum, do
   if (!node) return std::nullopt;
   const std::string remedy = range_text(shortest(minimum), shortest(maximum));
   if (!node->is_number()) data_->fail(*node, key, "must be a number, not " + kind_name(*node), remedy);
-  const double value = *node->value<double>();
+  const double value = as_double(*node);
   // Written so that NaN fails, too.
   if (!(value >= minimum && value <= maximum)) data_->fail(*node, key, "is out of range: " + shortest(value), remedy);
   return value;
@@ -219,7 +224,7 @@ std::optional<std::vector<double>> TomlTable::numbers(std::string_view key) {
   std::vector<double> values;
   for (const toml::node& entry : *node->as_array()) {
     if (!entry.is_number()) data_->fail(entry, key, "must hold numbers only, not " + kind_name(entry), remedy);
-    values.push_back(*entry.value<double>());
+    values.push_back(as_double(entry));
     if (!std::isfinite(values.back())) data_->fail(entry, key, "must hold finite numbers only", remedy);
   }
   return values;
@@ -261,7 +266,7 @@ std::optional<std::vector<std::pair<double, double>>> TomlTable::pairs(std::stri
     const toml::array* pair = entry.as_array();
     if (!pair || pair->size() != 2 || !(*pair)[0].is_number() || !(*pair)[1].is_number())
       data_->fail(entry, key, "must hold pairs of numbers only", remedy);
-    values.emplace_back(*(*pair)[0].value<double>(), *(*pair)[1].value<double>());
+    values.emplace_back(as_double((*pair)[0]), as_double((*pair)[1]));
     if (!std::isfinite(values.back().first) || !std::isfinite(values.back().second))
       data_->fail(entry, key, "must hold finite numbers only", remedy);
   }

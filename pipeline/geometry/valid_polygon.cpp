@@ -9,6 +9,7 @@
 #include "pipeline/geometry/geos_scope.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/geometry/slivers.h"
 
 namespace blockrand::geometry {
 
@@ -25,6 +26,10 @@ struct Edge {
   std::uint32_t ring, index, ring_size;
   std::int64_t min_x() const { return std::min(a.x, b.x); }
   std::int64_t max_x() const { return std::max(a.x, b.x); }
+  bool near_in_y(const Edge& other, std::int64_t reach) const {
+    return std::max(std::min(a.y, b.y), std::min(other.a.y, other.b.y)) <=
+           std::min(std::max(a.y, b.y), std::max(other.a.y, other.b.y)) + reach;
+  }
 };
 
 bool neighbours(const Edge& e, const Edge& f) {
@@ -33,9 +38,6 @@ bool neighbours(const Edge& e, const Edge& f) {
 
 /// Do two edges share more than the point that ring neighbours have in common?
 bool edges_conflict(const Edge& e, const Edge& f) {
-  if (std::max(std::min(e.a.y, e.b.y), std::min(f.a.y, f.b.y)) >
-      std::min(std::max(e.a.y, e.b.y), std::max(f.a.y, f.b.y)))
-    return false;
   if (neighbours(e, f)) {
     // Ring neighbours conflict only when one runs back over the other. In a triangle both ends are common; then the
     // area test has the word.
@@ -51,9 +53,20 @@ bool edges_conflict(const Edge& e, const Edge& f) {
          on_segment(f.a, f.b, e.b);
 }
 
-/// Calls `found(e, f)` for conflicting pairs until it returns false.
+/// Within kOnWall of the edge. Grid coordinates are small here: doubles hold them exactly.
+bool almost_on(const Edge& e, Grid2 p) {
+  const auto point = [](Grid2 g) { return Point2{static_cast<double>(g.x), static_cast<double>(g.y)}; };
+  return distance_to_segment(point(p), point(e.a), point(e.b)) <= kOnWall * model::kGridStepsPerMetre;
+}
+
+/// Does an edge of one ring end almost on one of another? Rounding to floats would let the two cross.
+bool rings_almost_touch(const Edge& e, const Edge& f) {
+  return e.ring != f.ring && (almost_on(e, f.a) || almost_on(e, f.b) || almost_on(f, e.a) || almost_on(f, e.b));
+}
+
+/// Calls `found(e, f)` for all pairs of edges that come within two grid steps along x, until it returns false.
 template <class Found>
-void for_each_conflict(const Polygon& polygon, Found&& found) {
+void for_each_near_pair(const Polygon& polygon, Found&& found) {
   std::vector<Edge> edges;
   const Grid2 origin = to_grid(polygon.outer.points[0]);
   std::uint32_t ring_number = 0;
@@ -69,9 +82,16 @@ void for_each_conflict(const Polygon& polygon, Found&& found) {
   std::sort(edges.begin(), edges.end(), [](const Edge& e, const Edge& f) {
     return std::tuple(e.min_x(), e.ring, e.index) < std::tuple(f.min_x(), f.ring, f.index);
   });
+  constexpr std::int64_t kReach = 2;
   for (std::size_t i = 0; i < edges.size(); ++i)
-    for (std::size_t j = i + 1; j < edges.size() && edges[j].min_x() <= edges[i].max_x(); ++j)
-      if (edges_conflict(edges[i], edges[j]) && !found(edges[i], edges[j])) return;
+    for (std::size_t j = i + 1; j < edges.size() && edges[j].min_x() <= edges[i].max_x() + kReach; ++j)
+      if (edges[i].near_in_y(edges[j], kReach) && !found(edges[i], edges[j])) return;
+}
+
+bool has_conflict(const Polygon& polygon) {
+  bool found = false;
+  for_each_near_pair(polygon, [&](const Edge& e, const Edge& f) { return !(found = edges_conflict(e, f)); });
+  return found;
 }
 
 bool repeats_a_point(const Ring& ring) {
@@ -123,19 +143,24 @@ void orient(Polygon& p) {
   for (Ring& hole : p.holes) geometry::orient(hole, false);
 }
 
-/// Squares around the points where rings touch, to be added to the polygon.
+/// Squares around the points where rings touch or almost do, to be added to the polygon.
 std::vector<Polygon> squares_at_touches(const Polygon& polygon, double half_size) {
   std::vector<Point2> places;
-  for_each_conflict(polygon, [&](const Edge& e, const Edge& f) {
+  for_each_near_pair(polygon, [&](const Edge& e, const Edge& f) {
+    const bool touch = edges_conflict(e, f);
+    if (!touch && !rings_almost_touch(e, f)) return true;
     const Grid2 origin = to_grid(polygon.outer.points[0]);
     const auto back = [&](Grid2 g) {
       return Point2{static_cast<double>(g.x + origin.x) / model::kGridStepsPerMetre,
                     static_cast<double>(g.y + origin.y) / model::kGridStepsPerMetre};
     };
-    if (on_segment(e.a, e.b, f.a)) places.push_back(back(f.a));
-    if (on_segment(e.a, e.b, f.b)) places.push_back(back(f.b));
-    if (on_segment(f.a, f.b, e.a)) places.push_back(back(e.a));
-    if (on_segment(f.a, f.b, e.b)) places.push_back(back(e.b));
+    const auto add_if_on = [&](const Edge& edge, Grid2 p) {
+      if (touch ? on_segment(edge.a, edge.b, p) : almost_on(edge, p)) places.push_back(back(p));
+    };
+    add_if_on(e, f.a);
+    add_if_on(e, f.b);
+    add_if_on(f, e.a);
+    add_if_on(f, e.b);
     return places.size() < 1000;
   });
   std::sort(places.begin(), places.end());
@@ -163,7 +188,8 @@ void finish(std::vector<Polygon> pieces, double min_area, double clearance, Vali
         continue;
       }
       orient(p);
-      if (strictly_simple(p)) {
+      // In the last round the exact test alone decides: what is valid is not dropped.
+      if (strictly_simple(p) && (round + 1 == kRounds || rings_apart(p))) {
         out.polygons.push_back(std::move(p));
         continue;
       }
@@ -207,14 +233,19 @@ void restore_nodes(std::vector<Polygon>& polygons, const std::map<Point2, std::i
 
 }  // namespace
 
+bool rings_apart(const Polygon& polygon) {
+  bool apart = true;
+  if (!polygon.holes.empty())
+    for_each_near_pair(polygon, [&](const Edge& e, const Edge& f) { return apart = !rings_almost_touch(e, f); });
+  return apart;
+}
+
 bool strictly_simple(const Polygon& polygon) {
   if (polygon.outer.size() < 3 || repeats_a_point(polygon.outer) || signed_area(polygon.outer.points) == 0)
     return false;
   for (const Ring& hole : polygon.holes)
     if (hole.size() < 3 || repeats_a_point(hole) || signed_area(hole.points) == 0) return false;
-  bool simple = true;
-  for_each_conflict(polygon, [&](const Edge&, const Edge&) { return simple = false; });
-  if (!simple) return false;
+  if (has_conflict(polygon)) return false;
   if (polygon.holes.empty()) return true;
   constexpr double kBoxRounding = 1e-6;  // m; more than contains() rounds. Walls of towers have thousands of holes
   std::vector<PlanBox> around;
@@ -248,7 +279,7 @@ ValidPolygons make_valid(std::span<const Ring> rings, const std::vector<bool>& i
       out.changed = true;
       continue;
     }
-    if (strictly_simple(p) && area(p) >= min_area) {
+    if (strictly_simple(p) && rings_apart(p) && area(p) >= min_area) {
       orient(p);
       out.polygons.push_back(std::move(p));
       continue;

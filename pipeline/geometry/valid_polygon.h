@@ -13,6 +13,10 @@ namespace blockrand::geometry {
 /// least three points and an area, and every hole lies inside the outer ring and in no other hole. Exact.
 bool strictly_simple(const model::Polygon& polygon);
 
+/// True when no corner of a ring lies within kOnWall (slivers.h) of another ring: rounding to floats, as in GLB, would let
+/// the two cross.
+bool rings_apart(const model::Polygon& polygon);
+
 /// How rings were turned into polygons.
 struct ValidPolygons {
   std::vector<model::Polygon> polygons;  ///< strictly simple, outer counter-clockwise, largest first
@@ -23,8 +27,8 @@ struct ValidPolygons {
 
 /// Makes polygons of rings as mapped. Each outer ring takes the inner rings that follow it (`inner[i]`).
 /// GEOS's MakeValid with the STRUCTURE method decides what is inside; the result is rounded to the grid, and where rings
-/// still touch, a square of `clearance` metres joins the touching corners so that a wall of that width stands between.
-/// Points that survive keep their node ids.
+/// still touch or are not apart (rings_apart), a square of `clearance` metres joins the touching corners so that a wall of
+/// that width stands between. Points that survive keep their node ids.
 ValidPolygons make_valid(std::span<const model::Ring> rings, const std::vector<bool>& inner, double min_area,
                          double clearance);
 

@@ -298,6 +298,15 @@ bool vanishes(const Drawing& drawing, std::size_t piece) {
   return drawing.kept(piece) < kLeastShare * drawing.drawn(piece);
 }
 
+/// Drops what is no piece worth a part. Of a small thing, as a cross on a spire, no piece may be worth one: then all but
+/// strips stay, unless it `vanishes`.
+void drop_slivers(std::vector<Polygon>& polygons, bool vanishes) {
+  const bool small = !vanishes && std::none_of(polygons.begin(), polygons.end(), worth_a_part);
+  std::erase_if(polygons, [&](const Polygon& p) {
+    return small ? geometry::equivalent_width(p) < kStrip : !worth_a_part(p);
+  });
+}
+
 /// Mapped parts of which no piece is left.
 void settle(const model::Building& building, const std::map<std::size_t, model::OsmId>& represented,
             std::vector<model::SettledPart>& settled) {
@@ -324,7 +333,7 @@ bool separate_once(model::Building& building, const RepairOptions& options, std:
       const double lost = drawing.drawn(i) - drawing.kept(i);
       std::vector<Polygon> polygons = drawing.united(i, lost <= 0);
       if (geometry::cut_slivers(polygons, options.spike_width) > 0 || lost > 0) again = true;
-      if (lost > 0) std::erase_if(polygons, [](const Polygon& p) { return !worth_a_part(p); });
+      if (lost > 0) drop_slivers(polygons, vanishes(drawing, i));
       if (polygons.empty() && lost > 0 && vanishes(drawing, i)) {
         if (const auto taker = drawing.strongest_over(i)) {
           const BuildingPart& other = parts[group[*taker].part];

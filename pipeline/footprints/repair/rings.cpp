@@ -74,7 +74,7 @@ void orient(Polygon& p) {
 }
 
 bool sound(const Polygon& p, const RepairOptions& options) {
-  return geometry::area(p) >= options.min_piece_area && geometry::strictly_simple(p);
+  return geometry::area(p) >= options.min_piece_area && geometry::strictly_simple(p) && geometry::rings_apart(p);
 }
 
 /// Straight walls lose their points where the polygon stays simple.

@@ -161,7 +161,7 @@ class Writer {
     double area = 0, said_area = 0;
     std::size_t first = 0;
     for (std::size_t p = 0; p < polygons.size(); ++p) {
-      if (!geometry::strictly_simple(polygons[p]) || !well_wound(polygons[p])) {
+      if (!geometry::strictly_simple(polygons[p]) || !geometry::rings_apart(polygons[p]) || !well_wound(polygons[p])) {
         v.valid = false;
         v.reason = "its rings would cross or touch";
         const auto conflicts = geometry::conflicting_edges(polygons[p]);
