@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "pipeline/attributes/roof_edges.h"
 #include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/grid_side.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::attributes {
 
@@ -23,7 +26,7 @@ using model::Ring;
 
 /// A corner that moves may come to lie inside a third part; each move makes its own part smaller, so this ends soon.
 constexpr int kRounds = 6;
-constexpr double kLeastTolerance = 2 / model::kGridStepsPerMetre;  // m; points nearer to a wall make edges of a step
+constexpr double kLeastLength = 2 / model::kGridStepsPerMetre;  // m; a body with shorter edges is not valid
 
 template <class Plan, class Visit>
 void for_each_ring(Plan& plan, Visit&& visit) {
@@ -61,6 +64,21 @@ bool find_moves(const Polygon& plan, const Polygon& other, double reach, std::ma
   return any;
 }
 
+double shortest_edge(const Polygon& plan) {
+  double least = std::numeric_limits<double>::infinity();
+  for_each_ring(plan, [&](const Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      least = std::min(least, distance(ring.points[i], ring.points[(i + 1) % ring.size()]));
+  });
+  return least;
+}
+
+/// Plans of parts at one height share no ground.
+bool one_above_the_other(const BuildingPart& a, const BuildingPart& b) {
+  constexpr double kCommon = 0.1;  // m²
+  return geometry::common_area(std::span(&a.plan, 1), std::span(&b.plan, 1)) > kCommon;
+}
+
 }  // namespace
 
 std::vector<std::size_t> keep_corners_out(std::vector<BuildingPart>& parts, double tolerance) {
@@ -69,17 +87,17 @@ std::vector<std::size_t> keep_corners_out(std::vector<BuildingPart>& parts, doub
     if (parts[i].roof_plan.outer.size() >= 3) with_plan.push_back(i);
   if (with_plan.size() < 2) return {};
   // Both walls may have been straightened.
-  const double reach = 2 * tolerance + 2 / model::kGridStepsPerMetre;
+  const double reach = 2 * tolerance + kLeastLength;
   std::vector<geometry::PlanBox> boxes(parts.size());
   for (const std::size_t i : with_plan) boxes[i] = geometry::box_of(parts[i].roof_plan.outer.points);
-  std::set<std::size_t> in_the_way;
+  std::set<std::pair<std::size_t, std::size_t>> in_the_way;
   for (int round = 0; round < kRounds; ++round) {
     std::map<Point2, Point2> moves;
     in_the_way.clear();
     for (const std::size_t i : with_plan)
       for (const std::size_t k : with_plan) {
         if (i == k || !boxes[i].near(boxes[k], reach)) continue;
-        if (find_moves(parts[i].roof_plan, parts[k].roof_plan, reach, moves)) in_the_way.insert({i, k});
+        if (find_moves(parts[i].roof_plan, parts[k].roof_plan, reach, moves)) in_the_way.emplace(std::min(i, k), std::max(i, k));
       }
     if (moves.empty()) return {};
     bool moved = false;
@@ -99,7 +117,10 @@ std::vector<std::size_t> keep_corners_out(std::vector<BuildingPart>& parts, doub
     }
     if (!moved) break;
   }
-  return {in_the_way.begin(), in_the_way.end()};
+  std::set<std::size_t> out;
+  for (const auto& [i, k] : in_the_way)
+    if (!one_above_the_other(parts[i], parts[k])) out.insert({i, k});
+  return {out.begin(), out.end()};
 }
 
 void make_roof_plans(std::vector<BuildingPart>& parts, double tolerance) {
@@ -111,8 +132,10 @@ void make_roof_plans(std::vector<BuildingPart>& parts, double tolerance) {
                                                : parts[i].plan;
     bool again = false;
     for (const std::size_t i : keep_corners_out(parts, tolerance)) {
-      again = again || tolerances[i] > 0;
-      tolerances[i] = tolerances[i] > kLeastTolerance ? tolerances[i] / 4 : 0;
+      const double finer = tolerances[i] > kLeastLength ? std::max(tolerances[i] / 4, kLeastLength) : 0;
+      if (finer == tolerances[i] || (finer == 0 && shortest_edge(parts[i].plan) < kLeastLength)) continue;
+      tolerances[i] = finer;
+      again = true;
     }
     if (!again) return;
   }

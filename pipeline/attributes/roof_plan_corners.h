@@ -14,14 +14,14 @@ namespace blockrand::attributes {
 /// more stay as they are.
 /// \param parts      with roof_plan; none of them may be empty but where `plan` is
 /// \param tolerance  m, as of the points that were left out
-/// \return parts that still meet inside, ascending: a corner between two straightened walls may find no place outside
-///         of both
+/// \return parts that still meet inside, ascending, but for pairs one above the other: a corner between two straightened
+///         walls may find no place outside of both
 /// Cost: corners times walls of parts whose boxes meet.
 std::vector<std::size_t> keep_corners_out(std::vector<model::BuildingPart>& parts, double tolerance);
 
 /// Makes roof plans of plans: without the points that bend a wall by less than `tolerance`, corners kept out of each
 /// other (keep_corners_out). For parts for which that finds no place, a quarter of the tolerance is tried, and so on down
-/// to the plan with all its points, since plans share their walls exactly.
+/// to two grid steps and, where no edge is shorter than these, the plan itself: plans share their walls exactly.
 void make_roof_plans(std::vector<model::BuildingPart>& parts, double tolerance);
 
 }  // namespace blockrand::attributes
