@@ -127,7 +127,9 @@ std::optional<Polygon> simpler_plan(const Polygon& plan, double tolerance) {
 
 void prepare_roof_plans(model::Building& building, double tolerance) {
   const OutlineSegments segments(building);
-  make_roof_plans(building.parts, tolerance);
+  for (model::BuildingPart& part : building.parts)
+    if (part.plan.outer.size() >= 3) part.roof_plan = simpler_plan(part.plan, tolerance).value_or(part.plan);
+  keep_corners_out(building.parts, tolerance);
   for (model::BuildingPart& part : building.parts)
     if (part.plan.outer.size() >= 3)
       part.roof_edges = building.edges.empty() ? std::vector<RoofEdge>{} : edges_on(segments, part.roof_plan);

@@ -1,19 +1,13 @@
 #include "pipeline/attributes/roof_plan_corners.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <utility>
 
-#include "pipeline/attributes/roof_edges.h"
 #include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/grid_side.h"
 #include "pipeline/geometry/valid_polygon.h"
-#include "pipeline/model/vector.h"
 
 namespace blockrand::attributes {
 
@@ -26,7 +20,6 @@ using model::Ring;
 
 /// A corner that moves may come to lie inside a third part; each move makes its own part smaller, so this ends soon.
 constexpr int kRounds = 6;
-constexpr double kLeastLength = 2 / model::kGridStepsPerMetre;  // m; a body with shorter edges is not valid
 
 template <class Plan, class Visit>
 void for_each_ring(Plan& plan, Visit&& visit) {
@@ -45,35 +38,25 @@ std::optional<Point2> outside(Point2 corner, Point2 a, Point2 b, double reach) {
   return geometry::grid_point_on_left({a.x + along * dx, a.y + along * dy}, b, a);
 }
 
-/// Corners of one plan inside another's walls, and where they go. \return whether there are any
-bool find_moves(const Polygon& plan, const Polygon& other, double reach, std::map<Point2, Point2>& moves) {
-  bool any = false;
+using Moves = std::map<Point2, Point2>;
+
+/// Corners of one plan inside another's walls, and where they go.
+Moves find_moves(const Polygon& plan, const Polygon& other, double reach) {
+  Moves moves;
   for_each_ring(plan, [&](const Ring& corners) {
     for (const Point2 corner : corners.points)
       for_each_ring(other, [&](const Ring& walls) {
         for (std::size_t i = 0; i < walls.size(); ++i) {
           const Point2 a = walls.points[i], b = walls.points[(i + 1) % walls.size()];
           if (corner == a || corner == b) continue;
-          if (const auto to = outside(corner, a, b, reach)) {
-            moves.emplace(corner, *to);
-            any = true;
-          }
+          if (const auto to = outside(corner, a, b, reach)) moves.emplace(corner, *to);
         }
       });
   });
-  return any;
+  return moves;
 }
 
-double shortest_edge(const Polygon& plan) {
-  double least = std::numeric_limits<double>::infinity();
-  for_each_ring(plan, [&](const Ring& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i)
-      least = std::min(least, distance(ring.points[i], ring.points[(i + 1) % ring.size()]));
-  });
-  return least;
-}
-
-/// Plans of parts at one height share no ground.
+/// Plans of parts that stand at one height share no ground.
 bool one_above_the_other(const BuildingPart& a, const BuildingPart& b) {
   constexpr double kCommon = 0.1;  // m²
   return geometry::common_area(std::span(&a.plan, 1), std::span(&b.plan, 1)) > kCommon;
@@ -81,25 +64,30 @@ bool one_above_the_other(const BuildingPart& a, const BuildingPart& b) {
 
 }  // namespace
 
-std::vector<std::size_t> keep_corners_out(std::vector<BuildingPart>& parts, double tolerance) {
+void keep_corners_out(std::vector<BuildingPart>& parts, double tolerance) {
   std::vector<std::size_t> with_plan;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (parts[i].roof_plan.outer.size() >= 3) with_plan.push_back(i);
-  if (with_plan.size() < 2) return {};
+  if (with_plan.size() < 2) return;
   // Both walls may have been straightened.
-  const double reach = 2 * tolerance + kLeastLength;
+  const double reach = 2 * tolerance + 2 / model::kGridStepsPerMetre;
   std::vector<geometry::PlanBox> boxes(parts.size());
   for (const std::size_t i : with_plan) boxes[i] = geometry::box_of(parts[i].roof_plan.outer.points);
-  std::set<std::pair<std::size_t, std::size_t>> in_the_way;
+  std::map<std::pair<std::size_t, std::size_t>, bool> stacked;  // of those that have moves
+  const auto are_stacked = [&](std::size_t i, std::size_t k) {
+    const auto [found, is_new] = stacked.try_emplace(std::minmax(i, k));
+    if (is_new) found->second = one_above_the_other(parts[i], parts[k]);
+    return found->second;
+  };
   for (int round = 0; round < kRounds; ++round) {
-    std::map<Point2, Point2> moves;
-    in_the_way.clear();
+    Moves moves;
     for (const std::size_t i : with_plan)
       for (const std::size_t k : with_plan) {
         if (i == k || !boxes[i].near(boxes[k], reach)) continue;
-        if (find_moves(parts[i].roof_plan, parts[k].roof_plan, reach, moves)) in_the_way.emplace(std::min(i, k), std::max(i, k));
+        Moves more = find_moves(parts[i].roof_plan, parts[k].roof_plan, reach);
+        if (!more.empty() && !are_stacked(i, k)) moves.merge(std::move(more));
       }
-    if (moves.empty()) return {};
+    if (moves.empty()) return;
     bool moved = false;
     for (const std::size_t i : with_plan) {
       Polygon trial = parts[i].roof_plan;
@@ -115,29 +103,7 @@ std::vector<std::size_t> keep_corners_out(std::vector<BuildingPart>& parts, doub
       parts[i].roof_plan = std::move(trial);
       moved = true;
     }
-    if (!moved) break;
-  }
-  std::set<std::size_t> out;
-  for (const auto& [i, k] : in_the_way)
-    if (!one_above_the_other(parts[i], parts[k])) out.insert({i, k});
-  return {out.begin(), out.end()};
-}
-
-void make_roof_plans(std::vector<BuildingPart>& parts, double tolerance) {
-  std::vector<double> tolerances(parts.size(), tolerance);
-  for (;;) {
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      if (parts[i].plan.outer.size() >= 3)
-        parts[i].roof_plan = tolerances[i] > 0 ? simpler_plan(parts[i].plan, tolerances[i]).value_or(parts[i].plan)
-                                               : parts[i].plan;
-    bool again = false;
-    for (const std::size_t i : keep_corners_out(parts, tolerance)) {
-      const double finer = tolerances[i] > kLeastLength ? std::max(tolerances[i] / 4, kLeastLength) : 0;
-      if (finer == tolerances[i] || (finer == 0 && shortest_edge(parts[i].plan) < kLeastLength)) continue;
-      tolerances[i] = finer;
-      again = true;
-    }
-    if (!again) return;
+    if (!moved) return;
   }
 }
 

@@ -7,6 +7,7 @@
 #include "pipeline/attributes/roof_plan_corners.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/grid_side.h"
+#include "pipeline/geometry/valid_polygon.h"
 #include "pipeline/masses/roofscape.h"
 #include "tests/unit/geometry/shapes.h"
 
@@ -170,6 +171,7 @@ TEST(RoofPlanCorners, StayOutOfOtherParts) {
     parts[1].roof_plan = turned({{2, -6}, {9, -6}, {9, x}, {2, off()}});
     parts[2].roof_plan = turned({{9, -6}, {15, -6}, {15, off()}, {9, x}});
     parts[3].roof_plan = turned({{15 + off(), -5}, {18, -5}, {18, -3}, {15 + off(), -3}});
+    for (model::BuildingPart& p : parts) p.plan = p.roof_plan;
     before += corners_inside(parts);
     const std::vector<model::BuildingPart> old = parts;
     keep_corners_out(parts, 0.01);
@@ -183,6 +185,27 @@ TEST(RoofPlanCorners, StayOutOfOtherParts) {
         << "a common corner moves in both";
   }
   EXPECT_GT(before, 50);
+}
+
+TEST(RoofPlanCorners, APartAboveIsNotInTheWay) {
+  // A house with a column in front, and a storey above the column whose wall is the house's wall: straightened, it
+  // passes in front of the column's corners. They leave the house, though that leads under the storey.
+  for (int turn = 0; turn < 50; ++turn) {
+    SCOPED_TRACE(turn);
+    const double angle = 0.12 * turn + 0.01, c = std::cos(angle), s = std::sin(angle);
+    const auto turned = [&](std::vector<Point2> points) {
+      for (Point2& p : points) p = model::snap(Point2{c * p.x - s * p.y, s * p.x + c * p.y});
+      return model::Polygon{ring(std::move(points)), {}};
+    };
+    std::vector<model::BuildingPart> parts(3);
+    parts[0].plan = parts[0].roof_plan = turned({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
+    parts[1].plan = parts[1].roof_plan = turned({{8, -1}, {9, -1}, {9, 0.006}, {8, 0.004}});
+    parts[2].plan = parts[2].roof_plan = turned({{0, -10}, {20, -10}, {20, 0}, {0, 0}});
+    const model::Polygon house = parts[0].roof_plan;
+    keep_corners_out(parts, 0.01);
+    EXPECT_EQ(geometry::common_area(std::span(&parts[0].roof_plan, 1), std::span(&parts[1].roof_plan, 1)), 0);
+    EXPECT_EQ(parts[0].roof_plan.outer.points, house.outer.points);
+  }
 }
 
 }  // namespace

@@ -334,6 +334,17 @@ TEST(PartsApart, PartsOneAboveTheOtherStayAsTheyAre) {
   EXPECT_NEAR(s.common("w1.w2", "w1.w3"), s.area("w1.w3"), 1e-9);
 }
 
+TEST(PartsApart, OfASmallThingSmallPiecesStay) {
+  // A cross on a spire: the post divides the crossbar into pieces of which none would be worth a part of a house.
+  Scene s({{0, 0}, {8, 0}, {8, 8}, {0, 8}});
+  s.part(2, {{3.8, 3.8}, {4.2, 3.8}, {4.2, 4.2}, {3.8, 4.2}}, {41.0f, 37.0f, {}, {}})
+      .part(3, {{3, 3.9}, {5, 3.9}, {5, 4.1}, {3, 4.1}}, {40.2f, 39.8f, {}, {}})
+      .fit();
+  EXPECT_EQ(s.common("w1.w2", "w1.w3.1") + s.common("w1.w2", "w1.w3.2"), 0);
+  EXPECT_NEAR(s.area("w1.w2"), 0.16, 0.01);
+  EXPECT_NEAR(s.area("w1.w3.1") + s.area("w1.w3.2"), 0.32, 0.02);
+}
+
 // ---- overlaps -------------------------------------------------------------------------------------------------------
 
 TEST(PartsOverlap, TheSmallerPartKeepsTheCommonArea) {
