@@ -174,14 +174,16 @@ RepairsSaid repairs_of_explanations(const std::vector<std::string>& paths, const
   return said;
 }
 
-void bound_positions(PositionSample& sample, const RepairsSaid& said, const std::set<std::string>& moved) {
+void bound_positions(PositionSample& sample, const RepairsSaid& said, const std::set<std::string>& moved,
+                     double otherwise) {
   std::vector<std::string> unknown;
   for (auto& [id, corners] : sample.corners) {
     const auto found = said.find(id);
-    if (found == said.end() ? moved.contains(id) : found->second.reshaped)
+    const double shift = found == said.end() ? otherwise : found->second.max_shift;
+    if (found == said.end() ? moved.contains(id) : found->second.reshaped) {
       unknown.push_back(id);
-    else if (found != said.end() && found->second.max_shift > kWritten) {
-      const double reach = sample.reach[id] = found->second.max_shift + kWritten;
+    } else if (shift > kWritten) {
+      const double reach = sample.reach[id] = shift + kWritten;
       // Where the corner and its neighbours may have come into one line the model has no corner.
       std::erase_if(corners, [&](const SampledCorner& c) { return c.height <= 2 * reach + kStraight; });
       if (corners.empty()) unknown.push_back(id);

@@ -26,7 +26,7 @@ struct SampledCorner {
 struct PositionSample {
   std::string source;  ///< in words: where the positions are from
   std::unordered_map<std::string, std::vector<SampledCorner>> corners;
-  /// m, by the same ids: how far the build says that repair moved a corner at most. Absent: it moved none.
+  /// m, by the same ids: how far the build says that repair moved a corner at most. Absent: none.
   std::unordered_map<std::string, double> reach;
   /// Middle of the sampled places; degrees.
   double lon = 0, lat = 0;
@@ -80,8 +80,10 @@ RepairsSaid repairs_of_explanations(const std::vector<std::string>& paths, const
 
 /// Fills PositionSample::reach. Bodies that were reshaped are left out, as are those of `moved` without a record: where
 /// their corners belong is not known.
-/// \param moved  buildings of which the report says that repair moved corners
-void bound_positions(PositionSample& sample, const RepairsSaid& said, const std::set<std::string>& moved);
+/// \param moved      buildings of which the report says that repair moved corners
+/// \param otherwise  m, how far repair may have moved corners of the others without a record
+void bound_positions(PositionSample& sample, const RepairsSaid& said, const std::set<std::string>& moved,
+                     double otherwise);
 
 /// What the offsets of all corners have in common. Repair moves corners to and fro: the median over buildings (of their
 /// mean offset, east and north apart) stays near zero unless everything was moved.

@@ -188,8 +188,17 @@ class Run {
     } else if (!records.empty()) {
       sample_ = sample_explanations(records, mended);
     }
+    // Without the two places that have a record of each building, the build's largest shift is all that is known.
+    double otherwise = 0;
+    if (!geopackage_ && records.empty()) {
+      otherwise = number(member(member(record_.json, "repair"), "max_shift_m")).value_or(0);
+      if (otherwise > 0)
+        v_.notes.push_back(fmt::format("the build has neither explanations nor a GeoPackage: any corner may be {:.2f} m "
+                                       "from where OpenStreetMap has it, as far as repair moved one at most",
+                                       otherwise));
+    }
     bound_positions(sample_, geopackage_ ? geopackage_->repairs() : repairs_of_explanations(records, sample_),
-                    report_ ? report_->moved : none);
+                    report_ ? report_->moved : none, otherwise);
     if (sample_.empty()) {
       v_.notes.push_back(path.empty() && sample_.source.empty()
                              ? "positions were not compared with OpenStreetMap: the extract is not where build.json "

@@ -801,6 +801,11 @@ class Sound(Validated):
     def test_without_report_and_explanations(self):
         self.sound(self.build(SAMPLE, 'bare', '--no-report', '--no-explain'))
 
+    def test_without_any_record_of_repair(self):
+        out = self.build(SAMPLE, 'bare', '--no-explain', '--formats', 'citygml')
+        notes = self.sound(out)['notes']
+        self.assertTrue(any('neither explanations nor a GeoPackage' in note for note in notes), notes)
+
     def test_on_a_ground_height(self):
         self.sound(self.build(SAMPLE, 'ground', '--ground-height', '180'))
 

@@ -325,7 +325,7 @@ PositionSample sampled(std::initializer_list<const char*> ids) {
 
 TEST(Positions, WhatTheBuildSaysOfRepairBoundsCorners) {
   PositionSample sample = sampled({"w1", "w2", "w3", "w4", "w5"});
-  bound_positions(sample, {{"w1", {0, false}}, {"w2", {0.31, false}}, {"w3", {0.2, true}}}, {"w2", "w4"});
+  bound_positions(sample, {{"w1", {0, false}}, {"w2", {0.31, false}}, {"w3", {0.2, true}}}, {"w2", "w4"}, 0);
   EXPECT_EQ(sample.reach.count("w1"), 0u) << "agrees to the millimetre";
   EXPECT_DOUBLE_EQ(sample.reach.at("w2"), 0.3105) << "as written, in millimetres";
   EXPECT_FALSE(sample.corners.contains("w3")) << "an overlap was cut off: corners may be gone";
@@ -334,6 +334,13 @@ TEST(Positions, WhatTheBuildSaysOfRepairBoundsCorners) {
   EXPECT_EQ(sample.reach.size(), 1u);
   EXPECT_EQ(sample.corners.at("w2").size(), 1u) << "the flat one may lie in a straight wall now";
   EXPECT_EQ(sample.corners.at("w1").size(), 2u);
+}
+
+TEST(Positions, WithoutRecordsTheLargestShiftBoundsCorners) {
+  PositionSample sample = sampled({"w1", "w4"});
+  bound_positions(sample, {}, {"w4"}, 0.31);
+  EXPECT_DOUBLE_EQ(sample.reach.at("w1"), 0.3105);
+  EXPECT_FALSE(sample.corners.contains("w4"));
 }
 
 /// Offsets of `buildings` buildings with four corners each, a share of which repair moved by up to 0.3 m to and fro; all
