@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::masses {
@@ -12,17 +13,7 @@ constexpr double kLeastCommon = 1e-4;     // m²; less is no ground that two par
 constexpr double kLeastThickness = 0.01;  // m, of a slab
 
 bool share_ground(const model::Polygon& a, const model::Polygon& b) {
-  const auto box = [](const model::Polygon& p) {
-    model::Point2 low = p.outer.points[0], high = low;
-    for (const model::Point2 q : p.outer.points) {
-      low = {std::min(low.x, q.x), std::min(low.y, q.y)};
-      high = {std::max(high.x, q.x), std::max(high.y, q.y)};
-    }
-    return std::pair(low, high);
-  };
-  const auto [low_a, high_a] = box(a);
-  const auto [low_b, high_b] = box(b);
-  if (low_a.x >= high_b.x || low_b.x >= high_a.x || low_a.y >= high_b.y || low_b.y >= high_a.y) return false;
+  if (!geometry::box_of(a.outer.points).near(geometry::box_of(b.outer.points), 0)) return false;
   return geometry::common_area(std::vector{a}, std::vector{b}) > kLeastCommon;
 }
 

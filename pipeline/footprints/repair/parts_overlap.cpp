@@ -5,6 +5,7 @@
 
 #include "pipeline/footprints/repair/parts_bodies.h"
 #include "pipeline/footprints/repair/rings.h"
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/slivers.h"
 #include "pipeline/geometry/valid_polygon.h"
@@ -23,24 +24,15 @@ constexpr double kMixedMargin = 1.5;     // m; half a storey: real ones are 2.5 
 constexpr double kLeastPartWidth = 0.3;  // m; what is left of a part and narrower is the noise of two drawn walls
 constexpr double kLeastPartArea = 0.5;   // m²; smaller than the smallest chimney or turret that somebody maps
 
-struct Box {
-  Point2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  Point2 high{-low.x, -low.y};
-};
-
-Box box_of(const std::vector<Polygon>& polygons) {
-  Box box;
-  for (const Polygon& p : polygons)
-    for (const Point2 q : p.outer.points) {
-      box.low = {std::min(box.low.x, q.x), std::min(box.low.y, q.y)};
-      box.high = {std::max(box.high.x, q.x), std::max(box.high.y, q.y)};
-    }
+geometry::PlanBox box_of(const std::vector<Polygon>& polygons) {
+  geometry::PlanBox box;
+  for (const Polygon& p : polygons) box.include(geometry::box_of(p.outer.points));
   return box;
 }
 
-bool may_overlap(const Box& a, const Box& b, double area) {
-  const double w = std::min(a.high.x, b.high.x) - std::max(a.low.x, b.low.x);
-  const double h = std::min(a.high.y, b.high.y) - std::max(a.low.y, b.low.y);
+bool may_overlap(const geometry::PlanBox& a, const geometry::PlanBox& b, double area) {
+  const double w = std::min(a.maximum.x, b.maximum.x) - std::max(a.minimum.x, b.minimum.x);
+  const double h = std::min(a.maximum.y, b.maximum.y) - std::max(a.minimum.y, b.minimum.y);
   return w > 0 && h > 0 && w * h > area;
 }
 
@@ -112,7 +104,7 @@ void resolve_part_overlaps(std::vector<PartBody>& bodies, const RepairOptions& o
     double area;
     model::OsmId osm;
     std::size_t body;
-    Box box;
+    geometry::PlanBox box;
   };
   std::vector<Entry> order;
   for (std::size_t i = 0; i < bodies.size(); ++i)

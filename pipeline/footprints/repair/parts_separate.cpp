@@ -9,6 +9,7 @@
 
 #include "pipeline/footprints/repair/parts_bodies.h"
 #include "pipeline/footprints/repair/rings.h"
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/noded_lines.h"
 #include "pipeline/geometry/planar_faces.h"
 #include "pipeline/geometry/polygon_measures.h"
@@ -36,23 +37,17 @@ struct Piece {
   HeightSpan heights;
   double area = 0;
   model::OsmId osm;
-  Point2 low, high;
+  geometry::PlanBox box;
 };
 
 Piece piece_of(const BuildingPart& part, std::size_t index, const model::MappedAttributes& building) {
-  Piece out{index, height_span(part.mapped, part.canopy, building), geometry::area(part.plan), part.osm, {}, {}};
-  out.low = out.high = part.plan.outer.points[0];
-  for (const Point2 p : part.plan.outer.points) {
-    out.low = {std::min(out.low.x, p.x), std::min(out.low.y, p.y)};
-    out.high = {std::max(out.high.x, p.x), std::max(out.high.y, p.y)};
-  }
-  return out;
+  return {index, height_span(part.mapped, part.canopy, building), geometry::area(part.plan), part.osm,
+          geometry::box_of(part.plan.outer.points)};
 }
 
 bool near(const Piece& a, const Piece& b) {
   constexpr double kReach = 2 / model::kGridStepsPerMetre;
-  return a.low.x <= b.high.x + kReach && b.low.x <= a.high.x + kReach && a.low.y <= b.high.y + kReach &&
-         b.low.y <= a.high.y + kReach;
+  return a.box.near(b.box, kReach);
 }
 
 /// Whether two stand at one height by some reading: metres and storeys of 3 m without a margin.
@@ -302,9 +297,8 @@ bool vanishes(const Drawing& drawing, std::size_t piece) {
 /// strips stay, unless it `vanishes`.
 void drop_slivers(std::vector<Polygon>& polygons, bool vanishes) {
   const bool small = !vanishes && std::none_of(polygons.begin(), polygons.end(), worth_a_part);
-  std::erase_if(polygons, [&](const Polygon& p) {
-    return small ? geometry::equivalent_width(p) < kStrip : !worth_a_part(p);
-  });
+  std::erase_if(polygons,
+                [&](const Polygon& p) { return small ? geometry::equivalent_width(p) < kStrip : !worth_a_part(p); });
 }
 
 /// Mapped parts of which no piece is left.

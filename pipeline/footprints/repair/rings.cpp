@@ -7,6 +7,7 @@
 #include <string>
 
 #include "pipeline/footprints/repair/clean_ring.h"
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/even_odd.h"
 #include "pipeline/geometry/footprint_overlap.h"
 #include "pipeline/geometry/polygon_measures.h"
@@ -181,33 +182,16 @@ void mend(Polygon p, const KeptNodes& kept, const RepairOptions& options, Mendin
   }
 }
 
-struct Box {
-  Point2 low, high;
-};
-
-Box box_of(const Polygon& p) {
-  Box box{p.outer.points[0], p.outer.points[0]};
-  for (const Point2 q : p.outer.points) {
-    box.low = {std::min(box.low.x, q.x), std::min(box.low.y, q.y)};
-    box.high = {std::max(box.high.x, q.x), std::max(box.high.y, q.y)};
-  }
-  return box;
-}
-
-bool meet(const Box& a, const Box& b) {
-  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
-}
-
 /// Of an object with a scribble the largest pieces that have no ground in common; to unite hundreds that touch each other
 /// everywhere and to move them apart again would cost without end.
 void keep_apart(std::vector<Polygon>& polygons, Mending& done) {
   std::vector<Polygon> kept;
-  std::vector<Box> boxes;
+  std::vector<geometry::PlanBox> boxes;
   for (Polygon& p : polygons) {
-    const Box box = box_of(p);
+    const geometry::PlanBox box = geometry::box_of(p.outer.points);
     bool free = kept.size() < kMostPieces;
     for (std::size_t i = 0; i < kept.size() && free; ++i)
-      free = !meet(boxes[i], box) || !geometry::interiors_meet(kept[i], p);
+      free = !boxes[i].near(box, 0) || !geometry::interiors_meet(kept[i], p);
     if (free) {
       kept.push_back(std::move(p));
       boxes.push_back(box);
@@ -223,11 +207,11 @@ void keep_apart(std::vector<Polygon>& polygons, Mending& done) {
 void unite_pieces(std::vector<Polygon>& polygons, const RepairOptions& options, Mending& done) {
   if (polygons.size() < 2) return;
   if (done.tangled) return keep_apart(polygons, done);
-  std::vector<Box> boxes;
-  for (const Polygon& p : polygons) boxes.push_back(box_of(p));
+  std::vector<geometry::PlanBox> boxes;
+  for (const Polygon& p : polygons) boxes.push_back(geometry::box_of(p.outer.points));
   bool near = false;
   for (std::size_t i = 0; i < boxes.size() && !near; ++i)
-    for (std::size_t j = i + 1; j < boxes.size() && !near; ++j) near = meet(boxes[i], boxes[j]);
+    for (std::size_t j = i + 1; j < boxes.size() && !near; ++j) near = boxes[i].near(boxes[j], 0);
   if (!near) return;
   geometry::ValidPolygons united = geometry::unite(polygons, options.min_piece_area, options.ring_clearance);
   if (united.polygons.empty() || united.polygons.size() == polygons.size()) {
