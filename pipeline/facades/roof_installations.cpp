@@ -1,5 +1,7 @@
 #include "pipeline/facades/roof_installations.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -77,7 +79,8 @@ class RoofInstaller {
   }
 
   /// \param index  of the building in its region
-  void furnish(model::Building& building, std::uint32_t index) {
+  void furnish(model::Building& building, std::uint32_t index, model::Report& report) {
+    left_out_ = {};
     BuildingPart* const body = main_body(building);
     if (!body) return;
     if (!has_hearths(building.attributes)) return;
@@ -91,6 +94,9 @@ class RoofInstaller {
     const double frontage = width > 0 ? width : std::sqrt(area);
     const std::vector<Point2> stacks = put_chimneys(building, *body, *standing, edges, frontage);
     put_roof_windows(building, *body, *standing, edges, stacks, is_old(building.attributes));
+    if (left_out_.chimneys + left_out_.roof_windows > 0)
+      report.add(building.osm, model::IssueCode::roof_element_left_out,
+                 fmt::format("chimneys: {}, roof windows: {}", left_out_.chimneys, left_out_.roof_windows));
   }
 
  private:
@@ -188,7 +194,14 @@ class RoofInstaller {
   }
 
   /// \return false where it is left out
-  bool add(const model::Building& building, BuildingPart& body, model::RoofInstallation installation) const {
+  bool add(const model::Building& building, BuildingPart& body, model::RoofInstallation installation) {
+    const bool chimney = installation.kind == model::RoofElementKind::chimney;
+    const bool added = add_if_free(building, body, std::move(installation));
+    if (!added) ++(chimney ? left_out_.chimneys : left_out_.roof_windows);
+    return added;
+  }
+
+  static bool add_if_free(const model::Building& building, BuildingPart& body, model::RoofInstallation installation) {
     auto triangles = geometry::triangulate(installation.solid);
     if (!triangles || !geometry::check_solid(installation.solid, *triangles, geometry::kBuilt).valid()) return false;
     if (in_another(building, body, installation.solid)) return false;
@@ -205,7 +218,7 @@ class RoofInstaller {
   /// \return the corners of the stacks on the plan, four each
   std::vector<Point2> put_chimneys(const model::Building& building, BuildingPart& body,
                                    const masses::BuiltMass& standing, const std::vector<model::RoofEdge>& edges,
-                                   double frontage) const {
+                                   double frontage) {
     const bool flat = body.built_roof == model::RoofShape::flat;
     const int count = wanted_chimneys(building.attributes, building.situation.position, flat, frontage,
                                       share(building, "has a chimney"));
@@ -233,7 +246,7 @@ class RoofInstaller {
   }
 
   void put_roof_windows(const model::Building& building, BuildingPart& body, const masses::BuiltMass& standing,
-                        const std::vector<model::RoofEdge>& edges, const std::vector<Point2>& stacks, bool old) const {
+                        const std::vector<model::RoofEdge>& edges, const std::vector<Point2>& stacks, bool old) {
     const bool attic = body.attributes.roof_storeys.value >= 1;
     if (!attic && !(old && share(building, "converted loft") < kConvertedLofts)) return;
     const roofs::RoofWindowParameters window;
@@ -269,6 +282,9 @@ class RoofInstaller {
   const masses::BuiltMasses& masses_;
   const attributes::Defaults& defaults_;
   const RoofInstallationOptions& options_;
+  struct {
+    int chimneys = 0, roof_windows = 0;
+  } left_out_;  ///< of the building at work
   roofs::ChimneyMaterials stack_;
   roofs::RoofWindowMaterials window_;
 };
@@ -295,7 +311,7 @@ void add_roof_installations(model::Region& region, const masses::BuiltMasses& ma
                             const attributes::Defaults& defaults, const RoofInstallationOptions& options) {
   RoofInstaller installer(masses, defaults, options);
   for (std::uint32_t b = 0; b < region.buildings.size(); ++b)
-    if (region.buildings[b].owned) installer.furnish(region.buildings[b], b);
+    if (region.buildings[b].owned) installer.furnish(region.buildings[b], b, region.report);
 }
 
 }  // namespace blockrand::facades

@@ -44,6 +44,8 @@ enum class IssueClass : std::uint8_t {
   X(facade_failed, "FACADE_FAILED", fallback, "The solid with openings failed its check; the walls stay closed.")    \
   X(opening_left_out, "OPENING_LEFT_OUT", fallback,                                                                  \
     "Windows or doors did not fit their walls; the others were built.")                                              \
+  X(roof_element_left_out, "ROOF_ELEMENT_LEFT_OUT", fallback,                                                        \
+    "Chimneys or roof windows would cut into another body; the others were built.")                                  \
   X(grammar_error, "GRAMMAR_ERROR", fallback,                                                                        \
     "A rule asked for what cannot be made; the rest of the facade was built.")                                       \
   X(plan_simplified, "PLAN_SIMPLIFIED", fallback, "The plan was simplified to get a valid solid.")                   \

@@ -223,6 +223,13 @@ TEST(RoofInstallations, NothingStandsWhereAnotherBodyOfTheHouseDoes) {
   for (const auto& i : house.parts[0].lod3.roof_installations)
     for (const auto& v : i.solid.vertices) EXPECT_FALSE(geometry::contains(tower.plan, v.xy()));
   EXPECT_TRUE(house.parts[1].lod3.roof_installations.empty()) << "the largest body has them";
+  // What is left out is told, and nothing else is.
+  const int built = count(tile.region, model::RoofElementKind::chimney), wanted = 3;
+  ASSERT_LT(built, wanted);
+  ASSERT_EQ(tile.region.report.rows.size(), 1u);
+  EXPECT_EQ(tile.region.report.rows[0].code, model::IssueCode::roof_element_left_out);
+  EXPECT_EQ(tile.region.report.rows[0].detail, "chimneys: " + std::to_string(wanted - built) + ", roof windows: 0");
+  EXPECT_TRUE(fitted({}).report.rows.empty());
 }
 
 /// A body with a flat roof, and what the masses hand on of it.
