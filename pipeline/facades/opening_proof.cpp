@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/check_solid.h"
 #include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/normal_deviation.h"
@@ -73,6 +74,7 @@ class Proof {
     for (const OpenedWall& wall : walls_)
       for (const Inward& in : wall.views)
         if (!turns_left(wall.face, in)) return false;
+    index_others();
     for (const OpenedWall& wall : walls_)
       if (meets_others(wall)) return false;
     return true;
@@ -157,21 +159,37 @@ class Proof {
            std::max({a.z, b.z, c.z}) < least.z || std::min({a.z, b.z, c.z}) > most.z;
   }
 
+  /// Triangles of all faces but reveals and openings: a block with thousands of courts has walls everywhere.
+  void index_others() {
+    std::vector<geometry::PlanBox> boxes;
+    for (std::uint32_t f = 0; f < solid_.faces.size(); ++f) {
+      if (is_new_[f]) continue;
+      for (const Triangle& t : triangles_of(f)) {
+        geometry::PlanBox box;
+        for (const std::uint32_t i : t) box.include(solid_.vertices[i].xy());
+        boxes.push_back(box);
+        others_.push_back({t, f});
+      }
+    }
+    index_ = geometry::BoxIndex(std::move(boxes));
+  }
+
   /// Whether a triangle of the wall conflicts with one of another face that is no reveal.
   bool meets_others(const OpenedWall& wall) {
     near_.clear();
-    for (std::uint32_t f = 0; f < solid_.faces.size(); ++f) {
-      if (f == wall.face || is_new_[f] || (wall_of_[f] != kNone && f < wall.face)) continue;
-      for (const Triangle& t : triangles_of(f)) {
-        if (boxes_apart(t, wall.least, wall.most)) continue;
-        int before = 0, behind = 0;
-        for (const std::uint32_t i : t) {
-          const double h = wall.along_normal(solid_.vertices[i]);
-          before += h > wall.high + kSure;
-          behind += h < wall.low - kSure;
-        }
-        if (before < 3 && behind < 3) near_.push_back(t);
+    geometry::PlanBox box;
+    for (const std::uint32_t i : solid_.indices_of(solid_.loops_of(solid_.faces[wall.face])[0]))
+      box.include(solid_.vertices[i].xy());
+    for (const std::uint32_t n : index_.near(box, kSure)) {
+      const auto& [t, f] = others_[n];
+      if (f == wall.face || (wall_of_[f] != kNone && f < wall.face) || boxes_apart(t, wall.least, wall.most)) continue;
+      int before = 0, behind = 0;
+      for (const std::uint32_t i : t) {
+        const double h = wall.along_normal(solid_.vertices[i]);
+        before += h > wall.high + kSure;
+        behind += h < wall.low - kSure;
       }
+      if (before < 3 && behind < 3) near_.push_back(t);
     }
     for (const Triangle& mine : triangles_of(wall.face)) {
       const Grid3 &a = grid_[mine[0]], &b = grid_[mine[1]], &c = grid_[mine[2]];
@@ -191,8 +209,10 @@ class Proof {
   const model::SolidTriangles& triangles_;
   std::vector<Grid3> grid_;
   std::vector<OpenedWall> walls_;
-  std::vector<std::uint32_t> wall_of_;  ///< by face: into walls_
-  std::vector<bool> is_new_;            ///< by face: a reveal, or an opening's polygon
+  std::vector<std::uint32_t> wall_of_;                      ///< by face: into walls_
+  std::vector<bool> is_new_;                                ///< by face: a reveal, or an opening's polygon
+  std::vector<std::pair<Triangle, std::uint32_t>> others_;  ///< with their faces
+  geometry::BoxIndex index_;                                ///< of others_
   std::vector<Triangle> near_;
 };
 
