@@ -148,18 +148,35 @@ Measures measure(const std::vector<GlbTriangle>& triangles, const Point3& origin
   return m;
 }
 
-/// Distance from each point to the nearest of `others`; the largest of them. Both are sorted.
+/// Points in the order of a direction that no wall and no row of windows has: few are side by side.
+class AlongOddDirection {
+ public:
+  explicit AlongOddDirection(const std::vector<Point3>& points) {
+    for (const Point3& p : points) sorted_.emplace_back(along(p), p);
+    std::sort(sorted_.begin(), sorted_.end());
+  }
+  /// m from a point to the nearest that is at most `reach` away in that direction; 1e300 without any.
+  double nearest(const Point3& p, double reach) const {
+    double out = 1e300;
+    for (auto i = std::lower_bound(sorted_.begin(), sorted_.end(), std::pair(along(p) - reach, Point3{-1e300, 0, 0}));
+         i != sorted_.end() && i->first <= along(p) + reach; ++i)
+      out = std::min(out, std::hypot(p.x - i->second.x, p.y - i->second.y, p.z - i->second.z));
+    return out;
+  }
+
+ private:
+  /// Of a vector no longer than 1, so that no two points are farther apart along it than they are.
+  static double along(const Point3& p) { return 0.628535 * p.x + 0.444334 * p.y + 0.638365 * p.z; }
+  std::vector<std::pair<double, Point3>> sorted_;
+};
+
+/// Distance from each point to the nearest of `others`; the largest of them.
 double farthest(const std::vector<Point3>& points, const std::vector<Point3>& others, double tolerance) {
+  const AlongOddDirection sorted(others);
   double worst = 0;
   for (const Point3& p : points) {
-    double nearest = 1e300;
-    const auto take = [&](double reach) {
-      auto i = std::lower_bound(others.begin(), others.end(), Point3{p.x - reach, -1e300, -1e300});
-      for (; i != others.end() && i->x <= p.x + reach; ++i)
-        nearest = std::min(nearest, std::hypot(p.x - i->x, p.y - i->y, p.z - i->z));
-    };
-    take(tolerance);
-    if (nearest > tolerance) take(1e9);  // how far off it is
+    double nearest = sorted.nearest(p, tolerance);
+    if (nearest > tolerance) nearest = sorted.nearest(p, 1e9);  // how far off it is
     worst = std::max(worst, nearest);
   }
   return worst;

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/model/vector.h"
 
 namespace blockrand::validate {
@@ -44,6 +45,18 @@ class Box {
     for (std::size_t i = 0; i < 3; ++i)
       if (const double v = dot(axis_[i], d); !(v >= low_[i] && v <= high_[i])) return false;
     return true;
+  }
+  geometry::PlanBox in_plan() const {
+    geometry::PlanBox out;
+    for (int corner = 0; corner < 8; ++corner) {
+      model::Point2 p = origin_.xy();
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double v = corner >> i & 1 ? high_[i] : low_[i];
+        p = {p.x + v * axis_[i].x, p.y + v * axis_[i].y};
+      }
+      out.include(p);
+    }
+    return out;
   }
 
  private:
@@ -158,13 +171,17 @@ void check_openings(const Glb& glb, const std::string& file, std::vector<Finding
     const ReadBody& body = glb.contents.bodies[row];
     if (!is_detailed(body)) continue;
     std::vector<Box> boxes;
-    for (const GlbPlace* place : places[row]) boxes.emplace_back(*place, glb.elements[place->element]);
+    std::vector<geometry::PlanBox> in_plan;
+    for (const GlbPlace* place : places[row])
+      in_plan.push_back(boxes.emplace_back(*place, glb.elements[place->element]).in_plan());
+    const geometry::BoxIndex index(std::move(in_plan));
     std::size_t open = 0;
     Point3 where;
-    for (const Point3& p : open_edges(glb.triangles[row]))
-      if (std::none_of(boxes.begin(), boxes.end(), [&](const Box& box) { return box.holds(p); })) {
-        if (open++ == 0) where = p;
-      }
+    for (const Point3& p : open_edges(glb.triangles[row])) {
+      const auto near = index.near({p.xy(), p.xy()}, kAround);
+      if (std::none_of(near.begin(), near.end(), [&](std::uint32_t i) { return boxes[i].holds(p); }) && open++ == 0)
+        where = p;
+    }
     if (open > 0)
       findings.push_back({Check::glb_rule, file, body.id,
                           fmt::format("its mesh is open at {} edges where no element stands, at {:.3f} {:.3f} {:.3f}",
@@ -205,6 +222,10 @@ void compare_places(const Side& reference, const Glb& glb, const std::string& gl
     std::vector<Placed> left;
     for (const GlbPlace* place : is) left.push_back(placed_at(*place));
     std::sort(left.begin(), left.end(), [](const Placed& a, const Placed& b) { return a.origin < b.origin; });
+    std::vector<geometry::PlanBox> origins;
+    for (const Placed& p : left) origins.push_back({p.origin.xy(), p.origin.xy()});
+    const geometry::BoxIndex index(std::move(origins));
+    std::vector<bool> taken(left.size(), false);
     const std::set<std::string> walls = wall_colours(body);
     // Each expected place takes the one that fits best of those that are left there.
     double worst = 0;
@@ -216,11 +237,11 @@ void compare_places(const Side& reference, const Glb& glb, const std::string& gl
       const auto element = reference.contents.elements.find(should[n].element);
       const ReadElement* wanted = element == reference.contents.elements.end() ? nullptr : &element->second;
       double nearest = 1e300;
-      auto best = left.end();
+      const Placed* best = nullptr;
       Fit best_fit;
-      for (auto i = std::lower_bound(left.begin(), left.end(), p.x - tolerance,
-                                     [](const Placed&q, double x) { return q.origin.x < x; });
-           i != left.end() && i->origin.x <= p.x + tolerance; ++i) {
+      for (const std::uint32_t candidate : index.near({p.xy(), p.xy()}, tolerance)) {
+        if (taken[candidate]) continue;
+        const Placed* const i = &left[candidate];
         const Point3 d{i->origin.x - p.x, i->origin.y - p.y, i->origin.z - p.z};
         const double off = std::sqrt(dot(d, d));
         nearest = std::min(nearest, off);
@@ -229,13 +250,13 @@ void compare_places(const Side& reference, const Glb& glb, const std::string& gl
         fit.turned = std::hypot(i->along.x - along.x, i->along.y - along.y) > kTurn;
         if (wanted && i->element < colours.size()) fit.compare(colours[i->element], wanted->colours, walls);
         fit.off = off;
-        if (best == left.end() || fit < best_fit) best = i, best_fit = fit;
+        if (!best || fit < best_fit) best = i, best_fit = fit;
       }
       worst = std::max(worst, nearest);
-      if (best == left.end()) continue;
+      if (!best) continue;
       turned = turned || best_fit.turned;
       if (strange.empty()) strange = best_fit.strange;
-      left.erase(best);
+      taken[static_cast<std::size_t>(best - left.data())] = true;
     }
     if (turned) differs(fmt::format("an element is turned otherwise than in {}", reference.file));
     if (!strange.empty())
