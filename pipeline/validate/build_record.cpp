@@ -74,6 +74,7 @@ class Reader {
     const std::string instancing = text(member(c, "instancing"));
     r_.baked = instancing == "baked";
     r_.single_objects = text(member(c, "objects")) == "building";
+    r_.people = text(member(c, "attributes")) == "people";
     r_.single_baked = r_.baked || (r_.single_objects && instancing != "nodes");
     r_.gzip = is_true(member(c, "gzip"));
     r_.single_glb = is_true(member(c, "single_glb"));
