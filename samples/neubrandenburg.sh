@@ -40,7 +40,7 @@ echo "neubrandenburg: building the town"
 cat <<TEXT
 
 To look at it:
-  * out/neubrandenburg/buildings.gpkg in QGIS: opens coloured, with every attribute and where it comes from
+  * out/neubrandenburg/buildings.qgz in QGIS: a coloured map, with every attribute and where it comes from
   * out/neubrandenburg/report.html in a browser: what was built, what was inferred, what fell back and why
   * 3D Tiles: serve the folder (cd out/neubrandenburg && python3 -m http.server) and load
     http://localhost:8000/tileset.json in CesiumJS or 3d-tiles-renderer

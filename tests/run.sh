@@ -29,13 +29,17 @@ cd "$root"
 build=build/release
 mkdir -p "$build"
 
-# Khronos' validator and a viewer of 3D Tiles, where the tests look for them. Without them they skip: say so, but test
-# the rest.
+# Khronos' validator and viewers of 3D Tiles, where the tests look for them; CesiumJS (130 MB) comes with --full alone.
+# Without them they skip: say so, but test the rest.
 if command -v npm >/dev/null 2>&1; then
-  if ! cmp -s tests/validators/package.json "$build/package.json" || [ ! -d "$build/node_modules" ]; then
+  omit=--omit=optional
+  [ $full = no ] || omit=
+  if ! cmp -s tests/validators/package.json "$build/package.json" || [ ! -d "$build/node_modules" ] ||
+    { [ $full = yes ] && [ ! -d "$build/node_modules/cesium" ]; }; then
     echo "tests: installing the npm packages of tests/validators/package.json into $build/node_modules"
     cp tests/validators/package.json "$build/package.json"
-    if ! (cd "$build" && npm install --no-audit --no-fund --loglevel=error); then
+    # shellcheck disable=SC2086 # none or one
+    if ! (cd "$build" && npm install --no-audit --no-fund --loglevel=error $omit); then
       rm -f "$build/package.json"
       echo "tests: WARNING: npm could not install them; the Khronos checks and 3d-tiles-renderer will be SKIPPED" >&2
     fi

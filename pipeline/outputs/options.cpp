@@ -52,6 +52,9 @@ const base::Choices<Instancing> kInstancings = {
 
 const base::Choices<Objects> kObjects = {{"building", Objects::building}, {"tile", Objects::tile}};
 
+const base::Choices<AttributeProfile> kProfiles = {{"people", AttributeProfile::people},
+                                                   {"all", AttributeProfile::all}};
+
 const base::Choices<Compression> kCompressions = {{"none", Compression::none}, {"meshopt", Compression::meshopt}};
 
 // Places in the record: build.json keeps the order of its first versions.
@@ -92,10 +95,19 @@ base::OptionTable<O> which_files() {
 
 base::OptionTable<O> what_files_hold() {
   return {
+      choice({.name = "attributes",
+              .key = "attributes",
+              .argument = "WHICH",
+              .help = "what GLBs tell of a building: people has rounded values in the order in which people read them, "
+                      "with their sources in one line; all has every value with its source and confidence, and the OSM "
+                      "tags, as the other formats and explain/ always do",
+              .after = "ground-height",
+              .record = OptionRecord::yes,
+              .record_place = 15},
+             kProfiles, &O::profile),
       flag({.name = "evidence",
             .key = "evidence",
             .help = "GLB, CityGML and CityJSON also say why each attribute has its value (explain/ always does)",
-            .after = "ground-height",
             .record = OptionRecord::yes,
             .record_place = 5},
            &O::evidence),

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/base/option_table.h"
+#include "pipeline/outputs/gltf/attribute_profile.h"
 #include "pipeline/outputs/gltf/compression.h"
 #include "pipeline/outputs/gltf/instance_writer.h"
 #include "pipeline/outputs/gltf/object_writer.h"
@@ -16,9 +17,10 @@ namespace blockrand::outputs {
 std::vector<std::string> format_names();
 
 struct OutputOptions {
-  std::vector<std::string> formats = format_names();  ///< in the order of format_names
-  Instancing instancing = Instancing::ext;            ///< how GLBs hold what stands in facades
-  Compression compression = Compression::none;        ///< of vertices, indices and places in GLBs
+  std::vector<std::string> formats = format_names();    ///< in the order of format_names
+  Instancing instancing = Instancing::ext;              ///< how GLBs hold what stands in facades
+  Compression compression = Compression::none;          ///< of vertices, indices and places in GLBs
+  AttributeProfile profile = AttributeProfile::people;  ///< what GLBs tell of a building
   bool evidence = false;                ///< GLB, CityGML and CityJSON also say why each attribute has its value
   bool gzip = false;                    ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
   bool single_glb = false;              ///< also model.glb: the whole build in one frame

@@ -19,6 +19,32 @@ const std::vector<std::string>& attribute_names() {
   return names;
 }
 
+const PeopleColumn* people_column(std::string_view name) {
+  static constexpr PeopleColumn kColumns[] = {{"use"},
+                                              {"ground_floor_use"},
+                                              {"construction_date"},
+                                              {"era"},
+                                              {"style"},
+                                              {"substyle"},
+                                              {"style_confidence", 0.01},
+                                              {"storeys", 0.1},
+                                              {"height", 0.1},
+                                              {"eaves_height", 0.1},
+                                              {"roof_storeys", 0.1},
+                                              {"roof_height", 0.1},
+                                              {"roof_pitch", 1},
+                                              {"roof_material"},
+                                              {"roof_colour"},
+                                              {"wall_material"},
+                                              {"wall_colour"},
+                                              {"built_roof"},
+                                              {"lod"},
+                                              {"fallbacks"}};
+  for (const PeopleColumn& column : kColumns)
+    if (column.name == name) return &column;
+  return nullptr;
+}
+
 bool is_source(std::string_view name) {
   for (int i = 0; i < model::kSourceCount; ++i)
     if (model::name(static_cast<model::Source>(i)) == name) return true;

@@ -11,6 +11,14 @@ namespace blockrand::validate {
 /// In the order of model::for_each_attribute.
 const std::vector<std::string>& attribute_names();
 
+/// A column of property tables with the attribute profile `people`.
+struct PeopleColumn {
+  std::string_view name;
+  double step = 0;  ///< what numbers are rounded to; 0 for texts
+};
+/// Nothing where the profile leaves the attribute out. \param name  of an attribute, or "style_confidence"
+const PeopleColumn* people_column(std::string_view name);
+
 /// "tag", "implied" …
 bool is_source(std::string_view name);
 

@@ -74,6 +74,7 @@ class Reader {
     const std::string instancing = text(member(c, "instancing"));
     r_.baked = instancing == "baked";
     r_.single_objects = text(member(c, "objects")) == "building";
+    r_.people = text(member(c, "attributes")) == "people";
     r_.single_baked = r_.baked || (r_.single_objects && instancing != "nodes");
     r_.gzip = is_true(member(c, "gzip"));
     r_.single_glb = is_true(member(c, "single_glb"));
@@ -183,6 +184,7 @@ std::vector<std::string> check_file_list(const std::string& folder, const BuildR
   agree(record.has("citygml"), any("citygml/", record.gzip ? ".gml.gz" : ".gml"), "citygml/");
   agree(record.has("cityjson"), any("cityjson/", record.gzip ? ".city.jsonl.gz" : ".city.jsonl"), "cityjson/");
   agree(record.has("gpkg"), record.files.count("buildings.gpkg") > 0, "buildings.gpkg");
+  agree(record.has("gpkg"), record.files.count("buildings.qgz") > 0, "buildings.qgz");
   agree(record.single_glb, record.files.count("model.glb") > 0, "model.glb");
   agree(record.single_cityjson, record.files.count("model.city.json") > 0, "model.city.json");
   agree(record.report, record.files.count("report.html") > 0, "report.html");

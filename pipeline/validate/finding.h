@@ -38,6 +38,7 @@ namespace blockrand::validate {
   X(citygml_schema, "CITYGML_SCHEMA", "a CityGML file does not validate against the OGC schemas")               \
   X(cityjson_rule, "CITYJSON_RULE", "a CityJSON file breaks a rule of the specification")                       \
   X(geopackage_rule, "GEOPACKAGE_RULE", "the GeoPackage breaks a rule of the standard")                         \
+  X(qgis_project, "QGIS_PROJECT", "the QGIS project names what the GeoPackage does not have")                   \
   X(explanation_wrong, "EXPLANATION_WRONG", "an explanation is missing, unreadable or contradicts the model")   \
   X(report_wrong, "REPORT_WRONG", "report.html or report.json contradict the model")
 

@@ -288,7 +288,17 @@ void compare_objects(const Side& a, const Side& b, std::vector<Finding>& finding
   missing(b, a);
 }
 
-void compare_attributes(const Side& a, const Side& b, bool rounded_confidence, std::vector<Finding>& findings) {
+/// Half a step of what `name` is rounded to.
+double tolerance_of(const std::string& name, Precision precision) {
+  if (precision == Precision::people) {
+    const PeopleColumn* const column = people_column(name);
+    return column ? column->step / 2 + 1e-9 : 0;
+  }
+  // Shortest texts of the same float and double differ; half a step of 1/255 is lost in a property table.
+  return !name.ends_with("_confidence") ? 0 : precision == Precision::table ? 0.51 / 255 : 1e-7;
+}
+
+void compare_attributes(const Side& a, const Side& b, Precision precision, std::vector<Finding>& findings) {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
     for (const std::string& name : attribute_names()) {
@@ -313,11 +323,12 @@ void compare_attributes(const Side& a, const Side& b, bool rounded_confidence, s
       const bool confidence = name.ends_with("_confidence");
       if (p && q) {
         if (*p == *q) continue;
-        // Shortest texts of the same float and double differ; half a step of 1/255 is lost in a property table.
-        if (confidence && std::fabs(to_number(*p) - to_number(*q)) <= (rounded_confidence ? 0.51 / 255 : 1e-7))
-          continue;
+        const double tolerance = tolerance_of(name, precision);
+        if (tolerance > 0 && std::fabs(to_number(*p) - to_number(*q)) <= tolerance) continue;
         differs(name, fmt::format("{} against {}", *p, *q));
       } else if ((p || q) && !confidence && name != "fallbacks") {
+        const bool left_out = precision == Precision::people && !name.ends_with("_source") && !people_column(name);
+        if (left_out) continue;
         // A format that says nothing of an attribute at all says nothing of its source either.
         const bool about_source = name.ends_with("_source");
         if (about_source && (!find(x, name.substr(0, name.size() - 7)) || !find(y, name.substr(0, name.size() - 7))))
@@ -328,7 +339,14 @@ void compare_attributes(const Side& a, const Side& b, bool rounded_confidence, s
   }
 }
 
-void check_sources(const Side& side, std::vector<Finding>& findings) {
+void check_sources(const Side& side, bool people, std::vector<Finding>& findings) {
+  for (const ReadBody& body : side.contents.bodies)
+    if ((find(body, "sources") != nullptr) != people) {
+      findings.push_back({Check::metadata_rule, side.file, body.id,
+                          people ? "has no column `sources`, though build.json has the attributes for people"
+                                 : "has a column `sources`, though build.json has all attributes"});
+      return;
+    }
   for (const ReadBody& body : side.contents.bodies) {
     const auto wrong = [&](std::string what) {
       findings.push_back({Check::source_wrong, side.file, body.id, std::move(what)});
@@ -338,7 +356,7 @@ void check_sources(const Side& side, std::vector<Finding>& findings) {
                         *confidence = find(body, name + "_confidence");
       if (value && !source) wrong(name + " without a source");
       if (source && !is_source(*source)) wrong(fmt::format("{} from \"{}\"", name, *source));
-      if (value && !confidence) wrong(name + " without a confidence");
+      if (value && !confidence && (!people || name == "style")) wrong(name + " without a confidence");
       if (confidence && !(to_number(*confidence) >= 0 && to_number(*confidence) <= 1))
         wrong(fmt::format("confidence of {} is {}", name, *confidence));
     }

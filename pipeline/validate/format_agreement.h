@@ -26,12 +26,20 @@ void find_doubles(const Side& side, std::vector<Finding>& findings);
 /// OBJECT_MISSING for each building or body that only one side has.
 void compare_objects(const Side& a, const Side& b, std::vector<Finding>& findings);
 
-/// ATTRIBUTE_DIFFERS for attributes of bodies that both sides have. `<name>_confidence` may differ by half a step of
-/// 1/255 where `rounded_confidence`: property tables store it so.
-void compare_attributes(const Side& a, const Side& b, bool rounded_confidence, std::vector<Finding>& findings);
+/// How the less exact one of two sides says its values.
+enum class Precision : std::uint8_t {
+  exact,
+  table,  ///< a property table: confidences in steps of 1/255
+  people  ///< a property table with the profile `people`: fewer attributes, rounded (people_column)
+};
 
-/// SOURCE_WRONG where a value has no source, or one that does not exist, or no confidence in [0, 1].
-void check_sources(const Side& side, std::vector<Finding>& findings);
+/// ATTRIBUTE_DIFFERS for attributes of bodies that both sides have, beyond what rounding explains.
+void compare_attributes(const Side& a, const Side& b, Precision precision, std::vector<Finding>& findings);
+
+/// SOURCE_WRONG where a value has no source, or one that does not exist, or no confidence in [0, 1]; METADATA_RULE where a
+/// table is not one of its profile.
+/// \param people  the side has the profile `people`: of confidences that of the style alone
+void check_sources(const Side& side, bool people, std::vector<Finding>& findings);
 
 /// Exactly the same polygons on the grid, in any order, with any first point: GEOMETRY_DIFFERS, COLOUR_DIFFERS.
 void compare_polygons(const Side& a, const Side& b, std::vector<Finding>& findings);

@@ -304,6 +304,15 @@ std::vector<GeoPackageTileRow> GeoPackageReader::tile_rows() {
   return out;
 }
 
+std::map<std::string, std::set<std::string>, std::less<>> GeoPackageReader::columns() {
+  const std::lock_guard lock(state_->reading);
+  std::map<std::string, std::set<std::string>, std::less<>> out;
+  for (const GeoPackageLayer& layer : kGeoPackageLayers)
+    state_->db.each("SELECT name FROM pragma_table_info(?)",
+                    [&](const SqliteRow& row) { out[std::string(layer.table)].insert(row.string(0)); }, {layer.table});
+  return out;
+}
+
 RepairsSaid GeoPackageReader::repairs() {
   const std::lock_guard lock(state_->reading);
   RepairsSaid said;

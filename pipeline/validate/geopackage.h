@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -71,6 +73,8 @@ class GeoPackageReader {
   /// The rows of one of tiles().
   GeoPackageTileRows rows(const std::string& tile);
   std::vector<GeoPackageReportedRow> reported();
+  /// Columns of the layers, by table.
+  std::map<std::string, std::set<std::string>, std::less<>> columns();
   std::vector<GeoPackageTileRow> tile_rows();
   /// What the layer `buildings` says of repair.
   RepairsSaid repairs();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "pipeline/base/option.h"
 #include "pipeline/base/text.h"
 #include "pipeline/validate/ids.h"
 
@@ -302,6 +303,21 @@ class Table {
           const auto parsed = parse_json(found->second);
           if (!parsed || !parsed->is_object()) wrong(where, fmt::format("{} is no JSON object", name));
         }
+      if (const auto sources = row.find("sources"); sources != row.end()) read_sources(row, sources->second, where);
+    }
+  }
+
+  /// "tag: use, storeys; default: height" as `use_source` and so on.
+  void read_sources(TableRow& row, const std::string& text, const std::string& where) {
+    for (const std::string& group : base::split(text, ';')) {
+      const std::size_t colon = group.find(':');
+      if (colon == std::string::npos)
+        return wrong(where, fmt::format("sources: \"{}\" is no source with its columns", group));
+      for (const std::string& name : base::split(std::string_view(group).substr(colon + 1), ','))
+        if (!identifier(name))
+          wrong(where, fmt::format("sources: \"{}\" is no column", name));
+        else if (!row.emplace(name + "_source", group.substr(0, colon)).second)
+          wrong(where, fmt::format("sources: {} has two", name));
     }
   }
 

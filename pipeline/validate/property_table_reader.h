@@ -15,7 +15,8 @@ using TableRow = std::map<std::string, std::string>;
 
 /// Reads the first property table and checks the extension's rules: identifiers, schema, enums, types, lengths,
 /// offsets, alignment, UTF-8, noData; and what Blockrand promises of its class: unique ids that belong to their
-/// building, JSON objects where JSON is promised. Breaches are noted as METADATA_RULE.
+/// building, JSON objects where JSON is promised. What the column `sources` of the attribute profile `people` groups stands
+/// in the rows as `<column>_source` as well. Breaches are noted as METADATA_RULE.
 /// \return the rows as far as they could be read
 std::vector<TableRow> read_property_table(const GlbContainer& glb);
 

@@ -65,7 +65,7 @@ class Checker {
                                  : "has no objects of houses, though the build asked for them");
       tile_.transform = tile_.glb->georeference.local_to_ecef;
       find_doubles({tile_.glb->contents, files_.path[kGltf]}, out_.findings);
-      check_sources({tile_.glb->contents, files_.path[kGltf]}, out_.findings);
+      check_sources({tile_.glb->contents, files_.path[kGltf]}, context_.record.people, out_.findings);
       validate_meshes();
       check_positions();
       count();
@@ -76,6 +76,11 @@ class Checker {
  private:
   void found(Check check, const std::string& file, std::string object, std::string what) {
     out_.findings.push_back({check, file, std::move(object), std::move(what)});
+  }
+
+  /// Of the values in a format.
+  Precision precision(std::size_t format) const {
+    return format != kGltf ? Precision::exact : context_.record.people ? Precision::people : Precision::table;
   }
 
   void take(std::vector<Finding>& findings) {
@@ -128,7 +133,7 @@ class Checker {
       if (!glb.places.empty()) found(Check::glb_rule, path, "", "places elements, which no coarser level has");
       const Side level{glb.contents, path};
       compare_objects(finest, level, out_.findings);
-      compare_attributes(finest, level, true, out_.findings);
+      compare_attributes(finest, level, precision(kGltf), out_.findings);
       validate_meshes(glb, path, lod);
       compare_level(glb, path, lod);
     }
@@ -265,7 +270,7 @@ class Checker {
         there.push_back(f);
         find_doubles({*tile_.of(f), files_.path[f]}, out_.findings);
       }
-    if (tile_.glb) check_sources({tile_.glb->contents, files_.path[kGltf]}, out_.findings);
+    if (tile_.glb) check_sources({tile_.glb->contents, files_.path[kGltf]}, context_.record.people, out_.findings);
     for (const std::size_t f : {kCityGml, kCityJson})
       if (tile_.of(f)) check_ground(*tile_.of(f), files_.path[f]);
     if (there.empty()) return;
@@ -275,7 +280,7 @@ class Checker {
       if (f == reference) continue;
       const Side other{*tile_.of(f), files_.path[f]};
       compare_objects(first, other, out_.findings);
-      compare_attributes(first, other, f == kGltf, out_.findings);
+      compare_attributes(first, other, precision(f), out_.findings);
       out_.compared += other.contents.bodies.size();
       if (f == kCityJson) {
         compare_polygons(first, other, out_.findings);
@@ -366,7 +371,7 @@ class Checker {
     shown.bodies = std::move(rows.contents.bodies);
     const Side first{*reference, files_.path[format]}, other{shown, file};
     compare_objects(first, other, out_.findings);
-    compare_attributes(first, other, format == kGltf, out_.findings);
+    compare_attributes(first, other, precision(format), out_.findings);
     out_.compared += shown.bodies.size();
     if (format == kGltf) return;
     Contents flat;  // the layer has footprints without heights

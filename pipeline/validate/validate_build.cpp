@@ -19,6 +19,7 @@
 #include "pipeline/validate/bytes_of_file.h"
 #include "pipeline/validate/cityjson_reader.h"
 #include "pipeline/validate/formats.h"
+#include "pipeline/validate/qgis_project.h"
 #include "pipeline/validate/report_check.h"
 #include "pipeline/validate/tile_check.h"
 
@@ -122,9 +123,22 @@ class Run {
         geopackage_.reset();
       } else {
         check_geopackage();
+        check_qgis_project();
       }
     }
     if (report_) checked("report.json", "objects and issues against build.json", report_->objects, "objects");
+  }
+
+  void check_qgis_project() {
+    constexpr const char* kProject = "buildings.qgz";
+    if (!record_.files.count(kProject) || !fs::exists(full(kProject))) return;
+    std::string why = "cannot be read";
+    const auto bytes = file_bytes(full(kProject));
+    const auto project = bytes ? qgs_of(*bytes, why) : std::nullopt;
+    if (!project) return log().add(Check::file_unreadable, kProject, "", why);
+    const std::size_t layers =
+        validate::check_qgis_project(*project, kProject, "buildings.gpkg", geopackage_->columns(), record_.crs, log());
+    checked("QGIS project", "layers, columns and reference system against buildings.gpkg", layers, "layers");
   }
 
   void check_geopackage() {

@@ -94,6 +94,16 @@ class Glb:
         start = values.get('byteOffset', 0)
         return [self.bin[start + a:start + b].decode('utf-8') for a, b in zip(ends, ends[1:])]
 
+    def columns(self):
+        """Names of the columns of the property table, in the order of the file."""
+        return self.json['extensions']['EXT_structural_metadata']['propertyTables'][0]['properties']
+
+    def numbers(self, name):
+        """A column of FLOAT64 of the property table."""
+        table = self.json['extensions']['EXT_structural_metadata']['propertyTables'][0]
+        view = self.json['bufferViews'][table['properties'][name]['values']]
+        return struct.unpack_from(f'<{table["count"]}d', self.bin, view.get('byteOffset', 0))
+
     def placed_meshes(self):
         """(node, where its origin lies, the mesh) of every node with a mesh, from the scene's roots down. Nodes that turn or
         scale are none of those that are asked for here."""

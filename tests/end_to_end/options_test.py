@@ -80,6 +80,32 @@ class Options(BuildTest):
         self.assertIn('local_to_ecef', whole.json['asset']['extras']['georeference'])
         self.same_files(out, self.plain, 'tiles', 'tileset.json', 'citygml')
 
+    def test_attributes(self):
+        """With all attributes only the property tables differ; what people see is a part of it, rounded."""
+        everything = self.build(SAMPLE, 'attributes', '--attributes', 'all', '--single-glb')
+        self.valid(everything)
+        self.same_files(everything, self.plain, 'tileset.json', 'citygml', 'cityjson', 'buildings.qgz')
+        rounding = {'height': 10, 'eaves_height': 10, 'roof_height': 10, 'storeys': 10, 'roof_pitch': 1}
+        for (_, path), (_, plain) in zip(tile_contents(everything), tile_contents(self.plain)):
+            whole, people = Glb(path), Glb(plain)
+            columns = list(people.columns())
+            self.assertEqual(columns[0], 'address')
+            self.assertEqual(columns[-4:], ['sources', 'lod', 'id', 'building'] if 'fallbacks' not in columns
+                             else ['fallbacks', 'lod', 'id', 'building'])
+            self.assertLess(columns.index('style'), columns.index('storeys'))
+            self.assertEqual(list(whole.columns()), sorted(whole.columns()))
+            self.assertLessEqual({'tags', 'height_source', 'height_confidence', 'osm_id'}, set(whole.columns()))
+            self.assertEqual({c for c in columns if c.endswith('_source')} | ({'tags'} & set(columns)), set())
+            for name in ('address', 'use', 'style', 'wall_colour', 'id', 'building'):
+                if name in columns:
+                    self.assertEqual(people.texts(name), whole.texts(name), name)
+            for name, steps in rounding.items():
+                self.assertEqual(list(people.numbers(name)), [round(v * steps) / steps for v in whole.numbers(name)], name)
+            for text in people.texts('sources'):
+                self.assertRegex(text, r'^(\w+: \w+(, \w+)*)(; \w+: \w+(, \w+)*)*$')
+        self.assertEqual(list(Glb(os.path.join(everything, 'model.glb')).columns())[0], 'address')
+        self.assertIn('tags', Glb(os.path.join(everything, 'model.glb')).columns())
+
     # ---- where
 
     def test_bbox(self):

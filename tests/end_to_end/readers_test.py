@@ -1,11 +1,18 @@
-"""GDAL and QGIS open CityGML and GeoPackage of a build as they come, without an option: every building has a geometry, every
-value its name. docs/reading_the_results.md tells people what this holds."""
+"""GDAL and QGIS open CityGML, GeoPackage and QGIS project of a build as they come, without an option: every building has a
+geometry, every value its name, every layer its place. docs/reading_the_results.md tells people what this holds.
+
+    readers_test.py [--pictures FOLDER]    keeps the pictures of the project there
+"""
 import json
 import os
 import shutil
+import sqlite3
+import sys
+import zipfile
 
-from blockrand_run import SAMPLE, BuildTest, blockrand, call, main, read_json
+from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, call, main, read_json, sha256
 from geopackage_test import python_with
+from importers_test import colours_of_png
 from model_files import NAMES, GML_ID, attributes, buildings, citygml_trees, points
 
 GDAL = """
@@ -41,11 +48,61 @@ print(json.dumps(seen))
 """
 
 
+# Opens a project as QGIS does and draws what it shows first, then each layer of the panel alone.
+QGIS_PROJECT = """
+import json, os, sys
+from qgis.core import QgsApplication, QgsMapRendererSequentialJob, QgsMapSettings, QgsProject
+from qgis.PyQt.QtCore import QSize
+from qgis.PyQt.QtGui import QColor
+from qgis.PyQt.QtXml import QDomDocument
+app = QgsApplication([], False)
+app.initQgis()
+path, pictures = sys.argv[1:]
+project, canvas = QgsProject.instance(), QgsMapSettings()
+def read_canvas(document):
+    canvas.readXml(document.elementsByTagName('mapcanvas').at(0))
+project.readProject.connect(read_canvas)
+assert project.read(path), project.error()
+def draw(layers, extent, name):
+    settings = QgsMapSettings()
+    settings.setLayers(layers)
+    settings.setDestinationCrs(project.crs())
+    settings.setExtent(extent)
+    settings.setOutputSize(QSize(900, 700))
+    settings.setBackgroundColor(QColor('white'))
+    job = QgsMapRendererSequentialJob(settings)
+    job.start()
+    job.waitForFinished()
+    assert not job.errors(), [e.message for e in job.errors()]
+    assert job.renderedImage().save(os.path.join(pictures, name + '.png'))
+root = project.layerTreeRoot()
+seen = {'crs': project.crs().authid(), 'canvas_crs': canvas.destinationCrs().authid(),
+        'extent': [getattr(canvas.extent(), f)() for f in ('xMinimum', 'yMinimum', 'xMaximum', 'yMaximum')],
+        'title': project.title(), 'about': project.metadata().abstract(), 'layers': []}
+for node in root.findLayers():
+    layer = node.layer()
+    seen['layers'].append({
+        'id': layer.id(), 'name': node.name(), 'shown': node.isVisible(), 'valid': layer.isValid(), 'rows': layer.featureCount(),
+        'crs': layer.crs().authid(), 'table': layer.source().split('layername=')[1], 'path': layer.source().split('|')[0],
+        'labels': bool(layer.labelsEnabled() and layer.labeling()), 'classes': len(layer.renderer().legendSymbolItems())})
+    draw([layer], canvas.extent(), layer.id())
+draw([n.layer() for n in root.findLayers() if n.isVisible()], canvas.extent(), 'project')
+# What a planner does next: tick another layer.
+node = root.findLayer('blocks_floor_area_ratio')
+node.setItemVisibilityChecked(True)
+seen['ticked'] = node.isVisible()
+print(json.dumps(seen))
+"""
+
+
 def highest_solid(element):
     """(lod, element) of the solid that GDAL shows: the last one, of the last part where there are several."""
     solids = [(lod, s) for body in [element, *element.iterfind('.//bldg:BuildingPart', NAMES)] for lod in (1, 2, 3)
               for s in body.iterfind(f'bldg:lod{lod}Solid', NAMES)]
     return solids[-1] if solids else (0, None)
+
+
+PICTURES = None  # folder that keeps the pictures
 
 
 class Readers(BuildTest):
@@ -104,6 +161,105 @@ class Readers(BuildTest):
             self.assertEqual(set(seen), set(ours))
             self.assertEqual([i for i, faces in seen.items() if faces == 0], [])
 
+    def project_seen(self, folder):
+        """What QGIS says of the project of a build, and the folder with its pictures. The build stays as it is."""
+        python = python_with('qgis.core')
+        if not python:
+            self.skipTest('qgis.core is absent (Debian: python3-qgis)')
+        copy = self.path('project_opened')  # QGIS writes its journal beside
+        shutil.rmtree(copy, ignore_errors=True)
+        os.makedirs(copy)
+        for name in ('buildings.gpkg', 'buildings.qgz'):
+            shutil.copy(os.path.join(folder, name), copy)
+        pictures = PICTURES or self.path('pictures')
+        os.makedirs(pictures, exist_ok=True)
+        run = call([python, '-c', QGIS_PROJECT, os.path.join(copy, 'buildings.qgz'), pictures],
+                   env={'QT_QPA_PLATFORM': 'offscreen', 'HOME': self.folder})
+        self.assertEqual(run.code, 0, run)
+        return json.loads(run.out.splitlines()[-1]), pictures, copy
+
+    def test_qgis_opens_the_project(self):
+        seen, pictures, copy = self.project_seen(self.lod2)
+        build = read_json(self.lod2, 'build.json')
+        self.assertEqual((seen['crs'], seen['canvas_crs']), (build['crs']['code'], build['crs']['code']))
+        self.assertIn('OpenStreetMap contributors', seen['about'])
+        db = sqlite3.connect(os.path.join(self.lod2, 'buildings.gpkg'))
+        tables = [t for t, in db.execute("SELECT table_name FROM gpkg_contents WHERE data_type = 'features'")]
+        rows = {t: db.execute(f'SELECT count(*) FROM "{t}"').fetchone()[0] for t in tables}
+        styles = db.execute('SELECT count(*) FROM layer_styles').fetchone()[0]
+        box = db.execute("SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'buildings'").fetchone()
+        db.close()
+        self.assertEqual(rows['buildings'], build['counts']['buildings'])
+        self.assertEqual({layer['table'] for layer in seen['layers']}, set(tables), 'each table is shown')
+        self.assertEqual(len(seen['layers']), styles, 'each style is a layer')
+        for layer in seen['layers']:
+            with self.subTest(layer=layer['id']):
+                self.assertTrue(layer['valid'])
+                self.assertEqual(layer['rows'], rows[layer['table']])
+                self.assertEqual(layer['crs'], build['crs']['code'])
+                self.assertEqual(os.path.realpath(layer['path']), os.path.realpath(os.path.join(copy, 'buildings.gpkg')))
+                self.assertEqual(layer['labels'], layer['table'] in ('buildings', 'tiles'))
+                self.assertGreater(layer['classes'], 0 if layer['table'] == 'tiles' else 2)
+                colours, drawn = colours_of_png(os.path.join(pictures, layer['id'] + '.png'))
+                self.assertGreater(drawn, 0, 'nothing is drawn')
+                self.assertGreaterEqual(colours, 2)
+        self.assertEqual([layer['id'] for layer in seen['layers'] if layer['shown']], ['buildings_storeys'])
+        self.assertTrue(seen['ticked'], 'a layer that is ticked is shown at once')
+        # What is shown first is the buildings, all of them and little else.
+        west, south, east, north = seen['extent']
+        self.assertTrue(west < box[0] < box[2] < east and south < box[1] < box[3] < north, seen['extent'])
+        self.assertLess(max(east - west, north - south), 1.2 * max(box[2] - box[0], box[3] - box[1]))
+        colours, drawn = colours_of_png(os.path.join(pictures, 'project.png'))
+        self.assertTrue(0.1 < drawn < 0.9, drawn)
+        self.assertGreater(colours, 6)
+
+    def test_the_project_is_the_same_every_time(self):
+        with zipfile.ZipFile(os.path.join(self.lod2, 'buildings.qgz')) as project:
+            (member,) = project.infolist()
+            self.assertEqual((member.filename, member.date_time), ('buildings.qgs', (1980, 1, 1, 0, 0, 0)))
+            self.assertIsNone(project.testzip())
+        again = self.build(SAMPLE, 'again', '--formats', 'gpkg', '--no-report', '--no-explain', '--jobs', '1')
+        self.assertEqual(sha256(os.path.join(again, 'buildings.qgz')), sha256(os.path.join(self.lod2, 'buildings.qgz')))
+        self.assertEqual(read_json(again, 'build.json')['files']['buildings.qgz'],
+                         read_json(self.lod2, 'build.json')['files']['buildings.qgz'])
+        self.assertFalse(os.path.exists(os.path.join(self.lod3, 'buildings.qgz')), '--formats without gpkg')
+
+    def test_the_template_is_what_its_script_writes(self):
+        python = python_with('qgis.core')
+        if not python:
+            self.skipTest('qgis.core is absent (Debian: python3-qgis)')
+        room = os.path.join(SOURCE, 'pipeline', 'outputs', 'geopackage')
+        with open(os.path.join(room, 'qgis_project.qgs'), encoding='utf-8') as f:
+            template = f.read()
+        copy = self.path('for_the_template')
+        os.makedirs(copy)
+        shutil.copy(os.path.join(self.lod2, 'buildings.gpkg'), copy)
+        written = os.path.join(copy, 'written.qgs')
+        run = call([python, os.path.join(room, 'qgis_project.py'), os.path.join(copy, 'buildings.gpkg'), written],
+                   env={'QT_QPA_PLATFORM': 'offscreen', 'HOME': self.folder})
+        self.assertEqual(run.code, 0, run)
+        with open(written, encoding='utf-8') as f:
+            now = f.read()
+        version = template.partition('version="')[2].partition('"')[0]
+        if f'version="{version}"' not in now:
+            self.skipTest(f'the template was written by QGIS {version}')
+        self.assertEqual(now, template, 'run pipeline/outputs/geopackage/qgis_project.py and commit its file')
+
+    def test_damage_of_the_project_is_found(self):
+        for name, change in (('renamed', lambda text: text.replace(b'layername=blocks', b'layername=quarters')),
+                             ('elsewhere', lambda text: text.replace(b'EPSG:25832', b'EPSG:25833'))):
+            with self.subTest(name):
+                copy = self.path(name)
+                shutil.copytree(self.lod2, copy)
+                with zipfile.ZipFile(os.path.join(copy, 'buildings.qgz')) as project:
+                    text = project.read('buildings.qgs')
+                with zipfile.ZipFile(os.path.join(copy, 'buildings.qgz'), 'w', zipfile.ZIP_DEFLATED) as project:
+                    project.writestr('buildings.qgs', change(text))
+                run = blockrand('validate', copy, '--progress', 'none', '--json')
+                self.assertEqual(run.code, 2, run)
+                codes = {f['code'] for f in json.loads(run.out)['findings']}
+                self.assertEqual(codes, {'QGIS_PROJECT', 'FILE_CHANGED'})
+
     def test_no_face_is_written_twice(self):
         for folder in (self.lod2, self.lod3):
             for _, root in citygml_trees(folder):
@@ -157,4 +313,10 @@ class Readers(BuildTest):
 
 
 if __name__ == '__main__':
-    main()
+    arguments = sys.argv[1:]
+    if '--pictures' in arguments:
+        at = arguments.index('--pictures')
+        PICTURES = os.path.abspath(arguments[at + 1])
+        os.makedirs(PICTURES, exist_ok=True)
+        del arguments[at:at + 2]
+    main(arguments)

@@ -35,6 +35,37 @@ class Validated(BuildTest):
         return result
 
 
+class AllAttributes(Validated):
+    """The property tables of --attributes all."""
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.out = cls().build(SAMPLE, 'out', '--formats', 'gltf,gpkg', '--attributes', 'all', '--single-glb', '--no-report')
+
+    def damage(self, change, *codes):
+        d = Damaged(self.out, self.path('damaged'))
+        d.change_glb(change)
+        d.seal()
+        found = {f['code'] for f in self.validate(d.folder)['findings']}
+        shutil.rmtree(d.folder)
+        self.assertEqual(found, set(codes))
+
+    def test_it_is_sound(self):
+        self.sound(self.out)
+
+    def test_damages_are_found(self):
+        def enum(j, b):
+            b[column_start(j, 'height_source')] = 99
+
+        def height(j, b):
+            at = column_start(j, 'height')
+            struct.pack_into('<d', b, at, struct.unpack_from('<d', b, at)[0] + 0.001)
+        for change, codes in ((enum, 'METADATA_RULE SOURCE_WRONG ATTRIBUTE_DIFFERS COUNTS_DIFFER'),
+                              (height, 'ATTRIBUTE_DIFFERS EXPLANATION_WRONG')):
+            with self.subTest(change.__name__):
+                self.damage(change, *codes.split())
+
+
 class Damages(Validated):
     @classmethod
     def setUpClass(cls):
@@ -317,14 +348,38 @@ class Damages(Validated):
 
     def test_an_enum_value_that_does_not_exist(self):
         def change(j, b):
-            b[column_start(j, 'height_source')] = 99
-        self.found_in_glb(change, 'METADATA_RULE SOURCE_WRONG ATTRIBUTE_DIFFERS', 'not in the enum')
+            b[column_start(j, 'built_roof')] = 99
+        self.found_in_glb(change, 'METADATA_RULE ATTRIBUTE_DIFFERS', 'not in the enum')
 
     def test_an_attribute_of_one_format(self):
+        for off in (0.25, 0.1):
+            def change(j, b):
+                at = column_start(j, 'height')
+                struct.pack_into('<d', b, at, struct.unpack_from('<d', b, at)[0] + off)
+            self.found_in_glb(change, 'ATTRIBUTE_DIFFERS', 'height')
+
+    def test_a_source_of_one_format(self):
         def change(j, b):
-            at = column_start(j, 'height')
-            struct.pack_into('<d', b, at, struct.unpack_from('<d', b, at)[0] + 0.25)
-        self.found_in_glb(change, 'ATTRIBUTE_DIFFERS', 'height')
+            start = column_start(j, 'sources')
+            at = b.index(b'tag: ', start)
+            b[at:at + 3] = b'tax'
+        self.found_in_glb(change, 'SOURCE_WRONG ATTRIBUTE_DIFFERS', 'from "tax"')
+
+    def test_sources_that_cannot_be_read(self):
+        def change(j, b):
+            start = column_start(j, 'sources')
+            at = b.index(b'tag: ', start)
+            b[at:at + 5] = b'tag, '
+        self.found_in_glb(change, 'METADATA_RULE SOURCE_WRONG ATTRIBUTE_DIFFERS', 'is no source with its columns')
+
+    def test_another_profile_than_asked(self):
+        d = self.damaged()
+        build = read_json(d.folder, 'build.json')
+        self.assertEqual(build['configuration']['attributes'], 'people')
+        build['configuration']['attributes'] = 'all'
+        with open(d.path('build.json'), 'w', encoding='utf-8') as f:
+            json.dump(build, f)
+        self.assertIn('METADATA_RULE', {f['code'] for f in self.validate_sealed(d)['findings']})
 
     def test_two_rows_with_one_id(self):
         def change(j, b):

@@ -1,6 +1,6 @@
 """Seen by others: programs that share no code with ours open what a build wrote, and find everything in its place.
 
-    3D Tiles     NASA's 3d-tiles-renderer in headless Chromium
+    3D Tiles     NASA's 3d-tiles-renderer and CesiumJS in headless Chromium
     GLB          assimp
     CityGML      libcitygml: Debian's citygmltest, and a program of our own around the library
 
@@ -10,6 +10,7 @@ import json
 import os
 import re
 import shutil
+import sqlite3
 import statistics
 import sys
 import unittest
@@ -68,6 +69,21 @@ def boxes_by_osmium(source):
 
 # ---- 3D Tiles
 
+def look(test, folder, picture, viewer):
+    """What a viewer in the browser saw of a build."""
+    tool = shutil.which('node') or shutil.which('nodejs')
+    if not tool:
+        test.skipTest('node is not installed')
+    if not Setup.node_modules:
+        test.skipTest('no node_modules: npm install with tests/validators/package.json')
+    run = call([tool, os.path.join(validators.VALIDATORS, 'tiles_viewer.mjs'), os.path.abspath(folder),
+                os.path.abspath(Setup.node_modules), picture, viewer], timeout=850)
+    if run.code == 77:
+        test.skipTest(run.err.strip())
+    test.assertEqual(run.code, 0, run)
+    return json.loads(run.out)
+
+
 class InBrowser:
     """A tileset in the browser; one class per extract below."""
     ground = None    # --ground-height of the build
@@ -91,18 +107,7 @@ class InBrowser:
         cls.seen = cls().look(cls.out, PICTURES and os.path.join(PICTURES, cls.__name__ + '.png'))
 
     def look(self, folder, picture=None):
-        """What the viewer saw."""
-        tool = shutil.which('node') or shutil.which('nodejs')
-        if not tool:
-            self.skipTest('node is not installed')
-        if not Setup.node_modules:
-            self.skipTest('no node_modules: npm install with tests/validators/package.json')
-        run = call([tool, os.path.join(validators.VALIDATORS, 'tiles_viewer.mjs'), os.path.abspath(folder),
-                    os.path.abspath(Setup.node_modules), picture or self.path('picture.png')], timeout=850)
-        if run.code == 77:
-            self.skipTest(run.err.strip())
-        self.assertEqual(run.code, 0, run)
-        return json.loads(run.out)
+        return look(self, folder, picture or self.path('picture.png'), 'three')
 
     def test_everything_is_loaded(self):
         contents = [Glb(path) for _, path in tile_contents(self.out)]
@@ -231,6 +236,89 @@ class BerlinInBrowser(InBrowser, BuildTest):
         return boxes_by_osmium(cls.source())
 
 
+class InCesium(BuildTest):
+    """The sample in CesiumJS, without globe, imagery and network."""
+    options = ()
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        test = cls()
+        cls.out = test.build(SAMPLE, 'out', '--formats', 'gltf,gpkg', '--no-report', '--no-explain', '--ground-height', '150',
+                             *cls.options)
+        cls.seen = look(test, cls.out, os.path.join(PICTURES or cls.folder, cls.__name__ + '.png'), 'cesium')
+
+    def test_everything_is_loaded(self):
+        """Each tile at its finest, each body a feature."""
+        self.assertEqual((self.seen['errors'], self.seen['missing'], self.seen['messages']), ([], [], []))
+        finest = [path for _, path in tile_contents(self.out) if not re.search(r'_lod\d\.glb$', path)]
+        self.assertEqual(self.seen['tiles'], len(finest))
+        self.assertEqual(set(self.seen['features']), {i for path in finest for i in Glb(path).texts('id')})
+        self.assertEqual(len(self.seen['features']), read_json(self.out, 'build.json')['counts']['bodies'])
+
+    def test_features_tell_what_the_geopackage_tells(self):
+        db = sqlite3.connect(os.path.join(self.out, 'buildings.gpkg'))
+        db.row_factory = sqlite3.Row
+        rows = {row['id']: row for row in db.execute('SELECT * FROM parts')}
+        db.close()
+        self.assertEqual(set(rows), set(self.seen['features']))
+        told = 0
+        for object_id, feature in self.seen['features'].items():
+            row = rows[object_id]
+            self.assertEqual(feature['building'], row['building'])
+            for name in ('use', 'era', 'style', 'substyle', 'construction_date', 'wall_colour', 'roof_colour', 'built_roof', 'lod'):
+                self.assertEqual(feature.get(name), row[name], f'{object_id} {name}')
+                told += row[name] is not None
+            for name, step in (('storeys', 0.1), ('height', 0.1), ('eaves_height', 0.1), ('roof_height', 0.1), ('roof_pitch', 1),
+                               ('style_confidence', 0.01)):
+                if row[name] is None:
+                    self.assertIsNone(feature.get(name), f'{object_id} {name}')
+                    continue
+                self.assertAlmostEqual(feature[name], row[name], delta=step / 2 + 1e-9, msg=f'{object_id} {name}')
+                self.assertLess(len(str(feature[name])), 7, 'rounded')
+            sources = {name: group.split(': ')[0] for group in feature['sources'].split('; ') for name in group.split(': ')[1].split(', ')}
+            for name, source in sources.items():
+                self.assertEqual(source, row[name + '_source'], f'{object_id} {name}')
+        self.assertGreater(told, 5 * len(rows))
+
+    def test_a_click_reads_from_top_to_bottom(self):
+        self.assertTrue(self.seen['picked'], 'nothing was hit in the middle of the picture')
+        names = [name for name, _ in self.seen['picked']]
+        order = ['address', 'name', 'use', 'ground_floor_use', 'construction_date', 'era', 'style', 'style_confidence', 'substyle',
+                 'storeys', 'roof_storeys', 'height', 'eaves_height', 'built_roof', 'roof_height', 'roof_pitch', 'roof_material',
+                 'roof_colour', 'wall_material', 'wall_colour', 'sources', 'fallbacks', 'lod', 'id', 'building']
+        self.assertEqual(names, [name for name in order if name in names])
+        self.assertGreater(len(names), 18)
+        picked = {name: value for name, value in self.seen['picked'] if value is not None}
+        self.assertEqual(self.seen['features'][picked['id']], picked)
+
+    def test_it_stands_in_its_place(self):
+        """The bounding sphere holds all mapped places, and is hardly larger."""
+        lon, lat, height, radius = self.seen['sphere']
+        boxes = boxes_of_xml(SAMPLE)
+        shown = [boxes[f['building']] for f in self.seen['features'].values() if f['building'] in boxes]
+        self.assertGreater(len(shown), 0.7 * len(self.seen['features']))
+        farthest = max(metres_between((lon, lat), corner) for box in shown for corner in (box[:2], box[2:]))
+        self.assertTrue(0.7 * radius < farthest < radius + 1, (farthest, radius))
+        self.assertTrue(150 + 43 < height < 150 + 48 + 40, 'EGM96 lies about 45 m above the ellipsoid')
+
+    def test_the_picture_shows_it(self):
+        self.assertTrue(0.05 < self.seen['drawn'] < 0.95, self.seen['drawn'])
+        self.assertGreater(self.seen['colours'], 100)
+
+
+class FacadesInCesium(InCesium):
+    """Windows are instances (EXT_mesh_gpu_instancing) with features of their own. Some houses: software draws."""
+    options = ('--lod', '3', '--bbox', '11.0290,51.4690,11.0305,51.4700')
+
+    def test_a_missing_tile_is_seen(self):
+        folder = self.path('missing')
+        shutil.copytree(self.out, folder)
+        os.remove(min(os.path.join(folder, f) for f in files_of(folder, '.glb')))
+        seen = look(self, folder, self.path('missing.png'), 'cesium')
+        self.assertTrue(seen['errors'] and seen['missing'], seen)
+
+
 # ---- GLB
 
 class ByAssimp(BuildTest):
@@ -289,10 +377,12 @@ class ByAssimp(BuildTest):
 # ---- CityGML
 
 class CityGml(BuildTest):
+    options = ()
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.out = cls().build(SAMPLE, 'out', '--formats', 'citygml,gltf', '--no-report', '--no-explain')
+        cls.out = cls().build(SAMPLE, 'out', '--formats', 'citygml,gltf', '--no-report', '--no-explain', *cls.options)
         cls.files = [os.path.join(cls.out, f) for f in files_of(cls.out, '.gml')]
 
     def kinds(self, messages):
@@ -316,7 +406,7 @@ class CityGml(BuildTest):
             half = f.read()[:20000]
         self.assertNotEqual(call(['citygmltest', self.place('half.gml', half)]).code, 0)
 
-    def test_libcitygml_finds_everything(self):
+    def seen_by_libcitygml(self):
         viewer = first_present(os.path.join(os.path.dirname(os.path.abspath(Setup.program)), 'tests', 'citygml_viewer'))
         if not viewer:
             self.skipTest('citygml_viewer is not built: it needs libcitygml-dev')
@@ -324,6 +414,10 @@ class CityGml(BuildTest):
         self.assertEqual(run.code, 0, run)
         seen = [json.loads(line) for line in run.out.split('\n') if line]
         self.assertEqual([s['file'] for s in seen], self.files)
+        return seen
+
+    def test_libcitygml_finds_everything(self):
+        seen = self.seen_by_libcitygml()
         for s, (_, root) in zip(seen, citygml_trees(self.out)):
             own = {e.get(GML_ID) for e in root.iterfind('core:cityObjectMember/bldg:Building', NAMES)}
             self.assertLessEqual(self.kinds(s['messages']), LIBCITYGML_GAPS, s['file'])
@@ -345,10 +439,48 @@ class CityGml(BuildTest):
                     shown.add('#' + ''.join(f'{self.srgb(v):02x}' for v in (r, g, b)))
         self.assertEqual({c for s in seen for c in s['colours']}, shown)
 
+    def test_libcitygml_reads_place_and_names(self):
+        names = 0
+        for s, (_, root) in zip(self.seen_by_libcitygml(), citygml_trees(self.out)):
+            self.assertEqual(s['srs'], root.find('.//gml:Envelope', NAMES).get('srsName'))
+            told = {e.get(GML_ID): e.findtext('gml:name', None, NAMES)
+                    for kind in ('Building', 'BuildingPart') for e in root.iterfind(f'.//bldg:{kind}', NAMES)}
+            self.assertEqual(s['names'], {i: name for i, name in told.items() if name})
+            names += len(s['names'])
+        self.assertGreater(names, 5)
+
     @staticmethod
     def srgb(linear):
         """IEC 61966-2-1, to 8 bits."""
         return round(255 * (12.92 * linear if linear <= 0.0031308 else 1.055 * linear ** (1 / 2.4) - 0.055))
+
+
+class CityGmlOfFacades(CityGml):
+    """LoD3: windows and doors as objects with a solid's faces, elements as implicit geometry."""
+    options = ('--lod', '3')
+    test_libcitygml_finds_everything = None  # colours of LoD2
+
+    def test_libcitygml_finds_every_object(self):
+        objects = 0
+        for s, (_, root) in zip(self.seen_by_libcitygml(), citygml_trees(self.out)):
+            self.assertLessEqual(self.kinds(s['messages']), LIBCITYGML_GAPS, s['file'])
+            kinds = ('Building', 'BuildingPart', 'BuildingInstallation', 'Window', 'Door', 'RoofSurface', 'WallSurface', 'GroundSurface',
+                     'OuterCeilingSurface', 'OuterFloorSurface')
+            self.assertEqual(s['objects'], {kind: n for kind in kinds if (n := len(root.findall(f'.//bldg:{kind}', NAMES)))})
+            # Faces of a surface and of a window are references into the solid; an installation is a body or an element.
+            for kind in ('Window', 'Door', 'RoofSurface', 'WallSurface', 'GroundSurface'):
+                self.assertEqual(s['filled'].get(kind, 0), s['objects'].get(kind, 0), f'{kind} without a face')
+            installations = s['filled'].get('BuildingInstallation', 0) + s['implicits'].get('BuildingInstallation', 0)
+            self.assertEqual(installations, s['objects'].get('BuildingInstallation', 0), 'installations without a face')
+            solid = [b for kind in ('Building', 'BuildingPart') for b in root.iterfind(f'.//bldg:{kind}', NAMES)
+                     if any(b.find(f'bldg:lod{lod}Solid', NAMES) is not None for lod in (1, 2, 3))]
+            self.assertEqual(s['filled'].get('Building', 0) + s['filled'].get('BuildingPart', 0), len(solid))
+            self.assertEqual(sum(s['implicits'].values()), len(root.findall('.//core:ImplicitGeometry', NAMES)))
+            self.assertGreater(s['polygons']['3'], 10 * s['polygons']['2'])
+            objects += sum(s['objects'].values())
+        counts = read_json(self.out, 'build.json')['counts']
+        self.assertEqual(sum(len(e.findall('.//bldg:Window', NAMES)) for _, e in citygml_trees(self.out)), counts['windows'])
+        self.assertGreater(objects, counts['windows'] + counts['doors'] + counts['bodies'])
 
 
 if __name__ == '__main__':

@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree as ET
+import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / "samples" / "blockrand-viertel.osm"
@@ -189,6 +190,11 @@ def seed_build(seeds, name, out):
     seeds.add("tileset", name, out / "tileset.json")
     seeds.add("reference", name + "_tileset", out / "tileset.json", 3)
     seeds.add("geopackage", name, small_geopackage(out / "buildings.gpkg"))
+    with zipfile.ZipFile(out / "buildings.qgz") as project:
+        seeds.add("qgis_project", name + "_archive", out / "buildings.qgz", 0)
+        # Nobody reads the symbols back.
+        text = re.sub(rb"<symbols>.*?</symbols>", b"<symbols/>", project.read("buildings.qgs"), flags=re.S)
+        seeds.add("qgis_project", name + "_project", text, 1)
     seeds.add("build_record", name + "_build", out / "build.json", 0)
     seeds.add("build_record", name + "_report", out / "report.json", 1)
     # The pictures are most of the page, and nobody reads them back.

@@ -155,6 +155,9 @@ function check_table(glb, schema, table, where) {
           report.error(where, `row ${i}: ${name} is no JSON object`);
         }
       });
+    (columns.sources ?? []).forEach((text, i) => {
+      if (text !== null && !/^\w+: \w+(, \w+)*(; \w+: \w+(, \w+)*)*$/.test(text)) report.error(where, `row ${i}: sources ${text}`);
+    });
     for (const [name, property] of Object.entries(definition.properties))
       if (name.endsWith('_source') && property.enumType !== 'Source') report.error(where, `${name} is no Source`);
   }

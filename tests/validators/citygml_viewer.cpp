@@ -6,6 +6,7 @@
 #include <citygml/citymodel.h>
 #include <citygml/cityobject.h>
 #include <citygml/geometry.h>
+#include <citygml/implictgeometry.h>
 #include <citygml/material.h>
 #include <citygml/polygon.h>
 
@@ -27,10 +28,13 @@ class Messages : public citygml::CityGMLLogger {
 };
 
 struct Seen {
-  std::map<std::string, int> objects;   ///< by type
-  std::vector<std::string> buildings;   ///< ids
-  std::map<std::string, int> polygons;  ///< by level of detail
-  std::map<std::string, int> colours;   ///< polygons by the diffuse colour of their material, "#rrggbb" or "none"
+  std::map<std::string, int> objects;    ///< by type
+  std::map<std::string, int> filled;     ///< by type: objects with a polygon that has triangles, of any level of detail
+  std::map<std::string, int> implicits;  ///< by type of their object: elements that are placed, with polygons
+  std::vector<std::string> buildings;    ///< ids
+  std::map<std::string, std::string> names;  ///< gml:name by id of buildings and parts that have one
+  std::map<std::string, int> polygons;       ///< by level of detail
+  std::map<std::string, int> colours;        ///< polygons by the diffuse colour of their material, "#rrggbb" or "none"
   std::size_t triangles = 0;
 };
 
@@ -46,7 +50,9 @@ std::string colour_of(const citygml::Polygon& polygon, const std::vector<std::st
   return "none";
 }
 
-void look(const citygml::Geometry& geometry, const std::vector<std::string>& themes, Seen& seen) {
+/// \return whether a polygon of it has triangles
+bool look(const citygml::Geometry& geometry, const std::vector<std::string>& themes, Seen& seen) {
+  const std::size_t before = seen.triangles;
   for (unsigned i = 0; i < geometry.getPolygonsCount(); ++i) {
     const auto polygon = geometry.getPolygon(i);
     ++seen.polygons[std::to_string(geometry.getLOD())];
@@ -54,12 +60,25 @@ void look(const citygml::Geometry& geometry, const std::vector<std::string>& the
     seen.triangles += polygon->getIndices().size() / 3;
   }
   for (unsigned i = 0; i < geometry.getGeometriesCount(); ++i) look(geometry.getGeometry(i), themes, seen);
+  return seen.triangles > before;
 }
 
 void look(const citygml::CityObject& object, const std::vector<std::string>& themes, Seen& seen) {
   ++seen.objects[object.getTypeAsString()];
   if (object.getType() == citygml::CityObject::CityObjectsType::COT_Building) seen.buildings.push_back(object.getId());
-  for (unsigned i = 0; i < object.getGeometriesCount(); ++i) look(object.getGeometry(i), themes, seen);
+  if (const std::string name = object.getAttribute("gml:name"); !name.empty()) seen.names[object.getId()] = name;
+  bool filled = false;
+  for (unsigned i = 0; i < object.getGeometriesCount(); ++i) filled |= look(object.getGeometry(i), themes, seen);
+  if (filled) ++seen.filled[object.getTypeAsString()];
+  // A template stands in the file once and is counted wherever it is placed; its triangles are not.
+  for (unsigned i = 0; i < object.getImplicitGeometryCount(); ++i) {
+    const citygml::ImplicitGeometry& placed = object.getImplicitGeometry(i);
+    Seen of_template;
+    bool drawn = false;
+    for (unsigned k = 0; k < placed.getGeometriesCount(); ++k)
+      drawn |= look(placed.getGeometry(k), themes, of_template);
+    if (drawn) ++seen.implicits[object.getTypeAsString()];
+  }
   for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i) look(object.getChildCityObject(i), themes, seen);
 }
 
@@ -84,7 +103,10 @@ int main(int argc, char** argv) {
     }
     std::puts(nlohmann::json({{"file", argv[i]},
                               {"objects", seen.objects},
+                              {"filled", seen.filled},
+                              {"implicits", seen.implicits},
                               {"buildings", seen.buildings},
+                              {"names", seen.names},
                               {"polygons", seen.polygons},
                               {"triangles", seen.triangles},
                               {"colours", seen.colours},

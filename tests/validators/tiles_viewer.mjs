@@ -1,5 +1,6 @@
-// A build's tileset as NASA's 3d-tiles-renderer shows it in a browser: everything loaded, where it stands, a picture.
-//   node tiles_viewer.mjs BUILD NODE_MODULES PICTURE.png > what_was_seen.json
+// A build's tileset as a viewer shows it in a browser: everything loaded, where it stands, a picture.
+//   node tiles_viewer.mjs BUILD NODE_MODULES PICTURE.png [VIEWER] > what_was_seen.json
+// VIEWER: three, NASA's 3d-tiles-renderer (tiles_viewer_page.mjs), or cesium, CesiumJS (cesium_viewer_page.mjs); default three.
 // The browser is Debian's chromium, or the one that CHROMIUM names. Exit code 77: browser or packages are absent.
 // Everything comes from a server of this program's own on the local host; the network is not used.
 import { createReadStream, existsSync, statSync } from 'node:fs';
@@ -8,9 +9,9 @@ import { createRequire } from 'node:module';
 import { dirname, extname, join, normalize } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 
-const [build, modules, picture] = process.argv.slice(2);
-if (!picture) {
-  console.error('usage: node tiles_viewer.mjs BUILD NODE_MODULES PICTURE.png');
+const [build, modules, picture, viewer = 'three'] = process.argv.slice(2);
+if (!picture || !['three', 'cesium'].includes(viewer)) {
+  console.error('usage: node tiles_viewer.mjs BUILD NODE_MODULES PICTURE.png [three | cesium]');
   process.exit(1);
 }
 const absent = (what) => {
@@ -19,7 +20,7 @@ const absent = (what) => {
 };
 const browser_file = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser'].find((f) => f && existsSync(f));
 if (!browser_file) absent('chromium (or name a browser in CHROMIUM)');
-for (const name of ['3d-tiles-renderer', 'three', 'playwright-core'])
+for (const name of [...{ three: ['3d-tiles-renderer', 'three'], cesium: ['cesium'] }[viewer], 'playwright-core'])
   if (!existsSync(join(modules, name))) absent(`npm package ${name}: npm install with tests/validators/package.json`);
 
 // The page needs what its scripts import by name; package.json of the renderer says where that lies.
@@ -30,11 +31,18 @@ const IMPORTS = {
   '3d-tiles-renderer/plugins': '/modules/3d-tiles-renderer/build/index.plugins.js',
   '3d-tiles-renderer/src/': '/modules/3d-tiles-renderer/src/',
 };
+// CesiumJS as its package has it built: one script, which fetches its workers and tables from beside it.
+const CESIUM = '/modules/cesium/Build/Cesium/';
+const SCRIPTS = {
+  three: `<script type="importmap">${JSON.stringify({ imports: IMPORTS })}</script>
+<script type="module" src="/page/tiles_viewer_page.mjs"></script>`,
+  cesium: `<script>window.CESIUM_BASE_URL = '${CESIUM}';</script><script src="${CESIUM}Cesium.js"></script>
+<script type="module" src="/page/cesium_viewer_page.mjs"></script>`,
+};
 const PAGE = `<!doctype html><meta charset="utf-8"><title>tiles</title><style>body{margin:0}</style>
-<script type="importmap">${JSON.stringify({ imports: IMPORTS })}</script>
-<script type="module" src="/page/tiles_viewer_page.mjs"></script>`;
+${SCRIPTS[viewer]}`;
 const ROOTS = { modules, build, page: dirname(fileURLToPath(import.meta.url)) };
-const TYPES = { '.js': 'text/javascript', '.mjs': 'text/javascript', '.json': 'application/json', '.glb': 'model/gltf-binary' };
+const TYPES = { '.wasm': 'application/wasm', '.js': 'text/javascript', '.mjs': 'text/javascript', '.json': 'application/json', '.glb': 'model/gltf-binary' };
 
 const missing = [];
 const server = createServer((request, response) => {

@@ -44,9 +44,9 @@ class AppearanceText {
       const std::uint32_t key = numbers_.keys()[i];
       const X3dMaterial material =
           x3d_material(classes.at(MaterialNumbers::material(key)), MaterialNumbers::colour(key));
-      out += "<app:surfaceDataMember><app:X3DMaterial><name>";
+      out += "<app:surfaceDataMember><app:X3DMaterial><gml:name>";
       append_xml(out, material.name);
-      out += "</name><app:diffuseColor>";
+      out += "</gml:name><app:diffuseColor>";
       append_ten_thousandths(out, material.diffuse, ' ');
       out += "</app:diffuseColor><app:specularColor>";
       append_ten_thousandths(out, material.specular, ' ');

@@ -130,7 +130,7 @@ class BuildingText {
  private:
   /// What every city object starts with: its name and where it comes from.
   void head(const model::OsmId& osm, model::Range tags) {
-    if (const std::string_view name = tags_.name(tags); !name.empty()) element("name", name);
+    if (const std::string_view name = tags_.name(tags); !name.empty()) element("gml:name", name);
     const std::string page = osm_page(osm);
     if (page.empty()) return;
     out_ +=
@@ -463,7 +463,7 @@ void write_envelope(xmlTextWriterPtr writer, const Envelope& box, const std::str
     append_grid(text, p.z);
     xmlTextWriterWriteElement(writer, xml(name), xml(text.c_str()));
   };
-  xmlTextWriterStartElement(writer, xml("boundedBy"));
+  xmlTextWriterStartElement(writer, xml("gml:boundedBy"));
   xmlTextWriterStartElement(writer, xml("Envelope"));
   if (!srs_name.empty()) xmlTextWriterWriteAttribute(writer, xml("srsName"), xml(srs_name.c_str()));
   xmlTextWriterWriteAttribute(writer, xml("srsDimension"), xml("3"));
@@ -518,7 +518,7 @@ void write_citygml(const model::Region& region, const CityGmlOptions& options, c
   if (!options.name.empty()) {
     std::string clean;
     append_clean(clean, options.name);
-    xmlTextWriterWriteElement(writer, xml("name"), xml(clean.c_str()));
+    xmlTextWriterWriteElement(writer, xml("gml:name"), xml(clean.c_str()));
     xmlTextWriterWriteRaw(writer, xml("\n"));
   }
   write_envelope(writer, envelope(region, options.lod), options.srs_name);

@@ -7,11 +7,38 @@
 #include "pipeline/georef/tiles.h"
 #include "pipeline/outputs/geopackage/context_layers.h"
 #include "pipeline/outputs/geopackage/geopackage_writer.h"
+#include "pipeline/outputs/geopackage/qgis_project.h"
+#include "pipeline/outputs/zip_file.h"
 
 namespace blockrand::outputs {
 namespace {
 
 constexpr const char* kFile = "buildings.gpkg";
+constexpr const char* kProject = "buildings.qgz";
+
+struct TileProduct {
+  GeoPackageRows rows;
+  PlanBox box;  ///< of the buildings
+};
+
+PlanBox box_of(const model::Region& region) {
+  PlanBox box;
+  for (const model::Building& b : region.buildings) {
+    if (!b.owned) continue;
+    for (const model::Polygon& p : b.outline)
+      for (const model::Point2& corner : p.outer.points) box.add(corner);
+    for (const model::BuildingPart& part : b.parts)
+      for (const model::Point2& corner : part.plan.outer.points) box.add(corner);
+  }
+  return box;
+}
+
+std::string words_about_data(const OutputContext& context) {
+  std::string words = kAttribution;
+  if (!context.data_time.empty()) words += ", data of " + std::string(context.data_time);
+  if (!context.heights.words.empty()) words += ". Heights: " + context.heights.words;
+  return words;
+}
 
 /// A tile as a row; its outline follows the tile's meridians and parallels.
 GeoPackageTile tile_row(model::TileId id, const GeoPackageRows& rows, std::span<const base::PublishedFile> files,
@@ -77,10 +104,13 @@ class GeoPackageOutput : public Output {
         writer_(context.folder.staging_path() + "/" + kFile,
                 {context.crs.authority_code, std::string(context.data_time), context.heights.words, kAttribution}) {}
 
-  std::any write_tile(FinishedTile& tile) const override { return geopackage_rows(tile.region, context_.lod); }
+  std::any write_tile(FinishedTile& tile) const override {
+    return TileProduct{geopackage_rows(tile.region, context_.lod), box_of(tile.region)};
+  }
   void take(const FinishedTile& tile, std::any product) override {
-    const auto& rows = *std::any_cast<GeoPackageRows>(&product);
+    const auto& [rows, box] = *std::any_cast<TileProduct>(&product);
     if (rows.buildings.rows() == 0) return;
+    extent_.join(box);
     writer_.add(rows);
     writer_.add_tile(tile_row(context_.shards[tile.shard].tile, rows, tile.files, context_.projection));
   }
@@ -89,11 +119,15 @@ class GeoPackageOutput : public Output {
     write_context_layers(writer_, context_.context, context_.repaired, context_.shards, context_.alone);
     writer_.close();
     build.files.push_back(context_.folder.adopt(kFile));
+    const std::string project =
+        qgis_project({context_.crs.authority_code, context_.crs.name, extent_, words_about_data(context_)});
+    build.files.push_back(context_.folder.write(kProject, zip_file("buildings.qgs", project)));
   }
 
  private:
   const OutputContext& context_;
   GeoPackageWriter writer_;
+  PlanBox extent_;  ///< of all buildings so far
 };
 
 }  // namespace
@@ -103,8 +137,10 @@ OutputFormat geopackage_output() {
       .name = "gpkg",
       .title = "GeoPackage",
       .other_names = {"geopackage"},
-      .places = {{kFile, "footprints with every value and its source, coloured, for QGIS"}},
-      .manual = {{kFile, "GeoPackage for QGIS: footprints with every attribute, its source and its confidence"}},
+      .places = {{kFile, "footprints with every value and its source, for any GIS"},
+                 {kProject, "the same as a map: open it in QGIS"}},
+      .manual = {{kFile, "GeoPackage: footprints with every attribute, its source and its confidence"},
+                 {kProject, "QGIS project of the GeoPackage: its layers in order, coloured and labelled"}},
       .asked = [](const OutputOptions& o) { return o.writes("gpkg"); },
       .bytes_per_building = [](const OutputOptions&, std::size_t) { return 4800.0; },
       .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<GeoPackageOutput>(c); }};

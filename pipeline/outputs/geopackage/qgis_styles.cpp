@@ -46,9 +46,15 @@ std::string spaced(std::string_view name) {
   return out;
 }
 
-std::string storeys() {
+/// Every style of buildings has house numbers.
+Qml buildings_qml() {
   Qml qml(Shape::fill, true);
   qml.label("house_number", 2500);
+  return qml;
+}
+
+std::string storeys() {
+  Qml qml = buildings_qml();
   qml.ranges("storeys");
   // Yellow to dark red; a class a storey where most buildings are. QGIS counts an upper end to its class.
   struct Class {
@@ -69,8 +75,8 @@ std::string storeys() {
   return std::move(qml).done();
 }
 
-std::string built_roof() {
-  Qml qml(Shape::fill);
+/// \param qml  of buildings or of parts
+std::string built_roof(Qml qml) {
   qml.categories("built_roof");
   int i = 0;
   for (const std::string_view shape : model::kRoofShapeNames) {
@@ -99,7 +105,7 @@ std::string source_of(std::string_view attribute) {
       {205, 185, 170},
       {190, 190, 190},
   }};
-  Qml qml(Shape::fill);
+  Qml qml = buildings_qml();
   qml.categories(std::string(attribute) + "_source");
   for (int i = 0; i < model::kSourceCount; ++i) {
     const std::string_view source = model::name(static_cast<model::Source>(i));
@@ -175,7 +181,7 @@ std::string positions() {
       {240, 200, 90},   // rear building
       {235, 150, 50},   // side wing
   }};
-  Qml qml(Shape::fill);
+  Qml qml = buildings_qml();
   qml.categories("position");
   for (std::size_t k = 1; k < kColours.size(); ++k) {
     const std::string_view name = model::name(static_cast<model::BuildingPosition>(k));
@@ -193,7 +199,7 @@ std::string style_classes() {
       {"modern: designed after 1918", {95, 145, 200}},
       {"other: church, shed, garage, before 1840", {170, 185, 130}},
   }};
-  Qml qml(Shape::fill);
+  Qml qml = buildings_qml();
   qml.categories("style");
   for (std::size_t i = 0; i < kClasses.size(); ++i)
     qml.category(model::kStyleClassNames[i], kClasses[i].first, kClasses[i].second);
@@ -208,10 +214,23 @@ std::string eras() {
       {"1919 to 1945", {245, 175, 85}},
       {"after 1945", {150, 190, 220}},
   }};
-  Qml qml(Shape::fill);
+  Qml qml = buildings_qml();
   qml.categories("era");
   for (std::size_t i = 0; i < kEras.size(); ++i) qml.category(model::kEraNames[i], kEras[i].first, kEras[i].second);
   qml.category("", "not known", kOthers);
+  return std::move(qml).done();
+}
+
+/// Sure is dark green, a guess is red; what has no style is grey.
+std::string style_confidence() {
+  Qml qml = buildings_qml();
+  qml.ranges("coalesce(\"style_confidence\", -1)");
+  qml.range("-1", "-0.5", "not known", kOthers);
+  qml.range("-0.5", "0.4", "up to 40 %", {215, 48, 39});
+  qml.range("0.4", "0.55", "40 to 55 %", {252, 141, 89});
+  qml.range("0.55", "0.7", "55 to 70 %", {254, 224, 139});
+  qml.range("0.7", "0.85", "70 to 85 %", {145, 207, 96});
+  qml.range("0.85", "1", "more than 85 %", {26, 125, 70});
   return std::move(qml).done();
 }
 
@@ -273,12 +292,13 @@ std::string closed_or_open() {
 std::vector<QgisStyle> qgis_styles() {
   return {
       {"buildings", "Storeys", "Full storeys above ground", storeys(), true},
-      {"buildings", "Roofs", "The roof that was built", built_roof(), false},
+      {"buildings", "Roofs", "The roof that was built", built_roof(buildings_qml()), false},
       {"buildings", "Source of the storeys", "Mapped, concluded or assumed", source_of("storeys"), false},
       {"buildings", "Position", "How a building stands to its neighbours", positions(), false},
       {"buildings", "Style", "Class of appearance", style_classes(), false},
+      {"buildings", "Confidence of the style", "How sure the class of appearance is", style_confidence(), false},
       {"buildings", "Era", "When it was built", eras(), false},
-      {"parts", "Roofs", "The roof that was built", built_roof(), true},
+      {"parts", "Roofs", "The roof that was built", built_roof(Qml(Shape::fill)), true},
       {"parts", "Level of detail", "Where less than asked was built", level_of_detail(), false},
       {"facade_edges", "Kinds", "What each stretch of an outline faces", wall_segment_kinds(), true},
       {"blocks", "Floor area ratio", "Floor area by area of the block", floor_area_ratio(), true},

@@ -3,6 +3,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/outputs/gltf/people_table.h"
 #include "pipeline/outputs/number_text.h"
 
 namespace blockrand::outputs {
@@ -174,7 +175,7 @@ class Builder {
   const model::Region& region_;
   TagReader tags_;
   bool evidence_;
-  PropertyTable table_;
+  PropertyTable table_{PropertyTable::Order::by_name};
   std::vector<AttributeColumns> attributes_;
   std::string scratch_;
   int id_ = 0, building_ = 0, osm_type_ = 0, osm_id_ = 0, name_ = 0, address_ = 0, built_roof_ = 0, lod_ = 0,
@@ -199,7 +200,9 @@ nlohmann::json enumeration(std::vector<std::string_view> names, bool with_none) 
 
 }  // namespace
 
-PropertyTable building_table(const model::Region& region, bool evidence) { return Builder(region, evidence).build(); }
+PropertyTable building_table(const model::Region& region, AttributeProfile profile, bool evidence) {
+  return profile == AttributeProfile::people ? people_table(region, evidence) : Builder(region, evidence).build();
+}
 
 nlohmann::json building_enums() {
   std::vector<std::string_view> sources;

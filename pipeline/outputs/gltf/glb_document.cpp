@@ -90,7 +90,7 @@ void append_word(std::string& out, std::uint64_t value) {
 }  // namespace
 
 GlbDocument::GlbDocument()
-    : asset_(std::make_unique<nlohmann::json>()), extensions_(std::make_unique<nlohmann::json>()) {}
+    : asset_(std::make_unique<nlohmann::json>()), extensions_(std::make_unique<nlohmann::ordered_json>()) {}
 GlbDocument::~GlbDocument() = default;
 
 int GlbDocument::view_of(Stream stream) {

@@ -86,7 +86,7 @@ class GlbDocument {
   void use(const std::string& extension, bool required);
   nlohmann::json& asset() { return *asset_; }
   /// The document's own extensions, by name.
-  nlohmann::json& extensions() { return *extensions_; }
+  nlohmann::ordered_json& extensions() { return *extensions_; }
 
   /// The file. \throws std::length_error where it has more than 4 GB
   std::string write(Compression compression);
@@ -105,7 +105,9 @@ class GlbDocument {
   std::vector<std::string> accessors_, materials_, meshes_, nodes_;
   std::vector<int> roots_;
   std::map<std::string, bool> used_;
-  std::unique_ptr<nlohmann::json> asset_, extensions_;  ///< behind pointers: the type is only declared here
+  // Behind pointers: the types are only declared here.
+  std::unique_ptr<nlohmann::json> asset_;
+  std::unique_ptr<nlohmann::ordered_json> extensions_;
 };
 
 }  // namespace blockrand::outputs

@@ -169,14 +169,14 @@ nlohmann::json georeference(const GlbOptions& options) {
             {"local_to_ecef", options.frame.enu_to_ecef}}}};
 }
 
-nlohmann::json metadata(GlbDocument& document, const PropertyTable& table) {
-  nlohmann::json classes;
-  classes[kBuildingClass] = {{"name", "Building part"}, {"properties", table.class_properties()}};
-  nlohmann::json extension;
-  extension["schema"] = {
-      {"id", "blockrand"}, {"version", "1.0.0"}, {"classes", std::move(classes)}, {"enums", building_enums()}};
-  extension["propertyTables"] = nlohmann::json::array({table.write(document, kBuildingClass)});
-  return extension;
+nlohmann::ordered_json metadata(GlbDocument& document, const PropertyTable& table) {
+  using Object = nlohmann::ordered_json;
+  Object building_class = {{"name", "Building part"}, {"properties", table.class_properties()}};
+  Object schema = {{"classes", {{kBuildingClass, std::move(building_class)}}},
+                   {"enums", building_enums()},
+                   {"id", "blockrand"},
+                   {"version", "1.0.0"}};
+  return {{"propertyTables", Object::array({table.write(document, kBuildingClass)})}, {"schema", std::move(schema)}};
 }
 
 /// Widens the box of what is drawn; the first one is the box.
@@ -211,7 +211,7 @@ void write_batch(GlbDocument& document, const model::Region& region, const GlbOp
 }  // namespace
 
 Glb write_glb(const model::Region& region, const GlbOptions& options) {
-  const PropertyTable table = building_table(region, options.evidence);
+  const PropertyTable table = building_table(region, options.profile, options.evidence);
   if (table.rows() > (1u << 24)) throw std::length_error("too many building parts for one GLB");
 
   GlbDocument document;

@@ -6,6 +6,7 @@
 
 #include "pipeline/model/region.h"
 #include "pipeline/outputs/frame.h"
+#include "pipeline/outputs/gltf/attribute_profile.h"
 #include "pipeline/outputs/gltf/compression.h"
 #include "pipeline/outputs/gltf/instance_writer.h"
 #include "pipeline/outputs/gltf/object_writer.h"
@@ -22,7 +23,8 @@ struct GlbOptions {
   Instancing instancing = Instancing::ext;  ///< of what stands in facades, at LoD3
   Objects objects = Objects::tile;          ///< what the scene consists of
   Compression compression = Compression::none;
-  bool evidence = false;  ///< also why each attribute has its value
+  AttributeProfile profile = AttributeProfile::all;  ///< what the property table tells of a building
+  bool evidence = false;                             ///< also why each attribute has its value
 };
 
 struct Glb {

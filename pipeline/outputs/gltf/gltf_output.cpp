@@ -56,6 +56,7 @@ GlbOptions glb_options(const OutputContext& context, const georef::EnuFrame& fra
   o.height_reference = context.heights.in_tiles;
   o.generator = generator();
   o.attribution = kAttribution;
+  o.profile = context.options.profile;
   o.evidence = context.options.evidence;
   o.frame.longitude = frame.origin().lon;
   o.frame.latitude = frame.origin().lat;

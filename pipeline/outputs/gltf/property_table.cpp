@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "pipeline/outputs/gltf/glb_document.h"
@@ -17,7 +18,7 @@ static_assert(std::endian::native == std::endian::little, "buffers are copied as
 namespace {
 
 using Kind = PropertyTable::Kind;
-using Object = nlohmann::json;
+using Object = nlohmann::ordered_json;
 
 std::size_t element_size(Kind kind) {
   switch (kind) {
@@ -109,11 +110,19 @@ void PropertyTable::end_row() {
   }
 }
 
-nlohmann::json PropertyTable::class_properties() const {
+std::vector<const PropertyTable::Data*> PropertyTable::listed() const {
+  std::vector<const Data*> all;
+  for (const Data& data : columns_) all.push_back(&data);
+  if (order_ == Order::by_name)
+    std::ranges::sort(all, {}, [](const Data* data) -> const std::string& { return data->column.name; });
+  return all;
+}
+
+nlohmann::ordered_json PropertyTable::class_properties() const {
   Object properties = Object::object();
-  for (const Data& data : columns_) {
-    const Column& column = data.column;
-    Object property;
+  for (const Data* data : listed()) {
+    const Column& column = data->column;
+    nlohmann::json property;  // its keys in the order of the alphabet
     switch (column.kind) {
       case Kind::text:
         property.emplace("type", "STRING");
@@ -149,12 +158,14 @@ nlohmann::json PropertyTable::class_properties() const {
   return properties;
 }
 
-nlohmann::json PropertyTable::write(GlbDocument& document, const std::string& class_name) const {
+nlohmann::ordered_json PropertyTable::write(GlbDocument& document, const std::string& class_name) const {
   Object properties = Object::object();
+  // Buffer views in the order in which columns were added, whatever the order of the list.
+  std::map<const Data*, nlohmann::json> views;
   for (const Data& data : columns_) {
     if (!data.any) continue;
     assert(!data.bytes.empty());
-    Object property;
+    nlohmann::json& property = views[&data];
     property.emplace("values", document.add_view(data.bytes));
     if (data.column.kind == Kind::text) {
       // The smallest type that holds the last offset: most texts of a tile are short.
@@ -170,8 +181,10 @@ nlohmann::json PropertyTable::write(GlbDocument& document, const std::string& cl
       property.emplace("stringOffsets", document.add_view(std::move(offsets)));
       if (last <= 0xFFFF) property.emplace("stringOffsetType", "UINT16");
     }
-    properties.emplace(data.column.name, std::move(property));
   }
+  for (const Data* data : listed())
+    if (const auto found = views.find(data); found != views.end())
+      properties.emplace(data->column.name, std::move(found->second));
   Object table;
   table.emplace("class", class_name);
   table.emplace("count", static_cast<int>(rows_));

@@ -17,6 +17,10 @@ class GlbDocument;
 /// (they stay in the class), as the extension allows for properties that are not required.
 class PropertyTable {
  public:
+  /// In which order files list the columns; programs show them so.
+  enum class Order : std::uint8_t { by_name, as_added };
+  explicit PropertyTable(Order order) : order_(order) {}
+
   enum class Kind : std::uint8_t { text, enumeration, int8, int64, float64, unit_interval };
 
   struct Column {
@@ -45,9 +49,9 @@ class PropertyTable {
   std::uint32_t rows() const { return rows_; }
 
   /// The "properties" of the class.
-  nlohmann::json class_properties() const;
+  nlohmann::ordered_json class_properties() const;
   /// The table, its columns added to `document` as buffer views.
-  nlohmann::json write(GlbDocument& document, const std::string& class_name) const;
+  nlohmann::ordered_json write(GlbDocument& document, const std::string& class_name) const;
 
  private:
   struct Data {
@@ -58,7 +62,10 @@ class PropertyTable {
     bool set = false;                    ///< in the row being filled
   };
   void put(Data& data, const void* value, std::size_t size);
+  /// The columns in the order of files.
+  std::vector<const Data*> listed() const;
 
+  Order order_;
   std::vector<Data> columns_;
   std::uint32_t rows_ = 0;
 };

@@ -45,7 +45,8 @@ BENCHMARK(build_mesh)->Arg(60)->Arg(1000);
 
 void building_table(benchmark::State& state) {
   const SampleRegion sample = SampleRegion::settlement(static_cast<int>(state.range(0)), true);
-  for (auto _ : state) benchmark::DoNotOptimize(outputs::building_table(sample.region(), false));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(outputs::building_table(sample.region(), outputs::AttributeProfile::all, false));
   count(state, 0);
 }
 BENCHMARK(building_table)->Arg(60)->Arg(1000);

@@ -249,7 +249,7 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{"no_styles", "DROP TABLE layer_styles", "layer_styles: the table is missing"},
         Damage{"style_not_xml", "UPDATE layer_styles SET styleQML = replace(styleQML, '</qgis>', '') WHERE id = 2",
                "style \"Roofs\" of buildings is no well-formed XML"},
-        Damage{"two_defaults", "UPDATE layer_styles SET useAsDefault = 1", "buildings: 6 styles are its default"},
+        Damage{"two_defaults", "UPDATE layer_styles SET useAsDefault = 1", "buildings: 7 styles are its default"},
         Damage{"style_of_nothing", "UPDATE layer_styles SET f_geometry_column = 'shape' WHERE id = 1",
                "QGIS does not find the layer"},
         Damage{

@@ -39,6 +39,61 @@ TEST(FindingLog, KeepsSomeAndCountsAll) {
   EXPECT_EQ(one.kept().size(), FindingLog::kKeptPerCheck + 1);
 }
 
+/// What is found between a body as every format has it and as a table for people has it.
+std::vector<std::string> against_people(std::map<std::string, std::string> all,
+                                        std::map<std::string, std::string> people) {
+  Contents a, b;
+  a.bodies.emplace_back().attributes = std::move(all);
+  b.bodies.emplace_back().attributes = std::move(people);
+  a.bodies[0].id = b.bodies[0].id = "w1";
+  std::vector<Finding> findings;
+  compare_attributes({a, "a.gml"}, {b, "a.glb"}, Precision::people, findings);
+  check_sources({b, "a.glb"}, true, findings);
+  std::vector<std::string> out;
+  for (const Finding& f : findings) out.push_back(std::string(info(f.check).text) + " " + f.detail);
+  return out;
+}
+
+TEST(AttributesForPeople, AreRoundedAndFewer) {
+  using Texts = std::map<std::string, std::string>;
+  const Texts all = {{"height", "9.46875"},           {"height_source", "tag"},
+                     {"height_confidence", "0.9"},    {"roof_pitch", "37.62"},
+                     {"roof_pitch_source", "preset"}, {"min_height", "0"},
+                     {"min_height_source", "tag"},    {"style", "modern"},
+                     {"style_source", "neighbours"},  {"style_confidence", "0.8149"}};
+  const Texts people = {{"height", "9.5"},
+                        {"height_source", "tag"},
+                        {"roof_pitch", "38"},
+                        {"roof_pitch_source", "preset"},
+                        {"style", "modern"},
+                        {"style_source", "neighbours"},
+                        {"style_confidence", "0.81"},
+                        {"sources", "tag: height"}};
+  EXPECT_THAT(against_people(all, people), testing::IsEmpty());
+  const auto with = [&](const char* name, const char* value) {
+    Texts changed = people;
+    changed[name] = value;
+    return against_people(all, changed);
+  };
+  const auto without = [&](const char* name) {
+    Texts changed = people;
+    changed.erase(name);
+    return against_people(all, changed);
+  };
+  EXPECT_THAT(with("height", "9.4"),
+              testing::ElementsAre(testing::HasSubstr("ATTRIBUTE_DIFFERS height: 9.46875 against 9.4")));
+  EXPECT_THAT(with("roof_pitch", "39"), testing::ElementsAre(testing::HasSubstr("roof_pitch: 37.62 against 39")));
+  EXPECT_THAT(with("style_confidence", "0.8"), testing::ElementsAre(testing::HasSubstr("style_confidence")));
+  EXPECT_THAT(with("height_source", "default"),
+              testing::ElementsAre(testing::HasSubstr("height_source: tag against default")));
+  EXPECT_THAT(with("height_source", "rumour"),
+              testing::Contains(testing::HasSubstr("SOURCE_WRONG height from \"rumour\"")));
+  EXPECT_THAT(without("height"), testing::ElementsAre(testing::HasSubstr("height: 9.46875 against nothing")));
+  EXPECT_THAT(without("height_source"), testing::Contains(testing::HasSubstr("SOURCE_WRONG height without a source")));
+  EXPECT_THAT(without("style_confidence"), testing::ElementsAre(testing::HasSubstr("style without a confidence")));
+  EXPECT_THAT(without("sources"), testing::ElementsAre(testing::HasSubstr("METADATA_RULE has no column `sources`")));
+}
+
 TEST(Ids, OfBodies) {
   for (const char* id : {"w1", "n-5", "r12.w3", "w1.rest", "w1.2", "w1.w2.3"}) EXPECT_TRUE(is_body_id(id)) << id;
   for (const char* id : {"", "w", "x1", "w1.", "w1..2", "w1.x", "1", "w-", "w1.rest."})

@@ -152,7 +152,7 @@ TEST(CityJson, ColoursComeBackAndEqualThoseOfCityGml) {
         }
     }
   }
-  EXPECT_NE(gml.find("<name>plaster #decdaa</name><app:diffuseColor>0.8706 0.8039 0.6667</app:diffuseColor>"),
+  EXPECT_NE(gml.find("<gml:name>plaster #decdaa</gml:name><app:diffuseColor>0.8706 0.8039 0.6667</app:diffuseColor>"),
             std::string::npos);
   EXPECT_NE(write_cityjson_sequence(zoo.region(), options())
                 .find("{\"name\":\"plaster #decdaa\",\"diffuseColor\":[0.8706,0.8039,0.6667]"),

@@ -1,5 +1,7 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -194,6 +196,60 @@ TEST(Glb, TellsWhatIsKnownAboutEachPart) {
   EXPECT_EQ(tower.texts.at("fallbacks"), "ROOF_FAILED ROOF_SHAPE_ADAPTED");
   EXPECT_EQ(tower.texts.count("building_tags"), 0u);
   EXPECT_EQ(feature(file, "w60").numbers.at("lod"), 0);
+}
+
+TEST(Glb, TellsPeopleWhatTheyLookFor) {
+  SampleRegion zoo = SampleRegion::zoo();
+  for (model::Building& b : zoo.region().buildings)
+    for (model::BuildingPart& p : b.parts)
+      if (p.id == "w12") {
+        p.attributes.height.value = 9.46875;
+        p.attributes.roof_pitch.value = 37.62;
+        p.attributes.storeys.value = 2.5;
+        p.attributes.style = {"modern", model::Source::neighbours, 0.8149f};
+      }
+  GlbOptions o = options();
+  o.profile = AttributeProfile::people;
+  const std::string bytes = write_glb(zoo.region(), o).bytes;
+  const GlbFile file = validators::read_glb_bytes(bytes);
+  const auto& house = feature(file, "w12");
+  EXPECT_EQ(house.texts.at("address"), "Kastanienallee 12, 10435 Berlin");
+  EXPECT_EQ(house.numbers.at("height"), 9.5);
+  EXPECT_EQ(house.numbers.at("roof_pitch"), 38);
+  EXPECT_EQ(house.numbers.at("storeys"), 2.5);
+  EXPECT_EQ(house.texts.at("style"), "modern");
+  EXPECT_EQ(house.numbers.at("style_confidence"), 0.81);
+  EXPECT_EQ(house.texts.at("built_roof"), "gabled");
+  EXPECT_THAT(house.texts.at("sources"), testing::HasSubstr("neighbours: storeys, style"));
+  for (const char* left_out : {"tags", "roof_shape", "use_source", "evidence", "osm_type"})
+    EXPECT_EQ(house.texts.count(left_out), 0u) << left_out;
+  for (const char* left_out : {"osm_id", "height_confidence", "ground_height"})
+    EXPECT_EQ(house.numbers.count(left_out), 0u) << left_out;
+  EXPECT_EQ(feature(file, "w30.w31").texts.at("building"), "w30");
+  EXPECT_EQ(feature(file, "w30.w32").texts.at("fallbacks"), "ROOF_FAILED ROOF_SHAPE_ADAPTED");
+
+  // Viewers list the columns in the order of the file.
+  std::uint32_t length = 0;
+  std::memcpy(&length, &bytes[12], 4);
+  const auto json = nlohmann::ordered_json::parse(bytes.substr(20, length));
+  const auto& metadata = json.at("extensions").at("EXT_structural_metadata");
+  std::vector<std::string> columns;
+  for (const auto& [name, column] : metadata.at("propertyTables").at(0).at("properties").items())
+    columns.push_back(name);
+  EXPECT_EQ(columns.front(), "address");
+  EXPECT_EQ(columns.back(), "building");
+  const auto place = [&](const char* name) { return std::ranges::find(columns, name) - columns.begin(); };
+  for (const auto& [first, second] : {std::pair("name", "use"), std::pair("use", "era"), std::pair("era", "style"),
+                                      std::pair("style", "style_confidence"), std::pair("style_confidence", "storeys"),
+                                      std::pair("storeys", "height"), std::pair("height", "built_roof"),
+                                      std::pair("built_roof", "sources"), std::pair("sources", "id")})
+    EXPECT_LT(place(first), place(second)) << first << ' ' << second;
+  EXPECT_LT(place("id"), static_cast<std::ptrdiff_t>(columns.size()));
+
+  o.evidence = true;
+  const GlbFile told = validators::read_glb_bytes(write_glb(zoo.region(), o).bytes);
+  EXPECT_EQ(nlohmann::json::parse(feature(told, "w-7").texts.at("evidence"))["use"],
+            "the tag amenity=place_of_worship");
 }
 
 TEST(Glb, LowerLevelsOfDetail) {
