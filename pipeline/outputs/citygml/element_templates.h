@@ -29,7 +29,7 @@ class ElementTemplates {
 
  private:
   struct Polygon {
-    std::string_view ring;   ///< its posList
+    std::string_view rings;  ///< its exterior and interiors
     std::uint32_t uses = 0;  ///< by templates
     std::uint32_t id = 0;    ///< once it is written, if it is used again; 0: none
   };

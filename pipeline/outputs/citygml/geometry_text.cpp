@@ -91,17 +91,17 @@ void GeometryText::polygon(const model::Solid& solid, std::size_t face, std::str
     append_id(out_, id, mark == Mark::detail ? "_q" : "_p", face);
     out_ += '"';
   }
-  out_ += kRingBegin;
+  out_ += '>';
   bool outer = true;
   for (const model::Solid::Loop& loop : solid.loops_of(solid.faces[face])) {
-    if (!outer) out_ += "<interior><LinearRing><posList>";
+    out_ += outer ? kExteriorBegin : kInteriorBegin;
     const std::span<const std::uint32_t> indices = solid.indices_of(loop);
     for (std::size_t i = 0; i <= indices.size(); ++i) {
       const std::uint32_t v = indices[i == indices.size() ? 0 : i];
       if (i) out_ += ' ';
       out_.append(vertex_text_, vertex_ends_[v], vertex_ends_[v + 1] - vertex_ends_[v]);
     }
-    out_ += outer ? kRingEnd : "</posList></LinearRing></interior>";
+    out_ += outer ? kExteriorEnd : kInteriorEnd;
     outer = false;
   }
   out_ += kPolygonEnd;

@@ -12,10 +12,12 @@
 
 namespace blockrand::outputs {
 
-/// A Polygon within a surfaceMember: between the first two stands the id, after kRingBegin the outer ring.
+/// A Polygon within a surfaceMember: after the first stand its id and ">", then the rings.
 inline constexpr std::string_view kPolygonBegin = "<surfaceMember><Polygon",
-                                  kRingBegin = "><exterior><LinearRing><posList>",
-                                  kRingEnd = "</posList></LinearRing></exterior>",
+                                  kExteriorBegin = "<exterior><LinearRing><posList>",
+                                  kExteriorEnd = "</posList></LinearRing></exterior>",
+                                  kInteriorBegin = "<interior><LinearRing><posList>",
+                                  kInteriorEnd = "</posList></LinearRing></interior>",
                                   kPolygonEnd = "</Polygon></surfaceMember>\n";
 
 /// Appends "<id>_p<face>", the gml:id of a polygon.
