@@ -18,6 +18,7 @@ CityGmlOptions citygml_options(const model::Region& region, const OutputContext&
   o.attribution = kAttribution;
   o.name = model_name(region.tile);
   o.evidence = context.options.evidence;
+  o.lean = context.options.citygml_detail == CityGmlDetail::lean;
   return o;
 }
 

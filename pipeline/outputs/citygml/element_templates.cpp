@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/outputs/citygml/geometry_text.h"
+#include "pipeline/outputs/citygml/lean_element.h"
 #include "pipeline/outputs/element_polygons.h"
 #include "pipeline/outputs/number_text.h"
 #include "pipeline/outputs/placed_element.h"
@@ -47,7 +48,7 @@ std::string rings_text(const ElementPolygon& polygon) {
 
 }  // namespace
 
-ElementTemplates::ElementTemplates(const model::Region& region, int lod) : prefix_("e") {
+ElementTemplates::ElementTemplates(const model::Region& region, int lod, bool lean) : prefix_("e") {
   append_base36(prefix_, number_of(region.tile));
   prefix_ += '_';
   template_of_.assign(region.elements.size(), kNone);
@@ -56,17 +57,21 @@ ElementTemplates::ElementTemplates(const model::Region& region, int lod) : prefi
     if (!building.owned) continue;
     for (const model::BuildingPart& part : building.parts) {
       if (part.lod < 3 || part.lod3.solid.empty()) continue;
-      for (const model::Placement& p : part.lod3.placements)
+      for (const model::Placement& p : part.lod3.placements) {
+        if (lean && p.opening != model::kNoOpening) continue;
         if (std::uint32_t& number = template_of_[p.element];
             number == kNone && has_shape(*region.elements.at(p.element).element))
-          number = add(region.elements[p.element]);
+          number = add(region.elements[p.element], lean);
+      }
     }
   }
 }
 
-std::uint32_t ElementTemplates::add(const model::ColouredElement& coloured) {
+std::uint32_t ElementTemplates::add(const model::ColouredElement& coloured, bool lean) {
   Template made;
-  for (const ElementPolygon& polygon : element_polygons(coloured)) {
+  std::vector<ElementPolygon> polygons = element_polygons(coloured);
+  if (lean) polygons = without_small_pieces(std::move(polygons));
+  for (const ElementPolygon& polygon : polygons) {
     const std::uint32_t look = MaterialNumbers::key(polygon.look.material, polygon.look.colour);
     const auto [place, added] = polygon_at_.emplace(std::to_string(look) + ' ' + rings_text(polygon), polygons_.size());
     if (added) polygons_.push_back({std::string_view(place->first).substr(place->first.find(' ') + 1)});
