@@ -58,7 +58,7 @@ OutputFormat citygml_output() {
                 // Of LoD3 a house of a dense quarter (Berlin, Zionskirchplatz); in a city on average half as much.
                 constexpr double kBytes[] = {2500, 5500, 12500, 115000}, kFull = 340000;
                 const double bytes = lod == 3 && o.citygml_detail == CityGmlDetail::full ? kFull : kBytes[lod];
-                return o.gzip ? bytes / 7 : bytes;
+                return o.gzip ? bytes / (lod == 3 ? 12 : 7) : bytes;
               },
           .open = [](const OutputContext& c) -> std::unique_ptr<Output> { return std::make_unique<CityGmlOutput>(c); }};
 }
