@@ -63,9 +63,8 @@ void append_grid(std::string& out, double metres) {
   append_ten_thousandths_of(out, (magnitude(steps) * 625 + 32) / 64, steps < 0);
 }
 
-void append_four_decimals(std::string& out, double metres) {
-  const auto tenths_of_mm = static_cast<std::int64_t>(std::nearbyint(metres * 10000));
-  append_ten_thousandths_of(out, magnitude(tenths_of_mm), tenths_of_mm < 0);
+void append_ten_thousandths_of_a_metre(std::string& out, std::int64_t steps) {
+  append_ten_thousandths_of(out, magnitude(steps), steps < 0);
 }
 
 std::string osm_page(model::OsmId id) {

@@ -22,9 +22,9 @@ void append_number(std::string& out, std::int64_t value);
 /// \param metres  a multiple of 1/1024 m, below 2^40 in magnitude
 void append_grid(std::string& out, double metres);
 
-/// Appends a length with at most four decimals and no trailing zeros: coordinates of elements, which lie on no grid.
-/// \param metres  below 2^40 in magnitude
-void append_four_decimals(std::string& out, double metres);
+/// Appends a length in tenths of a millimetre as metres with at most four decimals and no trailing zeros: coordinates of
+/// elements, which lie on no grid.
+void append_ten_thousandths_of_a_metre(std::string& out, std::int64_t steps);
 
 using base::append_clean;
 using base::append_json;

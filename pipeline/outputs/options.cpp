@@ -57,6 +57,8 @@ const base::Choices<AttributeProfile> kProfiles = {{"people", AttributeProfile::
 
 const base::Choices<Compression> kCompressions = {{"none", Compression::none}, {"meshopt", Compression::meshopt}};
 
+const base::Choices<CityGmlDetail> kDetails = {{"lean", CityGmlDetail::lean}, {"full", CityGmlDetail::full}};
+
 // Places in the record: build.json keeps the order of its first versions.
 
 base::OptionTable<O> which_files() {
@@ -90,7 +92,17 @@ base::OptionTable<O> which_files() {
                           "for viewers that can decompress it",
                   .record = OptionRecord::yes,
                   .record_place = 8},
-                 kCompressions, &O::compression)};
+                 kCompressions, &O::compression),
+          choice({.name = "citygml-detail",
+                  .key = "citygml_detail",
+                  .argument = "WHAT",
+                  .help = "what CityGML of level 3 holds: lean has windows and doors as surfaces in the plane of their "
+                          "walls, with the depth of reveals as an attribute, and ornaments without pieces under 0.5 m; "
+                          "full has reveals as faces and every window, door and ornament as the GLBs have it, three "
+                          "times the size",
+                  .record = OptionRecord::yes,
+                  .record_place = 15},
+                 kDetails, &O::citygml_detail)};
 }
 
 base::OptionTable<O> what_files_hold() {

@@ -1,6 +1,7 @@
 // Which files a build leaves behind, and what they hold.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,11 +17,18 @@ namespace blockrand::outputs {
 /// What --formats chooses among, in the order of all_outputs().
 std::vector<std::string> format_names();
 
+/// How much CityGML of LoD3 holds.
+enum class CityGmlDetail : std::uint8_t {
+  lean,  ///< windows and doors in the plane of their walls, elements on walls without small pieces
+  full,  ///< reveals, and every element with all its faces
+};
+
 struct OutputOptions {
   std::vector<std::string> formats = format_names();    ///< in the order of format_names
   Instancing instancing = Instancing::ext;              ///< how GLBs hold what stands in facades
   Compression compression = Compression::none;          ///< of vertices, indices and places in GLBs
   AttributeProfile profile = AttributeProfile::people;  ///< what GLBs tell of a building
+  CityGmlDetail citygml_detail = CityGmlDetail::lean;   ///< of LoD3
   bool evidence = false;                ///< GLB, CityGML and CityJSON also say why each attribute has its value
   bool gzip = false;                    ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
   bool single_glb = false;              ///< also model.glb: the whole build in one frame

@@ -76,6 +76,10 @@ class Reader {
     r_.single_objects = text(member(c, "objects")) == "building";
     r_.people = text(member(c, "attributes")) == "people";
     r_.single_baked = r_.baked || (r_.single_objects && instancing != "nodes");
+    const std::string detail = text(member(c, "citygml_detail"));
+    if (member(c, "citygml_detail") && detail != "lean" && detail != "full")
+      wrong("configuration.citygml_detail", "is not lean or full");
+    r_.lean_citygml = r_.lod == 3 && detail == "lean";
     r_.gzip = is_true(member(c, "gzip"));
     r_.single_glb = is_true(member(c, "single_glb"));
     r_.single_cityjson = is_true(member(c, "single_cityjson"));

@@ -106,6 +106,8 @@ void CityGmlParser::end_openings(const Open& open, ReadBody& body, const std::ve
       std::copy_if(wall.begin() + 1, wall.end(), std::back_inserter(opening.reveals),
                    [&](std::size_t p) { return p != kNowhere; });
     opening.placement = o.placement;
+    const auto usual = open.depths.find(o.surface);
+    opening.depth = o.depth ? *o.depth : usual == open.depths.end() ? 0 : usual->second;
     body.detail.openings.push_back(std::move(opening));
   }
   check_detail(body, [&](std::string what, const std::string& id) { rule(std::move(what), id); });

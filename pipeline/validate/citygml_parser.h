@@ -45,6 +45,7 @@ class CityGmlParser {
     std::size_t surface = 0;
     std::string polygon;  ///< its id
     std::optional<std::size_t> placement;
+    std::optional<double> depth;  ///< m, as its own attribute says
   };
   /// A body in the making, beside what Contents keeps of it.
   struct Open {
@@ -55,6 +56,7 @@ class CityGmlParser {
     std::array<std::vector<SurfaceMember>, 4> surfaces;  ///< by LoD
     std::vector<OpenedWall> openings;
     std::size_t boundary_surfaces = 0;
+    std::unordered_map<std::size_t, double> depths;  ///< of openings, m, by boundary surface
   };
   struct Element {
     std::string id;
@@ -149,6 +151,9 @@ class CityGmlParser {
   void end_corner(bool lower);
 
   void end_attribute();
+
+  /// The attribute of a boundary surface or opening that says how far openings lie behind their wall.
+  void end_reveal_depth();
 
   void end_element(std::string_view name);
 

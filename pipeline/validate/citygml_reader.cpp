@@ -233,7 +233,7 @@ void CityGmlParser::start_building(std::string_view name, const std::string& id)
     if (parent() != "opening" || open_.empty() || surface_.empty())
       return rule(fmt::format("{} out of its place", name), id);
     opening_ = opening;
-    open_.back().openings.push_back({id, open_.back().boundary_surfaces, {}, {}});
+    open_.back().openings.push_back({id, open_.back().boundary_surfaces, {}, {}, {}});
   } else if (name == "BuildingInstallation") {
     if (parent() != "outerBuildingInstallation" || open_.empty()) rule("BuildingInstallation out of its place", id);
     in_installation_ = true;
@@ -390,6 +390,7 @@ void CityGmlParser::end_corner(bool lower) {
 
 void CityGmlParser::end_attribute() {
   if (!body() || attribute_.empty()) return;
+  if (attribute_ == "reveal_depth" && !surface_.empty()) return end_reveal_depth();
   const std::string_view type = parent();
   if (type != "stringAttribute") {
     const std::string number = number_text(trimmed(text_));
@@ -401,6 +402,18 @@ void CityGmlParser::end_attribute() {
   if (!attribute_.starts_with("osm.") && !attribute_.ends_with("_evidence"))
     if (!body()->attributes.emplace(attribute_, text_).second) rule(attribute_ + " stands twice", object());
   attribute_.clear();
+}
+
+void CityGmlParser::end_reveal_depth() {
+  attribute_.clear();
+  const auto values = number_list(text_);
+  if (!values || values->size() != 1 || !((*values)[0] >= 0 && (*values)[0] <= kDeepestReveal))
+    return rule(fmt::format("a reveal_depth of \"{}\"", text_.substr(0, 40)), object());
+  Open& open = open_.back();
+  if (opening_.empty())
+    open.depths[open.boundary_surfaces] = (*values)[0];
+  else if (!open.openings.empty())
+    open.openings.back().depth = (*values)[0];
 }
 
 void CityGmlParser::end_element(std::string_view name) {

@@ -33,6 +33,7 @@ struct ReadOpening {
   std::size_t wall = 0;     ///< the polygon that it opens
   std::vector<std::size_t> reveals;      ///< the other polygons of the wall's surface, at its first opening alone
   std::optional<std::size_t> placement;  ///< into ReadDetail::placements: the element that stands in it
+  double depth = 0;                      ///< m: how far it is said to lie behind its wall, where it is drawn flat
 };
 
 /// An element where it stands.

@@ -132,6 +132,11 @@ std::string detail_difference(const ReadBody& a, const ReadBody& b) {
     if (p[i] != q[i])
       return fmt::format("another element, or one at another place (near {:.3f} {:.3f} {:.3f})", p[i].origin.x,
                          p[i].origin.y, p[i].origin.z);
+  return installation_difference(a, b);
+}
+
+std::string installation_difference(const ReadBody& a, const ReadBody& b) {
+  const ReadDetail &x = a.detail, &y = b.detail;
   if (x.installations.size() != y.installations.size())
     return fmt::format("{} installations against {}", x.installations.size(), y.installations.size());
   for (std::size_t i = 0; i < x.installations.size(); ++i) {

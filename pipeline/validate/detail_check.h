@@ -37,6 +37,8 @@ bool turns_about_the_vertical(std::span<const double> matrix);
 /// What two formats say differently of a body's LoD3 beside its solid: how many openings, which elements where, which
 /// installations. Empty where they say the same.
 std::string detail_difference(const ReadBody& a, const ReadBody& b);
+/// Of that, the installations.
+std::string installation_difference(const ReadBody& a, const ReadBody& b);
 
 /// m. Walls are plane to 1 cm (ISO 19107's 203), on both sides of which corners may lie.
 inline constexpr double kWallTolerance = 0.02;

@@ -15,6 +15,7 @@
 #include "pipeline/validate/detail_check.h"
 #include "pipeline/validate/glb.h"
 #include "pipeline/validate/ids.h"
+#include "pipeline/validate/lean_agreement.h"
 #include "pipeline/validate/part_overlap_check.h"
 #include "pipeline/validate/placed_elements.h"
 #include "pipeline/validate/places.h"
@@ -39,7 +40,7 @@ bool has_geometry(const ReadBody& body, int lod) { return lod == 0 ? !body.footp
 class Checker {
  public:
   Checker(const TileFiles& files, const TileContext& context)
-      : files_(files), context_(context), baked_(context.record.baked) {}
+      : files_(files), context_(context), baked_(context.record.baked), lean_(context.record.lean_citygml) {}
 
   TileResult run() {
     tile_ = read_tile(files_, context_, out_);
@@ -282,12 +283,18 @@ class Checker {
       compare_objects(first, other, out_.findings);
       compare_attributes(first, other, precision(f), out_.findings);
       out_.compared += other.contents.bodies.size();
-      if (f == kCityJson) {
+      if (f != kCityJson) continue;
+      if (reference == kCityGml && lean_) {
+        compare_lean(first, other);
+      } else {
         compare_polygons(first, other, out_.findings);
         compare_details(first, other);
       }
     }
-    if (tile_.glb && reference != kGltf) compare_with_mesh(first);
+    if (tile_.glb && reference != kGltf) {
+      const std::size_t f = reference == kCityGml ? detailed_format() : reference;
+      compare_with_mesh({*tile_.of(f), files_.path[f]}, f == kCityGml && lean_);
+    }
     note_absent(reference, there);
   }
 
@@ -300,11 +307,27 @@ class Checker {
           found(Check::geometry_differs, b.file, body.id, fmt::format("LoD 3: {}, in {}", what, a.file));
   }
 
-  void compare_with_mesh(const Side& reference) {
+  /// CityGML, or where it is lean CityJSON, if the tile has it.
+  std::size_t detailed_format() const { return lean_ && tile_.of(kCityJson) ? kCityJson : kCityGml; }
+
+  void compare_lean(const Side& lean, const Side& other) {
+    const Contents flat = without_reveals(other.contents);
+    compare_polygons(lean, {flat, other.file}, out_.findings);
+    std::unordered_map<std::string_view, const ReadBody*> bodies;
+    for (const ReadBody& body : lean.contents.bodies) bodies.emplace(body.id, &body);
+    for (const ReadBody& body : flat.bodies)
+      if (const auto same = bodies.find(body.id); same != bodies.end())
+        if (const std::string what = lean_difference(*same->second, lean.contents, body, flat); !what.empty())
+          found(Check::geometry_differs, lean.file, body.id, fmt::format("LoD 3: {}, in {}", what, other.file));
+  }
+
+  /// \param lean  the reference lacks what elements stand for: meshes of LoD3 are not compared
+  void compare_with_mesh(const Side& reference, bool lean) {
     if (!context_.proj_transform) return;
     compare_in_frame(*tile_.glb, [&](const ToLocal& to_local, double tolerance) {
-      compare_meshes(reference, *tile_.glb, files_.path[kGltf], to_local, tolerance, baked_, out_.findings);
-      if (!baked_) compare_places(reference, *tile_.glb, files_.path[kGltf], to_local, tolerance, out_.findings);
+      compare_meshes(reference, *tile_.glb, files_.path[kGltf], to_local, tolerance, baked_ || lean, out_.findings);
+      if (!baked_ && !lean)
+        compare_places(reference, *tile_.glb, files_.path[kGltf], to_local, tolerance, out_.findings);
     });
   }
 
@@ -393,6 +416,7 @@ class Checker {
     if (!context_.explanations) return;
     std::size_t format = 0;
     const Contents* reference = tile_.model(format);
+    if (format == kCityGml && reference) reference = tile_.of(format = detailed_format());
     if (files_.explanations.empty()) {
       if (reference && !reference->bodies.empty())
         found(Check::explanation_wrong, files_.path[format], files_.name, "the tile has no file in explain/");
@@ -526,6 +550,7 @@ class Checker {
   TileResult out_;
   TileContents tile_;
   bool baked_;                     // elements are triangles of their bodies
+  bool lean_;                      // CityGML leaves reveals and elements of openings out
   std::set<std::string> unsound_;  // bodies with a solid that a validator refused
 };
 

@@ -47,7 +47,12 @@ class Facades(BuildTest):
         self.assertGreater(doors, 0.3 * counts['models'])
         self.assertEqual(windows + doors, text.count('<bldg:opening>'))
         placed = places(out)
-        self.assertEqual(placed['ext'], text.count('<core:ImplicitGeometry>'))
+        full = gml(self.build(SAMPLE, 'full', *LOD3, '--formats', 'citygml', '--citygml-detail', 'full'))
+        self.assertEqual(placed['ext'], full.count('<core:ImplicitGeometry>'))
+        self.assertEqual(full.count('<bldg:opening>'), windows + doors)
+        self.assertEqual(text.count('<core:ImplicitGeometry>'),
+                         len(re.findall('<bldg:BuildingInstallation [^>]*><bldg:function>[^<]*</bldg:function>\\s*<bldg:lod3Impl', full)))
+        self.assertLess(2.5 * len(text), len(full))
         self.assertLess(placed['meshes'], placed['ext'] / 4, 'elements are stored once')
         self.assertGreater(text.count('<bldg:lod3Solid>'), 0.8 * counts['models'])
 
@@ -152,7 +157,7 @@ class Facades(BuildTest):
         self.build(SAMPLE, 'lod2', '--configs', configs, '--formats', 'gltf')
 
     def test_validate_reads_every_way_of_writing(self):
-        ways = (['citygml', 'ext'], ['cityjson', 'nodes'], ['citygml', 'baked'], ['cityjson', 'ext', '--compress', 'meshopt'])
+        ways = (['citygml', 'ext', '--citygml-detail', 'full'], ['citygml', 'ext'], ['cityjson', 'nodes'], ['citygml', 'baked'], ['cityjson', 'ext', '--compress', 'meshopt'])
         for number, (form, *how) in enumerate(ways):
             out = self.build(SAMPLE, f'way{number}', '--lod', '3', '--formats', f'gltf,{form}', '--no-report', '--instancing', *how)
             self.assertEqual(validators.validate(out), '')

@@ -7,12 +7,14 @@ from blockrand_run import SAMPLE, BuildTest, blockrand, main
 from damage import Damaged
 
 
-class ValidateDetail(BuildTest):
+class Detail(BuildTest):
+    options = []
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
         cls.out = cls().build(SAMPLE, 'out', '--lod', '3', '--formats', 'citygml,cityjson,gpkg', '--no-report',
-                              '--single-cityjson')
+                              '--single-cityjson', *cls.options)
         cls.number = 0
 
     def validate(self, folder):
@@ -35,10 +37,17 @@ class ValidateDetail(BuildTest):
             self.assertTrue(any(word in line for line in said), f'{word} is named by none of\n{shown}')
         shutil.rmtree(damage.folder)
 
-    def test_what_was_built_is_sound(self):
+    def check_soundness(self):
         result = self.validate(self.out)
         self.assertEqual(result['findings'], [])
         self.assertTrue(result['sound'])
+
+
+class ValidateDetail(Detail):
+    options = ['--citygml-detail', 'full']
+
+    def test_what_was_built_is_sound(self):
+        self.check_soundness()
 
     def test_a_wrong_count(self):
         for key in ('windows', 'doors', 'placements', 'installations', 'solids_lod3'):
@@ -88,6 +97,53 @@ class ValidateDetail(BuildTest):
         d = self.damaged()
         d.change(d.cityjson, lambda data: data.replace(b'"function":"chimney"', b'"function":"plinth"', 1))
         self.found(d, 'GEOMETRY_DIFFERS', 'is a chimney against a plinth')
+
+
+class ValidateLean(Detail):
+    """CityGML as it is by default: flat openings with the depth of their reveals, elements on walls alone."""
+
+    def test_what_was_built_is_sound(self):
+        self.check_soundness()
+
+    def test_a_wrong_depth(self):
+        for pattern in (r'(<bldg:WallSurface [^>]*><gen:doubleAttribute name="reveal_depth"><gen:value>)([\d.]+)',
+                        r'(name="reveal_depth"><gen:value>)([\d.]+)'):
+            d = self.damaged()
+            d.building(lambda text, pattern=pattern: re.sub(pattern, lambda m: f'{m.group(1)}{float(m.group(2)) + 0.02:.3f}',
+                                                            text, count=1), lambda text: 'reveal_depth' in text)
+            self.found(d, 'GEOMETRY_DIFFERS', 'm behind its wall, it lies')
+
+    def test_a_depth_that_is_none(self):
+        d = self.damaged()
+        d.replace(d.gml, 'name="reveal_depth"><gen:value>', 'name="reveal_depth"><gen:value>7')
+        self.found(d, 'CITYGML_RULE', 'a reveal_depth of')
+
+    def test_a_moved_window(self):
+        d = self.damaged()
+
+        def up(points):
+            points[1][2] += 0.25
+            return points
+        d.ring(up, 'Window')
+        self.found(d, 'CITYGML_RULE SOLID_INVALID GEOMETRY_DIFFERS', 'an edge of it is none of its reveal')
+
+    def test_a_missing_element_and_a_moved_one(self):
+        implicit = re.compile('<bldg:outerBuildingInstallation><bldg:BuildingInstallation [^>]*><bldg:function>[^<]*'
+                              '</bldg:function>\\s*<bldg:lod3ImplicitRepresentation>(?:(?!</bldg:outerB).)*xlink:href.*?'
+                              '</bldg:outerBuildingInstallation>', re.S)
+        d = self.damaged()
+        d.building(lambda text: implicit.sub('', text, count=1), implicit.search)
+        self.found(d, 'GEOMETRY_DIFFERS', 'an element is missing that stands in no opening')
+        d = self.damaged()
+        d.building(lambda text: implicit.sub(lambda m: re.sub(
+            r'(<pos>)([\d.]+)', lambda p: f'{p.group(1)}{float(p.group(2)) + 0.5:.4f}', m.group()), text, count=1),
+            implicit.search)
+        self.found(d, 'GEOMETRY_DIFFERS', 'another element, or one at another place')
+
+    def test_a_build_that_says_it_has_everything(self):
+        d = self.damaged()
+        d.json('build.json', lambda b: b['configuration'].update(citygml_detail='full'))
+        self.found(d, 'GEOMETRY_DIFFERS COUNTS_DIFFER', 'counts.placements')
 
 
 if __name__ == '__main__':

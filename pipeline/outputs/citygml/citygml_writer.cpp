@@ -12,6 +12,7 @@
 #include "pipeline/outputs/citygml/appearance_text.h"
 #include "pipeline/outputs/citygml/codes.h"
 #include "pipeline/outputs/citygml/element_templates.h"
+#include "pipeline/outputs/citygml/flat_openings.h"
 #include "pipeline/outputs/citygml/geometry_text.h"
 #include "pipeline/outputs/material_classes.h"
 #include "pipeline/outputs/number_text.h"
@@ -49,7 +50,7 @@ model::Point3 on_grid(const model::Point3& p, bool down) {
   return {step(p.x), step(p.y), step(p.z)};
 }
 
-Envelope envelope(const model::Region& region, int lod) {
+Envelope envelope(const model::Region& region, int lod, bool lean) {
   Envelope box;
   PlacedBoxes placed(region);
   const auto add_plan = [&](const model::Polygon& plan, double z) {
@@ -64,9 +65,11 @@ Envelope envelope(const model::Region& region, int lod) {
       if (lod >= 2)
         for (const model::Point3& p : part.lod2.vertices) box.add(p);
       if (lod < 3) continue;
-      for (const model::Placement& p : part.lod3.placements)
+      for (const model::Placement& p : part.lod3.placements) {
+        if (lean && p.opening != model::kNoOpening) continue;
         if (const auto* corners = placed.corners(p))
           for (const model::Point3& c : *corners) box.add(on_grid(c, true)), box.add(on_grid(c, false));
+      }
       for (const model::WallInstallation& body : part.lod3.installations)
         for (const model::Point3& p : body.solid.vertices) box.add(p);
       for (const model::RoofInstallation& body : part.lod3.roof_installations)
@@ -91,7 +94,7 @@ class BuildingText {
         tags_(region.extract),
         geometry_(out_),
         appearance_(appearance),
-        templates_(region, options.lod) {}
+        templates_(region, options.lod, options.lean) {}
 
   /// The text of one cityObjectMember; valid until the next call.
   std::string_view member(const model::Building& building) {
@@ -309,12 +312,15 @@ class BuildingText {
   /// What stands on walls, the surfaces of both levels with windows and doors, and the solid of LoD3.
   void detail(const model::BuildingPart& part, const std::string& id) {
     const model::Detail& lod3 = part.lod3;
+    const FlatOpenings flat = options_.lean ? flat_openings(lod3) : FlatOpenings();
+    const model::Detail& shown = options_.lean ? flat.detail : lod3;
+    const std::vector<double> usual = usual_depths(flat);
     std::vector<const model::Placement*> in_opening(lod3.openings.size(), nullptr);
     std::size_t number = 0;
     for (const model::Placement& p : lod3.placements) {
       if (!has_shape(*region_.elements.at(p.element).element)) continue;
       if (p.opening != model::kNoOpening) {
-        in_opening[p.opening] = &p;
+        if (!options_.lean) in_opening[p.opening] = &p;
         continue;
       }
       open_installation(id, number++, region_.elements.at(p.element).element->kind);
@@ -331,13 +337,30 @@ class BuildingText {
     for (const model::WallInstallation& body : lod3.installations) body_of_its_own(body.solid, body.kind);
     for (const model::RoofInstallation& body : lod3.roof_installations)
       body_of_its_own(body.solid, model::name(body.kind));
-    geometry_.surfaces(part.lod2, lod3, id, [&](std::size_t o) {
-      if (in_opening[o]) implicit(*in_opening[o]);
-    });
-    appearance_.add_detail(part.lod2, lod3, id);
+    geometry_.surfaces(part.lod2, shown, id,
+                       {.wall =
+                            [&](std::size_t f) {
+                              if (f < usual.size() && usual[f] > 0) reveal_depth(usual[f]);
+                            },
+                        .opening =
+                            [&](std::size_t o) {
+                              if (o < flat.depth.size() && flat.depth[o] != usual[shown.openings[o].wall])
+                                reveal_depth(flat.depth[o]);
+                            },
+                        .inside =
+                            [&](std::size_t o) {
+                              if (in_opening[o]) implicit(*in_opening[o]);
+                            }});
+    appearance_.add_detail(part.lod2, shown, id);
     out_ += "<bldg:lod3Solid>";
-    geometry_.detail_solid(part.lod2, lod3.solid, id + "_lod3", id);
+    geometry_.detail_solid(part.lod2, shown.solid, id + "_lod3", id);
     out_ += "</bldg:lod3Solid>\n";
+  }
+
+  void reveal_depth(double metres) {
+    open_generic("doubleAttribute", "reveal_depth");
+    append_number(out_, std::nearbyint(metres * 1e3) / 1e3);
+    close_generic("doubleAttribute");
   }
 
   /// \return the installation's id
@@ -448,6 +471,10 @@ std::string description(const CityGmlOptions& options) {
   };
   add("CRS: ", options.srs_name);
   add("heights: ", options.height_reference);
+  if (options.lod >= 3 && options.lean)
+    add("detail: ",
+        "lean, windows and doors in the plane of their walls (reveal_depth says how far behind it they lie), pieces of "
+        "ornaments under 0.5 m left out");
   add("data: ", options.attribution);
   return text;
 }
@@ -521,7 +548,7 @@ void write_citygml(const model::Region& region, const CityGmlOptions& options, c
     xmlTextWriterWriteElement(writer, xml("gml:name"), xml(clean.c_str()));
     xmlTextWriterWriteRaw(writer, xml("\n"));
   }
-  write_envelope(writer, envelope(region, options.lod), options.srs_name);
+  write_envelope(writer, envelope(region, options.lod, options.lean), options.srs_name);
 
   const auto write_raw = [&](std::string_view piece) {
     if (!state.error) xmlTextWriterWriteRawLen(writer, xml(piece.data()), static_cast<int>(piece.size()));

@@ -15,6 +15,7 @@ struct CityGmlOptions {
   std::string attribution;       ///< source and licence of the data, for gml:description
   std::string name;              ///< gml:name of the city model, for example "Blockrand 15/17600/12900"
   bool evidence = false;         ///< also `<attribute>_evidence`: why each attribute has its value
+  bool lean = false;             ///< flat openings without elements, elements on walls without small pieces
 };
 
 /// Writes the owned buildings of `region` that have a part, in their order, to `sink` in pieces.
@@ -23,7 +24,9 @@ struct CityGmlOptions {
 /// itself; otherwise each part is a bldg:BuildingPart with gml:id = the part's id (a part that has the building's id
 /// beside others becomes "<id>.1"). Each level of detail that a part has reached, up to `lod`, is written:
 /// lod0FootPrint at ground height, lod1Solid, lod2Solid and lod3Solid with their polygons, to which the boundary
-/// surfaces refer (geometry_text.h says why). Elements are implicit geometries (element_templates.h). Attributes without an element of their own are generic attributes named as in model::for_each_attribute; each attribute not
+/// surfaces refer (geometry_text.h says why). Elements are implicit geometries (element_templates.h). Where it is
+/// lean, openings have neither reveals nor elements (flat_openings.h); a wall's generic attribute `reveal_depth` says in metres how far its windows and doors
+/// really lie behind it, that of an opening where it differs. Attributes without an element of their own are generic attributes named as in model::for_each_attribute; each attribute not
 /// taken from a tag also has `<attribute>_source` and `<attribute>_confidence`; OSM tags are `osm.<key>`.
 ///
 /// After the city objects stands one app:Appearance of the theme "visual" with an app:X3DMaterial per pair of material

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "pipeline/outputs/citygml/geometry_text.h"
+#include "pipeline/outputs/citygml/lean_element.h"
+#include "pipeline/outputs/element_polygons.h"
 #include "pipeline/outputs/number_text.h"
 #include "pipeline/outputs/placed_element.h"
 
@@ -27,33 +29,26 @@ std::uint64_t number_of(const model::TileId& tile) {
   return (side * side - 1) / 3 + tile.y * side + tile.x;
 }
 
-/// The posList of a face; empty for one that is narrower than the last decimal.
-std::string ring_text(const model::ElementMesh& mesh, const model::ElementFace& face) {
-  std::vector<std::string> points;
-  for (std::uint32_t i = 0; i < face.count; ++i) {
-    const model::Point3& p = mesh.vertices[mesh.indices[face.first + i]];
-    std::string text;
-    // y up and z out of the wall become z up and y into it, which keeps the frame right-handed.
-    append_four_decimals(text, p.x);
-    text += ' ';
-    append_four_decimals(text, 0.0 - p.z);
-    text += ' ';
-    append_four_decimals(text, p.y);
-    if (points.empty() || points.back() != text) points.push_back(std::move(text));
+/// The exterior and interiors of a polygon.
+std::string rings_text(const ElementPolygon& polygon) {
+  std::string out;
+  for (const std::vector<ElementPoint>& ring : polygon.rings) {
+    const bool outer = &ring == &polygon.rings.front();
+    out += outer ? kExteriorBegin : kInteriorBegin;
+    for (std::size_t i = 0; i <= ring.size(); ++i)
+      for (const std::int64_t steps : ring[i == ring.size() ? 0 : i]) {
+        append_ten_thousandths_of_a_metre(out, steps);
+        out += ' ';
+      }
+    out.pop_back();
+    out += outer ? kExteriorEnd : kInteriorEnd;
   }
-  while (points.size() > 1 && points.front() == points.back()) points.pop_back();
-  if (points.size() < 3) return {};
-  std::string ring;
-  for (const std::string& p : points) {
-    ring += p;
-    ring += ' ';
-  }
-  return ring + points.front();
+  return out;
 }
 
 }  // namespace
 
-ElementTemplates::ElementTemplates(const model::Region& region, int lod) : prefix_("e") {
+ElementTemplates::ElementTemplates(const model::Region& region, int lod, bool lean) : prefix_("e") {
   append_base36(prefix_, number_of(region.tile));
   prefix_ += '_';
   template_of_.assign(region.elements.size(), kNone);
@@ -62,23 +57,23 @@ ElementTemplates::ElementTemplates(const model::Region& region, int lod) : prefi
     if (!building.owned) continue;
     for (const model::BuildingPart& part : building.parts) {
       if (part.lod < 3 || part.lod3.solid.empty()) continue;
-      for (const model::Placement& p : part.lod3.placements)
+      for (const model::Placement& p : part.lod3.placements) {
+        if (lean && p.opening != model::kNoOpening) continue;
         if (std::uint32_t& number = template_of_[p.element];
             number == kNone && has_shape(*region.elements.at(p.element).element))
-          number = add(region.elements[p.element]);
+          number = add(region.elements[p.element], lean);
+      }
     }
   }
 }
 
-std::uint32_t ElementTemplates::add(const model::ColouredElement& coloured) {
-  const model::ElementMesh& mesh = coloured.element->mesh;
+std::uint32_t ElementTemplates::add(const model::ColouredElement& coloured, bool lean) {
   Template made;
-  for (const model::ElementFace& face : mesh.faces) {
-    const std::string ring = ring_text(mesh, face);
-    if (ring.empty()) continue;
-    const model::PartMaterial& material = coloured.materials[static_cast<std::size_t>(face.part)];
-    const std::uint32_t look = MaterialNumbers::key(material.material, material.colour);
-    const auto [place, added] = polygon_at_.emplace(std::to_string(look) + ' ' + ring, polygons_.size());
+  std::vector<ElementPolygon> polygons = element_polygons(coloured);
+  if (lean) polygons = without_small_pieces(std::move(polygons));
+  for (const ElementPolygon& polygon : polygons) {
+    const std::uint32_t look = MaterialNumbers::key(polygon.look.material, polygon.look.colour);
+    const auto [place, added] = polygon_at_.emplace(std::to_string(look) + ' ' + rings_text(polygon), polygons_.size());
     if (added) polygons_.push_back({std::string_view(place->first).substr(place->first.find(' ') + 1)});
     auto group = std::find_if(made.groups.begin(), made.groups.end(), [&](const Group& g) { return g.look == look; });
     if (group == made.groups.end()) group = made.groups.insert(made.groups.end(), Group{look, {}});
@@ -113,9 +108,8 @@ void ElementTemplates::append_polygon(std::string& out, Polygon& polygon) {
     append_id(out, polygon.id);
     out += '"';
   }
-  out += kRingBegin;
-  out += polygon.ring;
-  out += kRingEnd;
+  out += '>';
+  out += polygon.rings;
   out += kPolygonEnd;
 }
 

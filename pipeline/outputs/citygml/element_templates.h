@@ -19,9 +19,10 @@ namespace blockrand::outputs {
 /// one house differ in few of their hundred faces. Keeps the text of each distinct polygon, about 100 bytes.
 class ElementTemplates {
  public:
-  /// The elements that the buildings of `region` place at `lod`. Ids begin with "e" and a number of the tile, since those
+  /// The elements that the buildings of `region` place at `lod`; lean without those in openings and without
+  /// small pieces (lean_element.h). Ids begin with "e" and a number of the tile, since those
   /// of the files of one build are to differ.
-  ElementTemplates(const model::Region& region, int lod);
+  ElementTemplates(const model::Region& region, int lod, bool lean);
 
   /// Appends the core:relativeGMLGeometry of an element of the region: the first time with its geometry, whose looks go to
   /// `appearance`, then as a reference.
@@ -29,7 +30,7 @@ class ElementTemplates {
 
  private:
   struct Polygon {
-    std::string_view ring;   ///< its posList
+    std::string_view rings;  ///< its exterior and interiors
     std::uint32_t uses = 0;  ///< by templates
     std::uint32_t id = 0;    ///< once it is written, if it is used again; 0: none
   };
@@ -42,7 +43,7 @@ class ElementTemplates {
     std::uint32_t id = 0;  ///< once it is written
   };
 
-  std::uint32_t add(const model::ColouredElement& coloured);
+  std::uint32_t add(const model::ColouredElement& coloured, bool lean);
   void append_id(std::string& out, std::uint32_t id) const;
   void append_polygon(std::string& out, Polygon& polygon);
 

@@ -91,17 +91,17 @@ void GeometryText::polygon(const model::Solid& solid, std::size_t face, std::str
     append_id(out_, id, mark == Mark::detail ? "_q" : "_p", face);
     out_ += '"';
   }
-  out_ += kRingBegin;
+  out_ += '>';
   bool outer = true;
   for (const model::Solid::Loop& loop : solid.loops_of(solid.faces[face])) {
-    if (!outer) out_ += "<interior><LinearRing><posList>";
+    out_ += outer ? kExteriorBegin : kInteriorBegin;
     const std::span<const std::uint32_t> indices = solid.indices_of(loop);
     for (std::size_t i = 0; i <= indices.size(); ++i) {
       const std::uint32_t v = indices[i == indices.size() ? 0 : i];
       if (i) out_ += ' ';
       out_.append(vertex_text_, vertex_ends_[v], vertex_ends_[v + 1] - vertex_ends_[v]);
     }
-    out_ += outer ? kRingEnd : "</posList></LinearRing></interior>";
+    out_ += outer ? kExteriorEnd : kInteriorEnd;
     outer = false;
   }
   out_ += kPolygonEnd;
@@ -184,7 +184,7 @@ void GeometryText::surfaces(const model::Solid& solid, std::string_view id) {
 }
 
 void GeometryText::surfaces(const model::Solid& lod2, const model::Detail& detail, std::string_view id,
-                            const std::function<void(std::size_t)>& implicit) {
+                            const SurfaceText& text) {
   const model::Solid& lod3 = detail.solid;
   const std::vector<std::vector<std::size_t>> reveals = reveals_by_wall(lod2, detail);
   std::vector<std::vector<std::size_t>> openings(lod2.faces.size());  // by wall
@@ -194,6 +194,7 @@ void GeometryText::surfaces(const model::Solid& lod2, const model::Detail& detai
   for (std::size_t f = 0; f < lod2.faces.size(); ++f) {
     const std::string_view name = kSurfaceNames[static_cast<std::size_t>(lod2.faces[f].kind)];
     open_surface(name, id, f);
+    text.wall(f);
     single_surface("lod2MultiSurface", id, f, Mark::polygon);
     out_ += '\n';
     written[f] = true;
@@ -218,9 +219,9 @@ void GeometryText::surfaces(const model::Solid& lod2, const model::Detail& detai
       out_ += " gml:id=\"";
       append_id(out_, id, "_s", face);
       out_ += "\">";
+      text.opening(o);
       single_surface("lod3MultiSurface", id, face, Mark::detail);
-      out_ += '\n';
-      implicit(o);
+      text.inside(o);
       out_ += "</bldg:";
       out_ += kind;
       out_ += "></bldg:opening>\n";

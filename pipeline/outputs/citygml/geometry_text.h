@@ -12,10 +12,12 @@
 
 namespace blockrand::outputs {
 
-/// A Polygon within a surfaceMember: between the first two stands the id, after kRingBegin the outer ring.
+/// A Polygon within a surfaceMember: after the first stand its id and ">", then the rings.
 inline constexpr std::string_view kPolygonBegin = "<surfaceMember><Polygon",
-                                  kRingBegin = "><exterior><LinearRing><posList>",
-                                  kRingEnd = "</posList></LinearRing></exterior>",
+                                  kExteriorBegin = "<exterior><LinearRing><posList>",
+                                  kExteriorEnd = "</posList></LinearRing></exterior>",
+                                  kInteriorBegin = "<interior><LinearRing><posList>",
+                                  kInteriorEnd = "</posList></LinearRing></interior>",
                                   kPolygonEnd = "</Polygon></surfaceMember>\n";
 
 /// Appends "<id>_p<face>", the gml:id of a polygon.
@@ -51,11 +53,15 @@ class GeometryText {
 
   /// One bldg:boundedBy per face of solid(): WallSurface "<id>_s<face>" with a reference to its polygon, and so on.
   void surfaces(const model::Solid& solid, std::string_view id);
+  /// What others write into the surfaces of LoD3.
+  struct SurfaceText {
+    std::function<void(std::size_t)> wall;     ///< generic attributes of a face of LoD2
+    std::function<void(std::size_t)> opening;  ///< generic attributes of an opening
+    std::function<void(std::size_t)> inside;   ///< what stands in an opening, as implicit geometry
+  };
   /// The same with LoD3 beside LoD2: a wall has what is left of it around its openings, their reveals, and as
-  /// bldg:opening the windows and doors themselves; `implicit(o)` writes what stands in opening o. Tunnels of passages
-  /// are surfaces of their own.
-  void surfaces(const model::Solid& lod2, const model::Detail& detail, std::string_view id,
-                const std::function<void(std::size_t)>& implicit);
+  /// bldg:opening the windows and doors themselves. Tunnels of passages are surfaces of their own.
+  void surfaces(const model::Solid& lod2, const model::Detail& detail, std::string_view id, const SurfaceText& text);
   /// MultiSurface "<id>_m0" of all faces of a body; with `polygon_ids` these are "<id>_p<face>".
   void multi_surface(const model::Solid& solid, std::string_view id, bool polygon_ids);
 

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "pipeline/outputs/element_polygons.h"
 #include "pipeline/outputs/number_text.h"
 #include "pipeline/outputs/placed_element.h"
 
@@ -27,42 +28,37 @@ std::vector<std::uint32_t> TemplateTable::add(const model::Region& region, const
 }
 
 std::uint32_t TemplateTable::number(const model::ColouredElement& coloured, const std::vector<std::uint8_t>& class_of) {
-  const model::ElementMesh& mesh = coloured.element->mesh;
-  // y up and z out of the wall become z up and y into it, which keeps the frame right-handed.
   std::vector<std::string> points;
-  std::map<std::string, std::size_t> known;
-  const auto vertex = [&](const model::Point3& p) {
+  std::map<ElementPoint, std::size_t> known;
+  const auto vertex = [&](const ElementPoint& p) {
+    const auto [place, added] = known.emplace(p, points.size());
+    if (!added) return place->second;
     std::string text = "[";
-    append_four_decimals(text, p.x);
-    text += ',';
-    append_four_decimals(text, 0.0 - p.z);
-    text += ',';
-    append_four_decimals(text, p.y);
-    text += ']';
-    const auto [place, added] = known.emplace(text, points.size());
-    if (added) points.push_back(std::move(text));
+    for (const std::int64_t steps : p) {
+      append_ten_thousandths_of_a_metre(text, steps);
+      text += ',';
+    }
+    text.back() = ']';
+    points.push_back(std::move(text));
     return place->second;
   };
-  std::vector<std::vector<std::size_t>> faces;
+  std::vector<std::vector<std::vector<std::size_t>>> faces;
   std::vector<std::uint32_t> looks;
   std::string key;
-  for (const model::ElementFace& face : mesh.faces) {
-    std::vector<std::size_t> ring;
-    for (std::uint32_t i = 0; i < face.count; ++i) {
-      const std::size_t v = vertex(mesh.vertices[mesh.indices[face.first + i]]);
-      if (ring.empty() || ring.back() != v) ring.push_back(v);
-    }
-    while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-    if (ring.size() < 3) continue;  // narrower than the last decimal
-    const model::PartMaterial& look = coloured.materials[static_cast<std::size_t>(face.part)];
-    looks.push_back(materials_.number(MaterialNumbers::key(class_of.at(look.material), look.colour)));
+  for (const ElementPolygon& polygon : element_polygons(coloured)) {
+    looks.push_back(materials_.number(MaterialNumbers::key(class_of.at(polygon.look.material), polygon.look.colour)));
     append_index(key, looks.back());
-    for (const std::size_t v : ring) {
-      key += ' ';
-      append_index(key, v);
+    auto& rings = faces.emplace_back();
+    for (const std::vector<ElementPoint>& ring : polygon.rings) {
+      auto& indices = rings.emplace_back();
+      key += ',';
+      for (const ElementPoint& p : ring) {
+        indices.push_back(vertex(p));
+        key += ' ';
+        append_index(key, indices.back());
+      }
     }
     key += ';';
-    faces.push_back(std::move(ring));
   }
   for (const std::string& p : points) key += p;
   const auto [place, added] = numbers_.emplace(std::move(key), static_cast<std::uint32_t>(numbers_.size()));
@@ -70,14 +66,17 @@ std::uint32_t TemplateTable::number(const model::ColouredElement& coloured, cons
 
   templates_ += templates_.empty() ? "" : ",";
   templates_ += "{\"type\":\"MultiSurface\",\"lod\":\"3\",\"boundaries\":[";
-  for (const auto& ring : faces) {
-    if (&ring != &faces.front()) templates_ += ',';
-    templates_ += "[[";
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      if (i > 0) templates_ += ',';
-      append_index(templates_, vertex_count_ + ring[i]);
+  for (const auto& rings : faces) {
+    templates_ += &rings == &faces.front() ? "[" : ",[";
+    for (const auto& ring : rings) {
+      templates_ += &ring == &rings.front() ? "[" : ",[";
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        if (i > 0) templates_ += ',';
+        append_index(templates_, vertex_count_ + ring[i]);
+      }
+      templates_ += ']';
     }
-    templates_ += "]]";
+    templates_ += ']';
   }
   templates_ += "],\"material\":{\"";
   templates_ += kVisualTheme;

@@ -25,19 +25,17 @@ double parsed(const std::string& text) {
   return value;
 }
 
-TEST(AppendFourDecimals, TakesLengthsOfEverySignAndSize) {
-  const auto text = [](double v) {
+TEST(AppendTenThousandths, TakesLengthsOfEverySignAndSize) {
+  const auto text = [](std::int64_t steps) {
     std::string out;
-    append_four_decimals(out, v);
+    append_ten_thousandths_of_a_metre(out, steps);
     return out;
   };
   EXPECT_EQ(text(0), "0");
-  EXPECT_EQ(text(-0.55), "-0.55");
-  EXPECT_EQ(text(2.2), "2.2");
-  EXPECT_EQ(text(-12.03456), "-12.0346");
-  EXPECT_EQ(text(0.00004), "0");
-  EXPECT_EQ(text(-0.00004), "0");
-  EXPECT_EQ(text(1.0001), "1.0001");
+  EXPECT_EQ(text(-5500), "-0.55");
+  EXPECT_EQ(text(22000), "2.2");
+  EXPECT_EQ(text(-120346), "-12.0346");
+  EXPECT_EQ(text(10001), "1.0001");
 }
 
 TEST(AppendGrid, WritesShortDecimals) {
