@@ -93,7 +93,8 @@ TEST(TomlTable, NanIsOutOfEveryRange) {
 }
 
 TEST(TomlTable, WholeNumbersThatADoubleRoundsAreNumbers) {
-  TomlTable t = TomlTable::parse("x = 99999999999999993\nl = [9007199254740993]\np = [[1, 9007199254740993]]", "t.toml");
+  TomlTable t =
+      TomlTable::parse("x = 99999999999999993\nl = [9007199254740993]\np = [[1, 9007199254740993]]", "t.toml");
   EXPECT_THAT(error_of([&] { t.number("x", 0, 100); }), HasSubstr("out of range: 1e+17"));
   EXPECT_EQ(t.numbers("l")->at(0), 9007199254740992.0);
   EXPECT_EQ(t.pairs("p")->at(0).second, 9007199254740992.0);

@@ -200,8 +200,9 @@ TEST(MakeValid, ACourtThatAlmostTouchesTheWallStandsApart) {
   // In floats, 100 m from the origin, a corner a millimetre from a slanted wall may lie beyond it.
   const double step = 1 / model::kGridStepsPerMetre;
   for (const Point2 corner : {Point2{5, 1 + step}, Point2{5, 1 + 2 * step}, Point2{5, 1.5}}) {
-    const auto result = make_valid(
-        std::vector{ring({{0, 0}, {10, 2}, {10, 10}, {0, 10}}), ring({corner, {6, 5}, {4, 5}})}, {false, true}, 0.05, 0.03);
+    const auto result =
+        make_valid(std::vector{ring({{0, 0}, {10, 2}, {10, 10}, {0, 10}}), ring({corner, {6, 5}, {4, 5}})},
+                   {false, true}, 0.05, 0.03);
     ASSERT_EQ(result.polygons.size(), 1u);
     ASSERT_EQ(result.polygons[0].holes.size(), 1u);
     const bool near = corner.y < 1 + 1.6 * step;
