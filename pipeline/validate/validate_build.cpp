@@ -207,9 +207,10 @@ class Run {
     if (!geopackage_ && records.empty()) {
       otherwise = number(member(member(record_.json, "repair"), "max_shift_m")).value_or(0);
       if (otherwise > 0)
-        v_.notes.push_back(fmt::format("the build has neither explanations nor a GeoPackage: any corner may be {:.2f} m "
-                                       "from where OpenStreetMap has it, as far as repair moved one at most",
-                                       otherwise));
+        v_.notes.push_back(
+            fmt::format("the build has neither explanations nor a GeoPackage: any corner may be {:.2f} m "
+                        "from where OpenStreetMap has it, as far as repair moved one at most",
+                        otherwise));
     }
     bound_positions(sample_, geopackage_ ? geopackage_->repairs() : repairs_of_explanations(records, sample_),
                     report_ ? report_->moved : none, otherwise);
