@@ -115,7 +115,7 @@ base::OptionTable<O> what_files_hold() {
                       "tags, as the other formats and explain/ always do",
               .after = "ground-height",
               .record = OptionRecord::yes,
-              .record_place = 15},
+              .record_place = 16},
              kProfiles, &O::profile),
       flag({.name = "evidence",
             .key = "evidence",
