@@ -857,7 +857,7 @@ class Sound(Validated):
         self.sound(self.build(SAMPLE, 'bare', '--no-report', '--no-explain'))
 
     def test_without_any_record_of_repair(self):
-        out = self.build(SAMPLE, 'bare', '--no-explain', '--formats', 'citygml')
+        out = self.build(SAMPLE, 'unrecorded', '--no-explain', '--formats', 'citygml')
         notes = self.sound(out)['notes']
         self.assertTrue(any('neither explanations nor a GeoPackage' in note for note in notes), notes)
 
