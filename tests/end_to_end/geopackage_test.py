@@ -148,7 +148,7 @@ class GeoPackage(BuildTest):
         run = call([python, '-c', QGIS, copy, *LAYERS], env={'QT_QPA_PLATFORM': 'offscreen', 'HOME': self.folder})
         self.assertEqual(run.code, 0, run)
         self.assertEqual(json.loads(run.out.splitlines()[-1]), {
-            'buildings': [True, 'graduatedSymbol', 6, 0, []], 'parts': [True, 'categorizedSymbol', 2, 0, []],
+            'buildings': [True, 'graduatedSymbol', 7, 0, []], 'parts': [True, 'categorizedSymbol', 2, 0, []],
             'facade_edges': [True, 'categorizedSymbol', 1, 0, []], 'blocks': [True, 'graduatedSymbol', 2, 0, []],
             'courtyards': [True, 'categorizedSymbol', 1, 0, []], 'cells': [True, 'graduatedSymbol', 2, 0, []],
             'surfaces': [True, 'categorizedSymbol', 1, 0, []],

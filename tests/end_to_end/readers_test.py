@@ -91,7 +91,8 @@ draw([n.layer() for n in root.findLayers() if n.isVisible()], canvas.extent(), '
 node = root.findLayer('blocks_floor_area_ratio')
 node.setItemVisibilityChecked(True)
 seen['ticked'] = node.isVisible()
-print(json.dumps(seen))
+print(json.dumps(seen), flush=True)
+os._exit(0)  # QGIS is known to crash when it is taken down
 """
 
 

@@ -178,11 +178,10 @@ def main(geopackage, target):
     ElementTree.indent(root, ' ')
     with open(target, 'w', encoding='utf-8', newline='\n') as f:
         f.write("<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n" + ElementTree.tostring(root, 'unicode') + '\n')
-    project.clear()
-    return 0
+    os._exit(0)  # QGIS is known to crash when it is taken down
 
 
 if __name__ == '__main__':
     if not 2 <= len(sys.argv) <= 3:
         raise SystemExit(__doc__)
-    sys.exit(main(sys.argv[1], sys.argv[2] if len(sys.argv) == 3 else os.path.join(FOLDER, 'qgis_project.qgs')))
+    main(sys.argv[1], sys.argv[2] if len(sys.argv) == 3 else os.path.join(FOLDER, 'qgis_project.qgs'))
