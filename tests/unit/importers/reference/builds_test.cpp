@@ -133,6 +133,7 @@ void expect_same_in_all_formats(const fs::path& input, std::size_t least, bool g
   options.configs = BLOCKRAND_SOURCE_DIR "/configs";
   options.outputs.formats = {"gltf", "citygml", "cityjson"};
   options.outputs.report = options.outputs.explain = false;
+  options.outputs.profile = outputs::AttributeProfile::all;  // people get rounded heights
   options.outputs.single_glb = options.outputs.single_cityjson = true;
   options.outputs.gzip = gzip;
   options.bbox = bbox;
