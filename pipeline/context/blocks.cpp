@@ -107,6 +107,13 @@ std::string id_of(const Face& face, std::span<const NetworkLine> lines,
   return best->line.text() + "." + place + (best->left ? ".l" : ".r");
 }
 
+/// A street may leave one node several times, with a block on its left each time: all but the first get a number.
+void number_equal_ids(std::vector<Block>& blocks) {
+  std::map<std::string, int> seen;
+  for (Block& block : blocks)
+    if (const int n = ++seen[block.id]; n > 1) block.id += "." + std::to_string(n);
+}
+
 /// How much of the perimeter (0 to 1) the street with the longest share holds, counting carriageways only; and
 /// railways.
 struct Shares {
@@ -230,6 +237,7 @@ std::vector<Block> find_blocks(std::span<const NetworkLine> lines, std::span<con
     block.polygon = std::move(face.polygon);
     blocks.push_back(std::move(block));
   }
+  number_equal_ids(blocks);
   return blocks;
 }
 

@@ -54,7 +54,8 @@ struct Block {
   /// `w123.n456.l`: the block on the left (r: right) of way 123 where it leaves node 456, with the block on the left of
   /// the way around it. Of all such pairs along the outer ring the one of the least way and, on it, the least node: the
   /// id changes only when that street does. Where no node lies on the ring (four bridges), the least corner on the grid
-  /// stands for the node.
+  /// stands for the node. Of blocks that would have one id, since their street leaves the node more than once, all but
+  /// the first in the order of their rings have a number behind it: `w123.n456.l.2`.
   std::string id;
   model::Polygon polygon;  ///< along centre lines, canonical as geometry::Face; holes are islands of other blocks
   double area = 0;         ///< m²

@@ -476,7 +476,7 @@ class CityGmlOfFacades(CityGml):
                      if any(b.find(f'bldg:lod{lod}Solid', NAMES) is not None for lod in (1, 2, 3))]
             self.assertEqual(s['filled'].get('Building', 0) + s['filled'].get('BuildingPart', 0), len(solid))
             self.assertEqual(sum(s['implicits'].values()), len(root.findall('.//core:ImplicitGeometry', NAMES)))
-            self.assertGreater(s['polygons']['3'], 10 * s['polygons']['2'])
+            self.assertGreater(s["polygons"]["3"], 3 * s["polygons"]["2"])
             objects += sum(s['objects'].values())
         counts = read_json(self.out, 'build.json')['counts']
         self.assertEqual(sum(len(e.findall('.//bldg:Window', NAMES)) for _, e in citygml_trees(self.out)), counts['windows'])

@@ -209,6 +209,15 @@ TEST(Blocks, IdsTellTheSidesOfALoopApart) {
   EXPECT_NE(blocks[0].id, blocks[1].id);
 }
 
+TEST(Blocks, IdsTellTheLoopsOfAStreetThatPassesANodeTwiceApart) {
+  // Way 1 leaves its first node around one loop and then around another, each on its left.
+  const auto blocks =
+      find_blocks(std::vector{street(1, {{0, 0}, {100, 0}, {100, 50}, {0, 0}, {100, 100}, {50, 100}, {0, 0}})}, {}, {});
+  ASSERT_EQ(blocks.size(), 2u);
+  EXPECT_EQ(std::set<std::string>({blocks[0].id, blocks[1].id}).size(), 2u) << blocks[0].id << " " << blocks[1].id;
+  EXPECT_EQ(blocks[1].id, blocks[0].id + ".2");
+}
+
 TEST(Blocks, WhereOnlyBridgesCrossThePlaceStandsForTheNode) {
   std::vector lines{street(1, {{-50, 0}, {150, 0}}), street(2, {{-50, 100}, {150, 100}}),
                     street(3, {{0, -50}, {0, 150}}), street(4, {{100, -50}, {100, 150}})};
