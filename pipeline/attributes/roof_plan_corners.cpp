@@ -1,5 +1,6 @@
 #include "pipeline/attributes/roof_plan_corners.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <span>
@@ -7,6 +8,7 @@
 
 #include "pipeline/geometry/box_index.h"
 #include "pipeline/geometry/grid_side.h"
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
 
 namespace blockrand::attributes {
@@ -58,8 +60,9 @@ Moves find_moves(const Polygon& plan, const Polygon& other, double reach) {
 
 /// Plans of parts that stand at one height share no ground.
 bool one_above_the_other(const BuildingPart& a, const BuildingPart& b) {
-  constexpr double kCommon = 0.1;  // m²
-  return geometry::common_area(std::span(&a.plan, 1), std::span(&b.plan, 1)) > kCommon;
+  constexpr double kCommon = 0.1;  // m²; half of a plan that is smaller, as of a cross on a spire
+  const double least = std::min({kCommon, geometry::area(a.plan) / 2, geometry::area(b.plan) / 2});
+  return geometry::common_area(std::span(&a.plan, 1), std::span(&b.plan, 1)) > least;
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace blockrand::attributes {
 /// outside of it, so that the bodies which stand on these plans share no room. Plans of parts share their walls exactly;
 /// a roof plan has lost the points that bend a wall by less than `tolerance`, and the other part's corner there then
 /// lies inside by as much. A corner that several parts have moves in all of them. Plans that would not be simple any
-/// more stay as they are. Parts whose plans share more than 0.1 m² stand one above the other: they are not in each other's
+/// more stay as they are. Parts whose plans share more than 0.1 m², or half of the smaller, stand one above the other: they are not in each other's
 /// way.
 /// \param parts      with plan and roof_plan, both or neither empty
 /// \param tolerance  m, as of the points that were left out

@@ -94,9 +94,10 @@ class RoofInstaller {
     const double frontage = width > 0 ? width : std::sqrt(area);
     const std::vector<Point2> stacks = put_chimneys(building, *body, *standing, edges, frontage);
     put_roof_windows(building, *body, *standing, edges, stacks, is_old(building.attributes));
-    if (left_out_.chimneys + left_out_.roof_windows > 0)
-      report.add(building.osm, model::IssueCode::roof_element_left_out,
-                 fmt::format("chimneys: {}, roof windows: {}", left_out_.chimneys, left_out_.roof_windows));
+    if (left_out_.chimneys + left_out_.roof_windows == 0) return;
+    body->fallbacks.push_back(model::IssueCode::roof_element_left_out);
+    report.add(body->osm, model::IssueCode::roof_element_left_out,
+               fmt::format("chimneys: {}, roof windows: {}", left_out_.chimneys, left_out_.roof_windows));
   }
 
  private:

@@ -64,7 +64,7 @@ bool rings_almost_touch(const Edge& e, const Edge& f) {
   return e.ring != f.ring && (almost_on(e, f.a) || almost_on(e, f.b) || almost_on(f, e.a) || almost_on(f, e.b));
 }
 
-/// Calls `found(e, f)` for all pairs of edges that come within two grid steps along x, until it returns false.
+/// Calls `found(e, f)` for all pairs of edges that come within two grid steps along x and y, until it returns false.
 template <class Found>
 void for_each_near_pair(const Polygon& polygon, Found&& found) {
   std::vector<Edge> edges;
@@ -233,12 +233,17 @@ void restore_nodes(std::vector<Polygon>& polygons, const std::map<Point2, std::i
 
 }  // namespace
 
-bool rings_apart(const Polygon& polygon) {
-  bool apart = true;
+std::vector<std::pair<EdgeOf, EdgeOf>> almost_touching_edges(const Polygon& polygon, std::size_t most) {
+  std::vector<std::pair<EdgeOf, EdgeOf>> out;
   if (!polygon.holes.empty())
-    for_each_near_pair(polygon, [&](const Edge& e, const Edge& f) { return apart = !rings_almost_touch(e, f); });
-  return apart;
+    for_each_near_pair(polygon, [&](const Edge& e, const Edge& f) {
+      if (rings_almost_touch(e, f)) out.push_back({{e.ring, e.index}, {f.ring, f.index}});
+      return out.size() < most;
+    });
+  return out;
 }
+
+bool rings_apart(const Polygon& polygon) { return almost_touching_edges(polygon, 1).empty(); }
 
 bool strictly_simple(const Polygon& polygon) {
   if (polygon.outer.size() < 3 || repeats_a_point(polygon.outer) || signed_area(polygon.outer.points) == 0)

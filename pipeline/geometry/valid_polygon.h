@@ -3,8 +3,10 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "pipeline/geometry/footprint_overlap.h"
 #include "pipeline/model/polygon.h"
 
 namespace blockrand::geometry {
@@ -16,6 +18,8 @@ bool strictly_simple(const model::Polygon& polygon);
 /// True when no corner of a ring lies within kOnWall (slivers.h) of another ring: rounding to floats, as in GLB, would let
 /// the two cross.
 bool rings_apart(const model::Polygon& polygon);
+/// Where they are not apart: edges of two rings one of which ends that near to the other. At most `most` of them.
+std::vector<std::pair<EdgeOf, EdgeOf>> almost_touching_edges(const model::Polygon& polygon, std::size_t most = 1000);
 
 /// How rings were turned into polygons.
 struct ValidPolygons {

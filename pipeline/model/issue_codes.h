@@ -45,7 +45,7 @@ enum class IssueClass : std::uint8_t {
   X(opening_left_out, "OPENING_LEFT_OUT", fallback,                                                                  \
     "Windows or doors did not fit their walls; the others were built.")                                              \
   X(roof_element_left_out, "ROOF_ELEMENT_LEFT_OUT", fallback,                                                        \
-    "Chimneys or roof windows would cut into another body; the others were built.")                                  \
+    "Chimneys or roof windows did not fit; the others were built.")                                                  \
   X(grammar_error, "GRAMMAR_ERROR", fallback,                                                                        \
     "A rule asked for what cannot be made; the rest of the facade was built.")                                       \
   X(plan_simplified, "PLAN_SIMPLIFIED", fallback, "The plan was simplified to get a valid solid.")                   \

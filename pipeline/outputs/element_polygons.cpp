@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "pipeline/model/vector.h"
+
 namespace blockrand::outputs {
 namespace {
 
@@ -22,18 +24,11 @@ constexpr double kSameWay = 0.99;
 /// In steps: how far a point may lie off the straight line that it is left out of, and how near other edges may come.
 constexpr double kOffLine = 0.5, kApart = 2;
 
-struct Vector {
-  double x = 0, y = 0, z = 0;
-};
+using Vector = model::Point3;
 Vector between(const ElementPoint& from, const ElementPoint& to) {
   return {static_cast<double>(to[0] - from[0]), static_cast<double>(to[1] - from[1]),
           static_cast<double>(to[2] - from[2])};
 }
-double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double length(const Vector& v) { return std::sqrt(dot(v, v)); }
 
 /// Twice the area along the normal (Newell).
 Vector newell(const Ring& ring) {
@@ -48,7 +43,7 @@ Vector newell(const Ring& ring) {
 double distance(const ElementPoint& p, const ElementPoint& a, const ElementPoint& b) {
   const Vector u = between(a, b), v = between(a, p);
   const double squared = dot(u, u), along = squared > 0 ? std::clamp(dot(u, v) / squared, 0.0, 1.0) : 0;
-  return length({v.x - along * u.x, v.y - along * u.y, v.z - along * u.z});
+  return length(Vector{v.x - along * u.x, v.y - along * u.y, v.z - along * u.z});
 }
 
 Ring rounded(const model::ElementMesh& mesh, const model::ElementFace& face) {

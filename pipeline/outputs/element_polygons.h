@@ -19,9 +19,9 @@ struct ElementPolygon {
 };
 
 /// The faces of an element, those joined that lie in one plane, look alike and share an edge: a cap of a moulding is
-/// one polygon and not a fan of quadrangles, a frame around a pane one with a hole. Points between two straight pieces
-/// are left out where no polygon has a corner there. Nothing moves by more than 0.1 mm; faces narrower than that are
-/// left out.
+/// one polygon and not a fan of quadrangles, a frame around a pane one with a hole. Points are
+/// rounded to 0.1 mm; those within 0.05 mm of the line between their neighbours are left out where no polygon has a
+/// corner there, and so are faces of which rounding leaves fewer than three points.
 std::vector<ElementPolygon> element_polygons(const model::ColouredElement& element);
 
 }  // namespace blockrand::outputs

@@ -74,7 +74,10 @@ class Reader {
     const std::string instancing = text(member(c, "instancing"));
     r_.baked = instancing == "baked";
     r_.single_objects = text(member(c, "objects")) == "building";
-    r_.people = text(member(c, "attributes")) == "people";
+    const std::string attributes = text(member(c, "attributes"));
+    if (member(c, "attributes") && attributes != "people" && attributes != "all")
+      wrong("configuration.attributes", "is not people or all");
+    r_.people = attributes == "people";
     r_.single_baked = r_.baked || (r_.single_objects && instancing != "nodes");
     const std::string detail = text(member(c, "citygml_detail"));
     if (member(c, "citygml_detail") && detail != "lean" && detail != "full")

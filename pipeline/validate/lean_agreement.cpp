@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/geometry/box_index.h"
+#include "pipeline/model/vector.h"
 #include "pipeline/validate/detail_check.h"
 
 namespace blockrand::validate {
@@ -17,8 +19,6 @@ using model::Point3;
 
 constexpr double kDepthTolerance = 6e-4;    // m; depths are written in millimetres
 constexpr double kElementTolerance = 2e-4;  // m; elements are written in tenths of millimetres
-
-double distance(const Point3& a, const Point3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
 
 /// The reveals of one wall, by the edge of the opening's polygon that each begins at.
 class Reveals {
@@ -65,7 +65,7 @@ void flatten(ReadBody& body) {
         of_ring.push_back(side->polygon);
       }
     if (moved.empty() || moved.size() != ring.size()) continue;
-    o.depth = distance(ring[0], moved[0]);
+    o.depth = length(ring[0] - moved[0]);
     ring = std::move(moved);
     for (const std::size_t r : of_ring) gone[r] = true;
   }
@@ -119,16 +119,21 @@ bool within(const ReadElement& lean, const ReadElement& full) {
          std::includes(full.colours.begin(), full.colours.end(), lean.colours.begin(), lean.colours.end());
 }
 
+/// Seen along the wall: an axis-parallel box of an oblique outline would reach far off it.
 bool stands_in(const ReadPlacement& placement, const std::vector<Point3>& outline) {
-  if (outline.empty()) return false;
-  Point3 min = outline[0], max = outline[0];
-  for (const Point3& p : outline) {
-    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
-    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+  if (outline.size() < 3) return false;
+  const auto way = [&](const Point3& p) { return p.x * placement.along.x + p.y * placement.along.y; };
+  const Point3 &a = outline[0], &o = placement.origin;
+  Point3 normal;  // Newell's
+  double least = way(a), most = least, low = a.z, high = a.z;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Point3 &p = outline[i], &q = outline[(i + 1) % outline.size()];
+    normal = normal + cross(p - a, q - a);
+    least = std::min(least, way(p)), most = std::max(most, way(p));
+    low = std::min(low, p.z), high = std::max(high, p.z);
   }
-  const Point3& o = placement.origin;
-  return o.x >= min.x - kWallTolerance && o.y >= min.y - kWallTolerance && o.z >= min.z - kWallTolerance &&
-         o.x <= max.x + kWallTolerance && o.y <= max.y + kWallTolerance && o.z <= max.z + kWallTolerance;
+  return std::fabs(dot(normal, o - a)) <= kWallTolerance * length(normal) && way(o) >= least - kWallTolerance &&
+         way(o) <= most + kWallTolerance && o.z >= low - kWallTolerance && o.z <= high + kWallTolerance;
 }
 
 std::string placement_difference(const ReadBody& lean, const Contents& of_lean, const ReadBody& full,
@@ -151,12 +156,20 @@ std::string placement_difference(const ReadBody& lean, const Contents& of_lean, 
     left.erase(same);
   }
   std::vector<std::vector<Point3>> outlines;
-  for (const ReadOpening& o : full.detail.openings) outlines.push_back(outline_of(full, o));
+  std::vector<geometry::PlanBox> boxes;
+  for (const ReadOpening& o : full.detail.openings) {
+    outlines.push_back(outline_of(full, o));
+    geometry::PlanBox& box = boxes.emplace_back();
+    for (const Point3& p : outlines.back()) box.include(p.xy());
+  }
+  const geometry::BoxIndex index(std::move(boxes));
+  std::vector<bool> taken(outlines.size(), false);
   for (const auto& [place, p] : left) {
-    const auto stands = std::find_if(outlines.begin(), outlines.end(),
-                                     [&](const std::vector<Point3>& outline) { return stands_in(p, outline); });
-    if (stands == outlines.end()) return "an element is missing that stands in no opening (" + near(p) + ")";
-    outlines.erase(stands);
+    const auto candidates = index.near({p.origin.xy(), p.origin.xy()}, kWallTolerance);
+    const auto stands = std::find_if(candidates.begin(), candidates.end(),
+                                     [&](std::uint32_t i) { return !taken[i] && stands_in(p, outlines[i]); });
+    if (stands == candidates.end()) return "an element is missing that stands in no opening (" + near(p) + ")";
+    taken[*stands] = true;
   }
   return {};
 }

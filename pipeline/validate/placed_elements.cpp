@@ -46,8 +46,11 @@ class Box {
       if (const double v = dot(axis_[i], d); !(v >= low_[i] && v <= high_[i])) return false;
     return true;
   }
+  /// Empty, and so never found, where the place has a scale of 0.
   geometry::PlanBox in_plan() const {
     geometry::PlanBox out;
+    for (const Point3& axis : axis_)
+      if (!std::isfinite(axis.x + axis.y + axis.z)) return out;
     for (int corner = 0; corner < 8; ++corner) {
       model::Point2 p = origin_.xy();
       for (std::size_t i = 0; i < 3; ++i) {

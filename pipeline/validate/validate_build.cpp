@@ -204,9 +204,9 @@ class Run {
     }
     // Without the two places that have a record of each building, the build's largest shift is all that is known.
     double otherwise = 0;
-    if (!geopackage_ && records.empty()) {
+    if (!record_.has("gpkg") && !record_.explain) {
       otherwise = number(member(member(record_.json, "repair"), "max_shift_m")).value_or(0);
-      if (otherwise > 0)
+      if (otherwise > 0 && !sample_.empty())
         v_.notes.push_back(
             fmt::format("the build has neither explanations nor a GeoPackage: any corner may be {:.2f} m "
                         "from where OpenStreetMap has it, as far as repair moved one at most",

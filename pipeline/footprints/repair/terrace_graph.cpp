@@ -164,7 +164,8 @@ class Writer {
       if (!geometry::strictly_simple(polygons[p]) || !geometry::rings_apart(polygons[p]) || !well_wound(polygons[p])) {
         v.valid = false;
         v.reason = "its rings would cross or touch";
-        const auto conflicts = geometry::conflicting_edges(polygons[p]);
+        auto conflicts = geometry::conflicting_edges(polygons[p]);
+        if (conflicts.empty()) conflicts = geometry::almost_touching_edges(polygons[p]);
         v.whole = v.whole || conflicts.empty();
         for (const auto& [e, f] : conflicts)
           for (const geometry::EdgeOf& edge : {e, f}) {

@@ -1,10 +1,10 @@
 #include "pipeline/outputs/citygml/flat_openings.h"
 
-#include <cassert>
-#include <cmath>
+#include <algorithm>
 #include <limits>
 #include <map>
-#include <unordered_map>
+
+#include "pipeline/model/vector.h"
 
 namespace blockrand::outputs {
 namespace {
@@ -14,8 +14,8 @@ using model::Solid;
 constexpr std::uint32_t kGone = std::numeric_limits<std::uint32_t>::max();
 
 /// Where the corners of an opening's polygon come from: by vertex the one of the wall, across a reveal.
-std::unordered_map<std::uint32_t, std::uint32_t> corners_in_wall(const Solid& solid, const model::Opening& opening) {
-  std::unordered_map<std::uint32_t, std::uint32_t> out;
+std::map<std::uint32_t, std::uint32_t> corners_in_wall(const Solid& solid, const model::Opening& opening) {
+  std::map<std::uint32_t, std::uint32_t> out;
   for (const Solid::Loop& loop : solid.loops_of(solid.faces[opening.polygon]))
     for (const std::uint32_t v : solid.indices_of(loop)) out.emplace(v, kGone);
   for (std::uint32_t r = 0; r < opening.reveal_count; ++r)
@@ -27,10 +27,6 @@ std::unordered_map<std::uint32_t, std::uint32_t> corners_in_wall(const Solid& so
             if (const std::uint32_t v = ring[beside % ring.size()]; out.count(v) == 0) inner->second = v;
     }
   return out;
-}
-
-double distance(const model::Point3& a, const model::Point3& b) {
-  return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
 }
 
 bool closes_a_hole(const model::Opening& o) { return o.kind != model::OpeningKind::passage && o.reveal_count > 0; }
@@ -48,11 +44,12 @@ FlatOpenings flat_openings(const model::Detail& detail) {
   for (std::size_t o = 0; o < detail.openings.size(); ++o) {
     const model::Opening& opening = detail.openings[o];
     if (!closes_a_hole(opening)) continue;
-    for (const auto& [inner, outer] : corners_in_wall(from, opening)) {
-      assert(outer != kGone);  // every corner has a reveal on both sides
-      if (outer == kGone) continue;
+    const auto corners = corners_in_wall(from, opening);
+    // Every corner has a reveal on both sides; an opening where one has none keeps its reveals.
+    if (std::any_of(corners.begin(), corners.end(), [](const auto& c) { return c.second == kGone; })) continue;
+    for (const auto& [inner, outer] : corners) {
       vertex_at[inner] = outer;
-      out.depth[o] = distance(from.vertices[inner], from.vertices[outer]);
+      out.depth[o] = length(from.vertices[inner] - from.vertices[outer]);
     }
     moves[opening.polygon] = true;
     for (std::uint32_t r = 0; r < opening.reveal_count; ++r) face_at[opening.first_reveal + r] = kGone;
@@ -72,10 +69,12 @@ FlatOpenings flat_openings(const model::Detail& detail) {
     solid.faces.push_back(face);
   }
   out.detail.openings = detail.openings;
-  for (model::Opening& opening : out.detail.openings) {
+  for (std::size_t o = 0; o < out.detail.openings.size(); ++o) {
+    model::Opening& opening = out.detail.openings[o];
+    const bool flush = moves[opening.polygon];
     opening.polygon = face_at[opening.polygon];
     opening.wall = face_at[opening.wall];
-    if (closes_a_hole(opening)) opening.reveal_count = opening.first_reveal = 0;
+    if (flush) opening.reveal_count = opening.first_reveal = 0;
     if (opening.reveal_count > 0) opening.first_reveal = face_at[opening.first_reveal];
   }
   return out;

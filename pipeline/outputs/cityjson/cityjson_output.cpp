@@ -73,7 +73,7 @@ OutputFormat cityjson_output() {
                   [](const OutputOptions& o, std::uint64_t) { return o.writes("cityjson"); }},
                  {"model.city.json", "the whole build as one CityJSON object",
                   [](const OutputOptions& o, std::uint64_t) { return o.single_cityjson; }}},
-      .manual = {{"cityjson/", "the same content as CityJSON 2.0 text sequences"}},
+      .manual = {{"cityjson/", "the same content as CityJSON 2.0 text sequences, at LoD3 with every detail"}},
       .asked = [](const OutputOptions& o) { return o.writes("cityjson") || o.single_cityjson; },
       .bytes_per_building =
           [](const OutputOptions& o, std::size_t lod) {

@@ -348,8 +348,9 @@ class Writer {
     }
     std::string text = fmt::format("rule file {} of preset {}", file, preset);
     text += any ? ": " + detail_text(sum) : ": no body has facades";
-    const std::string noted = said(building, {model::IssueCode::opening_left_out, model::IssueCode::facade_failed,
-                                              model::IssueCode::grammar_error});
+    const std::string noted =
+        said(building, {model::IssueCode::opening_left_out, model::IssueCode::facade_failed,
+                        model::IssueCode::grammar_error, model::IssueCode::roof_element_left_out});
     return noted.empty() ? text : text + ". " + noted;
   }
 

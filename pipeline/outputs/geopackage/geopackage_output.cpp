@@ -18,17 +18,15 @@ constexpr const char* kProject = "buildings.qgz";
 
 struct TileProduct {
   GeoPackageRows rows;
-  PlanBox box;  ///< of the buildings
+  geometry::PlanBox box;  ///< of the buildings
 };
 
-PlanBox box_of(const model::Region& region) {
-  PlanBox box;
+geometry::PlanBox box_of(const model::Region& region) {
+  geometry::PlanBox box;
   for (const model::Building& b : region.buildings) {
     if (!b.owned) continue;
-    for (const model::Polygon& p : b.outline)
-      for (const model::Point2& corner : p.outer.points) box.add(corner);
-    for (const model::BuildingPart& part : b.parts)
-      for (const model::Point2& corner : part.plan.outer.points) box.add(corner);
+    for (const model::Polygon& p : b.outline) box.include(geometry::box_of(p.outer.points));
+    for (const model::BuildingPart& part : b.parts) box.include(geometry::box_of(part.plan.outer.points));
   }
   return box;
 }
@@ -110,7 +108,7 @@ class GeoPackageOutput : public Output {
   void take(const FinishedTile& tile, std::any product) override {
     const auto& [rows, box] = *std::any_cast<TileProduct>(&product);
     if (rows.buildings.rows() == 0) return;
-    extent_.join(box);
+    extent_.include(box);
     writer_.add(rows);
     writer_.add_tile(tile_row(context_.shards[tile.shard].tile, rows, tile.files, context_.projection));
   }
@@ -127,7 +125,7 @@ class GeoPackageOutput : public Output {
  private:
   const OutputContext& context_;
   GeoPackageWriter writer_;
-  PlanBox extent_;  ///< of all buildings so far
+  geometry::PlanBox extent_;  ///< of all buildings so far
 };
 
 }  // namespace

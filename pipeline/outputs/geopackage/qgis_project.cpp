@@ -28,15 +28,15 @@ std::string crs_element(const QgisProject& project) {
 }
 
 /// The children of <extent>, with a margin around the buildings. Nothing without buildings.
-std::string extent_element(const PlanBox& box) {
+std::string extent_element(const geometry::PlanBox& box) {
   if (box.empty()) return {};
   constexpr double kMargin = 0.05;  // of the larger side
-  const double margin = kMargin * std::max(box.east - box.west, box.north - box.south) + 1;
+  const double margin = kMargin * std::max(box.maximum.x - box.minimum.x, box.maximum.y - box.minimum.y) + 1;
   std::string out;
-  append_element(out, "xmin", base::shortest(box.west - margin));
-  append_element(out, "ymin", base::shortest(box.south - margin));
-  append_element(out, "xmax", base::shortest(box.east + margin));
-  append_element(out, "ymax", base::shortest(box.north + margin));
+  append_element(out, "xmin", base::shortest(box.minimum.x - margin));
+  append_element(out, "ymin", base::shortest(box.minimum.y - margin));
+  append_element(out, "xmax", base::shortest(box.maximum.x + margin));
+  append_element(out, "ymax", base::shortest(box.maximum.y + margin));
   return out;
 }
 

@@ -230,7 +230,7 @@ OutputFormat gltf_output() {
                      {kModelFile, "the whole build in one file, for Blender and other editors",
                       [](const OutputOptions& o, std::uint64_t) { return o.single_glb; }}},
           .manual = {{"tileset.json, tiles/",
-                      "3D Tiles 1.1: one GLB per tile, with every attribute and its source as feature metadata"}},
+                      "3D Tiles 1.1: one GLB per tile, with the attributes of every building as feature metadata"}},
           .asked = [](const OutputOptions& o) { return o.writes("gltf") || o.single_glb; },
           .bytes_per_building =
               [](const OutputOptions& o, std::size_t lod) {

@@ -250,7 +250,8 @@ std::string file_section(const ReportFacts& f) {
       {"citygml/", "CityGML 2.0", "FME, 3DCityDB, KIT ModelViewer, azul; one file per tile", true, 0, 0},
       {"cityjson/", "CityJSON 2.0", "text sequence, one file per tile: cjio, cjseq", true, 0, 0},
       {"model.city.json", "CityJSON, whole build", "ninja.cityjson.org, azul, QGIS with its plugin", false, 0, 0},
-      {"buildings.gpkg", "GeoPackage", "QGIS: opens coloured, with every attribute and its source", false, 0, 0},
+      {"buildings.gpkg", "GeoPackage", "any GIS: every attribute and its source", false, 0, 0},
+      {"buildings.qgz", "QGIS project", "QGIS: the GeoPackage as a map, coloured and labelled", false, 0, 0},
       {"explain/", "What <code>explain</code> reads", "<code>blockrand explain</code>", true, 0, 0},
       {"report.json", "Every report row", "any editor or script", false, 0, 0},
   };

@@ -229,6 +229,7 @@ TEST(RoofInstallations, NothingStandsWhereAnotherBodyOfTheHouseDoes) {
   ASSERT_EQ(tile.region.report.rows.size(), 1u);
   EXPECT_EQ(tile.region.report.rows[0].code, model::IssueCode::roof_element_left_out);
   EXPECT_EQ(tile.region.report.rows[0].detail, "chimneys: " + std::to_string(wanted - built) + ", roof windows: 0");
+  EXPECT_EQ(house.parts[0].fallbacks, std::vector{model::IssueCode::roof_element_left_out});
   EXPECT_TRUE(fitted({}).report.rows.empty());
 }
 

@@ -16,8 +16,8 @@ using testing::Not;
 
 QgisProject berlin() {
   QgisProject project{"EPSG:25833", "ETRS89 / UTM zone 33N", {}, "data of <2024> & later"};
-  project.extent.add({390000, 5818000});
-  project.extent.add({390100, 5818200});
+  project.extent.include(model::Point2{390000, 5818000});
+  project.extent.include(model::Point2{390100, 5818200});
   return project;
 }
 
