@@ -7,6 +7,11 @@ from blockrand_run import SAMPLE, BuildTest, blockrand, main
 from damage import Damaged
 
 
+def one_corner_up(points):
+    points[1][2] += 0.25
+    return points
+
+
 class Detail(BuildTest):
     options = []
 
@@ -69,11 +74,7 @@ class ValidateDetail(Detail):
 
     def test_a_moved_vertex(self):
         d = self.damaged()
-
-        def up(points):
-            points[1][2] += 0.25
-            return points
-        d.ring(up, 'Window')
+        d.ring(one_corner_up, 'Window')
         self.found(d, 'CITYGML_RULE SOLID_INVALID GEOMETRY_DIFFERS', 'an edge of it is none of its reveal')
 
     def test_a_moved_element(self):
@@ -107,10 +108,10 @@ class ValidateLean(Detail):
 
     def test_a_wrong_depth(self):
         for pattern in (r'(<bldg:WallSurface [^>]*><gen:doubleAttribute name="reveal_depth"><gen:value>)([\d.]+)',
-                        r'(name="reveal_depth"><gen:value>)([\d.]+)'):
+                        r'(<bldg:(?:Window|Door) [^>]*><gen:doubleAttribute name="reveal_depth"><gen:value>)([\d.]+)'):
             d = self.damaged()
             d.building(lambda text, pattern=pattern: re.sub(pattern, lambda m: f'{m.group(1)}{float(m.group(2)) + 0.02:.3f}',
-                                                            text, count=1), lambda text: 'reveal_depth' in text)
+                                                            text, count=1), re.compile(pattern).search)
             self.found(d, 'GEOMETRY_DIFFERS', 'm behind its wall, it lies')
 
     def test_a_depth_that_is_none(self):
@@ -120,11 +121,7 @@ class ValidateLean(Detail):
 
     def test_a_moved_window(self):
         d = self.damaged()
-
-        def up(points):
-            points[1][2] += 0.25
-            return points
-        d.ring(up, 'Window')
+        d.ring(one_corner_up, 'Window')
         self.found(d, 'CITYGML_RULE SOLID_INVALID GEOMETRY_DIFFERS', 'an edge of it is none of its reveal')
 
     def test_a_missing_element_and_a_moved_one(self):
