@@ -51,6 +51,7 @@ class Tidy {
     parent_.resize(nodes_.size());
     std::iota(parent_.begin(), parent_.end(), 0u);
     align_uprights();
+    list_all();
     // Each round takes something out of every face that needs it; two or three are usual.
     const std::size_t most_rounds = 12 + nodes_.size();
     for (std::size_t round = 0; round < most_rounds; ++round) {
@@ -277,7 +278,7 @@ class Tidy {
     });
     // Nodes of one face that are no neighbours can be as near.
     for (Group& group : groups_) {
-      if (group.upright || (group.apart && !renamed(group))) continue;
+      if (group.upright || (group.apart && !(any && renamed(group)))) continue;
       group.apart = true;
       for (const Loop& loop : group.loops)
         for (std::size_t i = 0; i < loop.size(); ++i)
@@ -292,14 +293,18 @@ class Tidy {
           }
     }
     if (!any) return false;
-    for (Group& group : groups_) {
-      if (!renamed(group)) continue;
-      group.changed();
-      for (Loop& loop : group.loops)
-        for (std::uint32_t& n : loop) n = root(n);
+    const auto rename = [&](Loop& path, std::uint32_t number) {
+      for (std::uint32_t& n : path)
+        if (root(n) != n) list(n = root(n), number);
+    };
+    for (std::uint32_t g = 0; g < groups_.size(); ++g) {
+      if (!renamed(groups_[g])) continue;
+      groups_[g].changed();
+      for (Loop& loop : groups_[g].loops) rename(loop, g);
     }
-    for (Loop& chain : chains_) {
-      for (std::uint32_t& n : chain) n = root(n);
+    for (std::size_t c = 0; c < chains_.size(); ++c) {
+      Loop& chain = chains_[c];
+      rename(chain, number_of_chain(c));
       chain.erase(std::unique(chain.begin(), chain.end()), chain.end());
     }
     split_loops();
@@ -353,7 +358,6 @@ class Tidy {
       group.wide = true;
       for (std::size_t l = 0; l < group.loops.size(); ++l) {
         if (const auto found = narrow_place(group.loops[l])) {
-          if (!any) list_paths();
           put_on_listed(found->node, found->from, found->to);
           any = true;
         }
@@ -363,28 +367,32 @@ class Tidy {
     return any;
   }
 
-  /// A loop of a group, or a chain where the group is kNone.
-  struct Path {
-    std::uint32_t group, loop;
-  };
-  /// Lists for each node the paths through it.
-  void list_paths() {
-    for (auto& paths : paths_at_) paths.clear();
-    paths_at_.resize(nodes_.size());
-    for (std::uint32_t g = 0; g < groups_.size(); ++g)
-      for (std::uint32_t l = 0; l < groups_[g].loops.size(); ++l)
-        for (const std::uint32_t n : groups_[g].loops[l]) paths_at_[n].push_back({g, l});
-    for (std::uint32_t c = 0; c < chains_.size(); ++c)
-      for (const std::uint32_t n : chains_[c]) paths_at_[n].push_back({kNone, c});
+  /// Groups by number, and chains after them: each node knows those that it lies or once lay in.
+  std::uint32_t number_of_chain(std::size_t chain) const { return static_cast<std::uint32_t>(groups_.size() + chain); }
+  void list(std::uint32_t node, std::uint32_t number) {
+    std::vector<std::uint32_t>& numbers = listed_[node];
+    if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) numbers.push_back(number);
   }
-  /// put_on() by the lists. One path may be asked twice: then it has nothing more to give.
+  void list_all() {
+    listed_.resize(nodes_.size());
+    for (std::uint32_t g = 0; g < groups_.size(); ++g)
+      for (const Loop& loop : groups_[g].loops)
+        for (const std::uint32_t n : loop) list(n, g);
+    for (std::size_t c = 0; c < chains_.size(); ++c)
+      for (const std::uint32_t n : chains_[c]) list(n, number_of_chain(c));
+  }
+  /// put_on() where the lists lead.
   void put_on_listed(std::uint32_t node, std::uint32_t a, std::uint32_t b) {
-    const std::vector<Path> through = paths_at_[paths_at_[a].size() < paths_at_[b].size() ? a : b];
-    for (const Path path : through) {
-      const bool chain = path.group == kNone;
-      if (!put_between(chain ? chains_[path.loop] : groups_[path.group].loops[path.loop], !chain, node, a, b)) continue;
-      paths_at_[node].push_back(path);
-      if (!chain) groups_[path.group].changed();
+    const std::vector<std::uint32_t> numbers = listed_[listed_[a].size() < listed_[b].size() ? a : b];
+    for (const std::uint32_t number : numbers) {
+      bool found = false;
+      if (number >= groups_.size()) {
+        found = put_between(chains_[number - groups_.size()], false, node, a, b);
+      } else {
+        for (Loop& loop : groups_[number].loops) found = put_between(loop, true, node, a, b) || found;
+        if (found) groups_[number].changed();
+      }
+      if (found) list(node, number);
     }
   }
 
@@ -604,7 +612,7 @@ class Tidy {
   std::vector<std::uint32_t> end_of_, group_end_, merged_, parent_;
   std::uint32_t corners_ = 0;
   std::vector<Group> groups_;
-  std::vector<std::vector<Path>> paths_at_;  ///< by node, of one insert()
+  std::vector<std::vector<std::uint32_t>> listed_;  ///< by node: list()
   std::vector<Loop> chains_;  ///< for each edge that leads its group the upper end of the wall, from start to end
 };
 
