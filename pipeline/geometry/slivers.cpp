@@ -93,7 +93,7 @@ int cut_slivers(Polygon& polygon, double width) {
   Polygon trial = polygon;
   int cuts = cut_slivers(trial.outer, width);
   for (Ring& hole : trial.holes) cuts += cut_slivers(hole, width);
-  if (cuts == 0 || !strictly_simple(trial)) return 0;
+  if (cuts == 0 || !strictly_simple(trial) || !rings_apart(trial)) return 0;
   polygon = std::move(trial);
   return cuts;
 }

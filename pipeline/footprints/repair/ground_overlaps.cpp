@@ -59,7 +59,8 @@ bool overlap(const std::vector<Polygon>& a, const std::vector<Polygon>& b) {
 }
 
 bool all_simple(const std::vector<Polygon>& polygons) {
-  return std::all_of(polygons.begin(), polygons.end(), [](const Polygon& p) { return geometry::strictly_simple(p); });
+  return std::all_of(polygons.begin(), polygons.end(),
+                     [](const Polygon& p) { return geometry::strictly_simple(p) && geometry::rings_apart(p); });
 }
 
 template <class Visit>
@@ -174,6 +175,11 @@ class Resolver {
     geometry::ValidPolygons rest =
         geometry::difference(building.polygons, polygons(winner), options_.min_piece_area, options_.ring_clearance);
     if (rest.polygons.empty()) return false;
+    if (!rest.squares.empty() && cut_corners(row_.buildings[winner].polygons, rest.squares, options_)) {
+      touched_.push_back(winner);
+      rest =
+          geometry::difference(building.polygons, polygons(winner), options_.min_piece_area, options_.ring_clearance);
+    }
     const double noise = rest.dropped_area + drop_strips(rest.polygons, building.polygons.size(), around);
     if (rest.polygons.empty() || noise > options_.max_area_change * before) return false;
     const bool had_slivers = geometry::cut_slivers(rest.polygons, options_.spike_width) > 0;
@@ -229,7 +235,8 @@ class Resolver {
       Polygon welded = p;
       weld_ring(welded.outer);
       for (Ring& hole : welded.holes) weld_ring(hole);
-      if (geometry::strictly_simple(welded) && well_wound(welded)) p = std::move(welded);
+      if (geometry::strictly_simple(welded) && geometry::rings_apart(welded) && well_wound(welded))
+        p = std::move(welded);
     }
   }
 

@@ -42,20 +42,6 @@ double area_of(const std::vector<Polygon>& polygons) {
   return sum;
 }
 
-/// Cuts off the corners of what is taken where the rest would touch itself: the rest keeps a wall's width of its own
-/// ground there and needs none of a third one's.
-void cut_corners(std::span<const Polygon> squares, const std::vector<PartBody*>& takers, const RepairOptions& options) {
-  for (PartBody* taker : takers) {
-    if (geometry::common_area(taker->polygons, squares) <= 0) continue;
-    std::vector<Polygon> cut =
-        geometry::difference(taker->polygons, squares, options.min_piece_area, options.ring_clearance).polygons;
-    if (cut.size() != taker->polygons.size() || area_of(cut) < area_of(taker->polygons) - options.min_overlap_area)
-      continue;
-    restore_nodes(cut, taker->polygons);
-    taker->polygons = std::move(cut);
-  }
-}
-
 std::vector<Polygon> polygons_of(const std::vector<PartBody*>& bodies) {
   std::vector<Polygon> out;
   for (const PartBody* body : bodies) out.insert(out.end(), body->polygons.begin(), body->polygons.end());
@@ -157,7 +143,7 @@ void resolve_part_overlaps(std::vector<PartBody>& bodies, const RepairOptions& o
     std::vector<Polygon> rest = tidied(std::move(left.polygons), weak.polygons, taken, options);
     if (rest.empty()) continue;  // separate_parts decides and tells
     if (!left.squares.empty()) {
-      cut_corners(left.squares, takers, options);
+      for (PartBody* taker : takers) cut_corners(taker->polygons, left.squares, options);
       rest = plan_without(weak.polygons, polygons_of(takers), options);
     }
     weak.polygons = std::move(rest);

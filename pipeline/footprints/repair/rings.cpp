@@ -288,6 +288,16 @@ void restore_nodes(std::vector<Polygon>& polygons, std::span<const Polygon> from
     });
 }
 
+bool cut_corners(std::vector<Polygon>& polygons, std::span<const Polygon> squares, const RepairOptions& options) {
+  if (geometry::common_area(polygons, squares) <= 0) return false;
+  std::vector<Polygon> cut =
+      geometry::difference(polygons, squares, options.min_piece_area, options.ring_clearance).polygons;
+  if (cut.size() != polygons.size() || area_of(cut) < area_of(polygons) - options.min_overlap_area) return false;
+  restore_nodes(cut, polygons);
+  polygons = std::move(cut);
+  return true;
+}
+
 RepairedRings repair_rings(model::MappedRings rings, model::OsmId id, const KeptNodes& kept,
                            const RepairOptions& options, model::Report& report) {
   RepairedRings result;

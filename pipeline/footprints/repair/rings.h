@@ -44,4 +44,11 @@ std::string square_metres(double area);
 /// operations of geometry forget nodes of holes.
 void restore_nodes(std::vector<model::Polygon>& polygons, std::span<const model::Polygon> from);
 
+/// Cuts corners off polygons whose ground is taken from another that would touch itself there: what is left of that one
+/// keeps a wall's width of its own ground, and needs none of a third one's. Nothing is done where the polygons would fall
+/// apart or lose more than `min_overlap_area`. \param squares  geometry::ValidPolygons::squares of the difference
+/// \return whether something was cut off
+bool cut_corners(std::vector<model::Polygon>& polygons, std::span<const model::Polygon> squares,
+                 const RepairOptions& options);
+
 }  // namespace blockrand::repair

@@ -7,6 +7,7 @@
 #include "pipeline/geometry/footprint_overlap.h"
 #include "tests/unit/footprints/repair/row_support.h"
 #include "tests/unit/geometry/find_slivers.h"
+#include "tests/unit/geometry/shapes.h"
 
 namespace blockrand::repair::test {
 namespace {
@@ -122,6 +123,31 @@ TEST(Overlaps, NestedHouseAtTheWallGetsANotch) {
   ASSERT_TRUE(all_valid(row));
   EXPECT_TRUE(row.buildings[1].polygons[0].holes.empty());
   EXPECT_THAT(area(row.buildings[1]), DoubleNear(875, 1e-9));
+}
+
+TEST(Overlaps, ANestedHouseWhoseCornerReachesTheWall) {
+  // A house in another, its corner almost on that one's wall, a third one on the other side of the wall: at any angle no
+  // ground is claimed twice, no ring almost touches another.
+  testing_shapes::Random random(9);
+  for (int round = 0; round < 400; ++round) {
+    SCOPED_TRACE(round);
+    const double angle = 2 * std::acos(-1) * random.unit(), c = std::cos(angle), s = std::sin(angle);
+    const auto turned = [&](Points points) {
+      for (model::Point2& p : points) p = {c * p.x - s * p.y, s * p.x + c * p.y};
+      return polygon(points);
+    };
+    const double off = 0.001 + 0.04 * random.unit() * random.unit(), size = 2 + 3 * random.unit(),
+                 spread = 0.3 + 0.5 * random.unit(), at = 6 + 8 * random.unit();
+    const TerraceRow row = resolved(row_of_polygons(
+        {turned({{at, 12 - off}, {at - spread * size, 12 - off - size}, {at + spread * size, 12 - off - size}}),
+         turned(box(0, 0, 20, 12)), turned(box(0, 12, 20, 18))}));
+    ASSERT_TRUE(all_valid(row));
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (const model::Polygon& p : row.buildings[a].polygons) EXPECT_TRUE(geometry::rings_apart(p)) << a;
+      for (std::size_t b = 0; b < a; ++b)
+        EXPECT_EQ(geometry::common_area(row.buildings[a].polygons, row.buildings[b].polygons), 0) << a << " and " << b;
+    }
+  }
 }
 
 TEST(Overlaps, IdenticalTwinsStayAndAreReported) {
