@@ -23,6 +23,8 @@ constexpr double kOffPlane = 1.5;
 constexpr double kSameWay = 0.99;
 /// In steps: how far a point may lie off the straight line that it is left out of, and how near other edges may come.
 constexpr double kOffLine = 0.5, kApart = 2;
+/// In steps: how far all points that are left out may lie off the line that takes their place. Rounding alone makes one.
+constexpr double kOffChord = 1.5;
 
 using Vector = model::Point3;
 Vector between(const ElementPoint& from, const ElementPoint& to) {
@@ -193,6 +195,28 @@ class Joiner {
   std::map<Edge, std::vector<std::size_t>> at_edge_;
 };
 
+/// Points of a ring that may go, between two that stay: the one farthest off the line between these becomes a corner, where
+/// it lies off it. Each point of a fine arc lies on the line between its neighbours. False where nothing is off.
+bool keep_off_chord(const Ring& ring, std::set<ElementPoint>& corners) {
+  const std::size_t n = ring.size();
+  const auto stays = [&](std::size_t i) { return corners.count(ring[i % n]) > 0; };
+  std::size_t first = 0;
+  while (first < n && !stays(first)) ++first;
+  if (first == n) return corners.insert(*std::min_element(ring.begin(), ring.end())).second;
+  bool any = false;
+  for (std::size_t i = first; i < first + n;) {
+    std::size_t end = i + 1;
+    while (!stays(end)) ++end;
+    std::size_t farthest = i;
+    double most = kOffChord;
+    for (std::size_t k = i + 1; k < end; ++k)
+      if (const double off = distance(ring[k % n], ring[i % n], ring[end % n]); off > most) most = off, farthest = k;
+    if (farthest != i) any = corners.insert(ring[farthest % n]).second || any;
+    i = end;
+  }
+  return any;
+}
+
 /// Leaves points out that lie on a straight line wherever they are used.
 void drop_straight_points(std::vector<ElementPolygon>& polygons) {
   std::set<ElementPoint> corners, straight;
@@ -208,6 +232,10 @@ void drop_straight_points(std::vector<ElementPolygon>& polygons) {
       (onwards && distance(b, a, c) <= kOffLine ? straight : corners).insert(b);
     }
   });
+  for (bool again = true; again;) {
+    again = false;
+    each([&](const Ring& ring) { again = keep_off_chord(ring, corners) || again; });
+  }
   each([&](Ring& ring) {
     Ring left;
     for (const ElementPoint& p : ring)

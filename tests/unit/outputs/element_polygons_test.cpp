@@ -86,6 +86,25 @@ TEST(ElementPolygons, OtherLooksAndOtherPlanesStayApart) {
   EXPECT_EQ(s.polygons().size(), 3u);
 }
 
+TEST(ElementPolygons, AFineArcStaysRound) {
+  // A quarter of a circle in steps that bend by less than a twentieth of a millimetre, and what stands above it.
+  Shape s;
+  constexpr int kPoints = 400;
+  constexpr double kRadius = 0.5, kQuarter = 1.5707963267948966;
+  std::vector<Point3> fan{{0, 0, 0}}, above{{kRadius, kRadius, 0}};
+  for (int i = 0; i <= kPoints; ++i) {
+    const double angle = kQuarter * i / kPoints;
+    fan.push_back({kRadius * std::cos(angle), kRadius * std::sin(angle), 0});
+  }
+  above.insert(above.end(), fan.rbegin(), fan.rend() - 1);
+  s.face(fan), s.face(above, ElementPart::glass);
+  const auto polygons = s.polygons();
+  ASSERT_EQ(polygons.size(), 2u);
+  EXPECT_NEAR(area(polygons[0]), kQuarter / 2 * kRadius * kRadius, 1e-4);
+  EXPECT_NEAR(area(polygons[0]) + area(polygons[1]), kRadius * kRadius, 1e-9) << "both have the same points";
+  EXPECT_LT(polygons[0].rings[0].size(), 100u);
+}
+
 TEST(ElementPolygons, StraightPointsGoOnlyWhereNothingHasACorner) {
   Shape s;
   s.upright(0, 0, 1, 1), s.upright(1, 0, 2, 1);
