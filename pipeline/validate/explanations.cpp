@@ -24,9 +24,9 @@ std::string value_text(const Json* value) {
 
 class TileRecords {
  public:
-  TileRecords(const std::string& file, const std::string& tile, const Contents* model, const BuildRecord& record,
-              std::vector<Finding>& findings)
-      : file_(file), tile_(tile), record_(record), findings_(findings) {
+  TileRecords(const std::string& file, const std::string& tile, const Contents* model, bool lean,
+              const BuildRecord& record, std::vector<Finding>& findings)
+      : file_(file), tile_(tile), lean_(lean), record_(record), findings_(findings) {
     if (!model) return;
     for (const ReadBody& body : model->bodies) bodies_[body.building].push_back(&body);
     has_model_ = true;
@@ -125,9 +125,7 @@ class TileRecords {
     expect("windows", polygons("window"), whole(member(*said, "windows")).value_or(0));
     expect("doors", polygons("door"), whole(member(*said, "doors")).value_or(0));
     const std::size_t placed = body.detail.placements.size();
-    // Lean CityGML alone: elements in openings are not there.
-    const bool lean = record_.lean_citygml && !record_.has("cityjson");
-    if (!lean || placed > sum("elements")) expect("placed elements", placed, sum("elements"));
+    if (!lean_ || placed > sum("elements")) expect("placed elements", placed, sum("elements"));
     expect("installations", body.detail.installations.size(), sum("installations"));
   }
 
@@ -157,6 +155,7 @@ class TileRecords {
   }
 
   const std::string &file_, &tile_;
+  bool lean_;
   const BuildRecord& record_;
   std::vector<Finding>& findings_;
   bool has_model_ = false;
@@ -189,9 +188,10 @@ ExplanationIndex read_explanation_index(std::string_view lines, FindingLog& log)
 }
 
 std::size_t check_explanations(std::string_view lines, const std::string& file, const std::string& tile,
-                               const Contents* model, const std::vector<std::pair<std::string, std::string>>& entries,
+                               const Contents* model, bool lean,
+                               const std::vector<std::pair<std::string, std::string>>& entries,
                                const BuildRecord& record, std::vector<Finding>& findings) {
-  TileRecords records(file, tile, model, record, findings);
+  TileRecords records(file, tile, model, lean, record, findings);
   for (std::size_t number = 1; !lines.empty(); ++number) {
     const std::size_t end = std::min(lines.find('\n'), lines.size());
     records.read(lines.substr(0, end), number);

@@ -22,10 +22,12 @@ ExplanationIndex read_explanation_index(std::string_view text, FindingLog& log);
 /// The records of a tile: each line a JSON object about a building of this tile; each building of the model has one,
 /// with its bodies and the values that the other formats have; files it names are listed; the index leads to it.
 /// \param model  what another format holds of the tile; null: not compared
+/// \param lean   that format is lean CityGML: elements in openings are not there
 /// \param entries  of the index, of this tile
 /// \return the number of records
 std::size_t check_explanations(std::string_view lines, const std::string& file, const std::string& tile,
-                               const Contents* model, const std::vector<std::pair<std::string, std::string>>& entries,
+                               const Contents* model, bool lean,
+                               const std::vector<std::pair<std::string, std::string>>& entries,
                                const BuildRecord& record, std::vector<Finding>& findings);
 
 }  // namespace blockrand::validate

@@ -427,9 +427,9 @@ class Checker {
     if (!lines) return;
     static const std::vector<std::pair<std::string, std::string>> none;
     const auto entries = context_.explanations->find(files_.name);
-    out_.explained = check_explanations(*lines, files_.explanations, files_.name, reference,
-                                        entries == context_.explanations->end() ? none : entries->second,
-                                        context_.record, out_.findings);
+    out_.explained = check_explanations(
+        *lines, files_.explanations, files_.name, reference, format == kCityGml && lean_,
+        entries == context_.explanations->end() ? none : entries->second, context_.record, out_.findings);
   }
 
   // ---- against the map

@@ -137,6 +137,15 @@ class ValidateLean(Detail):
             implicit.search)
         self.found(d, 'GEOMETRY_DIFFERS', 'another element, or one at another place')
 
+    def test_records_without_their_cityjson_tile(self):
+        """What is lean is decided by the format that a tile has, not by those of the build."""
+        d = self.damaged()
+        name = d.cityjson
+        d.remove(name)
+        d.seal()
+        found = self.validate(d.folder)['findings']
+        self.assertNotIn('EXPLANATION_WRONG', {f['code'] for f in found if 'placed elements' in f['detail']}, found[:3])
+
     def test_a_build_that_says_it_has_everything(self):
         d = self.damaged()
         d.json('build.json', lambda b: b['configuration'].update(citygml_detail='full'))
