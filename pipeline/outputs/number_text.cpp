@@ -152,4 +152,14 @@ Address TagReader::address(model::Range tags) const {
   return found;
 }
 
+std::string_view TagReader::name_of(const model::Building& building, const model::BuildingPart& part) const {
+  const std::string_view own = name(part.tags);
+  return own.empty() ? name(building.tags) : own;
+}
+
+Address TagReader::address_of(const model::Building& building, const model::BuildingPart& part) const {
+  const Address own = address(part.tags);
+  return own.empty() ? address(building.tags) : own;
+}
+
 }  // namespace blockrand::outputs

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "pipeline/base/markup.h"
+#include "pipeline/model/building.h"
 #include "pipeline/model/extract.h"
 
 namespace blockrand::outputs {
@@ -58,6 +59,9 @@ class TagReader {
   std::string_view start_date(model::Range tags) const { return value(tags, start_date_); }
   std::string_view building_use(model::Range tags) const { return value(tags, building_use_); }
   Address address(model::Range tags) const;
+  /// A part's own, else its building's.
+  std::string_view name_of(const model::Building& building, const model::BuildingPart& part) const;
+  Address address_of(const model::Building& building, const model::BuildingPart& part) const;
   const model::Extract* extract() const { return extract_; }
 
  private:

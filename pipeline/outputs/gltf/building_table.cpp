@@ -123,12 +123,9 @@ class Builder {
     table_.set_raw_text(building_, building_id);
     table_.set_enum(osm_type_, static_cast<std::uint8_t>(part.osm.type));
     table_.set_int64(osm_id_, part.osm.number);
-    std::string_view name = tags_.name(part.tags);
-    if (name.empty()) name = tags_.name(building.tags);
-    table_.set_text(name_, name);
-    Address address = tags_.address(part.tags);
-    if (address.empty()) address = tags_.address(building.tags);
-    if (!address.empty()) table_.set_text(address_, address.line());
+    table_.set_text(name_, tags_.name_of(building, part));
+    if (const Address address = tags_.address_of(building, part); !address.empty())
+      table_.set_text(address_, address.line());
 
     auto columns = attributes_.begin();
     scratch_.clear();

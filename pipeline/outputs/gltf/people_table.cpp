@@ -30,11 +30,11 @@ constexpr Shown kUse[] = {{"use", "What it is used for"}, {"ground_floor_use", "
 constexpr Shown kTime[] = {{"construction_date", "Year of construction, or from..to"},
                            {"era", "When it was built: pre1840, 1840_1918, 1919_1945, post1945"},
                            {"style", "Class of appearance: gruenderzeit, tenement, modern, other"}};
-constexpr Shown kHeights[] = {{"substyle", "Its style in more detail"},
-                              {"storeys", "Full storeys above ground"},
-                              {"roof_storeys", "Storeys inside the roof"},
-                              {"height", "From the lowest ground to the top of the roof"},
-                              {"eaves_height", "From the lowest ground to the eaves"}};
+constexpr Shown kStyleAndHeights[] = {{"substyle", "Its style in more detail"},
+                                      {"storeys", "Full storeys above ground"},
+                                      {"roof_storeys", "Storeys inside the roof"},
+                                      {"height", "From the lowest ground to the top of the roof"},
+                                      {"eaves_height", "From the lowest ground to the eaves"}};
 constexpr Shown kRoof[] = {{"roof_height", "From the eaves to the top of the roof"},
                            {"roof_pitch", "Of the main slope"},
                            {"roof_material", "Material of the roof"},
@@ -84,7 +84,7 @@ class Builder {
                                     .kind = Kind::float64,
                                     .description = "How sure the style is, from 0 to 1",
                                     .no_data = kAbsentNumber});
-    add_all(kHeights);
+    add_all(kStyleAndHeights);
     built_roof_ = table_.add({.name = "built_roof",
                               .kind = Kind::enumeration,
                               .description = "The roof that stands",
@@ -154,12 +154,9 @@ class Builder {
   }
 
   void row(const model::Building& building, const std::string& building_id, const model::BuildingPart& part) {
-    std::string_view name = tags_.name(part.tags);
-    if (name.empty()) name = tags_.name(building.tags);
-    table_.set_text(name_, name);
-    Address address = tags_.address(part.tags);
-    if (address.empty()) address = tags_.address(building.tags);
-    if (!address.empty()) table_.set_text(address_, address.line());
+    table_.set_text(name_, tags_.name_of(building, part));
+    if (const Address address = tags_.address_of(building, part); !address.empty())
+      table_.set_text(address_, address.line());
 
     auto attribute = attributes_.begin();
     for (std::string& columns : columns_of_source_) columns.clear();
