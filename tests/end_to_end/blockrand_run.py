@@ -202,6 +202,16 @@ class BuildTest(unittest.TestCase):
         self.assertEqual(differing, [], f'{len(differing)} of {len(first)} files differ between {a} and {b}')
 
 
+def pictures_folder(arguments):
+    """The absolute folder after --pictures, made where it is absent, and the other arguments; None without the option."""
+    if '--pictures' not in arguments:
+        return None, arguments
+    at = arguments.index('--pictures')
+    folder = os.path.abspath(arguments[at + 1])
+    os.makedirs(folder, exist_ok=True)
+    return folder, arguments[:at] + arguments[at + 2:]
+
+
 class CountingResult(unittest.TextTestResult):
     """Knows how many tests really ran to their end: a skipped class counts for none."""
     passed = 0

@@ -14,7 +14,7 @@ import unittest
 import zlib
 
 import validators
-from blockrand_run import SAMPLE, BuildTest, Setup, call, extract, main, read_json
+from blockrand_run import SAMPLE, BuildTest, Setup, call, extract, main, pictures_folder, read_json
 from model_files import Glb
 
 PICTURES = None  # folder that keeps the pictures
@@ -265,10 +265,5 @@ class ByThree(Model):
 del Model  # nothing to run by itself
 
 if __name__ == '__main__':
-    arguments = sys.argv[1:]
-    if '--pictures' in arguments:
-        at = arguments.index('--pictures')
-        PICTURES = os.path.abspath(arguments[at + 1])
-        os.makedirs(PICTURES, exist_ok=True)
-        del arguments[at:at + 2]
-    main(arguments)
+    PICTURES, others = pictures_folder(sys.argv[1:])
+    main(others)

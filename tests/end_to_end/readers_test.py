@@ -10,7 +10,7 @@ import sqlite3
 import sys
 import zipfile
 
-from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, call, main, read_json, sha256
+from blockrand_run import SAMPLE, SOURCE, BuildTest, blockrand, call, main, pictures_folder, read_json, sha256
 from geopackage_test import python_with
 from importers_test import colours_of_png
 from model_files import NAMES, GML_ID, attributes, buildings, citygml_trees, points
@@ -221,8 +221,6 @@ class Readers(BuildTest):
             self.assertIsNone(project.testzip())
         again = self.build(SAMPLE, 'again', '--formats', 'gpkg', '--no-report', '--no-explain', '--jobs', '1')
         self.assertEqual(sha256(os.path.join(again, 'buildings.qgz')), sha256(os.path.join(self.lod2, 'buildings.qgz')))
-        self.assertEqual(read_json(again, 'build.json')['files']['buildings.qgz'],
-                         read_json(self.lod2, 'build.json')['files']['buildings.qgz'])
         self.assertFalse(os.path.exists(os.path.join(self.lod3, 'buildings.qgz')), '--formats without gpkg')
 
     def test_the_template_is_what_its_script_writes(self):
@@ -314,10 +312,5 @@ class Readers(BuildTest):
 
 
 if __name__ == '__main__':
-    arguments = sys.argv[1:]
-    if '--pictures' in arguments:
-        at = arguments.index('--pictures')
-        PICTURES = os.path.abspath(arguments[at + 1])
-        os.makedirs(PICTURES, exist_ok=True)
-        del arguments[at:at + 2]
-    main(arguments)
+    PICTURES, others = pictures_folder(sys.argv[1:])
+    main(others)

@@ -16,7 +16,7 @@ import sys
 import unittest
 
 import validators
-from blockrand_run import SAMPLE, BuildTest, Setup, call, extract, files_of, first_present, main, read_json
+from blockrand_run import SAMPLE, BuildTest, Setup, call, extract, files_of, first_present, main, pictures_folder, read_json
 from geodesy import Proj, metres_between
 from model_files import NAMES, GML_ID, Glb, buildings, citygml_trees, tile_contents
 from osm_files import Node, Way, read_xml
@@ -484,10 +484,5 @@ class CityGmlOfFacades(CityGml):
 
 
 if __name__ == '__main__':
-    arguments = sys.argv[1:]
-    if '--pictures' in arguments:
-        at = arguments.index('--pictures')
-        PICTURES = os.path.abspath(arguments[at + 1])
-        os.makedirs(PICTURES, exist_ok=True)
-        del arguments[at:at + 2]
-    main(arguments)
+    PICTURES, others = pictures_folder(sys.argv[1:])
+    main(others)

@@ -38,7 +38,7 @@ TEST(CheckSolid, EveryClassHasABrokenSolid) {
   std::set<int> there;
   for (const auto& b : testing_shapes::broken_solids()) there.insert(b.code);
   for (const SolidDefectInfo& defect : kSolidDefects) {
-    // Loops do not repeat their first vertex: only files can leave a ring open (tests/end_to_end/validate_test.py).
+    // Loops do not repeat their first vertex: only files can leave a ring open (tests/end_to_end/validate_model_files_test.py).
     if (defect.number == 0 || defect.number == iso_code(SolidDefect::ring_open)) continue;
     EXPECT_TRUE(there.count(defect.number)) << defect.number << ' ' << defect.name;
   }
