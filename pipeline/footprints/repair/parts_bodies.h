@@ -59,10 +59,10 @@ void add_pieces(std::vector<model::BuildingPart>& parts, const model::BuildingPa
 /// Cuts the plans of parts that stand at one height apart, exactly: all rings are noded against each other on the
 /// 1/1024 m grid (geometry::noded_edges), so that a corner on another part's wall becomes a corner of that wall; ground
 /// that several plans cover goes to the smallest, of equal ones to that of the lower id. A slab yields to what reaches
-/// through it. After it two such plans share
-/// points and walls or nothing. A part that others cover to the last and that is nowhere known to be higher is settled:
-/// the one with most of its ground stands for it. One that is higher keeps its plan, and so does one whose ring would
-/// touch itself. Rows PARTS_OVERLAP where a part loses more than 0.01 m².
+/// through it. After it two such plans share points and walls or nothing. A part that others cover to the last and that
+/// is nowhere known to be higher is settled: the one with most of its ground stands for it. One that is higher keeps its
+/// plan. One whose rings would touch takes a wall's width from the others if they can give it, else it keeps its plan.
+/// Rows PARTS_OVERLAP where a part loses more than 0.01 m².
 /// \param building  its `parts` have plans
 /// \param settled   gets the mapped parts that are represented by others
 void separate_parts(model::Building& building, const RepairOptions& options, std::vector<model::SettledPart>& settled,
@@ -70,7 +70,8 @@ void separate_parts(model::Building& building, const RepairOptions& options, std
 
 /// Resolves overlaps of more than `min_overlap_area` between parts at overlapping heights: in order of area (smaller
 /// first), then id, each part loses what those before it cover (plan_without); a part of which nothing would be left
-/// keeps its plan until separate_parts(). A PARTS_OVERLAP row each.
+/// keeps its plan until separate_parts(). Where what is left would touch itself, those before it give a corner
+/// (cut_corners). A PARTS_OVERLAP row each.
 void resolve_part_overlaps(std::vector<PartBody>& bodies, const RepairOptions& options, model::Report& report);
 
 }  // namespace blockrand::repair
