@@ -29,6 +29,14 @@ void for_each_ring(Plan& plan, Visit&& visit) {
   for (auto& hole : plan.holes) visit(hole);
 }
 
+bool has_corner(const Polygon& plan, Point2 p) {
+  bool found = false;
+  for_each_ring(plan, [&](const Ring& ring) {
+    found = found || std::find(ring.points.begin(), ring.points.end(), p) != ring.points.end();
+  });
+  return found;
+}
+
 /// Where a corner goes that lies on the inner side of the wall from a to b, no farther than `reach` from it; nothing
 /// for all others.
 std::optional<Point2> outside(Point2 corner, Point2 a, Point2 b, double reach) {
@@ -46,14 +54,15 @@ using Moves = std::map<Point2, Point2>;
 Moves find_moves(const Polygon& plan, const Polygon& other, double reach) {
   Moves moves;
   for_each_ring(plan, [&](const Ring& corners) {
-    for (const Point2 corner : corners.points)
+    for (const Point2 corner : corners.points) {
+      std::optional<Point2> to;
       for_each_ring(other, [&](const Ring& walls) {
-        for (std::size_t i = 0; i < walls.size(); ++i) {
-          const Point2 a = walls.points[i], b = walls.points[(i + 1) % walls.size()];
-          if (corner == a || corner == b) continue;
-          if (const auto to = outside(corner, a, b, reach)) moves.emplace(corner, *to);
-        }
+        for (std::size_t i = 0; i < walls.size() && !to; ++i)
+          to = outside(corner, walls.points[i], walls.points[(i + 1) % walls.size()], reach);
       });
+      // A corner of both is not inside, though another wall may be near.
+      if (to && !has_corner(other, corner)) moves.emplace(corner, *to);
+    }
   });
   return moves;
 }

@@ -201,6 +201,7 @@ void finish(std::vector<Polygon> pieces, double min_area, double clearance, Vali
         const double half_size = clearance * (round + 1);
         std::vector<Polygon> with_squares = squares_at_touches(p, half_size);
         out.separated = true;
+        out.squares.insert(out.squares.end(), with_squares.begin(), with_squares.end());
         with_squares.push_back(p);
         valid = union_all(with_squares, origin);
       }

@@ -26,6 +26,7 @@ struct ValidPolygons {
   std::vector<model::Polygon> polygons;  ///< strictly simple, outer counter-clockwise, largest first
   bool changed = false;                  ///< something had to be mended (orientation does not count)
   bool separated = false;                ///< rings that touched were moved apart
+  std::vector<model::Polygon> squares;   ///< that were added to move them apart, in part outside; they may overlap
   double dropped_area = 0;               ///< m² of pieces below `min_area`, or that could not be made simple
 };
 

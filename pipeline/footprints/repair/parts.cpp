@@ -55,7 +55,9 @@ std::vector<Polygon> united(const std::vector<PartBody>& bodies, const RepairOpt
 /// Mends polygons whose corners moved; false where that is not the same plan any more.
 bool mended(std::vector<Polygon>& moved, double area, const RepairOptions& options) {
   if (!std::all_of(moved.begin(), moved.end(), well_wound)) return false;
-  if (std::all_of(moved.begin(), moved.end(), geometry::strictly_simple)) return true;
+  if (std::all_of(moved.begin(), moved.end(),
+                  [](const Polygon& p) { return geometry::strictly_simple(p) && geometry::rings_apart(p); }))
+    return true;
   std::vector<Ring> rings;
   std::vector<bool> inner;
   for (const Polygon& p : moved) {

@@ -42,6 +42,36 @@ double area_of(const std::vector<Polygon>& polygons) {
   return sum;
 }
 
+/// Cuts off the corners of what is taken where the rest would touch itself: the rest keeps a wall's width of its own
+/// ground there and needs none of a third one's.
+void cut_corners(std::span<const Polygon> squares, const std::vector<PartBody*>& takers, const RepairOptions& options) {
+  for (PartBody* taker : takers) {
+    if (geometry::common_area(taker->polygons, squares) <= 0) continue;
+    std::vector<Polygon> cut =
+        geometry::difference(taker->polygons, squares, options.min_piece_area, options.ring_clearance).polygons;
+    if (cut.size() != taker->polygons.size() || area_of(cut) < area_of(taker->polygons) - options.min_overlap_area)
+      continue;
+    restore_nodes(cut, taker->polygons);
+    taker->polygons = std::move(cut);
+  }
+}
+
+std::vector<Polygon> polygons_of(const std::vector<PartBody*>& bodies) {
+  std::vector<Polygon> out;
+  for (const PartBody* body : bodies) out.insert(out.end(), body->polygons.begin(), body->polygons.end());
+  return out;
+}
+
+/// What is worth a part of what is left, without slivers and with its nodes.
+std::vector<Polygon> tidied(std::vector<Polygon> rest, std::span<const Polygon> plan, std::span<const Polygon> taken,
+                            const RepairOptions& options) {
+  std::erase_if(rest, [](const Polygon& p) { return geometry::equivalent_width(p) < kLeastPartWidth; });
+  geometry::cut_slivers(rest, options.spike_width);
+  restore_nodes(rest, plan);
+  restore_nodes(rest, taken);
+  return rest;
+}
+
 }  // namespace
 
 HeightSpan height_span(const model::MappedAttributes& part, bool canopy, const model::MappedAttributes& building) {
@@ -90,12 +120,8 @@ bool worth_a_part(const Polygon& polygon) {
 
 std::vector<Polygon> plan_without(std::span<const Polygon> plan, std::span<const Polygon> taken,
                                   const RepairOptions& options) {
-  geometry::ValidPolygons rest = geometry::difference(plan, taken, kLeastPartArea, options.ring_clearance);
-  std::erase_if(rest.polygons, [](const Polygon& p) { return geometry::equivalent_width(p) < kLeastPartWidth; });
-  geometry::cut_slivers(rest.polygons, options.spike_width);
-  restore_nodes(rest.polygons, plan);
-  restore_nodes(rest.polygons, taken);
-  return std::move(rest.polygons);
+  return tidied(geometry::difference(plan, taken, kLeastPartArea, options.ring_clearance).polygons, plan, taken,
+                options);
 }
 
 void resolve_part_overlaps(std::vector<PartBody>& bodies, const RepairOptions& options, model::Report& report) {
@@ -114,22 +140,28 @@ void resolve_part_overlaps(std::vector<PartBody>& bodies, const RepairOptions& o
   });
   for (std::size_t i = 1; i < order.size(); ++i) {
     PartBody& weak = bodies[order[i].body];
-    std::vector<Polygon> taken;
-    std::string takers;
+    std::vector<PartBody*> takers;
+    std::string names;
     for (std::size_t k = 0; k < i; ++k) {
-      const PartBody& strong = bodies[order[k].body];
+      PartBody& strong = bodies[order[k].body];
       if (!may_overlap(order[i].box, order[k].box, options.min_overlap_area)) continue;
       if (!heights_meet(weak.heights, strong.heights)) continue;
       if (geometry::common_area(weak.polygons, strong.polygons) <= options.min_overlap_area) continue;
-      taken.insert(taken.end(), strong.polygons.begin(), strong.polygons.end());
-      takers += (takers.empty() ? "" : ", ") + strong.osm.text();
+      names += (takers.empty() ? "" : ", ") + strong.osm.text();
+      takers.push_back(&strong);
     }
-    if (taken.empty()) continue;
+    if (takers.empty()) continue;
+    const std::vector<Polygon> taken = polygons_of(takers);
     const double overlap = geometry::common_area(weak.polygons, taken);
-    std::vector<Polygon> rest = plan_without(weak.polygons, taken, options);
+    geometry::ValidPolygons left = geometry::difference(weak.polygons, taken, kLeastPartArea, options.ring_clearance);
+    std::vector<Polygon> rest = tidied(std::move(left.polygons), weak.polygons, taken, options);
     if (rest.empty()) continue;  // separate_parts decides and tells
+    if (!left.squares.empty()) {
+      cut_corners(left.squares, takers, options);
+      rest = plan_without(weak.polygons, polygons_of(takers), options);
+    }
     weak.polygons = std::move(rest);
-    report.add(weak.osm, IssueCode::parts_overlap, square_metres(overlap) + " given to " + takers);
+    report.add(weak.osm, IssueCode::parts_overlap, square_metres(overlap) + " given to " + names);
   }
 }
 

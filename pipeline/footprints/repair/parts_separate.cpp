@@ -31,6 +31,7 @@ constexpr double kLeastShare = 0.05;  // of a plan; of one that keeps less, only
 constexpr double kStrip = 0.1;        // m; two drawings of one wall lie that near
 constexpr double kHigher = 1.0;       // m; less is one storey counted and measured
 constexpr double kTold = 0.01;        // m²; less is what rounding and two drawings of one wall make
+constexpr double kOpened = 0.1;       // m²; the ground of a wall's width between two rings, which make_valid opens
 
 struct Piece {
   std::size_t part = 0;
@@ -114,7 +115,10 @@ class Drawing {
     for (std::size_t f = 0; f < faces_.size(); ++f)
       for_each_edge(f, [&](const Edge& e, std::int64_t) { left_of_[e] = f; });
     find_windings();
+    order_.resize(group.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
     share_out();
+    give_way_to_touching();
   }
 
   /// Of a plan as it is drawn, and of what it keeps. m²
@@ -207,16 +211,41 @@ class Drawing {
     }
   }
 
+  /// What is left of a piece may touch itself where the piece itself has a wall's width: then it goes first, if that takes
+  /// no more than such widths from the others and leaves them whole.
+  void give_way_to_touching() {
+    for (std::size_t i = 0; i < group_.size(); ++i) {
+      if (kept(i) <= 0 || kept(i) >= drawn(i) || !united(i, false).empty()) continue;
+      const auto kept_before = kept_;
+      const auto order_before = order_;
+      std::vector<double> areas;
+      std::vector<bool> whole;
+      for (std::size_t k = 0; k < group_.size(); ++k) {
+        areas.push_back(kept(k));
+        whole.push_back(!united(k, false).empty());
+      }
+      const auto place = std::find(order_.begin(), order_.end(), i);
+      std::rotate(order_.begin(), place, place + 1);
+      share_out();
+      for (std::size_t k = 0; k < group_.size(); ++k) {
+        if (kept(k) >= areas[k] - kOpened && (!whole[k] || !united(k, false).empty())) continue;
+        order_ = order_before;
+        kept_ = kept_before;
+        break;
+      }
+    }
+  }
+
   /// Each face goes to the strongest, and to those that stand at other heights. Strips between two drawings of one wall
   /// go to one even where heights that are counted and measured leave it open.
   void share_out() {
     kept_.assign(faces_.size(), std::vector<bool>(group_.size(), false));
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const bool slim = geometry::equivalent_width(faces_[f].polygon) < kStrip;
-      for (std::size_t i = 0; i < group_.size(); ++i) {
+      for (const std::size_t i : order_) {
         if (winding_[f].empty() || winding_[f][i] <= 0) continue;
         bool free = true;
-        for (std::size_t k = 0; k < i && free; ++k)
+        for (std::size_t k = 0; k < group_.size() && free; ++k)
           free = !kept_[f][k] || !in_each_others_way(group_[k].heights, group_[i].heights, slim);
         kept_[f][i] = free;
       }
@@ -270,7 +299,7 @@ class Drawing {
       else
         return std::nullopt;
     }
-    if (!geometry::strictly_simple(out)) return std::nullopt;
+    if (!geometry::strictly_simple(out) || !geometry::rings_apart(out)) return std::nullopt;
     return out;
   }
 
@@ -280,6 +309,7 @@ class Drawing {
   std::map<Edge, std::size_t> left_of_;
   std::vector<std::vector<int>> winding_;  ///< by face and piece
   std::vector<std::vector<bool>> kept_;
+  std::vector<std::size_t> order_;  ///< of pieces, in which they are asked
 };
 
 bool same(const Polygon& a, const Polygon& b) {

@@ -270,7 +270,7 @@ bool sound(const std::vector<PartBody>& before, const std::vector<PartBody>& aft
     double area_before = 0, area_after = 0;
     for (const Polygon& p : before[b].polygons) area_before += geometry::area(p);
     for (const Polygon& p : after[b].polygons) {
-      if (!geometry::strictly_simple(p) || !well_wound(p)) return false;
+      if (!geometry::strictly_simple(p) || !geometry::rings_apart(p) || !well_wound(p)) return false;
       area_after += geometry::area(p);
     }
     if (std::fabs(area_after - area_before) > options.max_area_change * area_before) return false;

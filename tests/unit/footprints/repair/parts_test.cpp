@@ -326,6 +326,71 @@ TEST(PartsApart, WallsInPartDrawnOverEachOtherBecomeOne) {
   }
 }
 
+/// No two plans have ground in common, and none almost touches itself.
+void expect_apart(const Scene& s) {
+  for (std::size_t a = 0; a < s.building.parts.size(); ++a) {
+    EXPECT_TRUE(geometry::rings_apart(s.building.parts[a].plan)) << s.building.parts[a].id;
+    for (std::size_t b = 0; b < a; ++b)
+      EXPECT_EQ(s.common(s.building.parts[a].id, s.building.parts[b].id), 0)
+          << s.building.parts[a].id << " and " << s.building.parts[b].id;
+  }
+}
+
+TEST(PartsApart, ATowerWhoseCornerReachesTheWallAroundIt) {
+  // Berlin 2014, w233890595 in metres from (399540, 5825310): a corner of the tower 601 goes to the common wall of 597 and
+  // 600, so that what is left of 600 would touch itself there.
+  const std::vector<Point2>
+      block = {{-0.2227, 22.6826}, {10.8916, 29.6865}, {15.4912, 33.1084}, {23.2314, 22.7568}, {18.7695, 19.4326}},
+      inner = {{16.3809, 22.6191}, {13.7666, 25.0547}, {10.8857, 23.4551}, {8.2676, 21.4062}, {6.2832, 18.8770}},
+      bow = {{20.1904, 15.9980}, {20.5371, 11.0957}, {19.3984, 6.1338}, {17.2588, 2.3164}, {14.2227, -0.5811},
+             {9.8271, -2.9834},  {6.1045, 1.2666},   {4.0322, 6.3379},  {3.6973, 11.4863}, {4.8584, 15.8574}},
+      tower = {{8.7422, 13.1514},  {9.3076, 18.2695},  {10.2500, 18.2500}, {10.5498, 21.9385},
+               {17.0029, 21.2158}, {16.3633, 13.8740}, {13.6719, 14.1963}, {13.4775, 12.6758}};
+  const auto together = [](std::initializer_list<std::vector<Point2>> pieces) {
+    std::vector<Point2> out;
+    for (const auto& piece : pieces)
+      for (const Point2 p : piece) out.push_back(model::snap(p));
+    return out;
+  };
+  Scene s(together({block, bow}));
+  s.part(597, together({{bow.back()}, block, inner}), {{}, {}, 11.0f, 3.0f})
+      .part(600, together({{block.back()}, bow, {inner.rbegin(), inner.rend()}}), {{}, {}, 14.0f, {}})
+      .part(601, together({tower}), {{}, {}, 15.0f, {}})
+      .fit();
+  EXPECT_EQ(s.ids(), (Ids{"w1.w597", "w1.w600", "w1.w601"}));
+  expect_apart(s);
+}
+
+TEST(PartsApart, TowersAtTheWallOfACourtHouse) {
+  // A tower in a house, its corner on the house's wall, just inside or just outside of it, with a part on the other side of
+  // the wall: at any angle nothing overlaps, and each keeps its ground.
+  Random random(5);
+  for (int round = 0; round < 400; ++round) {
+    SCOPED_TRACE(round);
+    const double angle = 2 * std::acos(-1) * random.unit(), c = std::cos(angle), sn = std::sin(angle);
+    const auto turned = [&](std::vector<Point2> points) {
+      for (Point2& p : points) p = model::snap(Point2{c * p.x - sn * p.y, sn * p.x + c * p.y});
+      return points;
+    };
+    const double off = round % 8 < 2 ? 0 : 0.5 * random.unit() - 0.1, size = 2 + 3 * random.unit(),
+                 spread = 0.3 + 0.5 * random.unit(), at = 6 + 8 * random.unit();
+    const auto tower =
+        turned({{at, 12 - off}, {at - spread * size, 12 - off - size}, {at + spread * size, 12 - off - size}});
+    Scene s(turned({{0, 0}, {20, 0}, {20, 18}, {0, 18}}));
+    s.part(2, turned({{0, 0}, {20, 0}, {20, 12}, {0, 12}}));
+    if (round % 2 == 1) {
+      // The tower's ground is a court of the house.
+      s.building.parts.back().rings.rings.push_back(ring(tower));
+      s.building.parts.back().rings.inner.push_back(true);
+    }
+    s.part(3, turned({{0, 12}, {20, 12}, {20, 18}, {0, 18}})).part(4, tower).fit();
+    expect_apart(s);
+    double sum = 0;
+    for (const BuildingPart& part : s.building.parts) sum += geometry::area(part.plan);
+    EXPECT_NEAR(sum, 360, 0.5);
+  }
+}
+
 TEST(PartsApart, PartsOneAboveTheOtherStayAsTheyAre) {
   Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
   s.part(2, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {10.0f, {}, {}, {}})
