@@ -43,8 +43,7 @@ class Tidy {
       if (merged_[e] == e) chains_[e] = {e, group_end_[e]};
     for (const WeightedSkeletonFace& face : skeleton.faces) {
       if (face.upright && face.level == 0 && make_chain(face.loops[0])) continue;
-      Group group{face.edge, face.level, face.upright, face.loops};
-      groups_.push_back(std::move(group));
+      groups_.push_back({.edge = face.edge, .level = face.level, .upright = face.upright, .loops = face.loops});
     }
   }
 
@@ -52,6 +51,7 @@ class Tidy {
     parent_.resize(nodes_.size());
     std::iota(parent_.begin(), parent_.end(), 0u);
     align_uprights();
+    list_all();
     // Each round takes something out of every face that needs it; two or three are usual.
     const std::size_t most_rounds = 12 + nodes_.size();
     for (std::size_t round = 0; round < most_rounds; ++round) {
@@ -77,6 +77,12 @@ class Tidy {
     std::uint32_t edge, level;
     bool upright;
     std::vector<Loop> loops;
+    // What a look at the loops as they are would find nothing for.
+    bool whole = false;  ///< they do not touch themselves
+    bool apart = false;  ///< no two of a loop's nodes are as near as contract() asks
+    bool wide = false;   ///< none has a narrow_place()
+
+    void changed() { whole = apart = wide = false; }
   };
 
   /// Edges on one line that are one edge for the skeleton: where the last of them ends.
@@ -271,8 +277,9 @@ class Tidy {
       any = true;
     });
     // Nodes of one face that are no neighbours can be as near.
-    for (const Group& group : groups_) {
-      if (group.upright) continue;
+    for (Group& group : groups_) {
+      if (group.upright || (group.apart && !(any && renamed(group)))) continue;
+      group.apart = true;
       for (const Loop& loop : group.loops)
         for (std::size_t i = 0; i < loop.size(); ++i)
           for (std::size_t k = i + 2; k < loop.size(); ++k) {
@@ -286,20 +293,37 @@ class Tidy {
           }
     }
     if (!any) return false;
-    for (Group& group : groups_)
-      for (Loop& loop : group.loops)
-        for (std::uint32_t& n : loop) n = root(n);
-    for (Loop& chain : chains_) {
-      for (std::uint32_t& n : chain) n = root(n);
+    const auto rename = [&](Loop& path, std::uint32_t number) {
+      for (std::uint32_t& n : path)
+        if (root(n) != n) list(n = root(n), number);
+    };
+    for (std::uint32_t g = 0; g < groups_.size(); ++g) {
+      if (!renamed(groups_[g])) continue;
+      groups_[g].changed();
+      for (Loop& loop : groups_[g].loops) rename(loop, g);
+    }
+    for (std::size_t c = 0; c < chains_.size(); ++c) {
+      Loop& chain = chains_[c];
+      rename(chain, number_of_chain(c));
       chain.erase(std::unique(chain.begin(), chain.end()), chain.end());
     }
     split_loops();
     return true;
   }
 
+  /// Whether a node of a group has become one with another.
+  bool renamed(const Group& group) {
+    return std::any_of(group.loops.begin(), group.loops.end(), [&](const Loop& loop) {
+      return std::any_of(loop.begin(), loop.end(), [&](std::uint32_t n) { return root(n) != n; });
+    });
+  }
+
   /// Loops that touch themselves fall into pieces; pieces without area vanish.
   void split_loops() {
     for (Group& group : groups_) {
+      if (group.whole) continue;
+      group.changed();
+      group.whole = true;
       std::vector<Loop> out;
       for (Loop& loop : group.loops) split(std::move(loop), out);
       group.loops = std::move(out);
@@ -329,17 +353,47 @@ class Tidy {
 
   bool insert() {
     bool any = false;
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      if (groups_[g].upright) continue;
-      for (std::size_t l = 0; l < groups_[g].loops.size(); ++l) {
-        if (const auto found = narrow_place(groups_[g].loops[l])) {
-          put_on(found->node, found->from, found->to);
+    for (Group& group : groups_) {
+      if (group.upright || group.wide) continue;
+      group.wide = true;
+      for (std::size_t l = 0; l < group.loops.size(); ++l) {
+        if (const auto found = narrow_place(group.loops[l])) {
+          put_on_listed(found->node, found->from, found->to);
           any = true;
         }
       }
     }
     if (any) split_loops();
     return any;
+  }
+
+  /// Groups by number, and chains after them: each node knows those that it lies or once lay in.
+  std::uint32_t number_of_chain(std::size_t chain) const { return static_cast<std::uint32_t>(groups_.size() + chain); }
+  void list(std::uint32_t node, std::uint32_t number) {
+    std::vector<std::uint32_t>& numbers = listed_[node];
+    if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) numbers.push_back(number);
+  }
+  void list_all() {
+    listed_.resize(nodes_.size());
+    for (std::uint32_t g = 0; g < groups_.size(); ++g)
+      for (const Loop& loop : groups_[g].loops)
+        for (const std::uint32_t n : loop) list(n, g);
+    for (std::size_t c = 0; c < chains_.size(); ++c)
+      for (const std::uint32_t n : chains_[c]) list(n, number_of_chain(c));
+  }
+  /// put_on() where the lists lead.
+  void put_on_listed(std::uint32_t node, std::uint32_t a, std::uint32_t b) {
+    const std::vector<std::uint32_t> numbers = listed_[listed_[a].size() < listed_[b].size() ? a : b];
+    for (const std::uint32_t number : numbers) {
+      bool found = false;
+      if (number >= groups_.size()) {
+        found = put_between(chains_[number - groups_.size()], false, node, a, b);
+      } else {
+        for (Loop& loop : groups_[number].loops) found = put_between(loop, true, node, a, b) || found;
+        if (found) groups_[number].changed();
+      }
+      if (found) list(node, number);
+    }
   }
 
   struct Narrow {
@@ -371,18 +425,22 @@ class Tidy {
 
   /// Puts a node on the border between two others, wherever that occurs.
   void put_on(std::uint32_t node, std::uint32_t a, std::uint32_t b) {
-    const auto between = [&](Loop& path, bool closed) {
-      for (std::size_t i = 0; i + (closed ? 0 : 1) < path.size(); ++i) {
-        const std::uint32_t p = path[i], q = path[(i + 1) % path.size()];
-        if ((p == a && q == b) || (p == b && q == a)) {
-          path.insert(path.begin() + static_cast<std::ptrdiff_t>(i) + 1, node);
-          ++i;
-        }
-      }
-    };
     for (Group& group : groups_)
-      for (Loop& loop : group.loops) between(loop, true);
-    for (Loop& chain : chains_) between(chain, false);
+      for (Loop& loop : group.loops) put_between(loop, true, node, a, b);
+    for (Loop& chain : chains_) put_between(chain, false, node, a, b);
+  }
+  /// The same on one path; false where that has no such border.
+  static bool put_between(Loop& path, bool closed, std::uint32_t node, std::uint32_t a, std::uint32_t b) {
+    bool found = false;
+    for (std::size_t i = 0; i + (closed ? 0 : 1) < path.size(); ++i) {
+      const std::uint32_t p = path[i], q = path[(i + 1) % path.size()];
+      if ((p == a && q == b) || (p == b && q == a)) {
+        path.insert(path.begin() + static_cast<std::ptrdiff_t>(i) + 1, node);
+        ++i;
+        found = true;
+      }
+    }
+    return found;
   }
 
   /// Corners that the skeleton passed over get their place in the upper end of the wall, which is cut there.
@@ -554,6 +612,7 @@ class Tidy {
   std::vector<std::uint32_t> end_of_, group_end_, merged_, parent_;
   std::uint32_t corners_ = 0;
   std::vector<Group> groups_;
+  std::vector<std::vector<std::uint32_t>> listed_;  ///< by node: list()
   std::vector<Loop> chains_;  ///< for each edge that leads its group the upper end of the wall, from start to end
 };
 
