@@ -56,7 +56,7 @@ std::optional<std::vector<Triangle3>> plain(const Rings3& rings, const Shadow& s
     auto& loop = loops.emplace_back();
     for (const Point3& p : ring) {
       const model::Point2 flat = shadow.of(p);
-      const geometry::Grid2 at{std::llrint(flat.x * kSteps), std::llrint(flat.y * kSteps)};
+      const geometry::Grid2 at{geometry::to_steps(flat.x * kSteps), geometry::to_steps(flat.y * kSteps)};
       if (!loop.empty() && (at == points.back() || at == points[loop.front()])) continue;
       loop.push_back(static_cast<std::uint32_t>(points.size()));
       points.push_back(at);

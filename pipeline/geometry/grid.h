@@ -23,9 +23,17 @@ struct Grid3 {
   friend auto operator<=>(const Grid3&, const Grid3&) = default;
 };
 
-inline std::int64_t to_grid(double metres) {
-  return static_cast<std::int64_t>(std::llrint(metres * model::kGridStepsPerMetre));
+/// Steps: 268,000 km at 1/1024 m, farther than any place on Earth or in its orbits' frames. Sums and differences of such
+/// numbers, and the products of the predicates, stay within their types.
+inline constexpr double kFarthestStep = 274877906944.0;  // 2^38
+
+/// A number of steps that integers hold: what lies farther out, or is not a number, lies at the end. Broken files have
+/// such coordinates.
+inline double within_grid(double steps) {
+  return steps > kFarthestStep ? kFarthestStep : steps > -kFarthestStep ? steps : -kFarthestStep;
 }
+inline std::int64_t to_steps(double steps) { return static_cast<std::int64_t>(std::llrint(within_grid(steps))); }
+inline std::int64_t to_grid(double metres) { return to_steps(metres * model::kGridStepsPerMetre); }
 inline Grid2 to_grid(model::Point2 p) { return {to_grid(p.x), to_grid(p.y)}; }
 inline Grid3 to_grid(model::Point3 p) { return {to_grid(p.x), to_grid(p.y), to_grid(p.z)}; }
 

@@ -227,10 +227,14 @@ void CityGmlParser::finish_elements() {
   for (const Placed& p : placed_) {
     ReadBody& body = out_.contents.bodies[p.body];
     const auto element = element_at_.find(p.element);
-    if (element == element_at_.end())
+    if (element == element_at_.end()) {
       rule("a reference to #" + p.element + ", which is no element", body.id);
-    else
+      const std::uint64_t nothing = element_digest({});
+      out_.contents.elements.try_emplace(nothing, element_of({}));
+      body.detail.placements[p.placement].element = nothing;
+    } else {
       place_element(body, body.detail.placements[p.placement], digests[element->second]);
+    }
   }
 }
 

@@ -187,7 +187,8 @@ std::uint64_t element_digest(std::span<const ReadPolygon> polygons) {
     for (const auto& ring : polygon.rings) {
       mix(ring.size());
       for (const Point3& p : ring)
-        for (const double v : {p.x, p.y, p.z}) mix(static_cast<std::uint64_t>(std::llrint(v * 1e4)));
+        for (const double v : {p.x, p.y, p.z})
+          mix(static_cast<std::uint64_t>(std::llrint(std::clamp(v, -1e12, 1e12) * 1e4)));
     }
   }
   return h;

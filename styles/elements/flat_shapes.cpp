@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "pipeline/geometry/grid.h"
 #include "pipeline/geometry/triangulate.h"
 #include "pipeline/model/vector.h"
 
@@ -138,7 +139,8 @@ std::optional<std::vector<std::vector<std::uint32_t>>> convex_faces(std::span<co
   if (loops.size() == 1 && is_convex(points, loops[0])) return std::vector<std::vector<std::uint32_t>>{loops[0]};
   std::vector<geometry::Grid2> grid;
   grid.reserve(points.size());
-  for (const Point2 p : points) grid.push_back({std::llrint(p.x * kFineSteps), std::llrint(p.y * kFineSteps)});
+  for (const Point2 p : points)
+    grid.push_back({geometry::to_steps(p.x * kFineSteps), geometry::to_steps(p.y * kFineSteps)});
   const auto triangles = geometry::triangulate(grid, loops);
   if (!triangles) return std::nullopt;
 

@@ -3,6 +3,8 @@
 
     seeds.py PROGRAM FOLDER     FOLDER/<target>/…, FOLDER/<target>.dict
 
+tests/fuzz/found/<target>/ has inputs that once broke the program: they are seeds, too.
+
 Readers of builds start from builds of a few houses of samples/blockrand-viertel.osm, which PROGRAM makes: a fuzzer
 changes small files faster than large ones. Seeds that are there already are written anew; what a fuzzer found stays.
 """
@@ -233,6 +235,8 @@ def main():
     seed_configs(seeds, program)
     with tempfile.TemporaryDirectory() as scratch:
         seed_builds(seeds, program, extracts, pathlib.Path(scratch))
+    for found in sorted((ROOT / "tests" / "fuzz" / "found").glob("*/*")):
+        seeds.add(found.parent.name, f"found_{found.name}", found)
     seeds.write_dictionaries()
     print(f"fuzz: {seeds.count} seeds for {len(seeds.words)} targets in {folder}")
 

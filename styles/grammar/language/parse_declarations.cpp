@@ -317,8 +317,10 @@ void Parser::declaration() {
     node.kind = attribute  ? DeclarationKind::attribute
                 : constant ? DeclarationKind::constant
                            : DeclarationKind::function;
-    if (node.kind != DeclarationKind::function && !node.parameters.empty())
+    if (node.kind != DeclarationKind::function && !node.parameters.empty()) {
       tell(Severity::error, name, "attribute_parameters", "attributes and constants have no parameters");
+      node.parameters.count = 0;  // nobody gives them values: in what follows their names are unknown
+    }
     node.value = value();
     if (!is(K::end) && !begins_declaration(at_)) {
       const Token& t = token();

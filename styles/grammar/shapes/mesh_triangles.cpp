@@ -33,7 +33,8 @@ std::vector<MeshTriangle> triangles_of(const Mesh& mesh) {
         double u = component(p, (axis + 1) % 3), v = component(p, (axis + 2) % 3);
         if (turned) std::swap(u, v);
         loops.back().push_back(static_cast<std::uint32_t>(plane.size()));
-        plane.push_back({std::llround(u * kStepsPerMetre), std::llround(v * kStepsPerMetre)});
+        plane.push_back({std::llround(geometry::within_grid(u * kStepsPerMetre)),
+                         std::llround(geometry::within_grid(v * kStepsPerMetre))});
         vertices.push_back(corner.vertex);
       }
     }

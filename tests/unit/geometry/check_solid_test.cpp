@@ -184,6 +184,27 @@ TEST(Triangulate, RefusesCrossingAndTouchingLoops) {
   EXPECT_FALSE(triangulate(touching, std::vector<std::vector<std::uint32_t>>{{0, 1, 2, 3}, {4, 5, 6}}));
 }
 
+TEST(Grid, PlacesBeyondAllEarthLieAtItsEnd) {
+  const auto end = static_cast<std::int64_t>(kFarthestStep);
+  EXPECT_EQ(to_grid(1e300), end);
+  EXPECT_EQ(to_grid(-1e300), -end);
+  EXPECT_EQ(std::abs(to_grid(std::numeric_limits<double>::quiet_NaN())), end);
+  EXPECT_EQ(to_grid(6'378'137.0), 6'378'137LL * 1024);
+  // Differences of such places are exact.
+  const Grid3 a = to_grid(model::Point3{1e300, -1e300, 1e300}), b = to_grid(model::Point3{-1e300, 1e300, -1e300});
+  EXPECT_EQ((a - b).x, 2 * end);
+  EXPECT_EQ(orientation(a, b, Grid3{end, end, -end}, Grid3{-end, -end, end}),
+            -orientation(b, a, Grid3{end, end, -end}, Grid3{-end, -end, end}));
+}
+
+TEST(Grid, PolygonsBeyondAllEarthAreTriangulatedOrRefused) {
+  const std::vector<Grid2> far{to_grid(model::Point2{0, 0}), to_grid(model::Point2{1e300, 0}),
+                               to_grid(model::Point2{1e300, 1e300}), to_grid(model::Point2{0, 1e300})};
+  const auto square = triangulate(far, std::vector<std::vector<std::uint32_t>>{{0, 1, 2, 3}});
+  ASSERT_TRUE(square);
+  EXPECT_EQ(square->size(), 2u);
+}
+
 TEST(Orientation, ExactWhereDoublesAreNot) {
   // Four points whose determinant is 1 although its products exceed 2^60.
   const std::int64_t big = 1 << 30;

@@ -172,6 +172,23 @@ TEST(Detail, ReferencesToNowhere) {
   EXPECT_THAT(found(replaced("<app:target>#w", "<app:target>#x")), Contains(HasSubstr("which is no surface")));
 }
 
+TEST(Detail, AnElementThatIsNotThereHasNoPolygons) {
+  std::string text = sound();
+  const std::string before = "<core:relativeGMLGeometry xlink:href=\"#e";
+  const std::size_t at = text.find(before);
+  ASSERT_NE(at, std::string::npos);
+  const CityGml gml =
+      read_citygml(text.replace(at, before.size(), "<core:relativeGMLGeometry xlink:href=\"#none"), "a.gml");
+  std::size_t without = 0;
+  for (const ReadBody& body : gml.contents.bodies)
+    for (const ReadPlacement& placement : body.detail.placements) {
+      const auto element = gml.contents.elements.find(placement.element);
+      ASSERT_NE(element, gml.contents.elements.end());
+      without += element->second.colours.empty();
+    }
+  EXPECT_GT(without, 0u);
+}
+
 TEST(Detail, PolygonsOfTheSolidLeftOut) {
   std::string text = sound();
   const std::size_t solid = text.find("<bldg:lod3Solid>");

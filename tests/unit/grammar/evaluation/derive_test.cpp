@@ -50,6 +50,14 @@ Tile --> 40% : Window("wide") 30% : Window("narrow") else : Wall.
 Window(kind) --> case p(0.5) : print(kind) W. else : s('rand(0.4, 0.9), '1, '1) center(x) V.
 )";
 
+TEST(Attributes, ParametersOfOneAreRefusedAndReadByNobody) {
+  const Program program = load_text("attr u(index) = case index == 1 : 2 else : 3\nLot --> print(u)");
+  EXPECT_THAT(all_diagnostics(program.diagnostics), HasSubstr("attribute_parameters"));
+  // A rule file with mistakes is derived as far as it goes.
+  const Derivation run = derive(program, rectangle(10, 10), {});
+  EXPECT_EQ(run.attributes, (std::vector<std::pair<std::string, Value>>{{"u", 3.0}}));
+}
+
 TEST(Seeds, TheSameSeedGivesTheSameModelAndAnotherOneAnother) {
   const auto one = whole(derive_text(kTown, rectangle(10, 20), seeded(1)));
   EXPECT_EQ(one, whole(derive_text(kTown, rectangle(10, 20), seeded(1))));
