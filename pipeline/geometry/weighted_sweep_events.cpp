@@ -102,7 +102,7 @@ void Sweep::push_candidates(std::int32_t number) {
     seen_[static_cast<std::size_t>(k)] = stamp_;
     const auto m = planes_.meet(left, right, k);
     if (!m || planes_.compare_height(*m, now_) < 0) continue;
-    if (planes_.side(k, origin) == 0) continue;  // it has just left that edge
+    if (!planes_.surely_beside(k, origin) && planes_.side(k, origin) == 0) continue;  // it has just left that edge
     splits.heap.push_back({m->z, m->error, k, counter_++});
   }
   std::make_heap(splits.heap.begin(), splits.heap.end(), LaterSplit{&planes_, left, right});
@@ -136,7 +136,7 @@ bool Sweep::meet_at(const Meet& at) {
     const Vertex& v = vertex(i);
     if (!v.alive) continue;
     active_[kept++] = i;
-    if (planes_.side(v.right, at) != 0) continue;
+    if (planes_.surely_beside(v.right, at) || planes_.side(v.right, at) != 0) continue;
     const int s = from_start(v, at);
     if (s == 0)
       there.push_back(i);
