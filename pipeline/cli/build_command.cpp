@@ -33,12 +33,13 @@ settings::CommandText build_text() {
                    {"blockrand build town.osm -o out --terrain dem.tif --terrain-height-reference EPSG:7837 --force",
                     "on real ground, whose heights the raster does not explain, in place of an earlier build"},
                    {"blockrand build --config town.toml --lod 1", "options from a file; blocks instead of roofs"}},
-      .exit_codes = {{"0", "all well"},
-                     {"1", "wrong usage"},
-                     {"2", "unreadable or invalid input"},
-                     {"3", "buildings below the asked quality (only with --strict)"},
-                     {"4", "output could not be written or internal error"},
-                     {"128 + N", "ended by signal N"}}};
+      .exit_codes = {
+          {"0", "all well"},
+          {"1", "wrong usage"},
+          {"2", "unreadable or invalid input"},
+          {"3", "buildings below the asked quality, or an aerial image that does not fit (only with --strict)"},
+          {"4", "output could not be written or internal error"},
+          {"128 + N", "ended by signal N"}}};
 }
 
 int run_build(const std::vector<std::string>& arguments) {
@@ -50,6 +51,7 @@ int run_build(const std::vector<std::string>& arguments) {
   settings::Settings& s = line.settings;
   s.build.configs = configs_folder(s.build.configs, program_file());
   clean_up_on_signals(s.log_format);
+  s.build.outputs.imagery = !s.build.imagery.images.empty();
   base::Progress progress(s.progress, s.log_format, s.quiet);
   const run::BuildSummary summary = run::build(s.build, progress);
   progress.end();
@@ -60,6 +62,11 @@ int run_build(const std::vector<std::string>& arguments) {
   if (!summary.unaccounted.empty()) {
     progress.error(unaccounted_text(s.build, summary));
     return kInternalError;
+  }
+  if (summary.images_misfit > 0 && s.build.strict) {
+    progress.error(std::to_string(summary.images_misfit) +
+                   " of the aerial images do not fit the map (--strict); imagery.json says by how much");
+    return kBelowQuality;
   }
   if (summary.below_quality && s.build.strict) {
     progress.error("some buildings are below the asked quality (--strict); report.json lists them");

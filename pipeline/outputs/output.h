@@ -22,6 +22,7 @@
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/model/region.h"
+#include "pipeline/observation/imagery.h"
 #include "pipeline/outputs/explain/explanation.h"
 #include "pipeline/outputs/object_counts.h"
 #include "pipeline/outputs/options.h"
@@ -45,6 +46,7 @@ struct OutputContext {
   std::span<const footprints::Shard> shards;
   const footprints::RepairedExtract& repaired;
   const context::ContextExtract& context;
+  const observation::ImageryObservations* imagery = nullptr;      ///< null: no images
   std::optional<model::TileId> alone;                             ///< the one tile that is built, of a larger build
   std::span<const model::ReportRow> earlier;                      ///< rows from before the tiles, sorted
   std::function<std::string(std::string_view preset)> rule_file;  ///< as ExplainOptions has it; may be empty

@@ -24,6 +24,7 @@ struct BuildSummary : outputs::ObjectCounts {
   std::uint64_t tiles_in_flight = 0;  ///< at most this many tiles share the rest
   std::map<std::string, std::string, std::less<>> figures;  ///< of single files, in words, by path
   bool below_quality = false;                               ///< a building is simpler than asked, or has no solid
+  std::uint64_t images_misfit = 0;                          ///< aerial images that do not fit the map
   std::vector<std::string> unaccounted;                     ///< objects that no stage decided on: a bug
   std::string folder;  ///< where the build lies: beside the output folder where it must not replace it
 };

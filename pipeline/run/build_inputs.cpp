@@ -17,6 +17,12 @@ std::optional<importers::elevation::Terrain> open_terrain(const std::string& pat
   return std::optional<importers::elevation::Terrain>(std::in_place, path, asked.metres_per_unit);
 }
 
+std::vector<importers::imagery::AerialImage> open_images(const observation::ImageryOptions& options) {
+  std::vector<importers::imagery::AerialImage> images;
+  for (const importers::imagery::ImageSource& source : options.images) images.emplace_back(source);
+  return images;
+}
+
 attributes::Overrides open_overrides(const std::string& path, const attributes::Defaults& defaults,
                                      const districts::RuleSets& book) {
   if (path.empty()) return {};
@@ -38,6 +44,7 @@ BuildInputs::BuildInputs(const BuildOptions& options)
     : defaults(attributes::read_defaults(options.configs)),
       asked(context::read_height_reference(options.terrain_height_reference)),
       terrain(open_terrain(options.terrain, asked)),
+      images(open_images(options.imagery)),
       heights(context::choose_height_reference(terrain ? &terrain->describe() : nullptr, asked,
                                                options.ground_height.has_value())),
       tile(choose_tile(options)),
@@ -55,6 +62,7 @@ std::string BuildInputs::rule_file(std::string_view preset) const {
 std::vector<InputFile> input_files(const BuildOptions& options, const BuildInputs& inputs) {
   std::vector<InputFile> files = {input_file("extract", options.input)};
   if (inputs.terrain) files.push_back(input_file("terrain", options.terrain));
+  for (const importers::imagery::ImageSource& s : options.imagery.images) files.push_back(input_file("imagery", s.path));
   std::vector<std::pair<std::string, std::string>> configs = {
       {"defaults/uses.toml", options.configs + "/defaults/uses.toml"},
       {"materials/materials.toml", options.configs + "/materials/materials.toml"}};

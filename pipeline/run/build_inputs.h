@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "importers/elevation/terrain.h"
+#include "importers/imagery/aerial_image.h"
 #include "pipeline/attributes/defaults.h"
 #include "pipeline/attributes/overrides.h"
 #include "pipeline/attributes/rule_sets.h"
@@ -26,6 +27,7 @@ struct BuildInputs {
   attributes::Defaults defaults;
   context::AskedReference asked;
   std::optional<importers::elevation::Terrain> terrain;
+  std::vector<importers::imagery::AerialImage> images;
   context::HeightReference heights;
   std::optional<TileChoice> tile;  ///< empty: the whole extract
   classify::Tables tables;

@@ -155,6 +155,20 @@ Json statistics_json(const outputs::Statistics& t) {
   return j;
 }
 
+Json image_json(const observation::ImageReceipt& image) {
+  const importers::imagery::ImageDescription& d = image.description;
+  return {{"path", d.source.path},
+          {"date", d.source.date},
+          {"licence", d.source.licence},
+          {"attribution", d.source.attribution},
+          {"crs", d.crs_code.empty() ? d.crs_name : d.crs_code},
+          {"operation", d.operation},
+          {"accuracy_m", d.accuracy_m},
+          {"pixel_m", rounded(d.pixel_m, 1000)},
+          {"state", observation::name(image.fit.state)},
+          {"shift_m", {rounded(image.fit.shift.x, 1000), rounded(image.fit.shift.y, 1000)}}};
+}
+
 }  // namespace
 
 std::string build_json(const BuildOptions& options, const BuildRecord& r) {
@@ -167,6 +181,7 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   j["configuration"] = configuration(options);
   j["crs"] = crs_json(r);
   if (r.terrain) j["terrain"] = terrain_json(*r.terrain);
+  for (const observation::ImageReceipt& image : r.images) j["imagery"].push_back(image_json(image));
   j["region"] = region_json(r.facts);
   j["repair"] = repair_json(r.repair);
   j["counts"] = counts_json(r);

@@ -14,6 +14,7 @@
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/round_trip.h"
 #include "pipeline/model/extract.h"
+#include "pipeline/observation/imagery.h"
 #include "pipeline/outputs/statistics.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/region_facts.h"
@@ -37,6 +38,7 @@ struct BuildRecord {
   georef::RoundTrip round_trip;
   context::HeightReference heights;
   std::optional<importers::elevation::TerrainDescription> terrain;
+  std::vector<observation::ImageReceipt> images;
   RegionFacts facts;
   footprints::RepairTotals repair;
   BuildSummary summary;

@@ -225,7 +225,8 @@ base::OptionTable<B> how_it_runs() {
 }  // namespace
 
 base::OptionTable<BuildOptions> build_options() {
-  return base::concatenated({places_and_detail(), place_and_ground(), how_it_runs(),
+  return base::concatenated({places_and_detail(), place_and_ground(),
+                             base::of_member(observation::imagery_options(), &B::imagery), how_it_runs(),
                              base::of_member(outputs::output_options(), &B::outputs),
                              base::of_member(repair::repair_options(), &B::repair),
                              base::of_member(attributes::generate_options(), &B::generate)});

@@ -9,6 +9,7 @@
 #include "pipeline/attributes/options.h"
 #include "pipeline/base/option_table.h"
 #include "pipeline/footprints/repair/options.h"
+#include "pipeline/observation/options.h"
 #include "pipeline/outputs/options.h"
 
 namespace blockrand::run {
@@ -34,6 +35,7 @@ struct BuildOptions {
   std::string districts;                ///< rule set by name or file; empty: chosen by place from configs/districts/
   std::string overrides;                ///< overrides.toml, or empty
   std::optional<double> ground_height;  ///< m above sea level for every base where there is no terrain
+  observation::ImageryOptions imagery;
   outputs::OutputOptions outputs;
   repair::RepairOptions repair;
   attributes::GenerateOptions generate;

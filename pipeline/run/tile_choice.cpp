@@ -48,6 +48,8 @@ std::optional<TileChoice> choose_tile(const BuildOptions& options) {
   if (options.pinned.empty())
     throw base::UsageError(
         "--tile needs --pinned build.json of a build of the whole extract: a tile alone cannot choose the CRS");
+  if (!options.imagery.images.empty())
+    throw base::UsageError("--imagery is judged on the whole extract: leave it out with --tile");
   if (options.bbox) throw base::UsageError("--tile and --bbox contradict each other");
   if (!options.crs.empty()) throw base::UsageError("--tile takes the CRS of --pinned: leave out --crs");
   TileChoice choice;

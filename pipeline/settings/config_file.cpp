@@ -39,6 +39,15 @@ std::optional<std::string> value_text(base::TomlTable& table, const Option& opti
   return std::nullopt;
 }
 
+/// Empty, "2014", "2014-06" or "2014-06-21".
+bool is_date(std::string_view text) {
+  static constexpr std::string_view kPattern = "dddd-dd-dd";
+  if (text.size() != 0 && text.size() != 4 && text.size() != 7 && text.size() != kPattern.size()) return false;
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (kPattern[i] == '-' ? text[i] != '-' : text[i] < '0' || text[i] > '9') return false;
+  return true;
+}
+
 }  // namespace
 
 void read_config(const std::string& path, Settings& settings) {
@@ -62,6 +71,20 @@ void read_config(const std::string& path, Settings& settings) {
     }
     table->finish();
   }
+  for (base::TomlTable& image : root.tables("image")) {
+    importers::imagery::ImageSource source;
+    source.path = image.text("path").value_or("");
+    if (source.path.empty()) image.fail("path", "is missing", "Name the image: path = \"ortho.tif\".");
+    if (!source.path.starts_with("/vsi")) source.path = (folder / source.path).lexically_normal().string();
+    source.date = image.text("date").value_or("");
+    source.licence = image.text("licence").value_or("");
+    source.attribution = image.text("attribution").value_or("");
+    if (!is_date(source.date))
+      image.fail("date", "is no date: '" + source.date + "'",
+                 "Write a year, a month or a day: 2014, 2014-06, 2014-06-21.");
+    image.finish();
+    settings.build.imagery.images.push_back(std::move(source));
+  }
   root.finish();
 }
 
@@ -82,6 +105,10 @@ std::string config_template() {
       text += "# " + std::string(option.help) + "\n# " + std::string(option.key) + " = " + value + "\n";
     }
   }
+  text +=
+      "\n# An aerial image; as many of these tables as there are images. All but the path may be left out.\n"
+      "# [[image]]\n# path = \"ortho.tif\"\n# date = \"2023-06-18\"\n# licence = \"CC BY 4.0\"\n"
+      "# attribution = \"City of Vienna, data.wien.gv.at\"\n";
   return text;
 }
 

@@ -1,0 +1,69 @@
+// What aerial images say about an extract: whether each image fits, where each row of buildings is seen.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "importers/imagery/aerial_image.h"
+#include "pipeline/model/point.h"
+
+namespace blockrand::observation {
+
+enum class ImageState : std::uint8_t { used, misfit, undecided };
+constexpr std::string_view name(ImageState s) {
+  constexpr std::string_view names[] = {"used", "misfit", "undecided"};
+  return names[static_cast<int>(s)];
+}
+
+/// An image against the map.
+struct ImageFit {
+  ImageState state = ImageState::undecided;
+  std::uint64_t outlines = 0;  ///< that were looked for
+  model::Point2 shift;         ///< m: the image shows the map's outlines moved by it
+  double score = 0;            ///< how far the best shift stands out: deviations of all shifts within kFitReach
+  double margin = 0;           ///< how far it stands out of the next place that does not belong to it, in deviations
+  std::string why;             ///< a sentence
+};
+
+enum class RowState : std::uint8_t { outside, undecided, left_alone, refused, corrected };
+constexpr std::string_view name(RowState s) {
+  constexpr std::string_view names[] = {"outside", "undecided", "left_alone", "refused", "corrected"};
+  return names[static_cast<int>(s)];
+}
+
+/// What states of buildings are called where they are counted: "12 seen elsewhere".
+constexpr std::string_view words(RowState s) {
+  constexpr std::string_view all[] = {"in no image that fits", "not decided", "as mapped", "refused", "seen elsewhere"};
+  return all[static_cast<int>(s)];
+}
+
+/// The receipt of a building; all buildings of a row have the same movement.
+struct OutlineReceipt {
+  static constexpr std::uint32_t kNoImage = 0xffffffff;
+  RowState state = RowState::outside;
+  std::string_view reason{};  ///< a literal; empty for `corrected`
+  std::uint32_t row = 0;      ///< of its rows, counted as they come
+  std::uint32_t image = kNoImage;
+  model::Point2 shift, centre;   ///< m: turned about `centre`, then shifted
+  double turn = 0;               ///< degrees, counter-clockwise
+  double before = 0, after = 0;  ///< score of the walls on edges, [0, 1]
+  double confidence = 0;
+  model::Point2 lean;  ///< m, of the roof in the image
+  double eaves = 0;    ///< m: the height that it was reckoned with
+  double mean = 0, deviation = 0, second = 0, weight = 0;
+};
+
+struct ImageReceipt {
+  bool leans = false;
+  double flight_height = 0, support = 0;  ///< LeanField
+  importers::imagery::ImageDescription description;
+  ImageFit fit;
+};
+
+struct ImageryObservations {
+  std::vector<ImageReceipt> images;
+  std::vector<OutlineReceipt> outlines;  ///< by building number
+};
+
+}  // namespace blockrand::observation

@@ -1,0 +1,267 @@
+#include "pipeline/observation/observe_extract.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "pipeline/base/parallel.h"
+#include "pipeline/footprints/terrace_rows.h"
+#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/observation/image_fit.h"
+#include "pipeline/observation/lean.h"
+#include "pipeline/observation/row_match.h"
+#include "pipeline/observation/verdict.h"
+
+namespace blockrand::observation {
+
+namespace {
+
+using model::Point2;
+
+/// m: pixels in which rows are searched, and in which an image's place is checked.
+constexpr double kPixel = 0.2, kCoarsePixel = 0.5;
+/// m: buildings nearer than this move as one, as repair has it.
+constexpr double kRowLink = 1.0;
+/// Outlines that an image is fitted with at most.
+constexpr std::size_t kFitSample = 400;
+/// Of a metre of wall that two buildings share: often no edge shows there.
+constexpr double kPartyWallWeight = 0.15;
+/// Levels of 255, as score_outline() has it.
+constexpr double kContrast = 12;
+
+/// m: displacements at which outlines are sighted before the lean is known, and their step.
+constexpr double kSightingReach = 8, kSightingStep = 0.5;
+
+// Heights that only the lean needs: a wrong one moves the roof it predicts by a fifth of the error at most.
+constexpr double kStorey = 3.1, kPlinth = 0.3;  ///< m
+constexpr double kEavesShare = 0.85;            ///< of a tagged height, under a roof that nobody measured
+
+/// m: a stated guess by the area of the footprint: sheds and garages, small houses, houses, blocks.
+double usual_eaves(double area) { return area < 25 ? 2.5 : area < 60 ? 3.2 : area < 150 ? 5.5 : area < 400 ? 8 : 10; }
+
+/// m: in an image whose lean nobody knows, higher houses may be seen metres from where they stand.
+constexpr double kHighWithoutLean = 9;
+/// Shares of a height: storeys are 2.6 to 4 m high.
+constexpr double kTaggedUncertainty = 0.2, kGuessedUncertainty = 0.5;
+
+std::uint64_t mixed(std::uint64_t v) {
+  v ^= v >> 33, v *= 0xff51afd7ed558ccdULL, v ^= v >> 33, v *= 0xc4ceb9fe1a85ec53ULL, v ^= v >> 33;
+  return v;
+}
+
+class Observer {
+ public:
+  Observer(const ObservedExtract& of, std::span<const importers::imagery::AerialImage> images, int workers,
+           Correction correct, base::Progress& progress)
+      : of_(of), images_(images), correct_(correct), workers_(workers), progress_(progress) {}
+
+  ImageryObservations run() {
+    ImageryObservations out;
+    const footprints::FootprintStore& store = of_.footprints;
+    out.outlines.resize(store.size());
+    rows_ = footprints::find_terrace_rows(store, kRowLink);
+    row_of_.assign(store.size(), 0);
+    for (std::uint32_t r = 0; r < rows_.size(); ++r)
+      for (const std::uint32_t b : rows_[r].buildings) row_of_[b] = r;
+    progress_.begin("fit images", images_.size(), "images");
+    for (std::size_t k = 0; k < images_.size(); ++k) {
+      const ImageWindows coarse(images_[k], of_.projection, kCoarsePixel);
+      out.images.emplace_back();
+      out.images.back().description = images_[k].describe();
+      out.images.back().fit = fit_image(sample(images_[k]), coarse, workers_);
+      progress_.advance_to(k + 1);
+    }
+    if (correct_ == Correction::off) {
+      out.outlines.clear();
+      return out;
+    }
+    progress_.begin("match outlines", rows_.size() * images_.size(), "rows");
+    for (std::size_t k = 0; k < images_.size(); ++k) {
+      if (out.images[k].fit.state != ImageState::used) continue;
+      sight(static_cast<std::uint32_t>(k));
+      out.images[k].leans = field_.leans(), out.images[k].flight_height = field_.flight_height(),
+      out.images[k].support = field_.support();
+      match_rows(static_cast<std::uint32_t>(k), out);
+    }
+    return out;
+  }
+
+ private:
+  SearchedOutline searched(std::uint32_t building, const std::map<std::pair<Point2, Point2>, int>* shared) const {
+    SearchedOutline outline;
+    outline.box = of_.footprints[building].box;
+    std::vector<double> weights;
+    of_.footprints.for_each_ring(building, [&](std::span<const Point2> ring, bool) {
+      weights.assign(ring.size(), 1.0);
+      for (std::size_t i = 0; shared && i < ring.size(); ++i) {
+        const Point2 a = ring[i], b = ring[(i + 1) % ring.size()];
+        if (shared->contains({std::min(a, b), std::max(a, b)}) && shared->at({std::min(a, b), std::max(a, b)}) > 1)
+          weights[i] = kPartyWallWeight;
+      }
+      add_pieces(ring, weights, outline.pieces);
+    });
+    return outline;
+  }
+
+  bool searchable(std::uint32_t b) const {
+    return !of_.footprints[b].box.empty() && of_.footprints[b].settled == model::ObjectState::pending;
+  }
+
+  /// Outlines within an image, spread over it, in an order that hangs on their ids alone.
+  std::vector<SearchedOutline> sample(const importers::imagery::AerialImage& image) const {
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> chosen;
+    for (std::uint32_t b = 0; b < of_.footprints.size(); ++b) {
+      if (!searchable(b)) continue;
+      if (!within(image, of_.footprints[b].box.centre())) continue;
+      chosen.emplace_back(mixed(static_cast<std::uint64_t>(of_.footprints[b].id.number)), b);
+    }
+    std::sort(chosen.begin(), chosen.end());
+    if (chosen.size() > kFitSample) chosen.resize(kFitSample);
+    std::vector<SearchedOutline> out;
+    for (const auto& [key, b] : chosen) out.push_back(searched(b, nullptr));
+    return out;
+  }
+
+  SearchedRow searched_row(const footprints::TerraceRowPlan& plan) const {
+    SearchedRow row;
+    std::map<std::pair<Point2, Point2>, int> edges;
+    for (const std::uint32_t b : plan.buildings)
+      if (searchable(b))
+        of_.footprints.for_each_ring(b, [&](std::span<const Point2> ring, bool) {
+          for (std::size_t i = 0; i < ring.size(); ++i) {
+            const Point2 a = ring[i], c = ring[(i + 1) % ring.size()];
+            ++edges[{std::min(a, c), std::max(a, c)}];
+          }
+        });
+    double x = 0, y = 0, length = 0;
+    for (const std::uint32_t b : plan.buildings) {
+      if (!searchable(b)) continue;
+      row.outlines.push_back(searched(b, &edges));
+      SearchedOutline& o = row.outlines.back();
+      o.height = eaves_of(b);
+      const std::optional<Point2> lean = field_.at(o.box.centre(), o.height);
+      o.lean_known = lean.has_value() && (field_.found() || o.height <= kHighWithoutLean);
+      o.lean = lean.value_or(Point2{});
+      if (field_.leans()) {
+        o.per_metre = {o.lean.x / o.height, o.lean.y / o.height};
+        o.uncertainty = is_tagged(b) ? kTaggedUncertainty : kGuessedUncertainty;
+      }
+      for (const WallPiece& p : row.outlines.back().pieces)
+        x += p.middle.x * p.length, y += p.middle.y * p.length, length += p.length;
+    }
+    if (length > 0) row.centre = {x / length, y / length};
+    for (const SearchedOutline& o : row.outlines)
+      for (const WallPiece& p : o.pieces)
+        row.radius = std::max(row.radius, std::sqrt((p.middle.x - row.centre.x) * (p.middle.x - row.centre.x) +
+                                                    (p.middle.y - row.centre.y) * (p.middle.y - row.centre.y)));
+    return row;
+  }
+
+  /// m: of a building's eaves, by its tags, else by its area.
+  double eaves_of(std::uint32_t building) const {
+    const model::MappedBuilding& b = of_.extract.buildings[of_.footprints[building].lead];
+    const model::MappedAttributes& a = b.attributes;
+    if (a.height) {
+      if (a.roof_height) return std::max(2.0, static_cast<double>(*a.height - *a.roof_height));
+      return std::max(2.0, static_cast<double>(*a.height) * (a.roof_shape == model::RoofShape::flat ? 1 : kEavesShare));
+    }
+    if (a.storeys) return std::max(1.0, static_cast<double>(*a.storeys)) * kStorey + kPlinth;
+    double area = 0;
+    of_.footprints.for_each_ring(building,
+                                 [&](std::span<const Point2> ring, bool) { area += geometry::signed_area(ring); });
+    return usual_eaves(area);
+  }
+
+  bool is_tagged(std::uint32_t building) const {
+    const model::MappedAttributes& a = of_.extract.buildings[of_.footprints[building].lead].attributes;
+    return a.height || a.storeys;
+  }
+
+  bool within(const importers::imagery::AerialImage& image, Point2 p) const {
+    const georef::GeoBox& area = image.describe().area;
+    const georef::LonLat place = of_.projection.inverse(p);
+    return place.lon >= area.west && place.lon <= area.east && place.lat >= area.south && place.lat <= area.north;
+  }
+
+  /// Where the image shows each outline, before anything is known of its lean.
+  void sight(std::uint32_t image) {
+    const ImageWindows windows(images_[image], of_.projection, kCoarsePixel);
+    std::vector<SightedOutline> sighted(of_.footprints.size());
+    const Displacements grid{kSightingStep, static_cast<int>(std::lround(kSightingReach / kSightingStep))};
+    base::ordered_parallel(
+        sighted.size(), workers_, static_cast<std::size_t>(workers_) * 16,
+        [&](std::size_t n) {
+          const auto b = static_cast<std::uint32_t>(n);
+          if (!searchable(b)) return;
+          const SearchedOutline o = searched(b, nullptr);
+          if (!within(images_[image], o.box.centre())) return;
+          sighted[n].place = o.box.centre();
+          sighted[n].height = eaves_of(b);
+          sighted[n].guessed = !is_tagged(b);
+          sighted[n].row = row_of_[b];
+          sighted[n].weight = 1 / std::sqrt(static_cast<double>(rows_[row_of_[b]].buildings.size()));
+          const ScoreMap map =
+              score_outline(o.pieces, windows.window(o.box, kSightingReach * 1.5 + kPieceLength / 2 + 2), grid,
+                            o.box.centre(), {}, kContrast);
+          if (map.weight > 0 && map.missing <= 0.2 * (map.weight + map.missing))
+            sighted[n].sightings = sightings_of(map);
+        },
+        [](std::size_t) {});
+    field_ = LeanField(sighted);
+  }
+
+  void match_rows(std::uint32_t image, ImageryObservations& out) {
+    const ImageWindows windows(images_[image], of_.projection, kPixel);
+    std::vector<RowMatch> matches(rows_.size());
+    std::vector<Point2> centres(rows_.size());
+    std::vector<char> known(rows_.size(), 1);  // the lean of all its buildings
+    base::ordered_parallel(
+        rows_.size(), workers_, static_cast<std::size_t>(workers_) * 8,
+        [&](std::size_t r) {
+          const SearchedRow row = searched_row(rows_[r]);
+          centres[r] = row.centre;
+          for (const SearchedOutline& o : row.outlines) known[r] = known[r] && o.lean_known;
+          if (row.outlines.empty() || !within(images_[image], row.centre)) return;
+          matches[r] = match_row(row, windows, {}, kContrast);
+        },
+        [&](std::size_t r) {
+          progress_.advance_to(image * rows_.size() + r + 1);
+          if (!matches[r].seen) return;
+          const Verdict verdict = judge(matches[r], known[r]);
+          for (const std::uint32_t b : rows_[r].buildings) {
+            if (!searchable(b)) continue;
+            OutlineReceipt& receipt = out.outlines[b];
+            // Where images overlap, the one that is surest speaks.
+            if (receipt.state != RowState::outside && receipt.confidence >= verdict.confidence) continue;
+            const RowMatch& m = matches[r];
+            receipt.state = verdict.state, receipt.reason = verdict.reason, receipt.confidence = verdict.confidence;
+            receipt.row = static_cast<std::uint32_t>(r);
+            receipt.image = image;
+            receipt.shift = m.shift, receipt.centre = centres[r], receipt.turn = m.turn;
+            receipt.before = m.here, receipt.after = m.best;
+            receipt.mean = m.mean, receipt.deviation = m.deviation, receipt.second = m.second,
+            receipt.weight = m.weight;
+            receipt.eaves = eaves_of(b);
+            receipt.lean = field_.at(of_.footprints[b].box.centre(), receipt.eaves).value_or(Point2{});
+          }
+        });
+  }
+
+  const ObservedExtract& of_;
+  std::span<const importers::imagery::AerialImage> images_;
+  Correction correct_;
+  int workers_;
+  base::Progress& progress_;
+  std::vector<footprints::TerraceRowPlan> rows_;
+  std::vector<std::uint32_t> row_of_;  ///< by building
+  LeanField field_;
+};
+
+}  // namespace
+
+ImageryObservations observe_extract(const ObservedExtract& of, std::span<const importers::imagery::AerialImage> images,
+                                    Correction correct, int workers, base::Progress& progress) {
+  return Observer(of, images, workers, correct, progress).run();
+}
+
+}  // namespace blockrand::observation

@@ -1,0 +1,45 @@
+#include "pipeline/observation/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/base/portable_math.h"
+
+namespace blockrand::observation {
+
+namespace {
+
+/// Deviations: a movement that gains less is none; a place that is less better than another one is not known.
+constexpr double kLeastGain = 0.6, kLeastMargin = 0.3;
+
+/// Weights of a logistic regression (fit.py of tests/bench/imagery) on rows of Kampala and of synthetic images that were
+/// moved by known amounts; what is measured is cut at the values behind which nothing changes.
+double confidence_of(const RowMatch& m) {
+  const double shift = std::sqrt(m.shift.x * m.shift.x + m.shift.y * m.shift.y);
+  const double sum = -4.51 + 0.57 * std::min(3.0, (m.best - m.here) / m.deviation) +
+                     0.09 * std::min(2.5, (m.best - m.second) / m.deviation) +
+                     0.89 * std::min(4.5, (m.best - m.mean) / m.deviation) + 2.27 * m.best +
+                     0.21 * base::log(m.weight / 50) - 3.64 * std::max(0.0, shift - 2.8);
+  return 1 / (1 + base::exp(-sum));
+}
+
+}  // namespace
+
+Verdict judge(const RowMatch& match, bool lean_known) {
+  if (!match.seen) return {RowState::outside, "too little of its walls lies in an image", 0};
+  if (match.deviation <= 0) return {RowState::undecided, "the image shows nothing there", 0};
+  if (!lean_known) return {RowState::undecided, "how far roofs lean in the image is not known there", 0};
+  const double confidence = confidence_of(match);
+  const double size = std::sqrt(match.shift.x * match.shift.x + match.shift.y * match.shift.y);
+  if (size < kLeastCorrection && std::fabs(match.turn) < 1)
+    return {RowState::left_alone, "it stands where the image shows it", confidence};
+  if (match.best - match.here < kLeastGain * match.deviation)
+    return {RowState::left_alone, "it stands nearly as well where it is mapped", confidence};
+  if (match.best - match.second < kLeastMargin * match.deviation)
+    return {RowState::undecided, "another place fits nearly as well", confidence};
+  if (confidence < kSureCorrection)
+    return {RowState::undecided, "the edges in the image do not say it clearly", confidence};
+  return {RowState::corrected, {}, confidence};
+}
+
+}  // namespace blockrand::observation

@@ -1,0 +1,25 @@
+// Is what an image shows of a row enough to move it?
+#pragma once
+
+#include <string_view>
+
+#include "pipeline/observation/imagery.h"
+#include "pipeline/observation/row_match.h"
+
+namespace blockrand::observation {
+
+struct Verdict {
+  RowState state = RowState::outside;
+  std::string_view reason{};  ///< empty for `corrected`
+  double confidence = 0;      ///< that the row stands within 0.6 m of where the match says, [0, 1]
+};
+
+/// m: less is the error of the search.
+inline constexpr double kLeastCorrection = 0.4;
+/// A correction is offered from this confidence on.
+inline constexpr double kSureCorrection = 0.7;
+
+/// \param lean_known  how far the image shows the row's roofs from their ground
+Verdict judge(const RowMatch& match, bool lean_known);
+
+}  // namespace blockrand::observation

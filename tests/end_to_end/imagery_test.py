@@ -1,0 +1,163 @@
+"""Aerial images: a village whose picture the test paints; the program must see which houses the map has elsewhere."""
+import math
+import os
+import random
+import unittest
+
+from blockrand_run import SAMPLE, BuildTest, blockrand, files_of, main, read_json
+from osm_files import METRE, ring, write_xml
+
+LON, LAT = 11.3, 51.4
+STRETCH = 1 / math.cos(math.radians(LAT))
+PIXEL = 0.25  # m
+DEGREES_PRJ = ('GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],'
+               'PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]')
+SIDE = 340  # m, of the picture
+
+
+def turned(points, angle, x, y):
+    c, s = math.cos(angle), math.sin(angle)
+    return [(x + px * c - py * s, y + px * s + py * c) for px, py in points]
+
+
+def village(seed):
+    """64 houses as [(x, y)] in m, east and north of the picture's south-west corner; no two alike."""
+    r = random.Random(seed)
+    houses = []
+    for k in range(64):
+        w, d, cut = r.uniform(8, 14), r.uniform(7, 12), r.uniform(2, 4)
+        plan = [(0, 0), (w, 0), (w, d - cut), (w - cut, d - cut), (w - cut, d), (0, d)] if k % 2 else [(0, 0), (w, 0), (w, d), (0, d)]
+        houses.append(turned(plan, r.uniform(0, 1.5), 50 + (k % 8) * 32 + r.uniform(-6, 6), 50 + (k // 8) * 30 + r.uniform(-5, 5)))
+    return houses
+
+
+def extract(houses):
+    objects = []
+    for k, house in enumerate(houses):
+        corners = [(LON + x * METRE * STRETCH, LAT + y * METRE) for x, y in house]
+        objects += ring(1000 + 10 * k, 100 + k, corners, {'building': 'house', 'building:levels': '1', 'roof:shape': 'flat'})
+    return objects
+
+
+class Picture:
+    def __init__(self, houses, seed):
+        r = random.Random(seed)
+        self.side = int(SIDE / PIXEL)
+        grass = bytes(70 + v % 40 for v in range(256))
+        self.pixels = bytearray(r.randbytes(3 * self.side * self.side).translate(grass))
+        for house in houses:
+            self.fill(house, bytes(r.choice([(190, 110, 80), (150, 150, 155), (205, 195, 180), (110, 60, 50)])))
+
+    def fill(self, house, colour):
+        """Even-odd, by pixel centres."""
+        for row in range(self.side):
+            y = SIDE - (row + .5) * PIXEL
+            cuts = sorted(ax + (y - ay) * (bx - ax) / (by - ay) for (ax, ay), (bx, by) in zip(house, house[1:] + house[:1]) if (ay > y) != (by > y))
+            for a, b in zip(cuts[::2], cuts[1::2]):
+                i, j = max(0, math.ceil(a / PIXEL - .5)), min(self.side, math.ceil(b / PIXEL - .5))
+                self.pixels[3 * (row * self.side + i):3 * (row * self.side + j)] = colour * (j - i)
+
+    def write(self, path, mirrored=False, east=0.0, north=0.0):
+        """A PPM with world file and .prj; moved by metres, or mirrored."""
+        pixels = self.pixels
+        if mirrored:
+            rows = [pixels[3 * self.side * r:3 * self.side * (r + 1)] for r in range(self.side)]
+            pixels = b''.join(b''.join(bytes(row[3 * i:3 * i + 3]) for i in reversed(range(self.side))) for row in rows)
+        with open(path, 'wb') as f:
+            f.write(b'P6\n%d %d\n255\n' % (self.side, self.side) + bytes(pixels))
+        step_x, step_y = PIXEL * METRE * STRETCH, PIXEL * METRE
+        with open(os.path.splitext(path)[0] + '.wld', 'w') as f:
+            f.write(f'{step_x:.12f}\n0\n0\n{-step_y:.12f}\n{LON + east * METRE * STRETCH + step_x / 2:.10f}\n'
+                    f'{LAT + (north + SIDE) * METRE - step_y / 2:.10f}\n')
+        with open(os.path.splitext(path)[0] + '.prj', 'w') as f:
+            f.write(DEGREES_PRJ)
+        return path
+
+
+class Imagery(BuildTest):
+    MOVED = {5: (1.8, -1.1), 18: (-2.0, 0.6), 27: (0.4, 2.2), 44: (1.2, 1.5), 58: (-1.5, -1.5)}  # m: where the map has them
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        houses = village(7)
+        cls.picture = Picture(houses, 8)
+        cls.image = cls.picture.write(os.path.join(cls.folder, 'village.ppm'))
+        drawn = [[(x + cls.MOVED.get(k, (0, 0))[0], y + cls.MOVED.get(k, (0, 0))[1]) for x, y in h] for k, h in enumerate(houses)]
+        cls.map = write_xml(os.path.join(cls.folder, 'village.osm'), extract(drawn))
+
+    def test_houses_that_the_map_has_elsewhere_are_told_and_the_others_are_not(self):
+        out = self.build(self.map, 'report', '--imagery', self.image, '--lod', '1')
+        imagery = read_json(out, 'imagery.json')
+        self.assertEqual([i['state'] for i in imagery['images']], ['used'])
+        seen = {b['id']: b for b in imagery['buildings']}
+        self.assertEqual(len(seen), 64)
+        for k in range(64):
+            receipt = seen[f'w{100 + k}']
+            if k not in self.MOVED:
+                self.assertNotEqual(receipt['state'], 'corrected', receipt)
+                continue
+            self.assertEqual(receipt['state'], 'corrected', receipt)
+            self.assertGreater(receipt['confidence'], 0.7)
+            self.assertGreater(receipt['evidence_after'], receipt['evidence_before'])
+            for said, put in zip(receipt['shift_m'], self.MOVED[k]):
+                self.assertAlmostEqual(said, -put, delta=0.35, msg=receipt)
+        record = read_json(out, 'build.json')
+        self.assertEqual([f['path'] for f in record['inputs'] if f['role'] == 'imagery'], [self.image])
+        self.assertEqual(record['imagery'][0]['state'], 'used')
+        self.hashes_match(out)
+        self.assertIn('5 seen elsewhere', self.last.out)
+        # The map stays as it is drawn: only told is asked for.
+        plain = self.build(self.map, 'plain', '--lod', '1')
+        self.same_files(out, plain, 'tiles', 'citygml', 'cityjson', 'tileset.json')
+        self.assertNotIn('imagery.json', files_of(plain))
+        self.assertNotIn('imagery', read_json(plain, 'build.json'))
+        self.assertEqual(blockrand('validate', out).code, 0)
+
+    def test_any_number_of_jobs_says_the_same(self):
+        one = self.build(self.map, 'one', '--imagery', self.image, '--lod', '0', '--formats', 'gpkg', '--jobs', '1')
+        five = self.build(self.map, 'five', '--imagery', self.image, '--lod', '0', '--formats', 'gpkg', '--jobs', '5')
+        self.same_files(one, five, 'imagery.json', 'build.json')
+
+    def test_an_image_that_does_not_fit_is_not_used(self):
+        for name, how in (('shifted', dict(east=12, north=-9)), ('mirrored', dict(mirrored=True))):
+            image = self.picture.write(self.path(f'{name}.ppm'), **how)
+            out = self.build(self.map, name, '--imagery', image, '--lod', '0', '--formats', 'gpkg')
+            self.assertIn('IMAGE_MISFIT', self.last.err)
+            imagery = read_json(out, 'imagery.json')
+            self.assertEqual([i['state'] for i in imagery['images']], ['misfit'], imagery['images'])
+            self.assertEqual({b['state'] for b in imagery['buildings']}, {'outside'})
+            strict = blockrand('build', self.map, '-o', self.path(name + '_strict'), '--imagery', image, '--lod', '0', '--formats', 'gpkg', '--strict')
+            self.assertEqual(strict.code, 3, strict)
+            self.assertIn('do not fit the map', strict.err)
+        shifted = read_json(self.path('shifted'), 'imagery.json')['images'][0]
+        self.assertAlmostEqual(shifted['shift_m'][0], 12, delta=1)
+        self.assertAlmostEqual(shifted['shift_m'][1], -9, delta=1)
+
+    def test_a_list_in_the_config_has_date_and_licence(self):
+        config = self.place('c.toml', '[[image]]\npath = "village.ppm"\ndate = "2023-06"\nlicence = "CC BY 4.0"\nattribution = "The village"\n')
+        out = self.build(self.map, 'listed', '--config', config, '--lod', '0', '--formats', 'gpkg')
+        for image in (read_json(out, 'imagery.json')['images'][0], read_json(out, 'build.json')['imagery'][0]):
+            self.assertEqual((image['date'], image['licence'], image['attribution']), ('2023-06', 'CC BY 4.0', 'The village'))
+        for text, word in (('[[image]]\ndate = "2023"\n', 'path'), ('[[image]]\npath = "a.tif"\ndate = "June"\n', 'June'), ('[[image]]\npath = "a.tif"\nlicense = "x"\n', 'license')):
+            self.refused(blockrand('build', self.map, '-o', self.path('no'), '--config', self.place('bad.toml', text)), 2, word, 'bad.toml', target=self.path('no'))
+
+    def test_what_cannot_be_used_is_refused_before_anything_is_written(self):
+        self.refused(blockrand('build', SAMPLE, '-o', self.path('no'), '--imagery', self.image), 2, 'shows nothing of the extract', 'village.ppm', target=self.path('no'))
+        self.refused(blockrand('build', self.map, '-o', self.path('no'), '--imagery', self.path('none.tif')), 2, 'no such image', target=self.path('no'))
+        self.refused(blockrand('build', self.map, '-o', self.path('no'), '--imagery', self.map), 2, 'no image', target=self.path('no'))
+        self.refused(blockrand('build', self.map, '-o', self.path('no'), '--imagery', self.image, '--imagery-correct', 'aply'), 1, 'aply', target=self.path('no'))
+        # One that shows something is enough.
+        far = self.picture.write(self.path('far.ppm'), east=5000)
+        out = self.build(self.map, 'two', '--imagery', far, '--imagery', self.image, '--lod', '0', '--formats', 'gpkg')
+        self.assertIn('far.ppm: shows nothing of the extract', self.last.err)
+        self.assertEqual([i['state'] for i in read_json(out, 'imagery.json')['images']], ['undecided', 'used'])
+
+    def test_off_judges_images_alone(self):
+        out = self.build(self.map, 'off', '--imagery', self.image, '--imagery-correct', 'off', '--lod', '0', '--formats', 'gpkg')
+        imagery = read_json(out, 'imagery.json')
+        self.assertEqual((imagery['images'][0]['state'], imagery['buildings']), ('used', []))
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,56 @@
+// When a row is told to stand elsewhere, and why not.
+#include "pipeline/observation/verdict.h"
+
+#include <gtest/gtest.h>
+
+namespace blockrand::observation {
+namespace {
+
+RowMatch clear_match() {
+  RowMatch m;
+  m.seen = true;
+  m.shift = {1.5, -1};
+  m.best = 0.85, m.here = 0.55, m.mean = 0.5, m.deviation = 0.08, m.second = 0.65, m.weight = 60;
+  return m;
+}
+
+TEST(Verdict, AClearMatchElsewhereIsACorrection) {
+  const Verdict v = judge(clear_match(), true);
+  EXPECT_EQ(v.state, RowState::corrected);
+  EXPECT_TRUE(v.reason.empty());
+  EXPECT_GT(v.confidence, kSureCorrection);
+  EXPECT_LE(v.confidence, 1);
+}
+
+TEST(Verdict, WhatIsNotClearStaysWithAReason) {
+  const auto state = [](auto&& change, bool lean_known = true) {
+    RowMatch m = clear_match();
+    change(m);
+    const Verdict v = judge(m, lean_known);
+    EXPECT_FALSE(v.reason.empty());
+    return v.state;
+  };
+  EXPECT_EQ(state([](RowMatch& m) { m.seen = false; }), RowState::outside);
+  EXPECT_EQ(state([](RowMatch& m) { m.deviation = 0; }), RowState::undecided);
+  EXPECT_EQ(state([](RowMatch&) {}, false), RowState::undecided);
+  EXPECT_EQ(state([](RowMatch& m) { m.shift = {0.2, -0.2}; }), RowState::left_alone);
+  EXPECT_EQ(state([](RowMatch& m) { m.here = 0.82; }), RowState::left_alone);
+  EXPECT_EQ(state([](RowMatch& m) { m.second = 0.84; }), RowState::undecided);
+  EXPECT_EQ(state([](RowMatch& m) { m.best = 0.65, m.second = 0.6, m.mean = 0.52; }), RowState::undecided);
+}
+
+TEST(Verdict, MoreEvidenceIsMoreConfidence) {
+  const double before = judge(clear_match(), true).confidence;
+  RowMatch m = clear_match();
+  m.weight *= 4;
+  EXPECT_GT(judge(m, true).confidence, before);
+  m = clear_match();
+  m.mean -= 0.05;
+  EXPECT_GT(judge(m, true).confidence, before);
+  m = clear_match();
+  m.shift = {3.5, 1};  // at the rim of the search
+  EXPECT_LT(judge(m, true).confidence, before);
+}
+
+}  // namespace
+}  // namespace blockrand::observation
