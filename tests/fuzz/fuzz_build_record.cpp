@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       break;
     default: {
       std::vector<Finding> findings;
-      (void)check_explanations(text, "explain/15_1_2.jsonl.gz", "15_1_2", nullptr, {}, record, findings);
+      (void)check_explanations(text, "explain/15_1_2.jsonl.gz", "15_1_2", nullptr, false, {}, record, findings);
       break;
     }
   }
