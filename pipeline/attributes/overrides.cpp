@@ -399,6 +399,18 @@ bool is_there(const model::DetailOverride& d, const model::Building& building, c
 
 }  // namespace
 
+namespace {
+
+/// An entry that only keeps the buildings of a mapped area where they are.
+bool keeps_area(const OverrideEntry& entry, const model::Extract& extract) {
+  if (!entry.keeps_place || !entry.values.empty() || !entry.details.empty()) return false;
+  const auto found = std::lower_bound(extract.features.begin(), extract.features.end(), entry.object,
+                                      [](const model::Feature& f, OsmId id) { return f.id < id; });
+  return found != extract.features.end() && found->id == entry.object && found->area;
+}
+
+}  // namespace
+
 void apply_overrides(Overrides& overrides, model::Extract& extract, model::Report& report) {
   for (OverrideEntry& entry : overrides.entries) {
     const auto tell = [&](const std::string& why) {
@@ -408,7 +420,7 @@ void apply_overrides(Overrides& overrides, model::Extract& extract, model::Repor
     const auto found = std::lower_bound(extract.buildings.begin(), extract.buildings.end(), entry.object,
                                         [](const model::MappedBuilding& b, OsmId id) { return b.id < id; });
     if (found == extract.buildings.end() || found->id != entry.object) {
-      tell("no building or part with this id");
+      if (!keeps_area(entry, extract)) tell("no building or part with this id");
     } else if (found->state == model::ObjectState::duplicate) {
       tell("it is a duplicate of " + found->related.text());
     } else if (found->state == model::ObjectState::reported) {

@@ -123,6 +123,14 @@ class Reader {
         },
         [](std::string_view, std::string_view) {});
     contradictions(table, entry);
+    if (const auto imagery = table.text("imagery")) {
+      if (*imagery != "off")
+        table.fail("imagery", "is no order: '" + *imagery + "'",
+                   "The only one is imagery = \"off\": no image moves it.");
+      if (!(object == building))
+        table.fail("imagery", "holds for whole buildings", "Write it below [" + building.text() + "].");
+      entry.keeps_place = true;
+    }
     details(table, body, entry);
     bool holds_parts = false;
     if (object == building)
@@ -132,9 +140,9 @@ class Reader {
           this->entry(*table.table(key), body + "." + key, *part, building);
         }
     table.finish();
-    if (entry.values.empty() && entry.details.empty() && !holds_parts)
-      table.fail("", "[" + body + "] orders nothing", "Leave it out.");
-    if (!entry.values.empty() || !entry.details.empty()) out_.entries.push_back(std::move(entry));
+    const bool orders = !entry.values.empty() || !entry.details.empty() || entry.keeps_place;
+    if (!orders && !holds_parts) table.fail("", "[" + body + "] orders nothing", "Leave it out.");
+    if (orders) out_.entries.push_back(std::move(entry));
   }
 
   std::optional<OverrideValue> value(TomlTable& table, std::string_view key, double) {

@@ -48,7 +48,7 @@ Box box_of(const Extract& extract, const MappedBuilding& object) {
   Box box;
   bool first = true;
   for (const auto& ring : extract.rings_of(object.rings))
-    for (const Location v : extract.vertices_of(ring)) {
+    for (const Location v : extract.mapped_vertices_of(ring)) {
       const Place p = unwrapped(v, reference);
       if (first) box = {p.x, p.y, p.x, p.y};
       first = false;

@@ -138,6 +138,7 @@ struct Extract {
   std::vector<Feature> features;  ///< sorted by id
   std::vector<MappedRing> rings;
   std::vector<Location> vertices;
+  std::vector<Location> mapped_vertices;   ///< `vertices` as OSM has them, where buildings were moved; else empty
   std::vector<std::int64_t> vertex_nodes;  ///< OSM node ids, parallel to `vertices`
   std::vector<Tag> tags;
   ExtractCounts counts;
@@ -146,6 +147,10 @@ struct Extract {
   std::span<const MappedRing> rings_of(Range r) const { return std::span(rings).subspan(r.first, r.count); }
   std::span<const Location> vertices_of(const MappedRing& r) const {
     return std::span(vertices).subspan(r.vertices.first, r.vertices.count);
+  }
+  /// Where OSM has them.
+  std::span<const Location> mapped_vertices_of(const MappedRing& r) const {
+    return std::span(mapped_vertices.empty() ? vertices : mapped_vertices).subspan(r.vertices.first, r.vertices.count);
   }
   std::span<const std::int64_t> nodes_of(const MappedRing& r) const {
     return std::span(vertex_nodes).subspan(r.vertices.first, r.vertices.count);

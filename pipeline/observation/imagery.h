@@ -3,10 +3,13 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "importers/imagery/aerial_image.h"
 #include "pipeline/model/point.h"
+#include "pipeline/model/polygon.h"
 
 namespace blockrand::observation {
 
@@ -42,8 +45,8 @@ constexpr std::string_view words(RowState s) {
 struct OutlineReceipt {
   static constexpr std::uint32_t kNoImage = 0xffffffff;
   RowState state = RowState::outside;
-  std::string_view reason{};  ///< a literal; empty for `corrected`
-  std::uint32_t row = 0;      ///< of its rows, counted as they come
+  std::string reason;     ///< a sentence; empty for `corrected`
+  std::uint32_t row = 0;  ///< of its rows, counted as they come
   std::uint32_t image = kNoImage;
   model::Point2 shift, centre;   ///< m: turned about `centre`, then shifted
   double turn = 0;               ///< degrees, counter-clockwise
@@ -63,7 +66,10 @@ struct ImageReceipt {
 
 struct ImageryObservations {
   std::vector<ImageReceipt> images;
-  std::vector<OutlineReceipt> outlines;  ///< by building number
+  std::vector<OutlineReceipt> outlines;  ///< by building number; empty: nobody looked for them
+  bool applied = false;  ///< what is `corrected` stands where the image shows it, not where it is mapped
+  /// The repaired outlines of what was moved, from before, by building number in ascending order.
+  std::vector<std::pair<std::uint32_t, std::vector<model::Polygon>>> before;
 };
 
 }  // namespace blockrand::observation

@@ -49,6 +49,9 @@ std::uint64_t mixed(std::uint64_t v) {
   return v;
 }
 
+double rounded(double value, double steps) { return std::round(value * steps) / steps + 0.0; }
+Point2 rounded(Point2 p) { return {rounded(p.x, 1000), rounded(p.y, 1000)}; }
+
 class Observer {
  public:
   Observer(const ObservedExtract& of, std::span<const importers::imagery::AerialImage> images, int workers,
@@ -234,15 +237,19 @@ class Observer {
             // Where images overlap, the one that is surest speaks.
             if (receipt.state != RowState::outside && receipt.confidence >= verdict.confidence) continue;
             const RowMatch& m = matches[r];
-            receipt.state = verdict.state, receipt.reason = verdict.reason, receipt.confidence = verdict.confidence;
+            receipt.state = verdict.state, receipt.reason = std::string(verdict.reason);
+            receipt.confidence = rounded(verdict.confidence, 1000);
             receipt.row = static_cast<std::uint32_t>(r);
             receipt.image = image;
-            receipt.shift = m.shift, receipt.centre = centres[r], receipt.turn = m.turn;
-            receipt.before = m.here, receipt.after = m.best;
+            // Rounded as imagery.json has them: whoever reads them there moves buildings by the same.
+            receipt.shift = rounded(m.shift), receipt.centre = rounded(centres[r]);
+            receipt.turn = rounded(m.turn, 100);
+            receipt.before = rounded(m.here, 10000), receipt.after = rounded(m.best, 10000);
             receipt.mean = m.mean, receipt.deviation = m.deviation, receipt.second = m.second,
             receipt.weight = m.weight;
-            receipt.eaves = eaves_of(b);
-            receipt.lean = field_.at(of_.footprints[b].box.centre(), receipt.eaves).value_or(Point2{});
+            const double eaves = eaves_of(b);
+            receipt.lean = rounded(field_.at(of_.footprints[b].box.centre(), eaves).value_or(Point2{}));
+            receipt.eaves = rounded(eaves, 10);
           }
         });
   }

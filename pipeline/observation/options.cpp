@@ -9,7 +9,8 @@ using base::OptionType;
 using base::RecordValue;
 using I = ImageryOptions;
 
-const base::Choices<Correction> kCorrections = {{"off", Correction::off}, {"report", Correction::report}};
+const base::Choices<Correction> kCorrections = {
+    {"off", Correction::off}, {"report", Correction::report}, {"apply", Correction::apply}};
 
 std::vector<std::string> paths(const I& options) {
   std::vector<std::string> all;
@@ -19,7 +20,7 @@ std::vector<std::string> paths(const I& options) {
 
 }  // namespace
 
-// A build without images has no record of them: its bytes are those of programs that knew none.
+// A tile that is built alone takes what the build of the whole found (imagery.json), not these. A build without images has no record of them: its bytes are those of programs that knew none.
 base::OptionTable<ImageryOptions> imagery_options() {
   return {
       base::custom<I>(
@@ -28,7 +29,8 @@ base::OptionTable<ImageryOptions> imagery_options() {
            .type = OptionType::path,
            .help = "an aerial image: any raster that GDAL reads, with pixels of 1 m at most (with date and licence: "
                    "[[image]] in the config file)",
-           .several = true},
+           .several = true,
+           .record = base::OptionRecord::yes},
           [](I& o, const std::string& text) {
             o.images.push_back({.path = text, .date = {}, .licence = {}, .attribution = {}});
           },
@@ -39,8 +41,9 @@ base::OptionTable<ImageryOptions> imagery_options() {
            .key = "imagery_correct",
            .argument = "HOW",
            .help = "outlines that the images show elsewhere: off (nobody looks for them), report (imagery.json tells "
-                   "them; nothing is moved)",
-           .choices = base::words_of(kCorrections)},
+                   "them; nothing is moved), apply (they are moved there)",
+           .choices = base::words_of(kCorrections),
+           .record = base::OptionRecord::yes},
           [](I& o, const std::string& text) { o.correct = base::choose(text, kCorrections); },
           [](const I& o) { return base::word_of(kCorrections, o.correct); },
           [](const I& o) {

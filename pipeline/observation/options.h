@@ -11,8 +11,9 @@ namespace blockrand::observation {
 
 /// What is done with outlines that an image shows elsewhere.
 enum class Correction : std::uint8_t {
-  off,    ///< nobody looks for them
-  report  ///< they are told
+  off,     ///< nobody looks for them
+  report,  ///< they are told
+  apply    ///< they are moved there
 };
 
 struct ImageryOptions {

@@ -13,8 +13,8 @@ namespace blockrand::outputs {
 const std::vector<OutputFormat>& all_outputs() {
   // Explanations name the files of their tile: they come behind those.
   static const std::vector<OutputFormat> all = {gltf_output(),       citygml_output(), cityjson_output(),
-                                                geopackage_output(), report_output(),  report_json_output(), imagery_output(),
-                                                explain_output()};
+                                                geopackage_output(), report_output(),  report_json_output(),
+                                                imagery_output(),    explain_output()};
   return all;
 }
 

@@ -17,6 +17,20 @@ double bytes_per_building(const OutputOptions& options, int lod) {
   return each;
 }
 
+std::string attribution(const OutputContext& context, bool receipts) {
+  std::string text = kAttribution;
+  if (!context.imagery || context.imagery->outlines.empty() || !(receipts || context.imagery->applied)) return text;
+  for (const observation::ImageReceipt& image : context.imagery->images) {
+    if (image.fit.state != observation::ImageState::used) continue;
+    const importers::imagery::ImageSource& source = image.description.source;
+    const std::string name = source.path.substr(source.path.find_last_of('/') + 1);
+    text += fmt::format("; aerial image {}", source.attribution.empty() ? name : source.attribution);
+    if (!source.date.empty()) text += ", " + source.date;
+    text += source.licence.empty() ? ", licence not stated" : ", " + source.licence;
+  }
+  return text;
+}
+
 std::string generator() { return "Blockrand " + std::string(base::kVersion); }
 
 std::string model_name(model::TileId id) { return fmt::format("Blockrand {}/{}/{}", id.level, id.x, id.y); }

@@ -23,12 +23,12 @@
 #include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/context/vicinity_finder.h"
 #include "pipeline/footprints/roof_lines.h"
-#include "pipeline/observation/observe_extract.h"
 #include "pipeline/outputs/output.h"
 #include "pipeline/outputs/statistics.h"
 #include "pipeline/run/account.h"
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/documents.h"
+#include "pipeline/run/imagery_stage.h"
 #include "pipeline/run/outcome.h"
 #include "pipeline/run/output_place.h"
 #include "pipeline/run/prepare_extract.h"
@@ -59,8 +59,10 @@ std::uint64_t current_rss_bytes() {
 // ---- before the tiles
 
 const std::string& checked_output(const BuildOptions& options) {
-  base::refuse_inputs_in(options.output, {options.input, options.terrain, options.overrides, options.pinned,
-                                          options.configs, options.districts});
+  std::vector<std::string> inputs = {options.input,  options.terrain, options.overrides,
+                                     options.pinned, options.configs, options.districts};
+  for (const importers::imagery::ImageSource& image : options.imagery.images) inputs.push_back(image.path);
+  base::refuse_inputs_in(options.output, inputs);
   return options.output;
 }
 
@@ -134,50 +136,6 @@ void check_free_space(const BuildOptions& options, std::uint64_t buildings, cons
     throw base::OutputError(fmt::format(
         "{}: about {} needed, {} free. Free some space, choose another disk with -o, fewer --formats or --gzip",
         options.output, base::with_byte_unit(wanted), base::with_byte_unit(free)));
-}
-
-// ---- aerial images
-
-/// \throws base::InputError  there are images, and none of them shows any of the extract
-void check_images(const BuildInputs& inputs, const LocatedExtract& located, base::Progress& progress) {
-  if (inputs.images.empty() || !located.area) return;
-  const georef::GeoBox& box = located.area->box;
-  std::vector<std::string> beside;
-  for (const importers::imagery::AerialImage& image : inputs.images) {
-    const georef::GeoBox& area = image.describe().area;
-    if (area.west > box.east || area.east < box.west || area.south > box.north || area.north < box.south)
-      beside.push_back(image.describe().source.path);
-  }
-  if (beside.size() == inputs.images.size()) {
-    const georef::GeoBox& area = inputs.images.front().describe().area;
-    throw base::InputError(
-        beside.front(), "",
-        fmt::format("shows nothing of the extract{}: it lies at {:.4f} to {:.4f} east and {:.4f} to {:.4f} north, the "
-                    "buildings at {:.4f} to {:.4f} and {:.4f} to {:.4f}",
-                    beside.size() > 1 ? ", nor does any other image" : "", area.west, area.east, area.south, area.north,
-                    box.west, box.east, box.south, box.north),
-        "Name images of this place, or check their georeference with gdalinfo");
-  }
-  for (const std::string& path : beside) progress.warn(path + ": shows nothing of the extract");
-}
-
-void tell_images(const observation::ImageryObservations& imagery, base::Progress& progress, BuildSummary& summary) {
-  for (const observation::ImageReceipt& image : imagery.images) {
-    const std::string& path = image.description.source.path;
-    if (image.fit.state == observation::ImageState::misfit) {
-      ++summary.images_misfit;
-      progress.warn(fmt::format("IMAGE_MISFIT: {} does not fit the map and is not used: {}", path, image.fit.why));
-    } else if (image.fit.state == observation::ImageState::undecided) {
-      progress.warn(fmt::format("IMAGE_UNDECIDED: whether {} fits the map is not known: {}", path, image.fit.why));
-    }
-  }
-  std::map<observation::RowState, std::uint64_t> states;
-  for (const observation::OutlineReceipt& receipt : imagery.outlines) ++states[receipt.state];
-  std::string figures;
-  for (const auto& [state, count] : states)
-    figures +=
-        fmt::format("{}{} {}", figures.empty() ? "" : ", ", base::with_thousands(count), observation::words(state));
-  summary.figures["imagery.json"] = figures;
 }
 
 // ---- the tiles
@@ -329,25 +287,23 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   Extract& extract = located.extract;
   const georef::Projection& projection = located.projection;
   if (located.area) warn_of_heights(options, inputs, progress);
-  check_images(inputs, located, progress);
+  ImageryStage imagery(options, inputs, located, progress);
 
   // The whole extract: footprints, context, evidence.
   model::Report report = override_extract(options, inputs, extract, progress);
   record_extract(options, inputs, located, record);
-  PreparedExtract prepared = prepare_extract(located, options, tile, inputs.tables, inputs.rules.book, progress);
+  PreparedExtract prepared =
+      prepare_extract(located, options, tile, inputs.tables, inputs.rules.book, progress,
+                      [&](std::span<const footprints::Shard> shards, const footprints::RepairedExtract& repaired) {
+                        return imagery.correct(shards, repaired);
+                      });
   const std::vector<footprints::Shard>& shards = prepared.shards;
   const footprints::RepairedExtract& repaired = prepared.repaired;
   const context::ContextExtract& context = prepared.context;
   report.append(std::move(prepared.report));
   record.repair = repaired.totals;
   record.facts = located.facts;
-  std::optional<observation::ImageryObservations> imagery;
-  if (!inputs.images.empty()) {
-    imagery = observation::observe_extract({extract, shards, repaired.footprints, projection}, inputs.images,
-                                           options.imagery.correct, base::worker_count(options.jobs), progress);
-    record.images = imagery->images;
-    tell_images(*imagery, progress, summary);
-  }
+  imagery.tell(record);
   const context::VicinityFinder vicinity(extract, repaired.footprints, context);
   const footprints::RoofLineFinder roof_lines(extract, projection);
   const footprints::BuildingNumbers numbers(repaired.footprints);
@@ -371,7 +327,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2;
   Account account(extract, std::move(report.rows));
   outputs::OutputOptions output_options = options.outputs;
-  output_options.imagery = imagery.has_value();
+  output_options.imagery = imagery.observations() != nullptr && !tile;
   const outputs::OutputContext output_context{
       .options = output_options,
       .lod = options.lod,
@@ -386,7 +342,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       .shards = shards,
       .repaired = repaired,
       .context = context,
-      .imagery = imagery ? &*imagery : nullptr,
+      .imagery = imagery.observations(),
+      .seen = outputs::seen_outlines(imagery.observations(), repaired.footprints),
       .alone = tile ? std::optional(tile->id) : std::nullopt,
       .earlier = account.earlier(),
       .rule_file = [&](std::string_view preset) { return inputs.rule_file(preset); },

@@ -62,7 +62,8 @@ std::string BuildInputs::rule_file(std::string_view preset) const {
 std::vector<InputFile> input_files(const BuildOptions& options, const BuildInputs& inputs) {
   std::vector<InputFile> files = {input_file("extract", options.input)};
   if (inputs.terrain) files.push_back(input_file("terrain", options.terrain));
-  for (const importers::imagery::ImageSource& s : options.imagery.images) files.push_back(input_file("imagery", s.path));
+  for (const importers::imagery::ImageSource& s : options.imagery.images)
+    files.push_back(input_file("imagery", s.path));
   std::vector<std::pair<std::string, std::string>> configs = {
       {"defaults/uses.toml", options.configs + "/defaults/uses.toml"},
       {"materials/materials.toml", options.configs + "/materials/materials.toml"}};

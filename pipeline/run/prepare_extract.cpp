@@ -30,7 +30,7 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
   if (tile) {
     facts = tile->facts;
   } else {
-    if (area) facts = {"", area->box, area->centre, {}, {}};
+    if (area) facts = {"", area->box, area->centre, {}, {}, {}};
     facts.crs = options.crs.empty() ? georef::choose_crs(facts.centre.lon, facts.centre.lat) : options.crs;
   }
   const georef::GeoBox box = facts.box;
@@ -47,7 +47,8 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
 
 PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& options,
                                 const std::optional<TileChoice>& tile, const classify::Tables& tables,
-                                const districts::RuleSets& book, base::Progress& progress) {
+                                const districts::RuleSets& book, base::Progress& progress,
+                                const CorrectPlaces& correct) {
   const int workers = base::worker_count(options.jobs);
   const model::Extract& extract = located.extract;
   model::Report report;
@@ -60,6 +61,10 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   if (!tile) {
     const std::vector<model::Point2> places = footprints::building_places(extract, located.projection);
     located.facts.coverage = context::coverage_of(places);
+  }
+  if (correct && correct(shards, repaired)) {
+    repaired = footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress);
+    malloc_trim(0);
   }
   const context::UseOfTags use_of = [&](const std::function<std::string_view(std::string_view)>& tag) {
     const auto category = tables.ground_floor.category(tag);

@@ -1,7 +1,9 @@
 // What is known of an extract before any tile runs: read, located, repaired, put into context, classified.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "pipeline/base/progress.h"
@@ -51,10 +53,14 @@ struct PreparedExtract {
   evidence::StyleExtract styles;
 };
 
+/// Asked when all outlines are repaired. \returns  whether it moved buildings of the extract: they are repaired again
+using CorrectPlaces = std::function<bool(std::span<const footprints::Shard>, const footprints::RepairedExtract&)>;
+
 /// Cuts into shards, repairs, finds the context, measures, classifies; fills facts.coverage where no earlier build
-/// pinned it. \param located  stays where it is while the result is used
+/// pinned it. Tiles and coverage are those of the extract as mapped. \param located  stays where it is while the result is used
 PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& options,
                                 const std::optional<TileChoice>& tile, const classify::Tables& tables,
-                                const districts::RuleSets& book, base::Progress& progress);
+                                const districts::RuleSets& book, base::Progress& progress,
+                                const CorrectPlaces& correct = {});
 
 }  // namespace blockrand::run

@@ -51,6 +51,7 @@ RegionFacts read_region_facts(const std::string& path, const BuildOptions& optio
                              ", so this tile would not fit into it. Build with the same options");
     for (const nlohmann::json& p : r.at("coverage")) facts.coverage.push_back({finite(p.at(0)), finite(p.at(1))});
     for (const nlohmann::json& area : r.at("areas")) facts.areas.push_back(pinned_area(area));
+    if (j.contains("imagery")) facts.imagery_sha256 = j.at("files").at("imagery.json").at("sha256").get<std::string>();
     return facts;
   } catch (const base::UsageError&) {
     throw;

@@ -19,6 +19,7 @@ struct RegionFacts {
   georef::LonLat centre;                      ///< degrees
   std::vector<model::Point2> coverage;        ///< m, build CRS: where the data is (context::coverage_of)
   std::vector<attributes::PinnedArea> areas;  ///< large ones that district rules ask for (DistrictAssigner::to_pin)
+  std::string imagery_sha256;                 ///< of the imagery.json beside the build.json; empty: there is none
 };
 
 /// Reads the facts that an earlier build wrote into its build.json.

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/portable_math.h"
+#include "pipeline/base/sha256.h"
 #include "pipeline/georef/tiles.h"
 
 namespace blockrand::run {
@@ -38,6 +42,22 @@ model::TileId parse_tile(const std::string& text) {
   return {static_cast<int>(numbers[0]), static_cast<std::uint32_t>(numbers[1]), static_cast<std::uint32_t>(numbers[2])};
 }
 
+/// What the images showed of the whole, from the file beside the pinned build.json.
+std::optional<outputs::ReadImagery> read_imagery(const std::string& pinned, const std::string& sha256) {
+  if (sha256.empty()) return std::nullopt;
+  const std::string path = (std::filesystem::path(pinned).parent_path() / "imagery.json").string();
+  constexpr const char* kRemedy = "Let it lie beside the build.json of --pinned, as the build of the whole wrote it.";
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  if (!file) throw base::InputError(path, "", "cannot be read", kRemedy);
+  if (base::sha256_file(path) != sha256) throw base::InputError(path, "", "is not what build.json lists", kRemedy);
+  try {
+    return outputs::read_imagery_json(bytes);
+  } catch (const std::exception& e) {
+    throw base::InputError(path, "", std::string("is damaged (") + e.what() + ")", kRemedy);
+  }
+}
+
 }  // namespace
 
 std::optional<TileChoice> choose_tile(const BuildOptions& options) {
@@ -49,12 +69,14 @@ std::optional<TileChoice> choose_tile(const BuildOptions& options) {
     throw base::UsageError(
         "--tile needs --pinned build.json of a build of the whole extract: a tile alone cannot choose the CRS");
   if (!options.imagery.images.empty())
-    throw base::UsageError("--imagery is judged on the whole extract: leave it out with --tile");
+    throw base::UsageError(
+        "--tile takes what the images show from the build of --pinned (its imagery.json): leave out --imagery");
   if (options.bbox) throw base::UsageError("--tile and --bbox contradict each other");
   if (!options.crs.empty()) throw base::UsageError("--tile takes the CRS of --pinned: leave out --crs");
   TileChoice choice;
   choice.id = parse_tile(options.tile);
   choice.facts = read_region_facts(options.pinned, options);
+  choice.imagery = read_imagery(options.pinned, choice.facts.imagery_sha256);
   const georef::GeoBox tile = georef::bounds(choice.id);
   const double north = kHalo / kMetresPerDegree;
   const double farthest = std::min(89.0, std::max(std::abs(tile.south), std::abs(tile.north)) + north);

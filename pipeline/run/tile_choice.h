@@ -10,6 +10,7 @@
 #include "pipeline/footprints/shard.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/model/report.h"
+#include "pipeline/outputs/imagery/imagery_document.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/region_facts.h"
 
@@ -22,7 +23,8 @@ inline constexpr double kHalo = 3000;
 /// A tile that is built alone.
 struct TileChoice {
   model::TileId id;
-  RegionFacts facts;             ///< of the whole extract
+  RegionFacts facts;                            ///< of the whole extract
+  std::optional<outputs::ReadImagery> imagery;  ///< what the build of the whole saw in its images
   std::array<double, 4> window;  ///< west, south, east, north in degrees: the tile and its halo, all that is read
 };
 

@@ -107,8 +107,8 @@ std::string config_template() {
   }
   text +=
       "\n# An aerial image; as many of these tables as there are images. All but the path may be left out.\n"
-      "# [[image]]\n# path = \"ortho.tif\"\n# date = \"2023-06-18\"\n# licence = \"CC BY 4.0\"\n"
-      "# attribution = \"City of Vienna, data.wien.gv.at\"\n";
+      "# [[image]]\n#   path = \"ortho.tif\"\n#   date = \"2023-06-18\"\n#   licence = \"CC BY 4.0\"\n"
+      "#   attribution = \"City of Vienna, data.wien.gv.at\"\n";
   return text;
 }
 

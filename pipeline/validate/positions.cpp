@@ -16,8 +16,9 @@ constexpr double kLeastEdge = 0.5;            // m
 constexpr double kNearestToPole = 89.999;     // degrees: a hundred metres
 constexpr double kMetresPerUnit = 0.0111319;  // 1e-7 degrees of latitude
 
-constexpr double kWritten = 0.0005;  // m: shifts are written in millimetres
-constexpr double kStraight = 0.02;   // m: flatter corners are points on a straight wall
+constexpr double kRoundedPlaces = 0.02;  // m: moved places are rounded to 1e-7 degrees, twice
+constexpr double kWritten = 0.0005;      // m: shifts are written in millimetres
+constexpr double kStraight = 0.02;       // m: flatter corners are points on a straight wall
 // The median of n values that spread normally by s has the standard error 1.2533 s / sqrt(n); s is 1.4826 times their
 // median distance from their median. Three of them: one sound build in 370 is beyond by chance, along one axis.
 constexpr double kThreeErrorsOfMedian = 3 * 1.2533 * 1.4826;
@@ -190,6 +191,41 @@ void bound_positions(PositionSample& sample, const RepairsSaid& said, const std:
     }
   }
   for (const std::string& id : unknown) sample.corners.erase(id);
+}
+
+std::unordered_map<std::string, MovementSaid> movements_said(const Json& imagery) {
+  std::unordered_map<std::string, MovementSaid> moved;
+  const Json* applied = member(imagery, "applied");
+  const Json* buildings = member(imagery, "buildings");
+  if (!applied || !applied->is_boolean() || !applied->get<bool>() || !buildings || !buildings->is_array()) return moved;
+  for (const Json& building : *buildings) {
+    if (text(member(building, "state")) != "corrected") continue;
+    const auto at = [&](const char* name, std::uint64_t i) { return number(element(member(building, name), i)); };
+    const auto x = at("shift_m", 0), y = at("shift_m", 1), cx = at("centre", 0), cy = at("centre", 1);
+    const auto turn = number(member(building, "rotation_deg"));
+    if (x && y && cx && cy && turn) moved[text(member(building, "id"))] = {{*x, *y}, {*cx, *cy}, *turn};
+  }
+  return moved;
+}
+
+void move_positions(PositionSample& sample, const std::unordered_map<std::string, MovementSaid>& moved,
+                    georef::ProjTransform& proj_transform) {
+  for (auto& [id, corners] : sample.corners) {
+    const auto said = moved.find(id);
+    if (said == moved.end()) continue;
+    const MovementSaid& m = said->second;
+    const double s = std::sin(m.turn * kRadians), c = std::cos(m.turn * kRadians);
+    for (SampledCorner& corner : corners) {
+      const model::Point2 p = proj_transform.forward({corner.at.lon_degrees(), corner.at.lat_degrees()});
+      const double x = p.x - m.centre.x, y = p.y - m.centre.y;
+      const georef::LonLat to =
+          proj_transform.inverse({m.centre.x + x * c - y * s + m.shift.x, m.centre.y + x * s + y * c + m.shift.y});
+      if (!(std::fabs(to.lon) <= 180 && std::fabs(to.lat) <= 90)) continue;
+      corner.at = {static_cast<std::int32_t>(std::lround(to.lon * 1e7)),
+                   static_cast<std::int32_t>(std::lround(to.lat * 1e7))};
+    }
+    sample.reach[id] += kRoundedPlaces;
+  }
 }
 
 CommonShift common_shift(std::span<const std::pair<std::string, model::Point2>> offsets) {

@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/georef/proj_transform.h"
 #include "pipeline/model/point.h"
+#include "pipeline/validate/checked_json.h"
 
 namespace blockrand::validate {
 
@@ -84,6 +86,19 @@ RepairsSaid repairs_of_explanations(const std::vector<std::string>& paths, const
 /// \param otherwise  m, how far repair may have moved corners of the others without a record
 void bound_positions(PositionSample& sample, const RepairsSaid& said, const std::set<std::string>& moved,
                      double otherwise);
+
+/// How an aerial image moved a building: turned about `centre`, then shifted; m and degrees in the build CRS.
+struct MovementSaid {
+  model::Point2 shift, centre;
+  double turn = 0;
+};
+
+/// The buildings that a build says it moved. \param imagery  its imagery.json
+std::unordered_map<std::string, MovementSaid> movements_said(const Json& imagery);
+
+/// Puts the sampled corners where the build says it moved them. Where moved places were rounded is allowed for.
+void move_positions(PositionSample& sample, const std::unordered_map<std::string, MovementSaid>& moved,
+                    georef::ProjTransform& proj_transform);
 
 /// What the offsets of all corners have in common. Repair moves corners to and fro: the median over buildings (of their
 /// mean offset, east and north apart) stays near zero unless everything was moved.

@@ -231,6 +231,15 @@ class Run {
       pinned_.emplace(record_.pipeline);
       positions_ = &*pinned_;
       if (sample_.empty()) return;
+      if (record_.files.contains("imagery.json")) {
+        std::string why;
+        const auto text = content_of(full("imagery.json"), why);
+        const auto imagery = text ? parse_json(*text) : std::nullopt;
+        if (!imagery)
+          log().add(Check::build_json, "imagery.json", "", "cannot be read: what images moved is not known");
+        else
+          move_positions(sample_, movements_said(*imagery), pinned);
+      }
       georef::ProjTransform own(record_.crs, {sample_.west, sample_.south, sample_.east, sample_.north});
       const model::Point2 a = pinned.forward({sample_.lon, sample_.lat}), b = own.forward({sample_.lon, sample_.lat});
       const double apart = std::hypot(a.x - b.x, a.y - b.y);

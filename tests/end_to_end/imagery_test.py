@@ -1,7 +1,10 @@
 """Aerial images: a village whose picture the test paints; the program must see which houses the map has elsewhere."""
+import json
 import math
 import os
 import random
+import sqlite3
+import struct
 import unittest
 
 from blockrand_run import SAMPLE, BuildTest, blockrand, files_of, main, read_json
@@ -37,6 +40,28 @@ def extract(houses):
         corners = [(LON + x * METRE * STRETCH, LAT + y * METRE) for x, y in house]
         objects += ring(1000 + 10 * k, 100 + k, corners, {'building': 'house', 'building:levels': '1', 'roof:shape': 'flat'})
     return objects
+
+
+def query(build, sql):
+    db = sqlite3.connect(os.path.join(build, 'buildings.gpkg'))
+    try:
+        return db.execute(sql).fetchall()
+    finally:
+        db.close()
+
+
+def middles(build, layer='buildings'):
+    """{id: middle of the footprint's envelope} in metres of the build CRS."""
+    found = {}
+    for id, blob in query(build, f'SELECT id, geom FROM {layer}'):
+        west, east, south, north = struct.unpack('<4d', blob[8:40])
+        found[id] = ((west + east) / 2, (south + north) / 2)
+    return found
+
+
+def read_text(build, name):
+    with open(os.path.join(build, name), encoding='utf-8') as f:
+        return f.read()
 
 
 class Picture:
@@ -84,7 +109,9 @@ class Imagery(BuildTest):
         cls.picture = Picture(houses, 8)
         cls.image = cls.picture.write(os.path.join(cls.folder, 'village.ppm'))
         drawn = [[(x + cls.MOVED.get(k, (0, 0))[0], y + cls.MOVED.get(k, (0, 0))[1]) for x, y in h] for k, h in enumerate(houses)]
+        cls.drawn = drawn
         cls.map = write_xml(os.path.join(cls.folder, 'village.osm'), extract(drawn))
+        cls.truth = write_xml(os.path.join(cls.folder, 'true.osm'), extract(houses))
 
     def test_houses_that_the_map_has_elsewhere_are_told_and_the_others_are_not(self):
         out = self.build(self.map, 'report', '--imagery', self.image, '--lod', '1')
@@ -109,15 +136,77 @@ class Imagery(BuildTest):
         self.assertIn('5 seen elsewhere', self.last.out)
         # The map stays as it is drawn: only told is asked for.
         plain = self.build(self.map, 'plain', '--lod', '1')
-        self.same_files(out, plain, 'tiles', 'citygml', 'cityjson', 'tileset.json')
+        self.same_files(out, plain, 'tiles', 'tileset.json')
         self.assertNotIn('imagery.json', files_of(plain))
         self.assertNotIn('imagery', read_json(plain, 'build.json'))
         self.assertEqual(blockrand('validate', out).code, 0)
 
+    def test_apply_moves_them_and_every_output_says_so(self):
+        out = self.build(self.map, 'apply', '--imagery', self.image, '--imagery-correct', 'apply')
+        self.assertIn('5 moved', self.last.out)
+        self.assertEqual(blockrand('validate', out).code, 0)
+        true = self.build(self.truth, 'true')
+        there, wanted, mapped = (middles(f) for f in (out, true, self.build(self.map, 'mapped')))
+        for k in range(64):
+            house = f'w{100 + k}'
+            if k in self.MOVED:
+                self.assertLess(math.dist(there[house], wanted[house]), 0.35, house)
+            else:
+                self.assertEqual(there[house], mapped[house])
+        self.assertEqual(middles(out, 'footprint_before'), mapped)
+        states = dict(query(out, 'SELECT id, state FROM footprint_before'))
+        self.assertEqual({i for i, state in states.items() if state == 'moved'}, {f'w{100 + k}' for k in self.MOVED})
+        # The receipt stands in every format.
+        gml = ''.join(read_text(out, f) for f in files_of(out) if f.endswith('.gml'))
+        self.assertEqual(gml.count('<gen:stringAttribute name="imagery_state"><gen:value>moved<'), 5)
+        self.assertIn('aerial image village.ppm, licence not stated', gml)
+        features = [json.loads(line) for f in files_of(out) if f.endswith('.jsonl') for line in read_text(out, f).splitlines()[1:]]
+        told = {i: o['attributes'] for feature in features for i, o in feature['CityObjects'].items() if o['type'] == 'Building'}
+        self.assertEqual(told['w105']['imagery_state'], 'moved')
+        self.assertAlmostEqual(told['w105']['imagery_shift_east'], -self.MOVED[5][0], delta=0.35)
+        explained = blockrand('explain', out, 'w105')
+        self.assertIn('as village.ppm shows it', ' '.join(explained.out.split()))
+        receipt = json.loads(blockrand('explain', out, 'w105', '--json').out)['imagery']
+        self.assertEqual((receipt['state'], receipt['image']), ('moved', 'village.ppm'))
+        # The outline as OpenStreetMap has it stays known.
+        corner = json.loads(blockrand('explain', out, 'w105', '--json').out)['outline']
+        before = json.loads(blockrand('explain', self.path('mapped'), 'w105', '--json').out)['outline']
+        self.assertEqual(corner, before)
+        # A tile that is built alone takes what the whole found.
+        tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f != 'explain/index.txt'}
+        alone = self.build(self.map, 'alone', '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json'))
+        self.same_files(out, alone, 'tiles', 'citygml', 'cityjson', 'explain')
+        self.refused(blockrand('build', self.map, '-o', self.path('no'), '--tile', '15/1/1', '--pinned', os.path.join(out, 'build.json'), '--imagery', self.image), 1, 'leave out --imagery', target=self.path('no'))
+        os.remove(os.path.join(out, 'imagery.json'))
+        self.refused(blockrand('build', self.map, '-o', self.path('no'), '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json')), 2, 'imagery.json', target=self.path('no'))
+
+    def test_overrides_keep_houses_where_they_are_mapped(self):
+        """One house by its id, another by an area around it."""
+        x, y = sum(p[0] for p in self.drawn[18]) / len(self.drawn[18]), sum(p[1] for p in self.drawn[18]) / len(self.drawn[18])
+        corners = [(LON + (x + dx) * METRE * STRETCH, LAT + (y + dy) * METRE) for dx, dy in ((-9, -9), (9, -9), (9, 9), (-9, 9))]
+        source = write_xml(self.path('kept.osm'), extract(self.drawn) + ring(5000, 900, corners, {'landuse': 'residential'}))
+        orders = self.place('o.toml', '[w105]\nimagery = "off"\n[w900]\nimagery = "off"\n')
+        out = self.build(source, 'kept', '--imagery', self.image, '--imagery-correct', 'apply', '--overrides', orders, '--lod', '0', '--formats', 'gpkg')
+        states = dict(query(out, 'SELECT id, state FROM footprint_before'))
+        self.assertEqual([states[f'w{100 + k}'] for k in sorted(self.MOVED)], ['refused', 'refused', 'moved', 'moved', 'moved'])
+        self.assertEqual(dict(query(out, 'SELECT id, reason FROM footprint_before'))['w118'], 'an override keeps it where it is mapped')
+        self.assertEqual(read_json(out, 'report.json')['objects'], [])
+        self.build(source, 'idle', '--overrides', orders, '--lod', '0', '--formats', 'gpkg')
+        self.assertIn('imagery = "off" has nothing to act on', self.last.err)
+        for text, word in (('[w105]\nimagery = "on"\n', 'no order'), ('[w105.w7]\nimagery = "off"\n', 'whole buildings')):
+            self.refused(blockrand('build', source, '-o', self.path('no'), '--overrides', self.place('bad.toml', text)), 2, word, 'bad.toml', target=self.path('no'))
+
+    def test_images_in_the_output_folder_are_not_removed(self):
+        out = self.build(self.map, 'kept_image', '--lod', '0', '--formats', 'gpkg')
+        image = self.picture.write(os.path.join(out, 'village.ppm'))
+        run = blockrand('build', self.map, '-o', out, '--imagery', image, '--force', '--lod', '0', '--formats', 'gpkg')
+        self.assertEqual(run.code, 1, run)
+        self.assertTrue(os.path.exists(image))
+
     def test_any_number_of_jobs_says_the_same(self):
-        one = self.build(self.map, 'one', '--imagery', self.image, '--lod', '0', '--formats', 'gpkg', '--jobs', '1')
-        five = self.build(self.map, 'five', '--imagery', self.image, '--lod', '0', '--formats', 'gpkg', '--jobs', '5')
-        self.same_files(one, five, 'imagery.json', 'build.json')
+        for how in 'report', 'apply':
+            one, five = (self.build(self.map, f'{how}{jobs}', '--imagery', self.image, '--imagery-correct', how, '--lod', '1', '--jobs', str(jobs)) for jobs in (1, 5))
+            self.same_files(one, five)
 
     def test_an_image_that_does_not_fit_is_not_used(self):
         for name, how in (('shifted', dict(east=12, north=-9)), ('mirrored', dict(mirrored=True))):

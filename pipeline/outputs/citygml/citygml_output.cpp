@@ -15,7 +15,8 @@ CityGmlOptions citygml_options(const model::Region& region, const OutputContext&
                    ? "urn:ogc:def:crs:EPSG::" + number
                    : "urn:ogc:def:crs,crs:EPSG::" + number + ",crs:EPSG::" + vertical.substr(vertical.find(':') + 1);
   o.height_reference = context.heights.words;
-  o.attribution = kAttribution;
+  o.attribution = attribution(context, true);
+  o.seen = context.seen;
   o.name = model_name(region.tile);
   o.evidence = context.options.evidence;
   o.lean = context.options.citygml_detail == CityGmlDetail::lean;

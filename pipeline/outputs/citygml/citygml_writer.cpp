@@ -107,10 +107,10 @@ class BuildingText {
     head(building.osm, building.tags);
     if (single) {
       const model::BuildingPart& part = building.parts.front();
-      attributes(part.attributes, building.tags, &part);
+      attributes(part.attributes, building.tags, &part, &building);
       geometry(part, id);
     } else {
-      attributes(building.attributes, building.tags, nullptr);
+      attributes(building.attributes, building.tags, nullptr, &building);
       for (const model::BuildingPart& part : building.parts) {
         const std::string part_id = part.id == id ? id + ".1" : part.id;
         out_ += "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id=\"";
@@ -191,7 +191,9 @@ class BuildingText {
   }
 
   /// Generic attributes, then the elements of bldg:_AbstractBuilding up to the storeys' heights.
-  void attributes(const model::Attributes& a, model::Range tags, const model::BuildingPart* part) {
+  /// \param building  whose attributes they are; null: those of one of its parts
+  void attributes(const model::Attributes& a, model::Range tags, const model::BuildingPart* part,
+                  const model::Building* building = nullptr) {
     constexpr double kMostStoreys = 1000;  // longer lists of heights would be nonsense
     const bool whole_storeys =
         a.storeys.value >= 0 && a.storeys.value <= kMostStoreys && a.storeys.value == std::floor(a.storeys.value);
@@ -225,6 +227,7 @@ class BuildingText {
         close_generic("stringAttribute");
       }
     }
+    if (building) imagery(building->osm);
     osm_tags(tags);
 
     if (const std::string_view code = class_code(a.use.value); !code.empty()) coded("class", kClassCodeSpace, code);
@@ -251,6 +254,18 @@ class BuildingText {
         append_number(out_, a.storey_height.value);
       }
       out_ += "</bldg:storeyHeightsAboveGround>\n";
+    }
+  }
+
+  /// What an aerial image shows of the building.
+  void imagery(model::OsmId id) {
+    const std::optional<SeenOutline> seen = options_.seen ? options_.seen(id) : std::nullopt;
+    if (!seen) return;
+    for (const auto& [name, value] : imagery_attributes(*seen)) {
+      if (const double* number = std::get_if<double>(&value))
+        generic(name, "", *number);
+      else
+        generic_text(name, std::get<std::string>(value));
     }
   }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/imagery/seen_outline.h"
 #include "pipeline/outputs/sink.h"
 
 namespace blockrand::outputs {
@@ -15,6 +16,7 @@ struct CityGmlOptions {
   std::string attribution;       ///< source and licence of the data, for gml:description
   std::string name;              ///< gml:name of the city model, for example "Blockrand 15/17600/12900"
   bool evidence = false;         ///< also `<attribute>_evidence`: why each attribute has its value
+  SeenOutlines seen;             ///< what aerial images show; may be empty
   bool lean = false;             ///< flat openings without elements, elements on walls without small pieces
 };
 
@@ -27,7 +29,8 @@ struct CityGmlOptions {
 /// surfaces refer (geometry_text.h says why). Elements are implicit geometries (element_templates.h). Where it is
 /// lean, openings have neither reveals nor elements (flat_openings.h); a wall's generic attribute `reveal_depth` says in metres how far its windows and doors
 /// really lie behind it, that of an opening where it differs. Attributes without an element of their own are generic attributes named as in model::for_each_attribute; each attribute not
-/// taken from a tag also has `<attribute>_source` and `<attribute>_confidence`; OSM tags are `osm.<key>`.
+/// taken from a tag also has `<attribute>_source` and `<attribute>_confidence`; OSM tags are `osm.<key>`. A building that an
+/// aerial image shows has imagery_attributes().
 ///
 /// After the city objects stands one app:Appearance of the theme "visual" with an app:X3DMaterial per pair of material
 /// class and colour (appearance_text.h). Its targets are polygons, or MultiSurfaces and CompositeSurfaces of one look.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/imagery/seen_outline.h"
 #include "pipeline/outputs/sink.h"
 
 namespace blockrand::outputs {
@@ -19,6 +20,7 @@ struct CityJsonOptions {
   std::string name;              ///< first words of the title, for example "Blockrand 15/17600/12900"
   std::string generator;         ///< program and version, for the title
   std::string data_time;         ///< ISO 8601 time of the data; its date becomes metadata.referenceDate; may be empty
+  SeenOutlines seen;             ///< what aerial images show; may be empty
   bool evidence = false;         ///< also `<attribute>_evidence`: why each attribute has its value
 };
 

@@ -150,9 +150,21 @@ void ObjectText::object(const model::Building& building, const model::BuildingPa
   if (const std::string_view name = tags_.name(tags); !name.empty()) text("name", name);
   if (const std::string page = osm_page(osm); !page.empty()) text("externalReference", page);
   attributes(part ? part->attributes : building.attributes, tags, part);
+  if (whole) imagery(building.osm);
   *out_ += '}';
   address(tags);
   if (part) geometry(*part);
+}
+
+void ObjectText::imagery(model::OsmId id) {
+  const std::optional<SeenOutline> seen = options_.seen ? options_.seen(id) : std::nullopt;
+  if (!seen) return;
+  for (const auto& [name, value] : imagery_attributes(*seen)) {
+    if (const double* v = std::get_if<double>(&value))
+      number(name, *v);
+    else
+      text(name, std::get<std::string>(value));
+  }
 }
 
 void ObjectText::key(std::string_view name, std::string_view suffix) {

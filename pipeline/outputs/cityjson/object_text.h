@@ -55,6 +55,7 @@ class ObjectText {
  private:
   void object(const model::Building& building, const model::BuildingPart* part, bool whole);
   void attributes(const model::Attributes& a, model::Range tags, const model::BuildingPart* part);
+  void imagery(model::OsmId id);  ///< what an aerial image shows of the building
   void standard_attributes(const model::Attributes& a, model::Range tags, const model::BuildingPart* part);
   void address(model::Range tags);
   void geometry(const model::BuildingPart& part);

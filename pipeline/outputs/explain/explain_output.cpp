@@ -39,6 +39,7 @@ class ExplainOutput : public Output {
     options.earlier = context_.earlier;
     options.rule_file = context_.rule_file;
     options.courtyard = [this](std::string_view id) { return courtyard(id); };
+    options.seen = context_.seen;
     options.final_state = tile.final_state;
     options.tile = tile.name;
     for (const base::PublishedFile& file : tile.files) options.files.push_back(file.path);

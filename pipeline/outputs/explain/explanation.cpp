@@ -102,7 +102,7 @@ class Writer {
     for (const model::MappedRing& ring : rings) {
       const auto ids = extract.nodes_of(ring);
       nodes.insert(nodes.end(), ids.begin(), ids.end());
-      for (const model::Location v : extract.vertices_of(ring)) {
+      for (const model::Location v : extract.mapped_vertices_of(ring)) {
         if (lon.empty()) west = east = v.lon, south = north = v.lat;
         // Around the first vertex: an outline may cross 180 degrees.
         std::int64_t x = v.lon;
@@ -158,6 +158,8 @@ class Writer {
     json_.key("stages");
     json_.open('[');
     stage("read", read_text(building));
+    const std::optional<SeenOutline> seen = options_.seen ? options_.seen(building.osm) : std::nullopt;
+    if (seen) stage("image", imagery_text(*seen));
     stage("repair", repair_text(building));
     if (!building.parts.empty()) {
       stage("context", context_text(building));
@@ -168,6 +170,7 @@ class Writer {
     if (const std::string text = facade_text(building); !text.empty()) stage("facades", text);
     if (!building.parts.empty()) stage("check", check_text(building));
     json_.close(']');
+    if (seen) append_imagery(json_, *seen);
     append_repair(json_, building);
     append_situation(json_, building);
     append_edges(json_, building);

@@ -7,6 +7,7 @@
 //    "tags":{…},                                                  all OSM tags
 //    "outline":{"nodes":[…],"lon":[…],"lat":[…],"rings":[…]},     as mapped: node ids, 1e-7 degrees; points per ring
 //    "stages":[{"stage":"read","text":…},…],                      what each stage did, in the order of the flow
+//    "imagery":{"state":"moved","shift_east":1.2,…},              where an aerial image shows it: imagery_attributes()
 //    "repair":{"vertices":14,"moved":12,"mean_shift":0.08,"max_shift":0.31,"mapped_area":312.4,"area":313,"shared_walls":3,
 //              "gaps_closed":1,"overlaps_resolved":0,"overlap_left":0,"direction":27.3},      where repair left a record
 //    "situation":{"position":"mid_row","orientation":180,"depth":14,"width":18,"setback":0.4,"party_wall_length":28,
@@ -36,6 +37,7 @@
 #include <vector>
 
 #include "pipeline/model/region.h"
+#include "pipeline/outputs/imagery/seen_outline.h"
 
 namespace blockrand::outputs {
 
@@ -64,6 +66,8 @@ struct ExplainOptions {
   std::span<const model::ReportRow> earlier;
   /// Of BuildingSituation::courtyards; may be empty.
   CourtyardLookup courtyard;
+  /// What aerial images show; may be empty.
+  SeenOutlines seen;
   /// The rule file of a preset; empty for one without, or where facades were not asked for. May be empty.
   std::function<std::string(std::string_view preset)> rule_file;
 };

@@ -197,6 +197,19 @@ void append_repair(JsonText& json, const Building& building) {
   json.close('}');
 }
 
+void append_imagery(JsonText& json, const SeenOutline& seen) {
+  json.key("imagery");
+  json.open('{');
+  for (const auto& [name, value] : imagery_attributes(seen)) {
+    const std::string_view key = name.substr(std::string_view("imagery_").size());
+    if (const double* number = std::get_if<double>(&value))
+      json.number(key, *number);
+    else
+      json.string(key, std::get<std::string>(value));
+  }
+  json.close('}');
+}
+
 void append_situation(JsonText& json, const Building& building) {
   const model::BuildingSituation& s = building.situation;
   if (s.position == BuildingPosition::unknown) return;

@@ -28,6 +28,8 @@ std::string situation_text(const model::Building& building, const CourtyardLooku
 
 /// "repair":{...}, "situation":{...} and "edges":[...] of a building's line; nothing where the stage left nothing.
 void append_repair(JsonText& json, const model::Building& building);
+/// "imagery":{...}: the receipt of an aerial image.
+void append_imagery(JsonText& json, const SeenOutline& seen);
 void append_situation(JsonText& json, const model::Building& building);
 void append_edges(JsonText& json, const model::Building& building);
 

@@ -22,6 +22,7 @@ std::vector<Column> wall_segment_columns();
 std::vector<Column> block_columns();
 std::vector<Column> courtyard_columns();
 std::vector<Column> cell_columns();
+std::vector<Column> footprint_before_columns();
 
 // In context_columns.cpp:
 std::vector<Column> style_columns();      ///< probabilities of classification

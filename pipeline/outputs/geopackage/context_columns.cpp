@@ -106,6 +106,29 @@ std::vector<Column> block_columns() {
   };
 }
 
+std::vector<Column> footprint_before_columns() {
+  return {
+      {"id", kText, "", "Id of the building, in the layer buildings"},
+      {"state", kText, "",
+       "moved: it stands where the image shows it; seen_elsewhere: it was not to be moved; as_mapped; undecided; "
+       "refused"},
+      {"reason", kText, "", "Why it was not moved"},
+      {"shift", kReal, "m", "From where it is mapped to where the image shows it"},
+      {"shift_east", kReal, "m", "Of that: to the east"},
+      {"shift_north", kReal, "m", "Of that: to the north"},
+      {"rotation", kReal, "degree", "Counter-clockwise, about the middle of its row, before the shift"},
+      {"evidence_before", kReal, "",
+       "How much of its walls lies on edges of the image where it is mapped, from 0 to 1"},
+      {"evidence_after", kReal, "", "The same where the image shows it"},
+      {"gain", kReal, "", "The difference of the two"},
+      {"confidence", kReal, "", "How sure it is that it stands there, from 0 to 1"},
+      {"lean", kReal, "m", "How far the image shows its roof from its ground"},
+      {"image", kText, "", "The image"},
+      {"image_date", kText, "", "When it was taken"},
+      {"licence", kText, "", "Licence of the image"},
+  };
+}
+
 std::vector<Column> courtyard_columns() {
   return {
       {"id", kText, "", "A building at it and a place of that building's outline"},

@@ -65,17 +65,24 @@ outputs::CellRow cell_row(const context::CellIndex& cell, const context::CellSum
   return row;
 }
 
+/// By number: the buildings of a tile that is built alone, else all.
+std::vector<bool> buildings_here(const footprints::RepairedExtract& repaired, std::span<const footprints::Shard> shards,
+                                 const std::optional<model::TileId>& tile) {
+  std::vector<bool> here(repaired.footprints.size(), !tile);
+  if (tile)
+    for (std::size_t s = 0; s < shards.size(); ++s)
+      if (shards[s].tile == *tile)
+        for (std::size_t i = 0; i < shards[s].seeds.size(); ++i) here[repaired.first[s] + i] = true;
+  return here;
+}
+
 }  // namespace
 
 void write_context_layers(outputs::GeoPackageWriter& out, const context::ContextExtract& context,
                           const footprints::RepairedExtract& repaired, std::span<const footprints::Shard> shards,
                           const std::optional<model::TileId>& tile) {
   const footprints::FootprintStore& store = repaired.footprints;
-  std::vector<bool> here(store.size(), !tile);
-  if (tile)
-    for (std::size_t s = 0; s < shards.size(); ++s)
-      if (shards[s].tile == *tile)
-        for (std::size_t i = 0; i < shards[s].seeds.size(); ++i) here[repaired.first[s] + i] = true;
+  const std::vector<bool> here = buildings_here(repaired, shards, tile);
   const auto any_here = [&](const std::vector<std::uint32_t>& buildings) {
     return !tile || std::any_of(buildings.begin(), buildings.end(), [&](std::uint32_t b) { return here[b]; });
   };
@@ -108,6 +115,22 @@ void write_context_layers(outputs::GeoPackageWriter& out, const context::Context
   for (const auto& [cell, sums] : context.cells)
     if (!tile || cells.contains(cell))
       out.add_cell(cell_row(cell, sums, context::covered_share(cell, context.coverage)));
+}
+
+void write_image_layer(GeoPackageWriter& out, const observation::ImageryObservations& seen,
+                       const footprints::RepairedExtract& repaired, std::span<const footprints::Shard> shards,
+                       const std::optional<model::TileId>& tile) {
+  const std::vector<bool> here = buildings_here(repaired, shards, tile);
+  auto before = seen.before.begin();
+  for (std::uint32_t b = 0; b < seen.outlines.size(); ++b) {
+    while (before != seen.before.end() && before->first < b) ++before;
+    const observation::OutlineReceipt& receipt = seen.outlines[b];
+    if (!here[b] || receipt.image >= seen.images.size()) continue;
+    const bool moved = before != seen.before.end() && before->first == b;
+    const SeenOutline outline{receipt, seen.images[receipt.image], seen.applied};
+    out.add_footprint_before(
+        {outline, repaired.footprints[b].id, moved ? before->second : repaired.footprints.polygons(b)});
+  }
 }
 
 }  // namespace blockrand::outputs

@@ -18,4 +18,9 @@ void write_context_layers(outputs::GeoPackageWriter& out, const context::Context
                           const footprints::RepairedExtract& repaired, std::span<const footprints::Shard> shards,
                           const std::optional<model::TileId>& tile);
 
+/// Writes the layer `footprint_before`: of all buildings that an image shows, or of those of one tile.
+void write_image_layer(GeoPackageWriter& out, const observation::ImageryObservations& seen,
+                       const footprints::RepairedExtract& repaired, std::span<const footprints::Shard> shards,
+                       const std::optional<model::TileId>& tile);
+
 }  // namespace blockrand::outputs

@@ -42,6 +42,26 @@ void append_row(CellTable& table, const BlockRow& b) {
   row.end_row();
 }
 
+void append_row(CellTable& table, const FootprintBeforeRow& f) {
+  static const std::size_t width = footprint_before_columns().size();
+  const observation::OutlineReceipt& r = f.seen.receipt;
+  const importers::imagery::ImageSource& source = f.seen.image.description.source;
+  RowWriter row(table, width);
+  row.text(f.id.text());
+  row.text(f.seen.state());
+  row.text(r.reason);
+  row.real(rounded(std::sqrt(r.shift.x * r.shift.x + r.shift.y * r.shift.y)));
+  for (const double value : {r.shift.x, r.shift.y, r.turn}) row.real(rounded(value));
+  for (const double value : {r.before, r.after, r.after - r.before, r.confidence}) row.real(share(value));
+  row.real(rounded(std::sqrt(r.lean.x * r.lean.x + r.lean.y * r.lean.y)));
+  row.text(source.path.substr(source.path.find_last_of('/') + 1));
+  row.text(source.date);
+  row.text(source.licence);
+  append_header(row.geometry(), kMultiPolygon, f.polygons.size());
+  for (const model::Polygon& p : f.polygons) append_polygon(row.geometry(), p);
+  row.end_row();
+}
+
 void append_row(CellTable& table, const CourtyardRow& c) {
   static const std::size_t width = courtyard_columns().size();
   RowWriter row(table, width);

@@ -12,6 +12,7 @@
 #include "pipeline/model/osm_id.h"
 #include "pipeline/model/polygon.h"
 #include "pipeline/outputs/geopackage/geopackage_rows.h"
+#include "pipeline/outputs/imagery/seen_outline.h"
 
 namespace blockrand::outputs {
 
@@ -57,7 +58,15 @@ struct CellRow {
   std::optional<double> footprint_quartile, footprint_median, footprint_upper_quartile;
 };
 
+/// An outline that an aerial image shows.
+struct FootprintBeforeRow {
+  const SeenOutline& seen;
+  model::OsmId id;
+  std::vector<model::Polygon> polygons;  ///< repaired, before the image moved it
+};
+
 /// Appends the row to its layer's table.
+void append_row(CellTable& table, const FootprintBeforeRow& row);
 void append_row(CellTable& table, const BlockRow& row);
 void append_row(CellTable& table, const CourtyardRow& row);
 void append_row(CellTable& table, const CellRow& row);

@@ -32,7 +32,7 @@ geometry::PlanBox box_of(const model::Region& region) {
 }
 
 std::string words_about_data(const OutputContext& context) {
-  std::string words = kAttribution;
+  std::string words = attribution(context, true);
   if (!context.data_time.empty()) words += ", data of " + std::string(context.data_time);
   if (!context.heights.words.empty()) words += ". Heights: " + context.heights.words;
   return words;
@@ -100,7 +100,8 @@ class GeoPackageOutput : public Output {
   explicit GeoPackageOutput(const OutputContext& context)
       : context_(context),
         writer_(context.folder.staging_path() + "/" + kFile,
-                {context.crs.authority_code, std::string(context.data_time), context.heights.words, kAttribution}) {}
+                {context.crs.authority_code, std::string(context.data_time), context.heights.words,
+                 attribution(context, true), context.imagery && !context.imagery->outlines.empty()}) {}
 
   std::any write_tile(FinishedTile& tile) const override {
     return TileProduct{geopackage_rows(tile.region, context_.lod), box_of(tile.region)};
@@ -115,6 +116,8 @@ class GeoPackageOutput : public Output {
   void finish(const FinishedBuild& build) override {
     add_reported(writer_, context_.extract, build.rows, context_.projection);
     write_context_layers(writer_, context_.context, context_.repaired, context_.shards, context_.alone);
+    if (context_.imagery)
+      write_image_layer(writer_, *context_.imagery, context_.repaired, context_.shards, context_.alone);
     writer_.close();
     build.files.push_back(context_.folder.adopt(kFile));
     const std::string project =

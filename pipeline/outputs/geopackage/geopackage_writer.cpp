@@ -25,7 +25,8 @@ enum LayerIndex : std::size_t {
   kCells,
   kReported,
   kTiles,
-  kSurfaces
+  kSurfaces,
+  kFootprintBefore
 };
 
 std::vector<layer_file::LayerSpec> layers(const GeoPackageOptions& options) {
@@ -34,19 +35,24 @@ std::vector<layer_file::LayerSpec> layers(const GeoPackageOptions& options) {
     if (!options.attribution.empty()) what += ". " + options.attribution;
     return what;
   };
-  return {{"buildings", GeometryKind::multi_polygon, building_columns(),
-           text("Buildings with every attribute, its source and its confidence")},
-          {"parts", GeometryKind::polygon, part_columns(), text("Bodies of the buildings")},
-          {"facade_edges", GeometryKind::line, wall_segment_columns(),
-           text("Outlines of the buildings, cut where what they face changes")},
-          {"blocks", GeometryKind::polygon, block_columns(), text("Land between streets, railways and water")},
-          {"courtyards", GeometryKind::polygon, courtyard_columns(), text("Open space that buildings surround")},
-          {"cells", GeometryKind::polygon, cell_columns(), text("Squares of a fixed grid with what is mapped in them")},
-          {"reported", GeometryKind::point, reported_columns(),
-           text("Mapped objects that are not modelled themselves, and why")},
-          {"tiles", GeometryKind::polygon, tile_columns(), text("Tiles with content")},
-          {"surfaces", GeometryKind::multi_polygon_z, surface_columns(),
-           text("Faces of the bodies in space, by class and colour")}};
+  std::vector<layer_file::LayerSpec> all = {
+      {"buildings", GeometryKind::multi_polygon, building_columns(),
+       text("Buildings with every attribute, its source and its confidence")},
+      {"parts", GeometryKind::polygon, part_columns(), text("Bodies of the buildings")},
+      {"facade_edges", GeometryKind::line, wall_segment_columns(),
+       text("Outlines of the buildings, cut where what they face changes")},
+      {"blocks", GeometryKind::polygon, block_columns(), text("Land between streets, railways and water")},
+      {"courtyards", GeometryKind::polygon, courtyard_columns(), text("Open space that buildings surround")},
+      {"cells", GeometryKind::polygon, cell_columns(), text("Squares of a fixed grid with what is mapped in them")},
+      {"reported", GeometryKind::point, reported_columns(),
+       text("Mapped objects that are not modelled themselves, and why")},
+      {"tiles", GeometryKind::polygon, tile_columns(), text("Tiles with content")},
+      {"surfaces", GeometryKind::multi_polygon_z, surface_columns(),
+       text("Faces of the bodies in space, by class and colour")}};
+  if (options.images)
+    all.push_back({"footprint_before", GeometryKind::multi_polygon, footprint_before_columns(),
+                   text("Outlines that an aerial image shows, as they stood before it, and what it says of them")});
+  return all;
 }
 
 }  // namespace
@@ -70,7 +76,8 @@ struct GeoPackageWriter::Impl {
 };
 
 GeoPackageWriter::GeoPackageWriter(std::string path, GeoPackageOptions options)
-    : impl_(new Impl{{std::move(path), {options.crs, options.data_time}, layers(options), qgis_styles()}, {}}) {}
+    : impl_(new Impl{{std::move(path), {options.crs, options.data_time}, layers(options), qgis_styles(options.images)},
+                     {}}) {}
 
 GeoPackageWriter::~GeoPackageWriter() = default;
 
@@ -84,6 +91,8 @@ void GeoPackageWriter::add(const GeoPackageRows& rows) {
 void GeoPackageWriter::add_block(const BlockRow& block) { impl_->put_one(kBlocks, block); }
 void GeoPackageWriter::add_courtyard(const CourtyardRow& courtyard) { impl_->put_one(kCourtyards, courtyard); }
 void GeoPackageWriter::add_cell(const CellRow& cell) { impl_->put_one(kCells, cell); }
+
+void GeoPackageWriter::add_footprint_before(const FootprintBeforeRow& row) { impl_->put_one(kFootprintBefore, row); }
 
 void GeoPackageWriter::add_reported(const GeoPackageReported& object) {
   CellTable& table = impl_->empty_row();

@@ -287,10 +287,21 @@ std::string closed_or_open() {
   return std::move(qml).done();
 }
 
+std::string image_states() {
+  Qml qml(Shape::fill);
+  qml.categories("state");
+  qml.category("moved", "moved to where the image shows it", {214, 96, 77});
+  qml.category("seen_elsewhere", "the image shows it elsewhere", {244, 165, 130});
+  qml.category("as_mapped", "where the image shows it", {120, 190, 130});
+  qml.category("refused", "not moved: in the way, or as ordered", {150, 120, 190});
+  qml.category("", "not decided", kOthers);
+  return std::move(qml).done();
+}
+
 }  // namespace
 
-std::vector<QgisStyle> qgis_styles() {
-  return {
+std::vector<QgisStyle> qgis_styles(bool images) {
+  std::vector<QgisStyle> styles = {
       {"buildings", "Storeys", "Full storeys above ground", storeys(), true},
       {"buildings", "Roofs", "The roof that was built", built_roof(buildings_qml()), false},
       {"buildings", "Source of the storeys", "Mapped, concluded or assumed", source_of("storeys"), false},
@@ -310,6 +321,9 @@ std::vector<QgisStyle> qgis_styles() {
       {"tiles", "Outlines", "Tile borders with their numbers", outlines(), true},
       {"surfaces", "Classes", "Ground, walls and roofs", surface_classes(), true},
   };
+  if (images)
+    styles.push_back({"footprint_before", "What was done", "Moved or left where it is mapped", image_states(), true});
+  return styles;
 }
 
 }  // namespace blockrand::outputs

@@ -14,6 +14,7 @@ using layer_file::QgisStyle;
 /// (default) in the colours of model/wall_segment_colours.h; blocks: by floor area ratio (default), by closure; courtyards: closed
 /// or open (default); cells: by built share (default), by storeys; surfaces: by class (default).
 /// Buildings are labelled with house numbers at 1:2500 and larger.
-std::vector<QgisStyle> qgis_styles();
+/// \param images  with the layer footprint_before, by what was done
+std::vector<QgisStyle> qgis_styles(bool images = false);
 
 }  // namespace blockrand::outputs

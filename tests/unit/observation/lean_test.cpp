@@ -89,7 +89,9 @@ TEST(Lean, OneRowThatIsOffIsNoLeanOfItsPlace) {
   }
   const LeanField field(houses);
   const auto said = field.at({500'340, 5'700'340}, 10);
-  if (said) EXPECT_LT(std::hypot(said->x, said->y), 0.3);
+  if (said) {
+    EXPECT_LT(std::hypot(said->x, said->y), 0.3);
+  }
 }
 
 TEST(Lean, AnImageWithoutHousesKnowsNothing) {

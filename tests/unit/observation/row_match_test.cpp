@@ -40,9 +40,10 @@ struct House {
     }
     return points;
   }
-  bool covers(Point2 p) const {
+  /// \param share  of the height: 1 is the roof
+  bool covers(Point2 p, double share = 1) const {
     const base::SinCos a = base::sin_cos(angle);
-    const double dx = p.x - middle.x - lean_x, dy = p.y - middle.y - lean_y;
+    const double dx = p.x - middle.x - share * lean_x, dy = p.y - middle.y - share * lean_y;
     return std::fabs(dx * a.cos + dy * a.sin) < width / 2 && std::fabs(-dx * a.sin + dy * a.cos) < depth / 2;
   }
 };
@@ -83,10 +84,15 @@ class Painted : public testing::Test {
       for (const House& h : houses_) {
         const double y = kNorth - (r + 0.5) * kPixel;
         if (std::fabs(y - h.middle.y) > 20) continue;
-        for (int c = 0; c < kSide; ++c)
-          if (h.covers({kEast + (c + 0.5) * kPixel, y}))
+        for (int c = 0; c < kSide; ++c) {
+          const Point2 p{kEast + (c + 0.5) * kPixel, y};
+          bool wall = false;
+          for (int share = 0; share < 10 && (h.lean_x != 0 || h.lean_y != 0); ++share)
+            wall = wall || h.covers(p, share / 10.0);
+          if (const int level = h.covers(p) ? 190 : wall ? 140 : 0; level > 0)
             for (int b = 0; b < 3; ++b)
-              line[static_cast<std::size_t>(b * kSide + c)] = static_cast<std::uint8_t>(190 - 30 * b);
+              line[static_cast<std::size_t>(b * kSide + c)] = static_cast<std::uint8_t>(level - 30 * b);
+        }
       }
       for (int b = 0; b < 3; ++b)
         EXPECT_EQ(GDALRasterIO(GDALGetRasterBand(tif, b + 1), GF_Write, 0, r, kSide, 1, line.data() + b * kSide, kSide,

@@ -176,7 +176,7 @@ TEST_F(Config, ErrorsNameThePlaceAndTheNearestKey) {
   const std::string file = "input: " + path.string();
   EXPECT_THAT(error("[build]\nlodd = 1\n"), StartsWith(file + ":2:1: unknown key build.lodd. Did you mean build.lod?"));
   EXPECT_THAT(error("[biuld]\nlod = 1\n"), StartsWith(file + ":1:2: unknown key biuld. Did you mean build?"));
-  EXPECT_THAT(error("lod = 1\n"), HasSubstr("Known keys here: build generate repair."));
+  EXPECT_THAT(error("lod = 1\n"), HasSubstr("Known keys here: build generate image repair."));
   EXPECT_THAT(error("[build]\nlod = 7\n"), StartsWith(file + ":2:7: build.lod is out of range: 7"));
   EXPECT_THAT(error("[build]\nlod = \"1\"\n"), HasSubstr("build.lod must be a whole number, not a text"));
   EXPECT_THAT(error("[build]\nformats = \"glft\"\n"),

@@ -35,9 +35,12 @@ TEST(DeclaredOptions, EveryMemberOfABuildIsOne) {
       stages.insert(option.section.name);
   }
   const std::size_t of_outputs = outputs::output_options().size();
-  EXPECT_EQ(of_outputs, member_count<outputs::OutputOptions>());
-  EXPECT_EQ(own - of_outputs + 1 + stages.size(), member_count<run::BuildOptions>())
-      << "the options of the outputs are one member, and so are those of each stage";
+  const std::size_t set_by_the_build = 1;  // whether there are images
+  EXPECT_EQ(of_outputs + set_by_the_build, member_count<outputs::OutputOptions>());
+  const std::size_t of_imagery = observation::imagery_options().size();
+  EXPECT_EQ(of_imagery, member_count<observation::ImageryOptions>());
+  EXPECT_EQ(own - of_outputs - of_imagery + 2 + stages.size(), member_count<run::BuildOptions>())
+      << "the options of the outputs are one member, those of the images another, and so are those of each stage";
 }
 
 TEST(DeclaredOptions, EveryMemberOfValidationIsOne) {

@@ -1,0 +1,120 @@
+#include "pipeline/observation/corrections.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "pipeline/geometry/valid_polygon.h"
+
+namespace blockrand::observation {
+
+namespace {
+
+using footprints::Movement;
+using model::Polygon;
+
+Movement movement_of(const OutlineReceipt& receipt) { return {receipt.shift, receipt.centre, receipt.turn}; }
+
+void move(std::vector<Polygon>& polygons, const Movement& movement) {
+  const auto ring = [&](model::Ring& r) {
+    for (model::Point2& p : r.points) p = model::snap(movement(p));
+  };
+  for (Polygon& polygon : polygons) {
+    ring(polygon.outer);
+    for (model::Ring& hole : polygon.holes) ring(hole);
+  }
+}
+
+class Refuser {
+ public:
+  Refuser(ImageryObservations& observations, const footprints::FootprintStore& store)
+      : receipts_(observations.outlines), store_(store) {
+    for (std::uint32_t b = 0; b < receipts_.size(); ++b)
+      if (corrected(b)) rows_[receipts_[b].row].push_back(b);
+  }
+
+  void refuse(std::uint32_t row, std::string_view reason) {
+    for (const std::uint32_t b : rows_[row]) receipts_[b].state = RowState::refused, receipts_[b].reason = reason;
+  }
+
+  void refuse_kept(const std::function<bool(std::uint32_t)>& keeps) {
+    for (const auto& [row, buildings] : rows_)
+      if (std::ranges::any_of(buildings, keeps)) refuse(row, "an override keeps it where it is mapped");
+  }
+
+  void refuse_overlapping() {
+    find_pairs();
+    for (bool again = true; again;) {
+      again = false;
+      for (const auto& [a, b] : pairs_) {
+        if (!corrected(a) && !corrected(b)) continue;
+        if (!overlap(a, b)) continue;
+        refuse(corrected(b) && (!corrected(a) || surer(a, b)) ? receipts_[b].row : receipts_[a].row,
+               "it would stand on a neighbour");
+        again = true;
+      }
+    }
+  }
+
+ private:
+  bool corrected(std::uint32_t b) const { return receipts_[b].state == RowState::corrected; }
+  bool surer(std::uint32_t a, std::uint32_t b) const {
+    return receipts_[a].confidence > receipts_[b].confidence ||
+           (receipts_[a].confidence == receipts_[b].confidence && receipts_[a].row < receipts_[b].row);
+  }
+
+  /// Buildings of different rows, one of which at least is to move, that come near each other before or after.
+  void find_pairs() {
+    std::vector<geometry::PlanBox> boxes(store_.size());
+    for (std::uint32_t b = 0; b < store_.size(); ++b) {
+      if (store_[b].box.empty() || store_[b].settled != model::ObjectState::pending) continue;
+      boxes[b] = store_[b].box;
+      if (corrected(b))
+        for (const Polygon& polygon : at(b)) boxes[b].include(geometry::box_of(polygon.outer.points));
+    }
+    for (const auto& pair : geometry::BoxIndex(std::move(boxes)).pairs(0)) {
+      const auto [a, b] = pair;
+      if (!corrected(a) && !corrected(b)) continue;
+      if (corrected(a) && corrected(b) && receipts_[a].row == receipts_[b].row) continue;
+      pairs_.push_back(pair);
+    }
+  }
+
+  /// Where a building stands by what is decided so far.
+  std::vector<Polygon> at(std::uint32_t b) const {
+    std::vector<Polygon> polygons = store_.polygons(b);
+    if (corrected(b)) move(polygons, movement_of(receipts_[b]));
+    return polygons;
+  }
+
+  /// More of the two lies on each other than did.
+  bool overlap(std::uint32_t a, std::uint32_t b) const {
+    const double after = geometry::common_area(at(a), at(b));
+    const double allowed = kOverlapShare * std::min(store_[a].record.area, store_[b].record.area);
+    return after > allowed && after > allowed + geometry::common_area(store_.polygons(a), store_.polygons(b));
+  }
+
+  std::vector<OutlineReceipt>& receipts_;
+  const footprints::FootprintStore& store_;
+  std::map<std::uint32_t, std::vector<std::uint32_t>> rows_;  ///< the corrected ones
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
+};
+
+}  // namespace
+
+void refuse_corrections(ImageryObservations& observations, const footprints::FootprintStore& footprints,
+                        const std::function<bool(std::uint32_t)>& keeps) {
+  Refuser refuser(observations, footprints);
+  refuser.refuse_kept(keeps);
+  refuser.refuse_overlapping();
+}
+
+std::vector<footprints::MovedBuilding> movements(const ImageryObservations& observations) {
+  std::vector<footprints::MovedBuilding> out;
+  for (std::uint32_t b = 0; b < observations.outlines.size(); ++b)
+    if (observations.outlines[b].state == RowState::corrected)
+      out.push_back({b, movement_of(observations.outlines[b])});
+  return out;
+}
+
+}  // namespace blockrand::observation

@@ -1,0 +1,134 @@
+#include "pipeline/outputs/imagery/imagery_document.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace blockrand::outputs {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using observation::OutlineReceipt;
+
+double rounded(double value, double steps) { return std::round(value * steps) / steps + 0.0; }
+Json metres(model::Point2 p) { return {rounded(p.x, 1000), rounded(p.y, 1000)}; }
+model::Point2 point(const nlohmann::json& j) { return {j.at(0).get<double>(), j.at(1).get<double>()}; }
+
+Json image_json(const observation::ImageReceipt& image) {
+  const importers::imagery::ImageDescription& d = image.description;
+  const observation::ImageFit& fit = image.fit;
+  Json j;
+  j["path"] = d.source.path;
+  if (!d.source.date.empty()) j["date"] = d.source.date;
+  if (!d.source.licence.empty()) j["licence"] = d.source.licence;
+  if (!d.source.attribution.empty()) j["attribution"] = d.source.attribution;
+  j["crs"] = d.crs_code.empty() ? d.crs_name : d.crs_code;
+  j["pixel_m"] = rounded(d.pixel_m, 1000);
+  j["state"] = observation::name(fit.state);
+  j["why"] = fit.why;
+  j["outlines"] = fit.outlines;
+  j["shift_m"] = metres(fit.shift);
+  j["score"] = rounded(fit.score, 100);
+  j["margin"] = rounded(fit.margin, 100);
+  j["leans"] = image.leans;
+  j["flight_height_m"] = rounded(image.flight_height, 1);
+  j["lean_support"] = rounded(image.support, 1000);
+  return j;
+}
+
+Json building_json(const std::string& id, const OutlineReceipt& r) {
+  Json j;
+  j["id"] = id;
+  j["state"] = observation::name(r.state);
+  if (!r.reason.empty()) j["reason"] = r.reason;
+  if (r.image != OutlineReceipt::kNoImage) {
+    j["image"] = r.image;
+    j["row"] = r.row;
+    j["shift_m"] = metres(r.shift);
+    j["rotation_deg"] = rounded(r.turn, 100);
+    j["centre"] = metres(r.centre);
+    j["evidence_before"] = rounded(r.before, 10000);
+    j["evidence_after"] = rounded(r.after, 10000);
+    j["gain"] = rounded(r.after - r.before, 10000);
+    j["confidence"] = rounded(r.confidence, 1000);
+    j["lean_m"] = metres(r.lean);
+    j["eaves_m"] = rounded(r.eaves, 10);
+    j["score_mean"] = rounded(r.mean, 10000);
+    j["score_deviation"] = rounded(r.deviation, 10000);
+    j["score_elsewhere"] = rounded(r.second, 10000);
+    j["walls_m"] = rounded(r.weight, 10);
+  }
+  return j;
+}
+
+model::OsmId id_of(const std::string& text) {
+  model::OsmId id;
+  id.type = text.at(0) == 'n'   ? model::OsmType::node
+            : text.at(0) == 'w' ? model::OsmType::way
+                                : model::OsmType::relation;
+  id.number = std::stoll(text.substr(1));
+  return id;
+}
+
+/// The member of an enumeration whose name is `text`.
+template <class Enum>
+Enum named(const std::string& text, Enum last) {
+  for (int i = 0; i <= static_cast<int>(last); ++i)
+    if (name(static_cast<Enum>(i)) == text) return static_cast<Enum>(i);
+  throw std::runtime_error("unknown state '" + text + "'");
+}
+
+OutlineReceipt receipt_of(const nlohmann::json& j) {
+  OutlineReceipt r;
+  r.state = named(j.at("state").get<std::string>(), observation::RowState::corrected);
+  r.reason = j.value("reason", std::string());
+  if (!j.contains("image")) return r;
+  r.image = j.at("image").get<std::uint32_t>();
+  r.row = j.at("row").get<std::uint32_t>();
+  r.shift = point(j.at("shift_m"));
+  r.turn = j.at("rotation_deg").get<double>();
+  r.centre = point(j.at("centre"));
+  r.before = j.at("evidence_before").get<double>();
+  r.after = j.at("evidence_after").get<double>();
+  r.confidence = j.at("confidence").get<double>();
+  r.lean = point(j.at("lean_m"));
+  r.eaves = j.at("eaves_m").get<double>();
+  return r;
+}
+
+}  // namespace
+
+std::string imagery_json(const observation::ImageryObservations& seen, const footprints::FootprintStore& footprints) {
+  Json j;
+  j["applied"] = seen.applied;
+  j["images"] = Json::array();
+  for (const observation::ImageReceipt& image : seen.images) j["images"].push_back(image_json(image));
+  j["buildings"] = Json::array();
+  for (std::uint32_t b = 0; b < seen.outlines.size(); ++b)
+    j["buildings"].push_back(building_json(footprints[b].id.text(), seen.outlines[b]));
+  return j.dump(1) + "\n";
+}
+
+ReadImagery read_imagery_json(const std::string& text) {
+  const nlohmann::json j = nlohmann::json::parse(text);
+  ReadImagery read;
+  read.applied = j.at("applied").get<bool>();
+  for (const nlohmann::json& i : j.at("images")) {
+    observation::ImageReceipt& image = read.images.emplace_back();
+    image.description.source.path = i.at("path").get<std::string>();
+    image.description.source.date = i.value("date", std::string());
+    image.description.source.licence = i.value("licence", std::string());
+    image.description.source.attribution = i.value("attribution", std::string());
+    image.fit.state = named(i.at("state").get<std::string>(), observation::ImageState::undecided);
+    image.fit.shift = point(i.at("shift_m"));
+  }
+  for (const nlohmann::json& b : j.at("buildings")) {
+    const OutlineReceipt receipt = receipt_of(b);
+    if (receipt.image != OutlineReceipt::kNoImage && receipt.image >= read.images.size())
+      throw std::runtime_error("an image is not there");
+    read.outlines.emplace_back(id_of(b.at("id").get<std::string>()), receipt);
+  }
+  return read;
+}
+
+}  // namespace blockrand::outputs

@@ -1,0 +1,89 @@
+#include "pipeline/outputs/imagery/seen_outline.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "pipeline/base/portable_math.h"
+
+namespace blockrand::outputs {
+namespace {
+
+using observation::RowState;
+
+std::string_view compass(model::Point2 shift) {
+  constexpr std::string_view kWinds[] = {"E", "NE", "N", "NW", "W", "SW", "S", "SE"};
+  const double eighth = base::atan2(shift.y, shift.x) * 4 / base::kPi;
+  return kWinds[(static_cast<int>(std::lround(eighth)) + 8) % 8];
+}
+
+std::string file_name(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
+
+}  // namespace
+
+std::string_view SeenOutline::state() const {
+  switch (receipt.state) {
+    case RowState::corrected:
+      return applied ? "moved" : "seen_elsewhere";
+    case RowState::left_alone:
+      return "as_mapped";
+    case RowState::refused:
+      return "refused";
+    case RowState::undecided:
+    case RowState::outside:
+      break;
+  }
+  return "undecided";
+}
+
+SeenOutlines seen_outlines(const observation::ImageryObservations* observations,
+                           const footprints::FootprintStore& footprints) {
+  if (!observations) return {};
+  const auto numbers = std::make_shared<const footprints::BuildingNumbers>(footprints);
+  return [observations, numbers](model::OsmId id) -> std::optional<SeenOutline> {
+    const std::uint32_t b = numbers->find(id);
+    if (b == model::kNoIndex || b >= observations->outlines.size()) return std::nullopt;
+    const observation::OutlineReceipt& receipt = observations->outlines[b];
+    if (receipt.image >= observations->images.size()) return std::nullopt;
+    return SeenOutline{receipt, observations->images[receipt.image], observations->applied};
+  };
+}
+
+std::vector<ImageryAttribute> imagery_attributes(const SeenOutline& seen) {
+  const observation::OutlineReceipt& r = seen.receipt;
+  std::vector<ImageryAttribute> out = {
+      {"imagery_state", std::string(seen.state())}, {"imagery_shift_east", r.shift.x},
+      {"imagery_shift_north", r.shift.y},           {"imagery_rotation", r.turn},
+      {"imagery_evidence_mapped", r.before},        {"imagery_evidence", r.after},
+      {"imagery_confidence", r.confidence},         {"imagery_image", file_name(seen.image.description.source.path)}};
+  if (!r.reason.empty()) out.insert(out.begin() + 1, {"imagery_reason", r.reason});
+  if (!seen.image.description.source.date.empty()) out.emplace_back("imagery_date", seen.image.description.source.date);
+  return out;
+}
+
+std::string imagery_text(const SeenOutline& seen) {
+  const observation::OutlineReceipt& r = seen.receipt;
+  const importers::imagery::ImageSource& source = seen.image.description.source;
+  const std::string image = file_name(source.path) + (source.date.empty() ? "" : " of " + source.date);
+  const double size = std::sqrt(r.shift.x * r.shift.x + r.shift.y * r.shift.y);
+  std::string place = fmt::format("{:.2f} m to the {}", size, compass(r.shift));
+  if (std::fabs(r.turn) >= 0.05) place += fmt::format(", turned by {:.1f} degrees", r.turn);
+  const std::string evidence = fmt::format("walls on edges: {:.2f} where mapped, {:.2f} there; confidence {:.2f}",
+                                           r.before, r.after, r.confidence);
+  switch (r.state) {
+    case RowState::corrected:
+      return seen.applied ? fmt::format("moved {}, as {} shows it ({})", place, image, evidence)
+                          : fmt::format("{} shows it {} ({}); it stands where it is mapped", image, place, evidence);
+    case RowState::refused:
+      return fmt::format("{} shows it {} ({}); left where it is mapped: {}", image, place, evidence, r.reason);
+    case RowState::left_alone:
+      return fmt::format("left where it is mapped: {} ({}; {})", r.reason, image, evidence);
+    case RowState::undecided:
+    case RowState::outside:
+      break;
+  }
+  return fmt::format("left where it is mapped: {} ({})", r.reason, image);
+}
+
+}  // namespace blockrand::outputs

@@ -1,0 +1,140 @@
+#include "pipeline/run/imagery_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/parallel.h"
+#include "pipeline/base/text.h"
+#include "pipeline/footprints/move_buildings.h"
+#include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/observation/corrections.h"
+#include "pipeline/observation/observe_extract.h"
+
+namespace blockrand::run {
+
+namespace {
+
+using model::Feature;
+using observation::Correction;
+using observation::RowState;
+
+/// \throws base::InputError  there are images, and none of them shows any of the extract
+void check_images(const BuildInputs& inputs, const LocatedExtract& located, base::Progress& progress) {
+  if (inputs.images.empty() || !located.area) return;
+  const georef::GeoBox& box = located.area->box;
+  std::vector<std::string> beside;
+  for (const importers::imagery::AerialImage& image : inputs.images) {
+    const georef::GeoBox& area = image.describe().area;
+    if (area.west > box.east || area.east < box.west || area.south > box.north || area.north < box.south)
+      beside.push_back(image.describe().source.path);
+  }
+  if (beside.size() == inputs.images.size()) {
+    const georef::GeoBox& area = inputs.images.front().describe().area;
+    throw base::InputError(
+        beside.front(), "",
+        fmt::format("shows nothing of the extract{}: it lies at {:.4f} to {:.4f} east and {:.4f} to {:.4f} north, the "
+                    "buildings at {:.4f} to {:.4f} and {:.4f} to {:.4f}",
+                    beside.size() > 1 ? ", nor does any other image" : "", area.west, area.east, area.south, area.north,
+                    box.west, box.east, box.south, box.north),
+        "Name images of this place, or check their georeference with gdalinfo");
+  }
+  for (const std::string& path : beside) progress.warn(path + ": shows nothing of the extract");
+}
+
+/// The outer rings of the areas that overrides keep, as mapped.
+std::vector<std::vector<model::Point2>> kept_areas(const attributes::Overrides& overrides,
+                                                   const LocatedExtract& located) {
+  std::vector<std::vector<model::Point2>> areas;
+  for (const attributes::OverrideEntry& entry : overrides.entries) {
+    if (!entry.keeps_place) continue;
+    for (const Feature& feature : located.extract.features) {
+      if (feature.id != entry.object || !feature.area) continue;
+      for (const model::MappedRing& ring : located.extract.rings_of(feature.rings)) {
+        if (ring.inner) continue;
+        areas.emplace_back();
+        for (const model::Location at : located.extract.vertices_of(ring))
+          areas.back().push_back(located.projection.forward(at));
+      }
+    }
+  }
+  return areas;
+}
+
+}  // namespace
+
+ImageryStage::ImageryStage(const BuildOptions& options, const BuildInputs& inputs, LocatedExtract& located,
+                           base::Progress& progress)
+    : options_(options), inputs_(inputs), located_(located), progress_(progress) {
+  check_images(inputs, located, progress);
+  const bool looks = !inputs.images.empty() || (inputs.tile && inputs.tile->imagery);
+  const bool keeps = std::ranges::any_of(inputs.overrides.entries, &attributes::OverrideEntry::keeps_place);
+  if (looks && keeps) kept_areas_ = kept_areas(inputs.overrides, located);
+  if (!looks && keeps && !inputs.tile)
+    progress.warn(options.overrides + ": imagery = \"off\" has nothing to act on, there is no --imagery");
+}
+
+bool ImageryStage::keeps_place(std::uint32_t building, const footprints::FootprintStore& footprints) const {
+  const footprints::StoredFootprint& stored = footprints[building];
+  const attributes::OverrideEntry* entry = inputs_.overrides.find(stored.id);
+  if (entry && entry->keeps_place) return true;
+  return std::ranges::any_of(kept_areas_,
+                             [&](const auto& ring) { return geometry::contains(ring, stored.box.centre()); });
+}
+
+void ImageryStage::take_pinned(const footprints::FootprintStore& footprints) {
+  const outputs::ReadImagery& pinned = *inputs_.tile->imagery;
+  seen_.emplace();
+  seen_->images = pinned.images;
+  seen_->applied = pinned.applied;
+  seen_->outlines.resize(footprints.size());
+  const footprints::BuildingNumbers numbers(footprints);
+  for (const auto& [id, receipt] : pinned.outlines)
+    if (const std::uint32_t b = numbers.find(id); b != model::kNoIndex) seen_->outlines[b] = receipt;
+}
+
+bool ImageryStage::correct(std::span<const footprints::Shard> shards, const footprints::RepairedExtract& repaired) {
+  const footprints::FootprintStore& store = repaired.footprints;
+  if (inputs_.tile) {
+    if (!inputs_.tile->imagery) return false;
+    take_pinned(store);
+  } else {
+    if (inputs_.images.empty()) return false;
+    const Correction how = options_.imagery.correct;
+    seen_ = observation::observe_extract({located_.extract, shards, store, located_.projection}, inputs_.images, how,
+                                         base::worker_count(options_.jobs), progress_);
+    observation::refuse_corrections(*seen_, store, [&](std::uint32_t b) { return keeps_place(b, store); });
+    seen_->applied = how == Correction::apply;
+  }
+  if (!seen_->applied) return false;
+  const std::vector<footprints::MovedBuilding> moved = observation::movements(*seen_);
+  for (const footprints::MovedBuilding& m : moved) seen_->before.emplace_back(m.building, store.polygons(m.building));
+  footprints::move_buildings(located_.extract, shards, moved, located_.projection);
+  return !moved.empty();
+}
+
+void ImageryStage::tell(BuildRecord& record) const {
+  if (!seen_) return;
+  record.images = seen_->images;
+  if (inputs_.tile) return;  // the build of the whole told it
+  for (const observation::ImageReceipt& image : seen_->images) {
+    const std::string& path = image.description.source.path;
+    if (image.fit.state == observation::ImageState::misfit) {
+      ++record.summary.images_misfit;
+      progress_.warn(fmt::format("IMAGE_MISFIT: {} does not fit the map and is not used: {}", path, image.fit.why));
+    } else if (image.fit.state == observation::ImageState::undecided) {
+      progress_.warn(fmt::format("IMAGE_UNDECIDED: whether {} fits the map is not known: {}", path, image.fit.why));
+    }
+  }
+  std::map<RowState, std::uint64_t> states;
+  for (const observation::OutlineReceipt& receipt : seen_->outlines) ++states[receipt.state];
+  std::string figures;
+  for (const auto& [state, count] : states)
+    figures += fmt::format("{}{} {}", figures.empty() ? "" : ", ", base::with_thousands(count),
+                           state == RowState::corrected && seen_->applied ? "moved" : observation::words(state));
+  record.summary.figures["imagery.json"] = figures;
+}
+
+}  // namespace blockrand::run

@@ -1,0 +1,83 @@
+#include "pipeline/outputs/imagery/imagery_document.h"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/outputs/imagery/seen_outline.h"
+
+namespace blockrand::outputs {
+namespace {
+
+using observation::RowState;
+
+struct Seen {
+  Seen() : store(3) {
+    for (std::uint32_t b = 0; b < 3; ++b) {
+      footprints::StoredFootprint f;
+      f.id = {b == 2 ? model::OsmType::relation : model::OsmType::way, 100 + b};
+      store.set(b, f, {});
+    }
+    observations.images.resize(2);
+    observations.images[1].description.source = {"/maps/ortho.tif", "2023-06", "CC BY 4.0", "The town"};
+    observations.outlines.resize(3);
+    observation::OutlineReceipt& moved = observations.outlines[1];
+    moved.state = RowState::corrected, moved.row = 7, moved.image = 1;
+    moved.shift = {1.5, 1.4}, moved.centre = {500'000.123, 5'700'000.5}, moved.turn = 0.53;
+    moved.before = 0.1234, moved.after = 0.4321, moved.confidence = 0.871, moved.lean = {0.1, -0.2}, moved.eaves = 8.5;
+    observation::OutlineReceipt& undecided = observations.outlines[2];
+    undecided.state = RowState::undecided, undecided.image = 1;
+    undecided.reason = "another place fits nearly as well";
+    observations.applied = true;
+  }
+  footprints::FootprintStore store;
+  observation::ImageryObservations observations;
+};
+
+TEST(ImageryDocument, ReadsWhatItWrote) {
+  const Seen seen;
+  const ReadImagery read = read_imagery_json(imagery_json(seen.observations, seen.store));
+  EXPECT_TRUE(read.applied);
+  ASSERT_EQ(read.images.size(), 2u);
+  EXPECT_EQ(read.images[1].description.source.path, "/maps/ortho.tif");
+  EXPECT_EQ(read.images[1].description.source.licence, "CC BY 4.0");
+  ASSERT_EQ(read.outlines.size(), 3u);
+  const auto& [id, receipt] = read.outlines[1];
+  const observation::OutlineReceipt& wrote = seen.observations.outlines[1];
+  EXPECT_EQ(id.text(), "w101");
+  EXPECT_EQ(receipt.state, RowState::corrected);
+  EXPECT_EQ(receipt.row, 7u);
+  EXPECT_EQ(receipt.shift, wrote.shift);
+  EXPECT_EQ(receipt.centre, wrote.centre);
+  EXPECT_EQ(receipt.turn, wrote.turn);
+  EXPECT_EQ(receipt.before, wrote.before);
+  EXPECT_EQ(receipt.confidence, wrote.confidence);
+  EXPECT_EQ(receipt.eaves, wrote.eaves);
+  EXPECT_EQ(read.outlines[0].second.image, observation::OutlineReceipt::kNoImage);
+  EXPECT_EQ(read.outlines[2].first.text(), "r102");
+  EXPECT_EQ(read.outlines[2].second.reason, "another place fits nearly as well");
+}
+
+TEST(ImageryDocument, RefusesWhatItCannotHaveWritten) {
+  EXPECT_THROW(read_imagery_json("{}"), std::exception);
+  EXPECT_THROW(read_imagery_json(R"({"applied":true,"images":[],"buildings":[{"id":"w1","state":"lost"}]})"),
+               std::exception);
+  EXPECT_THROW(
+      read_imagery_json(R"({"applied":true,"images":[],"buildings":[{"id":"w1","state":"corrected","image":0}]})"),
+      std::exception);
+}
+
+TEST(SeenOutlines, TellWhatWasDoneInWords) {
+  const Seen seen;
+  const SeenOutlines lookup = seen_outlines(&seen.observations, seen.store);
+  EXPECT_FALSE(lookup({model::OsmType::way, 100})) << "no image shows it";
+  EXPECT_FALSE(lookup({model::OsmType::way, 9})) << "there is none";
+  EXPECT_EQ(
+      imagery_text(*lookup({model::OsmType::way, 101})),
+      "moved 2.05 m to the NE, turned by 0.5 degrees, as ortho.tif of 2023-06 shows it (walls on edges: 0.12 where "
+      "mapped, 0.43 there; confidence 0.87)");
+  EXPECT_EQ(imagery_text(*lookup({model::OsmType::relation, 102})),
+            "left where it is mapped: another place fits nearly as well (ortho.tif of 2023-06)");
+  EXPECT_FALSE(seen_outlines(nullptr, seen.store)) << "no images";
+}
+
+}  // namespace
+}  // namespace blockrand::outputs
