@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "importers/imagery/aerial_image.h"
 #include "pipeline/model/point.h"
 #include "pipeline/model/polygon.h"
+#include "pipeline/observation/roof_view.h"
 
 namespace blockrand::observation {
 
@@ -59,6 +61,7 @@ struct OutlineReceipt {
 
 struct ImageReceipt {
   bool leans = false;
+  std::optional<double> sun_azimuth;      ///< degrees clockwise from north, by the roofs
   double flight_height = 0, support = 0;  ///< LeanField
   importers::imagery::ImageDescription description;
   ImageFit fit;
@@ -67,6 +70,7 @@ struct ImageReceipt {
 struct ImageryObservations {
   std::vector<ImageReceipt> images;
   std::vector<OutlineReceipt> outlines;  ///< by building number; empty: nobody looked for them
+  std::vector<RoofView> roofs;           ///< as `outlines`
   bool applied = false;  ///< what is `corrected` stands where the image shows it, not where it is mapped
   /// The repaired outlines of what was moved, from before, by building number in ascending order.
   std::vector<std::pair<std::uint32_t, std::vector<model::Polygon>>> before;

@@ -5,10 +5,12 @@
 #include <map>
 
 #include "pipeline/base/parallel.h"
+#include "pipeline/footprints/move_buildings.h"
 #include "pipeline/footprints/terrace_rows.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/observation/image_fit.h"
 #include "pipeline/observation/lean.h"
+#include "pipeline/observation/roof_view.h"
 #include "pipeline/observation/row_match.h"
 #include "pipeline/observation/verdict.h"
 
@@ -62,6 +64,7 @@ class Observer {
     ImageryObservations out;
     const footprints::FootprintStore& store = of_.footprints;
     out.outlines.resize(store.size());
+    out.roofs.resize(store.size());
     rows_ = footprints::find_terrace_rows(store, kRowLink);
     row_of_.assign(store.size(), 0);
     for (std::uint32_t r = 0; r < rows_.size(); ++r)
@@ -76,15 +79,17 @@ class Observer {
     }
     if (correct_ == Correction::off) {
       out.outlines.clear();
+      out.roofs.clear();
       return out;
     }
     progress_.begin("match outlines", rows_.size() * images_.size(), "rows");
     for (std::size_t k = 0; k < images_.size(); ++k) {
-      if (out.images[k].fit.state != ImageState::used) continue;
-      sight(static_cast<std::uint32_t>(k));
+      if (out.images[k].fit.state == ImageState::misfit) continue;
+      field_ = {};
+      if (out.images[k].fit.state == ImageState::used) sight(static_cast<std::uint32_t>(k));
       out.images[k].leans = field_.leans(), out.images[k].flight_height = field_.flight_height(),
       out.images[k].support = field_.support();
-      match_rows(static_cast<std::uint32_t>(k), out);
+      match_rows(static_cast<std::uint32_t>(k), out.images[k].fit.state == ImageState::used, out);
     }
     return out;
   }
@@ -186,6 +191,12 @@ class Observer {
     return place.lon >= area.west && place.lon <= area.east && place.lat >= area.south && place.lat <= area.north;
   }
 
+  /// Some of a box may lie in the image.
+  bool near(const importers::imagery::AerialImage& image, const geometry::PlanBox& box) const {
+    return within(image, box.centre()) || within(image, box.minimum) || within(image, box.maximum) ||
+           within(image, {box.minimum.x, box.maximum.y}) || within(image, {box.maximum.x, box.minimum.y});
+  }
+
   /// Where the image shows each outline, before anything is known of its lean.
   void sight(std::uint32_t image) {
     const ImageWindows windows(images_[image], of_.projection, kCoarsePixel);
@@ -213,45 +224,108 @@ class Observer {
     field_ = LeanField(sighted);
   }
 
-  void match_rows(std::uint32_t image, ImageryObservations& out) {
+  /// \param fits  the image is known to lie right: else its roofs are looked at, and no outline is judged by it
+  void match_rows(std::uint32_t image, bool fits, ImageryObservations& out) {
     const ImageWindows windows(images_[image], of_.projection, kPixel);
-    std::vector<RowMatch> matches(rows_.size());
-    std::vector<Point2> centres(rows_.size());
-    std::vector<char> known(rows_.size(), 1);  // the lean of all its buildings
+    /// What is known of a row when it was looked at.
+    struct Looked {
+      RowMatch match;
+      Verdict verdict;
+      Point2 centre;
+      std::vector<RoofView> roofs;  ///< by outline
+    };
+    std::vector<Looked> looked(rows_.size());
     base::ordered_parallel(
         rows_.size(), workers_, static_cast<std::size_t>(workers_) * 8,
         [&](std::size_t r) {
           const SearchedRow row = searched_row(rows_[r]);
-          centres[r] = row.centre;
-          for (const SearchedOutline& o : row.outlines) known[r] = known[r] && o.lean_known;
-          if (row.outlines.empty() || !within(images_[image], row.centre)) return;
-          matches[r] = match_row(row, windows, {}, kContrast);
+          looked[r].centre = row.centre;
+          if (std::ranges::none_of(row.outlines, [&](const SearchedOutline& o) { return near(images_[image], o.box); }))
+            return;
+          looked[r].verdict = {RowState::undecided, "too little of its row lies in the image", 0};
+          if (fits) {
+            looked[r].match = match_row(row, windows, {}, kContrast);
+            const bool known = std::ranges::all_of(row.outlines, &SearchedOutline::lean_known);
+            if (looked[r].match.seen) looked[r].verdict = judge(looked[r].match, known);
+          } else {
+            looked[r].verdict.reason = "whether the image fits the map is not known";
+          }
+          look_at_roofs(rows_[r], row, windows, looked[r].match, looked[r].verdict, looked[r].roofs);
         },
         [&](std::size_t r) {
           progress_.advance_to(image * rows_.size() + r + 1);
-          if (!matches[r].seen) return;
-          const Verdict verdict = judge(matches[r], known[r]);
+          const Looked row = std::move(looked[r]);
+          looked[r] = {};
+          std::size_t place = 0;
           for (const std::uint32_t b : rows_[r].buildings) {
-            if (!searchable(b)) continue;
-            OutlineReceipt& receipt = out.outlines[b];
+            if (!searchable(b) || row.roofs.empty()) continue;
+            const RoofView& roof = row.roofs[place++];
+            if (roof.pixels == 0) continue;  // the image does not show it
             // Where images overlap, the one that is surest speaks.
-            if (receipt.state != RowState::outside && receipt.confidence >= verdict.confidence) continue;
-            const RowMatch& m = matches[r];
-            receipt.state = verdict.state, receipt.reason = std::string(verdict.reason);
-            receipt.confidence = rounded(verdict.confidence, 1000);
-            receipt.row = static_cast<std::uint32_t>(r);
-            receipt.image = image;
-            // Rounded as imagery.json has them: whoever reads them there moves buildings by the same.
-            receipt.shift = rounded(m.shift), receipt.centre = rounded(centres[r]);
-            receipt.turn = rounded(m.turn, 100);
-            receipt.before = rounded(m.here, 10000), receipt.after = rounded(m.best, 10000);
-            receipt.mean = m.mean, receipt.deviation = m.deviation, receipt.second = m.second,
-            receipt.weight = m.weight;
-            const double eaves = eaves_of(b);
-            receipt.lean = rounded(field_.at(of_.footprints[b].box.centre(), eaves).value_or(Point2{}));
-            receipt.eaves = rounded(eaves, 10);
+            if (out.outlines[b].state != RowState::outside && out.outlines[b].confidence >= row.verdict.confidence)
+              continue;
+            out.outlines[b] = receipt(image, static_cast<std::uint32_t>(r), b, row.match, row.verdict, row.centre);
+            out.roofs[b] = roof;
           }
         });
+    judge_roofs(image, out);
+  }
+
+  /// When all roofs of an image were looked at, they tell where its sun stood.
+  static void judge_roofs(std::uint32_t image, ImageryObservations& out) {
+    std::vector<std::uint32_t> here;
+    std::vector<RoofView> roofs;
+    for (std::uint32_t b = 0; b < out.roofs.size(); ++b)
+      if (out.outlines[b].image == image && out.roofs[b].pixels > 0) here.push_back(b), roofs.push_back(out.roofs[b]);
+    const std::optional<double> sun = sun_azimuth(roofs);
+    out.images[image].sun_azimuth = sun;
+    if (sun)
+      for (const std::uint32_t b : here) judge_roof(out.roofs[b], *sun);
+  }
+
+  OutlineReceipt receipt(std::uint32_t image, std::uint32_t row, std::uint32_t building, const RowMatch& m,
+                         const Verdict& verdict, Point2 centre) const {
+    // Rounded as imagery.json has them: whoever reads them there moves buildings by the same.
+    OutlineReceipt receipt;
+    receipt.state = verdict.state, receipt.reason = std::string(verdict.reason);
+    receipt.confidence = rounded(verdict.confidence, 1000);
+    receipt.row = row;
+    receipt.image = image;
+    receipt.shift = rounded(m.shift), receipt.centre = rounded(centre);
+    receipt.turn = rounded(m.turn, 100);
+    receipt.before = rounded(m.here, 10000), receipt.after = rounded(m.best, 10000);
+    receipt.mean = m.mean, receipt.deviation = m.deviation, receipt.second = m.second, receipt.weight = m.weight;
+    const double eaves = eaves_of(building);
+    receipt.lean = rounded(field_.at(of_.footprints[building].box.centre(), eaves).value_or(Point2{}));
+    receipt.eaves = rounded(eaves, 10);
+    return receipt;
+  }
+
+  /// Looks at each roof where the image shows it: at the place that was found, or, where that is not sure, as mapped.
+  void look_at_roofs(const footprints::TerraceRowPlan& plan, const SearchedRow& row, const ImageWindows& windows,
+                     const RowMatch& match, const Verdict& verdict, std::vector<RoofView>& roofs) const {
+    footprints::Movement movement{{}, row.centre, 0};
+    if (verdict.state == RowState::corrected) movement.shift = match.shift, movement.turn = match.turn;
+    std::size_t place = 0;
+    for (const std::uint32_t b : plan.buildings) {
+      if (!searchable(b)) continue;
+      const SearchedOutline& o = row.outlines[place];
+      Point2 lean = o.lean;
+      if (verdict.state == RowState::corrected && place < match.heights.size()) {
+        const double by = match.heights[place] - o.height;
+        lean.x += by * o.per_metre.x, lean.y += by * o.per_metre.y;
+      }
+      ++place;
+      std::vector<model::Polygon> polygons = of_.footprints.polygons(b);
+      for (model::Polygon& polygon : polygons) {
+        const auto move = [&](model::Ring& ring) {
+          for (Point2& p : ring.points) p = movement(p), p.x += lean.x, p.y += lean.y;
+        };
+        move(polygon.outer);
+        for (model::Ring& hole : polygon.holes) move(hole);
+      }
+      roofs.push_back(look_at_roof(polygons, windows));
+    }
   }
 
   const ObservedExtract& of_;

@@ -32,6 +32,7 @@ Json image_json(const observation::ImageReceipt& image) {
   j["margin"] = rounded(fit.margin, 100);
   j["leans"] = image.leans;
   j["flight_height_m"] = rounded(image.flight_height, 1);
+  if (image.sun_azimuth) j["sun_azimuth_deg"] = rounded(*image.sun_azimuth, 1);
   j["lean_support"] = rounded(image.support, 1000);
   return j;
 }
@@ -59,6 +60,31 @@ Json building_json(const std::string& id, const OutlineReceipt& r) {
     j["walls_m"] = rounded(r.weight, 10);
   }
   return j;
+}
+
+void add_roof(Json& j, const observation::RoofView& roof) {
+  if (roof.pixels == 0) return;
+  if (roof.colour) {
+    j["roof_colour"] = model::text(*roof.colour);
+    j["roof_colour_confidence"] = rounded(roof.colour_confidence, 100);
+  }
+  if (roof.form != observation::RoofForm::unknown) {
+    j["roof_form"] = observation::name(roof.form);
+    j["roof_form_confidence"] = rounded(roof.form_confidence, 100);
+  }
+  if (roof.ridge) {
+    j["ridge_azimuth_deg"] = rounded(*roof.ridge, 10);
+    j["ridge_confidence"] = rounded(roof.ridge_confidence, 100);
+  }
+  Json& evidence = j["roof_evidence"];
+  evidence = {{"pixels", roof.pixels},
+              {"long_m", rounded(roof.long_side, 10)},
+              {"short_m", rounded(roof.short_side, 10)},
+              {"spread", rounded(roof.spread, 1000)}};
+  for (const observation::RidgeEvidence& r : roof.ridges)
+    evidence["lines"].push_back({rounded(r.angle, 10), rounded(r.contrast, 1000), rounded(r.consistency, 100),
+                                 rounded(r.line, 1000), rounded(r.offset, 100), rounded(r.length, 10),
+                                 rounded(r.wide, 1000), rounded(r.within, 1000)});
 }
 
 model::OsmId id_of(const std::string& text) {
@@ -104,8 +130,10 @@ std::string imagery_json(const observation::ImageryObservations& seen, const foo
   j["images"] = Json::array();
   for (const observation::ImageReceipt& image : seen.images) j["images"].push_back(image_json(image));
   j["buildings"] = Json::array();
-  for (std::uint32_t b = 0; b < seen.outlines.size(); ++b)
+  for (std::uint32_t b = 0; b < seen.outlines.size(); ++b) {
     j["buildings"].push_back(building_json(footprints[b].id.text(), seen.outlines[b]));
+    if (b < seen.roofs.size()) add_roof(j["buildings"].back(), seen.roofs[b]);
+  }
   return j.dump(1) + "\n";
 }
 
