@@ -93,11 +93,12 @@ Sourced<double> Resolver::storeys() {
 
 template <class Pick>
 Sourced<Colour> Resolver::colour(std::optional<Colour> tagged, std::optional<Colour> outline_tagged,
-                                 const Sourced<std::string>& material, const std::vector<Colour>& palette,
-                                 const char* choice, Pick&& usual_applies) {
+                                 const model::InferredCandidate<Colour>& seen, const Sourced<std::string>& material,
+                                 const std::vector<Colour>& palette, const char* choice, Pick&& usual_applies) {
   std::vector<Choice<Colour>> choices;
   if (tagged) choices.push_back({*tagged, Source::tag, kTagConfidence, "tagged"});
   if (outline_tagged) choices.push_back({*outline_tagged, Source::implied, kOutlineConfidence, "the outline's colour"});
+  if (seen.confidence > 0) choices.push_back({seen.value, seen.source, static_cast<double>(seen.confidence), seen.why});
   const int index = in.defaults.material(material.value);
   if (!usual_applies() && index >= 0)
     choices.push_back({in.defaults.materials[static_cast<std::size_t>(index)].colour, Source::implied, 0.5,
@@ -130,13 +131,13 @@ void Resolver::surfaces(Attributes& a) {
   a.wall_material = material(own.wall_material, outline_wall, usual.wall_material);
   const bool flat = a.roof_shape.value == RoofShape::flat;
   a.roof_material = material(own.roof_material, outline_roof, flat ? usual.flat_roof_material : usual.roof_material);
-  a.wall_colour = colour(own.wall_colour, outline ? outline->wall_colour : std::nullopt, a.wall_material,
+  a.wall_colour = colour(own.wall_colour, outline ? outline->wall_colour : std::nullopt, {}, a.wall_material,
                          usual.wall_colours, "wall_colour", [&] {
                            return a.wall_material.source != Source::tag && a.wall_material.source != Source::implied;
                          });
   a.roof_colour = colour(
-      own.roof_colour, outline ? outline->roof_colour : std::nullopt, a.roof_material, usual.roof_colours,
-      "roof_colour",
+      own.roof_colour, outline ? outline->roof_colour : std::nullopt, building.seen_roof.colour, a.roof_material,
+      usual.roof_colours, "roof_colour",
       [&] { return !flat && a.roof_material.source != Source::tag && a.roof_material.source != Source::implied; });
 }
 

@@ -125,6 +125,11 @@ struct Resolver {
 
   double width() const { return plans.empty() ? 0 : geometry::equivalent_width(plans[0]); }
 
+  /// It stands for the whole outline, which is what an image shows.
+  bool is_whole() const { return !building.has_mapped_parts; }
+  /// Whether an image shows the ridge across the longer side; nothing where none is seen or it runs between both.
+  std::optional<bool> seen_across(model::RoofShape shape) const;
+
   model::Sourced<model::RoofShape> roof_shape();
 
   model::Sourced<model::RoofOrientation> roof_orientation(model::RoofShape shape);
@@ -181,6 +186,7 @@ struct Resolver {
 
   template <class Pick>
   model::Sourced<model::Colour> colour(std::optional<model::Colour> tagged, std::optional<model::Colour> outline_tagged,
+                                       const model::InferredCandidate<model::Colour>& seen,
                                        const model::Sourced<std::string>& material,
                                        const std::vector<model::Colour>& palette, const char* choice,
                                        Pick&& usual_applies);

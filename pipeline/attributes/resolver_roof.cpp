@@ -22,6 +22,9 @@ constexpr double kLeanPitch = 12;
 
 double tangent(double degrees) { return base::tan(degrees * base::kRadiansPerDegree); }
 
+/// Tangent of 30 degrees: a ridge that is seen runs along or across the plan when it is within that of it.
+constexpr double kOblique = 0.577;
+
 /// Full storeys under rafters: Berlin's building codes from 1887 allowed five and 22 m to the eaves, post-war ones call what has
 /// its highest floor above 22 m a tower. Of 37 houses with seven storeys and more that looked sloped 37 are tagged flat, of 29
 /// with six 14 (docs/internal/RESULTS.md, "Roofs against references").
@@ -82,6 +85,14 @@ Sourced<RoofShape> Resolver::roof_shape() {
   if (usual.roof_shape != RoofShape::flat && part && roofs::is_enclosed(plan(), part->roof_edges))
     choices.push_back(
         {RoofShape::flat, Source::geometry, kImpliedConfidence, "neighbours stand at all sides: no side for eaves"});
+  if (const auto& seen = building.seen_roof.pitched; seen.confidence > 0 && is_whole()) {
+    const bool as_usual = agreed && vote->value != RoofShape::flat && vote->value != RoofShape::other;
+    const RoofShape sloped = as_usual                              ? vote->value
+                             : usual.roof_shape != RoofShape::flat ? usual.roof_shape
+                                                                   : RoofShape::gabled;
+    choices.push_back(
+        {seen.value ? sloped : RoofShape::flat, seen.source, static_cast<double>(seen.confidence), seen.why});
+  }
   if (agreed && (vote->value == RoofShape::flat || !wide))
     choices.push_back({vote->value, vote_source,
                        inferred_candidate.confidence > 0 ? static_cast<double>(inferred_candidate.confidence)
@@ -94,9 +105,24 @@ Sourced<RoofShape> Resolver::roof_shape() {
   return first(std::move(choices));
 }
 
+std::optional<bool> Resolver::seen_across(RoofShape shape) const {
+  const auto& ridge = building.seen_roof.ridge;
+  if (ridge.confidence <= 0 || shape == RoofShape::flat || !is_whole() || plan().outer.size() < 3) return std::nullopt;
+  const model::Point2 longer = geometry::long_axis(plan().outer.points);
+  const base::SinCos r = base::sin_cos((90 - ridge.value) * base::kRadiansPerDegree);
+  const double along = std::fabs(r.cos * longer.x + r.sin * longer.y),
+               across = std::fabs(r.cos * longer.y - r.sin * longer.x);
+  // Between both a ridge has no word for its direction.
+  if (std::min(along, across) > kOblique * std::max(along, across)) return std::nullopt;
+  return across > along;
+}
+
 Sourced<RoofOrientation> Resolver::roof_orientation(RoofShape shape) {
   std::vector<Choice<RoofOrientation>> choices;
   if (own.roof_orientation) choices.push_back({*own.roof_orientation, Source::tag, kTagConfidence, "tagged"});
+  if (const auto across = seen_across(shape))
+    choices.push_back({*across ? RoofOrientation::across : RoofOrientation::along, building.seen_roof.ridge.source,
+                       static_cast<double>(building.seen_roof.ridge.confidence), building.seen_roof.ridge.why});
   if (shape != RoofShape::flat && !own.roof_direction && part && plan().outer.size() >= 3) {
     if (const auto axis = roofs::row_axis(plan(), tagged_request(own, shape, part->roof_edges))) {
       const model::Point2 longer = geometry::long_axis(plan().outer.points);

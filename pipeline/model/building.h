@@ -253,6 +253,13 @@ struct Inferred {
   float style_confidence = 0;  ///< 0: nothing is offered
 };
 
+/// What an aerial image shows of the roof over the whole outline, for values where the map is silent.
+struct SeenRoof {
+  InferredCandidate<Colour> colour;
+  InferredCandidate<bool> pitched;
+  InferredCandidate<double> ridge;  ///< degrees clockwise from north, [0, 180)
+};
+
 struct Building {
   OsmId osm;
   std::uint32_t mapped_index = kNoIndex;  ///< into Extract::buildings
@@ -268,6 +275,7 @@ struct Building {
   BuildingStyle style;             ///< what classification found
   bool style_known = false;        ///< false: it was not classified (no outline)
   Inferred inferred;               ///< and what it offers
+  SeenRoof seen_roof;              ///< and what an image shows
   StyleExplanation style_why;      ///< and what spoke for it
   std::vector<std::pair<std::string, std::string>> preset_parameters;  ///< by name; what district rules give the preset
   std::vector<DetailOverride> detail_overrides;  ///< of its storeys, edges and bays, and of its parts'

@@ -77,19 +77,15 @@ class Observer {
       out.images.back().fit = fit_image(sample(images_[k]), coarse, workers_);
       progress_.advance_to(k + 1);
     }
-    if (correct_ == Correction::off) {
-      out.outlines.clear();
-      out.roofs.clear();
-      return out;
-    }
     progress_.begin("match outlines", rows_.size() * images_.size(), "rows");
     for (std::size_t k = 0; k < images_.size(); ++k) {
       if (out.images[k].fit.state == ImageState::misfit) continue;
       field_ = {};
-      if (out.images[k].fit.state == ImageState::used) sight(static_cast<std::uint32_t>(k));
+      const bool judges = out.images[k].fit.state == ImageState::used && correct_ != Correction::off;
+      if (judges) sight(static_cast<std::uint32_t>(k));
       out.images[k].leans = field_.leans(), out.images[k].flight_height = field_.flight_height(),
       out.images[k].support = field_.support();
-      match_rows(static_cast<std::uint32_t>(k), out.images[k].fit.state == ImageState::used, out);
+      match_rows(static_cast<std::uint32_t>(k), judges, out);
     }
     return out;
   }
@@ -224,8 +220,8 @@ class Observer {
     field_ = LeanField(sighted);
   }
 
-  /// \param fits  the image is known to lie right: else its roofs are looked at, and no outline is judged by it
-  void match_rows(std::uint32_t image, bool fits, ImageryObservations& out) {
+  /// \param judges  the image is known to lie right: else its roofs are looked at, and no outline is judged by it
+  void match_rows(std::uint32_t image, bool judges, ImageryObservations& out) {
     const ImageWindows windows(images_[image], of_.projection, kPixel);
     /// What is known of a row when it was looked at.
     struct Looked {
@@ -243,12 +239,13 @@ class Observer {
           if (std::ranges::none_of(row.outlines, [&](const SearchedOutline& o) { return near(images_[image], o.box); }))
             return;
           looked[r].verdict = {RowState::undecided, "too little of its row lies in the image", 0};
-          if (fits) {
+          if (judges) {
             looked[r].match = match_row(row, windows, {}, kContrast);
             const bool known = std::ranges::all_of(row.outlines, &SearchedOutline::lean_known);
             if (looked[r].match.seen) looked[r].verdict = judge(looked[r].match, known);
           } else {
-            looked[r].verdict.reason = "whether the image fits the map is not known";
+            looked[r].verdict.reason = correct_ == Correction::off ? "outlines were not to be looked for"
+                                                                   : "whether the image fits the map is not known";
           }
           look_at_roofs(rows_[r], row, windows, looked[r].match, looked[r].verdict, looked[r].roofs);
         },
@@ -281,6 +278,12 @@ class Observer {
     out.images[image].sun_azimuth = sun;
     if (sun)
       for (const std::uint32_t b : here) judge_roof(out.roofs[b], *sun);
+    // As imagery.json has them: a tile that is built alone reads them there.
+    for (const std::uint32_t b : here) {
+      RoofView& roof = out.roofs[b];
+      for (double* p : {&roof.colour_confidence, &roof.form_confidence, &roof.ridge_confidence}) *p = rounded(*p, 100);
+      if (roof.ridge) roof.ridge = std::fmod(rounded(*roof.ridge, 10), 180);
+    }
   }
 
   OutlineReceipt receipt(std::uint32_t image, std::uint32_t row, std::uint32_t building, const RowMatch& m,

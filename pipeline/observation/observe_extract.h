@@ -25,7 +25,7 @@ struct ObservedExtract {
 
 /// Whether each image fits the map (fit_image), how its roofs lean (LeanField), and where those that fit show each row of
 /// buildings (match_row, judge). The outlines stay where they are. Deterministic for any number of workers.
-/// \param correct  off: rows are not looked for
+/// \param correct  off: rows are not looked for, their roofs are looked at as mapped
 ImageryObservations observe_extract(const ObservedExtract& of, std::span<const importers::imagery::AerialImage> images,
                                     Correction correct, int workers, base::Progress& progress);
 

@@ -40,7 +40,8 @@ base::OptionTable<ImageryOptions> imagery_options() {
           {.name = "imagery-correct",
            .key = "imagery_correct",
            .argument = "HOW",
-           .help = "outlines that the images show elsewhere: off (nobody looks for them), report (imagery.json tells "
+           .help = "outlines that the images show elsewhere: off (nobody looks for them; roofs alone are looked at), "
+                   "report (imagery.json tells "
                    "them; nothing is moved), apply (they are moved there)",
            .choices = base::words_of(kCorrections),
            .record = base::OptionRecord::yes},

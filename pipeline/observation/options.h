@@ -11,7 +11,7 @@ namespace blockrand::observation {
 
 /// What is done with outlines that an image shows elsewhere.
 enum class Correction : std::uint8_t {
-  off,     ///< nobody looks for them
+  off,     ///< nobody looks for them: roofs alone are looked at
   report,  ///< they are told
   apply    ///< they are moved there
 };

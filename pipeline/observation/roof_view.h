@@ -29,6 +29,13 @@ struct RidgeEvidence {
   double line = 0;         ///< of a narrow strip on it from both sides, by their brightness
   double offset = 0;       ///< from the middle of the plan, of half its extent across the line, [0, 1]
   double length = 0;       ///< m in the plan
+  double halves = 0;       ///< as contrast, of all that lies on both sides of the plan's middle, whatever the line
+};
+
+/// What the strips along a roof's edges have in common: sums over their pixels of brightness b and of the edge's unit
+/// normal n (outward). Slopes fall to their eaves: where edges turn to the sun, they are bright.
+struct EdgeStrips {
+  double count = 0, b = 0, bb = 0, nx = 0, ny = 0, bnx = 0, bny = 0, nxx = 0, nxy = 0, nyy = 0;
 };
 
 struct RoofView {
@@ -42,7 +49,8 @@ struct RoofView {
   // What the answers are made from.
   std::array<RidgeEvidence, 2> ridges;   ///< the clearest line along the plan's main direction, and across it
   double long_side = 0, short_side = 0;  ///< m, of the plan in these directions; the first is along
-  double spread = 0;                     ///< of brightness over the roof, by its mean
+  EdgeStrips strips;
+  double spread = 0;  ///< of brightness over the roof, by its mean
 };
 
 /// Where the sun stands in an image: clockwise from grid north, degrees; from the brighter sides of all its roofs.

@@ -366,6 +366,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
                                .assigner = assigner,
                                .overrides = inputs.overrides,
                                .styles = style_inputs,
+                               .imagery = imagery.observations(),
                                .explain = options.outputs.explain,
                                .repair = options.repair,
                                .generate = options.generate,

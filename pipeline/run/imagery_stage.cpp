@@ -90,9 +90,11 @@ void ImageryStage::take_pinned(const footprints::FootprintStore& footprints) {
   seen_->images = pinned.images;
   seen_->applied = pinned.applied;
   seen_->outlines.resize(footprints.size());
+  seen_->roofs.resize(footprints.size());
   const footprints::BuildingNumbers numbers(footprints);
-  for (const auto& [id, receipt] : pinned.outlines)
-    if (const std::uint32_t b = numbers.find(id); b != model::kNoIndex) seen_->outlines[b] = receipt;
+  for (const auto& [id, receipt, roof] : pinned.buildings)
+    if (const std::uint32_t b = numbers.find(id); b != model::kNoIndex)
+      seen_->outlines[b] = receipt, seen_->roofs[b] = roof;
 }
 
 bool ImageryStage::correct(std::span<const footprints::Shard> shards, const footprints::RepairedExtract& repaired) {

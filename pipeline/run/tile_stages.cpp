@@ -15,6 +15,7 @@
 #include "pipeline/footprints/repair/rings.h"
 #include "pipeline/masses/mass.h"
 #include "pipeline/masses/part_overlaps.h"
+#include "pipeline/observation/seen_roofs.h"
 
 namespace blockrand::run {
 
@@ -73,6 +74,7 @@ Region resolve_buildings(const footprints::Shard& shard, std::span<const std::ui
   in.vicinity.label_wall_segments(region, numbers);  // party walls turn ridges, and with them heights
   in.context_time += std::chrono::nanoseconds(std::chrono::steady_clock::now() - start).count();
   evidence::put_styles(region, numbers, in.styles, explain);
+  if (in.imagery) observation::put_seen_roofs(region, numbers, *in.imagery);
   attributes::resolve_attributes(region,
                                  {.defaults = in.defaults,
                                   .neighbours = in.neighbours,

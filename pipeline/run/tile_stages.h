@@ -23,6 +23,7 @@
 #include "pipeline/footprints/shard.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/region.h"
+#include "pipeline/observation/imagery.h"
 
 namespace blockrand::run {
 
@@ -42,7 +43,8 @@ struct TileInputs {
   const attributes::DistrictAssigner& assigner;
   const attributes::Overrides& overrides;
   const evidence::StyleInputs& styles;
-  bool explain = true;  ///< reasons are kept
+  const observation::ImageryObservations* imagery = nullptr;  ///< null: no images
+  bool explain = true;                                        ///< reasons are kept
   const repair::RepairOptions& repair;
   const attributes::GenerateOptions& generate;
   std::uint64_t seed = 1;

@@ -1,6 +1,7 @@
 #include "pipeline/outputs/imagery/imagery_document.h"
 
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -81,10 +82,14 @@ void add_roof(Json& j, const observation::RoofView& roof) {
               {"long_m", rounded(roof.long_side, 10)},
               {"short_m", rounded(roof.short_side, 10)},
               {"spread", rounded(roof.spread, 1000)}};
+  const observation::EdgeStrips& e = roof.strips;
+  evidence["strips"] = {rounded(e.count, 1), rounded(e.b, 1),    rounded(e.bb, 1),   rounded(e.nx, 10),
+                        rounded(e.ny, 10),   rounded(e.bnx, 10), rounded(e.bny, 10), rounded(e.nxx, 10),
+                        rounded(e.nxy, 10),  rounded(e.nyy, 10)};
   for (const observation::RidgeEvidence& r : roof.ridges)
     evidence["lines"].push_back({rounded(r.angle, 10), rounded(r.contrast, 1000), rounded(r.consistency, 100),
                                  rounded(r.line, 1000), rounded(r.offset, 100), rounded(r.length, 10),
-                                 rounded(r.wide, 1000), rounded(r.within, 1000)});
+                                 rounded(r.wide, 1000), rounded(r.within, 1000), rounded(r.halves, 1000)});
 }
 
 model::OsmId id_of(const std::string& text) {
@@ -122,6 +127,29 @@ OutlineReceipt receipt_of(const nlohmann::json& j) {
   return r;
 }
 
+observation::RoofView roof_of(const nlohmann::json& j) {
+  observation::RoofView roof;
+  if (!j.contains("roof_evidence")) return roof;
+  roof.pixels = j.at("roof_evidence").at("pixels").get<std::uint32_t>();
+  if (j.contains("roof_colour")) {
+    unsigned colour = 0;
+    const std::string text = j.at("roof_colour").get<std::string>();
+    if (std::sscanf(text.c_str(), "#%6x", &colour) != 1) throw std::runtime_error("no colour: " + text);
+    roof.colour = model::Colour{static_cast<std::uint8_t>(colour >> 16), static_cast<std::uint8_t>(colour >> 8),
+                                static_cast<std::uint8_t>(colour)};
+    roof.colour_confidence = j.at("roof_colour_confidence").get<double>();
+  }
+  if (j.contains("roof_form")) {
+    roof.form = named(j.at("roof_form").get<std::string>(), observation::RoofForm::pitched);
+    roof.form_confidence = j.at("roof_form_confidence").get<double>();
+  }
+  if (j.contains("ridge_azimuth_deg")) {
+    roof.ridge = j.at("ridge_azimuth_deg").get<double>();
+    roof.ridge_confidence = j.at("ridge_confidence").get<double>();
+  }
+  return roof;
+}
+
 }  // namespace
 
 std::string imagery_json(const observation::ImageryObservations& seen, const footprints::FootprintStore& footprints) {
@@ -154,7 +182,7 @@ ReadImagery read_imagery_json(const std::string& text) {
     const OutlineReceipt receipt = receipt_of(b);
     if (receipt.image != OutlineReceipt::kNoImage && receipt.image >= read.images.size())
       throw std::runtime_error("an image is not there");
-    read.outlines.emplace_back(id_of(b.at("id").get<std::string>()), receipt);
+    read.buildings.push_back({id_of(b.at("id").get<std::string>()), receipt, roof_of(b)});
   }
   return read;
 }

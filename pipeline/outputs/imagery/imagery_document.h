@@ -18,7 +18,12 @@ std::string imagery_json(const observation::ImageryObservations& observations,
 struct ReadImagery {
   bool applied = false;
   std::vector<observation::ImageReceipt> images;  ///< path, date, licence, attribution, state and shift alone
-  std::vector<std::pair<model::OsmId, observation::OutlineReceipt>> outlines;
+  struct Building {
+    model::OsmId id;
+    observation::OutlineReceipt receipt;
+    observation::RoofView roof;  ///< without its evidence
+  };
+  std::vector<Building> buildings;
 };
 
 /// \throws std::exception  it is no imagery.json of this version

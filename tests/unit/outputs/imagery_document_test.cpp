@@ -27,6 +27,11 @@ struct Seen {
     undecided.state = RowState::undecided, undecided.image = 1;
     undecided.reason = "another place fits nearly as well";
     observations.applied = true;
+    observations.roofs.resize(3);
+    observation::RoofView& roof = observations.roofs[1];
+    roof.pixels = 900, roof.colour = model::Colour{200, 10, 3}, roof.colour_confidence = 0.72;
+    roof.form = observation::RoofForm::pitched, roof.form_confidence = 0.91;
+    roof.ridge = 12.5, roof.ridge_confidence = 0.83;
   }
   footprints::FootprintStore store;
   observation::ImageryObservations observations;
@@ -39,8 +44,8 @@ TEST(ImageryDocument, ReadsWhatItWrote) {
   ASSERT_EQ(read.images.size(), 2u);
   EXPECT_EQ(read.images[1].description.source.path, "/maps/ortho.tif");
   EXPECT_EQ(read.images[1].description.source.licence, "CC BY 4.0");
-  ASSERT_EQ(read.outlines.size(), 3u);
-  const auto& [id, receipt] = read.outlines[1];
+  ASSERT_EQ(read.buildings.size(), 3u);
+  const auto& [id, receipt, roof] = read.buildings[1];
   const observation::OutlineReceipt& wrote = seen.observations.outlines[1];
   EXPECT_EQ(id.text(), "w101");
   EXPECT_EQ(receipt.state, RowState::corrected);
@@ -51,9 +56,16 @@ TEST(ImageryDocument, ReadsWhatItWrote) {
   EXPECT_EQ(receipt.before, wrote.before);
   EXPECT_EQ(receipt.confidence, wrote.confidence);
   EXPECT_EQ(receipt.eaves, wrote.eaves);
-  EXPECT_EQ(read.outlines[0].second.image, observation::OutlineReceipt::kNoImage);
-  EXPECT_EQ(read.outlines[2].first.text(), "r102");
-  EXPECT_EQ(read.outlines[2].second.reason, "another place fits nearly as well");
+  EXPECT_EQ(read.buildings[0].receipt.image, observation::OutlineReceipt::kNoImage);
+  EXPECT_EQ(roof.pixels, 900u);
+  EXPECT_EQ(roof.colour, seen.observations.roofs[1].colour);
+  EXPECT_EQ(roof.colour_confidence, 0.72);
+  EXPECT_EQ(roof.form, observation::RoofForm::pitched);
+  EXPECT_EQ(roof.form_confidence, 0.91);
+  EXPECT_EQ(roof.ridge, 12.5);
+  EXPECT_EQ(roof.ridge_confidence, 0.83);
+  EXPECT_EQ(read.buildings[2].id.text(), "r102");
+  EXPECT_EQ(read.buildings[2].receipt.reason, "another place fits nearly as well");
 }
 
 TEST(ImageryDocument, RefusesWhatItCannotHaveWritten) {
