@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -369,6 +370,19 @@ settings::CommandText explain_text() {
                          {"4", "output could not be written or internal error"}}};
 }
 
+namespace {
+
+/// Where its tile's aerial image stands, with the outlines on it; empty for a build without.
+std::string overlay_text(const std::string& folder, const outputs::FoundExplanation& found) {
+  const Json j = Json::parse(found.json, nullptr, false);
+  if (!j.is_object() || !j.contains("imagery")) return {};
+  const std::string path = folder + "/imagery/" + j.value("tile", "") + ".png";
+  std::error_code error;
+  return std::filesystem::is_regular_file(path, error) ? "\nThe aerial image with its outline: " + path + "\n" : "";
+}
+
+}  // namespace
+
 int run_explain(const std::vector<std::string>& arguments) {
   const settings::CommandLine line = settings::read_command_line(settings::kExplain, arguments);
   if (line.help) {
@@ -390,7 +404,9 @@ int run_explain(const std::vector<std::string>& arguments) {
   if (s.json)
     std::printf("%s\n", found->json.c_str());
   else
-    std::fputs(explanation_text(*found, is_body ? s.id : "", s.edges, s.style).c_str(), stdout);
+    std::fputs(
+        (explanation_text(*found, is_body ? s.id : "", s.edges, s.style) + overlay_text(s.folder, *found)).c_str(),
+        stdout);
   return kSuccess;
 }
 

@@ -44,7 +44,13 @@ double usual_eaves(double area) { return area < 25 ? 2.5 : area < 60 ? 3.2 : are
 /// m: in an image whose lean nobody knows, higher houses may be seen metres from where they stand.
 constexpr double kHighWithoutLean = 9;
 /// Shares of a height: storeys are 2.6 to 4 m high.
-constexpr double kTaggedUncertainty = 0.2, kGuessedUncertainty = 0.5;
+constexpr double kTaggedUncertainty = 0.2, kNeighbourUncertainty = 0.35, kGuessedUncertainty = 0.5;
+/// How many times its uncertainty a height may be off, so that the lean explains a movement; m: how far beside the lean's
+/// direction that still holds; m: less of a lean explains nothing.
+constexpr double kHeightDoubt = 2.5, kBesideLean = 0.5, kLeastLean = 0.4;
+/// m, and how many: tagged buildings of a like size that speak for one that nobody measured.
+constexpr double kNeighbourReach = 120;
+constexpr std::size_t kFewestNeighbours = 3;
 
 std::uint64_t mixed(std::uint64_t v) {
   v ^= v >> 33, v *= 0xff51afd7ed558ccdULL, v ^= v >> 33, v *= 0xc4ceb9fe1a85ec53ULL, v ^= v >> 33;
@@ -69,6 +75,7 @@ class Observer {
     row_of_.assign(store.size(), 0);
     for (std::uint32_t r = 0; r < rows_.size(); ++r)
       for (const std::uint32_t b : rows_[r].buildings) row_of_[b] = r;
+    find_eaves();
     progress_.begin("fit images", images_.size(), "images");
     for (std::size_t k = 0; k < images_.size(); ++k) {
       const ImageWindows coarse(images_[k], of_.projection, kCoarsePixel);
@@ -148,7 +155,7 @@ class Observer {
       o.lean = lean.value_or(Point2{});
       if (field_.leans()) {
         o.per_metre = {o.lean.x / o.height, o.lean.y / o.height};
-        o.uncertainty = is_tagged(b) ? kTaggedUncertainty : kGuessedUncertainty;
+        o.uncertainty = uncertainty_[b];
       }
       for (const WallPiece& p : row.outlines.back().pieces)
         x += p.middle.x * p.length, y += p.middle.y * p.length, length += p.length;
@@ -161,25 +168,55 @@ class Observer {
     return row;
   }
 
-  /// m: of a building's eaves, by its tags, else by its area.
-  double eaves_of(std::uint32_t building) const {
-    const model::MappedBuilding& b = of_.extract.buildings[of_.footprints[building].lead];
-    const model::MappedAttributes& a = b.attributes;
+  /// m: of a building's eaves, by its own tags; nothing where nobody counted or measured.
+  std::optional<double> tagged_eaves(std::uint32_t building) const {
+    const model::MappedAttributes& a = of_.extract.buildings[of_.footprints[building].lead].attributes;
     if (a.height) {
       if (a.roof_height) return std::max(2.0, static_cast<double>(*a.height - *a.roof_height));
       return std::max(2.0, static_cast<double>(*a.height) * (a.roof_shape == model::RoofShape::flat ? 1 : kEavesShare));
     }
     if (a.storeys) return std::max(1.0, static_cast<double>(*a.storeys)) * kStorey + kPlinth;
+    return std::nullopt;
+  }
+
+  double area_of(std::uint32_t building) const {
     double area = 0;
     of_.footprints.for_each_ring(building,
                                  [&](std::span<const Point2> ring, bool) { area += geometry::signed_area(ring); });
-    return usual_eaves(area);
+    return area;
   }
 
-  bool is_tagged(std::uint32_t building) const {
-    const model::MappedAttributes& a = of_.extract.buildings[of_.footprints[building].lead].attributes;
-    return a.height || a.storeys;
+  /// Eaves of all buildings: tagged ones, then the median of tagged buildings of a like size nearby, then the guess.
+  void find_eaves() {
+    const footprints::FootprintStore& store = of_.footprints;
+    std::vector<double> guess(store.size());
+    std::vector<geometry::PlanBox> tagged(store.size());
+    eaves_.assign(store.size(), 0);
+    uncertainty_.assign(store.size(), kGuessedUncertainty);
+    for (std::uint32_t b = 0; b < store.size(); ++b) {
+      if (store[b].box.empty()) continue;
+      guess[b] = usual_eaves(area_of(b));
+      const std::optional<double> told = tagged_eaves(b);
+      if (!told) continue;
+      eaves_[b] = *told, uncertainty_[b] = kTaggedUncertainty;
+      tagged[b] = store[b].box;
+    }
+    const geometry::BoxIndex index(std::move(tagged));
+    for (std::uint32_t b = 0; b < store.size(); ++b) {
+      if (eaves_[b] > 0 || store[b].box.empty()) continue;
+      std::vector<double> like;
+      for (const std::uint32_t other : index.near(store[b].box, kNeighbourReach))
+        if (guess[other] == guess[b]) like.push_back(eaves_[other]);  // its own is tagged: it was set above
+      eaves_[b] = guess[b];
+      if (like.size() < kFewestNeighbours) continue;
+      const auto middle = like.begin() + static_cast<std::ptrdiff_t>(like.size() / 2);
+      std::nth_element(like.begin(), middle, like.end());
+      eaves_[b] = *middle, uncertainty_[b] = kNeighbourUncertainty;
+    }
   }
+
+  double eaves_of(std::uint32_t building) const { return eaves_[building]; }
+  bool is_tagged(std::uint32_t building) const { return uncertainty_[building] <= kTaggedUncertainty; }
 
   bool within(const importers::imagery::AerialImage& image, Point2 p) const {
     const georef::GeoBox& area = image.describe().area;
@@ -242,7 +279,8 @@ class Observer {
           if (judges) {
             looked[r].match = match_row(row, windows, {}, kContrast);
             const bool known = std::ranges::all_of(row.outlines, &SearchedOutline::lean_known);
-            if (looked[r].match.seen) looked[r].verdict = judge(looked[r].match, known);
+            if (looked[r].match.seen)
+              looked[r].verdict = judge(looked[r].match, known, explained_by_height(row, looked[r].match));
           } else {
             looked[r].verdict.reason = correct_ == Correction::off ? "outlines were not to be looked for"
                                                                    : "whether the image fits the map is not known";
@@ -284,6 +322,25 @@ class Observer {
       for (double* p : {&roof.colour_confidence, &roof.form_confidence, &roof.ridge_confidence}) *p = rounded(*p, 100);
       if (roof.ridge) roof.ridge = std::fmod(rounded(*roof.ridge, 10), 180);
     }
+  }
+
+  /// A movement along the lean of roofs whose heights nobody told is perhaps only another height.
+  static bool explained_by_height(const SearchedRow& row, const RowMatch& match) {
+    Point2 lean, reach;
+    double length = 0;
+    for (const SearchedOutline& o : row.outlines) {
+      double own = 0;
+      for (const WallPiece& p : o.pieces) own += p.length;
+      lean.x += own * o.lean.x, lean.y += own * o.lean.y;
+      const double share = o.uncertainty * kHeightDoubt;
+      reach.x += own * o.per_metre.x * o.height * share, reach.y += own * o.per_metre.y * o.height * share;
+      length += own;
+    }
+    const double size = std::sqrt(lean.x * lean.x + lean.y * lean.y);
+    if (length <= 0 || size < kLeastLean * length) return false;
+    const double along = std::fabs(match.shift.x * lean.x + match.shift.y * lean.y) / size,
+                 across = std::fabs(match.shift.x * lean.y - match.shift.y * lean.x) / size;
+    return across <= kBesideLean && along <= std::sqrt(reach.x * reach.x + reach.y * reach.y) / length;
   }
 
   OutlineReceipt receipt(std::uint32_t image, std::uint32_t row, std::uint32_t building, const RowMatch& m,
@@ -338,6 +395,8 @@ class Observer {
   base::Progress& progress_;
   std::vector<footprints::TerraceRowPlan> rows_;
   std::vector<std::uint32_t> row_of_;  ///< by building
+  std::vector<double> eaves_;          ///< m, by building
+  std::vector<double> uncertainty_;    ///< of them, as their share
   LeanField field_;
 };
 

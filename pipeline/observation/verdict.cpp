@@ -25,7 +25,7 @@ double confidence_of(const RowMatch& m) {
 
 }  // namespace
 
-Verdict judge(const RowMatch& match, bool lean_known) {
+Verdict judge(const RowMatch& match, bool lean_known, bool by_height) {
   if (!match.seen) return {RowState::outside, "too little of its walls lies in an image", 0};
   if (match.deviation <= 0) return {RowState::undecided, "the image shows nothing there", 0};
   if (!lean_known) return {RowState::undecided, "how far roofs lean in the image is not known there", 0};
@@ -35,6 +35,7 @@ Verdict judge(const RowMatch& match, bool lean_known) {
     return {RowState::left_alone, "it stands where the image shows it", confidence};
   if (match.best - match.here < kLeastGain * match.deviation)
     return {RowState::left_alone, "it stands nearly as well where it is mapped", confidence};
+  if (by_height) return {RowState::undecided, "another height of its roof would explain it as well", confidence};
   if (match.best - match.second < kLeastMargin * match.deviation)
     return {RowState::undecided, "another place fits nearly as well", confidence};
   if (confidence < kSureCorrection)

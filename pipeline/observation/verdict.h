@@ -20,6 +20,7 @@ inline constexpr double kLeastCorrection = 0.4;
 inline constexpr double kSureCorrection = 0.7;
 
 /// \param lean_known  how far the image shows the row's roofs from their ground
-Verdict judge(const RowMatch& match, bool lean_known);
+/// \param by_height   other heights of its roofs, as likely as those that were reckoned with, would show them there too
+Verdict judge(const RowMatch& match, bool lean_known, bool by_height = false);
 
 }  // namespace blockrand::observation

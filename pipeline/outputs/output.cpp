@@ -17,11 +17,11 @@ double bytes_per_building(const OutputOptions& options, int lod) {
   return each;
 }
 
-std::string attribution(const OutputContext& context, bool receipts) {
+std::string attribution(const OutputContext& context) {
   std::string text = kAttribution;
-  if (!context.imagery || context.imagery->outlines.empty() || !(receipts || context.imagery->applied)) return text;
+  if (!context.imagery) return text;
   for (const observation::ImageReceipt& image : context.imagery->images) {
-    if (image.fit.state != observation::ImageState::used) continue;
+    if (image.fit.state == observation::ImageState::misfit) continue;
     const importers::imagery::ImageSource& source = image.description.source;
     const std::string name = source.path.substr(source.path.find_last_of('/') + 1);
     text += fmt::format("; aerial image {}", source.attribution.empty() ? name : source.attribution);

@@ -47,10 +47,11 @@ struct OutputContext {
   std::span<const footprints::Shard> shards;
   const footprints::RepairedExtract& repaired;
   const context::ContextExtract& context;
-  const observation::ImageryObservations* imagery = nullptr;      ///< null: no images
-  SeenOutlines seen;                                              ///< of these images
-  std::optional<model::TileId> alone;                             ///< the one tile that is built, of a larger build
-  std::span<const model::ReportRow> earlier;                      ///< rows from before the tiles, sorted
+  const observation::ImageryObservations* imagery = nullptr;  ///< null: no images
+  std::span<const importers::imagery::AerialImage> images{};  ///< parallel to those of `imagery`; empty: read earlier
+  SeenOutlines seen;                                          ///< of these images
+  std::optional<model::TileId> alone;                         ///< the one tile that is built, of a larger build
+  std::span<const model::ReportRow> earlier;                  ///< rows from before the tiles, sorted
   std::function<std::string(std::string_view preset)> rule_file;  ///< as ExplainOptions has it; may be empty
   int workers = 1;
 };
@@ -130,9 +131,8 @@ double bytes_per_building(const OutputOptions& options, int lod);
 // ---- What several formats say alike.
 
 inline constexpr const char* kAttribution = "\u00a9 OpenStreetMap contributors, ODbL 1.0";
-/// Of everything that an output was made from: the map, and the images, with their licences.
-/// \param receipts  the output tells what images show; else they count only where they moved buildings
-std::string attribution(const OutputContext& context, bool receipts);
+/// Of everything that an output was made from: the map, and the images that were looked at, with their licences.
+std::string attribution(const OutputContext& context);
 std::string generator();                      ///< "Blockrand 0.1.0"
 std::string model_name(model::TileId id);     ///< "Blockrand 15/17600/12900"
 std::string tile_name(model::TileId id);      ///< "15_17600_12900"

@@ -122,6 +122,12 @@ Plan::Plan(const PlanBox& box, double pixels_per_metre, Colour paper) : box_(box
   }
 }
 
+Plan::Plan(const PlanBox& box, double pixels_per_metre, Image under) : Plan(box, pixels_per_metre) {
+  if (under.width != image_.width || under.height != image_.height || under.rgb.size() != image_.rgb.size())
+    throw std::invalid_argument("a picture of another size than the plan");
+  image_ = std::move(under);
+}
+
 void Plan::cover(const std::vector<std::vector<Point2>>& contours, Colour colour, double opacity) {
   double min_x = 1e9, min_y = 1e9, max_x = -1e9, max_y = -1e9;
   std::vector<std::vector<Point2>> pixels(contours.size());

@@ -28,6 +28,9 @@ class Plan {
   /// \param pixels_per_metre  the picture is as large as the box needs
   /// \throws std::invalid_argument  an empty box, no scale, or more than 8192 pixels along a side
   Plan(const PlanBox& box, double pixels_per_metre, model::Colour paper = {255, 255, 255});
+  /// On a picture. \param under  as large as a sheet of that box and scale
+  /// \throws std::invalid_argument  as above, or a picture of another size
+  Plan(const PlanBox& box, double pixels_per_metre, Image under);
 
   /// \param opacity  [0, 1]
   void fill(const model::Polygon& polygon, model::Colour colour, double opacity = 1);

@@ -343,6 +343,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       .repaired = repaired,
       .context = context,
       .imagery = imagery.observations(),
+      .images = inputs.images,
       .seen = outputs::seen_outlines(imagery.observations(), repaired.footprints),
       .alone = tile ? std::optional(tile->id) : std::nullopt,
       .earlier = account.earlier(),

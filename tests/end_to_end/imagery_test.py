@@ -6,6 +6,7 @@ import random
 import sqlite3
 import struct
 import unittest
+import xml.etree.ElementTree as ET
 
 from blockrand_run import SAMPLE, BuildTest, blockrand, files_of, main, read_json
 from osm_files import METRE, ring, write_xml
@@ -136,7 +137,7 @@ class Imagery(BuildTest):
         self.assertIn('5 seen elsewhere', self.last.out)
         # The map stays as it is drawn: only told is asked for.
         plain = self.build(self.map, 'plain', '--lod', '1')
-        self.same_files(out, plain, 'tiles', 'tileset.json')
+        self.assertEqual(middles(out), middles(plain))
         self.assertNotIn('imagery.json', files_of(plain))
         self.assertNotIn('imagery', read_json(plain, 'build.json'))
         self.assertEqual(blockrand('validate', out).code, 0)
@@ -168,6 +169,23 @@ class Imagery(BuildTest):
         self.assertIn('as village.ppm shows it', ' '.join(explained.out.split()))
         receipt = json.loads(blockrand('explain', out, 'w105', '--json').out)['imagery']
         self.assertEqual((receipt['state'], receipt['image']), ('moved', 'village.ppm'))
+        # Pictures: one of the tile, and the corrections on a page.
+        picture, = [f for f in files_of(out) if f.startswith('imagery/')]
+        width, height = struct.unpack('>2I', open(os.path.join(out, picture), 'rb').read(24)[16:])
+        self.assertTrue(1000 < width < 2000 and 1000 < height < 2000, (width, height))
+        page = read_text(out, 'imagery.html')
+        self.assertEqual(page.count('<figure>'), 5)
+        self.assertEqual(page.count('as village.ppm shows it'), 5)
+        self.assertIn(f'href="{picture}"', page)
+        ET.fromstring(page.split('\n', 1)[1].replace('<!DOCTYPE html>', ''))
+        self.assertIn(os.path.join(out, picture), explained.out)
+        # Roofs were painted in four colours: what stands is what the image shows.
+        colours = dict(query(out, "SELECT id, roof_colour FROM buildings WHERE roof_colour_source = 'imagery'"))
+        self.assertGreater(len(colours), 60)
+        painted = [(190, 110, 80), (150, 150, 155), (205, 195, 180), (110, 60, 50)]
+        for colour in colours.values():
+            seen = tuple(int(colour[k:k + 2], 16) for k in (1, 3, 5))
+            self.assertLess(min(math.dist(seen, p) for p in painted), 6, colour)
         # The outline as OpenStreetMap has it stays known.
         corner = json.loads(blockrand('explain', out, 'w105', '--json').out)['outline']
         before = json.loads(blockrand('explain', self.path('mapped'), 'w105', '--json').out)['outline']
@@ -242,10 +260,13 @@ class Imagery(BuildTest):
         self.assertIn('far.ppm: shows nothing of the extract', self.last.err)
         self.assertEqual([i['state'] for i in read_json(out, 'imagery.json')['images']], ['undecided', 'used'])
 
-    def test_off_judges_images_alone(self):
-        out = self.build(self.map, 'off', '--imagery', self.image, '--imagery-correct', 'off', '--lod', '0', '--formats', 'gpkg')
+    def test_off_looks_at_roofs_alone(self):
+        out = self.build(self.map, 'off', '--imagery', self.image, '--imagery-correct', 'off', '--lod', '0', '--formats', 'gpkg', '--no-report')
         imagery = read_json(out, 'imagery.json')
-        self.assertEqual((imagery['images'][0]['state'], imagery['buildings']), ('used', []))
+        self.assertEqual(imagery['images'][0]['state'], 'used')
+        self.assertEqual({(b['state'], b['reason']) for b in imagery['buildings']}, {('undecided', 'outlines were not to be looked for')})
+        self.assertTrue(all('roof_colour' in b for b in imagery['buildings']))
+        self.assertEqual([f for f in files_of(out) if f.startswith('imagery')], ['imagery.json'])
 
 
 if __name__ == '__main__':

@@ -15,7 +15,7 @@ CityGmlOptions citygml_options(const model::Region& region, const OutputContext&
                    ? "urn:ogc:def:crs:EPSG::" + number
                    : "urn:ogc:def:crs,crs:EPSG::" + number + ",crs:EPSG::" + vertical.substr(vertical.find(':') + 1);
   o.height_reference = context.heights.words;
-  o.attribution = attribution(context, true);
+  o.attribution = attribution(context);
   o.seen = context.seen;
   o.name = model_name(region.tile);
   o.evidence = context.options.evidence;

@@ -11,7 +11,7 @@ CityJsonOptions cityjson_options(const OutputContext& context, std::string name)
   o.crs_code = context.crs.authority_code;
   o.vertical_crs = context.heights.vertical_crs;
   o.height_reference = context.heights.words;
-  o.attribution = attribution(context, true);
+  o.attribution = attribution(context);
   o.seen = context.seen;
   o.name = std::move(name);
   o.generator = generator();

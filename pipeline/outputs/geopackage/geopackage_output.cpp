@@ -32,7 +32,7 @@ geometry::PlanBox box_of(const model::Region& region) {
 }
 
 std::string words_about_data(const OutputContext& context) {
-  std::string words = attribution(context, true);
+  std::string words = attribution(context);
   if (!context.data_time.empty()) words += ", data of " + std::string(context.data_time);
   if (!context.heights.words.empty()) words += ". Heights: " + context.heights.words;
   return words;
@@ -101,7 +101,7 @@ class GeoPackageOutput : public Output {
       : context_(context),
         writer_(context.folder.staging_path() + "/" + kFile,
                 {context.crs.authority_code, std::string(context.data_time), context.heights.words,
-                 attribution(context, true), context.imagery && !context.imagery->outlines.empty()}) {}
+                 attribution(context), context.imagery && !context.imagery->outlines.empty()}) {}
 
   std::any write_tile(FinishedTile& tile) const override {
     return TileProduct{geopackage_rows(tile.region, context_.lod), box_of(tile.region)};

@@ -55,7 +55,7 @@ GlbOptions glb_options(const OutputContext& context, const georef::EnuFrame& fra
   o.crs = context.crs.authority_code;
   o.height_reference = context.heights.in_tiles;
   o.generator = generator();
-  o.attribution = attribution(context, false);
+  o.attribution = attribution(context);
   o.profile = context.options.profile;
   o.evidence = context.options.evidence;
   o.frame.longitude = frame.origin().lon;
@@ -207,7 +207,7 @@ class GltfOutput : public Output {
       options.crs = context_.crs.authority_code;
       options.height_reference = context_.heights.words;
       options.generator = generator();
-      options.attribution = attribution(context_, false);
+      options.attribution = attribution(context_);
       build.files.push_back(context_.folder.write("tileset.json", write_tileset(tiles_, options)));
     }
     if (context_.options.single_glb) write_model(build, context_);

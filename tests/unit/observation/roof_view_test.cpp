@@ -125,7 +125,7 @@ TEST_F(RoofPicture, TheSunTellsSlopesFromPaint) {
   judge_roof(roofs[3], *sun);
   EXPECT_NE(roofs[3].form, RoofForm::pitched);
   EXPECT_FALSE(roofs[3].ridge);
-  RoofView odd = look([](double, double v) { return v > 0 ? kRed : kShade; });
+  RoofView odd = look([](double, double v) { return v > 0 ? kGrey : Colour{75, 75, 77}; });
   judge_roof(odd, *sun);
   EXPECT_NE(odd.form, RoofForm::pitched);
 }

@@ -1,0 +1,123 @@
+#include "pipeline/outputs/imagery/imagery_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "pipeline/base/markup.h"
+#include "pipeline/base/text.h"
+#include "pipeline/outputs/imagery/seen_outline.h"
+#include "pipeline/outputs/report/html_text.h"
+
+namespace blockrand::outputs {
+namespace {
+
+using observation::OutlineReceipt;
+using observation::RowState;
+
+/// m: around a house on its picture, and a pixel of it.
+constexpr double kAround = 8, kChipPixel = 0.25, kLargestChip = 120;
+
+double size_of(const OutlineReceipt& r) { return std::sqrt(r.shift.x * r.shift.x + r.shift.y * r.shift.y); }
+
+std::string swatch(model::Colour colour, std::string_view what) {
+  return fmt::format(
+      "<li><span style=\"background:{};border:1px solid #888;display:inline-block;width:1em;height:1em\"></span> "
+      "{}</li>",
+      model::text(colour), what);
+}
+
+std::string image_rows(const OverlayInputs& in) {
+  std::string out;
+  for (const observation::ImageReceipt& image : in.seen.images) {
+    const importers::imagery::ImageSource& source = image.description.source;
+    out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}: {}</td></tr>\n",
+                       escaped(source.path.substr(source.path.find_last_of('/') + 1)), escaped(source.date),
+                       escaped(source.attribution + (source.licence.empty() ? "" : ", " + source.licence)),
+                       observation::name(image.fit.state), escaped(image.fit.why));
+  }
+  return out;
+}
+
+std::string count_rows(const OverlayInputs& in) {
+  std::map<std::pair<RowState, std::string>, std::uint64_t> counts;
+  for (const OutlineReceipt& r : in.seen.outlines) ++counts[{r.state, r.reason}];
+  std::string out;
+  for (const auto& [key, count] : counts) {
+    const auto& [state, reason] = key;
+    const std::string_view what = state == RowState::corrected && in.seen.applied ? "moved" : observation::words(state);
+    out += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"n\">{}</td></tr>\n", what, escaped(reason),
+                       base::with_thousands(count));
+  }
+  return out;
+}
+
+/// A house with its surroundings; the largest halls are cut.
+std::string chip(const OverlayInputs& in, std::uint32_t building) {
+  geometry::PlanBox box = in.footprints[building].box;
+  const model::Point2 middle = box.centre();
+  const double x = std::min(kLargestChip / 2, (box.maximum.x - box.minimum.x) / 2 + kAround),
+               y = std::min(kLargestChip / 2, (box.maximum.y - box.minimum.y) / 2 + kAround);
+  box = {{middle.x - x, middle.y - y}, {middle.x + x, middle.y + y}};
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t b = 0; b < in.seen.outlines.size(); ++b)
+    if (in.footprints[b].box.near(box, 0)) near.push_back(b);
+  const picture::Image image = draw_overlay(in, box, kChipPixel, near);
+  std::string out = fmt::format("<img width=\"{}\" height=\"{}\" alt=\"{} in the image\" src=\"data:image/png;base64,",
+                                image.width, image.height, in.footprints[building].id.text());
+  base::append_base64(out, picture::palette_png(image, 128));
+  return out + "\"/>";
+}
+
+}  // namespace
+
+std::string imagery_page(const OverlayInputs& in, const std::vector<std::string>& overlays) {
+  std::vector<std::uint32_t> largest;
+  for (std::uint32_t b = 0; b < in.seen.outlines.size(); ++b)
+    if (in.seen.outlines[b].state == RowState::corrected) largest.push_back(b);
+  const std::size_t all = largest.size();
+  std::ranges::stable_sort(largest, [&](std::uint32_t a, std::uint32_t b) {
+    return size_of(in.seen.outlines[a]) > size_of(in.seen.outlines[b]);
+  });
+  largest.resize(std::min(largest.size(), kPicturedCorrections));
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<link rel=\"icon\" "
+      "href=\"data:,\"/>\n"
+      "<title>What the images changed</title>\n<style>";
+  out += base::kPageStyle;
+  out += "</style>\n</head>\n<body>\n<main>\n<h1>What the images changed</h1>\n";
+  out += in.seen.applied ? "<p>Rows of houses that an image surely shows elsewhere were moved there.</p>\n"
+                         : "<p>Nothing was moved: that is to be asked for (--imagery-correct apply).</p>\n";
+  out +=
+      "<h2>Images</h2>\n<table><thead><tr><th>Image</th><th>Date</th><th>By whom, licence</th><th>Does it fit the "
+      "map?</th>"
+      "</tr></thead><tbody>\n" +
+      image_rows(in) + "</tbody></table>\n";
+  out +=
+      "<h2>Buildings</h2>\n<table><thead><tr><th>What</th><th>Why</th><th "
+      "class=\"n\">Buildings</th></tr></thead><tbody>\n" +
+      count_rows(in) + "</tbody></table>\n";
+  const std::string what = in.seen.applied ? "moved" : "seen elsewhere";
+  out += fmt::format("<h2>The largest of {} {}</h2>\n<ul>", base::with_thousands(all), what);
+  out += swatch(kBefore, "as mapped") + swatch(kAfterUnsure, "where the image shows it, just sure enough") +
+         swatch(kAfterSure, "the same, quite sure") + swatch(kRefused, "the same, but it stays as mapped") +
+         swatch(kAsMapped, "stays as mapped") + "</ul>\n<p>Outlines are drawn where the image shows the roofs.</p>\n";
+  if (largest.empty()) out += "<p>None.</p>\n";
+  for (const std::uint32_t b : largest) {
+    const OutlineReceipt& r = in.seen.outlines[b];
+    const SeenOutline seen{r, in.seen.images[r.image], in.seen.applied};
+    out += "<figure>" + chip(in, b) + "<figcaption>" + osm_link(in.footprints[b].id) + ": " +
+           escaped(imagery_text(seen)) + "</figcaption></figure>\n";
+  }
+  if (!overlays.empty()) {
+    out += "<h2>Tiles</h2>\n<ul>\n";
+    for (const std::string& path : overlays) out += "<li><a href=\"" + path + "\">" + path + "</a></li>\n";
+    out += "</ul>\n";
+  }
+  return out + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace blockrand::outputs

@@ -1,0 +1,91 @@
+#include "pipeline/outputs/imagery/overlay.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/footprints/move_buildings.h"
+#include "pipeline/picture/plan.h"
+
+namespace blockrand::outputs {
+namespace {
+
+using model::Point2;
+using observation::RowState;
+
+constexpr std::uint8_t kNoImage = 128;  // grey where no image has a pixel
+/// Pixels: width of lines.
+constexpr double kLine = 1.6;
+
+model::Colour after_colour(double confidence) {
+  const double sure = std::clamp((confidence - 0.7) / 0.3, 0.0, 1.0);
+  const auto mix = [sure](std::uint8_t a, std::uint8_t b) {
+    return static_cast<std::uint8_t>(std::lround(a + sure * (static_cast<double>(b) - a)));
+  };
+  return {mix(kAfterUnsure.r, kAfterSure.r), mix(kAfterUnsure.g, kAfterSure.g), mix(kAfterUnsure.b, kAfterSure.b)};
+}
+
+/// Outlines as they were before images moved any.
+std::vector<model::Polygon> outlines_before(const OverlayInputs& in, std::uint32_t building) {
+  const auto& before = in.seen.before;
+  const auto found = std::lower_bound(before.begin(), before.end(), building,
+                                      [](const auto& entry, std::uint32_t b) { return entry.first < b; });
+  return found != before.end() && found->first == building ? found->second : in.footprints.polygons(building);
+}
+
+/// Draws a building's outline, moved and then displaced by the lean of its roof.
+void draw(picture::Plan& plan, std::vector<model::Polygon> polygons, const footprints::Movement* movement, Point2 lean,
+          model::Colour colour) {
+  for (model::Polygon& polygon : polygons) {
+    const auto ring = [&](model::Ring& r) {
+      for (Point2& p : r.points) {
+        if (movement) p = (*movement)(p);
+        p.x += lean.x, p.y += lean.y;
+      }
+      plan.stroke(r.points, kLine * plan.metres_per_pixel(), colour, true);
+    };
+    ring(polygon.outer);
+    for (model::Ring& hole : polygon.holes) ring(hole);
+  }
+}
+
+}  // namespace
+
+picture::Image draw_overlay(const OverlayInputs& in, const geometry::PlanBox& box, double pixel,
+                            std::span<const std::uint32_t> buildings) {
+  const auto column = static_cast<long long>(std::floor(box.minimum.x / pixel)),
+             row = static_cast<long long>(std::floor(-box.maximum.y / pixel));
+  const int width = static_cast<int>(std::ceil(box.maximum.x / pixel)) - static_cast<int>(column),
+            height = static_cast<int>(std::ceil(-box.minimum.y / pixel)) - static_cast<int>(row);
+  picture::Image picture{width, height, {}};
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  picture.rgb.assign(pixels * 3, kNoImage);
+  std::vector<char> filled(pixels, 0);
+  for (std::size_t k = 0; k < in.images.size(); ++k) {
+    if (in.seen.images[k].fit.state == observation::ImageState::misfit) continue;
+    const importers::imagery::Patch patch = in.images[k].patch(in.projection, pixel, column, row, width, height);
+    for (std::size_t i = 0; i < pixels; ++i) {
+      if (filled[i] || !patch.valid[i]) continue;
+      picture.rgb[3 * i] = patch.red[i], picture.rgb[3 * i + 1] = patch.green[i],
+                      picture.rgb[3 * i + 2] = patch.blue[i];
+      filled[i] = 1;
+    }
+  }
+  const double west = static_cast<double>(column) * pixel, north = -static_cast<double>(row) * pixel;
+  picture::Plan plan({west, north - height * pixel, west + width * pixel, north}, 1 / pixel, std::move(picture));
+  // What stays lies below what moved.
+  for (const bool moved : {false, true})
+    for (const std::uint32_t b : buildings) {
+      const observation::OutlineReceipt& r = in.seen.outlines[b];
+      if (r.image >= in.images.size()) continue;
+      const bool elsewhere = r.state == RowState::corrected || r.state == RowState::refused;
+      if (elsewhere != moved) continue;
+      const std::vector<model::Polygon> before = outlines_before(in, b);
+      draw(plan, before, nullptr, r.lean, elsewhere ? kBefore : kAsMapped);
+      if (!elsewhere) continue;
+      const footprints::Movement movement{r.shift, r.centre, r.turn};
+      draw(plan, before, &movement, r.lean, r.state == RowState::refused ? kRefused : after_colour(r.confidence));
+    }
+  return plan.image();
+}
+
+}  // namespace blockrand::outputs

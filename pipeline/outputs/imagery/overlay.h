@@ -1,0 +1,38 @@
+// Images with the outlines on them: as mapped, and where the image shows them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "importers/imagery/aerial_image.h"
+#include "pipeline/footprints/footprint_store.h"
+#include "pipeline/geometry/box_index.h"
+#include "pipeline/observation/imagery.h"
+#include "pipeline/picture/image.h"
+
+namespace blockrand::outputs {
+
+/// What overlays are drawn from; all of it outlives them.
+struct OverlayInputs {
+  const observation::ImageryObservations& seen;
+  const footprints::FootprintStore& footprints;
+  std::span<const importers::imagery::AerialImage> images;  ///< parallel to seen.images
+  const georef::Projection& projection;
+};
+
+/// The colours of outlines, for legends: as mapped where it stays; as mapped where the image shows it elsewhere; there, by
+/// confidence from 0.7 to 1; refused.
+inline constexpr model::Colour kAsMapped{255, 255, 255}, kBefore{255, 214, 0}, kAfterUnsure{255, 120, 0},
+    kAfterSure{0, 230, 255}, kRefused{214, 92, 255};
+
+/// A picture of a box: images that fit the map, the first that has a pixel, the others' parts grey; outlines where the
+/// images show the roofs, that is displaced by their lean. Deterministic.
+/// \param box        m in the build CRS
+/// \param pixel      m
+/// \param buildings  by number
+picture::Image draw_overlay(const OverlayInputs& in, const geometry::PlanBox& box, double pixel,
+                            std::span<const std::uint32_t> buildings);
+
+}  // namespace blockrand::outputs
