@@ -24,7 +24,9 @@ using model::Point2;
 constexpr double kPixel = 0.2, kCoarsePixel = 0.5;
 /// m: buildings nearer than this move as one, as repair has it.
 constexpr double kRowLink = 1.0;
-/// Outlines that an image is fitted with at most.
+/// Outlines that an image is fitted with first; where they leave a doubt (a margin under kClearMargin), at most.
+constexpr std::size_t kFirstFitSample = 150;
+constexpr double kClearMargin = 5;
 constexpr std::size_t kFitSample = 400;
 /// Of a metre of wall that two buildings share: often no edge shows there.
 constexpr double kPartyWallWeight = 0.15;
@@ -81,7 +83,10 @@ class Observer {
       const ImageWindows coarse(images_[k], of_.projection, kCoarsePixel);
       out.images.emplace_back();
       out.images.back().description = images_[k].describe();
-      out.images.back().fit = fit_image(sample(images_[k]), coarse, workers_);
+      ImageFit& fit = out.images.back().fit;
+      fit = fit_image(sample(images_[k], kFirstFitSample), coarse, workers_);
+      if (fit.state != ImageState::used || fit.margin < kClearMargin)
+        fit = fit_image(sample(images_[k], kFitSample), coarse, workers_);
       progress_.advance_to(k + 1);
     }
     progress_.begin("match outlines", rows_.size() * images_.size(), "rows");
@@ -119,7 +124,7 @@ class Observer {
   }
 
   /// Outlines within an image, spread over it, in an order that hangs on their ids alone.
-  std::vector<SearchedOutline> sample(const importers::imagery::AerialImage& image) const {
+  std::vector<SearchedOutline> sample(const importers::imagery::AerialImage& image, std::size_t most) const {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> chosen;
     for (std::uint32_t b = 0; b < of_.footprints.size(); ++b) {
       if (!searchable(b)) continue;
@@ -127,7 +132,7 @@ class Observer {
       chosen.emplace_back(mixed(static_cast<std::uint64_t>(of_.footprints[b].id.number)), b);
     }
     std::sort(chosen.begin(), chosen.end());
-    if (chosen.size() > kFitSample) chosen.resize(kFitSample);
+    if (chosen.size() > most) chosen.resize(most);
     std::vector<SearchedOutline> out;
     for (const auto& [key, b] : chosen) out.push_back(searched(b, nullptr));
     return out;

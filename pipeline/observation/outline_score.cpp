@@ -17,10 +17,23 @@ constexpr int kStrip = 2;
 /// Of the displacements of a piece: with more of them beyond the image's pixels it is not seen.
 constexpr double kMostUnseen = 0.4;
 
+/// Of the bands, and of what the image does not show.
+using Sample = std::array<float, 4>;
+
+/// The patch's pixels side by side: four numbers are one register.
+std::vector<Sample> samples_of(const Patch& patch) {
+  std::vector<Sample> out(patch.valid.size());
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = {static_cast<float>(patch.red[i]), static_cast<float>(patch.green[i]), static_cast<float>(patch.blue[i]),
+              patch.valid[i] ? 0.0F : 1.0F};
+  return out;
+}
+
 /// The image along a piece: sums along lines parallel to it.
 class Profile {
  public:
-  Profile(const Patch& patch, Point2 middle, Point2 along, double length, double reach)
+  Profile(const Patch& patch, const std::vector<Sample>& pixels, Point2 middle, Point2 along, double length,
+          double reach)
       : step_(patch.size),
         lines_(static_cast<int>(std::ceil(reach / step_)) + kStrip + 1),
         cells_(std::max(1, static_cast<int>(std::lround(length / step_)))),
@@ -38,24 +51,17 @@ class Profile {
       const double y0 = (patch.north - middle.y - along.y * first - normal.y * i * step_) / step_ - 0.5;
       for (int j = 0; j < columns; ++j, ++k) {
         const double x = x0 + along.x * j, y = y0 - along.y * j;
-        const int c = static_cast<int>(std::floor(x)), r = static_cast<int>(std::floor(y));
-        if (c < 0 || r < 0 || c + 1 >= patch.width || r + 1 >= patch.height) {
+        if (x < 0 || y < 0 || x >= patch.width - 1 || y >= patch.height - 1) {
           sum[3] += 1;
         } else {
-          const auto at =
-              static_cast<std::size_t>(r) * static_cast<std::size_t>(patch.width) + static_cast<std::size_t>(c);
-          const auto below = at + static_cast<std::size_t>(patch.width);
-          if ((patch.valid[at] & patch.valid[at + 1] & patch.valid[below] & patch.valid[below + 1]) == 0) {
-            sum[3] += 1;
-          } else {
-            const auto u = static_cast<float>(x - c), v = static_cast<float>(y - r);
-            const float w00 = (1 - u) * (1 - v), w10 = u * (1 - v), w01 = (1 - u) * v, w11 = u * v;
-            const auto value = [&](const std::vector<std::uint8_t>& band) {
-              return w00 * static_cast<float>(band[at]) + w10 * static_cast<float>(band[at + 1]) +
-                     w01 * static_cast<float>(band[below]) + w11 * static_cast<float>(band[below + 1]);
-            };
-            sum[0] += value(patch.red), sum[1] += value(patch.green), sum[2] += value(patch.blue);
-          }
+          const int c = static_cast<int>(x), r = static_cast<int>(y);
+          const std::size_t width = static_cast<std::size_t>(patch.width);
+          const Sample* const at = pixels.data() + static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c);
+          const Sample* const below = at + width;
+          const auto u = static_cast<float>(x - c), v = static_cast<float>(y - r);
+          const float w00 = (1 - u) * (1 - v), w10 = u * (1 - v), w01 = (1 - u) * v, w11 = u * v;
+          for (std::size_t n = 0; n < 4; ++n)
+            sum[n] += w00 * at[0][n] + w10 * at[1][n] + w01 * below[0][n] + w11 * below[1][n];
         }
         sums_[k] = sum;
       }
@@ -81,7 +87,7 @@ class Profile {
   }
 
  private:
-  using Sum = std::array<float, 4>;  // of the bands, and of samples without a pixel
+  using Sum = Sample;
   const Sum& sum(int line, int cell) const {
     return sums_[static_cast<std::size_t>(line + lines_) * static_cast<std::size_t>(2 * side_ + cells_ + 1) +
                  static_cast<std::size_t>(cell)];
@@ -124,6 +130,7 @@ ScoreMap score_outline(std::span<const WallPiece> pieces, const Patch& patch, co
   ScoreMap map(grid);
   std::vector<double> total(map.score.size(), 0.0);
   std::vector<float> table;
+  const std::vector<Sample> pixels = samples_of(patch);
   for (const WallPiece& piece : pieces) {
     const double weight = piece.length * piece.weight;
     if (weight <= 0) continue;
@@ -132,7 +139,7 @@ ScoreMap score_outline(std::span<const WallPiece> pieces, const Patch& patch, co
                         centre.y + from.x * turn.sin + from.y * turn.cos};
     const Point2 along{piece.along.x * turn.cos - piece.along.y * turn.sin,
                        piece.along.x * turn.sin + piece.along.y * turn.cos};
-    const Profile profile(patch, middle, along, piece.length, grid.reach());
+    const Profile profile(patch, pixels, middle, along, piece.length, grid.reach());
     const int lines = profile.lines(), side = profile.side(), columns = 2 * side + 1;
     table.resize(static_cast<std::size_t>(2 * lines + 1) * static_cast<std::size_t>(columns));
     std::size_t k = 0, unseen = 0;

@@ -18,6 +18,8 @@ using model::Polygon;
 /// first leaves too little.
 constexpr double kInset = 0.7, kSmallInset = 0.3;
 constexpr std::size_t kFewestPixels = 30;
+/// Of the box around a roof: of larger ones every second pixel is looked at, or every third.
+constexpr double kMostPixels = 20000;
 /// m: the strip along an edge that shows the slope above it.
 constexpr double kStripDepth = 2.5;
 
@@ -64,24 +66,50 @@ void add(EdgeStrips& s, double b, Point2 n) {
   s.nxx += n.x * n.x, s.nxy += n.x * n.y, s.nyy += n.y * n.y;
 }
 
+/// Where a line of pixels crosses the rings, m east, ascending: between the first two it is inside, and so on.
+std::vector<double> crossings(std::span<const Polygon> plan, double y) {
+  std::vector<double> out;
+  const auto ring = [&](const model::Ring& r) {
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      const Point2 a = r.points[i], b = r.points[(i + 1) % r.size()];
+      if ((a.y > y) != (b.y > y)) out.push_back(a.x + (y - a.y) * (b.x - a.x) / (b.y - a.y));
+    }
+  };
+  for (const Polygon& polygon : plan) {
+    ring(polygon.outer);
+    for (const model::Ring& hole : polygon.holes) ring(hole);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 Roof pixels_of(std::span<const Polygon> plan, const Patch& patch) {
   Roof roof;
-  for (int r = 0; r < patch.height; ++r)
-    for (int c = 0; c < patch.width; ++c) {
-      const auto i = static_cast<std::size_t>(r) * static_cast<std::size_t>(patch.width) + static_cast<std::size_t>(c);
-      const Point2 p{patch.west + (c + 0.5) * patch.size, patch.north - (r + 0.5) * patch.size};
-      if (std::ranges::none_of(plan, [&](const Polygon& polygon) { return geometry::contains(polygon, p); })) continue;
-      if (!patch.valid[i]) {
-        ++roof.missing;
-        continue;
+  const double all = static_cast<double>(patch.width) * patch.height;
+  const int every = std::max(1, static_cast<int>(std::sqrt(all / kMostPixels)));
+  for (int r = 0; r < patch.height; r += every) {
+    const double y = patch.north - (r + 0.5) * patch.size;
+    const std::vector<double> borders = crossings(plan, y);
+    for (std::size_t k = 0; k + 1 < borders.size(); k += 2) {
+      const auto column = [&](double x) { return static_cast<int>(std::ceil((x - patch.west) / patch.size - 0.5)); };
+      const int first = std::max(0, column(borders[k])), last = std::min(patch.width, column(borders[k + 1]));
+      for (int c = (first + every - 1) / every * every; c < last; c += every) {
+        const auto i =
+            static_cast<std::size_t>(r) * static_cast<std::size_t>(patch.width) + static_cast<std::size_t>(c);
+        if (!patch.valid[i]) {
+          ++roof.missing;
+          continue;
+        }
+        const Point2 p{patch.west + (c + 0.5) * patch.size, y};
+        const NearestEdge edge = nearest_edge(plan, p);
+        if (edge.distance < kSmallInset) continue;
+        roof.pixels.push_back({p.x, p.y, patch.red[i], patch.green[i], patch.blue[i]});
+        roof.inset.push_back(edge.distance);
+        if (edge.distance >= kInset && edge.distance <= kStripDepth)
+          add(roof.strips, roof.pixels.back().brightness(), edge.outward);
       }
-      const NearestEdge edge = nearest_edge(plan, p);
-      if (edge.distance < kSmallInset) continue;
-      roof.pixels.push_back({p.x, p.y, patch.red[i], patch.green[i], patch.blue[i]});
-      roof.inset.push_back(edge.distance);
-      if (edge.distance >= kInset && edge.distance <= kStripDepth)
-        add(roof.strips, roof.pixels.back().brightness(), edge.outward);
     }
+  }
   return roof;
 }
 

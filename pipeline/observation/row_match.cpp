@@ -12,8 +12,8 @@ using model::Point2;
 /// m: of the first search, and of the search around its best place.
 constexpr double kStep = 0.25, kFineStep = 0.1;
 constexpr int kFineHalf = 5;
-/// Degrees between the turns that are tried.
-constexpr double kTurnStep = 0.5;
+/// Degrees between the turns that are tried first.
+constexpr double kTurnStep = 1;
 /// m: a peak so far from the best one is another place.
 constexpr double kElsewhere = 1.25;
 /// Of the walls by length: less is not enough to judge a row by.
@@ -221,10 +221,8 @@ RowMatch match_row(const SearchedRow& row, const ImageWindows& windows, const Se
   }
   const double steepest =
       row.radius > 0 ? std::min(bounds.turn, bounds.at_end / row.radius * base::kDegreesPerRadian) : 0;
-  const int turns = static_cast<int>(steepest / kTurnStep);
   match.best = -1;
-  for (int k = 0; k <= 2 * turns; ++k) {
-    const double turn = (k % 2 == 0 ? k / 2 : -(k + 1) / 2) * kTurnStep;  // 0, -1, 1, -2, ...
+  const auto try_turn = [&](double turn) {
     const base::SinCos angle = base::sin_cos(turn * base::kRadiansPerDegree);
     ScoreMap sum(fine);
     std::vector<double> total(sum.score.size(), 0.0);
@@ -240,11 +238,17 @@ RowMatch match_row(const SearchedRow& row, const ImageWindows& windows, const Se
     }
     for (std::size_t i = 0; i < total.size() && weight > 0; ++i) sum.score[i] = static_cast<float>(total[i] / weight);
     const Peak peak = highest(sum);
-    if (peak.score <= match.best) continue;
+    if (peak.score <= match.best) return;
     match.best = peak.score;
     match.turn = turn;
     match.shift = {start.x + peak.i * kFineStep, start.y + peak.j * kFineStep};
-  }
+  };
+  // Whole steps first, 0, -1, 1, -2 ..., then half a step to both sides of the best.
+  const int turns = static_cast<int>(steepest / kTurnStep);
+  for (int k = 0; k <= 2 * turns; ++k) try_turn((k % 2 == 0 ? k / 2 : -(k + 1) / 2) * kTurnStep);
+  const double best_turn = match.turn;
+  for (const double turn : {best_turn - kTurnStep / 2, best_turn + kTurnStep / 2})
+    if (std::fabs(turn) <= steepest) try_turn(turn);
   return match;
 }
 

@@ -10,7 +10,7 @@ namespace blockrand::observation {
 namespace {
 
 /// Deviations: a movement that gains less is none; a place that is less better than another one is not known.
-constexpr double kLeastGain = 0.6, kLeastMargin = 0.3;
+constexpr double kLeastGain = 0.6, kLeastMargin = 0.5;
 
 /// Weights of a logistic regression (fit.py of tests/bench/imagery) on rows of Kampala and of synthetic images that were
 /// moved by known amounts; what is measured is cut at the values behind which nothing changes.
