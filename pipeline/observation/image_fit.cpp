@@ -33,6 +33,9 @@ constexpr double kContrast = 12;
 /// Of an outline's walls: more of them beyond the image's edge make its scores uneven.
 constexpr double kMostMissing = 0.6;
 
+/// Variance of an outline's scores over all displacements: with less of it the image is blank there.
+constexpr double kBlank = 1e-8;
+
 /// The largest value within `radius` cells of each.
 void spread(std::vector<float>& values, int side, int radius) {
   std::vector<float> rows(values.size());
@@ -159,7 +162,12 @@ ImageFit fit_image(std::span<const SearchedOutline> outlines, const ImageWindows
               const double s = static_cast<double>(maps[n].at(i, j));
               total += s, squares += s * s, count += 1;
             }
-        const double mean = total / count, deviation = std::sqrt(std::max(1e-9, squares / count - mean * mean));
+        const double mean = total / count, variance = squares / count - mean * mean;
+        if (variance < kBlank) {  // nothing is to be seen there
+          maps[n].weight = 0;
+          return;
+        }
+        const double deviation = std::sqrt(variance);
         for (float& s : maps[n].score) s = static_cast<float>((static_cast<double>(s) - mean) / deviation);
       },
       [&](std::size_t n) {
@@ -169,7 +177,7 @@ ImageFit fit_image(std::span<const SearchedOutline> outlines, const ImageWindows
         }
       });
   if (fit.outlines < kFewest) {
-    fit.why = fmt::format("{} outlines lie wholly in it; {} are needed to judge its place", fit.outlines, kFewest);
+    fit.why = fmt::format("it shows edges around {} outlines; {} are needed to judge its place", fit.outlines, kFewest);
     return fit;
   }
   // Of all errors that outlines may have, those with which the best place stands out most.

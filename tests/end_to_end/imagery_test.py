@@ -3,8 +3,10 @@ import json
 import math
 import os
 import random
+import shutil
 import sqlite3
 import struct
+import subprocess
 import unittest
 import xml.etree.ElementTree as ET
 
@@ -259,6 +261,27 @@ class Imagery(BuildTest):
         out = self.build(self.map, 'two', '--imagery', far, '--imagery', self.image, '--lod', '0', '--formats', 'gpkg')
         self.assertIn('far.ppm: shows nothing of the extract', self.last.err)
         self.assertEqual([i['state'] for i in read_json(out, 'imagery.json')['images']], ['undecided', 'used'])
+
+    @unittest.skipUnless(shutil.which('gdal_translate'), 'no gdal_translate')
+    def test_odd_files_are_refused_or_read_and_never_break_it(self):
+        def made(name, *options, source=self.image):
+            subprocess.run(['gdal_translate', '-q', *options, source, self.path(name)], check=True, stderr=subprocess.DEVNULL)
+            return self.path(name)
+        whole = made('whole.tif', '-a_srs', 'EPSG:4326')
+        with open(whole, 'rb') as f:
+            start = f.read(300_000)
+        with open(self.path('huge_and_empty.tif'), 'wb') as f:
+            f.write(b'II*\0')
+            f.truncate(10 * 2**30)  # sparse
+        for path, word in ((self.place('cut.tif', start), 'cut short'), (made('one.tif', '-outsize', '1', '1', source=whole), 'pixels are'),
+                           (made('wide.tif', '-outsize', '200000', '2', source=whole), 'pixels are'), (made('metres.tif', '-a_srs', 'EPSG:3857'), 'shows nothing of the extract'),
+                           (made('alpha.tif', '-b', '1', '-colorinterp', 'alpha', source=whole), 'no band of colours'),
+                           (self.path('huge_and_empty.tif'), 'no image that gdal can read'), (self.place('text.tif', 'no image'), 'no image')):
+            self.refused(blockrand('build', self.map, '-o', self.path('no'), '--imagery', path), 2, word, os.path.basename(path), target=self.path('no'))
+        for path, state in ((made('grey.tif', '-b', '1', source=whole), 'used'), (made('sixteen.tif', '-ot', 'UInt16', '-scale', '0', '255', '200', '2800', source=whole), 'used'),
+                            (made('blank.tif', '-scale', '0', '255', '7', '7', source=whole), 'undecided')):
+            out = self.build(self.map, os.path.basename(path)[:-4], '--imagery', path, '--lod', '0', '--formats', 'gpkg', '--no-report')
+            self.assertEqual(read_json(out, 'imagery.json')['images'][0]['state'], state, path)
 
     def test_off_looks_at_roofs_alone(self):
         out = self.build(self.map, 'off', '--imagery', self.image, '--imagery-correct', 'off', '--lod', '0', '--formats', 'gpkg', '--no-report')

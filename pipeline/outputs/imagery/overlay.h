@@ -24,8 +24,8 @@ struct OverlayInputs {
 
 /// The colours of outlines, for legends: as mapped where it stays; as mapped where the image shows it elsewhere; there, by
 /// confidence from 0.7 to 1; refused.
-inline constexpr model::Colour kAsMapped{255, 255, 255}, kBefore{255, 214, 0}, kAfterUnsure{255, 120, 0},
-    kAfterSure{0, 230, 255}, kRefused{214, 92, 255};
+inline constexpr model::Colour kAsMapped{255, 255, 255}, kBefore{255, 214, 0}, kAfterUnsure{255, 0, 190},
+    kAfterSure{0, 230, 255}, kRefused{255, 40, 40};
 
 /// A picture of a box: images that fit the map, the first that has a pixel, the others' parts grey; outlines where the
 /// images show the roofs, that is displaced by their lean. Deterministic.
