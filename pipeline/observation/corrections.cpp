@@ -109,11 +109,19 @@ void refuse_corrections(ImageryObservations& observations, const footprints::Foo
   refuser.refuse_overlapping();
 }
 
-std::vector<footprints::MovedBuilding> movements(const ImageryObservations& observations) {
+std::vector<footprints::MovedBuilding> movements(const ImageryObservations& observations,
+                                                 const footprints::FootprintStore& footprints) {
   std::vector<footprints::MovedBuilding> out;
-  for (std::uint32_t b = 0; b < observations.outlines.size(); ++b)
-    if (observations.outlines[b].state == RowState::corrected)
-      out.push_back({b, movement_of(observations.outlines[b])});
+  const footprints::BuildingNumbers numbers(footprints);
+  for (std::uint32_t b = 0; b < observations.outlines.size(); ++b) {
+    std::uint32_t by = b;
+    // Whom a settled one stands for may be settled itself.
+    for (int step = 0; step < 4 && by != model::kNoIndex && footprints[by].settled != model::ObjectState::pending;
+         ++step)
+      by = numbers.find(footprints[by].related);
+    if (by != model::kNoIndex && observations.outlines[by].state == RowState::corrected)
+      out.push_back({b, movement_of(observations.outlines[by])});
+  }
   return out;
 }
 

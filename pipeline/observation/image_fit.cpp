@@ -189,9 +189,9 @@ ImageFit fit_image(std::span<const SearchedOutline> outlines, const ImageWindows
   }
   const double off = length_of(fit.shift);
   fit.state = off <= kLargestShift && fit.margin >= kSureMargin ? ImageState::used : ImageState::misfit;
-  fit.why =
-      fmt::format("best shift {:.1f} m with {} outlines: {:.1f} deviations above other places, {:.1f} above the next",
-                  off, fit.outlines, fit.score, fit.margin);
+  fit.why = fmt::format(
+      "best shift {:.1f} m with {} outlines: {:.1f} deviations above other places, t of {:.1f} against the next", off,
+      fit.outlines, fit.score, fit.margin);
   return fit;
 }
 

@@ -14,7 +14,7 @@ namespace blockrand::observation {
 inline constexpr double kFitReach = 25;
 
 /// Fits one image. Each outline is searched within kFitReach, its scores in deviations of their own; the best within
-/// 2 m of a displacement counts for it, since every outline has its own error; their mean over all outlines is the
+/// 0.5, 1 or 2 m of a displacement counts for it, since every outline has its own error; their mean over all outlines is the
 /// image's evidence. \param outlines  a sample of the map, in a fixed order; some may lie outside of the image
 /// \param windows  of coarse pixels
 ImageFit fit_image(std::span<const SearchedOutline> outlines, const ImageWindows& windows, int workers);

@@ -24,10 +24,10 @@ constexpr std::string_view name(ImageState s) {
 /// An image against the map.
 struct ImageFit {
   ImageState state = ImageState::undecided;
-  std::uint64_t outlines = 0;  ///< that were looked for
+  std::uint64_t outlines = 0;  ///< around which it shows edges
   model::Point2 shift;         ///< m: the image shows the map's outlines moved by it
-  double score = 0;            ///< how far the best shift stands out: deviations of all shifts within kFitReach
-  double margin = 0;           ///< how far it stands out of the next place that does not belong to it, in deviations
+  double score = 0;            ///< how far the best shift stands out of places elsewhere, in their deviations
+  double margin = 0;           ///< Student's t of it against the best place elsewhere
   std::string why;             ///< a sentence
 };
 
@@ -63,6 +63,7 @@ struct ImageReceipt {
   bool leans = false;
   std::optional<double> sun_azimuth;      ///< degrees clockwise from north, by the roofs
   double flight_height = 0, support = 0;  ///< LeanField
+  std::uint64_t buildings = 0;            ///< that it says something of
   importers::imagery::ImageDescription description;
   ImageFit fit;
 };

@@ -269,7 +269,10 @@ LeanField::LeanField(std::span<const SightedOutline> outlines) {
     }
     c.threshold = chances / kChances;
     for (const double by_chance : c.chance)
-      squares += (by_chance / c.threshold - 1) * (by_chance / c.threshold - 1), ++samples;
+      if (c.threshold > 0) {
+        squares += (by_chance / c.threshold - 1) * (by_chance / c.threshold - 1);
+        ++samples;
+      }
     total += count, agreed += count * won.support;
     candidates.emplace(cell, std::move(c));
   }

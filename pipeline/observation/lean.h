@@ -28,7 +28,7 @@ struct SightedOutline {
   std::array<Sighting, kMostSightings> sightings;  ///< weights sum to 1, or all 0: not seen
 };
 
-/// The best displacements of a map, with weights by how far they stand out. \param mean, deviation  of its scores
+/// The best displacements of a map, with weights by how far they stand out.
 std::array<Sighting, kMostSightings> sightings_of(const ScoreMap& map);
 
 /// Where an image shows roofs, compared with the map.
@@ -44,7 +44,8 @@ class LeanField {
   /// \param outlines  all of the image
   explicit LeanField(std::span<const SightedOutline> outlines);
 
-  /// m: how far the image shows the roof of a building from the map; nothing where too few agree on it.
+  /// m: how far the image shows the roof of a building from the map; nothing where too few agree on it, (0, 0) where no
+  /// place of the image says anything.
   std::optional<model::Point2> at(model::Point2 place, double height) const;
   /// Something is known of some place.
   bool found() const { return !nodes_.empty(); }

@@ -33,6 +33,9 @@ constexpr double kPartyWallWeight = 0.15;
 /// Levels of 255, as score_outline() has it.
 constexpr double kContrast = 12;
 
+/// m: of a building's box; larger ones are not looked for.
+constexpr double kLargestBuilding = 400;
+
 /// m: displacements at which outlines are sighted before the lean is known, and their step.
 constexpr double kSightingReach = 8, kSightingStep = 0.5;
 
@@ -75,6 +78,7 @@ class Observer {
     out.roofs.resize(store.size());
     rows_ = footprints::find_terrace_rows(store, kRowLink);
     row_of_.assign(store.size(), 0);
+    judged_.assign(rows_.size(), -1);
     for (std::uint32_t r = 0; r < rows_.size(); ++r)
       for (const std::uint32_t b : rows_[r].buildings) row_of_[b] = r;
     find_eaves();
@@ -99,6 +103,11 @@ class Observer {
       out.images[k].support = field_.support();
       match_rows(static_cast<std::uint32_t>(k), judges, out);
     }
+    for (std::uint32_t b = 0; b < out.outlines.size(); ++b) {
+      const std::uint32_t by_outline = out.outlines[b].image, by_roof = out.roofs[b].image;
+      if (by_outline < out.images.size()) ++out.images[by_outline].buildings;
+      if (out.roofs[b].pixels > 0 && by_roof != by_outline) ++out.images[by_roof].buildings;
+    }
     return out;
   }
 
@@ -119,8 +128,11 @@ class Observer {
     return outline;
   }
 
+  /// Larger ones than any house would need windows of the whole image.
   bool searchable(std::uint32_t b) const {
-    return !of_.footprints[b].box.empty() && of_.footprints[b].settled == model::ObjectState::pending;
+    const geometry::PlanBox& box = of_.footprints[b].box;
+    return !box.empty() && of_.footprints[b].settled == model::ObjectState::pending &&
+           box.maximum.x - box.minimum.x <= kLargestBuilding && box.maximum.y - box.minimum.y <= kLargestBuilding;
   }
 
   /// Outlines within an image, spread over it, in an order that hangs on their ids alone.
@@ -296,16 +308,19 @@ class Observer {
           progress_.advance_to(image * rows_.size() + r + 1);
           const Looked row = std::move(looked[r]);
           looked[r] = {};
+          if (row.roofs.empty()) return;
+          // A row moves as one: where images overlap, the one that is surest of it speaks for all its houses.
+          const bool judged = row.match.seen, surest = judged && row.verdict.confidence > judged_[r];
+          if (surest) judged_[r] = row.verdict.confidence;
           std::size_t place = 0;
           for (const std::uint32_t b : rows_[r].buildings) {
-            if (!searchable(b) || row.roofs.empty()) continue;
+            if (!searchable(b)) continue;
             const RoofView& roof = row.roofs[place++];
-            if (roof.pixels == 0) continue;  // the image does not show it
-            // Where images overlap, the one that is surest speaks.
-            if (out.outlines[b].state != RowState::outside && out.outlines[b].confidence >= row.verdict.confidence)
-              continue;
-            out.outlines[b] = receipt(image, static_cast<std::uint32_t>(r), b, row.match, row.verdict, row.centre);
-            out.roofs[b] = roof;
+            const bool first = out.outlines[b].state == RowState::outside;
+            if (surest || (!judged && first && roof.pixels > 0))
+              out.outlines[b] = receipt(image, static_cast<std::uint32_t>(r), b, row.match, row.verdict, row.centre);
+            if (roof.pixels > 0 && (surest || out.roofs[b].pixels == 0))
+              out.roofs[b] = roof, out.roofs[b].image = image;
           }
         });
     judge_roofs(image, out);
@@ -316,7 +331,7 @@ class Observer {
     std::vector<std::uint32_t> here;
     std::vector<RoofView> roofs;
     for (std::uint32_t b = 0; b < out.roofs.size(); ++b)
-      if (out.outlines[b].image == image && out.roofs[b].pixels > 0) here.push_back(b), roofs.push_back(out.roofs[b]);
+      if (out.roofs[b].image == image && out.roofs[b].pixels > 0) here.push_back(b), roofs.push_back(out.roofs[b]);
     const std::optional<double> sun = sun_azimuth(roofs);
     out.images[image].sun_azimuth = sun;
     if (sun)
@@ -402,6 +417,7 @@ class Observer {
   std::vector<std::uint32_t> row_of_;  ///< by building
   std::vector<double> eaves_;          ///< m, by building
   std::vector<double> uncertainty_;    ///< of them, as their share
+  std::vector<double> judged_;         ///< by row: the confidence of the image that spoke for it; -1: none
   LeanField field_;
 };
 

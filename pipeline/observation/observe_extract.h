@@ -7,7 +7,6 @@
 #include "importers/imagery/aerial_image.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/footprints/footprint_store.h"
-#include "pipeline/footprints/shard.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/observation/imagery.h"
@@ -18,7 +17,6 @@ namespace blockrand::observation {
 /// What the images are compared with; outlives the call.
 struct ObservedExtract {
   const model::Extract& extract;
-  std::span<const footprints::Shard> shards;
   const footprints::FootprintStore& footprints;
   const georef::Projection& projection;
 };

@@ -117,8 +117,9 @@ void add_pieces(std::span<const Point2> ring, std::span<const double> weight_of,
 
 double ScoreMap::at(double dx, double dy) const {
   const double x = dx / grid.step + grid.half, y = dy / grid.step + grid.half;
-  const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
-  if (i < 0 || j < 0 || i + 1 >= grid.side() || j + 1 >= grid.side()) return 0;
+  if (!(x >= 0 && y >= 0 && x <= grid.side() - 1 && y <= grid.side() - 1) || grid.side() < 2)
+    return grid.side() == 1 && x == 0 && y == 0 ? static_cast<double>(score[0]) : 0;
+  const int i = std::min(static_cast<int>(x), grid.side() - 2), j = std::min(static_cast<int>(y), grid.side() - 2);
   const double u = x - i, v = y - j;
   const auto value = [&](int a, int b) { return static_cast<double>(at(a - grid.half, b - grid.half)); };
   return (value(i, j) * (1 - u) + value(i + 1, j) * u) * (1 - v) +

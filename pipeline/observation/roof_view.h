@@ -39,6 +39,7 @@ struct EdgeStrips {
 };
 
 struct RoofView {
+  std::uint32_t image = 0;              ///< that shows it; set by observe_extract()
   std::uint32_t pixels = 0;             ///< of the roof that the image shows
   std::optional<model::Colour> colour;  ///< of its sunlit part, as the image has it
   double colour_confidence = 0;

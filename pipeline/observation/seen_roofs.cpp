@@ -9,9 +9,9 @@ namespace blockrand::observation {
 void put_seen_roofs(model::Region& region, std::span<const std::uint32_t> numbers, const ImageryObservations& seen) {
   for (std::size_t i = 0; i < region.buildings.size(); ++i) {
     const std::uint32_t b = numbers[i];
-    if (b >= seen.roofs.size() || seen.roofs[b].pixels == 0 || seen.outlines[b].image >= seen.images.size()) continue;
+    if (b >= seen.roofs.size() || seen.roofs[b].pixels == 0 || seen.roofs[b].image >= seen.images.size()) continue;
     const RoofView& roof = seen.roofs[b];
-    const importers::imagery::ImageSource& source = seen.images[seen.outlines[b].image].description.source;
+    const importers::imagery::ImageSource& source = seen.images[roof.image].description.source;
     const std::string image =
         source.path.substr(source.path.find_last_of('/') + 1) + (source.date.empty() ? "" : " of " + source.date);
     const auto put = [&](auto& to, auto value, double confidence, std::string why) {

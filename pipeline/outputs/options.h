@@ -30,6 +30,7 @@ struct OutputOptions {
   AttributeProfile profile = AttributeProfile::people;  ///< what GLBs tell of a building
   CityGmlDetail citygml_detail = CityGmlDetail::lean;   ///< of LoD3
   bool imagery = false;                                 ///< there are aerial images: imagery.json. Set by the build
+  bool imagery_pictures = false;                        ///< and they can be shown: imagery.html. Set by the build
   bool evidence = false;                ///< GLB, CityGML and CityJSON also say why each attribute has its value
   bool gzip = false;                    ///< CityGML as .gml.gz, CityJSON as .city.jsonl.gz
   bool single_glb = false;              ///< also model.glb: the whole build in one frame

@@ -21,7 +21,7 @@ std::string attribution(const OutputContext& context) {
   std::string text = kAttribution;
   if (!context.imagery) return text;
   for (const observation::ImageReceipt& image : context.imagery->images) {
-    if (image.fit.state == observation::ImageState::misfit) continue;
+    if (image.buildings == 0) continue;
     const importers::imagery::ImageSource& source = image.description.source;
     const std::string name = source.path.substr(source.path.find_last_of('/') + 1);
     text += fmt::format("; aerial image {}", source.attribution.empty() ? name : source.attribution);

@@ -327,7 +327,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2;
   Account account(extract, std::move(report.rows));
   outputs::OutputOptions output_options = options.outputs;
-  output_options.imagery = imagery.observations() != nullptr && !tile;
+  output_options.imagery = imagery.observations() != nullptr;
+  output_options.imagery_pictures = output_options.imagery && options.outputs.report && !inputs.images.empty();
   const outputs::OutputContext output_context{
       .options = output_options,
       .lod = options.lod,

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "importers/imagery/image_files.h"
 #include "pipeline/base/sha256.h"
 
 namespace blockrand::run {
@@ -63,7 +64,8 @@ std::vector<InputFile> input_files(const BuildOptions& options, const BuildInput
   std::vector<InputFile> files = {input_file("extract", options.input)};
   if (inputs.terrain) files.push_back(input_file("terrain", options.terrain));
   for (const importers::imagery::ImageSource& s : options.imagery.images)
-    files.push_back(input_file("imagery", s.path));
+    for (importers::imagery::ImageFile& f : importers::imagery::files_of_image(s.path))
+      files.push_back({"imagery", std::move(f.path), f.bytes, std::move(f.sha256)});
   std::vector<std::pair<std::string, std::string>> configs = {
       {"defaults/uses.toml", options.configs + "/defaults/uses.toml"},
       {"materials/materials.toml", options.configs + "/materials/materials.toml"}};

@@ -69,7 +69,7 @@ ImageryStage::ImageryStage(const BuildOptions& options, const BuildInputs& input
                            base::Progress& progress)
     : options_(options), inputs_(inputs), located_(located), progress_(progress) {
   check_images(inputs, located, progress);
-  const bool looks = !inputs.images.empty() || (inputs.tile && inputs.tile->imagery);
+  const bool looks = !inputs.images.empty();
   const bool keeps = std::ranges::any_of(inputs.overrides.entries, &attributes::OverrideEntry::keeps_place);
   if (looks && keeps) kept_areas_ = kept_areas(inputs.overrides, located);
   if (!looks && keeps && !inputs.tile)
@@ -105,13 +105,13 @@ bool ImageryStage::correct(std::span<const footprints::Shard> shards, const foot
   } else {
     if (inputs_.images.empty()) return false;
     const Correction how = options_.imagery.correct;
-    seen_ = observation::observe_extract({located_.extract, shards, store, located_.projection}, inputs_.images, how,
+    seen_ = observation::observe_extract({located_.extract, store, located_.projection}, inputs_.images, how,
                                          base::worker_count(options_.jobs), progress_);
     observation::refuse_corrections(*seen_, store, [&](std::uint32_t b) { return keeps_place(b, store); });
     seen_->applied = how == Correction::apply;
   }
   if (!seen_->applied) return false;
-  const std::vector<footprints::MovedBuilding> moved = observation::movements(*seen_);
+  const std::vector<footprints::MovedBuilding> moved = observation::movements(*seen_, store);
   for (const footprints::MovedBuilding& m : moved) seen_->before.emplace_back(m.building, store.polygons(m.building));
   footprints::move_buildings(located_.extract, shards, moved, located_.projection);
   return !moved.empty();

@@ -9,6 +9,7 @@ import struct
 import subprocess
 import unittest
 import xml.etree.ElementTree as ET
+import zipfile
 
 from blockrand_run import SAMPLE, BuildTest, blockrand, files_of, main, read_json
 from osm_files import METRE, ring, write_xml
@@ -133,7 +134,9 @@ class Imagery(BuildTest):
             for said, put in zip(receipt['shift_m'], self.MOVED[k]):
                 self.assertAlmostEqual(said, -put, delta=0.35, msg=receipt)
         record = read_json(out, 'build.json')
-        self.assertEqual([f['path'] for f in record['inputs'] if f['role'] == 'imagery'], [self.image])
+        files = [f['path'] for f in record['inputs'] if f['role'] == 'imagery']
+        self.assertEqual([os.path.basename(f) for f in files], ['village.ppm', 'village.prj', 'village.wld'])
+        self.assertEqual(files[0], self.image)
         self.assertEqual(record['imagery'][0]['state'], 'used')
         self.hashes_match(out)
         self.assertIn('5 seen elsewhere', self.last.out)
@@ -196,6 +199,8 @@ class Imagery(BuildTest):
         tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f != 'explain/index.txt'}
         alone = self.build(self.map, 'alone', '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json'))
         self.same_files(out, alone, 'tiles', 'citygml', 'cityjson', 'explain')
+        self.assertEqual(blockrand('validate', alone).code, 0)
+        self.assertEqual(read_json(alone, 'build.json')['imagery'], read_json(out, 'build.json')['imagery'])
         self.refused(blockrand('build', self.map, '-o', self.path('no'), '--tile', '15/1/1', '--pinned', os.path.join(out, 'build.json'), '--imagery', self.image), 1, 'leave out --imagery', target=self.path('no'))
         os.remove(os.path.join(out, 'imagery.json'))
         self.refused(blockrand('build', self.map, '-o', self.path('no'), '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json')), 2, 'imagery.json', target=self.path('no'))
@@ -282,6 +287,42 @@ class Imagery(BuildTest):
                             (made('blank.tif', '-scale', '0', '255', '7', '7', source=whole), 'undecided')):
             out = self.build(self.map, os.path.basename(path)[:-4], '--imagery', path, '--lod', '0', '--formats', 'gpkg', '--no-report')
             self.assertEqual(read_json(out, 'imagery.json')['images'][0]['state'], state, path)
+
+    def test_images_in_archives_and_mosaics(self):
+        with zipfile.ZipFile(self.path('village.zip'), 'w') as z:
+            for end in ('ppm', 'prj', 'wld'):
+                z.write(self.path('village.' + end), 'village.' + end)
+        out = self.build(self.map, 'zipped', '--imagery', '/vsizip/' + self.path('village.zip') + '/village.ppm', '--lod', '0', '--formats', 'gpkg', '--no-report')
+        self.assertIn('5 seen elsewhere', self.last.out)
+        self.assertEqual(len([f for f in read_json(out, 'build.json')['inputs'] if f['role'] == 'imagery']), 3)
+
+    def test_a_row_moves_as_one_where_images_end_or_meet(self):
+        """Four houses wall to wall, mapped beside where they stand; one picture ends behind the last of them, another shows two of them."""
+        row = [[(170 + dx + 9 * k, 150 + dy) for dx, dy in ((0, 0), (9, 0), (9, 10 + k), (0, 10 + k))] for k in range(-2, 2)]
+        others = [h for h in village(7) if all(abs(x - 170) > 30 or abs(y - 155) > 25 for x, y in h)]
+        picture = Picture(others + row, 3)
+        drawn = [[(x + 1.5, y + 1.2) for x, y in h] for h in row]
+        source = write_xml(self.path('row.osm'), extract(others + drawn))
+        end, begin = int(190 / PIXEL), int(165 / PIXEL)
+        whole = picture.write(self.path('row.ppm'))
+        for name, window in (('west', (0, end)), ('east', (begin, picture.side - begin))):
+            subprocess.run(['gdal_translate', '-q', '-a_srs', 'EPSG:4326', '-srcwin', str(window[0]), '0', str(window[1]), str(picture.side), whole, self.path(name + '.tif')], check=True)
+        for images in (['west'], ['west', 'east'], ['east', 'west']):
+            out = self.build(source, '_'.join(images), *[a for i in images for a in ('--imagery', self.path(i + '.tif'))], '--imagery-correct', 'apply', '--lod', '1')
+            receipts = {b['id']: b for b in read_json(out, 'imagery.json')['buildings']}
+            said = {(r['state'], tuple(r['shift_m'])) for r in (receipts[f'w{100 + len(others) + k}'] for k in range(4))}
+            self.assertEqual(len(said), 1, said)
+            self.assertEqual(said.pop()[0], 'corrected')
+            self.assertEqual(blockrand('validate', out).code, 0)
+
+    def test_a_house_mapped_twice_stays_one(self):
+        drawn = [h for h in self.drawn]
+        twice = [(x + 0.13, y) for x, y in drawn[5]]
+        source = write_xml(self.path('twice.osm'), extract(drawn + [twice]))
+        plain = self.build(source, 'twice_plain', '--lod', '1')
+        models = read_json(plain, 'build.json')['counts']['models']
+        moved = self.build(source, 'twice_moved', '--imagery', self.image, '--imagery-correct', 'apply', '--lod', '1')
+        self.assertEqual(read_json(moved, 'build.json')['counts']['models'], models)
 
     def test_off_looks_at_roofs_alone(self):
         out = self.build(self.map, 'off', '--imagery', self.image, '--imagery-correct', 'off', '--lod', '0', '--formats', 'gpkg', '--no-report')

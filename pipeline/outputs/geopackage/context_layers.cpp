@@ -5,6 +5,7 @@
 #include <set>
 
 #include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/outputs/buildings_here.h"
 
 namespace blockrand::outputs {
 
@@ -63,17 +64,6 @@ outputs::CellRow cell_row(const context::CellIndex& cell, const context::CellSum
   row.footprint_median = f.footprint_median;
   row.footprint_upper_quartile = f.footprint_upper_quartile;
   return row;
-}
-
-/// By number: the buildings of a tile that is built alone, else all.
-std::vector<bool> buildings_here(const footprints::RepairedExtract& repaired, std::span<const footprints::Shard> shards,
-                                 const std::optional<model::TileId>& tile) {
-  std::vector<bool> here(repaired.footprints.size(), !tile);
-  if (tile)
-    for (std::size_t s = 0; s < shards.size(); ++s)
-      if (shards[s].tile == *tile)
-        for (std::size_t i = 0; i < shards[s].seeds.size(); ++i) here[repaired.first[s] + i] = true;
-  return here;
 }
 
 }  // namespace

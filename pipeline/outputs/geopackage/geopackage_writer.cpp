@@ -50,8 +50,9 @@ std::vector<layer_file::LayerSpec> layers(const GeoPackageOptions& options) {
       {"surfaces", GeometryKind::multi_polygon_z, surface_columns(),
        text("Faces of the bodies in space, by class and colour")}};
   if (options.images)
-    all.push_back({"footprint_before", GeometryKind::multi_polygon, footprint_before_columns(),
-                   text("Outlines that an aerial image shows, as they stood before it, and what it says of them")});
+    all.push_back(
+        {"footprint_before", GeometryKind::multi_polygon, footprint_before_columns(),
+         text("Outlines that an aerial image shows, those it moved as they stood before, and what it says of them")});
   return all;
 }
 

@@ -24,7 +24,10 @@ Json image_json(const observation::ImageReceipt& image) {
   if (!d.source.licence.empty()) j["licence"] = d.source.licence;
   if (!d.source.attribution.empty()) j["attribution"] = d.source.attribution;
   j["crs"] = d.crs_code.empty() ? d.crs_name : d.crs_code;
+  j["operation"] = d.operation;
+  j["accuracy_m"] = d.accuracy_m;
   j["pixel_m"] = rounded(d.pixel_m, 1000);
+  j["speaks_of"] = image.buildings;
   j["state"] = observation::name(fit.state);
   j["why"] = fit.why;
   j["outlines"] = fit.outlines;
@@ -78,7 +81,8 @@ void add_roof(Json& j, const observation::RoofView& roof) {
     j["ridge_confidence"] = rounded(roof.ridge_confidence, 100);
   }
   Json& evidence = j["roof_evidence"];
-  evidence = {{"pixels", roof.pixels},
+  evidence = {{"image", roof.image},
+              {"pixels", roof.pixels},
               {"long_m", rounded(roof.long_side, 10)},
               {"short_m", rounded(roof.short_side, 10)},
               {"spread", rounded(roof.spread, 1000)}};
@@ -130,6 +134,7 @@ OutlineReceipt receipt_of(const nlohmann::json& j) {
 observation::RoofView roof_of(const nlohmann::json& j) {
   observation::RoofView roof;
   if (!j.contains("roof_evidence")) return roof;
+  roof.image = j.at("roof_evidence").at("image").get<std::uint32_t>();
   roof.pixels = j.at("roof_evidence").at("pixels").get<std::uint32_t>();
   if (j.contains("roof_colour")) {
     unsigned colour = 0;
@@ -152,13 +157,15 @@ observation::RoofView roof_of(const nlohmann::json& j) {
 
 }  // namespace
 
-std::string imagery_json(const observation::ImageryObservations& seen, const footprints::FootprintStore& footprints) {
+std::string imagery_json(const observation::ImageryObservations& seen, const footprints::FootprintStore& footprints,
+                         const std::vector<bool>& here) {
   Json j;
   j["applied"] = seen.applied;
   j["images"] = Json::array();
   for (const observation::ImageReceipt& image : seen.images) j["images"].push_back(image_json(image));
   j["buildings"] = Json::array();
   for (std::uint32_t b = 0; b < seen.outlines.size(); ++b) {
+    if (!here[b]) continue;
     j["buildings"].push_back(building_json(footprints[b].id.text(), seen.outlines[b]));
     if (b < seen.roofs.size()) add_roof(j["buildings"].back(), seen.roofs[b]);
   }
@@ -175,14 +182,21 @@ ReadImagery read_imagery_json(const std::string& text) {
     image.description.source.date = i.value("date", std::string());
     image.description.source.licence = i.value("licence", std::string());
     image.description.source.attribution = i.value("attribution", std::string());
+    image.description.crs_code = i.at("crs").get<std::string>();
+    image.description.operation = i.at("operation").get<std::string>();
+    image.description.accuracy_m = i.at("accuracy_m").get<double>();
+    image.description.pixel_m = i.at("pixel_m").get<double>();
+    image.buildings = i.at("speaks_of").get<std::uint64_t>();
     image.fit.state = named(i.at("state").get<std::string>(), observation::ImageState::undecided);
     image.fit.shift = point(i.at("shift_m"));
   }
   for (const nlohmann::json& b : j.at("buildings")) {
     const OutlineReceipt receipt = receipt_of(b);
+    const observation::RoofView roof = roof_of(b);
+    if (roof.pixels > 0 && roof.image >= read.images.size()) throw std::runtime_error("an image is not there");
     if (receipt.image != OutlineReceipt::kNoImage && receipt.image >= read.images.size())
       throw std::runtime_error("an image is not there");
-    read.buildings.push_back({id_of(b.at("id").get<std::string>()), receipt, roof_of(b)});
+    read.buildings.push_back({id_of(b.at("id").get<std::string>()), receipt, roof});
   }
   return read;
 }

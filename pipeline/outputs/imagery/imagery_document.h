@@ -11,13 +11,14 @@
 namespace blockrand::outputs {
 
 /// \param footprints  whose numbers the receipts have
+/// \param here        by number: whether a building is told
 std::string imagery_json(const observation::ImageryObservations& observations,
-                         const footprints::FootprintStore& footprints);
+                         const footprints::FootprintStore& footprints, const std::vector<bool>& here);
 
 /// What a tile needs of an earlier build's images.
 struct ReadImagery {
   bool applied = false;
-  std::vector<observation::ImageReceipt> images;  ///< path, date, licence, attribution, state and shift alone
+  std::vector<observation::ImageReceipt> images;  ///< without what was measured of its lean and fit
   struct Building {
     model::OsmId id;
     observation::OutlineReceipt receipt;

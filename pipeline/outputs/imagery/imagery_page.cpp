@@ -64,7 +64,7 @@ std::string chip(const OverlayInputs& in, std::uint32_t building) {
   std::vector<std::uint32_t> near;
   for (std::uint32_t b = 0; b < in.seen.outlines.size(); ++b)
     if (in.footprints[b].box.near(box, 0)) near.push_back(b);
-  const picture::Image image = draw_overlay(in, box, kChipPixel, near);
+  const picture::Image image = draw_overlay(in, box, kChipPixel, near, in.seen.outlines[building].image);
   std::string out = fmt::format("<img width=\"{}\" height=\"{}\" alt=\"{} in the image\" src=\"data:image/png;base64,",
                                 image.width, image.height, in.footprints[building].id.text());
   base::append_base64(out, picture::palette_png(image, 128));

@@ -51,7 +51,7 @@ void draw(picture::Plan& plan, std::vector<model::Polygon> polygons, const footp
 }  // namespace
 
 picture::Image draw_overlay(const OverlayInputs& in, const geometry::PlanBox& box, double pixel,
-                            std::span<const std::uint32_t> buildings) {
+                            std::span<const std::uint32_t> buildings, std::uint32_t first) {
   const auto column = static_cast<long long>(std::floor(box.minimum.x / pixel)),
              row = static_cast<long long>(std::floor(-box.maximum.y / pixel));
   const int width = static_cast<int>(std::ceil(box.maximum.x / pixel)) - static_cast<int>(column),
@@ -60,7 +60,8 @@ picture::Image draw_overlay(const OverlayInputs& in, const geometry::PlanBox& bo
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   picture.rgb.assign(pixels * 3, kNoImage);
   std::vector<char> filled(pixels, 0);
-  for (std::size_t k = 0; k < in.images.size(); ++k) {
+  for (std::size_t n = 0; n < in.images.size(); ++n) {
+    const std::size_t k = (n + first) % in.images.size();
     if (in.seen.images[k].fit.state == observation::ImageState::misfit) continue;
     const importers::imagery::Patch patch = in.images[k].patch(in.projection, pixel, column, row, width, height);
     for (std::size_t i = 0; i < pixels; ++i) {

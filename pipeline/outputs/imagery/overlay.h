@@ -32,7 +32,8 @@ inline constexpr model::Colour kAsMapped{255, 255, 255}, kBefore{255, 214, 0}, k
 /// \param box        m in the build CRS
 /// \param pixel      m
 /// \param buildings  by number
+/// \param first      the image that lies above the others
 picture::Image draw_overlay(const OverlayInputs& in, const geometry::PlanBox& box, double pixel,
-                            std::span<const std::uint32_t> buildings);
+                            std::span<const std::uint32_t> buildings, std::uint32_t first);
 
 }  // namespace blockrand::outputs

@@ -40,7 +40,7 @@ struct Street {
   }) {
     refuse_corrections(seen, store, keeps);
     std::vector<std::uint32_t> out;
-    for (const footprints::MovedBuilding& m : movements(seen)) out.push_back(m.building);
+    for (const footprints::MovedBuilding& m : movements(seen, store)) out.push_back(m.building);
     return out;
   }
   FootprintStore store;

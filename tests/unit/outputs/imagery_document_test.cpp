@@ -39,7 +39,7 @@ struct Seen {
 
 TEST(ImageryDocument, ReadsWhatItWrote) {
   const Seen seen;
-  const ReadImagery read = read_imagery_json(imagery_json(seen.observations, seen.store));
+  const ReadImagery read = read_imagery_json(imagery_json(seen.observations, seen.store, {true, true, true}));
   EXPECT_TRUE(read.applied);
   ASSERT_EQ(read.images.size(), 2u);
   EXPECT_EQ(read.images[1].description.source.path, "/maps/ortho.tif");

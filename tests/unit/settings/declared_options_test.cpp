@@ -35,7 +35,7 @@ TEST(DeclaredOptions, EveryMemberOfABuildIsOne) {
       stages.insert(option.section.name);
   }
   const std::size_t of_outputs = outputs::output_options().size();
-  const std::size_t set_by_the_build = 1;  // whether there are images
+  const std::size_t set_by_the_build = 2;  // whether there are images, and pictures of them
   EXPECT_EQ(of_outputs + set_by_the_build, member_count<outputs::OutputOptions>());
   const std::size_t of_imagery = observation::imagery_options().size();
   EXPECT_EQ(of_imagery, member_count<observation::ImageryOptions>());

@@ -1,0 +1,20 @@
+// The files that an image is made of, and what is in them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace blockrand::importers::imagery {
+
+struct ImageFile {
+  std::string path;  ///< as GDAL names it, perhaps within an archive
+  std::uint64_t bytes = 0;
+  std::string sha256;
+};
+
+/// The image's own file, then those that belong to it, by path: world file, .prj, side file, the rasters of a .vrt.
+/// \throws base::InputError  one of them cannot be read
+std::vector<ImageFile> files_of_image(const std::string& path);
+
+}  // namespace blockrand::importers::imagery
