@@ -12,6 +12,7 @@
 #include "pipeline/model/point.h"
 #include "pipeline/model/polygon.h"
 #include "pipeline/observation/roof_view.h"
+#include "pipeline/observation/shadows.h"
 
 namespace blockrand::observation {
 
@@ -59,8 +60,21 @@ struct OutlineReceipt {
   double mean = 0, deviation = 0, second = 0, weight = 0;
 };
 
+/// A height that a shadow tells.
+struct SeenHeight {
+  static constexpr std::uint32_t kNoImage = 0xffffffff;
+  std::uint32_t image = kNoImage;  ///< whose shadow it is; kNoImage: none was found
+  ShadowLength shadow;
+  double height = 0;       ///< m above ground of the edge that casts it
+  double uncertainty = 0;  ///< m
+};
+
 struct ImageReceipt {
   bool leans = false;
+  double shadow_azimuth = -1;   ///< degrees clockwise from grid north where the sun stands, by the shadows; -1: unknown
+  double shadow_per_metre = 0;  ///< m of shadow for each metre of height; 0: unknown
+  std::uint64_t shadow_houses = 0;
+  bool shadow_by_tags = false;
   std::optional<double> sun_azimuth;      ///< degrees clockwise from north, by the roofs
   double flight_height = 0, support = 0;  ///< LeanField
   std::uint64_t buildings = 0;            ///< that it says something of
@@ -72,6 +86,7 @@ struct ImageryObservations {
   std::vector<ImageReceipt> images;
   std::vector<OutlineReceipt> outlines;  ///< by building number; empty: nobody looked for them
   std::vector<RoofView> roofs;           ///< as `outlines`
+  std::vector<SeenHeight> heights;       ///< as `outlines`
   bool applied = false;  ///< what is `corrected` stands where the image shows it, not where it is mapped
   /// The repaired outlines of what was moved, from before, by building number in ascending order.
   std::vector<std::pair<std::uint32_t, std::vector<model::Polygon>>> before;

@@ -5,13 +5,16 @@
 #include <map>
 
 #include "pipeline/base/parallel.h"
+#include "pipeline/base/portable_math.h"
 #include "pipeline/footprints/move_buildings.h"
 #include "pipeline/footprints/terrace_rows.h"
 #include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/observation/eaves.h"
 #include "pipeline/observation/image_fit.h"
 #include "pipeline/observation/lean.h"
 #include "pipeline/observation/roof_view.h"
 #include "pipeline/observation/row_match.h"
+#include "pipeline/observation/shadow_heights.h"
 #include "pipeline/observation/verdict.h"
 
 namespace blockrand::observation {
@@ -39,24 +42,11 @@ constexpr double kLargestBuilding = 400;
 /// m: displacements at which outlines are sighted before the lean is known, and their step.
 constexpr double kSightingReach = 8, kSightingStep = 0.5;
 
-// Heights that only the lean needs: a wrong one moves the roof it predicts by a fifth of the error at most.
-constexpr double kStorey = 3.1, kPlinth = 0.3;  ///< m
-constexpr double kEavesShare = 0.85;            ///< of a tagged height, under a roof that nobody measured
-
-/// m: a stated guess by the area of the footprint: sheds and garages, small houses, houses, blocks.
-double usual_eaves(double area) { return area < 25 ? 2.5 : area < 60 ? 3.2 : area < 150 ? 5.5 : area < 400 ? 8 : 10; }
-
-/// m: in an image whose lean nobody knows, higher houses may be seen metres from where they stand.
-constexpr double kHighWithoutLean = 9;
-/// Shares of a height: storeys are 2.6 to 4 m high.
-constexpr double kTaggedUncertainty = 0.2, kNeighbourUncertainty = 0.35, kGuessedUncertainty = 0.5;
 /// How many times its uncertainty a height may be off, so that the lean explains a movement; m: how far beside the lean's
 /// direction that still holds; m: less of a lean explains nothing.
 constexpr double kHeightDoubt = 2.5, kBesideLean = 0.5, kLeastLean = 0.4;
-/// m, and how many: tagged buildings of a like size that speak for one that nobody measured.
-constexpr double kNeighbourReach = 120;
-constexpr std::size_t kFewestNeighbours = 3;
-
+/// How often shadows and lean are measured anew, each with what the other told.
+constexpr int kShadowRounds = 1;
 std::uint64_t mixed(std::uint64_t v) {
   v ^= v >> 33, v *= 0xff51afd7ed558ccdULL, v ^= v >> 33, v *= 0xc4ceb9fe1a85ec53ULL, v ^= v >> 33;
   return v;
@@ -76,12 +66,14 @@ class Observer {
     const footprints::FootprintStore& store = of_.footprints;
     out.outlines.resize(store.size());
     out.roofs.resize(store.size());
+    out.heights.resize(store.size());
+    index_ = footprints::index_of(store);
     rows_ = footprints::find_terrace_rows(store, kRowLink);
     row_of_.assign(store.size(), 0);
     judged_.assign(rows_.size(), -1);
     for (std::uint32_t r = 0; r < rows_.size(); ++r)
       for (const std::uint32_t b : rows_[r].buildings) row_of_[b] = r;
-    find_eaves();
+    eaves_ = EavesHeights(of_.extract, store);
     progress_.begin("fit images", images_.size(), "images");
     for (std::size_t k = 0; k < images_.size(); ++k) {
       const ImageWindows coarse(images_[k], of_.projection, kCoarsePixel);
@@ -98,7 +90,8 @@ class Observer {
       if (out.images[k].fit.state == ImageState::misfit) continue;
       field_ = {};
       const bool judges = out.images[k].fit.state == ImageState::used && correct_ != Correction::off;
-      if (judges) sight(static_cast<std::uint32_t>(k));
+      eaves_.forget_shadows();
+      if (judges) sight(static_cast<std::uint32_t>(k), out);
       out.images[k].leans = field_.leans(), out.images[k].flight_height = field_.flight_height(),
       out.images[k].support = field_.support();
       match_rows(static_cast<std::uint32_t>(k), judges, out);
@@ -166,13 +159,13 @@ class Observer {
       if (!searchable(b)) continue;
       row.outlines.push_back(searched(b, &edges));
       SearchedOutline& o = row.outlines.back();
-      o.height = eaves_of(b);
+      o.height = eaves_.height(b);
       const std::optional<Point2> lean = field_.at(o.box.centre(), o.height);
-      o.lean_known = lean.has_value() && (field_.found() || o.height <= kHighWithoutLean);
+      o.lean_known = lean.has_value() && (field_.found() || eaves_.surely_low(b));
       o.lean = lean.value_or(Point2{});
       if (field_.leans()) {
         o.per_metre = {o.lean.x / o.height, o.lean.y / o.height};
-        o.uncertainty = uncertainty_[b];
+        o.uncertainty = eaves_.uncertainty(b);
       }
       for (const WallPiece& p : row.outlines.back().pieces)
         x += p.middle.x * p.length, y += p.middle.y * p.length, length += p.length;
@@ -184,56 +177,6 @@ class Observer {
                                                     (p.middle.y - row.centre.y) * (p.middle.y - row.centre.y)));
     return row;
   }
-
-  /// m: of a building's eaves, by its own tags; nothing where nobody counted or measured.
-  std::optional<double> tagged_eaves(std::uint32_t building) const {
-    const model::MappedAttributes& a = of_.extract.buildings[of_.footprints[building].lead].attributes;
-    if (a.height) {
-      if (a.roof_height) return std::max(2.0, static_cast<double>(*a.height - *a.roof_height));
-      return std::max(2.0, static_cast<double>(*a.height) * (a.roof_shape == model::RoofShape::flat ? 1 : kEavesShare));
-    }
-    if (a.storeys) return std::max(1.0, static_cast<double>(*a.storeys)) * kStorey + kPlinth;
-    return std::nullopt;
-  }
-
-  double area_of(std::uint32_t building) const {
-    double area = 0;
-    of_.footprints.for_each_ring(building,
-                                 [&](std::span<const Point2> ring, bool) { area += geometry::signed_area(ring); });
-    return area;
-  }
-
-  /// Eaves of all buildings: tagged ones, then the median of tagged buildings of a like size nearby, then the guess.
-  void find_eaves() {
-    const footprints::FootprintStore& store = of_.footprints;
-    std::vector<double> guess(store.size());
-    std::vector<geometry::PlanBox> tagged(store.size());
-    eaves_.assign(store.size(), 0);
-    uncertainty_.assign(store.size(), kGuessedUncertainty);
-    for (std::uint32_t b = 0; b < store.size(); ++b) {
-      if (store[b].box.empty()) continue;
-      guess[b] = usual_eaves(area_of(b));
-      const std::optional<double> told = tagged_eaves(b);
-      if (!told) continue;
-      eaves_[b] = *told, uncertainty_[b] = kTaggedUncertainty;
-      tagged[b] = store[b].box;
-    }
-    const geometry::BoxIndex index(std::move(tagged));
-    for (std::uint32_t b = 0; b < store.size(); ++b) {
-      if (eaves_[b] > 0 || store[b].box.empty()) continue;
-      std::vector<double> like;
-      for (const std::uint32_t other : index.near(store[b].box, kNeighbourReach))
-        if (guess[other] == guess[b]) like.push_back(eaves_[other]);  // its own is tagged: it was set above
-      eaves_[b] = guess[b];
-      if (like.size() < kFewestNeighbours) continue;
-      const auto middle = like.begin() + static_cast<std::ptrdiff_t>(like.size() / 2);
-      std::nth_element(like.begin(), middle, like.end());
-      eaves_[b] = *middle, uncertainty_[b] = kNeighbourUncertainty;
-    }
-  }
-
-  double eaves_of(std::uint32_t building) const { return eaves_[building]; }
-  bool is_tagged(std::uint32_t building) const { return uncertainty_[building] <= kTaggedUncertainty; }
 
   bool within(const importers::imagery::AerialImage& image, Point2 p) const {
     const georef::GeoBox& area = image.describe().area;
@@ -248,7 +191,7 @@ class Observer {
   }
 
   /// Where the image shows each outline, before anything is known of its lean.
-  void sight(std::uint32_t image) {
+  void sight(std::uint32_t image, ImageryObservations& out) {
     const ImageWindows windows(images_[image], of_.projection, kCoarsePixel);
     std::vector<SightedOutline> sighted(of_.footprints.size());
     const Displacements grid{kSightingStep, static_cast<int>(std::lround(kSightingReach / kSightingStep))};
@@ -260,8 +203,8 @@ class Observer {
           const SearchedOutline o = searched(b, nullptr);
           if (!within(images_[image], o.box.centre())) return;
           sighted[n].place = o.box.centre();
-          sighted[n].height = eaves_of(b);
-          sighted[n].guessed = !is_tagged(b);
+          sighted[n].height = eaves_.height(b);
+          sighted[n].guessed = !eaves_.is_tagged(b);
           sighted[n].row = row_of_[b];
           sighted[n].weight = 1 / std::sqrt(static_cast<double>(rows_[row_of_[b]].buildings.size()));
           const ScoreMap map =
@@ -272,6 +215,49 @@ class Observer {
         },
         [](std::size_t) {});
     field_ = LeanField(sighted);
+    const ShadowInputs inputs{.sighted = sighted,
+                              .heights = eaves_.unseen_heights(),
+                              .uncertainty = eaves_.unseen_uncertainty(),
+                              .footprints = of_.footprints,
+                              .index = index_,
+                              .outline = [this](std::uint32_t b) { return searched(b, nullptr); },
+                              .windows = windows,
+                              .workers = workers_};
+    ShadowHeights shadows = measure_shadows(inputs, field_, {});
+    for (int round = 0;; ++round) {
+      take_heights(shadows, sighted);
+      field_ = LeanField(sighted);
+      if (round == kShadowRounds) break;
+      shadows = measure_shadows(inputs, field_, shadows.sun);
+    }
+    tell_shadows(image, shadows, out);
+  }
+
+  void take_heights(const ShadowHeights& shadows, std::vector<SightedOutline>& sighted) {
+    eaves_.take(shadows);
+    for (std::uint32_t b = 0; b < sighted.size(); ++b) {
+      sighted[b].height = eaves_.height(b);
+      sighted[b].guessed = eaves_.uncertainty(b) > kTaggedUncertainty;
+    }
+  }
+
+  static void tell_shadows(std::uint32_t image, const ShadowHeights& shadows, ImageryObservations& out) {
+    ImageReceipt& receipt = out.images[image];
+    if (shadows.sun.towards) {
+      const double azimuth = 90 - base::atan2(shadows.sun.towards->y, shadows.sun.towards->x) * base::kDegreesPerRadian;
+      receipt.shadow_azimuth = azimuth < 0 ? azimuth + 360 : azimuth;
+    }
+    receipt.shadow_per_metre = shadows.sun.per_metre, receipt.shadow_houses = shadows.sun.houses;
+    receipt.shadow_by_tags = shadows.sun.tagged;
+    for (std::uint32_t b = 0; b < shadows.buildings.size(); ++b) {
+      const ShadowHeight& seen = shadows.buildings[b];
+      if (seen.height <= 0) continue;
+      SeenHeight& before = out.heights[b];
+      if (before.image != SeenHeight::kNoImage && before.shadow.clearness >= seen.shadow.clearness) continue;
+      const double own = shadow_uncertainty(seen.shadow.clearness),
+                   share = std::sqrt(own * own + shadows.sun.uncertainty * shadows.sun.uncertainty);
+      before = {image, seen.shadow, rounded(seen.height, 10), rounded(seen.height * share, 10)};
+    }
   }
 
   /// \param judges  the image is known to lie right: else its roofs are looked at, and no outline is judged by it
@@ -375,7 +361,7 @@ class Observer {
     receipt.turn = rounded(m.turn, 100);
     receipt.before = rounded(m.here, 10000), receipt.after = rounded(m.best, 10000);
     receipt.mean = m.mean, receipt.deviation = m.deviation, receipt.second = m.second, receipt.weight = m.weight;
-    const double eaves = eaves_of(building);
+    const double eaves = eaves_.height(building);
     receipt.lean = rounded(field_.at(of_.footprints[building].box.centre(), eaves).value_or(Point2{}));
     receipt.eaves = rounded(eaves, 10);
     return receipt;
@@ -415,9 +401,9 @@ class Observer {
   base::Progress& progress_;
   std::vector<footprints::TerraceRowPlan> rows_;
   std::vector<std::uint32_t> row_of_;  ///< by building
-  std::vector<double> eaves_;          ///< m, by building
-  std::vector<double> uncertainty_;    ///< of them, as their share
-  std::vector<double> judged_;         ///< by row: the confidence of the image that spoke for it; -1: none
+  EavesHeights eaves_;
+  footprints::BoxIndex index_;
+  std::vector<double> judged_;  ///< by row: the confidence of the image that spoke for it; -1: none
   LeanField field_;
 };
 

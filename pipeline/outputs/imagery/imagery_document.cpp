@@ -37,6 +37,12 @@ Json image_json(const observation::ImageReceipt& image) {
   j["leans"] = image.leans;
   j["flight_height_m"] = rounded(image.flight_height, 1);
   if (image.sun_azimuth) j["sun_azimuth_deg"] = rounded(*image.sun_azimuth, 1);
+  if (image.shadow_azimuth >= 0) {
+    j["shadow_sun_azimuth_deg"] = rounded(image.shadow_azimuth, 1);
+    j["shadow_per_metre"] = rounded(image.shadow_per_metre, 1000);
+    j["shadow_houses"] = image.shadow_houses;
+    j["shadow_by_tags"] = image.shadow_by_tags;
+  }
   j["lean_support"] = rounded(image.support, 1000);
   return j;
 }
@@ -94,6 +100,17 @@ void add_roof(Json& j, const observation::RoofView& roof) {
     evidence["lines"].push_back({rounded(r.angle, 10), rounded(r.contrast, 1000), rounded(r.consistency, 100),
                                  rounded(r.line, 1000), rounded(r.offset, 100), rounded(r.length, 10),
                                  rounded(r.wide, 1000), rounded(r.within, 1000), rounded(r.halves, 1000)});
+}
+
+void add_height(Json& j, const observation::SeenHeight& seen) {
+  if (seen.image == observation::SeenHeight::kNoImage) return;
+  j["height_from_shadow_m"] = rounded(seen.height, 10);
+  j["shadow"] = {{"image", seen.image},
+                 {"length_m", rounded(seen.shadow.length, 100)},
+                 {"step", rounded(seen.shadow.step, 1000)},
+                 {"clearness", rounded(seen.shadow.clearness, 1000)},
+                 {"second", rounded(seen.shadow.second, 1000)},
+                 {"walls_m", rounded(seen.shadow.walls, 10)}};
 }
 
 model::OsmId id_of(const std::string& text) {
@@ -168,6 +185,7 @@ std::string imagery_json(const observation::ImageryObservations& seen, const foo
     if (!here[b]) continue;
     j["buildings"].push_back(building_json(footprints[b].id.text(), seen.outlines[b]));
     if (b < seen.roofs.size()) add_roof(j["buildings"].back(), seen.roofs[b]);
+    if (b < seen.heights.size()) add_height(j["buildings"].back(), seen.heights[b]);
   }
   return j.dump(1) + "\n";
 }

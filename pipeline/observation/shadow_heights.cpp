@@ -1,0 +1,216 @@
+#include "pipeline/observation/shadow_heights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/base/parallel.h"
+#include "pipeline/base/portable_math.h"
+
+namespace blockrand::observation {
+
+namespace {
+
+using model::Point2;
+
+/// Degrees to both sides of where the sunny sides point, and between the directions that are tried; how many houses try.
+constexpr double kDoubt = 24, kAngleStep = 4;
+constexpr std::size_t kAngleSample = 400;
+/// m: of height, and of shadow for each metre, that are looked at before anything is known: the sun of aerial images
+/// stands 20 to 65 degrees high.
+constexpr double kLowest = 2, kLeastPerMetre = 0.45, kMostPerMetre = 2.8;
+/// m of shadow that is looked for behind a house of a guessed height, as multiples of its usual length.
+constexpr double kShortest = 0.25, kLongest = 4;
+/// What a place is worth where the image shows the roof by its edges alone, as clearness of a shadow.
+constexpr double kPlaceValue = 0.15;
+/// Places that are tried have this weight at least.
+constexpr double kLeastPlace = 0.08;
+/// A shadow as clear as this speaks for the sun.
+constexpr double kClearStep = 0.1;
+/// Of a height, as its share: of what is less sure nobody measured or counted anything.
+constexpr double kTagged = 0.2;
+/// Houses by whose heights the sun's is measured.
+constexpr std::size_t kFewestTagged = 12, kFewestGuessed = 20;
+
+Point2 turned(Point2 p, double degrees) {
+  const base::SinCos a = base::sin_cos(degrees * base::kRadiansPerDegree);
+  return {p.x * a.cos - p.y * a.sin, p.x * a.sin + p.y * a.cos};
+}
+
+double size_of(Point2 p) { return std::sqrt(p.x * p.x + p.y * p.y); }
+
+class Measurer {
+ public:
+  Measurer(const ShadowInputs& in, const LeanField& field) : in_(in), field_(field) {}
+
+  ShadowHeights run(const ImageSun& known) {
+    ShadowHeights out;
+    out.sun = known;
+    out.buildings.resize(in_.sighted.size());
+    std::vector<std::optional<ShadowLength>> found(in_.sighted.size());
+    if (!out.sun.towards) {
+      const std::optional<Point2> first = sunny_side();
+      if (!first) return out;
+      out.sun.towards = refined(*first);
+      for_all([&](std::uint32_t b) { found[b] = best_length(b, *out.sun.towards, 0); });
+      measure_sun(found, out.sun);
+    }
+    if (out.sun.per_metre <= 0) return out;
+    for_all([&](std::uint32_t b) { found[b] = best_length(b, *out.sun.towards, out.sun.per_metre); });
+    measure_sun(found, out.sun);
+    if (out.sun.per_metre <= 0) return out;
+    for (std::uint32_t b = 0; b < found.size(); ++b)
+      if (found[b]) out.buildings[b] = {*found[b], found[b]->length / apart(b, out.sun)};
+    return out;
+  }
+
+ private:
+  bool is_seen(std::uint32_t b) const { return in_.sighted[b].sightings[0].weight > 0; }
+
+  template <class Work>
+  void for_all(const Work& work) const {
+    base::ordered_parallel(
+        in_.sighted.size(), in_.workers, static_cast<std::size_t>(in_.workers) * 16,
+        [&](std::size_t n) {
+          if (is_seen(static_cast<std::uint32_t>(n))) work(static_cast<std::uint32_t>(n));
+        },
+        [](std::size_t) {});
+  }
+
+  Patch patch_of(const SearchedOutline& o, double reach) const { return in_.windows.window(o.box, reach); }
+
+  std::optional<Point2> sunny_side() const {
+    std::vector<SunnySides> sides(in_.sighted.size());
+    for_all([&](std::uint32_t b) {
+      const SearchedOutline o = in_.outline(b);
+      sides[b].add(o.pieces, patch_of(o, 14), in_.sighted[b].sightings[0].at);
+    });
+    SunnySides sum;
+    for (const SunnySides& s : sides) sum.add(s);
+    return sum.to_sun();
+  }
+
+  /// Lean of a building for each metre of its height.
+  Point2 lean_of(std::uint32_t b) const {
+    if (!field_.leans()) return {};
+    return field_.at(in_.sighted[b].place, 1).value_or(Point2{});
+  }
+
+  /// m between an edge and its shadow for each metre of height.
+  double apart(std::uint32_t b, const ImageSun& sun) const {
+    const Point2 k = lean_of(b);
+    return size_of({-sun.towards->x * sun.per_metre - k.x, -sun.towards->y * sun.per_metre - k.y});
+  }
+
+  std::vector<Obstacles> obstacles_of(std::uint32_t b, Point2 roof, double reach) const {
+    std::vector<Obstacles> out;
+    for (const std::uint32_t other : in_.index.near(in_.footprints[b].box, reach)) {
+      const Point2 by = other == b ? roof : Point2{};
+      Obstacles o;
+      o.box = in_.footprints[other].box;
+      o.box.minimum.x += by.x, o.box.maximum.x += by.x, o.box.minimum.y += by.y, o.box.maximum.y += by.y;
+      in_.footprints.for_each_ring(other, [&](std::span<const Point2> ring, bool) {
+        o.rings.emplace_back(ring.begin(), ring.end());
+        for (Point2& p : o.rings.back()) p.x += by.x, p.y += by.y;
+      });
+      out.push_back(std::move(o));
+    }
+    return out;
+  }
+
+  /// \param per_metre  0: not known
+  std::optional<ShadowLength> best_length(std::uint32_t b, Point2 towards, double per_metre) const {
+    const SightedOutline& s = in_.sighted[b];
+    const Point2 k = lean_of(b);
+    const double guess = per_metre > 0 ? per_metre : 1;
+    Point2 away{-towards.x * guess - k.x, -towards.y * guess - k.y};
+    const double apart = size_of(away);
+    if (apart < 0.2) return std::nullopt;
+    away.x /= apart, away.y /= apart;
+    const double least =
+        per_metre > 0 ? std::max(kLowest * apart, in_.heights[b] * apart * kShortest) : kLowest * kLeastPerMetre;
+    const double most =
+        std::min(kLongestShadow, in_.heights[b] * (per_metre > 0 ? apart * kLongest : kMostPerMetre * 1.3));
+    if (most <= least) return std::nullopt;
+    const SearchedOutline o = in_.outline(b);
+    const double reach = most + 2.5;
+    const Patch patch = patch_of(o, reach + 10);
+    std::optional<ShadowLength> best;
+    double best_value = 0;
+    for (const Sighting& place : s.sightings) {
+      if (place.weight < kLeastPlace) break;
+      const ShadowScan scan = scan_shadow(o.pieces, patch, place.at, away, obstacles_of(b, place.at, reach), reach);
+      const auto found = shadow_length(scan, least, most, per_metre > 0 ? in_.heights[b] * apart : 0);
+      if (!found) continue;
+      const double value = found->clearness + kPlaceValue * place.weight;
+      if (!best || value > best_value) best = found, best_value = value;
+      if (per_metre <= 0) break;  // the first round asks for the direction alone
+    }
+    return best;
+  }
+
+  /// The direction in which the shadows of all houses end most clearly.
+  Point2 refined(Point2 first) const {
+    std::vector<std::uint32_t> sample;
+    for (std::uint32_t b = 0; b < in_.sighted.size(); ++b)
+      if (is_seen(b)) sample.push_back(b);
+    const std::size_t every = std::max<std::size_t>(1, sample.size() / kAngleSample);
+    constexpr int kSteps = static_cast<int>(kDoubt / kAngleStep);
+    std::vector<double> score(2 * kSteps + 1, 0.0);
+    std::vector<std::vector<double>> own(sample.size() / every + 1);
+    base::ordered_parallel(
+        own.size(), in_.workers, static_cast<std::size_t>(in_.workers) * 16,
+        [&](std::size_t n) {
+          if (n * every >= sample.size()) return;
+          for (int k = -kSteps; k <= kSteps; ++k) {
+            const auto found = best_length(sample[n * every], turned(first, k * kAngleStep), 0);
+            own[n].push_back(found ? std::max(0.0, found->clearness) : 0);
+          }
+        },
+        [&](std::size_t n) {
+          for (std::size_t k = 0; k < own[n].size(); ++k) score[k] += own[n][k];
+        });
+    std::size_t best = 0;
+    for (std::size_t k = 0; k < score.size(); ++k)
+      if (score[k] > score[best]) best = k;
+    double by = 0;
+    if (best > 0 && best + 1 < score.size()) {
+      const double a = score[best - 1], b = score[best], c = score[best + 1];
+      if (const double bend = a - 2 * b + c; bend < 0) by = std::clamp((a - c) / 2 / bend, -0.5, 0.5);
+    }
+    return turned(first, (static_cast<double>(best) + by - kSteps) * kAngleStep);
+  }
+
+  /// m of shadow for each metre of height, by houses whose heights are tagged, else by the guesses.
+  void measure_sun(const std::vector<std::optional<ShadowLength>>& found, ImageSun& sun) const {
+    std::vector<double> tagged, guessed;
+    for (std::uint32_t b = 0; b < found.size(); ++b) {
+      if (!found[b] || found[b]->clearness < kClearStep) continue;
+      // |s - k| = length / height: s along the known direction, k known.
+      const double ratio = found[b]->length / in_.heights[b];
+      const Point2 k = lean_of(b), away{-sun.towards->x, -sun.towards->y};
+      const double along = k.x * away.x + k.y * away.y, across = k.x * away.y - k.y * away.x;
+      if (ratio * ratio < across * across) continue;
+      (in_.uncertainty[b] > kTagged ? guessed : tagged).push_back(along + std::sqrt(ratio * ratio - across * across));
+    }
+    const bool by_tags = tagged.size() >= kFewestTagged;
+    std::vector<double>& chosen = by_tags ? tagged : guessed;
+    sun.houses = chosen.size(), sun.tagged = by_tags, sun.per_metre = 0;
+    if (!by_tags && guessed.size() < kFewestGuessed) return;
+    std::sort(chosen.begin(), chosen.end());
+    const double median = chosen[chosen.size() / 2];
+    sun.per_metre = std::clamp(median, kLeastPerMetre, kMostPerMetre);
+    sun.uncertainty = (chosen[chosen.size() * 3 / 4] - chosen[chosen.size() / 4]) / median /
+                      std::sqrt(static_cast<double>(chosen.size()));
+  }
+
+  const ShadowInputs& in_;
+  const LeanField& field_;
+};
+
+}  // namespace
+
+ShadowHeights measure_shadows(const ShadowInputs& in, const LeanField& field, const ImageSun& sun) {
+  return Measurer(in, field).run(sun);
+}
+
+}  // namespace blockrand::observation

@@ -1,0 +1,211 @@
+#include "pipeline/observation/shadows.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pipeline/base/portable_math.h"
+#include "pipeline/geometry/polygon_measures.h"
+
+namespace blockrand::observation {
+
+namespace {
+
+using model::Point2;
+
+/// m beside the edge of a roof: where the sun or the shadow shows, and no gutter, nor the foot of the wall.
+constexpr double kBesideFrom = 0.5, kBesideTo = 2.0;
+/// Levels of 255: differences on dark ground count as if it were so bright.
+constexpr double kDark = 25, kDarkShadow = 8;
+/// Length of the mean of unit vectors to the brighter sides: below it they point anywhere.
+constexpr double kAgreeing = 0.05;
+/// Cosine between a wall's normal and where its shadow falls: others cast a narrow one.
+constexpr double kFacing = 0.35;
+/// m: of ground before and behind the end of a shadow that are compared, and the gap between them: edges are blurred.
+constexpr double kCompared = 1.5, kGap = 0.25;
+/// m: nearer the edge of the roof its gutter is seen.
+constexpr double kEaves = 0.75;
+/// A step is as good as this at most: snow beside a shadow is no better than gravel.
+constexpr double kMostStep = 0.45;
+/// Of the walls that cast a shadow: where fewer speak, the others count as if they said no.
+constexpr double kFewestSpeak = 0.5;
+/// What the square of the logarithm of its multiple of the usual length costs a shadow; what another edge takes from it.
+constexpr double kUnusual = 0.1, kSecond = 0.5;
+/// m: another edge.
+constexpr double kOtherEdge = 1.5;
+
+/// Brightness without the blue of the sky, which lights the shadows; nothing beyond the image.
+std::optional<double> brightness_at(const Patch& patch, Point2 p) {
+  const double x = (p.x - patch.west) / patch.size - 0.5, y = (patch.north - p.y) / patch.size - 0.5;
+  if (!(x >= 0 && y >= 0 && x < patch.width - 1 && y < patch.height - 1)) return std::nullopt;
+  const int c = static_cast<int>(x), r = static_cast<int>(y);
+  const double u = x - c, v = y - r;
+  const std::size_t i =
+      static_cast<std::size_t>(r) * static_cast<std::size_t>(patch.width) + static_cast<std::size_t>(c);
+  const std::array<std::size_t, 4> at{i, i + 1, i + static_cast<std::size_t>(patch.width),
+                                      i + static_cast<std::size_t>(patch.width) + 1};
+  const std::array<double, 4> share{(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
+  double sum = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (!patch.valid[at[k]]) return std::nullopt;
+    sum += share[k] * (3.0 * patch.red[at[k]] + 4.0 * patch.green[at[k]] + patch.blue[at[k]]) / 8;
+  }
+  return sum;
+}
+
+/// Mean along a piece that is moved by `by`.
+std::optional<double> along_piece(const WallPiece& piece, const Patch& patch, Point2 by) {
+  const int count = std::max(1, static_cast<int>(std::lround(piece.length / patch.size)));
+  double sum = 0;
+  for (int k = 0; k < count; ++k) {
+    const double at = ((k + 0.5) / count - 0.5) * piece.length;
+    const auto b =
+        brightness_at(patch, {piece.middle.x + by.x + piece.along.x * at, piece.middle.y + by.y + piece.along.y * at});
+    if (!b) return std::nullopt;
+    sum += *b;
+  }
+  return sum / count;
+}
+
+Point2 outward(const WallPiece& piece) { return {piece.along.y, -piece.along.x}; }
+
+/// Brightness behind a piece by distance, in steps of kShadowStep from 0; ends where the image or another house does.
+std::vector<double> behind(const WallPiece& piece, const Patch& patch, Point2 roof, Point2 away,
+                           std::span<const Obstacles> others, double reach) {
+  std::vector<double> out;
+  for (int k = 0; k * kShadowStep <= reach; ++k) {
+    const Point2 by{roof.x + away.x * k * kShadowStep, roof.y + away.y * k * kShadowStep};
+    const Point2 p{piece.middle.x + by.x, piece.middle.y + by.y};
+    if (k > 2 && std::ranges::any_of(others, [p](const Obstacles& o) { return o.contain(p); })) break;
+    const auto b = along_piece(piece, patch, by);
+    if (!b) break;
+    out.push_back(*b);
+  }
+  return out;
+}
+
+/// The change at each distance: how much brighter the ground beyond is than the shadow before it, and than all before it.
+std::vector<float> steps_of(const std::vector<double>& brightness) {
+  std::vector<double> sums(brightness.size() + 1, 0.0);
+  for (std::size_t i = 0; i < brightness.size(); ++i) sums[i + 1] = sums[i] + brightness[i];
+  const auto mean = [&](int from, int to) {
+    return (sums[static_cast<std::size_t>(to)] - sums[static_cast<std::size_t>(from)]) / (to - from);
+  };
+  constexpr int kWide = static_cast<int>(kCompared / kShadowStep), kNarrow = static_cast<int>(kGap / kShadowStep),
+                kFirst = static_cast<int>(kEaves / kShadowStep);
+  std::vector<float> out;
+  const int size = static_cast<int>(brightness.size());
+  for (int k = 0; k + kNarrow + kWide <= size; ++k) {
+    const int end = k - kNarrow + 1;
+    if (end - kFirst < 2) {
+      out.push_back(0);
+      continue;
+    }
+    const double beyond = mean(k + kNarrow, k + kNarrow + kWide);
+    const double near = mean(std::max(kFirst, end - kWide), end), all = mean(kFirst, end);
+    const double before = std::max(near, all);
+    out.push_back(static_cast<float>(
+        std::clamp((beyond - before) / ((beyond + before) / 2 + kDarkShadow), -kMostStep, kMostStep)));
+  }
+  return out;
+}
+
+}  // namespace
+
+void SunnySides::add(std::span<const WallPiece> pieces, const Patch& patch, Point2 roof) {
+  struct Beside {
+    Point2 normal;
+    double brightness, length;
+  };
+  std::vector<Beside> sides;
+  double sum = 0, length = 0;
+  for (const WallPiece& piece : pieces) {
+    if (piece.weight < 1) continue;
+    const Point2 n = outward(piece);
+    double brightness = 0;
+    int count = 0;
+    for (double d = kBesideFrom; d <= kBesideTo; d += patch.size)
+      if (const auto b = along_piece(piece, patch, {roof.x + n.x * d, roof.y + n.y * d})) brightness += *b, ++count;
+    if (count == 0) continue;
+    sides.push_back({n, brightness / count, piece.length});
+    sum += brightness / count * piece.length, length += piece.length;
+  }
+  if (length <= 0) return;
+  const double usual = sum / length;
+  for (const Beside& s : sides) {
+    const double w = std::clamp((s.brightness - usual) / (usual + kDark), -0.5, 0.5) * s.length;
+    sum_.x += w * s.normal.x, sum_.y += w * s.normal.y, weight_ += std::fabs(w);
+  }
+}
+
+void SunnySides::add(const SunnySides& other) {
+  sum_.x += other.sum_.x, sum_.y += other.sum_.y, weight_ += other.weight_;
+}
+
+std::optional<Point2> SunnySides::to_sun() const {
+  const double size = std::sqrt(sum_.x * sum_.x + sum_.y * sum_.y);
+  if (weight_ <= 0 || size < kAgreeing * weight_) return std::nullopt;
+  return Point2{sum_.x / size, sum_.y / size};
+}
+
+bool Obstacles::contain(Point2 p) const {
+  if (!box.near({p, p}, 0)) return false;
+  bool inside = false;
+  for (const std::vector<Point2>& ring : rings) inside ^= geometry::contains(ring, p);
+  return inside;
+}
+
+ShadowScan scan_shadow(std::span<const WallPiece> pieces, const Patch& patch, Point2 roof, Point2 away,
+                       std::span<const Obstacles> others, double reach) {
+  ShadowScan scan;
+  const auto size = static_cast<std::size_t>(std::floor(reach / kShadowStep)) + 1;
+  std::vector<double> sum(size, 0.0), walls(size, 0.0);
+  for (const WallPiece& piece : pieces) {
+    const Point2 n = outward(piece);
+    const double facing = n.x * away.x + n.y * away.y;
+    if (piece.weight < 1 || facing < kFacing) continue;
+    const double weight = piece.length * facing;
+    scan.weight += weight;
+    const std::vector<float> steps = steps_of(behind(piece, patch, roof, away, others, reach));
+    for (std::size_t k = 0; k < std::min(size, steps.size()); ++k)
+      sum[k] += weight * static_cast<double>(steps[k]), walls[k] += weight;
+  }
+  for (std::size_t k = 0; k < size; ++k) {
+    const double speak = std::max(walls[k], kFewestSpeak * scan.weight);
+    scan.step.push_back(speak > 0 ? static_cast<float>(sum[k] / speak) : 0.0F);
+    scan.walls.push_back(static_cast<float>(walls[k]));
+  }
+  return scan;
+}
+
+std::optional<ShadowLength> shadow_length(const ShadowScan& scan, double least, double most, double usual) {
+  const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(least / kShadowStep)));
+  const std::size_t end = std::min(scan.step.size(), static_cast<std::size_t>(std::floor(most / kShadowStep)) + 1);
+  if (first >= end || scan.weight <= 0) return std::nullopt;
+  const auto value = [&](std::size_t k) {
+    const double off = usual > 0 ? base::log(std::max(0.5, static_cast<double>(k)) * kShadowStep / usual) : 0;
+    return static_cast<double>(scan.step[k]) - kUnusual * off * off;
+  };
+  std::size_t best = first;
+  for (std::size_t k = first; k < end; ++k)
+    if (value(k) > value(best)) best = k;
+  if (!(scan.step[best] > 0)) return std::nullopt;
+  ShadowLength out;
+  out.step = static_cast<double>(scan.step[best]);
+  out.walls = static_cast<double>(scan.walls[best]);
+  constexpr auto kApart = static_cast<std::size_t>(kOtherEdge / kShadowStep);
+  for (std::size_t k = first; k < end; ++k)
+    if (k + kApart <= best || k >= best + kApart) out.second = std::max(out.second, static_cast<double>(scan.step[k]));
+  out.clearness = value(best) - kSecond * out.second;
+  // Between the steps, by a parabola through three of them.
+  double by = 0;
+  if (best > 0 && best + 1 < scan.step.size()) {
+    const double a = static_cast<double>(scan.step[best - 1]), b = out.step,
+                 c = static_cast<double>(scan.step[best + 1]);
+    if (const double bend = a - 2 * b + c; bend < 0) by = std::clamp((a - c) / 2 / bend, -0.5, 0.5);
+  }
+  out.length = (static_cast<double>(best) + by) * kShadowStep;
+  return out;
+}
+
+}  // namespace blockrand::observation
