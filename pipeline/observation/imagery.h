@@ -57,7 +57,7 @@ struct OutlineReceipt {
   double confidence = 0;
   model::Point2 lean;  ///< m, of the roof in the image
   double eaves = 0;    ///< m: the height that it was reckoned with
-  double mean = 0, deviation = 0, second = 0, weight = 0;
+  double mean = 0, deviation = 0, second = 0, weight = 0, height_doubt = 0;
 };
 
 /// A height that a shadow tells.

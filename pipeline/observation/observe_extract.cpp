@@ -332,21 +332,19 @@ class Observer {
 
   /// A movement along the lean of roofs whose heights nobody told is perhaps only another height.
   static bool explained_by_height(const SearchedRow& row, const RowMatch& match) {
-    Point2 lean, reach;
+    Point2 lean;
     double length = 0;
     for (const SearchedOutline& o : row.outlines) {
       double own = 0;
       for (const WallPiece& p : o.pieces) own += p.length;
       lean.x += own * o.lean.x, lean.y += own * o.lean.y;
-      const double share = o.uncertainty * kHeightDoubt;
-      reach.x += own * o.per_metre.x * o.height * share, reach.y += own * o.per_metre.y * o.height * share;
       length += own;
     }
     const double size = std::sqrt(lean.x * lean.x + lean.y * lean.y);
     if (length <= 0 || size < kLeastLean * length) return false;
     const double along = std::fabs(match.shift.x * lean.x + match.shift.y * lean.y) / size,
                  across = std::fabs(match.shift.x * lean.y - match.shift.y * lean.x) / size;
-    return across <= kBesideLean && along <= std::sqrt(reach.x * reach.x + reach.y * reach.y) / length;
+    return across <= kBesideLean && along <= kHeightDoubt * match.height_doubt;
   }
 
   OutlineReceipt receipt(std::uint32_t image, std::uint32_t row, std::uint32_t building, const RowMatch& m,
@@ -361,6 +359,7 @@ class Observer {
     receipt.turn = rounded(m.turn, 100);
     receipt.before = rounded(m.here, 10000), receipt.after = rounded(m.best, 10000);
     receipt.mean = m.mean, receipt.deviation = m.deviation, receipt.second = m.second, receipt.weight = m.weight;
+    receipt.height_doubt = m.height_doubt;
     const double eaves = eaves_.height(building);
     receipt.lean = rounded(field_.at(of_.footprints[building].box.centre(), eaves).value_or(Point2{}));
     receipt.eaves = rounded(eaves, 10);

@@ -185,12 +185,26 @@ class RowScores {
   double here_ = 0;
 };
 
+double height_doubt(const SearchedRow& row) {
+  Point2 sum;
+  double length = 0;
+  for (const SearchedOutline& o : row.outlines) {
+    double own = 0;
+    for (const WallPiece& p : o.pieces) own += p.length;
+    const double doubt = own * o.height * o.uncertainty;
+    sum.x += doubt * o.per_metre.x, sum.y += doubt * o.per_metre.y;
+    length += own;
+  }
+  return length > 0 ? length_of(sum) / length : 0;
+}
+
 RowMatch match_row(const SearchedRow& row, const ImageWindows& windows, const SearchBounds& bounds, double contrast) {
   RowMatch match;
   const RowScores scores(row, windows, bounds, contrast);
   const ScoreMap& map = scores.map();
   const Displacements wide = map.grid;
   match.weight = map.weight;
+  match.height_doubt = height_doubt(row);
   if (map.weight <= 0 || map.missing > kMostMissing * (map.weight + map.missing)) return match;
   match.seen = true;
   double sum = 0, squares = 0, count = 0;

@@ -43,8 +43,12 @@ struct RowMatch {
   double mean = 0, deviation = 0;  ///< of the scores of all displacements
   double second = 0;               ///< the best score of a place elsewhere that is a peak of its own; 0: none
   double weight = 0;               ///< m of wall
+  double height_doubt = 0;         ///< m: how far the doubt about heights lets the lean show the roofs elsewhere
   std::vector<double> heights;     ///< m, by outline: those with which roof and ground fit the image best
 };
+
+/// RowMatch::height_doubt: the mean over all walls.
+double height_doubt(const SearchedRow& row);
 
 /// The best movement within the bounds. \param contrast  as score_outline() has it
 RowMatch match_row(const SearchedRow& row, const ImageWindows& windows, const SearchBounds& bounds, double contrast);

@@ -28,6 +28,9 @@ constexpr double kLeastPlace = 0.08;
 constexpr double kClearStep = 0.1;
 /// Of a height, as its share: of what is less sure nobody measured or counted anything.
 constexpr double kTagged = 0.2;
+/// Ratios of shadow to height that agree differ by this factor at most; of all ratios, by clearness: fewer that agree are
+/// chance, as in streets where every shadow ends at the house opposite.
+constexpr double kAgreeingRatios = 1.4, kLeastAgreeing = 0.48;
 /// Houses by whose heights the sun's is measured.
 constexpr std::size_t kFewestTagged = 12, kFewestGuessed = 20;
 
@@ -52,11 +55,11 @@ class Measurer {
       if (!first) return out;
       out.sun.towards = refined(*first);
       for_all([&](std::uint32_t b) { found[b] = best_length(b, *out.sun.towards, 0); });
-      measure_sun(found, out.sun);
+      measure_sun(found, true, out.sun);
     }
     if (out.sun.per_metre <= 0) return out;
     for_all([&](std::uint32_t b) { found[b] = best_length(b, *out.sun.towards, out.sun.per_metre); });
-    measure_sun(found, out.sun);
+    measure_sun(found, false, out.sun);
     if (out.sun.per_metre <= 0) return out;
     for (std::uint32_t b = 0; b < found.size(); ++b)
       if (found[b]) out.buildings[b] = {*found[b], found[b]->length / apart(b, out.sun)};
@@ -180,9 +183,17 @@ class Measurer {
     return turned(first, (static_cast<double>(best) + by - kSteps) * kAngleStep);
   }
 
-  /// m of shadow for each metre of height, by houses whose heights are tagged, else by the guesses.
-  void measure_sun(const std::vector<std::optional<ShadowLength>>& found, ImageSun& sun) const {
-    std::vector<double> tagged, guessed;
+  /// A house's length of shadow for each metre of its height, and what it counts.
+  struct Ratio {
+    double value, weight;
+    friend auto operator<=>(const Ratio&, const Ratio&) = default;
+  };
+
+  /// m of shadow for each metre of height: where the ratios of most houses lie, of those whose heights are tagged, else of
+  /// all. Shadows that end at the next house, or on it, lie anywhere. \param first  lengths were not looked for near those
+  /// that are usual: how many agree says whether there are shadows at all
+  void measure_sun(const std::vector<std::optional<ShadowLength>>& found, bool first, ImageSun& sun) const {
+    std::vector<Ratio> tagged, guessed;
     for (std::uint32_t b = 0; b < found.size(); ++b) {
       if (!found[b] || found[b]->clearness < kClearStep) continue;
       // |s - k| = length / height: s along the known direction, k known.
@@ -190,17 +201,27 @@ class Measurer {
       const Point2 k = lean_of(b), away{-sun.towards->x, -sun.towards->y};
       const double along = k.x * away.x + k.y * away.y, across = k.x * away.y - k.y * away.x;
       if (ratio * ratio < across * across) continue;
-      (in_.uncertainty[b] > kTagged ? guessed : tagged).push_back(along + std::sqrt(ratio * ratio - across * across));
+      const double value = along + std::sqrt(ratio * ratio - across * across);
+      if (value < kLeastPerMetre || value > kMostPerMetre) continue;
+      (in_.uncertainty[b] > kTagged ? guessed : tagged).push_back({value, found[b]->clearness});
     }
     const bool by_tags = tagged.size() >= kFewestTagged;
-    std::vector<double>& chosen = by_tags ? tagged : guessed;
+    std::vector<Ratio>& chosen = by_tags ? tagged : guessed;
     sun.houses = chosen.size(), sun.tagged = by_tags, sun.per_metre = 0;
     if (!by_tags && guessed.size() < kFewestGuessed) return;
     std::sort(chosen.begin(), chosen.end());
-    const double median = chosen[chosen.size() / 2];
-    sun.per_metre = std::clamp(median, kLeastPerMetre, kMostPerMetre);
-    sun.uncertainty = (chosen[chosen.size() * 3 / 4] - chosen[chosen.size() / 4]) / median /
-                      std::sqrt(static_cast<double>(chosen.size()));
+    double all = 0, best = 0, within = 0;
+    std::size_t from = 0, best_from = 0, best_to = 0;
+    for (const Ratio& r : chosen) all += r.weight;
+    for (std::size_t to = 0; to < chosen.size(); ++to) {
+      within += chosen[to].weight;
+      while (chosen[from].value * kAgreeingRatios < chosen[to].value) within -= chosen[from++].weight;
+      if (within > best) best = within, best_from = from, best_to = to;
+    }
+    if (first && best < kLeastAgreeing * all) return;
+    const double middle = chosen[(best_from + best_to) / 2].value;
+    sun.per_metre = middle;
+    sun.uncertainty = (kAgreeingRatios - 1) / 2 / std::sqrt(static_cast<double>(best_to - best_from + 1));
   }
 
   const ShadowInputs& in_;

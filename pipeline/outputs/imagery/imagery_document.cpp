@@ -68,6 +68,7 @@ Json building_json(const std::string& id, const OutlineReceipt& r) {
     j["score_deviation"] = rounded(r.deviation, 10000);
     j["score_elsewhere"] = rounded(r.second, 10000);
     j["walls_m"] = rounded(r.weight, 10);
+    j["height_doubt_m"] = rounded(r.height_doubt, 100);
   }
   return j;
 }
