@@ -12,14 +12,16 @@ namespace {
 /// Deviations: a movement that gains less is none; a place that is less better than another one is not known.
 constexpr double kLeastGain = 0.6, kLeastMargin = 0.5;
 
-/// Weights of a logistic regression (fit.py of tests/bench/imagery) on rows of Kampala and of synthetic images that were
-/// moved by known amounts; what is measured is cut at the values behind which nothing changes.
+/// Weights of a logistic regression (fit.py of tests/bench/imagery) on rows of Kampala and of synthetic images, of which half
+/// were moved by known amounts, where the search found a movement; what is measured is cut at the values behind which nothing
+/// changes.
 double confidence_of(const RowMatch& m) {
   const double shift = std::sqrt(m.shift.x * m.shift.x + m.shift.y * m.shift.y);
-  const double sum = -4.51 + 0.57 * std::min(3.0, (m.best - m.here) / m.deviation) +
-                     0.09 * std::min(2.5, (m.best - m.second) / m.deviation) +
-                     0.89 * std::min(4.5, (m.best - m.mean) / m.deviation) + 2.27 * m.best +
-                     0.21 * base::log(m.weight / 50) - 3.64 * std::max(0.0, shift - 2.8);
+  const double sum =
+      -3.12 + 0.46 * std::min(3.0, (m.best - m.here) / m.deviation) +
+      0.63 * std::min(2.5, (m.best - m.second) / m.deviation) + 0.18 * std::min(4.5, (m.best - m.mean) / m.deviation) +
+      2.38 * m.best + 0.16 * base::log(m.weight / 50) - 3.59 * std::max(0.0, shift - 2.8) -
+      0.95 * std::min(2.0, m.height_doubt) + 0.29 * base::log(std::max(1.0, static_cast<double>(m.heights.size())));
   return 1 / (1 + base::exp(-sum));
 }
 

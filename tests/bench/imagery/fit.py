@@ -5,9 +5,10 @@ place that is left out says.
     fit.py confidence|form|ridge [--work FOLDER] [--images FOLDER] [--places PLACE ...]
 
 confidence: of the runs that `evaluate.py synthetic --set tuning` and `evaluate.py kampala` left in --work; a row is right when it is
-found within 0.6 m. form, ridge: of builds of the tuning images, which are made here where --work lacks them.
+found within 0.6 m; of those that are found 0.4 m or more from where they are mapped. form, ridge: of builds of the tuning images, which are made here where --work lacks them.
 """
 import argparse
+import collections
 import csv
 import glob
 import json
@@ -55,18 +56,21 @@ def confidence(a):
             truth = {r["id"]: r for r in csv.DictReader(line for line in f if not line.startswith("#"))}
         with open(os.path.join(table[:-4], "imagery.json")) as f:
             seen = json.load(f)["buildings"]
+        houses = collections.Counter(b.get("row") for b in seen)
         done = set()
         for b in seen:
             if b.get("row") in done or b["id"] not in truth or not b.get("score_deviation"):
                 continue
             done.add(b["row"])
             dx, dy = b["shift_m"]
+            if math.hypot(dx, dy) < .4:
+                continue
             off = math.hypot(dx + float(truth[b["id"]]["dx"]), dy + float(truth[b["id"]]["dy"]))
             d = b["score_deviation"]
             rows.append((os.path.basename(table).split("-tuning")[0].split("-real")[0],
                          [1, min(3, (b["evidence_after"] - b["evidence_before"]) / d), min(2.5, (b["evidence_after"] - b["score_elsewhere"]) / d),
                           min(4.5, (b["evidence_after"] - b["score_mean"]) / d), b["evidence_after"], math.log(max(1, b["walls_m"]) / 50),
-                          max(0, math.hypot(dx, dy) - 2.8)], off < .6))
+                          max(0, math.hypot(dx, dy) - 2.8), min(2, b["height_doubt_m"]), math.log(houses[b["row"]])], off < .6))
     report(rows)
 
 
