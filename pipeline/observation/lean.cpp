@@ -45,7 +45,8 @@ constexpr double kFriend = 0.2, kEnoughWithFriends = 0.6;
 /// Nodes that decide on the flight's height.
 constexpr std::size_t kCurvatureNodes = 40;
 /// 1/m: flights of 500 m and more, in steps in which 150 m and 12 m of height make 0.2 m.
-constexpr double kMostCurvature = 0.002, kCurvatureStep = 0.0001;
+constexpr double kCurvatureStep = 0.0001;
+constexpr int kCurvatureSteps = 20, kCoarseCurvature = 4;  ///< each fourth first, then those beside the best of them
 
 /// Votes for a vector.
 class Votes {
@@ -229,16 +230,24 @@ LeanField::LeanField(std::span<const SightedOutline> outlines) {
   if (fullest.size() > kCurvatureNodes) fullest.resize(kCurvatureNodes);
 
   Votes leans(kMostLean, kLeanStep), shifts(kMostShift, kShiftStep);
+  std::vector<std::vector<std::uint32_t>> near;
+  for (const auto& [count, cell] : fullest) near.push_back(around(cell));
   double best = -1, shift_support = 0, weight = 0;
-  for (double curvature = 0; curvature <= kMostCurvature + kCurvatureStep / 2; curvature += kCurvatureStep) {
+  const auto try_curvature = [&](int steps) {
+    if (steps < 0 || steps > kCurvatureSteps) return;
     double support = 0;
-    for (const auto& [count, cell] : fullest)
-      support += count * vote(leans, outlines, around(cell), middle_of(cell), curvature, true).support;
-    if (support > best) best = support, curvature_ = curvature;
-  }
-  for (const auto& [count, cell] : fullest) {
-    shift_support += count * vote(shifts, outlines, around(cell), middle_of(cell), 0, false).support;
-    weight += count;
+    for (std::size_t n = 0; n < fullest.size(); ++n)
+      support += fullest[n].first *
+                 vote(leans, outlines, near[n], middle_of(fullest[n].second), steps * kCurvatureStep, true).support;
+    if (support > best) best = support, curvature_ = steps * kCurvatureStep;
+  };
+  for (int steps = 0; steps <= kCurvatureSteps; steps += kCoarseCurvature) try_curvature(steps);
+  const int coarse = static_cast<int>(std::lround(curvature_ / kCurvatureStep));
+  for (int by = 1; by < kCoarseCurvature; ++by) try_curvature(coarse - by), try_curvature(coarse + by);
+  for (std::size_t n = 0; n < fullest.size(); ++n) {
+    shift_support +=
+        fullest[n].first * vote(shifts, outlines, near[n], middle_of(fullest[n].second), 0, false).support;
+    weight += fullest[n].first;
   }
   if (weight <= 0) return;
   leans_ = best >= shift_support;
