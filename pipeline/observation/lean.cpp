@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "pipeline/base/parallel.h"
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/box_index.h"
 
@@ -42,6 +43,8 @@ constexpr double kLeastShare = 0.15;
 constexpr double kSameLean = 0.04, kSameShift = 0.4;
 constexpr int kRounds = 4;
 constexpr double kFriend = 0.2, kEnoughWithFriends = 0.6;
+/// Nodes that are worked on at a time, at most.
+constexpr std::size_t kInFlight = 64;
 /// Nodes that decide on the flight's height.
 constexpr std::size_t kCurvatureNodes = 40;
 /// 1/m: flights of 500 m and more, in steps in which 150 m and 12 m of height make 0.2 m.
@@ -204,7 +207,7 @@ std::array<Sighting, kMostSightings> sightings_of(const ScoreMap& map) {
   return out;
 }
 
-LeanField::LeanField(std::span<const SightedOutline> outlines) {
+LeanField::LeanField(std::span<const SightedOutline> outlines, int workers) {
   std::vector<geometry::PlanBox> places(outlines.size());
   std::map<std::pair<long long, long long>, std::uint32_t> cells;  // outlines in each
   for (std::size_t n = 0; n < outlines.size(); ++n) {
@@ -229,31 +232,36 @@ LeanField::LeanField(std::span<const SightedOutline> outlines) {
             [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
   if (fullest.size() > kCurvatureNodes) fullest.resize(kCurvatureNodes);
 
-  Votes leans(kMostLean, kLeanStep), shifts(kMostShift, kShiftStep);
+  Votes shifts(kMostShift, kShiftStep);
   std::vector<std::vector<std::uint32_t>> near;
   for (const auto& [count, cell] : fullest) near.push_back(around(cell));
   double best = -1, shift_support = 0, weight = 0;
   const auto try_curvature = [&](int steps) {
     if (steps < 0 || steps > kCurvatureSteps) return;
+    std::vector<double> supports(fullest.size());
     double support = 0;
-    for (std::size_t n = 0; n < fullest.size(); ++n)
-      support += fullest[n].first *
-                 vote(leans, outlines, near[n], middle_of(fullest[n].second), steps * kCurvatureStep, true).support;
+    base::ordered_parallel(
+        fullest.size(), workers, fullest.size(),
+        [&](std::size_t n) {
+          Votes votes(kMostLean, kLeanStep);
+          supports[n] =
+              vote(votes, outlines, near[n], middle_of(fullest[n].second), steps * kCurvatureStep, true).support;
+        },
+        [&](std::size_t n) { support += fullest[n].first * supports[n]; });
     if (support > best) best = support, curvature_ = steps * kCurvatureStep;
   };
   for (int steps = 0; steps <= kCurvatureSteps; steps += kCoarseCurvature) try_curvature(steps);
   const int coarse = static_cast<int>(std::lround(curvature_ / kCurvatureStep));
   for (int by = 1; by < kCoarseCurvature; ++by) try_curvature(coarse - by), try_curvature(coarse + by);
   for (std::size_t n = 0; n < fullest.size(); ++n) {
-    shift_support +=
-        fullest[n].first * vote(shifts, outlines, near[n], middle_of(fullest[n].second), 0, false).support;
+    shift_support += fullest[n].first * vote(shifts, outlines, near[n], middle_of(fullest[n].second), 0, false).support;
     weight += fullest[n].first;
   }
   if (weight <= 0) return;
   leans_ = best >= shift_support;
   if (!leans_) curvature_ = 0;
 
-  Votes& votes = leans_ ? leans : shifts;
+  const auto empty = [this] { return leans_ ? Votes(kMostLean, kLeanStep) : Votes(kMostShift, kShiftStep); };
   struct Candidate {
     Node node;
     std::vector<std::uint32_t> near;
@@ -262,29 +270,43 @@ LeanField::LeanField(std::span<const SightedOutline> outlines) {
     bool sure = false;
   };
   std::map<std::pair<long long, long long>, Candidate> candidates;
+  std::vector<Candidate> tried;
+  for (const auto& [cell, count] : cells) {
+    tried.emplace_back();
+    tried.back().node.cell = cell, tried.back().outlines = static_cast<double>(count);
+  }
   double total = 0, agreed = 0, sure = 0, squares = 0;
   std::size_t samples = 0;
-  for (const auto& [cell, count] : cells) {
-    Candidate c{.node = {cell, {}, 0}, .near = around(cell)};
-    if (c.near.size() < kFewest) continue;
-    const Votes::Winner won = vote(votes, outlines, c.near, middle_of(cell), curvature_, leans_);
-    c.outlines = count;
-    c.node.k = won.at, c.node.support = won.support, c.gain = won.support - won.at_zero;
-    double chances = 0;
-    for (unsigned chance = 1; chance <= kChances; ++chance) {
-      cast(votes, outlines, c.near, middle_of(cell), curvature_, leans_, chance);
-      c.chance[chance - 1] = votes.winner().support;
-      chances += c.chance[chance - 1];
-    }
-    c.threshold = chances / kChances;
-    for (const double by_chance : c.chance)
-      if (c.threshold > 0) {
-        squares += (by_chance / c.threshold - 1) * (by_chance / c.threshold - 1);
-        ++samples;
-      }
-    total += count, agreed += count * won.support;
-    candidates.emplace(cell, std::move(c));
-  }
+  base::ordered_parallel(
+      tried.size(), workers, kInFlight,
+      [&](std::size_t n) {
+        Candidate& c = tried[n];
+        c.near = around(c.node.cell);
+        if (c.near.size() < kFewest) return;
+        Votes votes = empty();
+        const Point2 middle = middle_of(c.node.cell);
+        const Votes::Winner won = vote(votes, outlines, c.near, middle, curvature_, leans_);
+        c.node.k = won.at, c.node.support = won.support, c.gain = won.support - won.at_zero;
+        for (unsigned chance = 1; chance <= kChances; ++chance) {
+          cast(votes, outlines, c.near, middle, curvature_, leans_, chance);
+          c.chance[chance - 1] = votes.winner().support;
+        }
+      },
+      [&](std::size_t n) {
+        Candidate& c = tried[n];
+        if (c.near.size() < kFewest) return;
+        double chances = 0;
+        for (const double by_chance : c.chance) chances += by_chance;
+        c.threshold = chances / kChances;
+        for (const double by_chance : c.chance)
+          if (c.threshold > 0) {
+            squares += (by_chance / c.threshold - 1) * (by_chance / c.threshold - 1);
+            ++samples;
+          }
+        total += c.outlines, agreed += c.outlines * c.node.support;
+        const auto cell = c.node.cell;
+        candidates.emplace(cell, std::move(c));
+      });
   const double deviation =
       samples > 0 ? std::sqrt(squares / static_cast<double>(samples) * kChances / (kChances - 1)) : 0;
   for (auto& [cell, c] : candidates) {
@@ -298,7 +320,7 @@ LeanField::LeanField(std::span<const SightedOutline> outlines) {
   // Neighbours within one picture tell each other what their own votes leave open.
   for (int round = 0; round < kRounds; ++round) {
     const auto before = candidates;
-    for (auto& [cell, c] : candidates) {
+    const auto hear = [&](const std::pair<long long, long long> cell, Candidate& c) {
       std::vector<Point2> told;
       for (long long v = -1; v <= 1; ++v)
         for (long long u = -1; u <= 1; ++u) {
@@ -307,7 +329,8 @@ LeanField::LeanField(std::span<const SightedOutline> outlines) {
           told.push_back({other->second.node.k.x - curvature_ * static_cast<double>(u) * kNodeGrid,
                           other->second.node.k.y - curvature_ * static_cast<double>(v) * kNodeGrid});
         }
-      if (told.empty()) continue;
+      if (told.empty()) return;
+      Votes votes = empty();
       cast(votes, outlines, c.near, middle_of(cell), curvature_, leans_);
       const auto alike = [&](Point2 a, Point2 b) {
         const double limit = leans_ ? kSameLean : kSameShift;
@@ -326,7 +349,12 @@ LeanField::LeanField(std::span<const SightedOutline> outlines) {
       c.node.k = best.at, c.node.support = best.support;
       c.sure =
           best.support >= c.threshold || (friends(best.at) > 0 && best.support >= kEnoughWithFriends * c.threshold);
-    }
+    };
+    std::vector<std::pair<const std::pair<long long, long long>, Candidate>*> all;
+    for (auto& candidate : candidates) all.push_back(&candidate);
+    base::ordered_parallel(
+        all.size(), workers, kInFlight, [&](std::size_t n) { hear(all[n]->first, all[n]->second); },
+        [](std::size_t) {});
   }
   for (const auto& [cell, c] : candidates) {
     if (!c.sure) continue;

@@ -42,7 +42,8 @@ class LeanField {
  public:
   LeanField() = default;
   /// \param outlines  all of the image
-  explicit LeanField(std::span<const SightedOutline> outlines);
+  /// \param workers  threads; the same field for any number
+  explicit LeanField(std::span<const SightedOutline> outlines, int workers = 1);
 
   /// m: how far the image shows the roof of a building from the map; nothing where too few agree on it, (0, 0) where no
   /// place of the image says anything.

@@ -214,7 +214,7 @@ class Observer {
             sighted[n].sightings = sightings_of(map);
         },
         [](std::size_t) {});
-    field_ = LeanField(sighted);
+    field_ = LeanField(sighted, workers_);
     const ShadowInputs inputs{.sighted = sighted,
                               .heights = eaves_.unseen_heights(),
                               .uncertainty = eaves_.unseen_uncertainty(),
@@ -226,7 +226,7 @@ class Observer {
     ShadowHeights shadows = measure_shadows(inputs, field_, {});
     for (int round = 0;; ++round) {
       take_heights(shadows, sighted);
-      field_ = LeanField(sighted);
+      field_ = LeanField(sighted, workers_);
       if (round == kShadowRounds) break;
       shadows = measure_shadows(inputs, field_, shadows.sun);
     }

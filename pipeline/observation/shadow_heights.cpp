@@ -13,8 +13,8 @@ namespace {
 using model::Point2;
 
 /// Degrees to both sides of where the sunny sides point, and between the directions that are tried; how many houses try.
-constexpr double kDoubt = 24, kAngleStep = 4;
-constexpr std::size_t kAngleSample = 400;
+constexpr double kDoubt = 24, kAngleStep = 6;
+constexpr std::size_t kAngleSample = 200;
 /// m: of height, and of shadow for each metre, that are looked at before anything is known: the sun of aerial images
 /// stands 20 to 65 degrees high.
 constexpr double kLowest = 2, kLeastPerMetre = 0.45, kMostPerMetre = 2.8;

@@ -17,8 +17,9 @@ using model::Point2;
 constexpr double kBesideFrom = 0.5, kBesideTo = 2.0;
 /// Levels of 255: differences on dark ground count as if it were so bright.
 constexpr double kDark = 25, kDarkShadow = 8;
-/// Length of the mean of unit vectors to the brighter sides: below it they point anywhere.
-constexpr double kAgreeing = 0.05;
+/// Length of the mean of unit vectors to the brighter sides: below it they point anywhere. By chance it is the inverse of the
+/// root of the number of houses: so many times that.
+constexpr double kAgreeing = 0.05, kBeyondChance = 2;
 /// Cosine between a wall's normal and where its shadow falls: others cast a narrow one.
 constexpr double kFacing = 0.35;
 /// m: of ground before and behind the end of a shadow that are compared, and the gap between them: edges are blurred.
@@ -31,8 +32,9 @@ constexpr double kMostStep = 0.45;
 constexpr double kFewestSpeak = 0.5;
 /// What the square of the logarithm of its multiple of the usual length costs a shadow; what another edge takes from it.
 constexpr double kUnusual = 0.1, kSecond = 0.5;
-/// m: another edge.
+/// m: another edge; of a step: those beside it that are as strong are the same edge.
 constexpr double kOtherEdge = 1.5;
+constexpr float kSameEdge = 0.9F;
 
 /// Brightness without the blue of the sky, which lights the shadows; nothing beyond the image.
 std::optional<double> brightness_at(const Patch& patch, Point2 p) {
@@ -84,7 +86,8 @@ std::vector<double> behind(const WallPiece& piece, const Patch& patch, Point2 ro
   return out;
 }
 
-/// The change at each distance: how much brighter the ground beyond is than the shadow before it, and than all before it.
+/// The change at each distance, not cut at kMostStep: how much brighter the ground beyond is than the shadow before it, and
+/// than all before it.
 std::vector<float> steps_of(const std::vector<double>& brightness) {
   std::vector<double> sums(brightness.size() + 1, 0.0);
   for (std::size_t i = 0; i < brightness.size(); ++i) sums[i + 1] = sums[i] + brightness[i];
@@ -104,8 +107,7 @@ std::vector<float> steps_of(const std::vector<double>& brightness) {
     const double beyond = mean(k + kNarrow, k + kNarrow + kWide);
     const double near = mean(std::max(kFirst, end - kWide), end), all = mean(kFirst, end);
     const double before = std::max(near, all);
-    out.push_back(static_cast<float>(
-        std::clamp((beyond - before) / ((beyond + before) / 2 + kDarkShadow), -kMostStep, kMostStep)));
+    out.push_back(static_cast<float>((beyond - before) / ((beyond + before) / 2 + kDarkShadow)));
   }
   return out;
 }
@@ -131,6 +133,7 @@ void SunnySides::add(std::span<const WallPiece> pieces, const Patch& patch, Poin
     sum += brightness / count * piece.length, length += piece.length;
   }
   if (length <= 0) return;
+  ++houses_;
   const double usual = sum / length;
   for (const Beside& s : sides) {
     const double w = std::clamp((s.brightness - usual) / (usual + kDark), -0.5, 0.5) * s.length;
@@ -139,12 +142,14 @@ void SunnySides::add(std::span<const WallPiece> pieces, const Patch& patch, Poin
 }
 
 void SunnySides::add(const SunnySides& other) {
-  sum_.x += other.sum_.x, sum_.y += other.sum_.y, weight_ += other.weight_;
+  sum_.x += other.sum_.x, sum_.y += other.sum_.y, weight_ += other.weight_, houses_ += other.houses_;
 }
 
 std::optional<Point2> SunnySides::to_sun() const {
   const double size = std::sqrt(sum_.x * sum_.x + sum_.y * sum_.y);
-  if (weight_ <= 0 || size < kAgreeing * weight_) return std::nullopt;
+  if (weight_ <= 0) return std::nullopt;
+  if (size < std::max(kAgreeing, kBeyondChance / std::sqrt(static_cast<double>(houses_))) * weight_)
+    return std::nullopt;
   return Point2{sum_.x / size, sum_.y / size};
 }
 
@@ -159,7 +164,7 @@ ShadowScan scan_shadow(std::span<const WallPiece> pieces, const Patch& patch, Po
                        std::span<const Obstacles> others, double reach) {
   ShadowScan scan;
   const auto size = static_cast<std::size_t>(std::floor(reach / kShadowStep)) + 1;
-  std::vector<double> sum(size, 0.0), walls(size, 0.0);
+  std::vector<double> sum(size, 0.0), sharp(size, 0.0), walls(size, 0.0);
   for (const WallPiece& piece : pieces) {
     const Point2 n = outward(piece);
     const double facing = n.x * away.x + n.y * away.y;
@@ -168,11 +173,13 @@ ShadowScan scan_shadow(std::span<const WallPiece> pieces, const Patch& patch, Po
     scan.weight += weight;
     const std::vector<float> steps = steps_of(behind(piece, patch, roof, away, others, reach));
     for (std::size_t k = 0; k < std::min(size, steps.size()); ++k)
-      sum[k] += weight * static_cast<double>(steps[k]), walls[k] += weight;
+      sum[k] += weight * std::clamp(static_cast<double>(steps[k]), -kMostStep, kMostStep),
+          sharp[k] += weight * static_cast<double>(steps[k]), walls[k] += weight;
   }
   for (std::size_t k = 0; k < size; ++k) {
     const double speak = std::max(walls[k], kFewestSpeak * scan.weight);
     scan.step.push_back(speak > 0 ? static_cast<float>(sum[k] / speak) : 0.0F);
+    scan.sharp.push_back(speak > 0 ? static_cast<float>(sharp[k] / speak) : 0.0F);
     scan.walls.push_back(static_cast<float>(walls[k]));
   }
   return scan;
@@ -197,14 +204,17 @@ std::optional<ShadowLength> shadow_length(const ShadowScan& scan, double least, 
   for (std::size_t k = first; k < end; ++k)
     if (k + kApart <= best || k >= best + kApart) out.second = std::max(out.second, static_cast<double>(scan.step[k]));
   out.clearness = value(best) - kSecond * out.second;
-  // Between the steps, by a parabola through three of them.
+  // A strong step is cut over a wide stretch: it lies where it is strongest. Between the steps, by a parabola.
+  std::size_t at = best;
+  for (std::size_t k = best >= kApart ? best - kApart : 0; k < std::min(scan.sharp.size(), best + kApart + 1); ++k)
+    if (scan.step[k] >= kSameEdge * scan.step[best] && scan.sharp[k] > scan.sharp[at]) at = k;
   double by = 0;
-  if (best > 0 && best + 1 < scan.step.size()) {
-    const double a = static_cast<double>(scan.step[best - 1]), b = out.step,
-                 c = static_cast<double>(scan.step[best + 1]);
-    if (const double bend = a - 2 * b + c; bend < 0) by = std::clamp((a - c) / 2 / bend, -0.5, 0.5);
+  if (at > 0 && at + 1 < scan.sharp.size()) {
+    const double l = static_cast<double>(scan.sharp[at - 1]), m = static_cast<double>(scan.sharp[at]),
+                 r = static_cast<double>(scan.sharp[at + 1]);
+    if (const double bend = l - 2 * m + r; bend < 0) by = std::clamp((l - r) / 2 / bend, -0.5, 0.5);
   }
-  out.length = (static_cast<double>(best) + by) * kShadowStep;
+  out.length = (static_cast<double>(at) + by) * kShadowStep;
   return out;
 }
 

@@ -25,6 +25,7 @@ class SunnySides {
  private:
   model::Point2 sum_;
   double weight_ = 0;
+  std::uint64_t houses_ = 0;
 };
 
 /// m between the lengths at which a shadow may end, and the longest one.
@@ -34,6 +35,7 @@ inline constexpr double kShadowStep = 0.25, kLongestShadow = 60;
 struct ShadowScan {
   std::vector<float>
       step;  ///< by length in steps of kShadowStep: change of brightness there, by the brightness; 0 at first
+  std::vector<float> sharp;  ///< the same, however strong
   std::vector<float> walls;  ///< m of wall that speak, as many
   double weight = 0;         ///< m of wall that cast a shadow
 };
