@@ -13,8 +13,8 @@ namespace {
 using model::Point2;
 
 /// Degrees to both sides of where the sunny sides point, and between the directions that are tried; how many houses try.
-constexpr double kDoubt = 24, kAngleStep = 6;
-constexpr std::size_t kAngleSample = 200;
+constexpr double kDoubt = 24, kAngleStep = 4;
+constexpr std::size_t kAngleSample = 300;
 /// m: of height, and of shadow for each metre, that are looked at before anything is known: the sun of aerial images
 /// stands 20 to 65 degrees high.
 constexpr double kLowest = 2, kLeastPerMetre = 0.45, kMostPerMetre = 2.8;
@@ -156,7 +156,7 @@ class Measurer {
     std::vector<std::uint32_t> sample;
     for (std::uint32_t b = 0; b < in_.sighted.size(); ++b)
       if (is_seen(b)) sample.push_back(b);
-    const std::size_t every = std::max<std::size_t>(1, sample.size() / kAngleSample);
+    const std::size_t every = std::max<std::size_t>(1, (sample.size() + kAngleSample - 1) / kAngleSample);
     constexpr int kSteps = static_cast<int>(kDoubt / kAngleStep);
     std::vector<double> score(2 * kSteps + 1, 0.0);
     std::vector<std::vector<double>> own(sample.size() / every + 1);
@@ -172,14 +172,14 @@ class Measurer {
         [&](std::size_t n) {
           for (std::size_t k = 0; k < own[n].size(); ++k) score[k] += own[n][k];
         });
-    std::size_t best = 0;
-    for (std::size_t k = 0; k < score.size(); ++k)
-      if (score[k] > score[best]) best = k;
-    double by = 0;
-    if (best > 0 && best + 1 < score.size()) {
-      const double a = score[best - 1], b = score[best], c = score[best + 1];
-      if (const double bend = a - 2 * b + c; bend < 0) by = std::clamp((a - c) / 2 / bend, -0.5, 0.5);
-    }
+    // Each with its neighbours: walls of whole quarters run one way, and some direction along them may please by chance.
+    std::vector<double> smooth = score;
+    for (std::size_t k = 1; k + 1 < score.size(); ++k) smooth[k] = (score[k - 1] + 2 * score[k] + score[k + 1]) / 4;
+    std::size_t best = 1;
+    for (std::size_t k = 1; k + 1 < smooth.size(); ++k)
+      if (smooth[k] > smooth[best]) best = k;
+    const double l = smooth[best - 1], m = smooth[best], r = smooth[best + 1];
+    const double bend = l - 2 * m + r, by = bend < 0 ? std::clamp((l - r) / 2 / bend, -0.5, 0.5) : 0;
     return turned(first, (static_cast<double>(best) + by - kSteps) * kAngleStep);
   }
 
