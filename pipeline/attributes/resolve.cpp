@@ -80,6 +80,10 @@ Sourced<double> Resolver::storeys() {
     choices.push_back({*own.storeys, Source::tag, kTagConfidence, "tagged"});
   if (outline && !own.height && outline->storeys)
     choices.push_back({*outline->storeys, Source::implied, kOutlineConfidence, "the outline's storeys"});
+  if (const auto& seen = building.seen_roof.eaves; seen.confidence > 0 && is_whole())
+    choices.push_back({std::max(1.0, std::floor((seen.value - usual.plinth) / usual.storey_height + 0.5)), seen.source,
+                       static_cast<double>(seen.confidence),
+                       fmt::format("{}, of {:g} m a storey", seen.why, usual.storey_height)});
   if (const auto& inferred_candidate = building.inferred.storeys; inferred_candidate.confidence > 0)
     choices.push_back({static_cast<double>(inferred_candidate.value), inferred_candidate.source,
                        static_cast<double>(inferred_candidate.confidence), inferred_candidate.why});

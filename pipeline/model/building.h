@@ -258,6 +258,7 @@ struct SeenRoof {
   InferredCandidate<Colour> colour;
   InferredCandidate<bool> pitched;
   InferredCandidate<double> ridge;  ///< degrees clockwise from north, [0, 180)
+  InferredCandidate<double> eaves;  ///< m above the ground around, of the edge that casts the shadow
 };
 
 struct Building {

@@ -67,6 +67,7 @@ struct SeenHeight {
   ShadowLength shadow;
   double height = 0;       ///< m above ground of the edge that casts it
   double uncertainty = 0;  ///< m
+  double confidence = 0;   ///< that storeys can be counted by it; 0: they are not
 };
 
 struct ImageReceipt {

@@ -47,6 +47,10 @@ constexpr double kSightingReach = 8, kSightingStep = 0.5;
 constexpr double kHeightDoubt = 2.5, kBesideLean = 0.5, kLeastLean = 0.4;
 /// How often shadows and lean are measured anew, each with what the other told.
 constexpr int kShadowRounds = 1;
+/// Shadows that storeys are counted by: how clear they are (ShadowLength::clearness), m of wall that cast them; and the share
+/// of those that tell the eaves to a quarter (docs/internal/RESULTS.md, "Aerial images").
+constexpr double kSureShadow = 0.2, kSureWalls = 10, kShadowConfidence = 0.8;
+
 std::uint64_t mixed(std::uint64_t v) {
   v ^= v >> 33, v *= 0xff51afd7ed558ccdULL, v ^= v >> 33, v *= 0xc4ceb9fe1a85ec53ULL, v ^= v >> 33;
   return v;
@@ -257,6 +261,9 @@ class Observer {
       const double own = shadow_uncertainty(seen.shadow.clearness),
                    share = std::sqrt(own * own + shadows.sun.uncertainty * shadows.sun.uncertainty);
       before = {image, seen.shadow, rounded(seen.height, 10), rounded(seen.height * share, 10)};
+      before.shadow.length = rounded(seen.shadow.length, 100);
+      const bool sure = shadows.sun.tagged && seen.shadow.clearness >= kSureShadow && seen.shadow.walls >= kSureWalls;
+      before.confidence = sure ? kShadowConfidence : 0;
     }
   }
 

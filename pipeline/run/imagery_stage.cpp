@@ -91,10 +91,11 @@ void ImageryStage::take_pinned(const footprints::FootprintStore& footprints) {
   seen_->applied = pinned.applied;
   seen_->outlines.resize(footprints.size());
   seen_->roofs.resize(footprints.size());
+  seen_->heights.resize(footprints.size());
   const footprints::BuildingNumbers numbers(footprints);
-  for (const auto& [id, receipt, roof] : pinned.buildings)
+  for (const auto& [id, receipt, roof, height] : pinned.buildings)
     if (const std::uint32_t b = numbers.find(id); b != model::kNoIndex)
-      seen_->outlines[b] = receipt, seen_->roofs[b] = roof;
+      seen_->outlines[b] = receipt, seen_->roofs[b] = roof, seen_->heights[b] = height;
 }
 
 bool ImageryStage::correct(std::span<const footprints::Shard> shards, const footprints::RepairedExtract& repaired) {

@@ -38,11 +38,15 @@ def village(seed):
     return houses
 
 
-def extract(houses):
+def extract(houses, levels=lambda k: '1'):
+    """`levels`: of house k as it is tagged; None: it is not."""
     objects = []
     for k, house in enumerate(houses):
         corners = [(LON + x * METRE * STRETCH, LAT + y * METRE) for x, y in house]
-        objects += ring(1000 + 10 * k, 100 + k, corners, {'building': 'house', 'building:levels': '1', 'roof:shape': 'flat'})
+        tags = {'building': 'house', 'roof:shape': 'flat'}
+        if levels(k):
+            tags['building:levels'] = levels(k)
+        objects += ring(1000 + 10 * k, 100 + k, corners, tags)
     return objects
 
 
@@ -69,11 +73,16 @@ def read_text(build, name):
 
 
 class Picture:
-    def __init__(self, houses, seed):
+    def __init__(self, houses, seed, shadows=()):
+        """`shadows`: of each house (east, north) m, where that of its roof's edge ends."""
         r = random.Random(seed)
         self.side = int(SIDE / PIXEL)
         grass = bytes(70 + v % 40 for v in range(256))
         self.pixels = bytearray(r.randbytes(3 * self.side * self.side).translate(grass))
+        for house, (east, north) in zip(houses, shadows):
+            steps = int(math.hypot(east, north) / PIXEL) + 1
+            for k in range(steps + 1):
+                self.fill([(x + east * k / steps, y + north * k / steps) for x, y in house], bytes([32, 34, 38]))
         for house in houses:
             self.fill(house, bytes(r.choice([(190, 110, 80), (150, 150, 155), (205, 195, 180), (110, 60, 50)])))
 
@@ -204,6 +213,32 @@ class Imagery(BuildTest):
         self.refused(blockrand('build', self.map, '-o', self.path('no'), '--tile', '15/1/1', '--pinned', os.path.join(out, 'build.json'), '--imagery', self.image), 1, 'leave out --imagery', target=self.path('no'))
         os.remove(os.path.join(out, 'imagery.json'))
         self.refused(blockrand('build', self.map, '-o', self.path('no'), '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json')), 2, 'imagery.json', target=self.path('no'))
+
+    def test_shadows_tell_heights_of_houses_that_nobody_counted(self):
+        """A third of the houses is tagged: by them the sun is measured, and the others by the sun."""
+        storeys = [1 + (k * 7 + k // 8) % 3 for k in range(64)]
+        azimuth, per_metre = math.radians(155), 1.1
+        length = [per_metre * (3.1 * s + 0.3) for s in storeys]
+        houses = village(11)
+        picture = Picture(houses, 12, [(-math.sin(azimuth) * n, -math.cos(azimuth) * n) for n in length])
+        image = picture.write(self.path('sunny.ppm'))
+        source = write_xml(self.path('sunny.osm'), extract(houses, lambda k: str(storeys[k]) if k % 3 == 0 else None))
+        out = self.build(source, 'sunny', '--imagery', image, '--lod', '2')
+        imagery = read_json(out, 'imagery.json')
+        self.assertAlmostEqual(imagery['images'][0]['shadow_sun_azimuth_deg'], 155, delta=10)
+        self.assertAlmostEqual(imagery['images'][0]['shadow_per_metre'], per_metre, delta=0.15)
+        told = {id: (count, source) for id, count, source in query(out, 'SELECT id, storeys, storeys_source FROM buildings')}
+        seen = [k for k in range(64) if k % 3 and told[f'w{100 + k}'][1] == 'imagery']
+        self.assertGreater(len(seen), 16, told)
+        right = [k for k in seen if told[f'w{100 + k}'][0] == storeys[k]]
+        self.assertGreater(len(right), 0.8 * len(seen), [(storeys[k], told[f'w{100 + k}']) for k in seen])
+        self.assertEqual({told[f'w{100 + k}'] for k in range(0, 64, 3)}, {(s, 'tag') for s in (1, 2, 3)}, 'tags are stronger')
+        words = blockrand('explain', out, f'w{100 + seen[0]}').out
+        self.assertIn('a shadow of', words)
+        self.assertEqual(blockrand('validate', out).code, 0)
+        tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f != 'explain/index.txt'}
+        alone = self.build(source, 'sunny_alone', '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json'))
+        self.same_files(out, alone, 'tiles', 'citygml', 'cityjson', 'explain')
 
     def test_overrides_keep_houses_where_they_are_mapped(self):
         """One house by its id, another by an area around it."""

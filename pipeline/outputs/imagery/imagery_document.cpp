@@ -106,6 +106,8 @@ void add_roof(Json& j, const observation::RoofView& roof) {
 void add_height(Json& j, const observation::SeenHeight& seen) {
   if (seen.image == observation::SeenHeight::kNoImage) return;
   j["height_from_shadow_m"] = rounded(seen.height, 10);
+  j["height_from_shadow_within_m"] = rounded(seen.uncertainty, 10);
+  if (seen.confidence > 0) j["height_from_shadow_confidence"] = rounded(seen.confidence, 100);
   j["shadow"] = {{"image", seen.image},
                  {"length_m", rounded(seen.shadow.length, 100)},
                  {"step", rounded(seen.shadow.step, 1000)},
@@ -173,6 +175,17 @@ observation::RoofView roof_of(const nlohmann::json& j) {
   return roof;
 }
 
+observation::SeenHeight height_of(const nlohmann::json& j) {
+  observation::SeenHeight seen;
+  if (!j.contains("shadow")) return seen;
+  seen.image = j.at("shadow").at("image").get<std::uint32_t>();
+  seen.shadow.length = j.at("shadow").at("length_m").get<double>();
+  seen.height = j.at("height_from_shadow_m").get<double>();
+  seen.uncertainty = j.at("height_from_shadow_within_m").get<double>();
+  seen.confidence = j.value("height_from_shadow_confidence", 0.0);
+  return seen;
+}
+
 }  // namespace
 
 std::string imagery_json(const observation::ImageryObservations& seen, const footprints::FootprintStore& footprints,
@@ -215,7 +228,10 @@ ReadImagery read_imagery_json(const std::string& text) {
     if (roof.pixels > 0 && roof.image >= read.images.size()) throw std::runtime_error("an image is not there");
     if (receipt.image != OutlineReceipt::kNoImage && receipt.image >= read.images.size())
       throw std::runtime_error("an image is not there");
-    read.buildings.push_back({id_of(b.at("id").get<std::string>()), receipt, roof});
+    const observation::SeenHeight height = height_of(b);
+    if (height.image != observation::SeenHeight::kNoImage && height.image >= read.images.size())
+      throw std::runtime_error("an image is not there");
+    read.buildings.push_back({id_of(b.at("id").get<std::string>()), receipt, roof, height});
   }
   return read;
 }

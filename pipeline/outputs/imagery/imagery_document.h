@@ -23,6 +23,7 @@ struct ReadImagery {
     model::OsmId id;
     observation::OutlineReceipt receipt;
     observation::RoofView roof;  ///< without its evidence
+    observation::SeenHeight height;
   };
   std::vector<Building> buildings;
 };

@@ -62,7 +62,7 @@ TEST_F(SeenRoof, ItsColourIsTakenWhereNobodyTaggedOne) {
 }
 
 TEST_F(SeenRoof, TagsAreStronger) {
-  building_.seen_roof = {seen(kSeen), seen(true), seen(90.0)};
+  building_.seen_roof = {seen(kSeen), seen(true), seen(90.0), seen(9.0)};
   building_.mapped.roof_colour = kTagged;
   building_.mapped.roof_shape = RoofShape::hipped;
   building_.mapped.roof_orientation = RoofOrientation::across;
@@ -101,12 +101,33 @@ TEST_F(SeenRoof, TheRidgeRunsWhereItIsSeen) {
   EXPECT_NE(resolve().roof_orientation.source, Source::imagery) << "neither along nor across";
 }
 
+TEST_F(SeenRoof, AShadowTellsStoreysWhereNobodyCountedThem) {
+  const double usual = resolve().storeys.value, storey = resolve().storey_height.value;
+  for (const double storeys : {1.0, 2.0, 3.0, 5.0}) {
+    building_.seen_roof.eaves = seen(storeys * storey + 0.4);
+    const Attributes& a = resolve();
+    EXPECT_DOUBLE_EQ(a.storeys.value, storeys);
+    EXPECT_EQ(a.storeys.source, Source::imagery);
+    EXPECT_NEAR(a.eaves_height.value, storeys * storey, 1) << "what stands on them follows";
+  }
+  building_.seen_roof.eaves = seen(0.3);
+  EXPECT_DOUBLE_EQ(resolve().storeys.value, 1) << "no house has none";
+  building_.seen_roof.eaves = seen(5 * storey);
+  building_.mapped.storeys = 2.0F;
+  EXPECT_EQ(resolve().storeys.source, Source::tag);
+  EXPECT_DOUBLE_EQ(resolve().storeys.value, 2);
+  building_.mapped.storeys.reset();
+  building_.seen_roof = {};
+  EXPECT_DOUBLE_EQ(resolve().storeys.value, usual);
+}
+
 TEST_F(SeenRoof, OfMappedPartsTheImageShowsNoForm) {
-  building_.seen_roof = {seen(kSeen), seen(false), seen(0.0)};
+  building_.seen_roof = {seen(kSeen), seen(false), seen(0.0), seen(30.0)};
   building_.has_mapped_parts = true;
   const Attributes& a = resolve();
   EXPECT_NE(a.roof_shape.source, Source::imagery);
   EXPECT_NE(a.roof_orientation.source, Source::imagery);
+  EXPECT_NE(a.storeys.source, Source::imagery);
 }
 
 }  // namespace
