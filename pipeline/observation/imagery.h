@@ -58,6 +58,7 @@ struct OutlineReceipt {
   model::Point2 lean;  ///< m, of the roof in the image
   double eaves = 0;    ///< m: the height that it was reckoned with
   double mean = 0, deviation = 0, second = 0, weight = 0, height_doubt = 0;
+  double gone = 0;  ///< probability that no building stands there, where that is likely (kPerhapsGone); else 0
 };
 
 /// A height that a shadow tells.

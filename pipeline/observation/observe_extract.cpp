@@ -12,6 +12,7 @@
 #include "pipeline/observation/eaves.h"
 #include "pipeline/observation/image_fit.h"
 #include "pipeline/observation/lean.h"
+#include "pipeline/observation/presence.h"
 #include "pipeline/observation/roof_view.h"
 #include "pipeline/observation/row_match.h"
 #include "pipeline/observation/shadow_heights.h"
@@ -100,6 +101,7 @@ class Observer {
       out.images[k].support = field_.support();
       match_rows(static_cast<std::uint32_t>(k), judges, out);
     }
+    flag_gone(out);
     for (std::uint32_t b = 0; b < out.outlines.size(); ++b) {
       const std::uint32_t by_outline = out.outlines[b].image, by_roof = out.roofs[b].image;
       if (by_outline < out.images.size()) ++out.images[by_outline].buildings;
@@ -109,6 +111,20 @@ class Observer {
   }
 
  private:
+  /// Buildings that perhaps do not stand any more; what stands nowhere is not moved either.
+  void flag_gone(ImageryObservations& out) const {
+    for (std::uint32_t b = 0; b < out.outlines.size(); ++b) {
+      OutlineReceipt& receipt = out.outlines[b];
+      const SeenHeight& seen = out.heights[b];
+      const double gone =
+          gone_probability(receipt, out.roofs[b], seen.image == receipt.image ? seen.shadow.clearness : 0);
+      if (gone < kPerhapsGone) continue;
+      receipt.gone = rounded(gone, 100);
+      if (receipt.state == RowState::corrected && rows_[receipt.row].buildings.size() == 1)
+        receipt.state = RowState::undecided, receipt.reason = "perhaps it does not stand any more";
+    }
+  }
+
   SearchedOutline searched(std::uint32_t building, const std::map<std::pair<Point2, Point2>, int>* shared) const {
     SearchedOutline outline;
     outline.box = of_.footprints[building].box;

@@ -22,6 +22,8 @@ constexpr std::size_t kFewestPixels = 30;
 constexpr double kMostPixels = 20000;
 /// m: the strip along an edge that shows the slope above it.
 constexpr double kStripDepth = 2.5;
+/// Of the sum of the bands; of the blue band.
+constexpr double kExcessGreen = 0.05, kOverBlue = 1.1;
 
 struct Pixel {
   double x, y;  ///< m
@@ -111,6 +113,13 @@ Roof pixels_of(std::span<const Polygon> plan, const Patch& patch) {
     }
   }
   return roof;
+}
+
+/// Leaves and grass: excess green (Woebbecke, Meyer, Von Bargen, Mortensen, "Color indices for weed identification", 1995),
+/// and little blue, which copper has.
+bool is_green(const Pixel& p) {
+  const double red = p.red, green = p.green, blue = p.blue;
+  return 2 * green - red - blue > kExcessGreen * (red + green + blue) && green > kOverBlue * blue && green >= red;
 }
 
 std::vector<Pixel> inner(const Roof& roof) {
@@ -469,6 +478,7 @@ RoofView look_at_roof(std::span<const Polygon> plan, const ImageWindows& windows
   double sum = 0, squares = 0;
   for (const Pixel& p : pixels) sum += p.brightness(), squares += p.brightness() * p.brightness();
   const double mean = sum / static_cast<double>(pixels.size());
+  view.green = static_cast<double>(std::ranges::count_if(pixels, is_green)) / static_cast<double>(pixels.size());
   view.spread = std::sqrt(std::max(0.0, squares / static_cast<double>(pixels.size()) - mean * mean)) / (mean + kDark);
   const double direction = main_direction(plan);
   double extent[2];

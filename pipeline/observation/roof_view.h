@@ -52,6 +52,7 @@ struct RoofView {
   double long_side = 0, short_side = 0;  ///< m, of the plan in these directions; the first is along
   EdgeStrips strips;
   double spread = 0;  ///< of brightness over the roof, by its mean
+  double green = 0;   ///< share of its pixels that have the colour of leaves and grass
 };
 
 /// Where the sun stands in an image: clockwise from grid north, degrees; from the brighter sides of all its roofs.

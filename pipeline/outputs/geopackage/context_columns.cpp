@@ -122,6 +122,7 @@ std::vector<Column> footprint_before_columns() {
       {"evidence_after", kReal, "", "The same where the image shows it"},
       {"gain", kReal, "", "The difference of the two"},
       {"confidence", kReal, "", "How sure it is that it stands there, from 0 to 1"},
+      {"perhaps_gone", kReal, "", "How likely it is that nothing stands there any more, from 0.85 on; else 0"},
       {"lean", kReal, "m", "How far the image shows its roof from its ground"},
       {"image", kText, "", "The image"},
       {"image_date", kText, "", "When it was taken"},

@@ -69,6 +69,7 @@ Json building_json(const std::string& id, const OutlineReceipt& r) {
     j["score_elsewhere"] = rounded(r.second, 10000);
     j["walls_m"] = rounded(r.weight, 10);
     j["height_doubt_m"] = rounded(r.height_doubt, 100);
+    if (r.gone > 0) j["perhaps_gone"] = rounded(r.gone, 100);
   }
   return j;
 }
@@ -92,7 +93,8 @@ void add_roof(Json& j, const observation::RoofView& roof) {
               {"pixels", roof.pixels},
               {"long_m", rounded(roof.long_side, 10)},
               {"short_m", rounded(roof.short_side, 10)},
-              {"spread", rounded(roof.spread, 1000)}};
+              {"spread", rounded(roof.spread, 1000)},
+              {"green", rounded(roof.green, 100)}};
   const observation::EdgeStrips& e = roof.strips;
   evidence["strips"] = {rounded(e.count, 1), rounded(e.b, 1),    rounded(e.bb, 1),   rounded(e.nx, 10),
                         rounded(e.ny, 10),   rounded(e.bnx, 10), rounded(e.bny, 10), rounded(e.nxx, 10),
@@ -148,6 +150,7 @@ OutlineReceipt receipt_of(const nlohmann::json& j) {
   r.confidence = j.at("confidence").get<double>();
   r.lean = point(j.at("lean_m"));
   r.eaves = j.at("eaves_m").get<double>();
+  r.gone = j.value("perhaps_gone", 0.0);
   return r;
 }
 

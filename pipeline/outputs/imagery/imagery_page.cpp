@@ -71,6 +71,27 @@ std::string chip(const OverlayInputs& in, std::uint32_t building) {
   return out + "\"/>";
 }
 
+std::string figure(const OverlayInputs& in, std::uint32_t building) {
+  const OutlineReceipt& r = in.seen.outlines[building];
+  const SeenOutline seen{r, in.seen.images[r.image], in.seen.applied};
+  return "<figure>" + chip(in, building) + "<figcaption>" + osm_link(in.footprints[building].id) + ": " +
+         escaped(imagery_text(seen)) + "</figcaption></figure>\n";
+}
+
+/// What is mapped where the image shows no building, the likeliest first.
+std::string gone_figures(const OverlayInputs& in) {
+  std::vector<std::uint32_t> gone;
+  for (std::uint32_t b = 0; b < in.seen.outlines.size(); ++b)
+    if (in.seen.outlines[b].gone > 0) gone.push_back(b);
+  std::ranges::stable_sort(
+      gone, [&](std::uint32_t a, std::uint32_t b) { return in.seen.outlines[a].gone > in.seen.outlines[b].gone; });
+  std::string out = fmt::format("<h2>Perhaps gone: {}</h2>\n<p>Mapped, and built; the image shows no house.</p>\n",
+                                base::with_thousands(gone.size()));
+  gone.resize(std::min(gone.size(), kPicturedCorrections));
+  for (const std::uint32_t b : gone) out += figure(in, b);
+  return out;
+}
+
 }  // namespace
 
 std::string imagery_page(const OverlayInputs& in, const std::vector<std::string>& overlays) {
@@ -106,12 +127,8 @@ std::string imagery_page(const OverlayInputs& in, const std::vector<std::string>
          swatch(kAfterSure, "the same, quite sure") + swatch(kRefused, "the same, but it stays as mapped") +
          swatch(kAsMapped, "stays as mapped") + "</ul>\n<p>Outlines are drawn where the image shows the roofs.</p>\n";
   if (largest.empty()) out += "<p>None.</p>\n";
-  for (const std::uint32_t b : largest) {
-    const OutlineReceipt& r = in.seen.outlines[b];
-    const SeenOutline seen{r, in.seen.images[r.image], in.seen.applied};
-    out += "<figure>" + chip(in, b) + "<figcaption>" + osm_link(in.footprints[b].id) + ": " +
-           escaped(imagery_text(seen)) + "</figcaption></figure>\n";
-  }
+  for (const std::uint32_t b : largest) out += figure(in, b);
+  out += gone_figures(in);
   if (!overlays.empty()) {
     out += "<h2>Tiles</h2>\n<ul>\n";
     for (const std::string& path : overlays) out += "<li><a href=\"" + path + "\">" + path + "</a></li>\n";

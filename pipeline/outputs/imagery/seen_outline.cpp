@@ -58,11 +58,14 @@ std::vector<ImageryAttribute> imagery_attributes(const SeenOutline& seen) {
       {"imagery_evidence_mapped", r.before},        {"imagery_evidence", r.after},
       {"imagery_confidence", r.confidence},         {"imagery_image", file_name(seen.image.description.source.path)}};
   if (!r.reason.empty()) out.insert(out.begin() + 1, {"imagery_reason", r.reason});
+  if (r.gone > 0) out.emplace_back("imagery_perhaps_gone", r.gone);
   if (!seen.image.description.source.date.empty()) out.emplace_back("imagery_date", seen.image.description.source.date);
   return out;
 }
 
-std::string imagery_text(const SeenOutline& seen) {
+namespace {
+
+std::string place_text(const SeenOutline& seen) {
   const observation::OutlineReceipt& r = seen.receipt;
   const importers::imagery::ImageSource& source = seen.image.description.source;
   const std::string image = file_name(source.path) + (source.date.empty() ? "" : " of " + source.date);
@@ -84,6 +87,14 @@ std::string imagery_text(const SeenOutline& seen) {
       break;
   }
   return fmt::format("left where it is mapped: {} ({})", r.reason, image);
+}
+
+}  // namespace
+
+std::string imagery_text(const SeenOutline& seen) {
+  const std::string place = place_text(seen);
+  if (seen.receipt.gone <= 0) return place;
+  return fmt::format("perhaps gone ({:.2f}): no roof, wall or shadow is seen; {}", seen.receipt.gone, place);
 }
 
 }  // namespace blockrand::outputs

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Judges the program's analysis of aerial images (issue 20). Markdown tables to stdout, everything to a JSON file.
 
-    evaluate.py kampala|synthetic|pariser-platz|georeference|colours|ridges [options]
+    evaluate.py kampala|synthetic|pariser-platz|georeference|colours|ridges|gone [options]
 
 Runs `blockrand build EXTRACT --imagery IMAGE --imagery-correct report` and reads imagery.json of the build. Needs the data folder
 (--shared), rendered pictures (--images: FOLDER/SET/PLACE.tif with .truth.json, by render.py), osmium-tool, python3-gdal, python3-numpy.
@@ -22,6 +22,7 @@ from osgeo import ogr
 
 import ciede2000
 import corrections
+import ghosts
 import misregister
 import osm
 from corrections import HEAD, Judged, cells, outlines, read_truth, summarise, table
@@ -280,6 +281,23 @@ class Bench:
         print(f"{place} {what}: {self.image_line(answer)}", file=sys.stderr)
         return dict(place=place, what=what, state=i.get("state", "error" if "error" in answer else "none"), score=i.get("score"), margin=i.get("margin"), shift=i.get("shift_m"), put=put, error=answer.get("error"))
 
+    def gone(self):
+        print("### Buildings that are mapped where none stands: told to be gone\n")
+        lines, total = [], np.zeros(4, int)
+        for place in self.rendered() + ["kampala"]:
+            extract = os.path.join(self.a.work, f"ghosts-{place}.osm")
+            ghosts.add_ghosts(self.kampala_osm if place == "kampala" else self.extract_of(place), extract, self.a.seeds[0])
+            answer = self.run(f"ghosts-{place}-{self.a.set}", extract, self.kampala_image if place == "kampala" else self.image_of(place))
+            with open(extract[:-4] + ".csv") as f:
+                truth = {r["id"]: int(r["ghost"]) for r in csv.DictReader(f)}
+            flagged = [truth.get(b["id"], 0) for b in answer["buildings"] if "perhaps_gone" in b]
+            seen = [truth.get(b["id"], 0) for b in answer["buildings"] if b.get("score_deviation")]
+            row = np.array([sum(seen), sum(flagged), len(seen) - sum(seen), len(flagged) - sum(flagged)])
+            lines.append([place, *row, percent(row[1], row[0]), percent(row[3], row[2])])
+            total += row
+        table(["place", "not there", "told so", "there", "told gone", "share found", "share wrong"], lines + [["all", *total, percent(total[1], total[0]), percent(total[3], total[2])]])
+        self.result["gone"] = [[str(v) for v in line] for line in lines]
+
     # ---- what is seen of roofs ------------------------------------------------------------------------------------
 
     def colours(self):
@@ -412,7 +430,7 @@ def merge(shapes):
 
 def main():
     a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    a.add_argument("what", choices=["kampala", "synthetic", "pariser-platz", "georeference", "colours", "ridges"])
+    a.add_argument("what", choices=["kampala", "synthetic", "pariser-platz", "georeference", "colours", "ridges", "gone"])
     a.add_argument("--program", default=os.path.join(HERE, "../../../build/release/blockrand"))
     a.add_argument("--shared", default="/work/shared" if os.path.isdir("/work/shared") else os.path.join(HERE, "../../../../shared"))
     a.add_argument("--images", default="/work/imagery_bench", help="rendered pictures: FOLDER/SET/PLACE.tif; estate.osm")

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Fits the logistic regressions of pipeline/observation (verdict.cpp, roof_view.cpp) on the tuning images; prints weights and what each
+"""Fits the logistic regressions of pipeline/observation (verdict.cpp, roof_view.cpp, presence.cpp) on the tuning images; prints weights and what each
 place that is left out says.
 
-    fit.py confidence|form|ridge [--work FOLDER] [--images FOLDER] [--places PLACE ...]
+    fit.py confidence|form|ridge|gone [--work FOLDER] [--images FOLDER] [--places PLACE ...]
 
 confidence: of the runs that `evaluate.py synthetic --set tuning` and `evaluate.py kampala` left in --work; a row is right when it is
 found within 0.6 m; of those that are found 0.4 m or more from where they are mapped. form, ridge: of builds of the tuning images, which are made here where --work lacks them.
@@ -17,6 +17,8 @@ import os
 import subprocess
 
 import numpy as np
+
+import ghosts
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 PLACES = {"berlin-zionskirchplatz-2020": "osm", "london-soho-2025": "osm.gz", "husum_altstadt": "osm.pbf", "zuerich-niederdorf-2025": "osm.pbf",
@@ -144,9 +146,31 @@ def ridge(a):
     report(rows)
 
 
+def gone(a):
+    """Buildings that ghosts.py put where none stands, on the tuning images."""
+    rows = []
+    for place in a.places:
+        extract = os.path.join(a.work, f"ghosts-{place}.osm")
+        if not os.path.exists(extract):
+            ghosts.add_ghosts(os.path.join(a.shared, "data/osm", f"{place}.{PLACES[place]}"), extract, 1)
+        out = os.path.join(a.work, f"ghosts-{place}")
+        if not os.path.exists(os.path.join(out, "imagery.json")):
+            subprocess.run([a.program, "build", extract, "-o", out, "--imagery", os.path.join(a.images, "tuning", place + ".tif"), "--lod", "0", "--formats", "gpkg",
+                            "--ground-height", "0", "--no-report", "--no-explain", "--progress", "none", "-q"], check=True)
+        with open(extract[:-4] + ".csv") as f:
+            truth = {r["id"]: int(r["ghost"]) for r in csv.DictReader(f)}
+        with open(os.path.join(out, "imagery.json")) as f:
+            for b in json.load(f)["buildings"]:
+                if b["id"] in truth and b.get("roof_evidence") and b.get("score_deviation"):
+                    e = b["roof_evidence"]
+                    rows.append((place, [1, e["green"], b["evidence_after"], min(4.5, (b["evidence_after"] - b["score_mean"]) / b["score_deviation"]), b["score_mean"],
+                                         max(0, b.get("shadow", {}).get("clearness", 0)), min(.6, e["spread"]), b.get("roof_form") == "pitched"], truth[b["id"]]))
+    report(rows)
+
+
 def main():
     a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    a.add_argument("what", choices=["confidence", "form", "ridge"])
+    a.add_argument("what", choices=["confidence", "form", "ridge", "gone"])
     a.add_argument("--program", default=os.path.join(HERE, "../../../build/release/blockrand"))
     a.add_argument("--shared", default="/work/shared" if os.path.isdir("/work/shared") else os.path.join(HERE, "../../../../shared"))
     a.add_argument("--images", default="/work/imagery_bench")

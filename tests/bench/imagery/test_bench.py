@@ -22,6 +22,7 @@ import ciede2000
 import corrections
 import displace
 import estate
+import ghosts
 import misregister
 import model
 import osm
@@ -132,6 +133,20 @@ class Displacements(InFolder):
         self.assertTrue(.35 < n < .65, n)
         b, moves = displace.displace(source, self.path("none.osm"), 1, 1, 3, share=0)
         self.assertEqual(moves, {})
+
+
+class Ghosts(InFolder):
+    def test_they_stand_where_nothing_does(self):
+        source, target = self.path("estate.osm"), self.path("ghosts.osm")
+        estate.estate(source)
+        ids = ghosts.add_ghosts(source, target, 3, .2)
+        before, after = displace.Buildings(osm.Extract(source)), displace.Buildings(osm.Extract(target))
+        self.assertGreater(len(ids), 3)
+        self.assertEqual(set(after.rings) - set(before.rings), set(ids))
+        for o in before.rings:
+            np.testing.assert_allclose(before.rings[o][0], after.rings[o][0], atol=1e-6)
+        for o in ids:
+            self.assertEqual([x for x in after.rows if after.rows[x] == after.rows[o]], [o], "2 m from any other")
 
 
 def write_box(folder, height=12.0, size=(20.0, 15.0)):

@@ -26,7 +26,11 @@ struct Seen {
     observation::OutlineReceipt& undecided = observations.outlines[2];
     undecided.state = RowState::undecided, undecided.image = 1;
     undecided.reason = "another place fits nearly as well";
+    undecided.gone = 0.93;
     observations.applied = true;
+    observations.heights.resize(3);
+    observation::SeenHeight& shadow = observations.heights[1];
+    shadow.image = 1, shadow.shadow.length = 9.25, shadow.height = 8.4, shadow.uncertainty = 1.1, shadow.confidence = 0.8;
     observations.roofs.resize(3);
     observation::RoofView& roof = observations.roofs[1];
     roof.pixels = 900, roof.colour = model::Colour{200, 10, 3}, roof.colour_confidence = 0.72;
@@ -45,7 +49,7 @@ TEST(ImageryDocument, ReadsWhatItWrote) {
   EXPECT_EQ(read.images[1].description.source.path, "/maps/ortho.tif");
   EXPECT_EQ(read.images[1].description.source.licence, "CC BY 4.0");
   ASSERT_EQ(read.buildings.size(), 3u);
-  const auto& [id, receipt, roof] = read.buildings[1];
+  const auto& [id, receipt, roof, height] = read.buildings[1];
   const observation::OutlineReceipt& wrote = seen.observations.outlines[1];
   EXPECT_EQ(id.text(), "w101");
   EXPECT_EQ(receipt.state, RowState::corrected);
@@ -64,6 +68,14 @@ TEST(ImageryDocument, ReadsWhatItWrote) {
   EXPECT_EQ(roof.form_confidence, 0.91);
   EXPECT_EQ(roof.ridge, 12.5);
   EXPECT_EQ(roof.ridge_confidence, 0.83);
+  EXPECT_EQ(height.image, 1u);
+  EXPECT_EQ(height.shadow.length, 9.25);
+  EXPECT_EQ(height.height, 8.4);
+  EXPECT_EQ(height.uncertainty, 1.1);
+  EXPECT_EQ(height.confidence, 0.8);
+  EXPECT_EQ(read.buildings[0].height.image, observation::SeenHeight::kNoImage);
+  EXPECT_EQ(receipt.gone, 0);
+  EXPECT_EQ(read.buildings[2].receipt.gone, 0.93);
   EXPECT_EQ(read.buildings[2].id.text(), "r102");
   EXPECT_EQ(read.buildings[2].receipt.reason, "another place fits nearly as well");
 }
@@ -75,6 +87,10 @@ TEST(ImageryDocument, RefusesWhatItCannotHaveWritten) {
   EXPECT_THROW(
       read_imagery_json(R"({"applied":true,"images":[],"buildings":[{"id":"w1","state":"corrected","image":0}]})"),
       std::exception);
+  EXPECT_THROW(read_imagery_json(R"({"applied":true,"images":[],"buildings":[{"id":"w1","state":"outside",)"
+                                 R"("shadow":{"image":3,"length_m":1},"height_from_shadow_m":1,)"
+                                 R"("height_from_shadow_within_m":1}]})"),
+               std::exception);
 }
 
 TEST(SeenOutlines, TellWhatWasDoneInWords) {
@@ -87,7 +103,8 @@ TEST(SeenOutlines, TellWhatWasDoneInWords) {
       "moved 2.05 m to the NE, turned by 0.5 degrees, as ortho.tif of 2023-06 shows it (walls on edges: 0.12 where "
       "mapped, 0.43 there; confidence 0.87)");
   EXPECT_EQ(imagery_text(*lookup({model::OsmType::relation, 102})),
-            "left where it is mapped: another place fits nearly as well (ortho.tif of 2023-06)");
+            "perhaps gone (0.93): no roof, wall or shadow is seen; left where it is mapped: another place fits nearly as "
+            "well (ortho.tif of 2023-06)");
   EXPECT_FALSE(seen_outlines(nullptr, seen.store)) << "no images";
 }
 
