@@ -141,6 +141,7 @@ class ExtractWriter {
         b.place = model::Location{static_cast<std::int32_t>((box.west + box.east) / 2),
                                   static_cast<std::int32_t>((box.south + box.north) / 2)};
     b.tags = write_tags(account.id, *account.raw, account.tags_also_from);
+    b.edited = account.raw->timestamp;
     // `pairs_` holds the tags just written.
     b.attributes = read_attributes(b.id, b.kind, pairs_, out_.strings, out_.report);
     out_.buildings.push_back(b);

@@ -78,6 +78,7 @@ struct MappedBuilding {
   Range rings;                       ///< into Extract::rings; empty when there is no area
   std::optional<Location> place;     ///< of an object without rings: the middle of what is known of it
   Range tags;                        ///< into Extract::tags
+  std::uint32_t edited = 0;          ///< when it was last edited, in seconds since 1970; 0: the file does not say
   MappedAttributes attributes;
 };
 

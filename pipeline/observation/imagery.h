@@ -82,6 +82,8 @@ struct ImageReceipt {
   std::uint64_t buildings = 0;            ///< that it says something of
   importers::imagery::ImageDescription description;
   ImageFit fit;
+  double haze = 0, clouded = 0;    ///< ImageQuality; 0 where too few houses lie in it
+  std::uint64_t edited_later = 0;  ///< buildings in it that somebody edited after it was taken
 };
 
 struct ImageryObservations {

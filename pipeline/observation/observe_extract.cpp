@@ -1,7 +1,9 @@
 #include "pipeline/observation/observe_extract.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <map>
 
 #include "pipeline/base/parallel.h"
@@ -11,6 +13,7 @@
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/observation/eaves.h"
 #include "pipeline/observation/image_fit.h"
+#include "pipeline/observation/image_quality.h"
 #include "pipeline/observation/lean.h"
 #include "pipeline/observation/presence.h"
 #include "pipeline/observation/roof_view.h"
@@ -57,6 +60,18 @@ std::uint64_t mixed(std::uint64_t v) {
   return v;
 }
 
+/// Seconds since 1970 at the end of "2014", "2014-06" or "2014-06-21"; nothing for any other text.
+std::optional<std::uint32_t> last_second(const std::string& date) {
+  int year = 0, month = 12, day = 31;
+  const int read = std::sscanf(date.c_str(), "%4d-%2d-%2d", &year, &month, &day);
+  if (read < 1 || year < 1970 || year > 2100 || month < 1 || month > 12 || day < 1 || day > 31) return std::nullopt;
+  using namespace std::chrono;
+  const year_month ym = std::chrono::year(year) / std::chrono::month(static_cast<unsigned>(month));
+  const sys_days last =
+      read < 3 ? sys_days(ym / std::chrono::last) : sys_days(ym / std::chrono::day(static_cast<unsigned>(day)));
+  return static_cast<std::uint32_t>((last + days(1)).time_since_epoch().count() * 86400LL);
+}
+
 double rounded(double value, double steps) { return std::round(value * steps) / steps + 0.0; }
 Point2 rounded(Point2 p) { return {rounded(p.x, 1000), rounded(p.y, 1000)}; }
 
@@ -88,6 +103,10 @@ class Observer {
       fit = fit_image(sample(images_[k], kFirstFitSample), coarse, workers_);
       if (fit.state != ImageState::used || fit.margin < kClearMargin)
         fit = fit_image(sample(images_[k], kFitSample), coarse, workers_);
+      const ImageQuality quality = measure_quality(sample(images_[k], kFirstFitSample), coarse);
+      if (quality.houses >= kFewestForQuality)
+        out.images.back().haze = rounded(quality.haze, 100), out.images.back().clouded = rounded(quality.clouded, 1000);
+      out.images.back().edited_later = edited_later(images_[k]);
       progress_.advance_to(k + 1);
     }
     progress_.begin("match outlines", rows_.size() * images_.size(), "rows");
@@ -146,6 +165,16 @@ class Observer {
     const geometry::PlanBox& box = of_.footprints[b].box;
     return !box.empty() && of_.footprints[b].settled == model::ObjectState::pending &&
            box.maximum.x - box.minimum.x <= kLargestBuilding && box.maximum.y - box.minimum.y <= kLargestBuilding;
+  }
+
+  /// How many buildings in an image were edited after the last day that its date can mean; 0: it has no date.
+  std::uint64_t edited_later(const importers::imagery::AerialImage& image) const {
+    const std::optional<std::uint32_t> taken = last_second(image.describe().source.date);
+    std::uint64_t count = 0;
+    for (std::uint32_t b = 0; taken && b < of_.footprints.size(); ++b)
+      count += searchable(b) && of_.extract.buildings[of_.footprints[b].lead].edited > *taken &&
+               within(image, of_.footprints[b].box.centre());
+    return count;
   }
 
   /// Outlines within an image, spread over it, in an order that hangs on their ids alone.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 
 #include "pipeline/base/error.h"
@@ -11,6 +12,7 @@
 #include "pipeline/footprints/move_buildings.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/observation/corrections.h"
+#include "pipeline/observation/image_quality.h"
 #include "pipeline/observation/observe_extract.h"
 
 namespace blockrand::run {
@@ -42,6 +44,16 @@ void check_images(const BuildInputs& inputs, const LocatedExtract& located, base
         "Name images of this place, or check their georeference with gdalinfo");
   }
   for (const std::string& path : beside) progress.warn(path + ": shows nothing of the extract");
+}
+
+/// Years: an image that is older than the map by more shows another town.
+constexpr int kOldImage = 5;
+
+/// Between two dates that begin with a year; 0 where one does not.
+int years_between(const std::string& earlier, const std::string& later) {
+  int from = 0, to = 0;
+  if (std::sscanf(earlier.c_str(), "%4d", &from) != 1 || std::sscanf(later.c_str(), "%4d", &to) != 1) return 0;
+  return to - from;
 }
 
 /// The outer rings of the areas that overrides keep, as mapped.
@@ -130,6 +142,23 @@ void ImageryStage::tell(BuildRecord& record) const {
     } else if (image.fit.state == observation::ImageState::undecided) {
       progress_.warn(fmt::format("IMAGE_UNDECIDED: whether {} fits the map is not known: {}", path, image.fit.why));
     }
+  }
+  for (const observation::ImageReceipt& image : seen_->images) {
+    const std::string& path = image.description.source.path;
+    if (image.haze >= observation::kHazy)
+      progress_.warn(
+          fmt::format("{}: hazy, its darkest places have {:.0f} % of white: edges are faint, roof colours pale", path,
+                      100 * image.haze));
+    if (image.clouded >= observation::kClouded)
+      progress_.warn(
+          fmt::format("{}: partly clouded, {:.0f} % of the houses in it lie under white", path, 100 * image.clouded));
+    if (image.edited_later > 0)
+      progress_.warn(fmt::format("{}: {} in it were edited after it was taken ({}): the map may be right there", path,
+                                 base::with_thousands(image.edited_later), image.description.source.date));
+    const std::string& data = located_.extract.data_time;
+    const int years = years_between(image.description.source.date, data);
+    if (years > kOldImage)
+      progress_.warn(fmt::format("{}: {} years older than the map's data ({})", path, years, data.substr(0, 10)));
   }
   std::map<RowState, std::uint64_t> states;
   for (const observation::OutlineReceipt& receipt : seen_->outlines) ++states[receipt.state];

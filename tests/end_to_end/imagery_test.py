@@ -95,9 +95,9 @@ class Picture:
                 i, j = max(0, math.ceil(a / PIXEL - .5)), min(self.side, math.ceil(b / PIXEL - .5))
                 self.pixels[3 * (row * self.side + i):3 * (row * self.side + j)] = colour * (j - i)
 
-    def write(self, path, mirrored=False, east=0.0, north=0.0):
-        """A PPM with world file and .prj; moved by metres, or mirrored."""
-        pixels = self.pixels
+    def write(self, path, mirrored=False, east=0.0, north=0.0, haze=0.0):
+        """A PPM with world file and .prj; moved by metres, or mirrored; `haze`: share of white over all."""
+        pixels = self.pixels.translate(bytes(int(v + haze * (215 - v)) for v in range(256))) if haze else self.pixels
         if mirrored:
             rows = [pixels[3 * self.side * r:3 * self.side * (r + 1)] for r in range(self.side)]
             pixels = b''.join(b''.join(bytes(row[3 * i:3 * i + 3]) for i in reversed(range(self.side))) for row in rows)
@@ -282,6 +282,40 @@ class Imagery(BuildTest):
         shifted = read_json(self.path('shifted'), 'imagery.json')['images'][0]
         self.assertAlmostEqual(shifted['shift_m'][0], 12, delta=1)
         self.assertAlmostEqual(shifted['shift_m'][1], -9, delta=1)
+
+    def test_hazy_clouded_and_old_images_are_told(self):
+        hazy = self.picture.write(self.path('hazy.ppm'), haze=0.5)
+        config = self.place('old.toml', f'[[image]]\npath = "{hazy}"\ndate = "2016"\n')
+        self.build(self.map, 'old', '--config', config, '--lod', '0', '--formats', 'gpkg')
+        for words in ('hazy, its darkest places', '64 in it were edited after it was taken (2016)', "8 years older than the map's data (2024-05-01)"):
+            self.assertIn(words, self.last.err)
+        clouded = Picture(village(7), 8)
+        clouded.fill([(30, 30), (140, 30), (140, 160), (30, 160)], bytes([231, 232, 235]))
+        self.build(self.map, 'clouded', '--imagery', clouded.write(self.path('clouded.ppm')), '--lod', '0', '--formats', 'gpkg')
+        self.assertIn('partly clouded', self.last.err)
+        self.assertFalse([b for b in read_json(self.path('clouded'), 'imagery.json')['buildings'] if 'perhaps_gone' in b], 'a cloud is no lawn')
+        self.build(self.map, 'clear', '--imagery', self.image, '--lod', '0', '--formats', 'gpkg')
+        self.assertNotIn('.ppm', self.last.err)
+
+    def test_what_stands_no_more_is_told_and_built_all_the_same(self):
+        """A house that the map has on the lawn between the others."""
+        houses = village(7)
+        lawn = [(66, 66), (76, 66), (76, 74), (66, 74)]
+        grass = Picture(houses, 8)
+        for k in range(0, len(grass.pixels), 3):
+            if max(grass.pixels[k:k + 3]) < 110:
+                grass.pixels[k], grass.pixels[k + 2] = grass.pixels[k] * 3 // 4, grass.pixels[k + 2] * 2 // 3
+        source = write_xml(self.path('gone.osm'), extract(houses + [lawn]))
+        out = self.build(source, 'gone', '--imagery', grass.write(self.path('grass.ppm')), '--imagery-correct', 'apply', '--lod', '1')
+        told = {b['id'] for b in read_json(out, 'imagery.json')['buildings'] if 'perhaps_gone' in b}
+        self.assertEqual(told, {'w164'})
+        self.assertIn('1 perhaps gone', self.last.out)
+        self.assertIn('perhaps gone', blockrand('explain', out, 'w164').out)
+        self.assertIn('Perhaps gone: 1', read_text(out, 'imagery.html'))
+        self.assertGreater(query(out, "SELECT perhaps_gone FROM footprint_before WHERE id = 'w164'")[0][0], 0.8)
+        self.assertIn('imagery_perhaps_gone', ''.join(read_text(out, f) for f in files_of(out) if f.endswith('.gml')))
+        self.assertEqual(read_json(out, 'build.json')['counts']['models'], 65)
+        self.assertEqual(blockrand('validate', out).code, 0)
 
     def test_a_list_in_the_config_has_date_and_licence(self):
         config = self.place('c.toml', '[[image]]\npath = "village.ppm"\ndate = "2023-06"\nlicence = "CC BY 4.0"\nattribution = "The village"\n')

@@ -44,6 +44,9 @@ Json image_json(const observation::ImageReceipt& image) {
     j["shadow_by_tags"] = image.shadow_by_tags;
   }
   j["lean_support"] = rounded(image.support, 1000);
+  j["haze"] = image.haze;
+  j["clouded"] = image.clouded;
+  if (image.edited_later > 0) j["buildings_edited_later"] = image.edited_later;
   return j;
 }
 

@@ -25,7 +25,7 @@ TEST(Presence, GrassWithoutEdgesIsNoHouse) {
 
 TEST(Presence, ARoofOrWallsOrAShadowAreOne) {
   EXPECT_LT(gone_probability(on_edges(0.75), surface(0), 0.2), 0.05);
-  EXPECT_LT(gone_probability(on_edges(0.7), surface(0.9), 0), 0.5) << "a house under trees has edges";
+  EXPECT_LT(gone_probability(on_edges(0.75), surface(0.9), 0), kPerhapsGone) << "a house under trees has edges";
   EXPECT_LT(gone_probability(on_edges(0.45), surface(0), 0.3), 0.5) << "faint walls, but a shadow";
   const double without = gone_probability(on_edges(0.4), surface(0.5), 0);
   EXPECT_LT(gone_probability(on_edges(0.4), surface(0.5), 0.3), without);
@@ -40,6 +40,10 @@ TEST(Presence, WhatIsNotSeenIsNotJudged) {
   OutlineReceipt unmatched = on_edges(0.3);
   unmatched.deviation = 0;
   EXPECT_EQ(gone_probability(unmatched, surface(1), 0), 0);
+  RoofView cloud = surface(0.4);
+  EXPECT_GT(gone_probability(on_edges(0.2), cloud, 0), kPerhapsGone);
+  cloud.colour = model::Colour{232, 231, 235};
+  EXPECT_EQ(gone_probability(on_edges(0.2), cloud, 0), 0);
   RoofView other = surface(1);
   other.image = 1;
   EXPECT_EQ(gone_probability(on_edges(0.3), other, 0), 0) << "of another image";
