@@ -30,7 +30,8 @@ struct Seen {
     observations.applied = true;
     observations.heights.resize(3);
     observation::SeenHeight& shadow = observations.heights[1];
-    shadow.image = 1, shadow.shadow.length = 9.25, shadow.height = 8.4, shadow.uncertainty = 1.1, shadow.confidence = 0.8;
+    shadow.image = 1, shadow.shadow.length = 9.25, shadow.height = 8.4, shadow.uncertainty = 1.1,
+    shadow.confidence = 0.8;
     observations.roofs.resize(3);
     observation::RoofView& roof = observations.roofs[1];
     roof.pixels = 900, roof.colour = model::Colour{200, 10, 3}, roof.colour_confidence = 0.72;
@@ -102,9 +103,10 @@ TEST(SeenOutlines, TellWhatWasDoneInWords) {
       imagery_text(*lookup({model::OsmType::way, 101})),
       "moved 2.05 m to the NE, turned by 0.5 degrees, as ortho.tif of 2023-06 shows it (walls on edges: 0.12 where "
       "mapped, 0.43 there; confidence 0.87)");
-  EXPECT_EQ(imagery_text(*lookup({model::OsmType::relation, 102})),
-            "perhaps gone (0.93): no roof, wall or shadow is seen; left where it is mapped: another place fits nearly as "
-            "well (ortho.tif of 2023-06)");
+  EXPECT_EQ(
+      imagery_text(*lookup({model::OsmType::relation, 102})),
+      "perhaps gone (0.93): no roof, wall or shadow is seen; left where it is mapped: another place fits nearly as "
+      "well (ortho.tif of 2023-06)");
   EXPECT_FALSE(seen_outlines(nullptr, seen.store)) << "no images";
 }
 
