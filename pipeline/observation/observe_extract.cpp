@@ -49,6 +49,8 @@ constexpr double kSightingReach = 8, kSightingStep = 0.5;
 /// How many times its uncertainty a height may be off, so that the lean explains a movement; m: how far beside the lean's
 /// direction that still holds; m: less of a lean explains nothing.
 constexpr double kHeightDoubt = 2.5, kBesideLean = 0.5, kLeastLean = 0.4;
+/// Of a row's walls: where the lean of as many is known, they decide.
+constexpr double kMostlyKnown = 0.75;
 /// How often shadows and lean are measured anew, each with what the other told.
 constexpr int kShadowRounds = 1;
 /// Shadows that storeys are counted by: how clear they are (ShadowLength::clearness), m of wall that cast them; and the share
@@ -224,7 +226,18 @@ class Observer {
       for (const WallPiece& p : o.pieces)
         row.radius = std::max(row.radius, std::sqrt((p.middle.x - row.centre.x) * (p.middle.x - row.centre.x) +
                                                     (p.middle.y - row.centre.y) * (p.middle.y - row.centre.y)));
+    leave_out_unknown(row);
     return row;
+  }
+
+  /// Houses that stand where nobody knows the lean say nothing of their row's place, if it is known of most of its walls.
+  static void leave_out_unknown(SearchedRow& row) {
+    double known = 0, all = 0;
+    for (const SearchedOutline& o : row.outlines)
+      for (const WallPiece& p : o.pieces) known += o.lean_known ? p.length : 0, all += p.length;
+    if (known < kMostlyKnown * all) return;
+    for (SearchedOutline& o : row.outlines)
+      if (!o.lean_known) o.pieces.clear(), o.lean_known = true;
   }
 
   bool within(const importers::imagery::AerialImage& image, Point2 p) const {
