@@ -12,6 +12,7 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/cli/exit_codes.h"
+#include "pipeline/cli/explain_chip.h"
 #include "pipeline/cli/explain_style.h"
 #include "pipeline/cli/terminal_text.h"
 #include "pipeline/settings/command_line.h"
@@ -372,13 +373,9 @@ settings::CommandText explain_text() {
 
 namespace {
 
-/// Where its tile's aerial image stands, with the outlines on it; empty for a build without.
 std::string overlay_text(const std::string& folder, const outputs::FoundExplanation& found) {
-  const Json j = Json::parse(found.json, nullptr, false);
-  if (!j.is_object() || !j.contains("imagery")) return {};
-  const std::string path = folder + "/imagery/" + j.value("tile", "") + ".png";
-  std::error_code error;
-  return std::filesystem::is_regular_file(path, error) ? "\nThe aerial image with its outline: " + path + "\n" : "";
+  const std::string path = overlay_path(folder, found);
+  return path.empty() ? "" : "\nThe aerial image with its outline: " + path + " (--chip FILE.png: this piece of it)\n";
 }
 
 }  // namespace
@@ -400,6 +397,7 @@ int run_explain(const std::vector<std::string>& arguments) {
   if (!found)
     throw base::InputError(s.folder, "", "knows no building or building part " + id->text(),
                            "It is tagged otherwise, or lies outside of the extract or the --bbox");
+  if (!s.chip.empty()) write_chip(s.folder, *found, s.chip);
   const bool is_body = s.id.find('.') != std::string::npos && s.id.find('/') == std::string::npos;
   if (s.json)
     std::printf("%s\n", found->json.c_str());

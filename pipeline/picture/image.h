@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace blockrand::picture {
@@ -25,5 +26,12 @@ std::string png(const Image& image);
 /// picture is made of areas. Deterministic as png().
 /// \throws std::runtime_error  as png()
 std::string palette_png(const Image& image, int colours = 64);
+
+/// Reads a PNG file of any kind; transparency is left out.
+/// \throws std::runtime_error  the bytes are no PNG, damaged, or of more than 100 million pixels
+Image read_png(std::string_view bytes);
+
+/// The pixels of an image from a column and row on; what lies beyond it is left out. May be empty.
+Image cut(const Image& image, int column, int row, int width, int height);
 
 }  // namespace blockrand::picture

@@ -1,5 +1,6 @@
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -86,6 +87,71 @@ std::string palette_png(const Image& image, int colours) {
     png_write_row(w.png, reduced.pixels.data() + static_cast<std::size_t>(y) * row);
   png_write_end(w.png, nullptr);
   return bytes;
+}
+
+namespace {
+
+/// Of a picture that is read: more would be no picture of ours.
+constexpr png_uint_32 kMostPixels = 100'000'000;
+
+struct Reader {
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  std::string_view left;
+
+  explicit Reader(std::string_view bytes) : left(bytes) {
+    png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, fail, [](png_structp, png_const_charp) {});
+    if (png) info = png_create_info_struct(png);
+    if (!info) {
+      png_destroy_read_struct(&png, &info, nullptr);
+      throw std::runtime_error("PNG: no memory");
+    }
+    png_set_read_fn(png, this, take);
+  }
+  ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+  static void take(png_structp png, png_bytep to, png_size_t size) {
+    std::string_view& left = static_cast<Reader*>(png_get_io_ptr(png))->left;
+    if (left.size() < size) png_error(png, "it ends too early");
+    std::copy_n(left.begin(), size, reinterpret_cast<char*>(to));
+    left.remove_prefix(size);
+  }
+};
+
+}  // namespace
+
+Image read_png(std::string_view bytes) {
+  Reader r(bytes);
+  png_read_info(r.png, r.info);
+  const png_uint_32 width = png_get_image_width(r.png, r.info), height = png_get_image_height(r.png, r.info);
+  if (width > kMostPixels / height) throw std::runtime_error("PNG: it has too many pixels");
+  png_set_expand(r.png);
+  png_set_strip_16(r.png);
+  png_set_strip_alpha(r.png);
+  png_set_gray_to_rgb(r.png);
+  const int passes = png_set_interlace_handling(r.png);
+  png_read_update_info(r.png, r.info);
+  const std::size_t row = static_cast<std::size_t>(width) * 3;
+  if (png_get_rowbytes(r.png, r.info) != row) throw std::runtime_error("PNG: its rows are no RGB");
+  Image image{static_cast<int>(width), static_cast<int>(height), std::vector<std::uint8_t>(row * height)};
+  for (int pass = 0; pass < passes; ++pass)
+    for (png_uint_32 y = 0; y < height; ++y) png_read_row(r.png, image.rgb.data() + y * row, nullptr);
+  png_read_end(r.png, nullptr);
+  return image;
+}
+
+Image cut(const Image& image, int column, int row, int width, int height) {
+  const int first = std::clamp(column, 0, image.width), last = std::clamp(column + width, first, image.width),
+            top = std::clamp(row, 0, image.height), bottom = std::clamp(row + height, top, image.height);
+  Image out{last - first, bottom - top, {}};
+  if (out.width <= 0) return {};
+  for (int y = top; y < bottom; ++y) {
+    const std::uint8_t* from = image.pixel(first, y);
+    out.rgb.insert(out.rgb.end(), from, from + 3 * static_cast<std::ptrdiff_t>(out.width));
+  }
+  return out;
 }
 
 }  // namespace blockrand::picture

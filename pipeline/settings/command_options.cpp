@@ -149,7 +149,13 @@ Table of_explain() {
           flag({.name = "style",
                 .commands = kExplain,
                 .help = "list everything that spoke for or against its style, not the weightiest alone"},
-               &S::style)};
+               &S::style),
+          text({.name = "chip",
+                .argument = "FILE.png",
+                .type = OptionType::path,
+                .commands = kExplain,
+                .help = "write the piece of the aerial image that shows it, with the outlines, to this file"},
+               &S::chip)};
 }
 
 /// "2%", "2 %" or "2" → 0.02.

@@ -40,6 +40,7 @@ struct Settings {
   bool json = false;                         ///< print JSON
   bool edges = false;                        ///< `explain` lists the wall segments of the outline
   bool style = false;                        ///< `explain` lists all evidence for the style
+  std::string chip;                          ///< PNG that `explain` writes: the building in its aerial image
   base::ProgressStyle progress = base::ProgressStyle::automatic;
   base::LogFormat log_format = base::LogFormat::text;
   bool quiet = false;  ///< warnings and errors only

@@ -184,7 +184,7 @@ class Imagery(BuildTest):
         receipt = json.loads(blockrand('explain', out, 'w105', '--json').out)['imagery']
         self.assertEqual((receipt['state'], receipt['image']), ('moved', 'village.ppm'))
         # Pictures: one of the tile, and the corrections on a page.
-        picture, = [f for f in files_of(out) if f.startswith('imagery/')]
+        picture, = [f for f in files_of(out) if f.startswith('imagery/') and f.endswith('.png')]
         width, height = struct.unpack('>2I', open(os.path.join(out, picture), 'rb').read(24)[16:])
         self.assertTrue(1000 < width < 2000 and 1000 < height < 2000, (width, height))
         page = read_text(out, 'imagery.html')
@@ -213,6 +213,35 @@ class Imagery(BuildTest):
         self.refused(blockrand('build', self.map, '-o', self.path('no'), '--tile', '15/1/1', '--pinned', os.path.join(out, 'build.json'), '--imagery', self.image), 1, 'leave out --imagery', target=self.path('no'))
         os.remove(os.path.join(out, 'imagery.json'))
         self.refused(blockrand('build', self.map, '-o', self.path('no'), '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json')), 2, 'imagery.json', target=self.path('no'))
+
+    def test_explain_cuts_a_chip_out_of_the_image(self):
+        out = self.build(self.map, 'chips', '--imagery', self.image, '--lod', '1')
+        chip = self.path('chip.png')
+        told = blockrand('explain', out, 'w105', '--chip', chip)
+        self.assertEqual(told.code, 0, told.err)
+        with open(chip, 'rb') as f:
+            head = f.read(24)
+        self.assertEqual(head[:8], b'\x89PNG\r\n\x1a\n')
+        width, height = struct.unpack('>II', head[16:])
+        # The house is 8 to 14 m wide, with 8 m about it and the shift, in pixels of at least 0.2 m, enlarged.
+        self.assertGreater(min(width, height), 100)
+        self.assertLess(max(width, height), 900)
+        again = blockrand('explain', out, 'w105', '--chip', chip)
+        self.assertEqual(again.code, 1, again.err)
+        self.assertIn('is there already', again.err)
+        nowhere = blockrand('explain', out, 'w105', '--chip', self.path('nowhere/chip.png'))
+        self.assertEqual(nowhere.code, 4, nowhere.err)
+        world, = [f for f in files_of(out) if f.endswith('.pgw')]
+        with open(os.path.join(out, world), 'w') as f:
+            f.write('0.2\n')
+        damaged = blockrand('explain', out, 'w105', '--chip', self.path('damaged.png'))
+        self.assertEqual(damaged.code, 2, damaged.err)
+        self.assertIn('world file', damaged.err)
+        plain = self.build(self.map, 'no-image', '--lod', '1')
+        without = blockrand('explain', plain, 'w105', '--chip', self.path('other.png'))
+        self.assertEqual(without.code, 2, without.err)
+        self.assertIn('--imagery', without.err)
+        self.assertFalse(os.path.exists(self.path('other.png')))
 
     def test_shadows_tell_heights_of_houses_that_nobody_counted(self):
         """A third of the houses is tagged: by them the sun is measured, and the others by the sun."""

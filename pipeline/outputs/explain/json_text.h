@@ -38,6 +38,10 @@ class JsonText {
     comma();
     append_json(*text_, value);
   }
+  void element(double value) {
+    comma();
+    append_number(*text_, value);
+  }
   void number(std::string_view k, double value) {
     key(k);
     append_number(*text_, value);

@@ -207,6 +207,11 @@ void append_imagery(JsonText& json, const SeenOutline& seen) {
     else
       json.string(key, std::get<std::string>(value));
   }
+  json.key("box");
+  json.open('[');
+  for (const double v : {seen.box.minimum.x, seen.box.minimum.y, seen.box.maximum.x, seen.box.maximum.y})
+    json.element(rounded(v));
+  json.close(']');
   json.close('}');
 }
 

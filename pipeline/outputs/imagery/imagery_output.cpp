@@ -39,6 +39,7 @@ class ImageryOutput : public Output {
     files.push_back(context_.folder.write(
         "imagery/" + tile.name + ".png",
         picture::palette_png(draw_overlay(inputs(), box, pixel, buildings, most_told(buildings)), 128)));
+    files.push_back(context_.folder.write("imagery/" + tile.name + ".pgw", overlay_world_file(box, pixel)));
     return files;
   }
   void take(const FinishedTile&, std::any product) override {

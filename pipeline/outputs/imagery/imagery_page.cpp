@@ -131,7 +131,8 @@ std::string imagery_page(const OverlayInputs& in, const std::vector<std::string>
   out += gone_figures(in);
   if (!overlays.empty()) {
     out += "<h2>Tiles</h2>\n<ul>\n";
-    for (const std::string& path : overlays) out += "<li><a href=\"" + path + "\">" + path + "</a></li>\n";
+    for (const std::string& path : overlays)
+      if (path.ends_with(".png")) out += "<li><a href=\"" + path + "\">" + path + "</a></li>\n";
     out += "</ul>\n";
   }
   return out + "</main>\n</body>\n</html>\n";

@@ -1,5 +1,7 @@
 #include "pipeline/outputs/imagery/overlay.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -48,12 +50,23 @@ void draw(picture::Plan& plan, std::vector<model::Polygon> polygons, const footp
   }
 }
 
+/// Of the upper left pixel, counted from the origin of the build CRS, east and south.
+std::pair<long long, long long> first_pixel(const geometry::PlanBox& box, double pixel) {
+  return {static_cast<long long>(std::floor(box.minimum.x / pixel)),
+          static_cast<long long>(std::floor(-box.maximum.y / pixel))};
+}
+
 }  // namespace
+
+std::string overlay_world_file(const geometry::PlanBox& box, double pixel) {
+  const auto [column, row] = first_pixel(box, pixel);
+  return fmt::format("{:.2f}\n0.0\n0.0\n{:.2f}\n{:.3f}\n{:.3f}\n", pixel, -pixel,
+                     (static_cast<double>(column) + 0.5) * pixel, -(static_cast<double>(row) + 0.5) * pixel);
+}
 
 picture::Image draw_overlay(const OverlayInputs& in, const geometry::PlanBox& box, double pixel,
                             std::span<const std::uint32_t> buildings, std::uint32_t first) {
-  const auto column = static_cast<long long>(std::floor(box.minimum.x / pixel)),
-             row = static_cast<long long>(std::floor(-box.maximum.y / pixel));
+  const auto [column, row] = first_pixel(box, pixel);
   const int width = static_cast<int>(std::ceil(box.maximum.x / pixel)) - static_cast<int>(column),
             height = static_cast<int>(std::ceil(-box.minimum.y / pixel)) - static_cast<int>(row);
   picture::Image picture{width, height, {}};

@@ -33,7 +33,12 @@ inline constexpr model::Colour kAsMapped{255, 255, 255}, kBefore{255, 214, 0}, k
 /// \param pixel      m
 /// \param buildings  by number
 /// \param first      the image that lies above the others
+/// The south-west and north-east ends of its pixels lie on multiples of `pixel`.
 picture::Image draw_overlay(const OverlayInputs& in, const geometry::PlanBox& box, double pixel,
                             std::span<const std::uint32_t> buildings, std::uint32_t first);
+
+/// The world file of such a picture (ESRI, "About world files"): six lines, the size of a pixel and the middle of the first one in
+/// the build CRS.
+std::string overlay_world_file(const geometry::PlanBox& box, double pixel);
 
 }  // namespace blockrand::outputs

@@ -41,12 +41,12 @@ SeenOutlines seen_outlines(const observation::ImageryObservations* observations,
                            const footprints::FootprintStore& footprints) {
   if (!observations) return {};
   const auto numbers = std::make_shared<const footprints::BuildingNumbers>(footprints);
-  return [observations, numbers](model::OsmId id) -> std::optional<SeenOutline> {
+  return [observations, numbers, footprints_of = &footprints](model::OsmId id) -> std::optional<SeenOutline> {
     const std::uint32_t b = numbers->find(id);
     if (b == model::kNoIndex || b >= observations->outlines.size()) return std::nullopt;
     const observation::OutlineReceipt& receipt = observations->outlines[b];
     if (receipt.image >= observations->images.size()) return std::nullopt;
-    return SeenOutline{receipt, observations->images[receipt.image], observations->applied};
+    return SeenOutline{receipt, observations->images[receipt.image], observations->applied, (*footprints_of)[b].box};
   };
 }
 

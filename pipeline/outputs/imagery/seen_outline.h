@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pipeline/footprints/footprint_store.h"
+#include "pipeline/geometry/box_index.h"
 #include "pipeline/observation/imagery.h"
 
 namespace blockrand::outputs {
@@ -19,6 +20,7 @@ struct SeenOutline {
   const observation::OutlineReceipt& receipt;
   const observation::ImageReceipt& image;
   bool applied = false;  ///< what is corrected stands where the image shows it
+  geometry::PlanBox box{};  ///< m in the build CRS: of its outline as it stands
 
   /// "moved" or "seen_elsewhere"; "as_mapped", "undecided", "refused".
   std::string_view state() const;

@@ -18,7 +18,7 @@ import time
 import xml.etree.ElementTree as ET
 
 import numpy as np
-from osgeo import ogr
+from osgeo import gdal, ogr
 
 import ciede2000
 import corrections
@@ -259,7 +259,9 @@ class Bench:
                      ("mirrored", dict(mirror=True)), ("turned by 90", dict(rotate90=True)), ("another place: " + os.path.basename(other).split("_")[0], dict())]
             for what, how in kinds:
                 if what.startswith("another"):
-                    misregister.misregister(other, picture, place_of=image)
+                    # A small picture in the middle of a square would show no house, wrong or right.
+                    epsg = gdal.Open(image).GetSpatialRef().GetAuthorityCode(None)
+                    misregister.misregister(other, picture, place_of=image, at=misregister.most_built(other, image, list(outlines(extract, int(epsg)).values())))
                 else:
                     misregister.misregister(image, picture, **how)
                 bad.append(self.trial(place, extract, picture, what, None))

@@ -4,7 +4,8 @@
     misregister.py IN.tif OUT.tif --shift-east M --shift-north M | --mirror | --rotate90 | --place-of OTHER.tif
 
 --shift: what is seen lies M metres (on the ground) east and north of where it is. --mirror: east and west changed. --rotate90: turned
-about the middle. --place-of: IN's pixels at the middle of OTHER's place, in OTHER's system. Lossless; (rows, columns) stay, except
+about the middle. --place-of: IN's pixels at the middle of OTHER's place, or where --at has their middle (shares of OTHER's width from the
+west, and height from the north), in OTHER's system. Lossless; (rows, columns) stay, except
 for --rotate90, where they change places.
 """
 import argparse
@@ -31,7 +32,19 @@ def ground_scale(dataset):
     return 1 / math.cos(math.radians(osr.CoordinateTransformation(s, wgs).TransformPoint(x, y)[1]))
 
 
-def misregister(source, target, east=0.0, north=0.0, mirror=False, rotate90=False, place_of=None):
+def most_built(source, other, outlines):
+    """Shares of OTHER's width and height: where SOURCE's picture, laid there, holds the middles of the most outlines [(n, 2) in OTHER's
+    system]."""
+    d, o = gdal.Open(source), gdal.Open(other)
+    t, u = d.GetGeoTransform(), o.GetGeoTransform()
+    half = np.array([d.RasterXSize, d.RasterYSize]) * abs(t[1]) / ground_scale(d) * ground_scale(o) / 2
+    middles = np.array([(r.min(0) + r.max(0)) / 2 for r in outlines])
+    shares = [(x, y) for y in (.1, .3, .5, .7, .9) for x in (.1, .3, .5, .7, .9)]
+    held = [np.sum((np.abs(middles - (u[0] + u[1] * o.RasterXSize * x, u[3] + u[5] * o.RasterYSize * y)) < half).all(1)) for x, y in shares]
+    return shares[int(np.argmax(held))]
+
+
+def misregister(source, target, east=0.0, north=0.0, mirror=False, rotate90=False, place_of=None, at=(.5, .5)):
     d = gdal.Open(source)
     pixels, t, system = d.ReadAsArray(), list(d.GetGeoTransform()), d.GetSpatialRef()
     if pixels.ndim == 2:
@@ -51,7 +64,7 @@ def misregister(source, target, east=0.0, north=0.0, mirror=False, rotate90=Fals
         u, to = o.GetGeoTransform(), ground_scale(o)
         size = abs(t[1]) / scale * to
         h, w = pixels.shape[1:]
-        t = [u[0] + u[1] * o.RasterXSize / 2 - size * w / 2, size, 0, u[3] + u[5] * o.RasterYSize / 2 + size * h / 2, 0, -size]
+        t = [u[0] + u[1] * o.RasterXSize * at[0] - size * w / 2, size, 0, u[3] + u[5] * o.RasterYSize * at[1] + size * h / 2, 0, -size]
         system = o.GetSpatialRef()
     out = gdal.GetDriverByName("GTiff").Create(target, pixels.shape[2], pixels.shape[1], pixels.shape[0], d.GetRasterBand(1).DataType,
                                                ["TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=2", "ZLEVEL=1"])
@@ -70,8 +83,9 @@ def main():
     a.add_argument("--mirror", action="store_true")
     a.add_argument("--rotate90", action="store_true")
     a.add_argument("--place-of")
+    a.add_argument("--at", type=float, nargs=2, default=(.5, .5))
     a = a.parse_args()
-    misregister(a.source, a.target, a.shift_east, a.shift_north, a.mirror, a.rotate90, a.place_of)
+    misregister(a.source, a.target, a.shift_east, a.shift_north, a.mirror, a.rotate90, a.place_of, a.at)
 
 
 if __name__ == "__main__":
