@@ -139,6 +139,37 @@ struct Evidence {
 
 double length_of(model::Point2 v) { return std::sqrt(v.x * v.x + v.y * v.y); }
 
+/// Where a parabola through three values at -1, 0, 1 is highest, [-0.5, 0.5]; the middle one is the largest.
+double parabola_top(double before, double here, double after) {
+  const double bend = 2 * here - before - after;
+  return bend > 0 ? std::clamp((after - before) / 2 / bend, -0.5, 0.5) : 0;
+}
+
+/// The displacement near `about` where the outlines' scores, none of them free to be off, are highest in sum: finer than what
+/// their spread scores say.
+model::Point2 sharpest(std::span<const ScoreMap> maps, const Displacements& grid, model::Point2 about) {
+  const int half = static_cast<int>(std::lround(kOwnError / kStep)), side = 2 * half + 3;
+  const int i0 = static_cast<int>(std::lround(about.x / kStep)), j0 = static_cast<int>(std::lround(about.y / kStep));
+  std::vector<double> sum(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0.0);
+  const auto at = [&](int i, int j) -> double& {
+    return sum[static_cast<std::size_t>(j + half + 1) * static_cast<std::size_t>(side) + static_cast<std::size_t>(i + half + 1)];
+  };
+  for (const ScoreMap& map : maps) {
+    if (!seen(map)) continue;
+    for (int j = -half - 1; j <= half + 1; ++j)
+      for (int i = -half - 1; i <= half + 1; ++i)
+        if (std::max(std::abs(i0 + i), std::abs(j0 + j)) <= grid.half)
+          at(i, j) += static_cast<double>(map.at(i0 + i, j0 + j));
+  }
+  int best_i = 0, best_j = 0;
+  for (int j = -half; j <= half; ++j)
+    for (int i = -half; i <= half; ++i)
+      if (at(i, j) > at(best_i, best_j)) best_i = i, best_j = j;
+  const double here = at(best_i, best_j);
+  return {(i0 + best_i + parabola_top(at(best_i - 1, best_j), here, at(best_i + 1, best_j))) * kStep,
+          (j0 + best_j + parabola_top(at(best_i, best_j - 1), here, at(best_i, best_j + 1))) * kStep};
+}
+
 }  // namespace
 
 ImageFit fit_image(std::span<const SearchedOutline> outlines, const ImageWindows& windows, int workers) {
@@ -187,6 +218,7 @@ ImageFit fit_image(std::span<const SearchedOutline> outlines, const ImageWindows
     e.conclude(one, maps);
     if (one.margin > fit.margin) fit = one;
   }
+  fit.shift = sharpest(maps, grid, fit.shift);
   const double off = length_of(fit.shift);
   fit.state = off <= kLargestShift && fit.margin >= kSureMargin ? ImageState::used : ImageState::misfit;
   fit.why = fmt::format(

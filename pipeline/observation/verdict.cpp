@@ -9,8 +9,9 @@ namespace blockrand::observation {
 
 namespace {
 
-/// Deviations: a movement that gains less is none; a place that is less better than another one is not known.
-constexpr double kLeastGain = 0.6, kLeastMargin = 0.5;
+/// Deviations: a movement that gains less is none; a place that is less better than another one is not known. The second
+/// holds for rows of so many m of wall and more: that many walls seldom agree on a wrong place.
+constexpr double kLeastGain = 0.8, kLeastMargin = 0.5, kLeastMarginLong = 0.25, kLongWalls = 150;
 
 /// Weights of a logistic regression (fit.py of tests/bench/imagery) on rows of Kampala and of synthetic images, of which half
 /// were moved by known amounts, where the search found a movement; what is measured is cut at the values behind which nothing
@@ -38,7 +39,8 @@ Verdict judge(const RowMatch& match, bool lean_known, bool by_height) {
   if (match.best - match.here < kLeastGain * match.deviation)
     return {RowState::left_alone, "it stands nearly as well where it is mapped", confidence};
   if (by_height) return {RowState::undecided, "another height of its roof would explain it as well", confidence};
-  if (match.best - match.second < kLeastMargin * match.deviation)
+  const double margin = match.weight < kLongWalls ? kLeastMargin : kLeastMarginLong;
+  if (match.best - match.second < margin * match.deviation)
     return {RowState::undecided, "another place fits nearly as well", confidence};
   if (confidence < kSureCorrection)
     return {RowState::undecided, "the edges in the image do not say it clearly", confidence};

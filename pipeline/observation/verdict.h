@@ -16,8 +16,8 @@ struct Verdict {
 
 /// m: less is the error of the search.
 inline constexpr double kLeastCorrection = 0.4;
-/// A correction is offered from this confidence on.
-inline constexpr double kSureCorrection = 0.65;
+/// A correction is offered from this confidence on: of the right houses of the set `tuning` at most 2 % are moved then.
+inline constexpr double kSureCorrection = 0.6;
 
 /// \param lean_known  how far the image shows the row's roofs from their ground
 /// \param by_height   other heights of its roofs, as likely as those that were reckoned with, would show them there too

@@ -39,6 +39,16 @@ TEST(Verdict, WhatIsNotClearStaysWithAReason) {
   EXPECT_EQ(state([](RowMatch& m) { m.best = 0.65, m.second = 0.6, m.mean = 0.52; }), RowState::undecided);
 }
 
+TEST(Verdict, LongRowsNeedLessOfALeadOverOtherPlaces) {
+  RowMatch m = clear_match();
+  m.second = m.best - 0.4 * m.deviation;
+  EXPECT_EQ(judge(m, true).state, RowState::undecided);
+  m.weight = 400;
+  EXPECT_EQ(judge(m, true).state, RowState::corrected);
+  m.second = m.best - 0.1 * m.deviation;
+  EXPECT_EQ(judge(m, true).state, RowState::undecided);
+}
+
 TEST(Verdict, MoreEvidenceIsMoreConfidence) {
   const double before = judge(clear_match(), true).confidence;
   RowMatch m = clear_match();
