@@ -182,7 +182,7 @@ ImageFit fit_image(std::span<const SearchedOutline> outlines, const ImageWindows
       outlines.size(), workers, static_cast<std::size_t>(workers) * 4,
       [&](std::size_t n) {
         const SearchedOutline& o = outlines[n];
-        const Patch patch = windows.window(o.box, kFitReach * 1.5 + kPieceLength / 2 + 2);
+        const Patch patch = windows.window(o.box, score_margin(grid, windows.size()));
         maps[n] = score_outline(o.pieces, patch, grid, o.box.centre(), {}, kContrast);
         if (!seen(maps[n])) return;
         // In deviations of its own: a house among much else says as much as one on a lawn.

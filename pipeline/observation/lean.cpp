@@ -1,6 +1,7 @@
 #include "pipeline/observation/lean.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 
@@ -51,15 +52,21 @@ constexpr std::size_t kCurvatureNodes = 40;
 constexpr double kCurvatureStep = 0.0001;
 constexpr int kCurvatureSteps = 20, kCoarseCurvature = 4;  ///< each fourth first, then those beside the best of them
 
+/// Cells of a line of votes, at most.
+constexpr int kMostSide = 2 * 30 + 1;
+static_assert(kMostLean / kLeanStep < 30.5 && kMostShift / kShiftStep < 30.5);
+
 /// Votes for a vector.
 class Votes {
  public:
   Votes(double most, double step)
       : step_(step),
         half_(static_cast<int>(std::lround(most / step))),
-        cells_(static_cast<std::size_t>(side()) * static_cast<std::size_t>(side()), 0.0) {}
+        cells_(static_cast<std::size_t>(side()) * static_cast<std::size_t>(side()), 0.0F) {
+    assert(side() <= kMostSide);
+  }
 
-  void clear() { std::fill(cells_.begin(), cells_.end(), 0.0), total_ = 0; }
+  void clear() { std::fill(cells_.begin(), cells_.end(), 0.0F), total_ = 0; }
 
   /// A bell (quadratic, so that no exponential is needed) of radius 2 * sigma.
   void add(Point2 at, double sigma, double weight) {
@@ -69,13 +76,25 @@ class Votes {
               i1 = std::min(side() - 1, static_cast<int>(std::floor(x + radius)));
     const int j0 = std::max(0, static_cast<int>(std::ceil(y - radius))),
               j1 = std::min(side() - 1, static_cast<int>(std::floor(y + radius)));
-    for (int j = j0; j <= j1; ++j)
-      for (int i = i0; i <= i1; ++i) {
-        const double r = ((i - x) * (i - x) + (j - y) * (j - y)) / (radius * radius);
-        if (r < 1)
-          cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(side()) + static_cast<std::size_t>(i)] +=
-              weight * (1 - r) * (1 - r);
+    if (i0 > i1 || radius <= 0) return;
+    // No branch within a line, and no square: the compiler works on several cells at a time.
+    const auto count = static_cast<std::size_t>(i1 - i0 + 1);
+    float across[kMostSide];
+    const double inverse = 1 / (radius * radius);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double d = i0 + static_cast<double>(i) - x;
+      across[i] = static_cast<float>(1 - d * d * inverse);
+    }
+    const auto height = static_cast<float>(weight);
+    for (int j = j0; j <= j1; ++j) {
+      const auto down = static_cast<float>((j - y) * (j - y) * inverse);
+      float* const line =
+          cells_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(side()) + static_cast<std::size_t>(i0);
+      for (std::size_t i = 0; i < count; ++i) {
+        const float rest = std::max(0.0F, across[i] - down);
+        line[i] += height * rest * rest;
       }
+    }
   }
 
   struct Winner {
@@ -104,14 +123,16 @@ class Votes {
     for (int j = std::max(0, bj - 1); j <= std::min(this->side() - 1, bj + 1); ++j)
       for (int i = std::max(0, bi - 1); i <= std::min(this->side() - 1, bi + 1); ++i) {
         const double w = std::max(
-            0.0, cells_[static_cast<std::size_t>(j) * side + static_cast<std::size_t>(i)] - 0.8 * cells_[best]);
+            0.0, static_cast<double>(cells_[static_cast<std::size_t>(j) * side + static_cast<std::size_t>(i)]) -
+                     0.8 * static_cast<double>(cells_[best]));
         x += w * (i - half_), y += w * (j - half_), weight += w;
       }
     Winner won;
     if (total_ <= 0 || weight <= 0) return won;
     won.at = {x / weight * step_, y / weight * step_};
-    won.support = cells_[best] / total_;
-    won.at_zero = cells_[static_cast<std::size_t>(half_) * side + static_cast<std::size_t>(half_)] / total_;
+    won.support = static_cast<double>(cells_[best]) / total_;
+    won.at_zero =
+        static_cast<double>(cells_[static_cast<std::size_t>(half_) * side + static_cast<std::size_t>(half_)]) / total_;
     return won;
   }
 
@@ -119,7 +140,7 @@ class Votes {
   int side() const { return 2 * half_ + 1; }
   double step_;
   int half_;
-  std::vector<double> cells_;
+  std::vector<float> cells_;
   double total_ = 0;
 };
 

@@ -270,8 +270,8 @@ class Observer {
           sighted[n].row = row_of_[b];
           sighted[n].weight = 1 / std::sqrt(static_cast<double>(rows_[row_of_[b]].buildings.size()));
           const ScoreMap map =
-              score_outline(o.pieces, windows.window(o.box, kSightingReach * 1.5 + kPieceLength / 2 + 2), grid,
-                            o.box.centre(), {}, kContrast);
+              score_outline(o.pieces, windows.window(o.box, score_margin(grid, windows.size())), grid, o.box.centre(),
+                            {}, kContrast);
           if (map.weight > 0 && map.missing <= 0.2 * (map.weight + map.missing))
             sighted[n].sightings = sightings_of(map);
         },

@@ -17,84 +17,132 @@ constexpr int kStrip = 2;
 /// Of the displacements of a piece: with more of them beyond the image's pixels it is not seen.
 constexpr double kMostUnseen = 0.4;
 
-/// Of the bands, and of what the image does not show.
-using Sample = std::array<float, 4>;
+/// Of the bands, and of what the image does not show. Four numbers that g++ and clang keep in one register: the same sums on
+/// any x86-64.
+typedef float Sample __attribute__((vector_size(16)));
 
-/// The patch's pixels side by side: four numbers are one register.
+/// The patch's pixels side by side.
 std::vector<Sample> samples_of(const Patch& patch) {
   std::vector<Sample> out(patch.valid.size());
   for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = {static_cast<float>(patch.red[i]), static_cast<float>(patch.green[i]), static_cast<float>(patch.blue[i]),
-              patch.valid[i] ? 0.0F : 1.0F};
+    out[i] = Sample{static_cast<float>(patch.red[i]), static_cast<float>(patch.green[i]),
+                    static_cast<float>(patch.blue[i]), patch.valid[i] ? 0.0F : 1.0F};
   return out;
 }
 
-/// The image along a piece: sums along lines parallel to it.
-class Profile {
+/// The change of brightness across a piece, displaced by whole pixels along its normal (lines) and along itself (cells), within
+/// the reach of the search. Negative where the image has no pixels. Kept between pieces for its memory.
+class ChangeTable {
  public:
-  Profile(const Patch& patch, const std::vector<Sample>& pixels, Point2 middle, Point2 along, double length,
-          double reach)
-      : step_(patch.size),
-        lines_(static_cast<int>(std::ceil(reach / step_)) + kStrip + 1),
-        cells_(std::max(1, static_cast<int>(std::lround(length / step_)))),
-        side_(static_cast<int>(std::ceil(reach / step_)) + 1) {
-    const int across = 2 * lines_ + 1, columns = 2 * side_ + cells_;
-    sums_.resize(static_cast<std::size_t>(across) * static_cast<std::size_t>(columns + 1));
-    const Point2 normal{along.y, -along.x};
-    std::size_t k = 0;
-    for (int i = -lines_; i <= lines_; ++i) {
-      Sum sum{};
-      sums_[k++] = sum;
-      // Position of the first sample in pixels of the patch, from the centre of its first.
-      const double first = (0.5 - static_cast<double>(columns) / 2) * step_;
-      const double x0 = (middle.x + along.x * first + normal.x * i * step_ - patch.west) / step_ - 0.5;
-      const double y0 = (patch.north - middle.y - along.y * first - normal.y * i * step_) / step_ - 0.5;
-      for (int j = 0; j < columns; ++j, ++k) {
-        const double x = x0 + along.x * j, y = y0 - along.y * j;
-        if (x < 0 || y < 0 || x >= patch.width - 1 || y >= patch.height - 1) {
-          sum[3] += 1;
-        } else {
-          const int c = static_cast<int>(x), r = static_cast<int>(y);
-          const std::size_t width = static_cast<std::size_t>(patch.width);
-          const Sample* const at = pixels.data() + static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c);
-          const Sample* const below = at + width;
-          const auto u = static_cast<float>(x - c), v = static_cast<float>(y - r);
-          const float w00 = (1 - u) * (1 - v), w10 = u * (1 - v), w01 = (1 - u) * v, w11 = u * v;
-          for (std::size_t n = 0; n < 4; ++n)
-            sum[n] += w00 * at[0][n] + w10 * at[1][n] + w01 * below[0][n] + w11 * below[1][n];
-        }
-        sums_[k] = sum;
-      }
+  ChangeTable(const Patch& patch, double reach)
+      : patch_(patch),
+        pixels_(samples_of(patch)),
+        radius_(reach / patch.size + kCorner),
+        side_(static_cast<int>(std::ceil(reach / patch.size)) + 1) {
+    for (int i = 0; i <= side_ + kStrip; ++i) {
+      const double rest = radius_ * radius_ - static_cast<double>(i) * i;
+      chord_.push_back(rest > 0 ? std::min(side_, static_cast<int>(std::sqrt(rest))) : -1);
     }
+    const auto all = static_cast<std::size_t>(2 * (side_ + kStrip) + 1) * static_cast<std::size_t>(columns());
+    for (std::vector<float>& plane : strips_) plane.resize(all);
+    values_.resize(static_cast<std::size_t>(columns()) * static_cast<std::size_t>(columns()));
   }
 
-  int lines() const { return lines_ - kStrip; }
   int side() const { return side_; }
+  int columns() const { return 2 * side_ + 1; }
+  /// Cells on both sides of a line's middle that are within reach; -1: none.
+  int chord(int line) const { return chord_[static_cast<std::size_t>(std::abs(line))]; }
+  /// Of the cell (0, -side) of a line, in [-side, side].
+  float* line(int i) {
+    return values_.data() + static_cast<std::size_t>(i + side_) * static_cast<std::size_t>(columns());
+  }
+  const float* values() const { return values_.data(); }
 
-  /// Change across the piece displaced by `line` lines along its normal and `cell` cells along itself; negative where
-  /// the image has no pixels.
-  float change(int line, int cell) const {
-    Sum inside{}, outside{};
-    for (int k = 1; k <= kStrip; ++k) {
-      const Sum &a = sum(line + k, cell + side_ + cells_), &b = sum(line + k, cell + side_),
-                &c = sum(line - k, cell + side_ + cells_), &d = sum(line - k, cell + side_);
-      for (std::size_t n = 0; n < 4; ++n) outside[n] += a[n] - b[n], inside[n] += c[n] - d[n];
+  /// Fills it. \param contrast  as score_outline() has it
+  void fill(Point2 middle, Point2 along, double length, float contrast) {
+    const int cells = std::max(1, static_cast<int>(std::lround(length / patch_.size)));
+    bool all_seen = true;
+    for (int i = -side_ - kStrip; i <= side_ + kStrip; ++i) all_seen &= sum_line(i, middle, along, cells);
+    const float per_pixel = 1 / static_cast<float>(kStrip * cells);
+    for (int i = -side_; i <= side_; ++i) {
+      const int reach = chord(i);
+      if (reach < 0) continue;
+      float* const out = line(i) + side_ - reach;
+      const auto count = static_cast<std::size_t>(2 * reach + 1);
+      std::fill_n(out, count, 0.0F);
+      for (std::size_t band = 0; band < 3; ++band) {
+        const float *a = strip(band, i + 1, reach), *b = strip(band, i + 2, reach), *c = strip(band, i - 1, reach),
+                    *d = strip(band, i - 2, reach);
+        for (std::size_t j = 0; j < count; ++j) {
+          const float difference = (a[j] + b[j]) - (c[j] + d[j]);
+          out[j] += difference * difference;
+        }
+      }
+      for (std::size_t j = 0; j < count; ++j) {
+        const float x = std::sqrt(out[j]) * per_pixel;
+        out[j] = x / (x + contrast);
+      }
+      if (all_seen) continue;
+      const float *a = strip(3, i + 1, reach), *b = strip(3, i + 2, reach), *c = strip(3, i - 1, reach),
+                  *d = strip(3, i - 2, reach);
+      for (std::size_t j = 0; j < count; ++j)
+        if (a[j] + b[j] + c[j] + d[j] > 0) out[j] = -1;
     }
-    if (inside[3] + outside[3] > 0) return -1;
-    float squares = 0;
-    for (std::size_t n = 0; n < 3; ++n) squares += (outside[n] - inside[n]) * (outside[n] - inside[n]);
-    return std::sqrt(squares) / static_cast<float>(kStrip * cells_);
   }
 
  private:
-  using Sum = Sample;
-  const Sum& sum(int line, int cell) const {
-    return sums_[static_cast<std::size_t>(line + lines_) * static_cast<std::size_t>(2 * side_ + cells_ + 1) +
-                 static_cast<std::size_t>(cell)];
+  static_assert(kStrip == 2, "fill() adds two lines on each side");
+  /// Pixels: a displacement within reach lies between four cells, the farthest of them so much farther.
+  static constexpr double kCorner = 2;
+
+  const float* strip(std::size_t band, int i, int reach) const {
+    return strips_[band].data() +
+           static_cast<std::size_t>(i + side_ + kStrip) * static_cast<std::size_t>(columns()) +
+           static_cast<std::size_t>(side_ - reach);
   }
-  double step_;
-  int lines_, cells_, side_;
-  std::vector<Sum> sums_;  // before each cell of each line
+
+  /// Sums of the bands over the length of the piece, at each cell of a line. \returns  whether the image shows all of it
+  bool sum_line(int i, Point2 middle, Point2 along, int cells) {
+    const int reach = chord(std::max(0, std::abs(i) - kStrip)), samples = 2 * reach + cells;
+    if (reach < 0) return true;
+    before_.resize(static_cast<std::size_t>(samples) + 1);
+    // Position of the first sample in pixels of the patch, from the centre of its first.
+    const double size = patch_.size, first = (0.5 - reach - static_cast<double>(cells) / 2) * size;
+    const double x0 = (middle.x + along.x * first + along.y * i * size - patch_.west) / size - 0.5;
+    const double y0 = (patch_.north - middle.y - along.y * first + along.x * i * size) / size - 0.5;
+    const auto width = static_cast<std::size_t>(patch_.width);
+    Sample sum{};
+    before_[0] = sum;
+    for (int j = 0; j < samples; ++j) {
+      const double x = x0 + along.x * j, y = y0 - along.y * j;
+      if (x < 0 || y < 0 || x >= patch_.width - 1 || y >= patch_.height - 1) {
+        sum[3] += 1;
+      } else {
+        const int c = static_cast<int>(x), r = static_cast<int>(y);
+        const Sample* const at = pixels_.data() + static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c);
+        const Sample* const below = at + width;
+        const auto u = static_cast<float>(x - c), v = static_cast<float>(y - r);
+        const Sample upper = at[0] + u * (at[1] - at[0]), lower = below[0] + u * (below[1] - below[0]);
+        sum += upper + v * (lower - upper);
+      }
+      before_[static_cast<std::size_t>(j) + 1] = sum;
+    }
+    const std::size_t start = static_cast<std::size_t>(i + side_ + kStrip) * static_cast<std::size_t>(columns()) +
+                              static_cast<std::size_t>(side_ - reach);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(2 * reach + 1); ++j) {
+      const Sample over = before_[j + static_cast<std::size_t>(cells)] - before_[j];
+      for (std::size_t band = 0; band < 4; ++band) strips_[band][start + j] = over[band];
+    }
+    return sum[3] <= 0;
+  }
+
+  const Patch& patch_;
+  std::vector<Sample> pixels_, before_;  ///< the second: sums before each sample of a line
+  double radius_;
+  int side_;
+  std::vector<int> chord_;                        ///< by line, from the middle on
+  std::array<std::vector<float>, 4> strips_;      ///< by band, line by line
+  std::vector<float> values_;
 };
 
 }  // namespace
@@ -126,12 +174,18 @@ double ScoreMap::at(double dx, double dy) const {
          (value(i, j + 1) * (1 - u) + value(i + 1, j + 1) * u) * v;
 }
 
+double score_margin(const Displacements& grid, double pixel) {
+  return grid.reach() + kPieceLength / 2 + (kStrip + 3) * pixel;
+}
+
 ScoreMap score_outline(std::span<const WallPiece> pieces, const Patch& patch, const Displacements& grid, Point2 centre,
                        base::SinCos turn, double contrast) {
   ScoreMap map(grid);
   std::vector<double> total(map.score.size(), 0.0);
-  std::vector<float> table;
-  const std::vector<Sample> pixels = samples_of(patch);
+  if (pieces.empty()) return map;
+  ChangeTable table(patch, grid.reach());
+  const int side = table.side();
+  const auto columns = static_cast<std::size_t>(table.columns());
   for (const WallPiece& piece : pieces) {
     const double weight = piece.length * piece.weight;
     if (weight <= 0) continue;
@@ -140,48 +194,43 @@ ScoreMap score_outline(std::span<const WallPiece> pieces, const Patch& patch, co
                         centre.y + from.x * turn.sin + from.y * turn.cos};
     const Point2 along{piece.along.x * turn.cos - piece.along.y * turn.sin,
                        piece.along.x * turn.sin + piece.along.y * turn.cos};
-    const Profile profile(patch, pixels, middle, along, piece.length, grid.reach());
-    const int lines = profile.lines(), side = profile.side(), columns = 2 * side + 1;
-    table.resize(static_cast<std::size_t>(2 * lines + 1) * static_cast<std::size_t>(columns));
-    std::size_t k = 0, unseen = 0;
+    table.fill(middle, along, piece.length, static_cast<float>(contrast));
+    std::size_t all = 0, unseen = 0;
     double sum = 0;
-    const auto limit = static_cast<float>(contrast);
-    for (int i = -lines; i <= lines; ++i)
-      for (int j = -side; j <= side; ++j) {
-        const float x = profile.change(i, j);
-        table[k] = x < 0 ? -1.0F : x / (x + limit);
+    for (int i = -side; i <= side; ++i)
+      for (int j = -table.chord(i); j <= table.chord(i); ++j) {
+        const float x = table.line(i)[j + side];
+        ++all;
         unseen += x < 0;
-        sum += x < 0 ? 0 : static_cast<double>(table[k]);
-        ++k;
+        sum += x < 0 ? 0 : static_cast<double>(x);
       }
-    if (static_cast<double>(unseen) > kMostUnseen * static_cast<double>(k) || profile.change(0, 0) < 0) {
+    if (static_cast<double>(unseen) > kMostUnseen * static_cast<double>(all) || table.line(0)[side] < 0) {
       map.missing += weight;
       continue;
     }
     map.weight += weight;
     // What lies beyond the image speaks neither for a displacement nor against it.
-    const auto usual = static_cast<float>(sum / static_cast<double>(k - unseen));
+    const auto usual = static_cast<float>(sum / static_cast<double>(all - unseen));
     if (unseen > 0)
-      for (float& value : table)
-        if (value < 0) value = usual;
-    // The displacement in lines and cells; both grids are fine enough for the nearest line, and bilinear along it.
-    const double scale = grid.step / patch.size;
-    const double reach = static_cast<double>(grid.half) * grid.half + 0.5;
-    std::size_t cell = 0;
-    for (int j = -grid.half; j <= grid.half; ++j)
-      for (int i = -grid.half; i <= grid.half; ++i, ++cell) {
-        if (static_cast<double>(i) * i + static_cast<double>(j) * j > reach) continue;
-        const double across = (i * along.y - j * along.x) * scale + lines,
+      for (int i = -side; i <= side; ++i)
+        for (int j = -table.chord(i); j <= table.chord(i); ++j)
+          if (table.line(i)[j + side] < 0) table.line(i)[j + side] = usual;
+    // The displacement in lines and cells, bilinear between them: all four lie within the table's reach.
+    const double scale = grid.step / patch.size, reach = static_cast<double>(grid.half) * grid.half + 0.5;
+    for (int j = -grid.half; j <= grid.half; ++j) {
+      const int chord = static_cast<int>(std::sqrt(reach - static_cast<double>(j) * j));
+      double* to = total.data() + static_cast<std::size_t>(j + grid.half) * static_cast<std::size_t>(grid.side()) +
+                   static_cast<std::size_t>(grid.half - chord);
+      for (int i = -chord; i <= chord; ++i, ++to) {
+        const double across = (i * along.y - j * along.x) * scale + side,
                      onward = (i * along.x + j * along.y) * scale + side;
-        const int a = std::clamp(static_cast<int>(across), 0, 2 * lines - 1),
-                  b = std::clamp(static_cast<int>(onward), 0, columns - 2);
-        const double u = across - a, v = onward - b;
-        const float* t = table.data() + static_cast<std::size_t>(a) * static_cast<std::size_t>(columns) +
-                         static_cast<std::size_t>(b);
-        const double here = (static_cast<double>(t[0]) * (1 - v) + static_cast<double>(t[1]) * v) * (1 - u) +
-                            (static_cast<double>(t[columns]) * (1 - v) + static_cast<double>(t[columns + 1]) * v) * u;
-        total[cell] += weight * here;
+        const int a = static_cast<int>(across), b = static_cast<int>(onward);
+        const auto u = static_cast<float>(across - a), v = static_cast<float>(onward - b);
+        const float* t = table.values() + static_cast<std::size_t>(a) * columns + static_cast<std::size_t>(b);
+        const float near = t[0] + v * (t[1] - t[0]), far = t[columns] + v * (t[columns + 1] - t[columns]);
+        *to += weight * static_cast<double>(near + u * (far - near));
       }
+    }
   }
   if (map.weight > 0)
     for (std::size_t i = 0; i < total.size(); ++i) map.score[i] = static_cast<float>(total[i] / map.weight);

@@ -51,6 +51,9 @@ struct ScoreMap {
   double at(double dx, double dy) const;
 };
 
+/// m around the box of pieces that a patch must hold for score_outline(). \param pixel  m, of the patch
+double score_margin(const Displacements& grid, double pixel);
+
 /// For each displacement d the mean over the walls, by length and weight, of x / (x + contrast). x is the change of
 /// brightness across the wall at its place moved by d: the difference between strips of half a metre on both sides,
 /// averaged along the piece before its size is taken (texture cancels, an edge does not), the root of the sum of its

@@ -72,7 +72,7 @@ OutlineScores score_building(const SearchedOutline& o, const ImageWindows& windo
   const auto score = [&](Point2 by, const Displacements& wanted) {
     geometry::PlanBox box = o.box;
     box.minimum.x += by.x, box.maximum.x += by.x, box.minimum.y += by.y, box.maximum.y += by.y;
-    const Patch patch = windows.window(box, wanted.reach() * 1.5 + kPieceLength / 2 + by_turn + 1);
+    const Patch patch = windows.window(box, score_margin(wanted, windows.size()) + by_turn);
     for (WallPiece& piece : moved) piece.middle.x += by.x, piece.middle.y += by.y;
     return score_outline(moved, patch, wanted, {centre.x + by.x, centre.y + by.y}, angle, contrast);
   };

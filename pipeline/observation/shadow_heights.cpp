@@ -1,7 +1,9 @@
 #include "pipeline/observation/shadow_heights.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/portable_math.h"
@@ -24,6 +26,10 @@ constexpr double kShortest = 0.25, kLongest = 4;
 constexpr double kPlaceValue = 0.15;
 /// Places that are tried have this weight at least.
 constexpr double kLeastPlace = 0.08;
+/// m of ground beyond the longest shadow that its end is compared with; m about a house within which it is sighted.
+constexpr double kBeyond = 2.5, kSightingMargin = 9;
+/// m between an edge and its shadow for each metre of height: where the image shows them nearer it shows no shadow.
+constexpr double kLeastApart = 0.2;
 /// A shadow as clear as this speaks for the sun.
 constexpr double kClearStep = 0.1;
 /// Of a height, as its share: of what is less sure nobody measured or counted anything.
@@ -54,7 +60,10 @@ class Measurer {
       const std::optional<Point2> first = sunny_side();
       if (!first) return out;
       out.sun.towards = refined(*first);
-      for_all([&](std::uint32_t b) { found[b] = best_length(b, *out.sun.towards, 0); });
+      for_all([&](std::uint32_t b) {
+        Scanned house = scanned(b, longest_unknown(b));
+        found[b] = unknown_length(b, *out.sun.towards, house);
+      });
       measure_sun(found, true, out.sun);
     }
     if (out.sun.per_metre <= 0) return out;
@@ -120,35 +129,66 @@ class Measurer {
     return out;
   }
 
-  /// \param per_metre  0: not known
+  /// A house, its surroundings in the image, and what stands there, for any direction of the shadows.
+  struct Scanned {
+    SearchedOutline outline;
+    Brightness patch;
+    double reach = 0;                                                        ///< m of shadow
+    std::array<std::optional<std::vector<Obstacles>>, kMostSightings> near;  ///< by place of the house
+  };
+
+  Scanned scanned(std::uint32_t b, double most) const {
+    const double reach = most + kBeyond;
+    SearchedOutline outline = in_.outline(b);
+    Brightness patch(patch_of(outline, reach + kPieceLength / 2 + kSightingMargin));
+    return {std::move(outline), std::move(patch), reach, {}};
+  }
+
+  /// m of shadow that are looked for before anything is known.
+  double longest_unknown(std::uint32_t b) const {
+    return std::min(kLongestShadow, in_.heights[b] * kMostPerMetre * 1.3);
+  }
+
+  /// Unit vector from a roof's edge to its shadow in the image, and m between them for each metre of height.
+  std::pair<Point2, double> away_of(std::uint32_t b, Point2 towards, double per_metre) const {
+    const Point2 k = lean_of(b), away{-towards.x * per_metre - k.x, -towards.y * per_metre - k.y};
+    const double apart = size_of(away);
+    return {apart > 0 ? Point2{away.x / apart, away.y / apart} : away, apart};
+  }
+
+  /// The clearest end of a shadow, nobody knows how long they are. \param house  with reach for longest_unknown()
+  std::optional<ShadowLength> unknown_length(std::uint32_t b, Point2 towards, Scanned& house) const {
+    const auto [away, apart] = away_of(b, towards, 1);
+    constexpr double kLeast = kLowest * kLeastPerMetre;
+    if (apart < kLeastApart || longest_unknown(b) <= kLeast) return std::nullopt;
+    return shadow_length(scan(b, 0, away, house), kLeast, longest_unknown(b), 0);
+  }
+
+  /// The same with the usual length known, for the places where the image shows the house.
   std::optional<ShadowLength> best_length(std::uint32_t b, Point2 towards, double per_metre) const {
     const SightedOutline& s = in_.sighted[b];
-    const Point2 k = lean_of(b);
-    const double guess = per_metre > 0 ? per_metre : 1;
-    Point2 away{-towards.x * guess - k.x, -towards.y * guess - k.y};
-    const double apart = size_of(away);
-    if (apart < 0.2) return std::nullopt;
-    away.x /= apart, away.y /= apart;
-    const double least =
-        per_metre > 0 ? std::max(kLowest * apart, in_.heights[b] * apart * kShortest) : kLowest * kLeastPerMetre;
-    const double most =
-        std::min(kLongestShadow, in_.heights[b] * (per_metre > 0 ? apart * kLongest : kMostPerMetre * 1.3));
+    const auto [away, apart] = away_of(b, towards, per_metre);
+    if (apart < kLeastApart) return std::nullopt;
+    const double least = std::max(kLowest * apart, in_.heights[b] * apart * kShortest),
+                 most = std::min(kLongestShadow, in_.heights[b] * apart * kLongest);
     if (most <= least) return std::nullopt;
-    const SearchedOutline o = in_.outline(b);
-    const double reach = most + 2.5;
-    const Patch patch = patch_of(o, reach + 10);
+    Scanned house = scanned(b, most);
     std::optional<ShadowLength> best;
     double best_value = 0;
-    for (const Sighting& place : s.sightings) {
-      if (place.weight < kLeastPlace) break;
-      const ShadowScan scan = scan_shadow(o.pieces, patch, place.at, away, obstacles_of(b, place.at, reach), reach);
-      const auto found = shadow_length(scan, least, most, per_metre > 0 ? in_.heights[b] * apart : 0);
+    for (std::size_t n = 0; n < s.sightings.size() && s.sightings[n].weight >= kLeastPlace; ++n) {
+      const auto found = shadow_length(scan(b, n, away, house), least, most, in_.heights[b] * apart);
       if (!found) continue;
-      const double value = found->clearness + kPlaceValue * place.weight;
+      const double value = found->clearness + kPlaceValue * s.sightings[n].weight;
       if (!best || value > best_value) best = found, best_value = value;
-      if (per_metre <= 0) break;  // the first round asks for the direction alone
     }
     return best;
+  }
+
+  ShadowScan scan(std::uint32_t b, std::size_t place, Point2 away, Scanned& house) const {
+    const Point2 roof = in_.sighted[b].sightings[place].at;
+    auto& near = house.near[place];
+    if (!near) near = obstacles_of(b, roof, house.reach);
+    return scan_shadow(house.outline.pieces, house.patch, roof, away, *near, house.reach);
   }
 
   /// The direction in which the shadows of all houses end most clearly.
@@ -164,8 +204,10 @@ class Measurer {
         own.size(), in_.workers, static_cast<std::size_t>(in_.workers) * 16,
         [&](std::size_t n) {
           if (n * every >= sample.size()) return;
+          const std::uint32_t b = sample[n * every];
+          Scanned house = scanned(b, longest_unknown(b));
           for (int k = -kSteps; k <= kSteps; ++k) {
-            const auto found = best_length(sample[n * every], turned(first, k * kAngleStep), 0);
+            const auto found = unknown_length(b, turned(first, k * kAngleStep), house);
             own[n].push_back(found ? std::max(0.0, found->clearness) : 0);
           }
         },

@@ -1,7 +1,6 @@
 #include "pipeline/observation/shadows.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "pipeline/base/portable_math.h"
@@ -36,43 +35,37 @@ constexpr double kUnusual = 0.1, kSecond = 0.5;
 constexpr double kOtherEdge = 1.5;
 constexpr float kSameEdge = 0.9F;
 
-/// Brightness without the blue of the sky, which lights the shadows; nothing beyond the image.
-std::optional<double> brightness_at(const Patch& patch, Point2 p) {
-  const double x = (p.x - patch.west) / patch.size - 0.5, y = (patch.north - p.y) / patch.size - 0.5;
-  if (!(x >= 0 && y >= 0 && x < patch.width - 1 && y < patch.height - 1)) return std::nullopt;
-  const int c = static_cast<int>(x), r = static_cast<int>(y);
-  const double u = x - c, v = y - r;
-  const std::size_t i =
-      static_cast<std::size_t>(r) * static_cast<std::size_t>(patch.width) + static_cast<std::size_t>(c);
-  const std::array<std::size_t, 4> at{i, i + 1, i + static_cast<std::size_t>(patch.width),
-                                      i + static_cast<std::size_t>(patch.width) + 1};
-  const std::array<double, 4> share{(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
-  double sum = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    if (!patch.valid[at[k]]) return std::nullopt;
-    sum += share[k] * (3.0 * patch.red[at[k]] + 4.0 * patch.green[at[k]] + patch.blue[at[k]]) / 8;
-  }
-  return sum;
-}
-
-/// Mean along a piece that is moved by `by`.
-std::optional<double> along_piece(const WallPiece& piece, const Patch& patch, Point2 by) {
+/// Mean along a piece that is moved by `by`; nothing where a pixel of it is missing.
+std::optional<double> along_piece(const WallPiece& piece, const Brightness& patch, Point2 by) {
   const int count = std::max(1, static_cast<int>(std::lround(piece.length / patch.size)));
-  double sum = 0;
+  const double step = piece.length / count / patch.size, dx = piece.along.x * step, dy = -piece.along.y * step;
+  // From the middle of its first part, in pixels from the centre of the patch's first.
+  const double back = (count - 1) / 2.0;
+  const double x0 = (piece.middle.x + by.x - patch.west) / patch.size - 0.5 - back * dx,
+               y0 = (patch.north - piece.middle.y - by.y) / patch.size - 0.5 - back * dy;
+  const auto inside = [&](double x, double y) {
+    return x >= 0 && y >= 0 && x < patch.width - 1 && y < patch.height - 1;
+  };
+  if (!inside(x0, y0) || !inside(x0 + (count - 1) * dx, y0 + (count - 1) * dy)) return std::nullopt;
+  const auto width = static_cast<std::size_t>(patch.width);
+  float sum = 0;
   for (int k = 0; k < count; ++k) {
-    const double at = ((k + 0.5) / count - 0.5) * piece.length;
-    const auto b =
-        brightness_at(patch, {piece.middle.x + by.x + piece.along.x * at, piece.middle.y + by.y + piece.along.y * at});
-    if (!b) return std::nullopt;
-    sum += *b;
+    const double x = x0 + k * dx, y = y0 + k * dy;
+    const int c = static_cast<int>(x), r = static_cast<int>(y);
+    const auto u = static_cast<float>(x - c), v = static_cast<float>(y - r);
+    const float* const at = patch.values.data() + static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c);
+    const float upper = at[0] + u * (at[1] - at[0]), lower = at[width] + u * (at[width + 1] - at[width]);
+    sum += upper + v * (lower - upper);
   }
-  return sum / count;
+  // One missing pixel outweighs all others.
+  if (sum < 0) return std::nullopt;
+  return static_cast<double>(sum) / count;
 }
 
 Point2 outward(const WallPiece& piece) { return {piece.along.y, -piece.along.x}; }
 
 /// Brightness behind a piece by distance, in steps of kShadowStep from 0; ends where the image or another house does.
-std::vector<double> behind(const WallPiece& piece, const Patch& patch, Point2 roof, Point2 away,
+std::vector<double> behind(const WallPiece& piece, const Brightness& patch, Point2 roof, Point2 away,
                            std::span<const Obstacles> others, double reach) {
   std::vector<double> out;
   for (int k = 0; k * kShadowStep <= reach; ++k) {
@@ -112,9 +105,20 @@ std::vector<float> steps_of(const std::vector<double>& brightness) {
   return out;
 }
 
+/// Of a missing pixel: no sum of others along a piece makes up for a share of 1/1000 of it.
+constexpr float kMissing = -1e9F;
+
 }  // namespace
 
-void SunnySides::add(std::span<const WallPiece> pieces, const Patch& patch, Point2 roof) {
+Brightness::Brightness(const Patch& patch)
+    : west(patch.west), north(patch.north), size(patch.size), width(patch.width), height(patch.height) {
+  values.resize(patch.valid.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] =
+        patch.valid[i] ? static_cast<float>(3 * patch.red[i] + 4 * patch.green[i] + patch.blue[i]) / 8 : kMissing;
+}
+
+void SunnySides::add(std::span<const WallPiece> pieces, const Brightness& patch, Point2 roof) {
   struct Beside {
     Point2 normal;
     double brightness, length;
@@ -160,7 +164,7 @@ bool Obstacles::contain(Point2 p) const {
   return inside;
 }
 
-ShadowScan scan_shadow(std::span<const WallPiece> pieces, const Patch& patch, Point2 roof, Point2 away,
+ShadowScan scan_shadow(std::span<const WallPiece> pieces, const Brightness& patch, Point2 roof, Point2 away,
                        std::span<const Obstacles> others, double reach) {
   ShadowScan scan;
   const auto size = static_cast<std::size_t>(std::floor(reach / kShadowStep)) + 1;

@@ -11,13 +11,22 @@
 
 namespace blockrand::observation {
 
+/// How bright a patch is, without the blue of the sky, which lights the shadows: one number a pixel, levels of 255; far below 0
+/// where the image has none.
+struct Brightness {
+  Brightness(const Patch& patch);  // NOLINT(google-explicit-constructor): any patch is one
+  double west = 0, north = 0, size = 0;  ///< as Patch has them
+  int width = 0, height = 0;
+  std::vector<float> values;  ///< width * height
+};
+
 /// What lies beside the walls of all houses of an image: where it is brighter than around the rest of its house, there is
 /// the sun. Sums in a fixed order make it deterministic.
 class SunnySides {
  public:
   /// \param pieces  walls of one house, outward normal (along.y, -along.x)
   /// \param roof    m: how far the image shows them from where they are mapped
-  void add(std::span<const WallPiece> pieces, const Patch& patch, model::Point2 roof);
+  void add(std::span<const WallPiece> pieces, const Brightness& patch, model::Point2 roof);
   void add(const SunnySides& other);
   /// Unit vector towards the sun; nothing where houses do not agree.
   std::optional<model::Point2> to_sun() const;
@@ -58,7 +67,7 @@ struct Obstacles {
 
 /// Scans along one direction. \param roof  m: how far the image shows the walls' upper edges from `pieces`
 /// \param away  unit vector: where the image shows the shadow of an edge from the edge itself
-ShadowScan scan_shadow(std::span<const WallPiece> pieces, const Patch& patch, model::Point2 roof, model::Point2 away,
+ShadowScan scan_shadow(std::span<const WallPiece> pieces, const Brightness& patch, model::Point2 roof, model::Point2 away,
                        std::span<const Obstacles> others, double reach);
 
 /// The clearest end of a shadow between two lengths; nothing where no wall shows one. \param usual  m: length that is
