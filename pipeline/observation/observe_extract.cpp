@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
+#include <tuple>
 
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/portable_math.h"
@@ -92,7 +94,7 @@ class Observer {
     index_ = footprints::index_of(store);
     rows_ = footprints::find_terrace_rows(store, kRowLink);
     row_of_.assign(store.size(), 0);
-    judged_.assign(rows_.size(), -1);
+    spoken_.assign(rows_.size(), std::nullopt);
     for (std::uint32_t r = 0; r < rows_.size(); ++r)
       for (const std::uint32_t b : rows_[r].buildings) row_of_[b] = r;
     eaves_ = EavesHeights(of_.extract, store);
@@ -360,21 +362,37 @@ class Observer {
           const Looked row = std::move(looked[r]);
           looked[r] = {};
           if (row.roofs.empty()) return;
-          // A row moves as one: where images overlap, the one that is surest of it speaks for all its houses.
-          const bool judged = row.match.seen, surest = judged && row.verdict.confidence > judged_[r];
-          if (surest) judged_[r] = row.verdict.confidence;
+          // A row moves as one: where images overlap, the one that is surest of it speaks for all its houses, and the others
+          // for or against it.
+          const bool judged = row.match.seen;
+          bool surest = judged;
+          Verdict verdict = row.verdict;
+          if (judged && spoken_[r]) {
+            std::tie(surest, verdict) = joined(*spoken_[r], {row.verdict, row.match.shift});
+            if (!surest) revise(rows_[r], verdict, out);
+          }
+          if (judged) spoken_[r] = {verdict, surest ? row.match.shift : spoken_[r]->shift};
           std::size_t place = 0;
           for (const std::uint32_t b : rows_[r].buildings) {
             if (!searchable(b)) continue;
             const RoofView& roof = row.roofs[place++];
             const bool first = out.outlines[b].state == RowState::outside;
             if (surest || (!judged && first && roof.pixels > 0))
-              out.outlines[b] = receipt(image, static_cast<std::uint32_t>(r), b, row.match, row.verdict, row.centre);
+              out.outlines[b] = receipt(image, static_cast<std::uint32_t>(r), b, row.match, verdict, row.centre);
             if (roof.pixels > 0 && (surest || out.roofs[b].pixels == 0))
               out.roofs[b] = roof, out.roofs[b].image = image;
           }
         });
     judge_roofs(image, out);
+  }
+
+  /// What the images before said of a row is judged anew.
+  void revise(const footprints::TerraceRowPlan& plan, const Verdict& verdict, ImageryObservations& out) const {
+    for (const std::uint32_t b : plan.buildings) {
+      if (!searchable(b) || out.outlines[b].image == OutlineReceipt::kNoImage) continue;
+      out.outlines[b].state = verdict.state, out.outlines[b].reason = std::string(verdict.reason);
+      out.outlines[b].confidence = rounded(verdict.confidence, 1000);
+    }
   }
 
   /// When all roofs of an image were looked at, they tell where its sun stood.
@@ -467,7 +485,7 @@ class Observer {
   std::vector<std::uint32_t> row_of_;  ///< by building
   EavesHeights eaves_;
   footprints::BoxIndex index_;
-  std::vector<double> judged_;  ///< by row: the confidence of the image that spoke for it; -1: none
+  std::vector<std::optional<SeenPlace>> spoken_;  ///< by row: what the images so far say of it
   LeanField field_;
 };
 

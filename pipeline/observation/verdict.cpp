@@ -26,7 +26,34 @@ double confidence_of(const RowMatch& m) {
   return 1 / (1 + base::exp(-sum));
 }
 
+/// m: places of one row in two images that are one; places that are two for certain.
+constexpr double kSamePlace = 0.5, kOtherPlace = 1.0;
+/// Confidence: an image that is less sure does not speak against or for another; one that is as sure contradicts it.
+constexpr double kSpeaks = 0.3, kContradicts = 0.5;
+/// Two images that are both wrong show the same wrong place as often: chance alone would give 0.02, but trees, and heights that
+/// are taken for others, stand in both.
+constexpr double kWrongAlike = 0.3;
+
+double length_of(model::Point2 v) { return std::sqrt(v.x * v.x + v.y * v.y); }
+
 }  // namespace
+
+std::pair<bool, Verdict> joined(const SeenPlace& a, const SeenPlace& b) {
+  const bool second = b.verdict.confidence > a.verdict.confidence;
+  const SeenPlace &sure = second ? b : a, &other = second ? a : b;
+  Verdict verdict = sure.verdict;
+  const double c = sure.verdict.confidence, d = other.verdict.confidence;
+  if (d < kSpeaks) return {second, verdict};
+  const double apart = length_of({sure.shift.x - other.shift.x, sure.shift.y - other.shift.y});
+  if (apart <= kSamePlace) {
+    verdict.confidence = c * d / (c * d + (1 - c) * (1 - d) * kWrongAlike);
+    const bool open = verdict.state == RowState::undecided && length_of(sure.shift) >= kLeastCorrection;
+    if (open && verdict.confidence >= kSureCorrection) verdict.state = RowState::corrected, verdict.reason = {};
+  } else if (apart > kOtherPlace && d >= kContradicts && verdict.state == RowState::corrected) {
+    verdict = {RowState::undecided, "another image shows it at another place", c};
+  }
+  return {second, verdict};
+}
 
 Verdict judge(const RowMatch& match, bool lean_known, bool by_height) {
   if (!match.seen) return {RowState::outside, "too little of its walls lies in an image", 0};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string_view>
+#include <utility>
 
 #include "pipeline/observation/imagery.h"
 #include "pipeline/observation/row_match.h"
@@ -18,6 +19,18 @@ struct Verdict {
 inline constexpr double kLeastCorrection = 0.4;
 /// A correction is offered from this confidence on: of the right houses of the set `tuning` at most 2 % are moved then.
 inline constexpr double kSureCorrection = 0.6;
+
+/// Where one image shows a row, and how sure that is.
+struct SeenPlace {
+  Verdict verdict;
+  model::Point2 shift;  ///< m
+};
+
+/// What two images say of one row together. Where both show it at one place that is surer than what either says, and may be
+/// enough for a correction though neither was; where both are quite sure of different places nothing is known. In all other
+/// cases the surer one is right.
+/// \returns  whether `b` is the one to go by, and the verdict
+std::pair<bool, Verdict> joined(const SeenPlace& a, const SeenPlace& b);
 
 /// \param lean_known  how far the image shows the row's roofs from their ground
 /// \param by_height   other heights of its roofs, as likely as those that were reckoned with, would show them there too

@@ -64,6 +64,11 @@ class Bench:
     def image_of(self, place):
         return os.path.join(self.a.images, self.a.set, place + ".tif")
 
+    def images_of(self, place):
+        """One or, with --also, two images of the place."""
+        also = [os.path.join(self.a.images, self.a.also, place + ".tif")] if self.a.also else []
+        return [self.image_of(place)] + also
+
     def truth_of(self, place):
         with open(os.path.join(self.a.images, self.a.set, place + ".truth.json")) as f:
             return json.load(f)
@@ -73,7 +78,8 @@ class Bench:
         out = os.path.join(self.a.work, name)
         answer = os.path.join(out, "imagery.json")
         if not self.a.reuse or not os.path.exists(answer):
-            command = [self.a.program, "build", extract, "-o", out, "--imagery", image, "--imagery-correct", "report", "--lod", str(self.a.lod), "--formats", "gpkg",
+            images = [v for one in ([image] if isinstance(image, str) else image) for v in ("--imagery", one)]
+            command = [self.a.program, "build", extract, "-o", out, *images, "--imagery-correct", "report", "--lod", str(self.a.lod), "--formats", "gpkg",
                        "--ground-height", "0", "--no-report", "--no-explain", "--force", "--allow-shrink", "100", "--allow-empty", "--progress", "none", "-q"] + self.a.args
             start = time.time()
             done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -105,7 +111,7 @@ class Bench:
     def displaced(self, place, extract, image, seed, share, keep=None, offsets=None, rotate=None):
         """One run on one displaced extract -> (Judged, answer)."""
         a = self.a
-        name = f"{place}-{a.set if place in PLACES else 'real'}-{seed}-{int(100 * share)}"
+        name = f"{place}-{a.set + (f'+{a.also}' if a.also else '') if place in PLACES else 'real'}-{seed}-{int(100 * share)}"
         moved = os.path.join(a.work, name + ".osm")
         b, _ = displace(extract, moved, seed, a.min, a.max, a.rotate if rotate is None else rotate, share, a.jitter)
         epsg, truth = read_truth(moved[:-4] + ".csv")
@@ -160,7 +166,7 @@ class Bench:
                 print(f"{place}: not rendered ({self.image_of(place)}), left out\n")
                 continue
             for seed in self.a.seeds:
-                j, answer = self.displaced(place, self.extract_of(place), self.image_of(place), seed, self.a.share)
+                j, answer = self.displaced(place, self.extract_of(place), self.images_of(place), seed, self.a.share)
                 s = j.summary()
                 lines.append([place, seed] + cells(s) + [self.image_line(answer), "" if answer["seconds"] is None else f"{len(j.rows) / answer['seconds']:.0f}/s"])
                 pooled.setdefault(seed, []).extend(j.rows)
@@ -437,6 +443,7 @@ def main():
     a.add_argument("--shared", default="/work/shared" if os.path.isdir("/work/shared") else os.path.join(HERE, "../../../../shared"))
     a.add_argument("--images", default="/work/imagery_bench", help="rendered pictures: FOLDER/SET/PLACE.tif; estate.osm")
     a.add_argument("--set", choices=["tuning", "judging"], default="judging")
+    a.add_argument("--also", choices=["tuning", "judging"], help="synthetic: with the pictures of this set as well, as images that overlap")
     a.add_argument("--places", nargs="+", default=list(PLACES), choices=list(PLACES) + ["estate"])
     a.add_argument("--seeds", nargs="+", type=int, default=[1, 2, 3, 4, 5])
     a.add_argument("--min", type=float, default=1)

@@ -49,6 +49,43 @@ TEST(Verdict, LongRowsNeedLessOfALeadOverOtherPlaces) {
   EXPECT_EQ(judge(m, true).state, RowState::undecided);
 }
 
+SeenPlace seen(RowState state, double confidence, model::Point2 shift) { return {{state, "", confidence}, shift}; }
+
+TEST(TwoImages, ThatAgreeAreSurerThanEither) {
+  const auto [second, verdict] = joined(seen(RowState::undecided, 0.5, {1.5, 0}), seen(RowState::undecided, 0.55, {1.7, 0.2}));
+  EXPECT_TRUE(second);
+  EXPECT_EQ(verdict.state, RowState::corrected);
+  EXPECT_TRUE(verdict.reason.empty());
+  EXPECT_GT(verdict.confidence, 0.75);
+  EXPECT_LT(verdict.confidence, 1);
+}
+
+TEST(TwoImages, ThatAreSureOfDifferentPlacesLeaveItUndecided) {
+  const auto [second, verdict] = joined(seen(RowState::corrected, 0.9, {2, 0}), seen(RowState::left_alone, 0.7, {0.1, 0}));
+  EXPECT_FALSE(second);
+  EXPECT_EQ(verdict.state, RowState::undecided);
+  EXPECT_EQ(verdict.reason, "another image shows it at another place");
+}
+
+TEST(TwoImages, OneThatIsNotSureSaysNothing) {
+  const SeenPlace sure = seen(RowState::corrected, 0.8, {2, 0});
+  for (const double confidence : {0.0, 0.29}) {
+    const auto [second, verdict] = joined(seen(RowState::undecided, confidence, {-1, 0}), sure);
+    EXPECT_TRUE(second);
+    EXPECT_EQ(verdict.state, RowState::corrected);
+    EXPECT_EQ(verdict.confidence, 0.8);
+  }
+  // Nor does one that is half sure of another place.
+  EXPECT_EQ(joined(sure, seen(RowState::undecided, 0.4, {-1, 0})).second.state, RowState::corrected);
+}
+
+TEST(TwoImages, WhatStandsWhereItIsMappedStaysThere) {
+  const auto state = joined(seen(RowState::left_alone, 0.6, {0.2, 0}), seen(RowState::undecided, 0.6, {0.3, 0})).second.state;
+  EXPECT_EQ(state, RowState::left_alone);
+  EXPECT_EQ(joined(seen(RowState::undecided, 0.6, {0.2, 0}), seen(RowState::undecided, 0.6, {0.3, 0})).second.state,
+            RowState::undecided);
+}
+
 TEST(Verdict, MoreEvidenceIsMoreConfidence) {
   const double before = judge(clear_match(), true).confidence;
   RowMatch m = clear_match();
