@@ -28,8 +28,8 @@ double confidence_of(const RowMatch& m) {
 
 /// m: places of one row in two images that are one; places that are two for certain.
 constexpr double kSamePlace = 0.5, kOtherPlace = 1.0;
-/// Confidence: an image that is less sure does not speak against or for another; one that is as sure contradicts it.
-constexpr double kSpeaks = 0.3, kContradicts = 0.5;
+/// Confidence: an image that is less sure does not speak for or against another.
+constexpr double kSpeaks = 0.3;
 /// Two images that are both wrong show the same wrong place as often: chance alone would give 0.02, but trees, and heights that
 /// are taken for others, stand in both.
 constexpr double kWrongAlike = 0.3;
@@ -49,8 +49,12 @@ std::pair<bool, Verdict> joined(const SeenPlace& a, const SeenPlace& b) {
     verdict.confidence = c * d / (c * d + (1 - c) * (1 - d) * kWrongAlike);
     const bool open = verdict.state == RowState::undecided && length_of(sure.shift) >= kLeastCorrection;
     if (open && verdict.confidence >= kSureCorrection) verdict.state = RowState::corrected, verdict.reason = {};
-  } else if (apart > kOtherPlace && d >= kContradicts && verdict.state == RowState::corrected) {
-    verdict = {RowState::undecided, "another image shows it at another place", c};
+  } else if ((apart > kOtherPlace || other.verdict.state == RowState::left_alone) &&
+             verdict.state == RowState::corrected) {
+    // One of them is right, or neither.
+    verdict.confidence = c * (1 - d) / (1 - c * d);
+    if (verdict.confidence < kSureCorrection)
+      verdict.state = RowState::undecided, verdict.reason = "another image shows it at another place";
   }
   return {second, verdict};
 }

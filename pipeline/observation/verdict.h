@@ -27,8 +27,8 @@ struct SeenPlace {
 };
 
 /// What two images say of one row together. Where both show it at one place that is surer than what either says, and may be
-/// enough for a correction though neither was; where both are quite sure of different places nothing is known. In all other
-/// cases the surer one is right.
+/// enough for a correction though neither was; where they show it at different places one of them at least is wrong. Else the
+/// surer one is right.
 /// \returns  whether `b` is the one to go by, and the verdict
 std::pair<bool, Verdict> joined(const SeenPlace& a, const SeenPlace& b);
 
