@@ -46,6 +46,13 @@ constexpr int kRounds = 4;
 constexpr double kFriend = 0.2, kEnoughWithFriends = 0.6;
 /// Nodes that are worked on at a time, at most.
 constexpr std::size_t kInFlight = 64;
+/// Nodes that decide on the image's shift; m: shifts that are looked for, and the step between them.
+constexpr std::size_t kShiftNodes = 12;
+constexpr double kFarthestShift = 3, kShiftsApart = 1;
+/// How many times the support without any shift it must have: heights that are guessed let images lean as if they were shifted.
+constexpr double kClearShift = 1.06;
+/// Where the image is shifted its roofs lean as well if that explains so much more than the shift alone.
+constexpr double kLeansToo = 1.02;
 /// Nodes that decide on the flight's height.
 constexpr std::size_t kCurvatureNodes = 40;
 /// 1/m: flights of 500 m and more, in steps in which 150 m and 12 m of height make 0.2 m.
@@ -149,14 +156,16 @@ constexpr double kGoldenAngle = 2.399963229728653;
 
 /// \param lean  else votes are for a shift
 /// \param chance  else 0: every row's sightings are turned by an angle that hangs on it and on this number
+/// \param shift  m, of the whole image: what is left of a sighting without it is lean
 void cast(Votes& votes, std::span<const SightedOutline> all, std::span<const std::uint32_t> chosen, Point2 node,
-          double curvature, bool lean, unsigned chance = 0) {
+          double curvature, bool lean, Point2 shift, unsigned chance = 0) {
   votes.clear();
   for (const std::uint32_t n : chosen) {
     const SightedOutline& o = all[n];
     const base::SinCos turn = chance == 0 ? base::SinCos{} : base::sin_cos(kGoldenAngle * (o.row * 7 + 1) * chance);
     for (Sighting s : o.sightings) {
       if (s.weight <= 0) continue;
+      s.at.x -= shift.x, s.at.y -= shift.y;
       s.at = {s.at.x * turn.cos - s.at.y * turn.sin, s.at.x * turn.sin + s.at.y * turn.cos};
       if (!lean) {
         votes.add(s.at, kPlaceError, s.weight * o.weight);
@@ -172,10 +181,52 @@ void cast(Votes& votes, std::span<const SightedOutline> all, std::span<const std
   }
 }
 
+/// A place of the image and its outlines.
+struct Neighbourhood {
+  Point2 node;
+  double weight = 0;
+  std::vector<std::uint32_t> outlines;
+};
+
+/// The shift of a whole image, in m: with it low and high roofs agree best on how they lean. Nothing that is not clear.
+Point2 image_shift(std::span<const SightedOutline> all, std::span<const Neighbourhood> places, int workers) {
+  constexpr int kSteps = static_cast<int>(kFarthestShift / kShiftsApart), kSide = 2 * kSteps + 1;
+  const auto at = [](int i, int j) { return static_cast<std::size_t>((j + kSteps) * kSide + i + kSteps); };
+  std::vector<double> support(static_cast<std::size_t>(kSide * kSide), 0.0);
+  std::vector<std::vector<double>> own(places.size(), support);
+  base::ordered_parallel(
+      places.size(), workers, places.size(),
+      [&](std::size_t n) {
+        Votes votes(kMostLean, kLeanStep);
+        for (int j = -kSteps; j <= kSteps; ++j)
+          for (int i = -kSteps; i <= kSteps; ++i) {
+            if (i * i + j * j > kSteps * kSteps + 1) continue;
+            cast(votes, all, places[n].outlines, places[n].node, 0, true, {i * kShiftsApart, j * kShiftsApart});
+            own[n][at(i, j)] = places[n].weight * votes.winner().support;
+          }
+      },
+      [&](std::size_t n) {
+        for (std::size_t k = 0; k < support.size(); ++k) support[k] += own[n][k];
+      });
+  int best_i = 0, best_j = 0;
+  for (int j = -kSteps + 1; j < kSteps; ++j)
+    for (int i = -kSteps + 1; i < kSteps; ++i)
+      if (support[at(i, j)] > support[at(best_i, best_j)]) best_i = i, best_j = j;
+  const double here = support[at(best_i, best_j)];
+  if (!(here > kClearShift * support[at(0, 0)])) return {};
+  // The votes are wide: between the steps by a parabola. Beyond the rim nothing was looked for.
+  const auto top = [&](double before, double after) {
+    const double bend = 2 * here - before - after;
+    return before > 0 && after > 0 && bend > 0 ? std::clamp((after - before) / 2 / bend, -0.5, 0.5) : 0;
+  };
+  return {(best_i + top(support[at(best_i - 1, best_j)], support[at(best_i + 1, best_j)])) * kShiftsApart,
+          (best_j + top(support[at(best_i, best_j - 1)], support[at(best_i, best_j + 1)])) * kShiftsApart};
+}
+
 /// \param lean  else votes are for a shift
 Votes::Winner vote(Votes& votes, std::span<const SightedOutline> all, std::span<const std::uint32_t> chosen,
-                   Point2 node, double curvature, bool lean) {
-  cast(votes, all, chosen, node, curvature, lean);
+                   Point2 node, double curvature, bool lean, Point2 shift) {
+  cast(votes, all, chosen, node, curvature, lean, shift);
   return votes.winner();
 }
 
@@ -255,7 +306,12 @@ LeanField::LeanField(std::span<const SightedOutline> outlines, int workers) {
 
   Votes shifts(kMostShift, kShiftStep);
   std::vector<std::vector<std::uint32_t>> near;
-  for (const auto& [count, cell] : fullest) near.push_back(around(cell));
+  std::vector<Neighbourhood> judges;
+  for (const auto& [count, cell] : fullest) {
+    near.push_back(around(cell));
+    if (judges.size() < kShiftNodes) judges.push_back({middle_of(cell), static_cast<double>(count), near.back()});
+  }
+  shift_ = image_shift(outlines, judges, workers);
   double best = -1, shift_support = 0, weight = 0;
   const auto try_curvature = [&](int steps) {
     if (steps < 0 || steps > kCurvatureSteps) return;
@@ -266,7 +322,7 @@ LeanField::LeanField(std::span<const SightedOutline> outlines, int workers) {
         [&](std::size_t n) {
           Votes votes(kMostLean, kLeanStep);
           supports[n] =
-              vote(votes, outlines, near[n], middle_of(fullest[n].second), steps * kCurvatureStep, true).support;
+              vote(votes, outlines, near[n], middle_of(fullest[n].second), steps * kCurvatureStep, true, shift_).support;
         },
         [&](std::size_t n) { support += fullest[n].first * supports[n]; });
     if (support > best) best = support, curvature_ = steps * kCurvatureStep;
@@ -275,12 +331,13 @@ LeanField::LeanField(std::span<const SightedOutline> outlines, int workers) {
   const int coarse = static_cast<int>(std::lround(curvature_ / kCurvatureStep));
   for (int by = 1; by < kCoarseCurvature; ++by) try_curvature(coarse - by), try_curvature(coarse + by);
   for (std::size_t n = 0; n < fullest.size(); ++n) {
-    shift_support += fullest[n].first * vote(shifts, outlines, near[n], middle_of(fullest[n].second), 0, false).support;
+    shift_support += fullest[n].first * vote(shifts, outlines, near[n], middle_of(fullest[n].second), 0, false, {}).support;
     weight += fullest[n].first;
   }
   if (weight <= 0) return;
-  leans_ = best >= shift_support;
-  if (!leans_) curvature_ = 0;
+  const bool shifted = shift_.x != 0 || shift_.y != 0;
+  leans_ = best >= (shifted ? kLeansToo : 1) * shift_support;
+  if (!leans_) curvature_ = 0, shift_ = {};
 
   const auto empty = [this] { return leans_ ? Votes(kMostLean, kLeanStep) : Votes(kMostShift, kShiftStep); };
   struct Candidate {
@@ -306,10 +363,10 @@ LeanField::LeanField(std::span<const SightedOutline> outlines, int workers) {
         if (c.near.size() < kFewest) return;
         Votes votes = empty();
         const Point2 middle = middle_of(c.node.cell);
-        const Votes::Winner won = vote(votes, outlines, c.near, middle, curvature_, leans_);
+        const Votes::Winner won = vote(votes, outlines, c.near, middle, curvature_, leans_, shift_);
         c.node.k = won.at, c.node.support = won.support, c.gain = won.support - won.at_zero;
         for (unsigned chance = 1; chance <= kChances; ++chance) {
-          cast(votes, outlines, c.near, middle, curvature_, leans_, chance);
+          cast(votes, outlines, c.near, middle, curvature_, leans_, shift_, chance);
           c.chance[chance - 1] = votes.winner().support;
         }
       },
@@ -352,7 +409,7 @@ LeanField::LeanField(std::span<const SightedOutline> outlines, int workers) {
         }
       if (told.empty()) return;
       Votes votes = empty();
-      cast(votes, outlines, c.near, middle_of(cell), curvature_, leans_);
+      cast(votes, outlines, c.near, middle_of(cell), curvature_, leans_, shift_);
       const auto alike = [&](Point2 a, Point2 b) {
         const double limit = leans_ ? kSameLean : kSameShift;
         return std::fabs(a.x - b.x) <= limit && std::fabs(a.y - b.y) <= limit;
@@ -384,9 +441,16 @@ LeanField::LeanField(std::span<const SightedOutline> outlines, int workers) {
 }
 
 std::optional<Point2> LeanField::at(Point2 place, double height) const {
+  const std::optional<Point2> k = told(place);
+  if (!k) return std::nullopt;
+  return leans_ ? Point2{shift_.x + k->x * height, shift_.y + k->y * height} : *k;
+}
+
+std::optional<Point2> LeanField::per_metre(Point2 place) const { return leans_ ? told(place) : Point2{}; }
+
+std::optional<Point2> LeanField::told(Point2 place) const {
   if (nodes_.empty()) return Point2{};
   // Of the nodes around the place those that know, by nearness.
-  const double h = leans_ ? height : 1;
   double x = 0, y = 0, weight = 0;
   const auto [ci, cj] = cell_of({place.x - kNodeGrid / 2, place.y - kNodeGrid / 2});
   for (long long j = cj; j <= cj + 1; ++j)
@@ -400,7 +464,7 @@ std::optional<Point2> LeanField::at(Point2 place, double height) const {
       x += w * (found->k.x + curvature_ * (place.x - node.x)), y += w * (found->k.y + curvature_ * (place.y - node.y));
       weight += w;
     }
-  if (weight > 0) return Point2{x / weight * h, y / weight * h};
+  if (weight > 0) return Point2{x / weight, y / weight};
   return std::nullopt;
 }
 

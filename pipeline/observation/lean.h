@@ -37,7 +37,8 @@ std::array<Sighting, kMostSightings> sightings_of(const ScoreMap& map);
 /// and H the height of the flight (Kraus, Photogrammetrie, 2004, "Orthophoto"). A mosaic has one n for each of its
 /// pictures, so the lean is k(c) = k + (c - node) / H with a k for each node of a fixed grid, found by vote: of all
 /// outlines within 150 m as many as possible must be where it says. Where the votes are for one shift of all roofs, high or
-/// low, the image is shifted and does not lean.
+/// low, the image is shifted and does not lean. Where it leans, one shift of the whole image is looked for: that with which
+/// the votes of low and high roofs are for the same lean.
 class LeanField {
  public:
   LeanField() = default;
@@ -48,6 +49,10 @@ class LeanField {
   /// m: how far the image shows the roof of a building from the map; nothing where too few agree on it, (0, 0) where no
   /// place of the image says anything.
   std::optional<model::Point2> at(model::Point2 place, double height) const;
+  /// m for each metre of height, without the image's shift; as at().
+  std::optional<model::Point2> per_metre(model::Point2 place) const;
+  /// m: how far the image shows all ground from where it is mapped, where its roofs lean as well; else (0, 0).
+  model::Point2 shift() const { return found() && leans_ ? shift_ : model::Point2{}; }
   /// Something is known of some place.
   bool found() const { return !nodes_.empty(); }
   bool leans() const { return leans_ && !nodes_.empty(); }
@@ -65,7 +70,11 @@ class LeanField {
     friend auto operator<=>(const Node& a, const Node& b) { return a.cell <=> b.cell; }
     friend bool operator==(const Node& a, const Node& b) { return a.cell == b.cell; }
   };
+  /// Of the nodes around a place: lean for each metre, or shift.
+  std::optional<model::Point2> told(model::Point2 place) const;
+
   std::vector<Node> nodes_;  ///< sorted by cell
+  model::Point2 shift_;
   bool leans_ = false;
   double curvature_ = 0, support_ = 0;
 };

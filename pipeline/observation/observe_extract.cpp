@@ -217,7 +217,8 @@ class Observer {
       o.lean_known = lean.has_value() && (field_.found() || eaves_.surely_low(b));
       o.lean = lean.value_or(Point2{});
       if (field_.leans()) {
-        o.per_metre = {o.lean.x / o.height, o.lean.y / o.height};
+        o.per_metre = field_.per_metre(o.box.centre()).value_or(Point2{});
+        o.ground = field_.shift();
         o.uncertainty = eaves_.uncertainty(b);
       }
       for (const WallPiece& p : row.outlines.back().pieces)
@@ -420,7 +421,7 @@ class Observer {
     for (const SearchedOutline& o : row.outlines) {
       double own = 0;
       for (const WallPiece& p : o.pieces) own += p.length;
-      lean.x += own * o.lean.x, lean.y += own * o.lean.y;
+      lean.x += own * o.per_metre.x * o.height, lean.y += own * o.per_metre.y * o.height;
       length += own;
     }
     const double size = std::sqrt(lean.x * lean.x + lean.y * lean.y);

@@ -79,13 +79,13 @@ OutlineScores score_building(const SearchedOutline& o, const ImageWindows& windo
   moved = o.pieces;
   scores.roof = score({shift.x + lean.x, shift.y + lean.y},
                       {grid.step, grid.half + static_cast<int>(std::ceil(extra / grid.step))});
-  if (length_of(o.lean) > kLeastLean) {
+  if (length_of({o.lean.x - o.ground.x, o.lean.y - o.ground.y}) > kLeastLean) {
     const double size = length_of(o.per_metre);
     moved.clear();
     for (const WallPiece& p : o.pieces)
       if (p.weight >= 1 && size > 0 && -(p.along.y * o.per_metre.x - p.along.x * o.per_metre.y) > kFacing * size)
         moved.push_back(p);
-    if (!moved.empty()) scores.foot = score(shift, grid);
+    if (!moved.empty()) scores.foot = score({shift.x + o.ground.x, shift.y + o.ground.y}, grid);
   }
   return scores;
 }

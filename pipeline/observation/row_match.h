@@ -14,6 +14,7 @@ struct SearchedOutline {
   geometry::PlanBox box;
   model::Point2 lean;       ///< m: how far the image shows its roof from its ground
   bool lean_known = true;   ///< else it is not to be moved
+  model::Point2 ground;     ///< m: how far the image shows the ground, part of `lean`
   model::Point2 per_metre;  ///< of that: of each metre of height; (0, 0) where the height does not matter
   double height = 0;        ///< m, of the roof's edge: what `lean` is reckoned with
   double uncertainty = 0;   ///< of `height`, as its share

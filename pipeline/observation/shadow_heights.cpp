@@ -103,8 +103,7 @@ class Measurer {
 
   /// Lean of a building for each metre of its height.
   Point2 lean_of(std::uint32_t b) const {
-    if (!field_.leans()) return {};
-    return field_.at(in_.sighted[b].place, 1).value_or(Point2{});
+    return field_.per_metre(in_.sighted[b].place).value_or(Point2{});
   }
 
   /// m between an edge and its shadow for each metre of height.

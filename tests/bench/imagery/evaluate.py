@@ -278,8 +278,8 @@ class Bench:
                 good.append(self.trial(place, extract, picture, f"shift {length} m", (e, n)))
         for title, rows, wanted in (("Wrong georeference: to be rejected", bad, "misfit"), ("Good georeference (up to 2 m): to be used", good, "used")):
             print(f"### {title}\n")
-            table(["place", "what", "state", "score", "margin", "shift said", "shift put in", "right"],
-                  [[r["place"], r["what"], r["state"], num(r["score"]), num(r["margin"]), vector(r["shift"]), vector(r["put"]), "yes" if r["state"] == wanted else "NO"] for r in rows])
+            table(["place", "what", "state", "score", "margin", "shift said", "shift put in", "right", "buildings seen", "of them moved"],
+                  [[r["place"], r["what"], r["state"], num(r["score"]), num(r["margin"]), vector(r["shift"]), vector(r["put"]), "yes" if r["state"] == wanted else "NO", r["seen"], r["moved"]] for r in rows])
             print(f"{sum(r['state'] == wanted for r in rows)} of {len(rows)} {wanted}; " + ", ".join(f"{sum(r['state'] == s for r in rows)} {s}" for s in sorted({r['state'] for r in rows})) + "\n")
         self.result["georeference"] = dict(bad=bad, good=good)
 
@@ -287,7 +287,9 @@ class Bench:
         answer = self.run("georeference", extract, picture)
         i = (answer.get("images") or [{}])[0]
         print(f"{place} {what}: {self.image_line(answer)}", file=sys.stderr)
-        return dict(place=place, what=what, state=i.get("state", "error" if "error" in answer else "none"), score=i.get("score"), margin=i.get("margin"), shift=i.get("shift_m"), put=put, error=answer.get("error"))
+        seen = [b for b in answer["buildings"] if b.get("score_deviation")]
+        return dict(place=place, what=what, state=i.get("state", "error" if "error" in answer else "none"), score=i.get("score"), margin=i.get("margin"), shift=i.get("shift_m"), put=put, error=answer.get("error"), seen=len(seen),
+                    moved=sum(b["state"] == "corrected" for b in seen))
 
     def gone(self):
         print("### Buildings that are mapped where none stands: told to be gone\n")

@@ -80,6 +80,31 @@ TEST(Lean, OneShiftOfAllRoofsIsNoLean) {
   EXPECT_NEAR(low->y, -0.8, 0.1);
 }
 
+TEST(Lean, AnImageThatLeansAndIsShiftedTellsBothApart) {
+  const Point2 shift{1.4, -0.9};
+  const auto houses = town(300, [&](const SightedOutline& o, std::size_t n) {
+    const Point2 lean = lean_of(o), own = n % 4 == 0 ? anywhere(n, 1, 3) : Point2{};
+    return Point2{shift.x + lean.x + own.x, shift.y + lean.y + own.y};
+  });
+  const LeanField field(houses);
+  ASSERT_TRUE(field.leans());
+  EXPECT_NEAR(field.shift().x, shift.x, 0.3);
+  EXPECT_NEAR(field.shift().y, shift.y, 0.3);
+  for (const SightedOutline& o : houses) {
+    const auto low = field.at(o.place, 3), metre = field.per_metre(o.place);
+    if (!low || !metre) continue;
+    const Point2 lean = lean_of(o);
+    EXPECT_NEAR(low->x, shift.x + lean.x / o.height * 3, 0.35);
+    EXPECT_NEAR(low->y, shift.y + lean.y / o.height * 3, 0.35);
+    EXPECT_NEAR(low->x, field.shift().x + 3 * metre->x, 1e-9);
+  }
+}
+
+TEST(Lean, AnImageThatLeansAndIsNotShiftedHasNoShift) {
+  const LeanField field(town(300, [](const SightedOutline& o, std::size_t) { return lean_of(o); }));
+  EXPECT_EQ(field.shift(), Point2{});
+}
+
 TEST(Lean, OneRowThatIsOffIsNoLeanOfItsPlace) {
   // 40 houses of one row, all off alike, among 40 houses alone that stand right.
   auto houses = town(80, [](const SightedOutline&, std::size_t n) { return n < 40 ? Point2{2, 2} : Point2{}; });
