@@ -73,6 +73,8 @@ struct SeenHeight {
 
 struct ImageReceipt {
   bool leans = false;
+  model::Point2 shift;  ///< m: how far it shows all ground from the map, where that is clear; it was undone
+  model::Point2 alike;  ///< m: most rows that it shows elsewhere are shown so far off, and none is moved; else (0, 0)
   double shadow_azimuth = -1;   ///< degrees clockwise from grid north where the sun stands, by the shadows; -1: unknown
   double shadow_per_metre = 0;  ///< m of shadow for each metre of height; 0: unknown
   std::uint64_t shadow_houses = 0;

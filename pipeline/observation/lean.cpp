@@ -49,8 +49,10 @@ constexpr std::size_t kInFlight = 64;
 /// Nodes that decide on the image's shift; m: shifts that are looked for, and the step between them.
 constexpr std::size_t kShiftNodes = 12;
 constexpr double kFarthestShift = 3, kShiftsApart = 1;
-/// How many times the support without any shift it must have: heights that are guessed let images lean as if they were shifted.
-constexpr double kClearShift = 1.06;
+/// The support with a shift must be more than that without any by this share, divided by the root of the number of rows: a few
+/// rows that the map has elsewhere look like a shifted image. On synthetic images rows that were moved reach 1.1, images that
+/// were moved 1.4 where there are 90 rows and more (docs/internal/RESULTS.md, "Aerial images").
+constexpr double kClearShift = 1.3;
 /// Where the image is shifted its roofs lean as well if that explains so much more than the shift alone.
 constexpr double kLeansToo = 1.02;
 /// Nodes that decide on the flight's height.
@@ -188,6 +190,14 @@ struct Neighbourhood {
   std::vector<std::uint32_t> outlines;
 };
 
+std::size_t rows_in(std::span<const SightedOutline> all, std::span<const Neighbourhood> places) {
+  std::vector<std::uint32_t> rows;
+  for (const Neighbourhood& place : places)
+    for (const std::uint32_t n : place.outlines) rows.push_back(all[n].row);
+  std::sort(rows.begin(), rows.end());
+  return static_cast<std::size_t>(std::unique(rows.begin(), rows.end()) - rows.begin());
+}
+
 /// The shift of a whole image, in m: with it low and high roofs agree best on how they lean. Nothing that is not clear.
 Point2 image_shift(std::span<const SightedOutline> all, std::span<const Neighbourhood> places, int workers) {
   constexpr int kSteps = static_cast<int>(kFarthestShift / kShiftsApart), kSide = 2 * kSteps + 1;
@@ -213,7 +223,8 @@ Point2 image_shift(std::span<const SightedOutline> all, std::span<const Neighbou
     for (int i = -kSteps + 1; i < kSteps; ++i)
       if (support[at(i, j)] > support[at(best_i, best_j)]) best_i = i, best_j = j;
   const double here = support[at(best_i, best_j)];
-  if (!(here > kClearShift * support[at(0, 0)])) return {};
+  const double rows = static_cast<double>(rows_in(all, places));
+  if (!(here > (1 + kClearShift / std::sqrt(std::max(1.0, rows))) * support[at(0, 0)])) return {};
   // The votes are wide: between the steps by a parabola. Beyond the rim nothing was looked for.
   const auto top = [&](double before, double after) {
     const double bend = 2 * here - before - after;

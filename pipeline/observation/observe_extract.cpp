@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <set>
 #include <tuple>
 
 #include "pipeline/base/parallel.h"
@@ -58,6 +59,11 @@ constexpr int kShadowRounds = 1;
 /// Shadows that storeys are counted by: how clear they are (ShadowLength::clearness), m of wall that cast them; and the share
 /// of those that tell the eaves to a quarter (docs/internal/RESULTS.md, "Aerial images").
 constexpr double kSureShadow = 0.2, kSureWalls = 10, kShadowConfidence = 0.8;
+
+/// Rows that are shown elsewhere: fewer may be off alike by chance; of all rows judged, and of those shown elsewhere: as many
+/// are off alike, within m, where the image is shifted.
+constexpr std::size_t kFewestAlike = 4;
+constexpr double kMostMoved = 0.5, kMostAlike = 0.7, kAlike = 0.8;
 
 std::uint64_t mixed(std::uint64_t v) {
   v ^= v >> 33, v *= 0xff51afd7ed558ccdULL, v ^= v >> 33, v *= 0xc4ceb9fe1a85ec53ULL, v ^= v >> 33;
@@ -121,8 +127,9 @@ class Observer {
       eaves_.forget_shadows();
       if (judges) sight(static_cast<std::uint32_t>(k), out);
       out.images[k].leans = field_.leans(), out.images[k].flight_height = field_.flight_height(),
-      out.images[k].support = field_.support();
+      out.images[k].support = field_.support(), out.images[k].shift = rounded(field_.shift());
       match_rows(static_cast<std::uint32_t>(k), judges, out);
+      doubt_alike(static_cast<std::uint32_t>(k), out);
     }
     flag_gone(out);
     for (std::uint32_t b = 0; b < out.outlines.size(); ++b) {
@@ -146,6 +153,37 @@ class Observer {
       if (receipt.state == RowState::corrected && rows_[receipt.row].buildings.size() == 1)
         receipt.state = RowState::undecided, receipt.reason = "perhaps it does not stand any more";
     }
+  }
+
+  /// Where the map is wrong here and there, rows are off in all directions. Where an image shows most of its rows off alike,
+  /// it may be the image: nobody can tell from here, and nothing is moved by it.
+  void doubt_alike(std::uint32_t image, ImageryObservations& out) const {
+    std::map<std::uint32_t, Point2> moved;  // by row
+    std::set<std::uint32_t> judged;
+    for (const OutlineReceipt& r : out.outlines) {
+      if (r.image != image || r.confidence <= 0) continue;
+      judged.insert(r.row);
+      if (r.state == RowState::corrected) moved.emplace(r.row, r.shift);
+    }
+    if (moved.size() < kFewestAlike || static_cast<double>(moved.size()) < kMostMoved * static_cast<double>(judged.size()))
+      return;
+    const auto median = [&](double Point2::* axis) {
+      std::vector<double> values;
+      for (const auto& [row, shift] : moved) values.push_back(shift.*axis);
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      return *middle;
+    };
+    const Point2 usual{median(&Point2::x), median(&Point2::y)};
+    const auto alike = static_cast<double>(std::ranges::count_if(moved, [&](const auto& row) {
+      const double x = row.second.x - usual.x, y = row.second.y - usual.y;
+      return x * x + y * y <= kAlike * kAlike;
+    }));
+    if (alike < kMostAlike * static_cast<double>(moved.size())) return;
+    out.images[image].alike = rounded(usual);
+    for (OutlineReceipt& r : out.outlines)
+      if (r.image == image && r.state == RowState::corrected)
+        r.state = RowState::undecided, r.reason = "the image shows most rows off alike: it may be the image that is shifted";
   }
 
   SearchedOutline searched(std::uint32_t building, const std::map<std::pair<Point2, Point2>, int>* shared) const {

@@ -34,6 +34,8 @@ Json image_json(const observation::ImageReceipt& image) {
   j["shift_m"] = metres(fit.shift);
   j["score"] = rounded(fit.score, 100);
   j["margin"] = rounded(fit.margin, 100);
+  if (image.shift != model::Point2{}) j["ground_shift_m"] = metres(image.shift);
+  if (image.alike != model::Point2{}) j["rows_off_alike_m"] = metres(image.alike);
   j["leans"] = image.leans;
   j["flight_height_m"] = rounded(image.flight_height, 1);
   if (image.sun_azimuth) j["sun_azimuth_deg"] = rounded(*image.sun_azimuth, 1);
