@@ -19,6 +19,7 @@
 #include "pipeline/observation/roof_view.h"
 #include "pipeline/observation/row_match.h"
 #include "pipeline/observation/shadow_heights.h"
+#include "pipeline/observation/unmapped.h"
 #include "pipeline/observation/verdict.h"
 
 namespace blockrand::observation {
@@ -123,6 +124,7 @@ class Observer {
       match_rows(static_cast<std::uint32_t>(k), judges, out);
     }
     flag_gone(out);
+    out.unmapped = without_overlaps(std::move(out.unmapped));
     for (std::uint32_t b = 0; b < out.outlines.size(); ++b) {
       const std::uint32_t by_outline = out.outlines[b].image, by_roof = out.roofs[b].image;
       if (by_outline < out.images.size()) ++out.images[by_outline].buildings;
@@ -293,6 +295,20 @@ class Observer {
       shadows = measure_shadows(inputs, field_, shadows.sun);
     }
     tell_shadows(image, shadows, out);
+    std::ranges::move(find_unmapped({.extract = of_.extract,
+                                     .footprints = of_.footprints,
+                                     .index = index_,
+                                     .projection = of_.projection,
+                                     .windows = windows,
+                                     .field = field_,
+                                     .eaves = eaves_.heights(),
+                                     .in_image = [&](std::uint32_t b) {
+                                       return searchable(b) && within(images_[image], of_.footprints[b].box.centre());
+                                     },
+                                     .to_sun = shadows.sun.towards,
+                                     .image = image,
+                                     .workers = workers_}),
+                      std::back_inserter(out.unmapped));
   }
 
   void take_heights(const ShadowHeights& shadows, std::vector<SightedOutline>& sighted) {

@@ -121,6 +121,24 @@ void add_height(Json& j, const observation::SeenHeight& seen) {
                  {"walls_m", rounded(seen.shadow.walls, 10)}};
 }
 
+Json unmapped_json(const observation::UnmappedBuilding& u) {
+  Json j;
+  j["id"] = u.id;
+  j["image"] = u.image;
+  j["probability"] = rounded(u.probability, 1000);
+  j["area_m2"] = rounded(u.area, 10);
+  j["outline_of"] = u.of_roof ? "roof" : "ground";
+  j["lean_m"] = metres(u.lean);
+  j["outline"] = Json::array();
+  for (const model::Point2 p : u.outline) j["outline"].push_back({p.x, p.y});
+  const observation::UnmappedEvidence& e = u.evidence;
+  j["evidence"] = Json::array();
+  for (const double value : {e.score, e.weakest, e.around, e.filled, e.elongation, e.likeness, e.spread, e.green, e.green_around,
+                             e.mapped_around, e.shadow, e.contrast, e.brightness, e.ridge ? 1.0 : 0.0})
+    j["evidence"].push_back(rounded(value, 1000));
+  return j;
+}
+
 model::OsmId id_of(const std::string& text) {
   model::OsmId id;
   id.type = text.at(0) == 'n'   ? model::OsmType::node
@@ -207,6 +225,8 @@ std::string imagery_json(const observation::ImageryObservations& seen, const foo
     if (b < seen.roofs.size()) add_roof(j["buildings"].back(), seen.roofs[b]);
     if (b < seen.heights.size()) add_height(j["buildings"].back(), seen.heights[b]);
   }
+  j["unmapped"] = Json::array();
+  for (const observation::UnmappedBuilding& u : seen.unmapped) j["unmapped"].push_back(unmapped_json(u));
   return j.dump(1) + "\n";
 }
 
