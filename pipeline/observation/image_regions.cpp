@@ -33,10 +33,13 @@ class Forest {
   double difference(std::uint32_t a, std::uint32_t b) const {
     double most = 0;
     for (std::size_t k = 0; k < 3; ++k)
-      most = std::max(most, std::fabs(static_cast<double>(sum_[a][k]) / count_[a] - static_cast<double>(sum_[b][k]) / count_[b]));
+      most = std::max(
+          most, std::fabs(static_cast<double>(sum_[a][k]) / count_[a] - static_cast<double>(sum_[b][k]) / count_[b]));
     return most;
   }
-  double mean(std::uint32_t root, std::size_t band) const { return static_cast<double>(sum_[root][band]) / count_[root]; }
+  double mean(std::uint32_t root, std::size_t band) const {
+    return static_cast<double>(sum_[root][band]) / count_[root];
+  }
   void join(std::uint32_t a, std::uint32_t b) {
     if (count_[a] < count_[b] || (count_[a] == count_[b] && b < a)) std::swap(a, b);
     parent_[b] = a, count_[a] += count_[b];

@@ -71,30 +71,27 @@ struct SeenHeight {
   double confidence = 0;   ///< that storeys can be counted by it; 0: they are not
 };
 
-/// What was measured of a thing that may be a building. Brightness: of 255.
+/// What was measured of a thing that may be a building.
 struct UnmappedEvidence {
-  double score = 0, weakest = 0, around = 0;  ///< EdgedRectangle
-  double filled = 0;                          ///< FilledRectangle
-  double area = 0;                            ///< m2
-  double elongation = 1;                      ///< longer side by the shorter one
-  double likeness = 0;                        ///< mean of RoofColours::likeness()
-  double spread = 0;                          ///< deviation of brightness within, by its mean
-  double green = 0, green_around = 0;         ///< share of pixels that have the colour of leaves and grass; within 3 m
-  double mapped_around = 0;                   ///< share of the pixels within 3 m that the map has something on
-  double shadow = 0;                          ///< how much darker it is behind than before it as the sun stands; 0: unknown
-  double contrast = 0;                        ///< of its mean colour against that of what lies within 3 m, levels
-  double brightness = 0;                      ///< by that of the image's mapped roofs
-  bool ridge = false;                         ///< two colours meet on it
+  double score = 0, around = 0;  ///< EdgedRectangle
+  double filled = 0;             ///< FilledRectangle
+  double elongation = 1;         ///< longer side by the shorter one
+  double area = 0;               ///< m2
+  double likeness = 0;           ///< mean of RoofColours::likeness()
+  double green_around = 0;       ///< share of the pixels within 3 m that have the colour of leaves and grass
+  double mapped_around = 0;      ///< share of them that the map has something on
+  double shadow = 0;             ///< how much darker it is behind than before it as the sun stands; 0: unknown
+  double brightness = 0;         ///< by that of the image's mapped roofs
 };
 
 /// What looks like a building where none is mapped (find_unmapped).
 struct UnmappedBuilding {
-  std::string id;                      ///< by its place: "u" and the square of 2 m of the build CRS in which its middle lies
-  std::uint32_t image = 0;             ///< that shows it
+  std::string id;           ///< by its place: "u" and the square of 2 m of the build CRS in which its middle lies
+  std::uint32_t image = 0;  ///< that shows it
   std::vector<model::Point2> outline;  ///< m in the build CRS on its grid, counter-clockwise
-  bool of_roof = false;                ///< the image's lean is not known there: `outline` is where the image shows the roof
-  model::Point2 lean;                  ///< m: where the image shows the roof from `outline`
-  double area = 0;                     ///< m2
+  bool of_roof = false;  ///< the image's lean is not known there: `outline` is where the image shows the roof
+  model::Point2 lean;    ///< m: where the image shows the roof from `outline`
+  double area = 0;       ///< m2
   double probability = 0;
   UnmappedEvidence evidence;
 };
@@ -116,11 +113,11 @@ struct ImageReceipt {
 
 struct ImageryObservations {
   std::vector<ImageReceipt> images;
-  std::vector<OutlineReceipt> outlines;  ///< by building number; empty: nobody looked for them
-  std::vector<RoofView> roofs;           ///< as `outlines`
-  std::vector<SeenHeight> heights;       ///< as `outlines`
+  std::vector<OutlineReceipt> outlines;    ///< by building number; empty: nobody looked for them
+  std::vector<RoofView> roofs;             ///< as `outlines`
+  std::vector<SeenHeight> heights;         ///< as `outlines`
   std::vector<UnmappedBuilding> unmapped;  ///< all that was measured, the likeliest first: see kTellUnmapped
-  bool applied = false;                    ///< what is `corrected` stands where the image shows it, not where it is mapped
+  bool applied = false;  ///< what is `corrected` stands where the image shows it, not where it is mapped
   /// The repaired outlines of what was moved, from before, by building number in ascending order.
   std::vector<std::pair<std::uint32_t, std::vector<model::Polygon>>> before;
 };

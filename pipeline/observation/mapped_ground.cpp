@@ -63,7 +63,8 @@ std::optional<double> covers(const model::Extract& extract, const Feature& f) {
   }
   double half = 0;
   if (f.is(FeatureKind::street)) half = half_width(tag("highway"));
-  if (f.is(FeatureKind::railway) && (tag("railway") == "rail" || tag("railway") == "tram" || tag("railway") == "light_rail"))
+  if (f.is(FeatureKind::railway) &&
+      (tag("railway") == "rail" || tag("railway") == "tram" || tag("railway") == "light_rail"))
     half = kTrack;
   if (f.is(FeatureKind::water)) half = tag("waterway") == "river" || tag("waterway") == "canal" ? kRiver : kStream;
   return half > 0 && !below() ? std::optional(half) : std::nullopt;

@@ -302,9 +302,11 @@ class Observer {
                                      .windows = windows,
                                      .field = field_,
                                      .eaves = eaves_.heights(),
-                                     .in_image = [&](std::uint32_t b) {
-                                       return searchable(b) && within(images_[image], of_.footprints[b].box.centre());
-                                     },
+                                     .in_image =
+                                         [&](std::uint32_t b) {
+                                           return searchable(b) &&
+                                                  within(images_[image], of_.footprints[b].box.centre());
+                                         },
                                      .to_sun = shadows.sun.towards,
                                      .image = image,
                                      .workers = workers_}),

@@ -163,7 +163,6 @@ std::optional<EdgedRectangle> fit_to_edges(const PlanRectangle& rectangle, const
     if (score > best + (k == 0 ? -0.01 : 0.01)) best = score, r = turned;
   }
   EdgedRectangle out;
-  out.weakest = 1;
   const std::vector<Point2> ring = r.corners();
   std::array<double, 4> moved{};
   double length = 0;
@@ -180,7 +179,6 @@ std::optional<EdgedRectangle> fit_to_edges(const PlanRectangle& rectangle, const
       sum += score;
       if (score > side) side = score, moved[i] = at;
     }
-    out.weakest = std::min(out.weakest, side);
     out.score += side * map.weight, out.around += sum / grid.side() * map.weight, length += map.weight;
   }
   out.score /= length, out.around /= length;

@@ -33,9 +33,8 @@ std::optional<FilledRectangle> rectangle_of(const Patch& patch, std::span<const 
 /// A rectangle on the edges of an image.
 struct EdgedRectangle {
   PlanRectangle rectangle;
-  double score = 0;    ///< score_outline() of its four sides, in [0, 1]
-  double weakest = 0;  ///< of the side with the least
-  double around = 0;   ///< mean of the scores of its sides within 1.5 m
+  double score = 0;   ///< score_outline() of its four sides, in [0, 1]
+  double around = 0;  ///< mean of the scores of its sides within 1.5 m
 };
 
 /// Turns a rectangle by up to 8 degrees and moves each of its sides by up to 1.5 m to where the image shows an edge.

@@ -9,7 +9,7 @@ namespace blockrand::observation {
 namespace {
 
 /// Pixels that are added to both counts: a colour that hardly occurs says nothing. Pixels of both kinds that are needed.
-constexpr double kFew = 30;
+constexpr double kFew = 10;
 constexpr std::uint64_t kFewestPixels = 2000;
 
 /// Each count with a half of its neighbours' along every band: colours that are nearly the same are.
@@ -19,7 +19,8 @@ std::vector<std::uint64_t> spread_out(const std::vector<std::uint32_t>& counts, 
     for (int i = 0; i < static_cast<int>(from.size()); ++i) {
       const int place = i / step % side;
       const auto at = [&](int j) { return from[static_cast<std::size_t>(j)]; };
-      to[static_cast<std::size_t>(i)] = 2 * at(i) + (place > 0 ? at(i - step) : 0) + (place < side - 1 ? at(i + step) : 0);
+      to[static_cast<std::size_t>(i)] =
+          2 * at(i) + (place > 0 ? at(i - step) : 0) + (place < side - 1 ? at(i + step) : 0);
     }
     from.swap(to);
   }

@@ -35,6 +35,9 @@ constexpr double kGround = 8;
 constexpr float kNoRoof = -1.6F;
 /// m2: of a region that goes on its own with no other; of a part of two.
 constexpr double kLeastRegion = 3, kLeastPart = 8;
+/// RoofColours: of a region's mean colour, at least. Parts of a plan: a hipped roof has four slopes.
+constexpr float kLikeRoofs = -0.7F;
+constexpr std::size_t kMostParts = 4;
 /// Of a rectangle that a region fills, at least; m of its shorter side; its sides' ratio.
 constexpr double kLeastFilled = 0.62, kNarrowest = 3.2, kLongest = 7;
 /// Of the shorter side of the smaller of two regions: a ridge between them is as long.
@@ -45,12 +48,16 @@ constexpr double kContrast = 12;
 constexpr double kAroundFrom = 0.5, kAroundTo = 3;
 /// Cosine: sides that turn to the sun or away from it.
 constexpr double kFacing = 0.35;
+/// m: by how much fit_to_edges() may move a middle, and more.
+constexpr double kFitted = 2;
 /// Of the smaller of two outlines.
 constexpr double kSamePlace = 0.25;
 /// Of a rectangle: more of it on what is mapped, and it is that.
 constexpr double kMostMapped = 0.3;
 /// Probability below which nothing is kept.
 constexpr double kLeastKept = 0.02;
+/// Probability from which on a candidate is as good as any other.
+constexpr double kLikely = 0.85;
 /// Levels: of brightness, where it divides.
 constexpr double kDark = 25;
 
@@ -116,13 +123,11 @@ struct Window {
 
 /// Sums over pixels.
 struct Sums {
-  double count = 0, b = 0, bb = 0, red = 0, green = 0, blue = 0, leaves = 0, mapped = 0, likeness = 0;
+  double count = 0, b = 0, leaves = 0, mapped = 0, likeness = 0;
 };
 
 void add(Sums& s, const Window& w, std::size_t i, const RoofColours& colours) {
-  const double b = brightness(w.patch, i);
-  s.count += 1, s.b += b, s.bb += b * b;
-  s.red += w.patch.red[i], s.green += w.patch.green[i], s.blue += w.patch.blue[i];
+  s.count += 1, s.b += brightness(w.patch, i);
   s.leaves += is_green(w.patch, i), s.mapped += w.mapped[i] != Mapped::nothing;
   s.likeness += static_cast<double>(colours.likeness(w.patch.red[i], w.patch.green[i], w.patch.blue[i]));
 }
@@ -145,7 +150,8 @@ class Searcher {
       middles.points.push_back(box.centre()), middles.nodes.push_back(0);
       const auto square = [](double v) { return static_cast<long long>(std::floor(v / kSquare)); };
       for (long long x = square(box.minimum.x - kNear); x <= square(box.maximum.x + kNear); ++x)
-        for (long long y = square(box.minimum.y - kNear); y <= square(box.maximum.y + kNear); ++y) squares.emplace(x, y);
+        for (long long y = square(box.minimum.y - kNear); y <= square(box.maximum.y + kNear); ++y)
+          squares.emplace(x, y);
     }
     if (houses.size() < 3) return {};
     hull_ = geometry::convex_hull(middles);
@@ -210,32 +216,86 @@ class Searcher {
     const ImageRegions regions =
         grow_regions(w.patch, open, static_cast<std::uint32_t>(std::ceil(kLeastRegion / pixel)));
     std::vector<UnmappedBuilding> found;
-    const auto look = [&](std::span<const std::uint32_t> pixels, bool ridge) {
+    // Fitting moves a middle by little: what surely belongs to another square is left to it.
+    const auto here = [&](Point2 p, double beyond) {
+      return p.x >= corner.x - beyond && p.x < corner.x + kSquare + beyond && p.y >= corner.y - beyond &&
+             p.y < corner.y + kSquare + beyond;
+    };
+    const auto look = [&](std::span<const std::uint32_t> pixels) {
       const std::optional<FilledRectangle> filled = rectangle_of(w.patch, pixels);
       if (!filled || filled->filled < kLeastFilled || !fits(filled->rectangle)) return;
-      if (std::optional<UnmappedBuilding> one = measure(w, *filled, ridge)) {
-        const Point2 middle = roof_middle(*one);
-        if (middle.x >= corner.x && middle.x < corner.x + kSquare && middle.y >= corner.y && middle.y < corner.y + kSquare)
-          found.push_back(std::move(*one));
-      }
+      if (!here(filled->rectangle.centre, kFitted)) return;
+      std::optional<UnmappedBuilding> one = measure(w, *filled);
+      if (one && here(roof_middle(*one), 0)) found.push_back(std::move(*one));
     };
     const auto pixels_of = [&](std::uint32_t r) {
       return std::span(regions.pixels).subspan(regions.regions[r].first, regions.regions[r].count);
     };
-    for (std::uint32_t r = 0; r < regions.regions.size(); ++r) {
-      const double area = regions.regions[r].count * pixel;
-      if (area >= kLeastUnmapped * kLeastFilled && area <= kMostUnmapped) look(pixels_of(r), false);
-    }
-    std::vector<std::uint32_t> both;
-    for (const RegionBorder& border : regions.borders) {
-      const double a = regions.regions[border.a].count * pixel, b = regions.regions[border.b].count * pixel;
-      if (std::min(a, b) < kLeastPart || a + b < kLeastUnmapped || a + b > kMostUnmapped) continue;
-      if (border.length * w.patch.size < kLeastBorder * std::sqrt(std::min(a, b))) continue;
-      both.clear();
-      std::ranges::merge(pixels_of(border.a), pixels_of(border.b), std::back_inserter(both));
-      look(both, true);
+    for (const std::vector<std::uint32_t>& parts : plans_of(w, regions)) {
+      std::vector<std::uint32_t> pixels;
+      for (const std::uint32_t r : parts) {
+        const auto own = pixels_of(r);
+        pixels.insert(pixels.end(), own.begin(), own.end());
+      }
+      if (parts.size() > 1) std::ranges::sort(pixels);
+      look(pixels);
     }
     return without_overlaps(std::move(found));
+  }
+
+  /// Regions, and neighbours together, that may be the plan of a building: each of the lists once.
+  std::set<std::vector<std::uint32_t>> plans_of(const Window& w, const ImageRegions& regions) const {
+    const double pixel = w.patch.size * w.patch.size;
+    const auto area = [&](std::uint32_t r) { return regions.regions[r].count * pixel; };
+    std::set<std::vector<std::uint32_t>> plans;
+    std::vector<std::vector<std::uint32_t>> neighbours(regions.regions.size());
+    std::vector<bool> like(regions.regions.size());
+    for (std::uint32_t r = 0; r < regions.regions.size(); ++r) {
+      const ImageRegion& region = regions.regions[r];
+      const auto level = [](double v) { return static_cast<std::uint8_t>(v); };
+      like[r] = roofs_.colours.likeness(level(region.red), level(region.green), level(region.blue)) > kLikeRoofs &&
+                area(r) <= kMostUnmapped;
+      if (like[r] && area(r) >= kLeastUnmapped * kLeastFilled) plans.insert({r});
+    }
+    for (const RegionBorder& border : regions.borders) {
+      if (!like[border.a] || !like[border.b]) continue;
+      const double smaller = std::min(area(border.a), area(border.b));
+      if (smaller < kLeastPart || border.length * w.patch.size < kLeastBorder * std::sqrt(smaller)) continue;
+      neighbours[border.a].push_back(border.b), neighbours[border.b].push_back(border.a);
+    }
+    for (std::uint32_t seed = 0; seed < neighbours.size(); ++seed) {
+      if (neighbours[seed].empty()) continue;
+      std::vector<std::uint32_t> plan{seed};
+      std::vector<std::uint32_t> own(
+          regions.pixels.begin() + regions.regions[seed].first,
+          regions.pixels.begin() + regions.regions[seed].first + regions.regions[seed].count);
+      while (plan.size() < kMostParts) {
+        // The neighbour with which it is most like a rectangle.
+        double best = kLeastFilled;
+        std::uint32_t with = 0;
+        std::vector<std::uint32_t> pixels, best_pixels;
+        std::set<std::uint32_t> tried(plan.begin(), plan.end());
+        for (const std::uint32_t part : plan)
+          for (const std::uint32_t n : neighbours[part]) {
+            if (!tried.insert(n).second ||
+                (static_cast<double>(own.size()) + regions.regions[n].count) * pixel > kMostUnmapped)
+              continue;
+            pixels.clear();
+            std::ranges::merge(own,
+                               std::span(regions.pixels).subspan(regions.regions[n].first, regions.regions[n].count),
+                               std::back_inserter(pixels));
+            const std::optional<FilledRectangle> filled = rectangle_of(w.patch, pixels);
+            if (!filled || filled->filled <= best) continue;
+            best = filled->filled, with = n;
+            best_pixels.swap(pixels);
+          }
+        if (best_pixels.empty()) break;
+        plan.insert(std::ranges::upper_bound(plan, with), with);
+        own.swap(best_pixels);
+        if (!plans.insert(plan).second) break;
+      }
+    }
+    return plans;
   }
 
   static bool fits(const PlanRectangle& r) {
@@ -246,7 +306,7 @@ class Searcher {
     return {(u.outline[0].x + u.outline[2].x) / 2 + u.lean.x, (u.outline[0].y + u.outline[2].y) / 2 + u.lean.y};
   }
 
-  std::optional<UnmappedBuilding> measure(const Window& whole, const FilledRectangle& filled, bool ridge) const {
+  std::optional<UnmappedBuilding> measure(const Window& whole, const FilledRectangle& filled) const {
     if (!geometry::contains(hull_.points, filled.rectangle.centre)) return std::nullopt;
     // The part of the window about it.
     constexpr double kReach = 5;
@@ -267,8 +327,7 @@ class Searcher {
     if (!edged || !fits(edged->rectangle)) return std::nullopt;
     UnmappedBuilding out;
     UnmappedEvidence& e = out.evidence;
-    e.score = edged->score, e.weakest = edged->weakest, e.around = edged->around;
-    e.filled = filled.filled, e.ridge = ridge;
+    e.score = edged->score, e.around = edged->around, e.filled = filled.filled;
     const PlanRectangle& r = edged->rectangle;
     e.area = r.area(), e.elongation = r.half_long / r.half_short;
     if (!look_around(w, r, e)) return std::nullopt;
@@ -284,7 +343,8 @@ class Searcher {
     double before = 0, behind = 0, before_count = 0, behind_count = 0;
     for (int row = 0; row < w.patch.height; ++row)
       for (int column = 0; column < w.patch.width; ++column) {
-        const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(w.patch.width) + static_cast<std::size_t>(column);
+        const auto i =
+            static_cast<std::size_t>(row) * static_cast<std::size_t>(w.patch.width) + static_cast<std::size_t>(column);
         if (!w.patch.valid[i]) continue;
         const double x = w.patch.west + (column + 0.5) * w.patch.size - r.centre.x,
                      y = w.patch.north - (row + 0.5) * w.patch.size - r.centre.y;
@@ -295,22 +355,17 @@ class Searcher {
         if (beyond < kAroundFrom || beyond > kAroundTo) continue;
         add(about, w, i, roofs_.colours);
         if (!in_.to_sun || w.mapped[i] == Mapped::building || (beyond_s > 0 && beyond_t > 0)) continue;
-        const Point2 outward = beyond_s > beyond_t ? Point2{s > 0 ? r.along.x : -r.along.x, s > 0 ? r.along.y : -r.along.y}
-                                                   : Point2{t > 0 ? -r.along.y : r.along.y, t > 0 ? r.along.x : -r.along.x};
+        const Point2 outward = beyond_s > beyond_t
+                                   ? Point2{s > 0 ? r.along.x : -r.along.x, s > 0 ? r.along.y : -r.along.y}
+                                   : Point2{t > 0 ? -r.along.y : r.along.y, t > 0 ? r.along.x : -r.along.x};
         const double facing = outward.x * in_.to_sun->x + outward.y * in_.to_sun->y;
         if (facing > kFacing) before += brightness(w.patch, i), before_count += 1;
         if (facing < -kFacing) behind += brightness(w.patch, i), behind_count += 1;
       }
     if (within.count < 1 || about.count < 1 || within.mapped > kMostMapped * within.count) return false;
-    const double mean = within.b / within.count;
-    e.spread = std::sqrt(std::max(0.0, within.bb / within.count - mean * mean)) / (mean + kDark);
     e.likeness = within.likeness / within.count;
-    e.green = within.leaves / within.count, e.green_around = about.leaves / about.count;
-    e.mapped_around = about.mapped / about.count;
-    e.brightness = mean / (roofs_.brightness + kDark);
-    const auto apart = [&](double a, double b) { return a / within.count - b / about.count; };
-    const double dr = apart(within.red, about.red), dg = apart(within.green, about.green), db = apart(within.blue, about.blue);
-    e.contrast = std::sqrt(dr * dr + dg * dg + db * db);
+    e.green_around = about.leaves / about.count, e.mapped_around = about.mapped / about.count;
+    e.brightness = within.b / within.count / (roofs_.brightness + kDark);
     if (before_count > 0 && behind_count > 0) {
       const double light = before / before_count, dark = behind / behind_count;
       e.shadow = (light - dark) / (light + dark + kDark);
@@ -327,7 +382,8 @@ class Searcher {
     out.image = in_.image;
     out.area = rounded(geometry::signed_area(out.outline), 10);
     const auto cell = [](double v) { return static_cast<long long>(std::floor(v / 2)); };
-    out.id = fmt::format("u{}_{}", cell((out.outline[0].x + out.outline[2].x) / 2), cell((out.outline[0].y + out.outline[2].y) / 2));
+    out.id = fmt::format("u{}_{}", cell((out.outline[0].x + out.outline[2].x) / 2),
+                         cell((out.outline[0].y + out.outline[2].y) / 2));
   }
 
   const UnmappedSearch& in_;
@@ -339,19 +395,26 @@ class Searcher {
 }  // namespace
 
 double unmapped_probability(const UnmappedEvidence& e) {
-  const double sum = -7 + 6 * e.score + 4 * e.weakest + 3 * e.filled + 0.5 * e.likeness - 2 * e.green + 2 * e.shadow;
+  // Weights of a logistic regression (fit.py of tests/bench/imagery) on synthetic images with houses that omit.py left out
+  // of the map.
+  const double sum = 0.09 + 1.42 * e.score + 1.93 * (e.score - e.around) + 3.55 * e.filled -
+                     0.51 * base::log(e.elongation) + 2.85 * e.likeness - 2.99 * e.green_around -
+                     0.55 * e.mapped_around + 4.51 * std::clamp(e.shadow, -0.2, 0.4) -
+                     5.72 * std::clamp(e.brightness, 0.5, 1.2) + 1.20 * base::log(e.area / 100);
   return 1 / (1 + base::exp(-sum));
 }
 
 std::vector<UnmappedBuilding> find_unmapped(const UnmappedSearch& search) { return Searcher(search).run(); }
 
 std::vector<UnmappedBuilding> without_overlaps(std::vector<UnmappedBuilding> candidates) {
+  // Of those that are all likely the largest: half of a roof is as likely as the whole.
   std::ranges::sort(candidates, [](const UnmappedBuilding& a, const UnmappedBuilding& b) {
-    return a.probability != b.probability ? a.probability > b.probability : std::tie(a.id, a.image, a.area) < std::tie(b.id, b.image, b.area);
+    const double p = std::min(a.probability, kLikely), q = std::min(b.probability, kLikely);
+    return p != q ? p > q : std::tie(b.area, a.id, a.image) < std::tie(a.area, b.id, b.image);
   });
   std::vector<UnmappedBuilding> kept;
   std::map<std::pair<long long, long long>, std::vector<std::size_t>> near;  // squares of the longest outline's side
-  constexpr double kSide = 200;                                             // m: sqrt(kMostUnmapped * kLongest) and more
+  constexpr double kSide = 200;  // m: sqrt(kMostUnmapped * kLongest) and more
   for (UnmappedBuilding& c : candidates) {
     const auto x = static_cast<long long>(std::floor(c.outline[0].x / kSide)),
                y = static_cast<long long>(std::floor(c.outline[0].y / kSide));
@@ -366,6 +429,10 @@ std::vector<UnmappedBuilding> without_overlaps(std::vector<UnmappedBuilding> can
     near[{x, y}].push_back(kept.size());
     kept.push_back(std::move(c));
   }
+  std::ranges::sort(kept, [](const UnmappedBuilding& a, const UnmappedBuilding& b) {
+    return a.probability != b.probability ? a.probability > b.probability
+                                          : std::tie(a.id, a.image) < std::tie(b.id, b.image);
+  });
   return kept;
 }
 

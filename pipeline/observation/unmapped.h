@@ -26,9 +26,9 @@ struct UnmappedSearch {
   const georef::Projection& projection;
   const ImageWindows& windows;  ///< of half a metre
   const LeanField& field;
-  std::span<const double> eaves;                      ///< m, by building
-  std::function<bool(std::uint32_t)> in_image;        ///< of a building
-  std::optional<model::Point2> to_sun;                ///< unit vector in plan
+  std::span<const double> eaves;                ///< m, by building
+  std::function<bool(std::uint32_t)> in_image;  ///< of a building
+  std::optional<model::Point2> to_sun;          ///< unit vector in plan
   std::uint32_t image = 0;
   int workers = 1;
 };

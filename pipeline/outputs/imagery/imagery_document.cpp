@@ -133,8 +133,8 @@ Json unmapped_json(const observation::UnmappedBuilding& u) {
   for (const model::Point2 p : u.outline) j["outline"].push_back({p.x, p.y});
   const observation::UnmappedEvidence& e = u.evidence;
   j["evidence"] = Json::array();
-  for (const double value : {e.score, e.weakest, e.around, e.filled, e.elongation, e.likeness, e.spread, e.green, e.green_around,
-                             e.mapped_around, e.shadow, e.contrast, e.brightness, e.ridge ? 1.0 : 0.0})
+  for (const double value :
+       {e.score, e.around, e.filled, e.elongation, e.likeness, e.green_around, e.mapped_around, e.shadow, e.brightness})
     j["evidence"].push_back(rounded(value, 1000));
   return j;
 }
