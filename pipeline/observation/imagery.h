@@ -116,7 +116,9 @@ struct ImageryObservations {
   std::vector<OutlineReceipt> outlines;    ///< by building number; empty: nobody looked for them
   std::vector<RoofView> roofs;             ///< as `outlines`
   std::vector<SeenHeight> heights;         ///< as `outlines`
-  std::vector<UnmappedBuilding> unmapped;  ///< all that was measured, the likeliest first: see kTellUnmapped
+  /// What looks like a building where none is mapped, the likeliest first; what was measured and is not told, being less
+  /// likely (kTellUnmapped).
+  std::vector<UnmappedBuilding> unmapped, unmapped_unsure;
   bool applied = false;  ///< what is `corrected` stands where the image shows it, not where it is mapped
   /// The repaired outlines of what was moved, from before, by building number in ascending order.
   std::vector<std::pair<std::uint32_t, std::vector<model::Polygon>>> before;

@@ -125,6 +125,9 @@ class Observer {
     }
     flag_gone(out);
     out.unmapped = without_overlaps(std::move(out.unmapped));
+    const auto unsure = std::ranges::find_if(out.unmapped, [](const auto& u) { return u.probability < kTellUnmapped; });
+    out.unmapped_unsure.assign(unsure, out.unmapped.end());
+    out.unmapped.erase(unsure, out.unmapped.end());
     for (std::uint32_t b = 0; b < out.outlines.size(); ++b) {
       const std::uint32_t by_outline = out.outlines[b].image, by_roof = out.roofs[b].image;
       if (by_outline < out.images.size()) ++out.images[by_outline].buildings;

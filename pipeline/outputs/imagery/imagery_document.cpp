@@ -210,6 +210,19 @@ observation::SeenHeight height_of(const nlohmann::json& j) {
   return seen;
 }
 
+observation::UnmappedBuilding unmapped_of(const nlohmann::json& j) {
+  observation::UnmappedBuilding u;
+  u.id = j.at("id").get<std::string>();
+  u.image = j.at("image").get<std::uint32_t>();
+  u.probability = j.at("probability").get<double>();
+  u.area = j.at("area_m2").get<double>();
+  u.of_roof = j.at("outline_of").get<std::string>() == "roof";
+  u.lean = point(j.at("lean_m"));
+  for (const nlohmann::json& p : j.at("outline")) u.outline.push_back(point(p));
+  if (u.outline.size() < 3) throw std::runtime_error("no outline: " + u.id);
+  return u;
+}
+
 }  // namespace
 
 std::string imagery_json(const observation::ImageryObservations& seen, const footprints::FootprintStore& footprints,
@@ -227,6 +240,8 @@ std::string imagery_json(const observation::ImageryObservations& seen, const foo
   }
   j["unmapped"] = Json::array();
   for (const observation::UnmappedBuilding& u : seen.unmapped) j["unmapped"].push_back(unmapped_json(u));
+  j["unmapped_unsure"] = Json::array();
+  for (const observation::UnmappedBuilding& u : seen.unmapped_unsure) j["unmapped_unsure"].push_back(unmapped_json(u));
   return j.dump(1) + "\n";
 }
 
@@ -258,6 +273,10 @@ ReadImagery read_imagery_json(const std::string& text) {
     if (height.image != observation::SeenHeight::kNoImage && height.image >= read.images.size())
       throw std::runtime_error("an image is not there");
     read.buildings.push_back({id_of(b.at("id").get<std::string>()), receipt, roof, height});
+  }
+  for (const nlohmann::json& u : j.at("unmapped")) {
+    read.unmapped.push_back(unmapped_of(u));
+    if (read.unmapped.back().image >= read.images.size()) throw std::runtime_error("an image is not there");
   }
   return read;
 }

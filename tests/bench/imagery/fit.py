@@ -199,7 +199,8 @@ def unmapped(a):
             with open(os.path.join(out, "build.json")) as f:
                 truth = candidates.Truth(whole, extract, int(json.load(f)["crs"]["code"].split(":")[1]), scene)
             with open(os.path.join(out, "imagery.json")) as f:
-                for c in json.load(f)["unmapped"]:
+                seen = json.load(f)
+                for c in seen["unmapped"] + seen["unmapped_unsure"]:
                     what = truth.judge(c)[0]
                     if what != "shed":
                         rows.append((place, unmapped_features(c["evidence"] + [c["area_m2"]]), what == "right"))
