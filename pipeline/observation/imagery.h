@@ -113,9 +113,9 @@ struct ImageReceipt {
 
 struct ImageryObservations {
   std::vector<ImageReceipt> images;
-  std::vector<OutlineReceipt> outlines;    ///< by building number; empty: nobody looked for them
-  std::vector<RoofView> roofs;             ///< as `outlines`
-  std::vector<SeenHeight> heights;         ///< as `outlines`
+  std::vector<OutlineReceipt> outlines;  ///< by building number; empty: nobody looked for them
+  std::vector<RoofView> roofs;           ///< as `outlines`
+  std::vector<SeenHeight> heights;       ///< as `outlines`
   /// What looks like a building where none is mapped, the likeliest first; what was measured and is not told, being less
   /// likely (kTellUnmapped).
   std::vector<UnmappedBuilding> unmapped, unmapped_unsure;

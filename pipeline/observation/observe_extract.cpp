@@ -452,6 +452,20 @@ class Observer {
     return receipt;
   }
 
+  /// Other buildings near one, moved by the lean of its roof: some may stand in its courtyards.
+  std::vector<model::Polygon> inside_of(std::uint32_t building, Point2 lean) const {
+    std::vector<model::Polygon> out;
+    for (const std::uint32_t b : index_.near(of_.footprints[building].box, 0)) {
+      if (b == building || of_.footprints[b].settled != model::ObjectState::pending) continue;
+      for (model::Polygon& polygon : of_.footprints.polygons(b)) {
+        for (Point2& p : polygon.outer.points) p.x += lean.x, p.y += lean.y;
+        polygon.holes.clear();
+        out.push_back(std::move(polygon));
+      }
+    }
+    return out;
+  }
+
   /// Looks at each roof where the image shows it: at the place that was found, or, where that is not sure, as mapped.
   void look_at_roofs(const footprints::TerraceRowPlan& plan, const SearchedRow& row, const ImageWindows& windows,
                      const RowMatch& match, const Verdict& verdict, std::vector<RoofView>& roofs) const {
@@ -476,6 +490,8 @@ class Observer {
         for (model::Ring& hole : polygon.holes) move(hole);
       }
       roofs.push_back(look_at_roof(polygons, windows));
+      if (std::ranges::any_of(polygons, [](const model::Polygon& p) { return !p.holes.empty(); }))
+        roofs.back().courtyards = look_at_courtyards(polygons, inside_of(b, lean), windows);
     }
   }
 

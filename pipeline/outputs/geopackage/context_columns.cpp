@@ -136,7 +136,8 @@ std::vector<Column> unmapped_columns() {
       {"probability", kReal, "", "How likely it is that a building stands there, from 0.8 on"},
       {"area", kReal, "m²", "Area of the outline"},
       {"outline_of", kText, "",
-       "ground: where it stands, by the lean of roofs in the image and its size; roof: where the image shows it, the lean "
+       "ground: where it stands, by the lean of roofs in the image and its size; roof: where the image shows it, the "
+       "lean "
        "being unknown"},
       {"lean", kReal, "m", "How far the image shows its roof from the outline"},
       {"image", kText, "", "The image"},

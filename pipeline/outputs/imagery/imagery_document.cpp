@@ -106,6 +106,15 @@ void add_roof(Json& j, const observation::RoofView& roof) {
     evidence["lines"].push_back({rounded(r.angle, 10), rounded(r.contrast, 1000), rounded(r.consistency, 100),
                                  rounded(r.line, 1000), rounded(r.offset, 100), rounded(r.length, 10),
                                  rounded(r.wide, 1000), rounded(r.within, 1000), rounded(r.halves, 1000)});
+  for (const observation::CourtyardView& c : roof.courtyards) {
+    const observation::CourtyardEvidence& seen = c.evidence;
+    Json courtyard = {{"area_m2", rounded(c.area, 10)},
+                      {"courtyard", observation::name(c.state)},
+                      {"built_over", rounded(c.built_over, 100)}};
+    for (const double value : {seen.alike, seen.level, seen.dark, seen.green, seen.edge, seen.around})
+      courtyard["evidence"].push_back(rounded(value, 1000));
+    j["courtyards"].push_back(std::move(courtyard));
+  }
 }
 
 void add_height(Json& j, const observation::SeenHeight& seen) {
@@ -196,6 +205,12 @@ observation::RoofView roof_of(const nlohmann::json& j) {
     roof.ridge = j.at("ridge_azimuth_deg").get<double>();
     roof.ridge_confidence = j.at("ridge_confidence").get<double>();
   }
+  if (j.contains("courtyards"))
+    for (const nlohmann::json& c : j.at("courtyards"))
+      roof.courtyards.push_back({c.at("area_m2").get<double>(),
+                                 c.at("built_over").get<double>(),
+                                 named(c.at("courtyard").get<std::string>(), observation::CourtyardState::built_over),
+                                 {}});
   return roof;
 }
 

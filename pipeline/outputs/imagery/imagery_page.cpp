@@ -72,10 +72,10 @@ std::string chip(const OverlayInputs& in, geometry::PlanBox box, std::uint32_t i
 
 std::string figure(const OverlayInputs& in, std::uint32_t building) {
   const OutlineReceipt& r = in.seen.outlines[building];
-  const SeenOutline seen{r, in.seen.images[r.image], in.seen.applied};
+  const SeenOutline seen{r, in.seen.images[r.image], in.seen.applied, in.seen.roofs[building].courtyards};
   const footprints::StoredFootprint& footprint = in.footprints[building];
-  return "<figure>" + chip(in, footprint.box, r.image, footprint.id.text()) + "<figcaption>" + osm_link(in.footprints[building].id) + ": " +
-         escaped(imagery_text(seen)) + "</figcaption></figure>\n";
+  return "<figure>" + chip(in, footprint.box, r.image, footprint.id.text()) + "<figcaption>" +
+         osm_link(in.footprints[building].id) + ": " + escaped(imagery_text(seen)) + "</figcaption></figure>\n";
 }
 
 /// What is mapped where the image shows no building, the likeliest first.
@@ -89,6 +89,30 @@ std::string gone_figures(const OverlayInputs& in) {
                                 base::with_thousands(gone.size()));
   gone.resize(std::min(gone.size(), kPicturedCorrections));
   for (const std::uint32_t b : gone) out += figure(in, b);
+  return out;
+}
+
+/// Courtyards that are mapped open and look built over, the likeliest first.
+std::string courtyard_figures(const OverlayInputs& in) {
+  std::uint64_t looked = 0, open = 0;
+  std::vector<std::pair<double, std::uint32_t>> built_over;
+  for (std::uint32_t b = 0; b < in.seen.roofs.size(); ++b) {
+    if (in.seen.outlines[b].image >= in.seen.images.size()) continue;
+    double most = 0;
+    for (const observation::CourtyardView& c : in.seen.roofs[b].courtyards) {
+      ++looked, open += c.state == observation::CourtyardState::open;
+      if (c.state == observation::CourtyardState::built_over) most = std::max(most, c.built_over);
+    }
+    if (most > 0) built_over.emplace_back(-most, b);
+  }
+  if (looked == 0) return {};
+  std::ranges::sort(built_over);
+  std::string out = fmt::format(
+      "<h2>Courtyards perhaps built over: {}</h2>\n<p>Mapped as open, and built so; the image shows a roof. "
+      "Of {} courtyards {} are surely open.</p>\n",
+      base::with_thousands(built_over.size()), base::with_thousands(looked), base::with_thousands(open));
+  built_over.resize(std::min(built_over.size(), kPicturedCandidates));
+  for (const auto& [sure, b] : built_over) out += figure(in, b);
   return out;
 }
 
@@ -144,10 +168,12 @@ std::string imagery_page(const OverlayInputs& in, const std::vector<std::string>
   out += fmt::format("<h2>The largest of {} {}</h2>\n<ul>", base::with_thousands(all), what);
   out += swatch(kBefore, "as mapped") + swatch(kAfterUnsure, "where the image shows it, just sure enough") +
          swatch(kAfterSure, "the same, quite sure") + swatch(kRefused, "the same, but it stays as mapped") +
-         swatch(kAsMapped, "stays as mapped") + swatch(kUnmapped, "perhaps a building that is not mapped") + "</ul>\n<p>Outlines are drawn where the image shows the roofs.</p>\n";
+         swatch(kAsMapped, "stays as mapped") + swatch(kUnmapped, "perhaps a building that is not mapped") +
+         "</ul>\n<p>Outlines are drawn where the image shows the roofs.</p>\n";
   if (largest.empty()) out += "<p>None.</p>\n";
   for (const std::uint32_t b : largest) out += figure(in, b);
   out += gone_figures(in);
+  out += courtyard_figures(in);
   out += unmapped_figures(in);
   if (!overlays.empty()) {
     out += "<h2>Tiles</h2>\n<ul>\n";

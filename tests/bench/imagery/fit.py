@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Fits the logistic regressions of pipeline/observation (verdict.cpp, roof_view.cpp, presence.cpp) on the tuning images; prints weights and what each
+"""Fits the logistic regressions of pipeline/observation (verdict.cpp, roof_view.cpp, presence.cpp, unmapped.cpp, courtyard_view.cpp) on the tuning images; prints weights and what each
 place that is left out says.
 
-    fit.py confidence|form|ridge|gone|unmapped [--work FOLDER] [--images FOLDER] [--places PLACE ...]
+    fit.py confidence|form|ridge|gone|unmapped|courtyards [--work FOLDER] [--images FOLDER] [--places PLACE ...]
 
 confidence: of the runs that `evaluate.py synthetic --set tuning` and `evaluate.py kampala` left in --work; a row is right when it is
 found within 0.6 m; of those that are found 0.4 m or more from where they are mapped. form, ridge: of builds of the tuning images, which are made here where --work lacks them.
@@ -20,6 +20,7 @@ import numpy as np
 
 import candidates
 import ghosts
+import holes
 import omit
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -181,6 +182,15 @@ def unmapped_features(e):
             math.log(area / 100)]
 
 
+def built(a, extract, out, place):
+    """Builds an extract on the tuning image of a place where --work lacks it -> imagery.json."""
+    if not os.path.exists(os.path.join(out, "imagery.json")):
+        subprocess.run([a.program, "build", extract, "-o", out, "--force", "--imagery", os.path.join(a.images, "tuning", place + ".tif"), "--lod", "0", "--formats", "gpkg",
+                        "--ground-height", "0", "--no-report", "--no-explain", "--progress", "none", "-q"], check=True)
+    with open(os.path.join(out, "imagery.json")) as f:
+        return json.load(f)
+
+
 def unmapped(a):
     """Candidates where omit.py left buildings out, on the tuning images. Sheds that no map has count for nothing."""
     rows = []
@@ -193,26 +203,39 @@ def unmapped(a):
             if not os.path.exists(extract):
                 omit.omit(whole, extract, seed)
             out = os.path.join(a.work, f"omit-{place}-{seed}")
-            if not os.path.exists(os.path.join(out, "imagery.json")):
-                subprocess.run([a.program, "build", extract, "-o", out, "--force", "--imagery", os.path.join(a.images, "tuning", place + ".tif"), "--lod", "0", "--formats", "gpkg",
-                                "--ground-height", "0", "--no-report", "--no-explain", "--progress", "none", "-q"], check=True)
+            seen = built(a, extract, out, place)
             with open(os.path.join(out, "build.json")) as f:
                 truth = candidates.Truth(whole, extract, int(json.load(f)["crs"]["code"].split(":")[1]), scene)
-            with open(os.path.join(out, "imagery.json")) as f:
-                seen = json.load(f)
-                for c in seen["unmapped"] + seen["unmapped_unsure"]:
-                    what = truth.judge(c)[0]
-                    if what != "shed":
-                        rows.append((place, unmapped_features(c["evidence"] + [c["area_m2"]]), what == "right"))
+            for c in seen["unmapped"] + seen["unmapped_unsure"]:
+                what = truth.judge(c)[0]
+                if what != "shed":
+                    rows.append((place, unmapped_features(c["evidence"] + [c["area_m2"]]), what == "right"))
     report(rows)
     for least in (.5, .6, .7, .8, .9):
         told = [r for r in LAST if r[0] >= least]
         print(f"told from {least}: {len(told)}, of them right {np.mean([r[1] for r in told]) if told else math.nan:.3f}; of the right ones told {sum(r[1] for r in told) / max(1, sum(r[1] for r in LAST)):.2f}")
 
 
+def courtyards(a):
+    """Holes that holes.py cut where a roof lies, and real ones, on the tuning images."""
+    rows = []
+    for place in a.places:
+        for seed in (1, 2, 3):
+            extract = os.path.join(a.work, f"holes-{place}-{seed}.osm")
+            if not os.path.exists(extract):
+                holes.cut_holes(os.path.join(a.shared, "data/osm", f"{place}.{PLACES[place]}"), extract, seed, .6)
+            truth = holes.read_holes(extract[:-4] + ".csv")
+            for b in built(a, extract, extract[:-4], place)["buildings"]:
+                for c in b.get("courtyards", []):
+                    if b["id"] in truth and (truth[b["id"]] or seed == 1):
+                        alike, level, dark, green, edge, around = c["evidence"]
+                        rows.append((place, [1, alike, min(1, level), dark, green, edge - around, edge], truth[b["id"]]))
+    report(rows)
+
+
 def main():
     a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    a.add_argument("what", choices=["confidence", "form", "ridge", "gone", "unmapped"])
+    a.add_argument("what", choices=["confidence", "form", "ridge", "gone", "unmapped", "courtyards"])
     a.add_argument("--program", default=os.path.join(HERE, "../../../build/release/blockrand"))
     a.add_argument("--shared", default="/work/shared" if os.path.isdir("/work/shared") else os.path.join(HERE, "../../../../shared"))
     a.add_argument("--images", default="/work/imagery_bench")
