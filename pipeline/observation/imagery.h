@@ -73,6 +73,8 @@ struct SeenHeight {
 
 /// What was measured of a thing that may be a building.
 struct UnmappedEvidence {
+  /// Houses have more, yards less.
+  static constexpr double kUnknownShadow = 0.1;
   double score = 0, around = 0;  ///< EdgedRectangle
   double filled = 0;             ///< FilledRectangle
   double elongation = 1;         ///< longer side by the shorter one
@@ -80,8 +82,9 @@ struct UnmappedEvidence {
   double likeness = 0;           ///< mean of RoofColours::likeness()
   double green_around = 0;       ///< share of the pixels within 3 m that have the colour of leaves and grass
   double mapped_around = 0;      ///< share of them that the map has something on
-  double shadow = 0;             ///< how much darker it is behind than before it as the sun stands; 0: unknown
-  double brightness = 0;         ///< by that of the image's mapped roofs
+  double shadow =
+      kUnknownShadow;     ///< how much darker it is behind than before it as the sun stands; kUnknownShadow: unknown
+  double brightness = 0;  ///< by that of the image's mapped roofs
 };
 
 /// What looks like a building where none is mapped (find_unmapped).

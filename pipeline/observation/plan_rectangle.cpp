@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 namespace blockrand::observation {
 
@@ -10,7 +11,7 @@ namespace {
 
 using model::Point2;
 
-/// Of the median line of pixels across a region: a shorter line at its end is a spur.
+/// Of the line of pixels across a region than which longer ones have half of its pixels: a shorter line at its end is a spur.
 constexpr double kSpur = 0.45;
 constexpr double kFewestLines = 3;
 /// Degrees: turns that are tried, and their number to each side.
@@ -70,8 +71,10 @@ std::optional<Span> without_spurs(const std::vector<double>& places, double pixe
   std::vector<std::uint32_t> count(bins, 0);
   for (const double p : places) ++count[std::min(bins - 1, static_cast<std::size_t>((p - first) / pixel))];
   std::vector<std::uint32_t> sorted = count;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(bins / 2), sorted.end());
-  const double least = kSpur * sorted[bins / 2];
+  std::sort(sorted.begin(), sorted.end(), std::greater<>());
+  std::size_t longer = 0, pixels = 0;
+  while (2 * (pixels + sorted[longer]) < places.size()) pixels += sorted[longer++];
+  const double least = kSpur * sorted[longer];
   std::size_t from = 0, to = bins;
   while (from < to && count[from] < least) ++from;
   while (to > from && count[to - 1] < least) --to;

@@ -210,7 +210,7 @@ class Searcher {
     w.mapped = ground_.on(w.patch);
     std::vector<std::uint8_t> open(w.mapped.size(), 0);
     for (std::size_t i = 0; i < open.size(); ++i)
-      open[i] = w.patch.valid[i] && w.mapped[i] == Mapped::nothing &&
+      open[i] = w.patch.valid[i] && w.mapped[i] == Mapped::nothing && !is_green(w.patch, i) &&
                 roofs_.colours.likeness(w.patch.red[i], w.patch.green[i], w.patch.blue[i]) > kNoRoof;
     const double pixel = w.patch.size * w.patch.size;
     const ImageRegions regions =
