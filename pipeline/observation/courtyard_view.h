@@ -38,7 +38,7 @@ struct CourtyardView {
 /// m2: smaller holes are shafts, in which no image shows a ground.
 inline constexpr double kLeastCourtyard = 15;
 /// Probabilities from which on it is said.
-inline constexpr double kSureOpen = 0.9, kSureBuiltOver = 0.85;
+inline constexpr double kSureOpen = 0.9, kSureBuiltOver = 0.9;
 
 /// Looks into each hole of kLeastCourtyard and more. What the image does not show, or what is mostly filled by other buildings, is left out.
 /// \param plan    where the image shows the roof, m in the build CRS; windows hold it
@@ -46,7 +46,7 @@ inline constexpr double kSureOpen = 0.9, kSureBuiltOver = 0.85;
 std::vector<CourtyardView> look_at_courtyards(std::span<const model::Polygon> plan,
                                               std::span<const model::Polygon> others, const ImageWindows& windows);
 
-/// How likely it is that a roof lies over it.
-double built_over_probability(const CourtyardEvidence& evidence, double area);
+/// How likely it is that a roof lies over it, were as many built over as open.
+double built_over_probability(const CourtyardEvidence& evidence);
 
 }  // namespace blockrand::observation

@@ -14,7 +14,7 @@
 namespace blockrand::observation {
 
 /// From this probability on a candidate is told.
-inline constexpr double kTellUnmapped = 0.8;
+inline constexpr double kTellUnmapped = 0.85;
 /// m2: of a candidate's outline.
 inline constexpr double kLeastUnmapped = 20, kMostUnmapped = 3000;
 

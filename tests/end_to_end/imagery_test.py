@@ -341,7 +341,7 @@ class Imagery(BuildTest):
         rows = query(out, 'SELECT id, probability, area, outline_of, image, image_date, licence FROM unmapped ORDER BY id')
         self.assertEqual([r[0] for r in rows], sorted(u['id'] for u in told))
         self.assertEqual({r[4:] for r in rows}, {('more.ppm', '2023-06', 'CC BY 4.0')})
-        self.assertTrue(all(r[1] >= 0.8 and 20 <= r[2] <= 300 for r in rows), rows)
+        self.assertTrue(all(r[1] >= 0.85 and 20 <= r[2] <= 300 for r in rows), rows)
         self.assertIn('Perhaps not mapped: 3', read_text(out, 'imagery.html'))
         self.assertEqual(read_text(out, 'imagery.html').count('CC BY 4.0'), 1)
         self.assertEqual(read_json(out, 'build.json')['counts']['models'], len(mapped), 'never a building by itself')

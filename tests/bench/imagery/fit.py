@@ -211,7 +211,7 @@ def unmapped(a):
                 if what != "shed":
                     rows.append((place, unmapped_features(c["evidence"] + [c["area_m2"]]), what == "right"))
     report(rows)
-    for least in (.5, .6, .7, .8, .9):
+    for least in (.5, .6, .7, .8, .85, .9):
         told = [r for r in LAST if r[0] >= least]
         print(f"told from {least}: {len(told)}, of them right {np.mean([r[1] for r in told]) if told else math.nan:.3f}; of the right ones told {sum(r[1] for r in told) / max(1, sum(r[1] for r in LAST)):.2f}")
 

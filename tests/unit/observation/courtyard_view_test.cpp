@@ -11,16 +11,16 @@ CourtyardEvidence roof_within() {
 }
 
 TEST(CourtyardView, ARoofLikeTheOneAroundIsBuiltOver) {
-  EXPECT_GE(built_over_probability(roof_within(), 60), kSureBuiltOver);
+  EXPECT_GE(built_over_probability(roof_within()), kSureBuiltOver);
 }
 
 TEST(CourtyardView, ShadowsAndLeavesAreOpen) {
   CourtyardEvidence shade = roof_within();
   shade.alike = 0.2, shade.dark = 0.7, shade.level = 0.4, shade.edge = 0.7;
-  EXPECT_LE(built_over_probability(shade, 60), 1 - kSureOpen);
+  EXPECT_LE(built_over_probability(shade), 1 - kSureOpen);
   CourtyardEvidence garden = roof_within();
   garden.alike = 0.2, garden.green = 0.7, garden.level = 0.3, garden.edge = 0.6;
-  EXPECT_LE(built_over_probability(garden, 60), 1 - kSureOpen);
+  EXPECT_LE(built_over_probability(garden), 1 - kSureOpen);
 }
 
 TEST(CourtyardView, NamesAreThoseOfTheOutputs) {
