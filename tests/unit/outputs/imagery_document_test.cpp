@@ -37,9 +37,6 @@ struct Seen {
     roof.pixels = 900, roof.colour = model::Colour{200, 10, 3}, roof.colour_confidence = 0.72;
     roof.form = observation::RoofForm::pitched, roof.form_confidence = 0.91;
     roof.ridge = 12.5, roof.ridge_confidence = 0.83;
-    roof.courtyards = {
-        {.area = 120.4, .built_over = 0.04, .state = observation::CourtyardState::open, .evidence = {}},
-        {.area = 33, .built_over = 0.97, .state = observation::CourtyardState::built_over, .evidence = {}}};
     observation::UnmappedBuilding candidate;
     candidate.id = "u251592_3018242", candidate.image = 1, candidate.area = 112.5, candidate.probability = 0.912;
     candidate.outline = {{500'000.1, 10}, {500'010 + 1.0 / 1024, 10}, {500'010, 21.25}, {500'000, 21.25}};
@@ -93,8 +90,16 @@ TEST(ImageryDocument, ReadsWhatItWrote) {
   EXPECT_EQ(read.buildings[2].receipt.reason, "another place fits nearly as well");
 }
 
+Seen with_courtyards() {
+  Seen seen;
+  seen.observations.roofs[1].courtyards = {
+      {.area = 120.4, .built_over = 0.04, .state = observation::CourtyardState::open, .evidence = {}},
+      {.area = 33, .built_over = 0.97, .state = observation::CourtyardState::built_over, .evidence = {}}};
+  return seen;
+}
+
 TEST(ImageryDocument, ReadsCandidatesThatAreToldAndCourtyards) {
-  const Seen seen;
+  const Seen seen = with_courtyards();
   const ReadImagery read = read_imagery_json(imagery_json(seen.observations, seen.store, {true, true, true}));
   ASSERT_EQ(read.unmapped.size(), 2u) << "what is not told is written for benches alone";
   const observation::UnmappedBuilding &wrote = seen.observations.unmapped[0], &got = read.unmapped[0];
@@ -130,7 +135,7 @@ TEST(ImageryDocument, RefusesCandidatesOfNoImageOrWithoutOutline) {
 }
 
 TEST(ImageryDocument, OfSeveralCourtyardsTheOneThatIsBuiltOverIsTold) {
-  const Seen seen;
+  const Seen seen = with_courtyards();
   SeenOutline outline{seen.observations.outlines[1], seen.observations.images[1], true,
                       seen.observations.roofs[1].courtyards};
   ASSERT_TRUE(outline.told_courtyard());
