@@ -126,7 +126,7 @@ std::string unmapped_figures(const OverlayInputs& in) {
   for (const observation::UnmappedBuilding& u : std::span(all).first(std::min(all.size(), kPicturedCandidates))) {
     const importers::imagery::ImageSource& source = in.seen.images[u.image].description.source;
     out += "<figure>" + chip(in, geometry::box_of(u.outline), u.image, u.id) + "<figcaption>" +
-           escaped(fmt::format("{}: {:.0f} m², probability {:.2f}, {}{}{}", u.id, u.area, u.probability,
+           escaped(fmt::format("{}: {:.0f} m², probability {:.2f}, {}{}{}", u.id, u.area, std::min(0.99, u.probability),
                                source.path.substr(source.path.find_last_of('/') + 1),
                                source.date.empty() ? "" : " of " + source.date,
                                u.of_roof ? "; the outline is the roof's, how far it leans is not known" : "")) +
