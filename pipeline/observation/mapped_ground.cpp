@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
-#include <utility>
 
 #include "pipeline/geometry/polygon_measures.h"
 
@@ -43,23 +42,6 @@ constexpr std::array<Half, 14> kStreets{{{"motorway", 7},
 /// m: half of a railway's track, and of water that is mapped as a line.
 constexpr double kTrack = 2.5, kRiver = 4, kStream = 1;
 
-/// Areas on which houses hardly stand, or are mapped where they do. Farms, gardens and schools are not among them.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kBare{{{"amenity", "parking"},
-                                                                               {"leisure", "pitch"},
-                                                                               {"leisure", "track"},
-                                                                               {"leisure", "swimming_pool"},
-                                                                               {"leisure", "park"},
-                                                                               {"leisure", "playground"},
-                                                                               {"leisure", "golf_course"},
-                                                                               {"landuse", "grass"},
-                                                                               {"landuse", "village_green"},
-                                                                               {"landuse", "cemetery"},
-                                                                               {"natural", "grassland"},
-                                                                               {"natural", "scrub"},
-                                                                               {"natural", "wood"},
-                                                                               {"natural", "beach"},
-                                                                               {"natural", "sand"}}};
-
 double half_width(std::string_view highway) {
   for (const Half& h : kStreets)
     if (h.value == highway) return h.metres;
@@ -74,8 +56,9 @@ std::optional<double> covers(const model::Extract& extract, const Feature& f) {
     return (!tunnel.empty() && tunnel != "no") || (!layer.empty() && layer.front() == '-');
   };
   if (f.area) {
-    const bool bare = f.is(FeatureKind::water) || f.is(FeatureKind::street) ||
-                      std::ranges::any_of(kBare, [&](const auto& pair) { return tag(pair.first) == pair.second; });
+    const std::string_view leisure = tag("leisure");
+    const bool bare = f.is(FeatureKind::water) || f.is(FeatureKind::street) || tag("amenity") == "parking" ||
+                      leisure == "pitch" || leisure == "track" || leisure == "swimming_pool";
     return bare && !below() ? std::optional(0.0) : std::nullopt;
   }
   double half = 0;

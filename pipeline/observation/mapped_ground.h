@@ -16,7 +16,7 @@ namespace blockrand::observation {
 enum class Mapped : std::uint8_t {
   nothing,
   building,  ///< a roof or a wall of it, by the lean of the image, or what is within `kBesideBuilding` of one
-  ground     ///< street, railway, water, car park, pitch, park, lawn: hardly a building stands there
+  ground     ///< street, railway, water, car park, sports pitch: no building stands there
 };
 
 /// m: about mapped buildings, which may stand as far from where they are mapped.

@@ -398,10 +398,10 @@ double unmapped_probability(const UnmappedEvidence& e) {
   // Weights of a logistic regression (fit.py of tests/bench/imagery) on synthetic images with houses that omit.py left out
   // of the map.
   const double shadow = std::max(e.shadow, -0.2);
-  const double sum = -0.05 + 1.11 * e.score + 1.42 * (e.score - e.around) + 3.58 * e.filled -
-                     0.12 * base::log(e.elongation) + 2.81 * e.likeness - 3.05 * e.green_around -
-                     1.04 * e.mapped_around + 4.30 * std::min(shadow, 0.4) + 1.28 * std::min(shadow - 0.1, 0.0) -
-                     5.16 * std::clamp(e.brightness, 0.5, 1.2) + 0.99 * base::log(e.area / 100);
+  const double sum = 0.09 + 0.94 * e.score + 1.44 * (e.score - e.around) + 3.43 * e.filled -
+                     0.17 * base::log(e.elongation) + 2.87 * e.likeness - 2.94 * e.green_around -
+                     0.94 * e.mapped_around + 4.48 * std::min(shadow, 0.4) + 1.43 * std::min(shadow - 0.1, 0.0) -
+                     5.23 * std::clamp(e.brightness, 0.5, 1.2) + 1.05 * base::log(e.area / 100);
   return 1 / (1 + base::exp(-sum));
 }
 

@@ -35,7 +35,7 @@ struct UnmappedSearch {
 
 /// Looks at the ground of an image around the mapped buildings, square by square of a fixed grid: what has one colour, or two
 /// that meet in a ridge, fills a rectangle whose sides lie on edges, and has a colour that roofs have. Mapped buildings as
-/// far as they lean, streets, railways, water, car parks, pitches, parks and lawns are left out, and what lies beyond the convex hull of the mapped buildings.
+/// far as they lean, streets, railways, water, car parks and pitches are left out, and what lies beyond the convex hull of the mapped buildings.
 /// \returns  all that was measured, the likeliest first, none on another; from kTellUnmapped on they are candidates.
 ///           Deterministic for any number of workers.
 std::vector<UnmappedBuilding> find_unmapped(const UnmappedSearch& search);

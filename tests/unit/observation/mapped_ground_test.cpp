@@ -106,8 +106,6 @@ TEST(MappedGround, AreasOnWhichNoHouseStands) {
   place.draw(model::FeatureKind::amenity, true, {{"amenity", "parking"}}, square(-30));
   place.draw(model::FeatureKind::amenity, true, {{"amenity", "school"}}, square(-10));
   place.draw(model::FeatureKind::water, true, {{"natural", "water"}}, square(10));
-  place.draw(model::FeatureKind::land_use, true, {{"leisure", "park"}}, square(25));
-  EXPECT_EQ(place.at({29, 14}), Mapped::ground);
   EXPECT_EQ(place.at({-26, 14}), Mapped::ground);
   EXPECT_EQ(place.at({-6, 14}), Mapped::nothing) << "a school has houses";
   EXPECT_EQ(place.at({14, 14}), Mapped::ground);
