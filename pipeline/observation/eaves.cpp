@@ -25,13 +25,6 @@ constexpr double kHighWithoutLean = 9;
 constexpr double kNeighbourReach = 120;
 constexpr std::size_t kFewestNeighbours = 3;
 
-/// m: a guess by the area of the footprint in m2 and whether it stands in a row: sheds, small houses, houses, blocks.
-/// Medians of tagged storeys (docs/internal/RESULTS.md, "Aerial images"). No two are equal: they are classes as well.
-double usual_eaves(double area, bool in_row) {
-  if (in_row) return area < 25 ? 3.4 : area < 60 ? 6.5 : area < 150 ? 9 : area < 400 ? 11 : 13;
-  return area < 25 ? 2.5 : area < 60 ? 3.3 : area < 150 ? 5 : area < 400 ? 7 : 10;
-}
-
 /// m: by a building's own tags; nothing where nobody counted or measured.
 std::optional<double> tagged_eaves(const model::MappedAttributes& a) {
   if (a.height) {
@@ -44,6 +37,11 @@ std::optional<double> tagged_eaves(const model::MappedAttributes& a) {
 }
 
 }  // namespace
+
+double usual_eaves(double area, bool in_row) {
+  if (in_row) return area < 25 ? 3.4 : area < 60 ? 6.5 : area < 150 ? 9 : area < 400 ? 11 : 13;
+  return area < 25 ? 2.5 : area < 60 ? 3.3 : area < 150 ? 5 : area < 400 ? 7 : 10;
+}
 
 double shadow_uncertainty(double clearness) {
   if (clearness < 0) return 0.8;

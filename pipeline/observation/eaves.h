@@ -19,6 +19,10 @@ inline constexpr double kTaggedUncertainty = 0.2, kNeighbourUncertainty = 0.35, 
 /// distance between the quartiles on the synthetic images of set `tuning` (tests/bench/imagery), and a little more.
 double shadow_uncertainty(double clearness);
 
+/// m: a guess by the area of a plan in m2 and whether it stands in a row: sheds, small houses, houses, blocks.
+/// Medians of tagged storeys (docs/internal/RESULTS.md, "Aerial images"). No two are equal: they are classes as well.
+double usual_eaves(double area, bool in_row);
+
 /// Eaves above ground, in m, and by how much of it each may be off. By building number; none is read from attributes,
 /// which are resolved later.
 class EavesHeights {
@@ -27,6 +31,7 @@ class EavesHeights {
   EavesHeights(const model::Extract& extract, const footprints::FootprintStore& footprints);
 
   double height(std::uint32_t b) const { return heights_[b]; }
+  std::span<const double> heights() const { return heights_; }
   double uncertainty(std::uint32_t b) const { return uncertainty_[b]; }
   bool is_tagged(std::uint32_t b) const { return tagged_[b].has_value(); }
   /// Without what shadows tell.

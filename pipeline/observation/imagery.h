@@ -71,6 +71,34 @@ struct SeenHeight {
   double confidence = 0;   ///< that storeys can be counted by it; 0: they are not
 };
 
+/// What was measured of a thing that may be a building.
+struct UnmappedEvidence {
+  /// Houses have more, yards less.
+  static constexpr double kUnknownShadow = 0.1;
+  double score = 0, around = 0;  ///< EdgedRectangle
+  double filled = 0;             ///< FilledRectangle
+  double elongation = 1;         ///< longer side by the shorter one
+  double area = 0;               ///< m2
+  double likeness = 0;           ///< mean of RoofColours::likeness()
+  double green_around = 0;       ///< share of the pixels within 3 m that have the colour of leaves and grass
+  double mapped_around = 0;      ///< share of them that the map has something on
+  double shadow =
+      kUnknownShadow;     ///< how much darker it is behind than before it as the sun stands; kUnknownShadow: unknown
+  double brightness = 0;  ///< by that of the image's mapped roofs
+};
+
+/// What looks like a building where none is mapped (find_unmapped).
+struct UnmappedBuilding {
+  std::string id;           ///< by its place: "u" and the square of 2 m of the build CRS in which its middle lies
+  std::uint32_t image = 0;  ///< that shows it
+  std::vector<model::Point2> outline;  ///< m in the build CRS on its grid, counter-clockwise
+  bool of_roof = false;  ///< the image's lean is not known there: `outline` is where the image shows the roof
+  model::Point2 lean;    ///< m: where the image shows the roof from `outline`
+  double area = 0;       ///< m2
+  double probability = 0;
+  UnmappedEvidence evidence;
+};
+
 struct ImageReceipt {
   bool leans = false;
   model::Point2 shift;  ///< m: how far it shows all ground from the map, where that is clear; it was undone
@@ -93,6 +121,9 @@ struct ImageryObservations {
   std::vector<OutlineReceipt> outlines;  ///< by building number; empty: nobody looked for them
   std::vector<RoofView> roofs;           ///< as `outlines`
   std::vector<SeenHeight> heights;       ///< as `outlines`
+  /// What looks like a building where none is mapped, the likeliest first; what was measured and is not told, being less
+  /// likely (kTellUnmapped).
+  std::vector<UnmappedBuilding> unmapped, unmapped_unsure;
   bool applied = false;  ///< what is `corrected` stands where the image shows it, not where it is mapped
   /// The repaired outlines of what was moved, from before, by building number in ascending order.
   std::vector<std::pair<std::uint32_t, std::vector<model::Polygon>>> before;

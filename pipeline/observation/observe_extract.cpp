@@ -22,6 +22,7 @@
 #include "pipeline/observation/roof_view.h"
 #include "pipeline/observation/row_match.h"
 #include "pipeline/observation/shadow_heights.h"
+#include "pipeline/observation/unmapped.h"
 #include "pipeline/observation/verdict.h"
 
 namespace blockrand::observation {
@@ -132,6 +133,10 @@ class Observer {
       doubt_alike(static_cast<std::uint32_t>(k), out);
     }
     flag_gone(out);
+    out.unmapped = without_overlaps(std::move(out.unmapped));
+    const auto unsure = std::ranges::find_if(out.unmapped, [](const auto& u) { return u.probability < kTellUnmapped; });
+    out.unmapped_unsure.assign(unsure, out.unmapped.end());
+    out.unmapped.erase(unsure, out.unmapped.end());
     for (std::uint32_t b = 0; b < out.outlines.size(); ++b) {
       const std::uint32_t by_outline = out.outlines[b].image, by_roof = out.roofs[b].image;
       if (by_outline < out.images.size()) ++out.images[by_outline].buildings;
@@ -334,6 +339,22 @@ class Observer {
       shadows = measure_shadows(inputs, field_, shadows.sun);
     }
     tell_shadows(image, shadows, out);
+    std::ranges::move(find_unmapped({.extract = of_.extract,
+                                     .footprints = of_.footprints,
+                                     .index = index_,
+                                     .projection = of_.projection,
+                                     .windows = windows,
+                                     .field = field_,
+                                     .eaves = eaves_.heights(),
+                                     .in_image =
+                                         [&](std::uint32_t b) {
+                                           return searchable(b) &&
+                                                  within(images_[image], of_.footprints[b].box.centre());
+                                         },
+                                     .to_sun = shadows.sun.towards,
+                                     .image = image,
+                                     .workers = workers_}),
+                      std::back_inserter(out.unmapped));
   }
 
   void take_heights(const ShadowHeights& shadows, std::vector<SightedOutline>& sighted) {
@@ -488,6 +509,20 @@ class Observer {
     return receipt;
   }
 
+  /// Other buildings near one, moved by the lean of its roof: some may stand in its courtyards.
+  std::vector<model::Polygon> inside_of(std::uint32_t building, Point2 lean) const {
+    std::vector<model::Polygon> out;
+    for (const std::uint32_t b : index_.near(of_.footprints[building].box, 0)) {
+      if (b == building || of_.footprints[b].settled != model::ObjectState::pending) continue;
+      for (model::Polygon& polygon : of_.footprints.polygons(b)) {
+        for (Point2& p : polygon.outer.points) p.x += lean.x, p.y += lean.y;
+        polygon.holes.clear();
+        out.push_back(std::move(polygon));
+      }
+    }
+    return out;
+  }
+
   /// Looks at each roof where the image shows it: at the place that was found, or, where that is not sure, as mapped.
   void look_at_roofs(const footprints::TerraceRowPlan& plan, const SearchedRow& row, const ImageWindows& windows,
                      const RowMatch& match, const Verdict& verdict, std::vector<RoofView>& roofs) const {
@@ -512,6 +547,8 @@ class Observer {
         for (model::Ring& hole : polygon.holes) move(hole);
       }
       roofs.push_back(look_at_roof(polygons, windows));
+      if (std::ranges::any_of(polygons, [](const model::Polygon& p) { return !p.holes.empty(); }))
+        roofs.back().courtyards = look_at_courtyards(polygons, inside_of(b, lean), windows);
     }
   }
 

@@ -6,9 +6,11 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "pipeline/model/colour.h"
 #include "pipeline/model/polygon.h"
+#include "pipeline/observation/courtyard_view.h"
 #include "pipeline/observation/image_windows.h"
 
 namespace blockrand::observation {
@@ -51,8 +53,9 @@ struct RoofView {
   std::array<RidgeEvidence, 2> ridges;   ///< the clearest line along the plan's main direction, and across it
   double long_side = 0, short_side = 0;  ///< m, of the plan in these directions; the first is along
   EdgeStrips strips;
-  double spread = 0;  ///< of brightness over the roof, by its mean
-  double green = 0;   ///< share of its pixels that have the colour of leaves and grass
+  double spread = 0;                      ///< of brightness over the roof, by its mean
+  double green = 0;                       ///< share of its pixels that have the colour of leaves and grass
+  std::vector<CourtyardView> courtyards;  ///< that are mapped as holes in its outline; see look_at_courtyards()
 };
 
 /// Where the sun stands in an image: clockwise from grid north, degrees; from the brighter sides of all its roofs.

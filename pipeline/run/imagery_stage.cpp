@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -11,6 +12,7 @@
 #include "pipeline/base/text.h"
 #include "pipeline/footprints/move_buildings.h"
 #include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/georef/tiles.h"
 #include "pipeline/observation/corrections.h"
 #include "pipeline/observation/image_quality.h"
 #include "pipeline/observation/observe_extract.h"
@@ -108,6 +110,13 @@ void ImageryStage::take_pinned(const footprints::FootprintStore& footprints) {
   for (const auto& [id, receipt, roof, height] : pinned.buildings)
     if (const std::uint32_t b = numbers.find(id); b != model::kNoIndex)
       seen_->outlines[b] = receipt, seen_->roofs[b] = roof, seen_->heights[b] = height;
+  // A candidate belongs to the tile of its middle.
+  const model::TileId tile = inputs_.tile->id;
+  for (const observation::UnmappedBuilding& u : pinned.unmapped) {
+    const georef::LonLat middle = located_.projection.inverse(geometry::box_of(u.outline).centre());
+    const auto units = [](double degrees) { return static_cast<std::int32_t>(std::lround(degrees * 1e7)); };
+    if (georef::tile_of({units(middle.lon), units(middle.lat)}, tile.level) == tile) seen_->unmapped.push_back(u);
+  }
 }
 
 bool ImageryStage::correct(std::span<const footprints::Shard> shards, const footprints::RepairedExtract& repaired) {
@@ -176,6 +185,9 @@ void ImageryStage::tell(BuildRecord& record) const {
                            state == RowState::corrected && seen_->applied ? "moved" : observation::words(state));
   const auto gone = std::ranges::count_if(seen_->outlines, [](const auto& receipt) { return receipt.gone > 0; });
   if (gone > 0) figures += fmt::format("; {} perhaps gone", base::with_thousands(static_cast<std::uint64_t>(gone)));
+  if (!seen_->unmapped.empty())
+    figures += fmt::format("; {} candidate{} for unmapped buildings", base::with_thousands(seen_->unmapped.size()),
+                           seen_->unmapped.size() == 1 ? "" : "s");
   record.summary.figures["imagery.json"] = figures;
 }
 

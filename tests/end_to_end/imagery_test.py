@@ -12,7 +12,7 @@ import xml.etree.ElementTree as ET
 import zipfile
 
 from blockrand_run import SAMPLE, BuildTest, blockrand, files_of, main, read_json
-from osm_files import METRE, ring, write_xml
+from osm_files import METRE, Relation, ring, write_xml
 
 LON, LAT = 11.3, 51.4
 STRETCH = 1 / math.cos(math.radians(LAT))
@@ -345,6 +345,83 @@ class Imagery(BuildTest):
         self.assertIn('imagery_perhaps_gone', ''.join(read_text(out, f) for f in files_of(out) if f.endswith('.gml')))
         self.assertEqual(read_json(out, 'build.json')['counts']['models'], 65)
         self.assertEqual(blockrand('validate', out).code, 0)
+
+    def test_what_is_painted_and_not_mapped_is_a_candidate(self):
+        """Three houses that the map lacks; a drive and a lawn that are none."""
+        houses = village(7)
+        missing = (11, 20, 46)
+        picture = Picture(houses, 8)
+        picture.fill([(62, 60), (68, 60), (68, 74), (62, 74)], bytes([60, 125, 50]))
+        picture.fill([(0, 32), (SIDE, 32), (SIDE, 37), (0, 37)], bytes([95, 95, 97]))
+        image = picture.write(self.path('more.ppm'))
+        config = self.place('more.toml', '[[image]]\npath = "more.ppm"\ndate = "2023-06"\nlicence = "CC BY 4.0"\n')
+        mapped = [h for k, h in enumerate(houses) if k not in missing]
+        source = write_xml(self.path('less.osm'), extract(mapped))
+        out = self.build(source, 'less', '--config', config, '--lod', '1')
+        imagery = read_json(out, 'imagery.json')
+        told = imagery['unmapped']
+        self.assertIn(f'; {len(told)} candidates for unmapped buildings', self.last.out)
+        self.assertEqual(len(told), len(missing), [(u['outline'], u['probability']) for u in told + imagery['unmapped_unsure']])
+        # Where they stand: by the house next to each, in the coordinates of the build.
+        there = middles(self.build(write_xml(self.path('all.osm'), extract(houses)), 'all', '--lod', '0', '--formats', 'gpkg', '--no-report'))
+        for k in missing:
+            place = there[f'w{100 + k}']
+            self.assertLess(min(math.dist(place, [sum(p[i] for p in u['outline']) / 4 for i in (0, 1)]) for u in told), 2.5, k)
+        rows = query(out, 'SELECT id, probability, area, outline_of, image, image_date, licence FROM unmapped ORDER BY id')
+        self.assertEqual([r[0] for r in rows], sorted(u['id'] for u in told))
+        self.assertEqual({r[4:] for r in rows}, {('more.ppm', '2023-06', 'CC BY 4.0')})
+        self.assertTrue(all(r[1] >= 0.85 and 20 <= r[2] <= 300 for r in rows), rows)
+        self.assertIn('Perhaps not mapped: 3', read_text(out, 'imagery.html'))
+        self.assertEqual(read_text(out, 'imagery.html').count('CC BY 4.0'), 1)
+        self.assertEqual(read_json(out, 'build.json')['counts']['models'], len(mapped), 'never a building by itself')
+        self.assertEqual(blockrand('validate', out).code, 0)
+        again = self.build(source, 'less_again', '--config', config, '--lod', '1', '--jobs', '1')
+        self.same_files(out, again, 'imagery.json', 'imagery.html', 'buildings.gpkg')
+        # Tiles alone have the candidates of the whole between them.
+        tiles = sorted({f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f != 'explain/index.txt'})
+        ids = []
+        for k, tile in enumerate(tiles):
+            alone = self.build(source, f'less_alone_{k}', '--lod', '1', '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json'))
+            ids += [u['id'] for u in read_json(alone, 'imagery.json')['unmapped']]
+            self.assertEqual(blockrand('validate', alone).code, 0)
+        self.assertEqual(sorted(ids), sorted(u['id'] for u in told))
+        # Nothing is missing: no candidate. With outlines not looked for: none either.
+        self.assertEqual(read_json(self.build(self.truth, 'none_less', '--imagery', image, '--lod', '0', '--formats', 'gpkg'), 'imagery.json')['unmapped'], [])
+        self.assertNotIn('candidate', self.last.out)
+        off = self.build(source, 'less_off', '--imagery', image, '--imagery-correct', 'off', '--lod', '0', '--formats', 'gpkg')
+        self.assertEqual(read_json(off, 'imagery.json')['unmapped'], [])
+
+    def test_courtyards_are_open_or_built_over(self):
+        """Two houses that the map has with a hole: one is painted with lawn in it, the other is roof all over."""
+        square = lambda x, y, half: [(x - half, y - half), (x + half, y - half), (x + half, y + half), (x - half, y + half)]
+        blocks = [(120, 165), (220, 165)]
+        others = [h for h in village(7) if all(abs(x - a) > 32 or abs(y - b) > 32 for x, y in h for a, b in blocks)]
+        picture = Picture(others, 8)
+        for k, (x, y) in enumerate(blocks):
+            picture.fill(square(x, y, 16), bytes([178, 104, 82]))
+            if k == 0:
+                picture.fill(square(x, y, 7), bytes([70, 110, 60]))
+        objects = extract(others)
+        for k, (x, y) in enumerate(blocks):
+            for j, half in enumerate((16, 7)):
+                corners = [(LON + a * METRE * STRETCH, LAT + b * METRE) for a, b in square(x, y, half)]
+                objects += ring(8000 + 100 * k + 10 * j, 800 + 10 * k + j, corners, {})
+        objects += [Relation(900 + k, [('way', 800 + 10 * k, 'outer'), ('way', 801 + 10 * k, 'inner')],
+                             {'type': 'multipolygon', 'building': 'house', 'building:levels': '1', 'roof:shape': 'flat'}) for k in range(2)]
+        source = write_xml(self.path('court.osm'), objects)
+        out = self.build(source, 'court', '--imagery', picture.write(self.path('court.ppm')), '--lod', '1')
+        courts = {b['id']: b['courtyards'] for b in read_json(out, 'imagery.json')['buildings'] if 'courtyards' in b}
+        self.assertEqual({i: [c['courtyard'] for c in cs] for i, cs in courts.items()}, {'r900': ['open'], 'r901': ['perhaps_built_over']}, courts)
+        self.assertAlmostEqual(courts['r900'][0]['area_m2'], 196, delta=2)
+        self.assertIn('perhaps built over', ' '.join(blockrand('explain', out, 'r901').out.split()))
+        self.assertIn('courtyard: open', ' '.join(blockrand('explain', out, 'r900').out.split()))
+        self.assertIn('Courtyards perhaps built over: 1', read_text(out, 'imagery.html'))
+        gml = ''.join(read_text(out, f) for f in files_of(out) if f.endswith('.gml'))
+        self.assertEqual(gml.count('<gen:stringAttribute name="imagery_courtyard">'), 2)
+        self.assertEqual(blockrand('validate', out).code, 0)
+        tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f != 'explain/index.txt'}
+        alone = self.build(source, 'court_alone', '--lod', '1', '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json'))
+        self.same_files(out, alone, 'tiles', 'citygml', 'cityjson', 'explain')
 
     def test_a_list_in_the_config_has_date_and_licence(self):
         config = self.place('c.toml', '[[image]]\npath = "village.ppm"\ndate = "2023-06"\nlicence = "CC BY 4.0"\nattribution = "The village"\n')

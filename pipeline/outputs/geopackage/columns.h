@@ -23,6 +23,7 @@ std::vector<Column> block_columns();
 std::vector<Column> courtyard_columns();
 std::vector<Column> cell_columns();
 std::vector<Column> footprint_before_columns();
+std::vector<Column> unmapped_columns();
 
 // In context_columns.cpp:
 std::vector<Column> style_columns();      ///< probabilities of classification

@@ -130,6 +130,22 @@ std::vector<Column> footprint_before_columns() {
   };
 }
 
+std::vector<Column> unmapped_columns() {
+  return {
+      {"id", kText, "", "By its place: u and the square of 2 m of the reference system in which its middle lies"},
+      {"probability", kReal, "", "How likely it is that a building stands there, from 0.85 on"},
+      {"area", kReal, "m²", "Area of the outline"},
+      {"outline_of", kText, "",
+       "ground: where it stands, by the lean of roofs in the image and its size; roof: where the image shows it, the "
+       "lean "
+       "being unknown"},
+      {"lean", kReal, "m", "How far the image shows its roof from the outline"},
+      {"image", kText, "", "The image"},
+      {"image_date", kText, "", "When it was taken"},
+      {"licence", kText, "", "Licence of the image"},
+  };
+}
+
 std::vector<Column> courtyard_columns() {
   return {
       {"id", kText, "", "A building at it and a place of that building's outline"},

@@ -121,6 +121,7 @@ void write_image_layer(GeoPackageWriter& out, const observation::ImageryObservat
     out.add_footprint_before(
         {outline, repaired.footprints[b].id, moved ? before->second : repaired.footprints.polygons(b)});
   }
+  for (const observation::UnmappedBuilding& u : seen.unmapped) out.add_unmapped({u, seen.images[u.image]});
 }
 
 }  // namespace blockrand::outputs

@@ -18,7 +18,7 @@ void write_context_layers(outputs::GeoPackageWriter& out, const context::Context
                           const footprints::RepairedExtract& repaired, std::span<const footprints::Shard> shards,
                           const std::optional<model::TileId>& tile);
 
-/// Writes the layer `footprint_before`: of all buildings that an image shows, or of those of one tile.
+/// Writes the layers `footprint_before`: of all buildings that an image shows, or of those of one tile; and `unmapped`.
 void write_image_layer(GeoPackageWriter& out, const observation::ImageryObservations& seen,
                        const footprints::RepairedExtract& repaired, std::span<const footprints::Shard> shards,
                        const std::optional<model::TileId>& tile);

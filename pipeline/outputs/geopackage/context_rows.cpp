@@ -62,6 +62,26 @@ void append_row(CellTable& table, const FootprintBeforeRow& f) {
   row.end_row();
 }
 
+void append_row(CellTable& table, const UnmappedRow& u) {
+  static const std::size_t width = unmapped_columns().size();
+  const observation::UnmappedBuilding& c = u.candidate;
+  const importers::imagery::ImageSource& source = u.image.description.source;
+  RowWriter row(table, width);
+  row.text(c.id);
+  row.real(share(c.probability));
+  row.real(rounded(c.area));
+  row.text(c.of_roof ? "roof" : "ground");
+  row.real(rounded(std::sqrt(c.lean.x * c.lean.x + c.lean.y * c.lean.y)));
+  row.text(source.path.substr(source.path.find_last_of('/') + 1));
+  row.text(source.date);
+  row.text(source.licence);
+  model::Polygon polygon;
+  polygon.outer.points = c.outline;
+  polygon.outer.nodes.assign(c.outline.size(), 0);
+  append_polygon(row.geometry(), polygon);
+  row.end_row();
+}
+
 void append_row(CellTable& table, const CourtyardRow& c) {
   static const std::size_t width = courtyard_columns().size();
   RowWriter row(table, width);

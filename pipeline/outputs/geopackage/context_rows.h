@@ -65,7 +65,14 @@ struct FootprintBeforeRow {
   std::vector<model::Polygon> polygons;  ///< repaired, before the image moved it
 };
 
+/// What looks like a building where none is mapped.
+struct UnmappedRow {
+  const observation::UnmappedBuilding& candidate;
+  const observation::ImageReceipt& image;
+};
+
 /// Appends the row to its layer's table.
+void append_row(CellTable& table, const UnmappedRow& row);
 void append_row(CellTable& table, const FootprintBeforeRow& row);
 void append_row(CellTable& table, const BlockRow& row);
 void append_row(CellTable& table, const CourtyardRow& row);

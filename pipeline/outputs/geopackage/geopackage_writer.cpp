@@ -26,7 +26,8 @@ enum LayerIndex : std::size_t {
   kReported,
   kTiles,
   kSurfaces,
-  kFootprintBefore
+  kFootprintBefore,
+  kUnmapped
 };
 
 std::vector<layer_file::LayerSpec> layers(const GeoPackageOptions& options) {
@@ -49,10 +50,13 @@ std::vector<layer_file::LayerSpec> layers(const GeoPackageOptions& options) {
       {"tiles", GeometryKind::polygon, tile_columns(), text("Tiles with content")},
       {"surfaces", GeometryKind::multi_polygon_z, surface_columns(),
        text("Faces of the bodies in space, by class and colour")}};
-  if (options.images)
+  if (options.images) {
     all.push_back(
         {"footprint_before", GeometryKind::multi_polygon, footprint_before_columns(),
          text("Outlines that an aerial image shows, those it moved as they stood before, and what it says of them")});
+    all.push_back({"unmapped", GeometryKind::polygon, unmapped_columns(),
+                   text("Candidates: what looks like a building in an aerial image where none is mapped")});
+  }
   return all;
 }
 
@@ -94,6 +98,8 @@ void GeoPackageWriter::add_courtyard(const CourtyardRow& courtyard) { impl_->put
 void GeoPackageWriter::add_cell(const CellRow& cell) { impl_->put_one(kCells, cell); }
 
 void GeoPackageWriter::add_footprint_before(const FootprintBeforeRow& row) { impl_->put_one(kFootprintBefore, row); }
+
+void GeoPackageWriter::add_unmapped(const UnmappedRow& row) { impl_->put_one(kUnmapped, row); }
 
 void GeoPackageWriter::add_reported(const GeoPackageReported& object) {
   CellTable& table = impl_->empty_row();

@@ -20,7 +20,7 @@ struct GeoPackageOptions {
   std::string data_time;         ///< newest time of the data, ISO 8601 in UTC; stands for every date in the file
   std::string height_reference;  ///< in words, for the layers' descriptions
   std::string attribution;       ///< source and licence of the data, for the layers' descriptions
-  bool images = false;           ///< the layer footprint_before is there
+  bool images = false;           ///< the layers footprint_before and unmapped are there
 };
 
 /// An object of the extract that is not modelled itself.
@@ -45,7 +45,8 @@ struct GeoPackageTile {
 
 /// Writes one file with the layers `buildings` (MultiPolygon), `parts` (Polygon), `reported` (Point, NULL where no
 /// place is known), `tiles` (Polygon), `facade_edges` (LineString), `blocks`, `courtyards` and `cells` (Polygon), `surfaces` (MultiPolygonZ); columns in columns.h, their meaning and unit in the file's gpkg_data_columns.
-/// With images also `footprint_before` (MultiPolygon): outlines that an image shows, as they stood before it, with the receipt.
+/// With images also `footprint_before` (MultiPolygon): outlines that an image shows, as they stood before it, with the receipt;
+/// and `unmapped` (Polygon): what looks like a building where none is mapped.
 /// The table `layer_styles` holds QGIS styles, one default for each layer.
 ///
 /// The same calls give the same bytes: the file holds no clock and no UUID. One thread at a time, any thread; no GDAL
@@ -71,6 +72,7 @@ class GeoPackageWriter {
   void add_courtyard(const CourtyardRow& courtyard);
   void add_cell(const CellRow& cell);
   void add_footprint_before(const FootprintBeforeRow& row);
+  void add_unmapped(const UnmappedRow& row);
 
   /// Makes the spatial indices and ends the file; no journal stays beside it.
   void close();

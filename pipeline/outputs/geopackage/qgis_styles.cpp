@@ -287,6 +287,14 @@ std::string closed_or_open() {
   return std::move(qml).done();
 }
 
+std::string unmapped_probability() {
+  Qml qml(Shape::fill);
+  qml.ranges("probability");
+  qml.range("0", "0.9", "likely a building", {190, 220, 90});
+  qml.range("0.9", "1", "very likely a building", {60, 170, 60});
+  return std::move(qml).done();
+}
+
 std::string image_states() {
   Qml qml(Shape::fill);
   qml.categories("state");
@@ -321,8 +329,10 @@ std::vector<QgisStyle> qgis_styles(bool images) {
       {"tiles", "Outlines", "Tile borders with their numbers", outlines(), true},
       {"surfaces", "Classes", "Ground, walls and roofs", surface_classes(), true},
   };
-  if (images)
+  if (images) {
     styles.push_back({"footprint_before", "What was done", "Moved or left where it is mapped", image_states(), true});
+    styles.push_back({"unmapped", "Probability", "How likely a building stands there", unmapped_probability(), true});
+  }
   return styles;
 }
 

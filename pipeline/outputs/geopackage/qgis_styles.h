@@ -14,7 +14,7 @@ using layer_file::QgisStyle;
 /// (default) in the colours of model/wall_segment_colours.h; blocks: by floor area ratio (default), by closure; courtyards: closed
 /// or open (default); cells: by built share (default), by storeys; surfaces: by class (default).
 /// Buildings are labelled with house numbers at 1:2500 and larger.
-/// \param images  with the layer footprint_before, by what was done
+/// \param images  with the layers footprint_before, by what was done, and unmapped, by probability
 std::vector<QgisStyle> qgis_styles(bool images = false);
 
 }  // namespace blockrand::outputs

@@ -108,6 +108,15 @@ void add_roof(Json& j, const observation::RoofView& roof) {
     evidence["lines"].push_back({rounded(r.angle, 10), rounded(r.contrast, 1000), rounded(r.consistency, 100),
                                  rounded(r.line, 1000), rounded(r.offset, 100), rounded(r.length, 10),
                                  rounded(r.wide, 1000), rounded(r.within, 1000), rounded(r.halves, 1000)});
+  for (const observation::CourtyardView& c : roof.courtyards) {
+    const observation::CourtyardEvidence& seen = c.evidence;
+    Json courtyard = {{"area_m2", rounded(c.area, 10)},
+                      {"courtyard", observation::name(c.state)},
+                      {"built_over", rounded(c.built_over, 100)}};
+    for (const double value : {seen.alike, seen.level, seen.dark, seen.green, seen.edge, seen.around})
+      courtyard["evidence"].push_back(rounded(value, 1000));
+    j["courtyards"].push_back(std::move(courtyard));
+  }
 }
 
 void add_height(Json& j, const observation::SeenHeight& seen) {
@@ -121,6 +130,24 @@ void add_height(Json& j, const observation::SeenHeight& seen) {
                  {"clearness", rounded(seen.shadow.clearness, 1000)},
                  {"second", rounded(seen.shadow.second, 1000)},
                  {"walls_m", rounded(seen.shadow.walls, 10)}};
+}
+
+Json unmapped_json(const observation::UnmappedBuilding& u) {
+  Json j;
+  j["id"] = u.id;
+  j["image"] = u.image;
+  j["probability"] = rounded(u.probability, 1000);
+  j["area_m2"] = rounded(u.area, 10);
+  j["outline_of"] = u.of_roof ? "roof" : "ground";
+  j["lean_m"] = metres(u.lean);
+  j["outline"] = Json::array();
+  for (const model::Point2 p : u.outline) j["outline"].push_back({p.x, p.y});
+  const observation::UnmappedEvidence& e = u.evidence;
+  j["evidence"] = Json::array();
+  for (const double value :
+       {e.score, e.around, e.filled, e.elongation, e.likeness, e.green_around, e.mapped_around, e.shadow, e.brightness})
+    j["evidence"].push_back(rounded(value, 1000));
+  return j;
 }
 
 model::OsmId id_of(const std::string& text) {
@@ -180,6 +207,12 @@ observation::RoofView roof_of(const nlohmann::json& j) {
     roof.ridge = j.at("ridge_azimuth_deg").get<double>();
     roof.ridge_confidence = j.at("ridge_confidence").get<double>();
   }
+  if (j.contains("courtyards"))
+    for (const nlohmann::json& c : j.at("courtyards"))
+      roof.courtyards.push_back({c.at("area_m2").get<double>(),
+                                 c.at("built_over").get<double>(),
+                                 named(c.at("courtyard").get<std::string>(), observation::CourtyardState::built_over),
+                                 {}});
   return roof;
 }
 
@@ -192,6 +225,19 @@ observation::SeenHeight height_of(const nlohmann::json& j) {
   seen.uncertainty = j.at("height_from_shadow_within_m").get<double>();
   seen.confidence = j.value("height_from_shadow_confidence", 0.0);
   return seen;
+}
+
+observation::UnmappedBuilding unmapped_of(const nlohmann::json& j) {
+  observation::UnmappedBuilding u;
+  u.id = j.at("id").get<std::string>();
+  u.image = j.at("image").get<std::uint32_t>();
+  u.probability = j.at("probability").get<double>();
+  u.area = j.at("area_m2").get<double>();
+  u.of_roof = j.at("outline_of").get<std::string>() == "roof";
+  u.lean = point(j.at("lean_m"));
+  for (const nlohmann::json& p : j.at("outline")) u.outline.push_back(point(p));
+  if (u.outline.size() < 3) throw std::runtime_error("no outline: " + u.id);
+  return u;
 }
 
 }  // namespace
@@ -209,6 +255,10 @@ std::string imagery_json(const observation::ImageryObservations& seen, const foo
     if (b < seen.roofs.size()) add_roof(j["buildings"].back(), seen.roofs[b]);
     if (b < seen.heights.size()) add_height(j["buildings"].back(), seen.heights[b]);
   }
+  j["unmapped"] = Json::array();
+  for (const observation::UnmappedBuilding& u : seen.unmapped) j["unmapped"].push_back(unmapped_json(u));
+  j["unmapped_unsure"] = Json::array();
+  for (const observation::UnmappedBuilding& u : seen.unmapped_unsure) j["unmapped_unsure"].push_back(unmapped_json(u));
   return j.dump(1) + "\n";
 }
 
@@ -240,6 +290,10 @@ ReadImagery read_imagery_json(const std::string& text) {
     if (height.image != observation::SeenHeight::kNoImage && height.image >= read.images.size())
       throw std::runtime_error("an image is not there");
     read.buildings.push_back({id_of(b.at("id").get<std::string>()), receipt, roof, height});
+  }
+  for (const nlohmann::json& u : j.at("unmapped")) {
+    read.unmapped.push_back(unmapped_of(u));
+    if (read.unmapped.back().image >= read.images.size()) throw std::runtime_error("an image is not there");
   }
   return read;
 }

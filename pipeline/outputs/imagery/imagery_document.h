@@ -26,6 +26,7 @@ struct ReadImagery {
     observation::SeenHeight height;
   };
   std::vector<Building> buildings;
+  std::vector<observation::UnmappedBuilding> unmapped;  ///< those that are told, without their evidence
 };
 
 /// \throws std::exception  it is no imagery.json of this version

@@ -54,9 +54,8 @@ std::string count_rows(const OverlayInputs& in) {
   return out;
 }
 
-/// A house with its surroundings; the largest halls are cut.
-std::string chip(const OverlayInputs& in, std::uint32_t building) {
-  geometry::PlanBox box = in.footprints[building].box;
+/// A house with its surroundings; the largest halls are cut. \param name  of what the picture shows
+std::string chip(const OverlayInputs& in, geometry::PlanBox box, std::uint32_t image, const std::string& name) {
   const model::Point2 middle = box.centre();
   const double x = std::min(kLargestChip / 2, (box.maximum.x - box.minimum.x) / 2 + kAround),
                y = std::min(kLargestChip / 2, (box.maximum.y - box.minimum.y) / 2 + kAround);
@@ -64,18 +63,19 @@ std::string chip(const OverlayInputs& in, std::uint32_t building) {
   std::vector<std::uint32_t> near;
   for (std::uint32_t b = 0; b < in.seen.outlines.size(); ++b)
     if (in.footprints[b].box.near(box, 0)) near.push_back(b);
-  const picture::Image image = draw_overlay(in, box, kChipPixel, near, in.seen.outlines[building].image);
+  const picture::Image picture = draw_overlay(in, box, kChipPixel, near, image);
   std::string out = fmt::format("<img width=\"{}\" height=\"{}\" alt=\"{} in the image\" src=\"data:image/png;base64,",
-                                image.width, image.height, in.footprints[building].id.text());
-  base::append_base64(out, picture::palette_png(image, 128));
+                                picture.width, picture.height, name);
+  base::append_base64(out, picture::palette_png(picture, 128));
   return out + "\"/>";
 }
 
 std::string figure(const OverlayInputs& in, std::uint32_t building) {
   const OutlineReceipt& r = in.seen.outlines[building];
-  const SeenOutline seen{r, in.seen.images[r.image], in.seen.applied};
-  return "<figure>" + chip(in, building) + "<figcaption>" + osm_link(in.footprints[building].id) + ": " +
-         escaped(imagery_text(seen)) + "</figcaption></figure>\n";
+  const SeenOutline seen{r, in.seen.images[r.image], in.seen.applied, in.footprints[building].box, in.seen.roofs[building].courtyards};
+  const footprints::StoredFootprint& footprint = in.footprints[building];
+  return "<figure>" + chip(in, footprint.box, r.image, footprint.id.text()) + "<figcaption>" +
+         osm_link(in.footprints[building].id) + ": " + escaped(imagery_text(seen)) + "</figcaption></figure>\n";
 }
 
 /// What is mapped where the image shows no building, the likeliest first.
@@ -89,6 +89,49 @@ std::string gone_figures(const OverlayInputs& in) {
                                 base::with_thousands(gone.size()));
   gone.resize(std::min(gone.size(), kPicturedCorrections));
   for (const std::uint32_t b : gone) out += figure(in, b);
+  return out;
+}
+
+/// Courtyards that are mapped open and look built over, the likeliest first.
+std::string courtyard_figures(const OverlayInputs& in) {
+  std::uint64_t looked = 0, open = 0;
+  std::vector<std::pair<double, std::uint32_t>> built_over;
+  for (std::uint32_t b = 0; b < in.seen.roofs.size(); ++b) {
+    if (in.seen.outlines[b].image >= in.seen.images.size()) continue;
+    double most = 0;
+    for (const observation::CourtyardView& c : in.seen.roofs[b].courtyards) {
+      ++looked, open += c.state == observation::CourtyardState::open;
+      if (c.state == observation::CourtyardState::built_over) most = std::max(most, c.built_over);
+    }
+    if (most > 0) built_over.emplace_back(-most, b);
+  }
+  if (looked == 0) return {};
+  std::ranges::sort(built_over);
+  std::string out = fmt::format(
+      "<h2>Courtyards perhaps built over: {}</h2>\n<p>Mapped as open, and built so; the image shows a roof. "
+      "Of {} courtyards {} are surely open.</p>\n",
+      base::with_thousands(built_over.size()), base::with_thousands(looked), base::with_thousands(open));
+  built_over.resize(std::min(built_over.size(), kPicturedCandidates));
+  for (const auto& [sure, b] : built_over) out += figure(in, b);
+  return out;
+}
+
+/// What looks like a building where none is mapped, the likeliest first.
+std::string unmapped_figures(const OverlayInputs& in) {
+  const std::vector<observation::UnmappedBuilding>& all = in.seen.unmapped;
+  std::string out = fmt::format(
+      "<h2>Perhaps not mapped: {}</h2>\n<p>What looks like a building where the map has none: candidates to look at; "
+      "nothing was built there.</p>\n",
+      base::with_thousands(all.size()));
+  for (const observation::UnmappedBuilding& u : std::span(all).first(std::min(all.size(), kPicturedCandidates))) {
+    const importers::imagery::ImageSource& source = in.seen.images[u.image].description.source;
+    out += "<figure>" + chip(in, geometry::box_of(u.outline), u.image, u.id) + "<figcaption>" +
+           escaped(fmt::format("{}: {:.0f} m², probability {:.2f}, {}{}{}", u.id, u.area, std::min(0.99, u.probability),
+                               source.path.substr(source.path.find_last_of('/') + 1),
+                               source.date.empty() ? "" : " of " + source.date,
+                               u.of_roof ? "; the outline is the roof's, how far it leans is not known" : "")) +
+           "</figcaption></figure>\n";
+  }
   return out;
 }
 
@@ -125,10 +168,13 @@ std::string imagery_page(const OverlayInputs& in, const std::vector<std::string>
   out += fmt::format("<h2>The largest of {} {}</h2>\n<ul>", base::with_thousands(all), what);
   out += swatch(kBefore, "as mapped") + swatch(kAfterUnsure, "where the image shows it, just sure enough") +
          swatch(kAfterSure, "the same, quite sure") + swatch(kRefused, "the same, but it stays as mapped") +
-         swatch(kAsMapped, "stays as mapped") + "</ul>\n<p>Outlines are drawn where the image shows the roofs.</p>\n";
+         swatch(kAsMapped, "stays as mapped") + swatch(kUnmapped, "perhaps a building that is not mapped") +
+         "</ul>\n<p>Outlines are drawn where the image shows the roofs.</p>\n";
   if (largest.empty()) out += "<p>None.</p>\n";
   for (const std::uint32_t b : largest) out += figure(in, b);
   out += gone_figures(in);
+  out += courtyard_figures(in);
+  out += unmapped_figures(in);
   if (!overlays.empty()) {
     out += "<h2>Tiles</h2>\n<ul>\n";
     for (const std::string& path : overlays)

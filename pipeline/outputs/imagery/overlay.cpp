@@ -99,6 +99,12 @@ picture::Image draw_overlay(const OverlayInputs& in, const geometry::PlanBox& bo
       const footprints::Movement movement{r.shift, r.centre, r.turn};
       draw(plan, before, &movement, r.lean, r.state == RowState::refused ? kRefused : after_colour(r.confidence));
     }
+  for (const observation::UnmappedBuilding& u : in.seen.unmapped) {
+    if (!geometry::box_of(u.outline).near(box, 0)) continue;
+    std::vector<Point2> roof = u.outline;
+    for (Point2& p : roof) p.x += u.lean.x, p.y += u.lean.y;
+    plan.stroke(roof, kLine * plan.metres_per_pixel(), kUnmapped, true);
+  }
   return plan.image();
 }
 

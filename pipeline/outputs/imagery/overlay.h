@@ -23,12 +23,12 @@ struct OverlayInputs {
 };
 
 /// The colours of outlines, for legends: as mapped where it stays; as mapped where the image shows it elsewhere; there, by
-/// confidence from 0.7 to 1; refused.
+/// confidence from 0.7 to 1; refused; what looks like a building where none is mapped.
 inline constexpr model::Colour kAsMapped{255, 255, 255}, kBefore{255, 214, 0}, kAfterUnsure{255, 0, 190},
-    kAfterSure{0, 230, 255}, kRefused{255, 40, 40};
+    kAfterSure{0, 230, 255}, kRefused{255, 40, 40}, kUnmapped{70, 255, 70};
 
 /// A picture of a box: images that fit the map, the first that has a pixel, the others' parts grey; outlines where the
-/// images show the roofs, that is displaced by their lean. Deterministic.
+/// images show the roofs, that is displaced by their lean; candidates for unmapped buildings in the box. Deterministic.
 /// \param box        m in the build CRS
 /// \param pixel      m
 /// \param buildings  by number

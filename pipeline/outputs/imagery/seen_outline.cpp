@@ -10,6 +10,7 @@
 namespace blockrand::outputs {
 namespace {
 
+using observation::CourtyardState;
 using observation::RowState;
 
 std::string_view compass(model::Point2 shift) {
@@ -37,6 +38,15 @@ std::string_view SeenOutline::state() const {
   return "undecided";
 }
 
+std::optional<observation::CourtyardView> SeenOutline::told_courtyard() const {
+  std::optional<observation::CourtyardView> told;
+  for (const observation::CourtyardView& c : courtyards) {
+    if (c.state == CourtyardState::unknown) continue;
+    if (!told || c.state > told->state || (c.state == told->state && c.built_over > told->built_over)) told = c;
+  }
+  return told;
+}
+
 SeenOutlines seen_outlines(const observation::ImageryObservations* observations,
                            const footprints::FootprintStore& footprints) {
   if (!observations) return {};
@@ -46,7 +56,9 @@ SeenOutlines seen_outlines(const observation::ImageryObservations* observations,
     if (b == model::kNoIndex || b >= observations->outlines.size()) return std::nullopt;
     const observation::OutlineReceipt& receipt = observations->outlines[b];
     if (receipt.image >= observations->images.size()) return std::nullopt;
-    return SeenOutline{receipt, observations->images[receipt.image], observations->applied, (*footprints_of)[b].box};
+    SeenOutline seen{receipt, observations->images[receipt.image], observations->applied, (*footprints_of)[b].box};
+    if (b < observations->roofs.size()) seen.courtyards = observations->roofs[b].courtyards;
+    return seen;
   };
 }
 
@@ -59,6 +71,10 @@ std::vector<ImageryAttribute> imagery_attributes(const SeenOutline& seen) {
       {"imagery_confidence", r.confidence},         {"imagery_image", file_name(seen.image.description.source.path)}};
   if (!r.reason.empty()) out.insert(out.begin() + 1, {"imagery_reason", r.reason});
   if (r.gone > 0) out.emplace_back("imagery_perhaps_gone", r.gone);
+  if (const auto courtyard = seen.told_courtyard()) {
+    out.emplace_back("imagery_courtyard", std::string(observation::name(courtyard->state)));
+    out.emplace_back("imagery_courtyard_built_over", courtyard->built_over);
+  }
   if (!seen.image.description.source.date.empty()) out.emplace_back("imagery_date", seen.image.description.source.date);
   return out;
 }
@@ -92,7 +108,12 @@ std::string place_text(const SeenOutline& seen) {
 }  // namespace
 
 std::string imagery_text(const SeenOutline& seen) {
-  const std::string place = place_text(seen);
+  std::string place = place_text(seen);
+  if (const auto courtyard = seen.told_courtyard())
+    place += courtyard->state == CourtyardState::open
+                 ? fmt::format("; courtyard: open ({:.2f})", 1 - courtyard->built_over)
+                 : fmt::format("; courtyard of {:.0f} m²: perhaps built over ({:.2f})", courtyard->area,
+                               courtyard->built_over);
   if (seen.receipt.gone <= 0) return place;
   return fmt::format("perhaps gone ({:.2f}): no roof, wall or shadow is seen; {}", seen.receipt.gone, place);
 }

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,11 +20,14 @@ namespace blockrand::outputs {
 struct SeenOutline {
   const observation::OutlineReceipt& receipt;
   const observation::ImageReceipt& image;
-  bool applied = false;  ///< what is corrected stands where the image shows it
-  geometry::PlanBox box{};  ///< m in the build CRS: of its outline as it stands
+  bool applied = false;      ///< what is corrected stands where the image shows it
+  geometry::PlanBox box{};   ///< m in the build CRS: of its outline as it stands
+  std::span<const observation::CourtyardView> courtyards{};  ///< holes of its outline
 
   /// "moved" or "seen_elsewhere"; "as_mapped", "undecided", "refused".
   std::string_view state() const;
+  /// What is surely seen in its courtyards: perhaps built over if one is; nothing where none is sure.
+  std::optional<observation::CourtyardView> told_courtyard() const;
 };
 
 /// Receipts by building; nothing for one that no image shows. May be empty: no images.

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Judges the program's analysis of aerial images (issue 20). Markdown tables to stdout, everything to a JSON file.
 
-    evaluate.py kampala|synthetic|pariser-platz|georeference|colours|ridges|gone [options]
+    evaluate.py kampala|synthetic|pariser-platz|georeference|colours|ridges|gone|unmapped|courtyards [options]
 
 Runs `blockrand build EXTRACT --imagery IMAGE --imagery-correct report` and reads imagery.json of the build. Needs the data folder
 (--shared), rendered pictures (--images: FOLDER/SET/PLACE.tif with .truth.json, by render.py), osmium-tool, python3-gdal, python3-numpy.
@@ -20,10 +20,13 @@ import xml.etree.ElementTree as ET
 import numpy as np
 from osgeo import gdal, ogr
 
+import candidates
 import ciede2000
 import corrections
 import ghosts
+import holes
 import misregister
+import omit
 import osm
 from corrections import HEAD, Judged, cells, outlines, read_truth, summarise, table
 from displace import Buildings, displace
@@ -308,6 +311,65 @@ class Bench:
         table(["place", "not there", "told so", "there", "told gone", "share found", "share wrong"], lines + [["all", *total, percent(total[1], total[0]), percent(total[3], total[2])]])
         self.result["gone"] = [[str(v) for v in line] for line in lines]
 
+    def unmapped(self):
+        """Candidates on maps that lack a fifth of their buildings, and on maps that lack none."""
+        print("### Built where nothing is mapped: candidates\n")
+        print("Right: half of the candidate lies on roofs that were left out of the map. Sheds: what the scene has and no map (mostly under 20 m2); neither right nor wrong. Wrong: all others.\n")
+        lines, plain, total, total_plain, ious = [], [], np.zeros(5, int), np.zeros(3, int), []
+        places = self.rendered() + ["kampala", "pariser-platz"]
+        for place in places:
+            real = place not in PLACES and place != "estate"
+            whole, image = {"kampala": (self.kampala_osm, self.kampala_image), "pariser-platz": (self.platz_osm, self.platz_image)}.get(place) or (self.extract_of(place), self.image_of(place))
+            scene, set_ = (None, "real") if real else (self.truth_of(place), self.a.set)
+            answer = self.run(f"plain-{place}-{set_}", whole, image)
+            seen = {b["id"] for b in answer["buildings"] if b.get("roof_evidence")}
+            name = os.path.join(self.a.work, f"omit-{place}")
+            omit.omit(whole, name + "-none.osm", 0, 0)
+            with open(os.path.join(self.a.work, f"plain-{place}-{set_}", "build.json")) as f:
+                epsg = int(json.load(f)["crs"]["code"].split(":")[1])
+            said = [candidates.Truth(whole, name + "-none.osm", epsg, scene).judge(c)[0] for c in answer["unmapped"]]
+            row = np.array([len(seen), said.count("shed"), said.count("wrong")])
+            plain.append([place, *row])
+            total_plain += 0 if real else row
+            for seed in self.a.seeds:
+                extract = f"{name}-{seed}.osm"
+                omit.omit(whole, extract, seed)
+                answer = self.run(f"omit-{place}-{set_}-{seed}", extract, image)
+                truth = candidates.Truth(whole, extract, epsg, scene)
+                said = [truth.judge(c) for c in answer["unmapped"]]
+                gone = truth.large() & seen
+                found = {o for what, o, _ in said if what == "right"} & gone
+                best = {o: max(i for _, p, i in said if p == o) for o in found}
+                row = np.array([len(gone), len(found), *(sum(w == kind for w, _, _ in said) for kind in ("right", "shed", "wrong"))])
+                lines.append([place, seed, *row, percent(row[1], row[0]), percent(row[2], row[2] + row[4]), f"{np.median(list(best.values())):.2f}" if best else ""])
+                if not real:
+                    total, ious = total + row, ious + list(best.values())
+        lines.append(["synthetic", "all", *total, percent(total[1], total[0]), percent(total[2], total[2] + total[4]), f"{np.median(ious):.2f}" if ious else ""])
+        table(["place", "seed", "left out, 20 m2 and more", "found", "candidates right", "sheds", "wrong", "recall", "precision", "IoU of the found, median"], lines)
+        print("Nothing left out:\n")
+        table(["place", "buildings seen", "sheds", "wrong"], plain + [["synthetic", *total_plain]])
+        self.result["unmapped"] = [[str(v) for v in line] for line in lines + plain]
+
+    def courtyards(self):
+        """Holes that holes.py cut where a roof lies (built over), and real ones (open)."""
+        print("### Courtyards: open, or built over\n")
+        lines, total = [], np.zeros(6, int)
+        for place in self.rendered() + ["pariser-platz", "kampala"]:
+            real = place in ("pariser-platz", "kampala")
+            whole, image = {"kampala": (self.kampala_osm, self.kampala_image), "pariser-platz": (self.platz_osm, self.platz_image)}.get(place) or (self.extract_of(place), self.image_of(place))
+            for seed in self.a.seeds:
+                extract = os.path.join(self.a.work, f"holes-{place}-{seed}.osm")
+                holes.cut_holes(whole, extract, seed)
+                answer, truth = self.run(f"holes-{place}-{'real' if real else self.a.set}-{seed}", extract, image), holes.read_holes(extract[:-4] + ".csv")
+                said = [(truth[b["id"]], c["courtyard"]) for b in answer["buildings"] for c in b.get("courtyards", []) if b["id"] in truth]
+                count = lambda cut, state: sum(t == cut and (state is None or s == state) for t, s in said)
+                row = np.array([count(1, None), count(1, "perhaps_built_over"), count(1, "open"), count(0, None), count(0, "open"), count(0, "perhaps_built_over")])
+                lines.append([place, seed, *row, percent(row[1] + row[4], row[1] + row[2] + row[4] + row[5])])
+                total += 0 if real else row
+        lines.append(["synthetic", "all", *total, percent(total[1] + total[4], total[1] + total[2] + total[4] + total[5])])
+        table(["place", "seed", "holes cut into roofs", "told built over", "told open", "real courtyards", "told open", "told built over", "of what is told right"], lines)
+        self.result["courtyards"] = [[str(v) for v in line] for line in lines]
+
     # ---- what is seen of roofs ------------------------------------------------------------------------------------
 
     def colours(self):
@@ -440,7 +502,7 @@ def merge(shapes):
 
 def main():
     a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    a.add_argument("what", choices=["kampala", "synthetic", "pariser-platz", "georeference", "colours", "ridges", "gone"])
+    a.add_argument("what", choices=["kampala", "synthetic", "pariser-platz", "georeference", "colours", "ridges", "gone", "unmapped", "courtyards"])
     a.add_argument("--program", default=os.path.join(HERE, "../../../build/release/blockrand"))
     a.add_argument("--shared", default="/work/shared" if os.path.isdir("/work/shared") else os.path.join(HERE, "../../../../shared"))
     a.add_argument("--images", default="/work/imagery_bench", help="rendered pictures: FOLDER/SET/PLACE.tif; estate.osm")

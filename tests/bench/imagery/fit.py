@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Fits the logistic regressions of pipeline/observation (verdict.cpp, roof_view.cpp, presence.cpp) on the tuning images; prints weights and what each
+"""Fits the logistic regressions of pipeline/observation (verdict.cpp, roof_view.cpp, presence.cpp, unmapped.cpp, courtyard_view.cpp) on the tuning images; prints weights and what each
 place that is left out says.
 
-    fit.py confidence|form|ridge|gone [--work FOLDER] [--images FOLDER] [--places PLACE ...]
+    fit.py confidence|form|ridge|gone|unmapped|courtyards [--work FOLDER] [--images FOLDER] [--places PLACE ...]
 
 confidence: of the runs that `evaluate.py synthetic --set tuning` and `evaluate.py kampala` left in --work; a row is right when it is
 found within 0.6 m; of those that are found 0.4 m or more from where they are mapped. form, ridge: of builds of the tuning images, which are made here where --work lacks them.
@@ -18,7 +18,10 @@ import subprocess
 
 import numpy as np
 
+import candidates
 import ghosts
+import holes
+import omit
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 PLACES = {"berlin-zionskirchplatz-2020": "osm", "london-soho-2025": "osm.gz", "husum_altstadt": "osm.pbf", "zuerich-niederdorf-2025": "osm.pbf",
@@ -34,6 +37,9 @@ def fit(a, y, ridge=1.0, rounds=50):
     return w
 
 
+LAST = []  # (probability by the other places, is it so) of the last report
+
+
 def report(rows):
     """rows: (place, features, right)."""
     a, y, place = np.array([r[1] for r in rows]), np.array([r[2] for r in rows], float), np.array([r[0] for r in rows])
@@ -44,6 +50,7 @@ def report(rows):
             continue
         p[here] = 1 / (1 + np.exp(-a[here] @ fit(a[~here], y[~here])))
         print(f"{left_out:32} {here.sum():6}   right {np.mean((p[here] > .5) == (y[here] > .5)):.3f}   share of ones {y[here].mean():.2f}")
+    LAST[:] = list(zip(p.tolist(), (y > .5).tolist()))
     sure, right = np.maximum(p, 1 - p), (p > .5) == (y > .5)
     for least in (.5, .6, .7, .75, .8, .85, .9):
         said = sure >= least
@@ -168,15 +175,81 @@ def gone(a):
     report(rows)
 
 
+def unmapped_features(e):
+    """As unmapped.cpp has them."""
+    score, around, filled, elongation, likeness, green_around, mapped_around, shadow, brightness, area = e
+    return [1, score, score - around, filled, math.log(elongation), likeness, green_around, mapped_around, min(.4, max(-.2, shadow)), min(0, max(-.2, shadow) - .1), min(1.2, max(.5, brightness)),
+            math.log(area / 100)]
+
+
+def built(a, extract, out, place):
+    """Builds an extract on the tuning image of a place where --work lacks it -> imagery.json."""
+    if not os.path.exists(os.path.join(out, "imagery.json")):
+        subprocess.run([a.program, "build", extract, "-o", out, "--force", "--imagery", os.path.join(a.images, "tuning", place + ".tif"), "--lod", "0", "--formats", "gpkg",
+                        "--ground-height", "0", "--no-report", "--no-explain", "--progress", "none", "-q"], check=True)
+    with open(os.path.join(out, "imagery.json")) as f:
+        return json.load(f)
+
+
+def unmapped(a):
+    """Candidates where omit.py left buildings out, on the tuning images. Sheds that no map has count for nothing."""
+    rows = []
+    for place in a.places:
+        whole = os.path.join(a.shared, "data/osm", f"{place}.{PLACES[place]}")
+        with open(os.path.join(a.images, "tuning", place + ".truth.json")) as f:
+            scene = json.load(f)
+        for seed in (1, 2):
+            extract = os.path.join(a.work, f"omit-{place}-{seed}.osm")
+            if not os.path.exists(extract):
+                omit.omit(whole, extract, seed)
+            out = os.path.join(a.work, f"omit-{place}-{seed}")
+            seen = built(a, extract, out, place)
+            with open(os.path.join(out, "build.json")) as f:
+                truth = candidates.Truth(whole, extract, int(json.load(f)["crs"]["code"].split(":")[1]), scene)
+            for c in seen["unmapped"] + seen["unmapped_unsure"]:
+                what = truth.judge(c)[0]
+                if what != "shed":
+                    rows.append((place, unmapped_features(c["evidence"] + [c["area_m2"]]), what == "right"))
+    report(rows)
+    for least in (.5, .6, .7, .8, .85, .9):
+        told = [r for r in LAST if r[0] >= least]
+        print(f"told from {least}: {len(told)}, of them right {np.mean([r[1] for r in told]) if told else math.nan:.3f}; of the right ones told {sum(r[1] for r in told) / max(1, sum(r[1] for r in LAST)):.2f}")
+
+
+def courtyards(a):
+    """Holes that holes.py cut where a roof lies, and real ones, on the tuning images."""
+    rows = []
+    for place in a.places:
+        for seed in (1, 2, 3):
+            extract = os.path.join(a.work, f"holes-{place}-{seed}.osm")
+            if not os.path.exists(extract):
+                holes.cut_holes(os.path.join(a.shared, "data/osm", f"{place}.{PLACES[place]}"), extract, seed, .6)
+            truth = holes.read_holes(extract[:-4] + ".csv")
+            for b in built(a, extract, extract[:-4], place)["buildings"]:
+                for c in b.get("courtyards", []):
+                    if b["id"] in truth and (truth[b["id"]] or seed == 1):
+                        alike, level, dark, green, edge, around = c["evidence"]
+                        rows.append((place, [1, alike, min(1, level), dark, green, edge - around], truth[b["id"]]))
+    # As many open as built over: few maps have holes where a roof lies.
+    cut = [r for r in rows if r[2]]
+    real = [r for r in rows if not r[2]]
+    print(f"{len(cut)} cut, {len(real)} real")
+    report(cut + real * round(len(cut) / len(real)))
+    for least in (.8, .85, .9, .95):
+        over, open_ = [r for r in LAST if r[0] >= least], [r for r in LAST if r[0] <= 1 - least]
+        print(f"from {least}: built over {len(over)}, right {np.mean([r[1] for r in over]):.3f}; open {len(open_)}, right {1 - np.mean([r[1] for r in open_]):.3f}")
+
+
 def main():
     a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    a.add_argument("what", choices=["confidence", "form", "ridge", "gone"])
+    a.add_argument("what", choices=["confidence", "form", "ridge", "gone", "unmapped", "courtyards"])
     a.add_argument("--program", default=os.path.join(HERE, "../../../build/release/blockrand"))
     a.add_argument("--shared", default="/work/shared" if os.path.isdir("/work/shared") else os.path.join(HERE, "../../../../shared"))
     a.add_argument("--images", default="/work/imagery_bench")
     a.add_argument("--work", default="/tmp/imagery_bench")
     a.add_argument("--places", nargs="+", default=list(PLACES), choices=list(PLACES))
     a = a.parse_args()
+    os.makedirs(a.work, exist_ok=True)
     globals()[a.what](a)
 
 

@@ -18,13 +18,16 @@ if not shutil.which("osmium"):
     print("skipped: no osmium-tool")
     sys.exit(77)
 
+import candidates
 import ciede2000
 import corrections
 import displace
 import estate
 import ghosts
+import holes
 import misregister
 import model
+import omit
 import osm
 import render
 from raster import Buffer, View
@@ -147,6 +150,62 @@ class Ghosts(InFolder):
             np.testing.assert_allclose(before.rings[o][0], after.rings[o][0], atol=1e-6)
         for o in ids:
             self.assertEqual([x for x in after.rows if after.rows[x] == after.rows[o]], [o], "2 m from any other")
+
+
+class Omissions(InFolder):
+    def test_a_share_of_the_houses_is_left_out_and_nothing_else(self):
+        source, target = self.path("estate.osm"), self.path("omit.osm")
+        estate.estate(source)
+        gone = omit.omit(source, target, 3, .2)
+        before, after = displace.Buildings(osm.Extract(source)), displace.Buildings(osm.Extract(target))
+        self.assertAlmostEqual(len(gone) / len(before.rings), .2, delta=.02)
+        self.assertEqual(set(before.rings) - set(after.rings), set(gone))
+        for o in after.rings:
+            np.testing.assert_array_equal(before.rings[o][0], after.rings[o][0])
+        self.assertEqual(omit.omit(source, target, 3, .2), gone, "the same seed, the same houses")
+        self.assertEqual(omit.omit(source, target, 3, 0), [])
+
+    def test_candidates_are_judged_where_the_image_shows_the_roofs(self):
+        source, target = self.path("estate.osm"), self.path("omit.osm")
+        estate.estate(source)
+        gone = omit.omit(source, target, 3, .2)
+        whole = displace.Buildings(osm.Extract(source))
+        lean = np.array([1.5, -1.0])
+        scene = dict(buildings={o: dict(lean_m=list(lean), roof_seen_m2=99.0) for o in whole.rings}, unmapped=[dict(centre=[0.0, 0.0], size_m=[5, 3], height_m=2)])
+        truth = candidates.Truth(source, target, whole.epsg, scene)
+        self.assertEqual(set(truth.roofs), set(gone))
+        house = max(gone, key=lambda o: truth.roofs[o].Area())
+        self.assertIn(house, truth.large())
+        self.assertNotIn(min(gone, key=lambda o: truth.roofs[o].Area()), truth.large(), "a garage")
+        ring = whole.rings[house][0][:-1]
+        what, o, iou = truth.judge(dict(outline=ring.tolist(), lean_m=list(lean)))
+        self.assertEqual((what, o), ("right", house))
+        self.assertGreater(iou, .99)
+        self.assertLess(truth.judge(dict(outline=ring.tolist(), lean_m=[0, 0]))[2], .95)
+        self.assertEqual(truth.judge(dict(outline=[[-3, -2], [3, -2], [3, 2], [-3, 2]], lean_m=[0, 0]))[0], "shed")
+        self.assertEqual(truth.judge(dict(outline=(ring + 900).tolist(), lean_m=[0, 0]))[0], "wrong")
+
+
+class Holes(InFolder):
+    def test_they_lie_within_their_houses(self):
+        source, target = self.path("in.osm"), self.path("out.osm")
+        corners = lambda x, y, w, d: [(8.6 + (x + a) / 68500, 52 + (y + b) / 111200) for a, b in ((0, 0), (w, 0), (w, d), (0, d))]
+        # A hall; four houses around a courtyard; a shed that is too small for a hole.
+        houses = [corners(0, 0, 40, 20), corners(100, 0, 40, 10), corners(130, 10, 10, 20), corners(100, 30, 40, 10), corners(100, 10, 10, 20), corners(300, 0, 6, 6)]
+        with open(source, "w") as f:
+            f.write("<osm version='0.6'>" + "".join(f"<node id='{10 * k + i}' lat='{y:.7f}' lon='{x:.7f}' version='1'/>" for k, h in enumerate(houses, 1) for i, (x, y) in enumerate(h))
+                    + "".join(f"<way id='{k}' version='1'>" + "".join(f"<nd ref='{10 * k + i}'/>" for i in (0, 1, 2, 3, 0)) + "<tag k='building' v='house'/></way>" for k in range(1, len(houses) + 1)) + "</osm>")
+        ids = holes.cut_holes(source, target, 1, 1)
+        self.assertEqual(len(ids), 1)
+        after = displace.Buildings(osm.Extract(target))
+        outer, inner = after.rings[ids[0]]
+        self.assertTrue(all(displace.within(p, displace.segments([outer])) for p in inner))
+        self.assertTrue(.07 < holes.area(inner) / holes.area(outer) < .26)
+        truth = holes.read_holes(self.path("out.csv"))
+        self.assertEqual(sorted(truth.values()), [0, 1])
+        court = next(o for o, cut in truth.items() if not cut)
+        self.assertAlmostEqual(holes.area(after.rings[court][1]), 20 * 20, delta=15)
+        self.assertEqual(set(after.rings), {ids[0], court, "w6"}, "what is one building now is mapped once")
 
 
 def write_box(folder, height=12.0, size=(20.0, 15.0)):

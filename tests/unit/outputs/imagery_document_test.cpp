@@ -37,6 +37,15 @@ struct Seen {
     roof.pixels = 900, roof.colour = model::Colour{200, 10, 3}, roof.colour_confidence = 0.72;
     roof.form = observation::RoofForm::pitched, roof.form_confidence = 0.91;
     roof.ridge = 12.5, roof.ridge_confidence = 0.83;
+    observation::UnmappedBuilding candidate;
+    candidate.id = "u251592_3018242", candidate.image = 1, candidate.area = 112.5, candidate.probability = 0.912;
+    candidate.outline = {{500'000.1, 10}, {500'010 + 1.0 / 1024, 10}, {500'010, 21.25}, {500'000, 21.25}};
+    candidate.lean = {0.584, -0.328};
+    observations.unmapped.push_back(candidate);
+    candidate.id = "u1_1", candidate.of_roof = true;
+    observations.unmapped.push_back(candidate);
+    candidate.id = "u2_2", candidate.probability = 0.4;
+    observations.unmapped_unsure.push_back(candidate);
   }
   footprints::FootprintStore store;
   observation::ImageryObservations observations;
@@ -79,6 +88,65 @@ TEST(ImageryDocument, ReadsWhatItWrote) {
   EXPECT_EQ(read.buildings[2].receipt.gone, 0.93);
   EXPECT_EQ(read.buildings[2].id.text(), "r102");
   EXPECT_EQ(read.buildings[2].receipt.reason, "another place fits nearly as well");
+}
+
+Seen with_courtyards() {
+  Seen seen;
+  seen.observations.roofs[1].courtyards = {
+      {.area = 120.4, .built_over = 0.04, .state = observation::CourtyardState::open, .evidence = {}},
+      {.area = 33, .built_over = 0.97, .state = observation::CourtyardState::built_over, .evidence = {}}};
+  return seen;
+}
+
+TEST(ImageryDocument, ReadsCandidatesThatAreToldAndCourtyards) {
+  const Seen seen = with_courtyards();
+  const ReadImagery read = read_imagery_json(imagery_json(seen.observations, seen.store, {true, true, true}));
+  ASSERT_EQ(read.unmapped.size(), 2u) << "what is not told is written for benches alone";
+  const observation::UnmappedBuilding &wrote = seen.observations.unmapped[0], &got = read.unmapped[0];
+  EXPECT_EQ(got.id, wrote.id);
+  EXPECT_EQ(got.image, 1u);
+  EXPECT_EQ(got.outline, wrote.outline);
+  EXPECT_EQ(got.lean, wrote.lean);
+  EXPECT_EQ(got.area, wrote.area);
+  EXPECT_EQ(got.probability, wrote.probability);
+  EXPECT_FALSE(got.of_roof);
+  EXPECT_TRUE(read.unmapped[1].of_roof);
+  const std::vector<observation::CourtyardView>& courtyards = read.buildings[1].roof.courtyards;
+  ASSERT_EQ(courtyards.size(), 2u);
+  EXPECT_EQ(courtyards[0].state, observation::CourtyardState::open);
+  EXPECT_EQ(courtyards[1].state, observation::CourtyardState::built_over);
+  EXPECT_EQ(courtyards[1].area, 33);
+  EXPECT_EQ(courtyards[1].built_over, 0.97);
+  EXPECT_TRUE(read.buildings[0].roof.courtyards.empty());
+}
+
+TEST(ImageryDocument, RefusesCandidatesOfNoImageOrWithoutOutline) {
+  const Seen seen;
+  const std::string text = imagery_json(seen.observations, seen.store, {true, true, true});
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    const std::size_t at = changed.find(from, changed.find("\"unmapped\""));
+    EXPECT_NE(at, std::string::npos);
+    return changed.replace(at, from.size(), to);
+  };
+  EXPECT_THROW(read_imagery_json(with("\"image\": 1", "\"image\": 2")), std::exception);
+  EXPECT_THROW(read_imagery_json(with("\"outline\"", "\"line\"")), std::exception);
+  EXPECT_THROW(read_imagery_json(with("\"area_m2\": 112.5", "\"area_m2\": \"large\"")), std::exception);
+}
+
+TEST(ImageryDocument, OfSeveralCourtyardsTheOneThatIsBuiltOverIsTold) {
+  const Seen seen = with_courtyards();
+  SeenOutline outline{seen.observations.outlines[1], seen.observations.images[1], true,
+                      seen.observations.roofs[1].courtyards};
+  ASSERT_TRUE(outline.told_courtyard());
+  EXPECT_EQ(outline.told_courtyard()->state, observation::CourtyardState::built_over);
+  EXPECT_NE(imagery_text(outline).find("courtyard of 33 m²: perhaps built over (0.97)"), std::string::npos);
+  outline.courtyards = outline.courtyards.first(1);
+  EXPECT_NE(imagery_text(outline).find("courtyard: open (0.96)"), std::string::npos);
+  const std::vector<observation::CourtyardView> unsure{{.area = 50, .built_over = 0.5, .state = {}, .evidence = {}}};
+  outline.courtyards = unsure;
+  EXPECT_FALSE(outline.told_courtyard());
+  EXPECT_EQ(imagery_text(outline).find("courtyard"), std::string::npos);
 }
 
 TEST(ImageryDocument, RefusesWhatItCannotHaveWritten) {
