@@ -12,6 +12,7 @@
 #include "pipeline/footprints/terrace_rows.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/observation/eaves.h"
+#include "pipeline/observation/edge_refinement.h"
 #include "pipeline/observation/image_fit.h"
 #include "pipeline/observation/image_quality.h"
 #include "pipeline/observation/lean.h"
@@ -80,8 +81,13 @@ Point2 rounded(Point2 p) { return {rounded(p.x, 1000), rounded(p.y, 1000)}; }
 class Observer {
  public:
   Observer(const ObservedExtract& of, std::span<const importers::imagery::AerialImage> images, int workers,
-           Correction correct, base::Progress& progress)
-      : of_(of), images_(images), correct_(correct), workers_(workers), progress_(progress) {}
+           Correction correct, double refine_within, base::Progress& progress)
+      : of_(of),
+        images_(images),
+        correct_(correct),
+        refine_within_(refine_within),
+        workers_(workers),
+        progress_(progress) {}
 
   ImageryObservations run() {
     ImageryObservations out;
@@ -143,6 +149,7 @@ class Observer {
       receipt.gone = rounded(gone, 100);
       if (receipt.state == RowState::corrected && rows_[receipt.row].buildings.size() == 1)
         receipt.state = RowState::undecided, receipt.reason = "perhaps it does not stand any more";
+      receipt.refined = {};
     }
   }
 
@@ -333,7 +340,8 @@ class Observer {
       RowMatch match;
       Verdict verdict;
       Point2 centre;
-      std::vector<RoofView> roofs;  ///< by outline
+      std::vector<RoofView> roofs;          ///< by outline
+      std::vector<RefinedOutline> refined;  ///< by outline
     };
     std::vector<Looked> looked(rows_.size());
     base::ordered_parallel(
@@ -354,10 +362,11 @@ class Observer {
                                                                    : "whether the image fits the map is not known";
           }
           look_at_roofs(rows_[r], row, windows, looked[r].match, looked[r].verdict, looked[r].roofs);
+          looked[r].refined = refine_row(rows_[r], row, windows, looked[r].match, looked[r].verdict);
         },
         [&](std::size_t r) {
           progress_.advance_to(image * rows_.size() + r + 1);
-          const Looked row = std::move(looked[r]);
+          Looked row = std::move(looked[r]);
           looked[r] = {};
           if (row.roofs.empty()) return;
           // A row moves as one: where images overlap, the one that is surest of it speaks for all its houses.
@@ -366,10 +375,12 @@ class Observer {
           std::size_t place = 0;
           for (const std::uint32_t b : rows_[r].buildings) {
             if (!searchable(b)) continue;
-            const RoofView& roof = row.roofs[place++];
+            const RoofView& roof = row.roofs[place];
+            RefinedOutline& refined = row.refined[place++];
             const bool first = out.outlines[b].state == RowState::outside;
             if (surest || (!judged && first && roof.pixels > 0))
-              out.outlines[b] = receipt(image, static_cast<std::uint32_t>(r), b, row.match, row.verdict, row.centre);
+              out.outlines[b] = receipt(image, static_cast<std::uint32_t>(r), b, row.match, row.verdict, row.centre),
+              out.outlines[b].refined = std::move(refined);
             if (roof.pixels > 0 && (surest || out.roofs[b].pixels == 0))
               out.roofs[b] = roof, out.roofs[b].image = image;
           }
@@ -458,9 +469,51 @@ class Observer {
     }
   }
 
+  /// The walls of the row's houses, where the row was found or, if it is left alone, as mapped. By outline.
+  std::vector<RefinedOutline> refine_row(const footprints::TerraceRowPlan& plan, const SearchedRow& row,
+                                         const ImageWindows& windows, const RowMatch& match,
+                                         const Verdict& verdict) const {
+    std::vector<RefinedOutline> refined(row.outlines.size());
+    const bool corrected = verdict.state == RowState::corrected;
+    if (refine_within_ <= 0 || !(corrected || verdict.state == RowState::left_alone)) return refined;
+    if (std::ranges::any_of(row.outlines, [](const SearchedOutline& o) { return o.pieces.empty(); })) return refined;
+    footprints::Movement movement{{}, rounded(row.centre), 0};
+    if (corrected) movement.shift = rounded(match.shift), movement.turn = rounded(match.turn, 100);
+    std::size_t place = 0;
+    for (const std::uint32_t b : plan.buildings) {
+      if (!searchable(b)) continue;
+      const SearchedOutline& o = row.outlines[place];
+      RefinedOutline& out = refined[place];
+      const double by = corrected && place < match.heights.size() ? match.heights[place] - o.height : 0;
+      ++place;
+      out.state = RefinementState::left_alone;
+      if (plan.buildings.size() > 1) {
+        out.reason = "it does not stand alone";
+        continue;
+      }
+      if (of_.footprints[b].has_parts) {
+        out.reason = "its parts are mapped";
+        continue;
+      }
+      Rings from;
+      of_.footprints.for_each_ring(b, [&](std::span<const Point2> ring, bool) {
+        for (from.emplace_back(); const Point2 p : ring) from.back().push_back(rounded(p));
+      });
+      RefinedBuilding building{.rings = from, .fixed = {}, .lean = o.lean, .doubt = o.per_metre};
+      for (std::vector<Point2>& ring : building.rings)
+        for (Point2& p : ring) p = movement(p);
+      building.lean.x += by * o.per_metre.x, building.lean.y += by * o.per_metre.y;
+      building.doubt.x *= o.height * o.uncertainty, building.doubt.y *= o.height * o.uncertainty;
+      out = refine_edges(building, windows, refine_within_);
+      if (out.state == RefinementState::refined) out.from = std::move(from);
+    }
+    return refined;
+  }
+
   const ObservedExtract& of_;
   std::span<const importers::imagery::AerialImage> images_;
   Correction correct_;
+  double refine_within_;  ///< m
   int workers_;
   base::Progress& progress_;
   std::vector<footprints::TerraceRowPlan> rows_;
@@ -474,8 +527,8 @@ class Observer {
 }  // namespace
 
 ImageryObservations observe_extract(const ObservedExtract& of, std::span<const importers::imagery::AerialImage> images,
-                                    Correction correct, int workers, base::Progress& progress) {
-  return Observer(of, images, workers, correct, progress).run();
+                                    Correction correct, double refine_within, int workers, base::Progress& progress) {
+  return Observer(of, images, workers, correct, refine_within, progress).run();
 }
 
 }  // namespace blockrand::observation

@@ -119,7 +119,7 @@ bool ImageryStage::correct(std::span<const footprints::Shard> shards, const foot
     if (inputs_.images.empty()) return false;
     const Correction how = options_.imagery.correct;
     seen_ = observation::observe_extract({located_.extract, store, located_.projection}, inputs_.images, how,
-                                         base::worker_count(options_.jobs), progress_);
+                                         options_.imagery.refine, base::worker_count(options_.jobs), progress_);
     observation::refuse_corrections(*seen_, store, [&](std::uint32_t b) { return keeps_place(b, store); });
     seen_->applied = how == Correction::apply;
   }

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Judges the program's analysis of aerial images (issue 20). Markdown tables to stdout, everything to a JSON file.
 
-    evaluate.py kampala|synthetic|pariser-platz|georeference|colours|ridges|gone [options]
+    evaluate.py kampala|synthetic|walls|pariser-platz|georeference|colours|ridges|gone [options]
 
 Runs `blockrand build EXTRACT --imagery IMAGE --imagery-correct report` and reads imagery.json of the build. Needs the data folder
 (--shared), rendered pictures (--images: FOLDER/SET/PLACE.tif with .truth.json, by render.py), osmium-tool, python3-gdal, python3-numpy.
@@ -25,6 +25,7 @@ import corrections
 import ghosts
 import misregister
 import osm
+import refinement
 from corrections import HEAD, Judged, cells, outlines, read_truth, summarise, table
 from displace import Buildings, displace
 
@@ -175,6 +176,42 @@ class Bench:
                 if r["state"] != "corrected":
                     reasons[(r["state"], r["reason"])] = reasons.get((r["state"], r["reason"]), 0) + 1
         print("Why not corrected: " + "; ".join(f"{s} {w} {n}" for (s, w), n in sorted(reasons.items(), key=lambda x: -x[1])[:12]) + "\n")
+
+    # ---- single walls ---------------------------------------------------------------------------------------------
+
+    def walls(self):
+        """Houses with one or two walls shifted by 0.3 to 1 m, a third of the rows moved as well; and all corners of half the rows off by --jitter."""
+        places = [p for p in ["kampala"] + self.a.places if p == "kampala" or os.path.exists(self.image_of(p))]
+        labels = truth_rows("kampala_labels.csv")
+        right_labels = {f"w{int(r['index']) + 1}": (float(r["dx_m"]), float(r["dy_m"])) for r in labels if r["verdict"] == "right"}
+        for kind, how in (("walls", dict(low=1, high=3, share=.33, jitter=0, walls=.5)), (f"corners by {self.a.jitter or .3} m", dict(low=0, high=0, share=.5, jitter=self.a.jitter or .3, walls=0))):
+            lines, pooled = [], {}
+            for place in places:
+                extract, image = (self.kampala_osm, self.kampala_image) if place == "kampala" else (self.extract_of(place), self.image_of(place))
+                for seed in self.a.seeds:
+                    name = f"{kind.split()[0]}-{place}-{'real' if place == 'kampala' else self.a.set}-{seed}"
+                    path = os.path.join(self.a.work, name + ".osm")
+                    displace(extract, path, seed, how["low"], how["high"], 0, how["share"], how["jitter"], walls=how["walls"])
+                    epsg, truth = read_truth(path[:-4] + ".csv")
+                    answer = self.run(name, path, image)
+                    if "error" in answer:
+                        print(f"{name}: {answer['error']}", file=sys.stderr)
+                    touched = {i for i, t in truth.items() if t["moved"] or t["reshaped"]}
+                    told = [b for b in answer["buildings"] if place != "kampala" or b["id"] in right_labels]
+                    w, b = refinement.judge(told, refinement.rings_of(extract, epsg), refinement.rings_of(path, epsg), touched, right_labels if place == "kampala" else None)
+                    lines.append([place, seed] + refinement.cells(w, b))
+                    group = "kampala" if place == "kampala" else "synthetic"
+                    pooled.setdefault(group, ([], []))
+                    pooled[group][0].extend(w), pooled[group][1].extend(b)
+                    self.result.setdefault("walls", []).append(dict(kind=kind, place=place, seed=seed, walls=w, buildings=b))
+            print(f"### Single walls, {kind}, set `{self.a.set}`\n")
+            table(["place", "seed"] + refinement.HEAD, lines + [[g, "all"] + refinement.cells(*p) for g, p in pooled.items()])
+            reasons = {}
+            for _, b in pooled.values():
+                for x in b:
+                    if not x["taken"]:
+                        reasons[x["reason"]] = reasons.get(x["reason"], 0) + 1
+            print("Not refined: " + "; ".join(f"{w} {n}" for w, n in sorted(reasons.items(), key=lambda x: -x[1])) + "\n")
 
     # ---- Pariser Platz --------------------------------------------------------------------------------------------
 
@@ -430,7 +467,7 @@ def merge(shapes):
 
 def main():
     a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    a.add_argument("what", choices=["kampala", "synthetic", "pariser-platz", "georeference", "colours", "ridges", "gone"])
+    a.add_argument("what", choices=["kampala", "synthetic", "walls", "pariser-platz", "georeference", "colours", "ridges", "gone"])
     a.add_argument("--program", default=os.path.join(HERE, "../../../build/release/blockrand"))
     a.add_argument("--shared", default="/work/shared" if os.path.isdir("/work/shared") else os.path.join(HERE, "../../../../shared"))
     a.add_argument("--images", default="/work/imagery_bench", help="rendered pictures: FOLDER/SET/PLACE.tif; estate.osm")

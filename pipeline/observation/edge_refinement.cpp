@@ -1,0 +1,345 @@
+#include "pipeline/observation/edge_refinement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pipeline/base/portable_math.h"
+
+namespace blockrand::observation {
+
+namespace {
+
+using model::Point2;
+
+/// m: between the shifts that are tried, and between the samples along a wall.
+constexpr double kStep = 0.1, kAlong = 0.2;
+/// Steps of the strips on both sides of a wall, the line of the wall itself belongs to none: 0.1 to 0.4 m from it.
+constexpr int kStrip = 4;
+/// Levels of 255: a change of brightness of as much is half a clear edge. Larger than where rows are looked for
+/// (observe_extract.cpp): there edges are to be found, here the middle of one.
+constexpr double kContrast = 30;
+/// m: pieces of a wall that are judged by themselves, so that a tree before one hides no other.
+constexpr double kPiece = 4;
+/// m: at both ends of walls from three times that on, where the neighbouring walls are seen.
+constexpr double kEnd = 0.6;
+/// Of a wall: with less of it in the image nothing is said of it.
+constexpr double kLeastSeen = 0.7;
+/// m: shorter walls are not looked for by themselves.
+constexpr double kShortestSought = 2;
+/// m: no doubt about a height shows a roof elsewhere by more.
+constexpr double kMostDoubt = 1;
+/// Of clearness, by metre of wall: what it costs to shift one, to shift it by a metre more, and to take another height
+/// that is off by the whole doubt. Without gain nothing is shifted.
+constexpr double kShiftCost = 0.06, kCostByMetre = 0.05, kHeightCost = 0.03;
+/// m: smaller shifts are errors of the search; and what is another edge.
+constexpr double kLeastShift = 0.25, kElsewhere = 0.4;
+/// Of clearness, of one wall and on the average of all: smaller gains are none.
+constexpr double kLeastGain = 0.06, kLeastGainOfAll = 0.02;
+/// Walls are shifted from this confidence on.
+constexpr double kSureWall = 0.5;
+/// m: a roof that reaches out over its walls on all sides by as much at least, and as evenly.
+constexpr double kOverhang = 0.2, kEvenOverhang = 0.35;
+/// Of the walls by length, that must be seen farther out.
+constexpr double kAllSides = 0.85;
+
+double rounded(double value, double steps) { return std::round(value * steps) / steps + 0.0; }
+
+/// How clear the edge of walls is at each shift: clearness in [0, 1] by steps from the farthest inwards; empty: not seen.
+struct Curve {
+  int half = 0;
+  std::vector<double> clear;
+  bool seen() const { return !clear.empty(); }
+  /// \param shift  m, within the curve
+  double at(double shift) const {
+    const double x = std::clamp(shift / kStep + half, 0.0, 2.0 * half);
+    const auto i = std::min(static_cast<std::size_t>(x), clear.size() - 2);
+    const double u = x - static_cast<double>(i);
+    return clear[i] * (1 - u) + clear[i + 1] * u;
+  }
+};
+
+using Colour = std::array<float, 3>;
+
+/// The mean colours of lines parallel to a piece of a wall; false where the image does not show all of them.
+bool line_colours(const Patch& patch, Point2 middle, Point2 along, double length, int half, std::vector<Colour>& lines) {
+  const int samples = std::max(2, static_cast<int>(std::lround(length / kAlong)));
+  const double step = length / samples;
+  const Point2 normal{along.y, -along.x};
+  lines.assign(static_cast<std::size_t>(2 * half + 1), Colour{});
+  const auto width = static_cast<std::size_t>(patch.width);
+  for (int i = -half; i <= half; ++i) {
+    Colour sum{};
+    for (int j = 0; j < samples; ++j) {
+      const double a = (j + 0.5 - samples / 2.0) * step;
+      const double x = (middle.x + along.x * a + normal.x * i * kStep - patch.west) / patch.size - 0.5;
+      const double y = (patch.north - middle.y - along.y * a - normal.y * i * kStep) / patch.size - 0.5;
+      if (!(x >= 0 && y >= 0 && x < patch.width - 1 && y < patch.height - 1)) return false;
+      const auto c = static_cast<std::size_t>(x), r = static_cast<std::size_t>(y);
+      const std::size_t at = r * width + c, below = at + width;
+      if (!patch.valid[at] || !patch.valid[at + 1] || !patch.valid[below] || !patch.valid[below + 1]) return false;
+      const auto u = static_cast<float>(x - static_cast<double>(c)), v = static_cast<float>(y - static_cast<double>(r));
+      const float w00 = (1 - u) * (1 - v), w10 = u * (1 - v), w01 = (1 - u) * v, w11 = u * v;
+      const std::vector<std::uint8_t>* const bands[] = {&patch.red, &patch.green, &patch.blue};
+      for (std::size_t n = 0; n < 3; ++n) {
+        const std::vector<std::uint8_t>& b = *bands[n];
+        sum[n] += w00 * static_cast<float>(b[at]) + w10 * static_cast<float>(b[at + 1]) +
+                  w01 * static_cast<float>(b[below]) + w11 * static_cast<float>(b[below + 1]);
+      }
+    }
+    for (float& s : sum) s /= static_cast<float>(samples);
+    lines[static_cast<std::size_t>(i + half)] = sum;
+  }
+  return true;
+}
+
+/// Adds the clearness of a wall's pieces by their length. \returns  m of them that the image shows
+double add_wall(const Wall& wall, Point2 lean, const Patch& patch, std::vector<double>& sums) {
+  const double end = wall.length >= 3 * kEnd ? kEnd : 0, length = wall.length - 2 * end;
+  const int count = std::max(1, static_cast<int>(std::ceil(length / kPiece)));
+  const int half = static_cast<int>(sums.size() / 2);
+  std::vector<Colour> lines;
+  double seen = 0;
+  for (int k = 0; k < count; ++k) {
+    const Point2 foot = wall.at(end + (k + 0.5) * length / count), middle{foot.x + lean.x, foot.y + lean.y};
+    if (!line_colours(patch, middle, wall.along, length / count, half + kStrip, lines)) continue;
+    seen += length / count;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      float squares = 0;
+      for (std::size_t n = 0; n < 3; ++n) {
+        float change = 0;
+        for (std::size_t s = 1; s <= kStrip; ++s) change += lines[i + kStrip + s][n] - lines[i + kStrip - s][n];
+        squares += change * change;
+      }
+      const double change = std::sqrt(static_cast<double>(squares)) / kStrip;
+      sums[i] += length / count * change / (change + kContrast);
+    }
+  }
+  return seen;
+}
+
+double confidence_of(const WallEvidence& e) {
+  const double sum = -2.0 + 8 * (e.there - e.here) + 2 * e.there;
+  return 1 / (1 + base::exp(-sum));
+}
+
+class Refiner {
+ public:
+  Refiner(const RefinedBuilding& building, const ImageWindows& windows, double bound)
+      : building_(building), bound_(bound), walls_(find_walls(building.rings, building.fixed)) {
+    const double size = std::sqrt(building.doubt.x * building.doubt.x + building.doubt.y * building.doubt.y);
+    doubt_ = building.doubt;
+    if (size > kMostDoubt) doubt_.x *= kMostDoubt / size, doubt_.y *= kMostDoubt / size;
+    reach_ = bound_ + std::min(size, kMostDoubt);
+    if (!sought()) return;
+    geometry::PlanBox box;
+    for (const auto& ring : building.rings) box.include(geometry::box_of(ring));
+    box.minimum.x += building.lean.x, box.minimum.y += building.lean.y;
+    box.maximum.x += building.lean.x, box.maximum.y += building.lean.y;
+    const Patch patch = windows.window(box, reach_ + (kStrip + 1) * kStep + 2 * windows.size());
+    measure(patch);
+  }
+
+  RefinedOutline run() {
+    if (!sought()) return left_alone("no wall of it is long enough and free to be looked for by itself");
+    if (std::ranges::none_of(curves_, &Curve::seen)) return left_alone("the image does not show its walls");
+    choose_height();
+    find_candidates();
+    if (evidence_.empty()) return left_alone("its walls stand where the image shows them");
+    if (reaches_out()) return left_alone("its roof seems to reach out over its walls");
+    take_surest();
+    return conclude();
+  }
+
+ private:
+  bool sought() const {
+    for (std::size_t g = 0; g < walls_.movable.size(); ++g)
+      if (walls_.movable[g] && walls_.lengths[g] >= kShortestSought) return true;
+    return false;
+  }
+
+  void measure(const Patch& patch) {
+    const int half = static_cast<int>(std::ceil(reach_ / kStep));
+    curves_.resize(walls_.movable.size());
+    directions_.resize(curves_.size());
+    middles_.resize(curves_.size());
+    std::vector<double> seen(curves_.size(), 0.0), longest(curves_.size(), 0.0);
+    for (Curve& curve : curves_) curve.half = half, curve.clear.assign(static_cast<std::size_t>(2 * half + 1), 0.0);
+    for (const Wall& wall : walls_.walls) {
+      seen[wall.group] += add_wall(wall, building_.lean, patch, curves_[wall.group].clear);
+      if (wall.length <= longest[wall.group]) continue;
+      longest[wall.group] = wall.length;
+      directions_[wall.group] = wall.normal(), middles_[wall.group] = wall.at(wall.length / 2);
+    }
+    for (std::size_t g = 0; g < curves_.size(); ++g) {
+      if (seen[g] <= 0 || seen[g] < kLeastSeen * (walls_.lengths[g] - 2 * kEnd)) curves_[g].clear.clear();
+      for (double& c : curves_[g].clear) c /= seen[g];
+    }
+  }
+
+  /// m, that another height of the roof shows a wall farther out.
+  double by_height(std::size_t g, double times) const {
+    return times * (doubt_.x * directions_[g].x + doubt_.y * directions_[g].y);
+  }
+
+  /// The best shift of walls and how clear their edge is there, if the roof's height is off by `times` its doubt.
+  std::pair<double, double> best_shift(std::size_t g, double times) const {
+    const double off = by_height(g, times);
+    const int most = static_cast<int>(bound_ / kStep + 1e-9);
+    std::pair<double, double> best{0, curves_[g].at(off)};
+    for (int k = -most; k <= most; ++k)
+      if (const double clear = curves_[g].at(k * kStep + off); clear > best.second) best = {k * kStep, clear};
+    return best;
+  }
+
+  /// The height with which the image shows the walls most clearly with the fewest shifts.
+  void choose_height() {
+    const double size = std::sqrt(doubt_.x * doubt_.x + doubt_.y * doubt_.y);
+    const int steps = static_cast<int>(size / kStep);
+    double best = -1;
+    for (int k = -steps; k <= steps; ++k) {
+      const double times = steps > 0 ? static_cast<double>(k) / steps : 0;
+      double sum = 0;
+      for (std::size_t g = 0; g < curves_.size(); ++g) {
+        if (!curves_[g].seen()) continue;
+        const double here = curves_[g].at(by_height(g, times));
+        const auto [shift, there] = best_shift(g, times);
+        const double cost = kShiftCost + kCostByMetre * std::fabs(shift);
+        sum += walls_.lengths[g] *
+               (std::max(here, walls_.movable[g] ? there - cost : 0.0) - kHeightCost * times * times);
+      }
+      // Of equals the one nearest to what is thought.
+      if (sum > best + 1e-9 || (sum > best - 1e-9 && std::fabs(times) < std::fabs(times_)))
+        best = std::max(best, sum), times_ = times;
+    }
+  }
+
+  void find_candidates() {
+    double all = 0, length = 0;
+    for (std::size_t g = 0; g < curves_.size(); ++g)
+      if (curves_[g].seen())
+        all += walls_.lengths[g] * curves_[g].at(by_height(g, times_)), length += walls_.lengths[g];
+    for (std::uint32_t g = 0; g < curves_.size(); ++g) {
+      if (!walls_.movable[g] || !curves_[g].seen() || walls_.lengths[g] < kShortestSought) continue;
+      const Curve& curve = curves_[g];
+      const double off = by_height(g, times_), here = curve.at(off);
+      auto [shift, there] = best_shift(g, times_);
+      // Between the steps: the top of the parabola through the best and its neighbours.
+      const double left = curve.at(shift - kStep + off), right = curve.at(shift + kStep + off),
+                   bend = left - 2 * there + right;
+      if (bend < 0 && left <= there && right <= there)
+        shift = std::clamp(shift + kStep * (left - right) / (2 * bend), -bound_, bound_);
+      if (std::fabs(shift) < kLeastShift || there - here < kLeastGain) continue;
+      WallEvidence e;
+      e.at = {rounded(middles_[g].x, 1000), rounded(middles_[g].y, 1000)};
+      e.normal = {rounded(directions_[g].x, 10000), rounded(directions_[g].y, 10000)};
+      e.shift = rounded(shift, 1000), e.here = here, e.there = there, e.length = walls_.lengths[g];
+      e.doubt = std::fabs(by_height(g, 1));
+      double sum = 0, count = 0;
+      for (double s = -bound_; s <= bound_ + 1e-9; s += kStep) {
+        const double clear = curve.at(s + off);
+        sum += clear, count += 1;
+        if (std::fabs(s - shift) >= kElsewhere) e.second = std::max(e.second, clear);
+      }
+      e.usual = sum / count;
+      e.others = length > e.length ? (all - e.length * here) / (length - e.length) : 0;
+      e.confidence = rounded(confidence_of(e), 1000);
+      evidence_.push_back(e);
+      groups_.push_back(g);
+    }
+  }
+
+  /// Nearly all walls are seen a little farther out: that is a roof with eaves, not a map that is wrong.
+  bool reaches_out() const {
+    double out = 0, all = 0, least = bound_, most = 0;
+    for (std::size_t g = 0; g < curves_.size(); ++g) {
+      if (!curves_[g].seen()) continue;
+      all += walls_.lengths[g];
+      const double shift = best_shift(g, times_).first;
+      if (shift < kOverhang) continue;
+      out += walls_.lengths[g];
+      least = std::min(least, shift), most = std::max(most, shift);
+    }
+    return out >= kAllSides * all && most - least <= kEvenOverhang;
+  }
+
+  /// The surest first; one that would spoil the outline stays.
+  void take_surest() {
+    std::vector<std::size_t> order(evidence_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+      return evidence_[a].confidence > evidence_[b].confidence;
+    });
+    shifts_.assign(walls_.movable.size(), 0.0);
+    for (const std::size_t i : order) {
+      WallEvidence& e = evidence_[i];
+      if (e.confidence < kSureWall) continue;
+      shifts_[groups_[i]] = e.shift;
+      Rings outline = shifted_outline(building_.rings, walls_, shifts_, kMostCornerShift * bound_);
+      if (outline.empty()) {
+        shifts_[groups_[i]] = 0, spoils_ = true;
+        continue;
+      }
+      outline_ = std::move(outline), e.taken = true;
+    }
+  }
+
+  RefinedOutline conclude() {
+    RefinedOutline out;
+    double length = 0;
+    for (std::size_t g = 0; g < curves_.size(); ++g) {
+      if (!curves_[g].seen()) continue;
+      const double off = by_height(g, times_);
+      length += walls_.lengths[g];
+      out.before += walls_.lengths[g] * curves_[g].at(off);
+      out.after += walls_.lengths[g] * curves_[g].at(off + shifts_[g]);
+    }
+    out.before = rounded(out.before / length, 10000), out.after = rounded(out.after / length, 10000);
+    out.evidence = evidence_;
+    out.confidence = 1;
+    for (const WallEvidence& e : evidence_)
+      if (e.taken)
+        ++out.walls, out.largest = std::max(out.largest, std::fabs(e.shift)),
+                     out.confidence = std::min(out.confidence, e.confidence);
+    out.state = RefinementState::left_alone;
+    if (out.walls == 0) {
+      out.confidence = 0;
+      for (const WallEvidence& e : evidence_) out.confidence = std::max(out.confidence, e.confidence);
+      out.reason = spoils_ ? "its outline would not stay clean" : "the edges of its walls do not say it clearly";
+    } else if (out.after - out.before < kLeastGainOfAll) {
+      out.reason = "its walls stand nearly as well where they are";
+    } else {
+      out.state = RefinementState::refined;
+      out.to = outline_;
+    }
+    return out;
+  }
+
+  RefinedOutline left_alone(std::string_view reason) const {
+    RefinedOutline out;
+    out.state = RefinementState::left_alone, out.reason = reason, out.evidence = evidence_;
+    return out;
+  }
+
+  const RefinedBuilding& building_;
+  double bound_;
+  Walls walls_;
+  Point2 doubt_;               ///< m, no more than kMostDoubt
+  double reach_ = 0;           ///< m, of the curves
+  double times_ = 0;           ///< of the doubt: by how much the height is off
+  std::vector<Curve> curves_;  ///< by group, as the next two
+  std::vector<Point2> directions_, middles_;
+  std::vector<WallEvidence> evidence_;
+  std::vector<std::uint32_t> groups_;  ///< of the evidence
+  std::vector<double> shifts_;         ///< m, by group
+  Rings outline_;
+  bool spoils_ = false;
+};
+
+}  // namespace
+
+RefinedOutline refine_edges(const RefinedBuilding& building, const ImageWindows& windows, double bound) {
+  return Refiner(building, windows, bound).run();
+}
+
+}  // namespace blockrand::observation
