@@ -34,21 +34,24 @@ constexpr double kMostDoubt = 1;
 constexpr double kShiftCost = 0.06, kCostByMetre = 0.05, kHeightCost = 0.03;
 /// m: smaller shifts are errors of the search; and what is another edge.
 constexpr double kLeastShift = 0.25, kElsewhere = 0.4;
+/// m, and levels: strips that are compared with what lies between a wall and its edge; and a difference that is none.
+constexpr double kBeside = 0.5, kSameColour = 8;
 /// Of clearness, of one wall and on the average of all: smaller gains are none.
 constexpr double kLeastGain = 0.06, kLeastGainOfAll = 0.02;
 /// Walls are shifted from this confidence on.
 constexpr double kSureWall = 0.5;
-/// m: a roof that reaches out over its walls on all sides by as much at least, and as evenly.
-constexpr double kOverhang = 0.2, kEvenOverhang = 0.35;
-/// Of the walls by length, that must be seen farther out.
-constexpr double kAllSides = 0.85;
+/// m: eaves reach so far out over all walls, copings lie so far within them; what it costs, in clearness, to be as much.
+constexpr double kMostRim = 0.8, kRimCost = 0.04;
 
 double rounded(double value, double steps) { return std::round(value * steps) / steps + 0.0; }
+
+using Colour = std::array<float, 3>;
 
 /// How clear the edge of walls is at each shift: clearness in [0, 1] by steps from the farthest inwards; empty: not seen.
 struct Curve {
   int half = 0;
   std::vector<double> clear;
+  std::vector<Colour> colours;  ///< levels, the mean of the lines there; kStrip more on both sides
   bool seen() const { return !clear.empty(); }
   /// \param shift  m, within the curve
   double at(double shift) const {
@@ -57,9 +60,36 @@ struct Curve {
     const double u = x - static_cast<double>(i);
     return clear[i] * (1 - u) + clear[i + 1] * u;
   }
+  /// The mean colour of the lines from one shift to another, in m.
+  Colour between(double from, double to) const {
+    const int last = static_cast<int>(colours.size()) - 1;
+    const int begin = std::clamp(static_cast<int>(std::lround(from / kStep)) + half + kStrip, 0, last),
+              end = std::clamp(static_cast<int>(std::lround(to / kStep)) + half + kStrip, begin, last);
+    Colour sum{};
+    for (int i = begin; i <= end; ++i)
+      for (std::size_t n = 0; n < 3; ++n)
+        sum[n] += colours[static_cast<std::size_t>(i)][n] / static_cast<float>(end - begin + 1);
+    return sum;
+  }
 };
 
-using Colour = std::array<float, 3>;
+double difference(const Colour& a, const Colour& b) {
+  float squares = 0;
+  for (std::size_t n = 0; n < 3; ++n) squares += (a[n] - b[n]) * (a[n] - b[n]);
+  return std::sqrt(static_cast<double>(squares));
+}
+
+/// What lies between a wall and its edge in the image belongs to the roof, if the edge is farther out, else to the ground.
+/// \returns  from -1 (it looks like the other side) to 1
+double fits_its_side(const Curve& curve, double off, double shift) {
+  const double in = std::min(off, off + shift), out = std::max(off, off + shift);
+  const Colour middle = curve.between(in + kStep, out - kStep),
+               inside = curve.between(in - kBeside - kStep, in - kStep),
+               outside = curve.between(out + kStep, out + kBeside + kStep);
+  const double to_roof = difference(middle, inside), to_ground = difference(middle, outside);
+  const double fit = (to_ground - to_roof) / (to_ground + to_roof + kSameColour);
+  return shift > 0 ? fit : -fit;
+}
 
 /// The mean colours of lines parallel to a piece of a wall; false where the image does not show all of them.
 bool line_colours(const Patch& patch, Point2 middle, Point2 along, double length, int half, std::vector<Colour>& lines) {
@@ -94,7 +124,8 @@ bool line_colours(const Patch& patch, Point2 middle, Point2 along, double length
 }
 
 /// Adds the clearness of a wall's pieces by their length. \returns  m of them that the image shows
-double add_wall(const Wall& wall, Point2 lean, const Patch& patch, std::vector<double>& sums) {
+double add_wall(const Wall& wall, Point2 lean, const Patch& patch, Curve& curve) {
+  std::vector<double>& sums = curve.clear;
   const double end = wall.length >= 3 * kEnd ? kEnd : 0, length = wall.length - 2 * end;
   const int count = std::max(1, static_cast<int>(std::ceil(length / kPiece)));
   const int half = static_cast<int>(sums.size() / 2);
@@ -104,6 +135,8 @@ double add_wall(const Wall& wall, Point2 lean, const Patch& patch, std::vector<d
     const Point2 foot = wall.at(end + (k + 0.5) * length / count), middle{foot.x + lean.x, foot.y + lean.y};
     if (!line_colours(patch, middle, wall.along, length / count, half + kStrip, lines)) continue;
     seen += length / count;
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      for (std::size_t n = 0; n < 3; ++n) curve.colours[i][n] += static_cast<float>(length / count) * lines[i][n];
     for (std::size_t i = 0; i < sums.size(); ++i) {
       float squares = 0;
       for (std::size_t n = 0; n < 3; ++n) {
@@ -130,7 +163,7 @@ class Refiner {
     const double size = std::sqrt(building.doubt.x * building.doubt.x + building.doubt.y * building.doubt.y);
     doubt_ = building.doubt;
     if (size > kMostDoubt) doubt_.x *= kMostDoubt / size, doubt_.y *= kMostDoubt / size;
-    reach_ = bound_ + std::min(size, kMostDoubt);
+    reach_ = bound_ + std::min(size, kMostDoubt) + kMostRim;
     if (!sought()) return;
     geometry::PlanBox box;
     for (const auto& ring : building.rings) box.include(geometry::box_of(ring));
@@ -143,10 +176,9 @@ class Refiner {
   RefinedOutline run() {
     if (!sought()) return left_alone("no wall of it is long enough and free to be looked for by itself");
     if (std::ranges::none_of(curves_, &Curve::seen)) return left_alone("the image does not show its walls");
-    choose_height();
+    choose_height_and_rim();
     find_candidates();
     if (evidence_.empty()) return left_alone("its walls stand where the image shows them");
-    if (reaches_out()) return left_alone("its roof seems to reach out over its walls");
     take_surest();
     return conclude();
   }
@@ -164,9 +196,12 @@ class Refiner {
     directions_.resize(curves_.size());
     middles_.resize(curves_.size());
     std::vector<double> seen(curves_.size(), 0.0), longest(curves_.size(), 0.0);
-    for (Curve& curve : curves_) curve.half = half, curve.clear.assign(static_cast<std::size_t>(2 * half + 1), 0.0);
+    for (Curve& curve : curves_) {
+      curve.half = half, curve.clear.assign(static_cast<std::size_t>(2 * half + 1), 0.0);
+      curve.colours.assign(static_cast<std::size_t>(2 * (half + kStrip) + 1), Colour{});
+    }
     for (const Wall& wall : walls_.walls) {
-      seen[wall.group] += add_wall(wall, building_.lean, patch, curves_[wall.group].clear);
+      seen[wall.group] += add_wall(wall, building_.lean, patch, curves_[wall.group]);
       if (wall.length <= longest[wall.group]) continue;
       longest[wall.group] = wall.length;
       directions_[wall.group] = wall.normal(), middles_[wall.group] = wall.at(wall.length / 2);
@@ -174,17 +209,20 @@ class Refiner {
     for (std::size_t g = 0; g < curves_.size(); ++g) {
       if (seen[g] <= 0 || seen[g] < kLeastSeen * (walls_.lengths[g] - 2 * kEnd)) curves_[g].clear.clear();
       for (double& c : curves_[g].clear) c /= seen[g];
+      for (Colour& c : curves_[g].colours)
+        for (float& level : c) level /= static_cast<float>(std::max(1e-9, seen[g]));
     }
   }
 
-  /// m, that another height of the roof shows a wall farther out.
+  /// m, that another height of the roof, off by `times` its doubt, shows a wall farther out.
   double by_height(std::size_t g, double times) const {
     return times * (doubt_.x * directions_[g].x + doubt_.y * directions_[g].y);
   }
+  /// m, that a wall which is mapped where it stands is seen farther out.
+  double off(std::size_t g) const { return by_height(g, times_) + rim_; }
 
-  /// The best shift of walls and how clear their edge is there, if the roof's height is off by `times` its doubt.
-  std::pair<double, double> best_shift(std::size_t g, double times) const {
-    const double off = by_height(g, times);
+  /// The best shift of walls and how clear their edge is there, beside what shows them `off` m farther out.
+  std::pair<double, double> best_shift(std::size_t g, double off) const {
     const int most = static_cast<int>(bound_ / kStep + 1e-9);
     std::pair<double, double> best{0, curves_[g].at(off)};
     for (int k = -most; k <= most; ++k)
@@ -192,49 +230,62 @@ class Refiner {
     return best;
   }
 
-  /// The height with which the image shows the walls most clearly with the fewest shifts.
-  void choose_height() {
-    const double size = std::sqrt(doubt_.x * doubt_.x + doubt_.y * doubt_.y);
-    const int steps = static_cast<int>(size / kStep);
-    double best = -1;
-    for (int k = -steps; k <= steps; ++k) {
-      const double times = steps > 0 ? static_cast<double>(k) / steps : 0;
-      double sum = 0;
-      for (std::size_t g = 0; g < curves_.size(); ++g) {
-        if (!curves_[g].seen()) continue;
-        const double here = curves_[g].at(by_height(g, times));
-        const auto [shift, there] = best_shift(g, times);
-        const double cost = kShiftCost + kCostByMetre * std::fabs(shift);
-        sum += walls_.lengths[g] *
-               (std::max(here, walls_.movable[g] ? there - cost : 0.0) - kHeightCost * times * times);
+  /// How clear the walls are, by length, each where it costs least, if the height and the rim are as said.
+  double clearness(double times, double rim) const {
+    double sum = 0;
+    for (std::size_t g = 0; g < curves_.size(); ++g) {
+      if (!curves_[g].seen()) continue;
+      const double off = by_height(g, times) + rim;
+      double best = curves_[g].at(off);
+      if (walls_.movable[g]) {
+        const auto [shift, there] = best_shift(g, off);
+        best = std::max(best, there - kShiftCost - kCostByMetre * std::fabs(shift));
       }
-      // Of equals the one nearest to what is thought.
-      if (sum > best + 1e-9 || (sum > best - 1e-9 && std::fabs(times) < std::fabs(times_)))
-        best = std::max(best, sum), times_ = times;
+      sum += walls_.lengths[g] * best;
     }
+    return sum;
+  }
+
+  /// What all walls have in common is no fault of one of them: the height of the roof, whose lean was reckoned with another
+  /// one, and its rim, which lies outside the walls or within them. Of all these those that leave the fewest shifts.
+  void choose_height_and_rim() {
+    const double size = std::sqrt(doubt_.x * doubt_.x + doubt_.y * doubt_.y);
+    const int steps = static_cast<int>(size / kStep), rims = static_cast<int>(kMostRim / kStep + 0.5);
+    double length = 0, best = -1;
+    for (std::size_t g = 0; g < curves_.size(); ++g) length += curves_[g].seen() ? walls_.lengths[g] : 0;
+    for (int k = -steps; k <= steps; ++k)
+      for (int j = -rims; j <= rims; ++j) {
+        const double times = steps > 0 ? static_cast<double>(k) / steps : 0, rim = j * kStep;
+        const double share = rim / kMostRim,
+                     value = clearness(times, rim) / length - kHeightCost * times * times - kRimCost * share * share;
+        if (value > best + 1e-9) best = value, times_ = times, rim_ = rim;
+      }
   }
 
   void find_candidates() {
     double all = 0, length = 0;
     for (std::size_t g = 0; g < curves_.size(); ++g)
       if (curves_[g].seen())
-        all += walls_.lengths[g] * curves_[g].at(by_height(g, times_)), length += walls_.lengths[g];
+        all += walls_.lengths[g] * curves_[g].at(off(g)), length += walls_.lengths[g];
     for (std::uint32_t g = 0; g < curves_.size(); ++g) {
       if (!walls_.movable[g] || !curves_[g].seen() || walls_.lengths[g] < kShortestSought) continue;
       const Curve& curve = curves_[g];
-      const double off = by_height(g, times_), here = curve.at(off);
-      auto [shift, there] = best_shift(g, times_);
+      const double off = this->off(g);
+      // An edge so near is the wall's own.
+      double here = curve.at(off);
+      for (const double s : {-2 * kStep, -kStep, kStep, 2 * kStep}) here = std::max(here, curve.at(off + s));
+      auto [shift, there] = best_shift(g, off);
       // Between the steps: the top of the parabola through the best and its neighbours.
       const double left = curve.at(shift - kStep + off), right = curve.at(shift + kStep + off),
                    bend = left - 2 * there + right;
-      if (bend < 0 && left <= there && right <= there)
-        shift = std::clamp(shift + kStep * (left - right) / (2 * bend), -bound_, bound_);
+      if (!(bend < 0 && left <= there && right <= there)) continue;  // it comes out clearer beyond the bound
+      shift = std::clamp(shift + kStep * (left - right) / (2 * bend), -bound_, bound_);
       if (std::fabs(shift) < kLeastShift || there - here < kLeastGain) continue;
       WallEvidence e;
       e.at = {rounded(middles_[g].x, 1000), rounded(middles_[g].y, 1000)};
       e.normal = {rounded(directions_[g].x, 10000), rounded(directions_[g].y, 10000)};
       e.shift = rounded(shift, 1000), e.here = here, e.there = there, e.length = walls_.lengths[g];
-      e.doubt = std::fabs(by_height(g, 1));
+      e.doubt = std::fabs(by_height(g, 1)), e.rim = rim_, e.side = fits_its_side(curve, off, shift);
       double sum = 0, count = 0;
       for (double s = -bound_; s <= bound_ + 1e-9; s += kStep) {
         const double clear = curve.at(s + off);
@@ -247,20 +298,6 @@ class Refiner {
       evidence_.push_back(e);
       groups_.push_back(g);
     }
-  }
-
-  /// Nearly all walls are seen a little farther out: that is a roof with eaves, not a map that is wrong.
-  bool reaches_out() const {
-    double out = 0, all = 0, least = bound_, most = 0;
-    for (std::size_t g = 0; g < curves_.size(); ++g) {
-      if (!curves_[g].seen()) continue;
-      all += walls_.lengths[g];
-      const double shift = best_shift(g, times_).first;
-      if (shift < kOverhang) continue;
-      out += walls_.lengths[g];
-      least = std::min(least, shift), most = std::max(most, shift);
-    }
-    return out >= kAllSides * all && most - least <= kEvenOverhang;
   }
 
   /// The surest first; one that would spoil the outline stays.
@@ -289,7 +326,7 @@ class Refiner {
     double length = 0;
     for (std::size_t g = 0; g < curves_.size(); ++g) {
       if (!curves_[g].seen()) continue;
-      const double off = by_height(g, times_);
+      const double off = this->off(g);
       length += walls_.lengths[g];
       out.before += walls_.lengths[g] * curves_[g].at(off);
       out.after += walls_.lengths[g] * curves_[g].at(off + shifts_[g]);
@@ -327,6 +364,7 @@ class Refiner {
   Point2 doubt_;               ///< m, no more than kMostDoubt
   double reach_ = 0;           ///< m, of the curves
   double times_ = 0;           ///< of the doubt: by how much the height is off
+  double rim_ = 0;             ///< m: how far outside the walls the roof ends
   std::vector<Curve> curves_;  ///< by group, as the next two
   std::vector<Point2> directions_, middles_;
   std::vector<WallEvidence> evidence_;

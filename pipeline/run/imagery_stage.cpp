@@ -166,6 +166,12 @@ void ImageryStage::tell(BuildRecord& record) const {
   for (const auto& [state, count] : states)
     figures += fmt::format("{}{} {}", figures.empty() ? "" : ", ", base::with_thousands(count),
                            state == RowState::corrected && seen_->applied ? "moved" : observation::words(state));
+  const auto reshaped = std::ranges::count_if(seen_->outlines, [](const auto& receipt) {
+    return receipt.refined.state == observation::RefinementState::refined;
+  });
+  if (reshaped > 0)
+    figures += fmt::format("; walls of {} {}", base::with_thousands(static_cast<std::uint64_t>(reshaped)),
+                           seen_->applied ? "shifted" : "seen elsewhere");
   const auto gone = std::ranges::count_if(seen_->outlines, [](const auto& receipt) { return receipt.gone > 0; });
   if (gone > 0) figures += fmt::format("; {} perhaps gone", base::with_thousands(static_cast<std::uint64_t>(gone)));
   record.summary.figures["imagery.json"] = figures;

@@ -101,6 +101,8 @@ void add_refinement(Json& j, const observation::RefinedOutline& r) {
                                       {"usual", rounded(e.usual, 1000)},
                                       {"length_m", rounded(e.length, 10)},
                                       {"height_doubt_m", rounded(e.doubt, 100)},
+                                      {"rim_m", rounded(e.rim, 10)},
+                                      {"side", rounded(e.side, 100)},
                                       {"others", rounded(e.others, 1000)},
                                       {"confidence", e.confidence},
                                       {"taken", e.taken}});

@@ -20,8 +20,9 @@ struct SeenOutline {
   const observation::ImageReceipt& image;
   bool applied = false;  ///< what is corrected stands where the image shows it
 
-  /// "moved" or "seen_elsewhere"; "as_mapped", "undecided", "refused".
+  /// "moved" or "seen_elsewhere"; "reshaped" or "seen_reshaped" where its walls alone are; "as_mapped", "undecided", "refused".
   std::string_view state() const;
+  bool walls_shifted() const { return receipt.refined.state == observation::RefinementState::refined; }
 };
 
 /// Receipts by building; nothing for one that no image shows. May be empty: no images.
