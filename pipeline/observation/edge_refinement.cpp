@@ -27,21 +27,29 @@ constexpr double kEnd = 0.6;
 constexpr double kLeastSeen = 0.7;
 /// m: shorter walls are not looked for by themselves.
 constexpr double kShortestSought = 2;
-/// m: no doubt about a height shows a roof elsewhere by more.
-constexpr double kMostDoubt = 1;
-/// Of clearness, by metre of wall: what it costs to shift one, to shift it by a metre more, and to take another height
-/// that is off by the whole doubt. Without gain nothing is shifted.
-constexpr double kShiftCost = 0.06, kCostByMetre = 0.05, kHeightCost = 0.03;
+/// Of clearness, by metre of wall: what it costs to shift one, and to shift it by a metre more. Without gain nothing is shifted.
+constexpr double kShiftCost = 0.06, kCostByMetre = 0.05;
+/// m: by how much the place of a whole roof in the image may be off (its lean, its height, the place of its row): as likely as
+/// not, and at most. In clearness, what it costs to be off by as much as is likely.
+constexpr double kRoofOff = 0.25, kMostRoofOff = 0.6, kRoofOffCost = 0.015;
 /// m: smaller shifts are errors of the search; and what is another edge.
 constexpr double kLeastShift = 0.25, kElsewhere = 0.4;
 /// m, and levels: strips that are compared with what lies between a wall and its edge; and a difference that is none.
 constexpr double kBeside = 0.5, kSameColour = 8;
+/// What the height of a roof explains: of how far the image shows its edge from the ground there, in a wall's direction. Eaves are
+/// reckoned with, verges rise from there to the ridge.
+constexpr double kByHeight = 0.6;
+/// m: where the edge is seen so far inwards from the ground, the wall below it is seen as well, and its foot.
+constexpr double kWallSeen = 0.2;
 /// Of clearness, of one wall and on the average of all: smaller gains are none.
 constexpr double kLeastGain = 0.06, kLeastGainOfAll = 0.02;
 /// Walls are shifted from this confidence on.
 constexpr double kSureWall = 0.5;
+/// Of the walls by length: where more are seen elsewhere, those are not the ones that are wrong. Cosine between the directions of
+/// walls that are opposite to each other.
+constexpr double kMostElsewhere = 0.45, kOpposite = -0.9;
 /// m: eaves reach so far out over all walls, copings lie so far within them; what it costs, in clearness, to be as much.
-constexpr double kMostRim = 0.8, kRimCost = 0.04;
+constexpr double kMostRim = 0.8, kRimCost = 0.03;
 
 double rounded(double value, double steps) { return std::round(value * steps) / steps + 0.0; }
 
@@ -160,10 +168,7 @@ class Refiner {
  public:
   Refiner(const RefinedBuilding& building, const ImageWindows& windows, double bound)
       : building_(building), bound_(bound), walls_(find_walls(building.rings, building.fixed)) {
-    const double size = std::sqrt(building.doubt.x * building.doubt.x + building.doubt.y * building.doubt.y);
-    doubt_ = building.doubt;
-    if (size > kMostDoubt) doubt_.x *= kMostDoubt / size, doubt_.y *= kMostDoubt / size;
-    reach_ = bound_ + std::min(size, kMostDoubt) + kMostRim;
+    reach_ = bound_ + kMostRoofOff + kMostRim;
     if (!sought()) return;
     geometry::PlanBox box;
     for (const auto& ring : building.rings) box.include(geometry::box_of(ring));
@@ -176,9 +181,14 @@ class Refiner {
   RefinedOutline run() {
     if (!sought()) return left_alone("no wall of it is long enough and free to be looked for by itself");
     if (std::ranges::none_of(curves_, &Curve::seen)) return left_alone("the image does not show its walls");
-    choose_height_and_rim();
+    tabulate();
+    pose_ = best_pose(curves_.size());
     find_candidates();
     if (evidence_.empty()) return left_alone("its walls stand where the image shows them");
+    doubt_pairs();
+    double elsewhere = 0;
+    for (const WallEvidence& e : evidence_) elsewhere += e.length;
+    if (elsewhere > kMostElsewhere * length_) return left_alone("too many of its walls are seen beside the others");
     take_surest();
     return conclude();
   }
@@ -214,12 +224,18 @@ class Refiner {
     }
   }
 
-  /// m, that another height of the roof, off by `times` its doubt, shows a wall farther out.
-  double by_height(std::size_t g, double times) const {
-    return times * (doubt_.x * directions_[g].x + doubt_.y * directions_[g].y);
-  }
+  /// How the image shows the roof beside its walls: displaced as a whole, and with a rim outside the walls or within them.
+  struct Pose {
+    Point2 roof;     ///< m
+    double rim = 0;  ///< m, outwards
+    double value = -1;  ///< the mean clearness of all walls, each at its best shift, less what all of this costs
+  };
+
   /// m, that a wall which is mapped where it stands is seen farther out.
-  double off(std::size_t g) const { return by_height(g, times_) + rim_; }
+  double off(std::size_t g, const Pose& pose) const {
+    return pose.rim + pose.roof.x * directions_[g].x + pose.roof.y * directions_[g].y;
+  }
+  double off(std::size_t g) const { return off(g, pose_); }
 
   /// The best shift of walls and how clear their edge is there, beside what shows them `off` m farther out.
   std::pair<double, double> best_shift(std::size_t g, double off) const {
@@ -230,36 +246,60 @@ class Refiner {
     return best;
   }
 
-  /// How clear the walls are, by length, each where it costs least, if the height and the rim are as said.
-  double clearness(double times, double rim) const {
-    double sum = 0;
+  /// For every offset of a wall, in steps, how clear it is there or at its best shift, less what that costs.
+  void tabulate() {
+    const int most = static_cast<int>(std::lround((kMostRoofOff + kMostRim) / kStep)) + 1;
+    tables_.resize(curves_.size());
+    length_ = 0;
     for (std::size_t g = 0; g < curves_.size(); ++g) {
       if (!curves_[g].seen()) continue;
-      const double off = by_height(g, times) + rim;
-      double best = curves_[g].at(off);
-      if (walls_.movable[g]) {
-        const auto [shift, there] = best_shift(g, off);
-        best = std::max(best, there - kShiftCost - kCostByMetre * std::fabs(shift));
+      length_ += walls_.lengths[g];
+      tables_[g].unmoved.resize(static_cast<std::size_t>(2 * most + 1));
+      tables_[g].best = tables_[g].unmoved;
+      for (int k = -most; k <= most; ++k) {
+        const double here = curves_[g].at(k * kStep);
+        double best = here;
+        if (walls_.movable[g]) {
+          const auto [shift, there] = best_shift(g, k * kStep);
+          best = std::max(best, there - kShiftCost - kCostByMetre * std::fabs(shift));
+        }
+        tables_[g].unmoved[static_cast<std::size_t>(k + most)] = here;
+        tables_[g].best[static_cast<std::size_t>(k + most)] = best;
       }
-      sum += walls_.lengths[g] * best;
     }
-    return sum;
   }
 
-  /// What all walls have in common is no fault of one of them: the height of the roof, whose lean was reckoned with another
-  /// one, and its rim, which lies outside the walls or within them. Of all these those that leave the fewest shifts.
-  void choose_height_and_rim() {
-    const double size = std::sqrt(doubt_.x * doubt_.x + doubt_.y * doubt_.y);
-    const int steps = static_cast<int>(size / kStep), rims = static_cast<int>(kMostRim / kStep + 0.5);
-    double length = 0, best = -1;
-    for (std::size_t g = 0; g < curves_.size(); ++g) length += curves_[g].seen() ? walls_.lengths[g] : 0;
-    for (int k = -steps; k <= steps; ++k)
-      for (int j = -rims; j <= rims; ++j) {
-        const double times = steps > 0 ? static_cast<double>(k) / steps : 0, rim = j * kStep;
-        const double share = rim / kMostRim,
-                     value = clearness(times, rim) / length - kHeightCost * times * times - kRimCost * share * share;
-        if (value > best + 1e-9) best = value, times_ = times, rim_ = rim;
+  /// What all walls have in common is no fault of one of them: the roof's place, its lean and height being known so well only,
+  /// and its rim. Of all poses the one that shows the walls most clearly with the fewest shifts.
+  /// \param kept  walls that may not be shifted; groups: none
+  Pose best_pose(std::size_t kept) const {
+    const int roofs = static_cast<int>(kMostRoofOff / kStep + 0.5), rims = static_cast<int>(kMostRim / kStep + 0.5);
+    const double doubt = std::sqrt(building_.doubt.x * building_.doubt.x + building_.doubt.y * building_.doubt.y);
+    const Point2 lean = doubt > 0 ? Point2{building_.doubt.x / doubt, building_.doubt.y / doubt} : Point2{1, 0};
+    Pose best;
+    for (int j = -roofs; j <= roofs; ++j)
+      for (int i = -roofs; i <= roofs; ++i) {
+        if (i * i + j * j > roofs * roofs) continue;
+        const Point2 roof{i * kStep, j * kStep};
+        const double along = roof.x * lean.x + roof.y * lean.y, across = roof.x * lean.y - roof.y * lean.x;
+        const double cost = kRoofOffCost * (along * along / (kRoofOff * kRoofOff + doubt * doubt) +
+                                            across * across / (kRoofOff * kRoofOff));
+        for (int k = -rims; k <= rims; ++k) {
+          Pose pose{roof, k * kStep, 0};
+          double sum = 0;
+          for (std::size_t g = 0; g < curves_.size(); ++g) {
+            if (!curves_[g].seen()) continue;
+            const std::vector<double>& table = g == kept ? tables_[g].unmoved : tables_[g].best;
+            const auto at = static_cast<std::ptrdiff_t>(table.size() / 2) + std::lround(off(g, pose) / kStep);
+            sum += walls_.lengths[g] *
+                   table[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, std::ssize(table) - 1))];
+          }
+          const double share = pose.rim / kMostRim;
+          pose.value = sum / length_ - cost - kRimCost * share * share;
+          if (pose.value > best.value + 1e-9) best = pose;
+        }
       }
+    return best;
   }
 
   void find_candidates() {
@@ -280,12 +320,17 @@ class Refiner {
                    bend = left - 2 * there + right;
       if (!(bend < 0 && left <= there && right <= there)) continue;  // it comes out clearer beyond the bound
       shift = std::clamp(shift + kStep * (left - right) / (2 * bend), -bound_, bound_);
-      if (std::fabs(shift) < kLeastShift || there - here < kLeastGain) continue;
+      const double lean = building_.lean.x * directions_[g].x + building_.lean.y * directions_[g].y;
+      if (std::fabs(shift) < kLeastShift + kByHeight * std::fabs(lean) || there - here < kLeastGain) continue;
+      if (lean < -kWallSeen && shift > 0) continue;
       WallEvidence e;
       e.at = {rounded(middles_[g].x, 1000), rounded(middles_[g].y, 1000)};
       e.normal = {rounded(directions_[g].x, 10000), rounded(directions_[g].y, 10000)};
       e.shift = rounded(shift, 1000), e.here = here, e.there = there, e.length = walls_.lengths[g];
-      e.doubt = std::fabs(by_height(g, 1)), e.rim = rim_, e.side = fits_its_side(curve, off, shift);
+      e.doubt = std::fabs(building_.doubt.x * directions_[g].x + building_.doubt.y * directions_[g].y);
+      e.margin = (pose_.value - best_pose(g).value) * length_ / walls_.lengths[g];
+      e.lean = lean;
+      e.rim = pose_.rim, e.side = fits_its_side(curve, off, shift);
       double sum = 0, count = 0;
       for (double s = -bound_; s <= bound_ + 1e-9; s += kStep) {
         const double clear = curve.at(s + off);
@@ -298,6 +343,15 @@ class Refiner {
       evidence_.push_back(e);
       groups_.push_back(g);
     }
+  }
+
+  /// Walls opposite to each other that are both seen farther out, or both farther in, have a rim of their own: eaves, where the
+  /// others have none. Nothing is sure of them.
+  void doubt_pairs() {
+    for (WallEvidence& a : evidence_)
+      for (const WallEvidence& b : evidence_)
+        if (a.normal.x * b.normal.x + a.normal.y * b.normal.y < kOpposite && (a.shift > 0) == (b.shift > 0))
+          a.confidence = 0;
   }
 
   /// The surest first; one that would spoil the outline stays.
@@ -361,12 +415,15 @@ class Refiner {
   const RefinedBuilding& building_;
   double bound_;
   Walls walls_;
-  Point2 doubt_;               ///< m, no more than kMostDoubt
-  double reach_ = 0;           ///< m, of the curves
-  double times_ = 0;           ///< of the doubt: by how much the height is off
-  double rim_ = 0;             ///< m: how far outside the walls the roof ends
+  double reach_ = 0;   ///< m, of the curves
+  double length_ = 0;  ///< m, of all walls that are seen
+  Pose pose_;
   std::vector<Curve> curves_;  ///< by group, as the next two
   std::vector<Point2> directions_, middles_;
+  struct Table {
+    std::vector<double> unmoved, best;
+  };
+  std::vector<Table> tables_;  ///< by group
   std::vector<WallEvidence> evidence_;
   std::vector<std::uint32_t> groups_;  ///< of the evidence
   std::vector<double> shifts_;         ///< m, by group

@@ -59,6 +59,8 @@ struct WallEvidence {
   double second = 0, usual = 0;   ///< at the next best shift, and on the average of all
   double length = 0, doubt = 0;   ///< m of wall; m by which the doubt about the roof's height may show them elsewhere
   double rim = 0;                 ///< m: how far outside all its walls the building's roof seems to end
+  double margin = 0;              ///< clearness that no place of the whole roof explains as well
+  double lean = 0;                ///< m outwards: how far the image shows the roof from its ground there
   double side = 0;                ///< from -1 to 1: what lies between looks like roof if shifted outwards, else like ground
   double others = 0;              ///< how clear the edges of the building's other walls are where they stand
   double confidence = 0;          ///< that they stand nearer to the truth afterwards

@@ -469,6 +469,18 @@ class Observer {
     }
   }
 
+  /// How many houses have a corner, of all corners in a row with several; empty for a house that stands alone.
+  std::map<Point2, int> shared_corners(const footprints::TerraceRowPlan& plan) const {
+    std::map<Point2, int> corners;
+    if (plan.buildings.size() + plan.beyond.size() < 2) return corners;
+    for (const auto* part : {&plan.buildings, &plan.beyond})
+      for (const std::uint32_t b : *part)
+        of_.footprints.for_each_ring(b, [&](std::span<const Point2> ring, bool) {
+          for (const Point2 p : ring) ++corners[p];
+        });
+    return corners;
+  }
+
   /// The walls of the row's houses, where the row was found or, if it is left alone, as mapped. By outline.
   std::vector<RefinedOutline> refine_row(const footprints::TerraceRowPlan& plan, const SearchedRow& row,
                                          const ImageWindows& windows, const RowMatch& match,
@@ -476,7 +488,9 @@ class Observer {
     std::vector<RefinedOutline> refined(row.outlines.size());
     const bool corrected = verdict.state == RowState::corrected;
     if (refine_within_ <= 0 || !(corrected || verdict.state == RowState::left_alone)) return refined;
+    const double beside = std::sqrt(match.shift.x * match.shift.x + match.shift.y * match.shift.y);
     if (std::ranges::any_of(row.outlines, [](const SearchedOutline& o) { return o.pieces.empty(); })) return refined;
+    const std::map<Point2, int> corners = shared_corners(plan);
     footprints::Movement movement{{}, rounded(row.centre), 0};
     if (corrected) movement.shift = rounded(match.shift), movement.turn = rounded(match.turn, 100);
     std::size_t place = 0;
@@ -487,8 +501,8 @@ class Observer {
       const double by = corrected && place < match.heights.size() ? match.heights[place] - o.height : 0;
       ++place;
       out.state = RefinementState::left_alone;
-      if (plan.buildings.size() > 1) {
-        out.reason = "it does not stand alone";
+      if (!corrected && beside >= kLeastCorrection) {
+        out.reason = "its place is not sure enough";
         continue;
       }
       if (of_.footprints[b].has_parts) {
@@ -496,10 +510,16 @@ class Observer {
         continue;
       }
       Rings from;
+      RefinedBuilding building{.rings = {}, .fixed = {}, .lean = o.lean, .doubt = o.per_metre};
       of_.footprints.for_each_ring(b, [&](std::span<const Point2> ring, bool) {
-        for (from.emplace_back(); const Point2 p : ring) from.back().push_back(rounded(p));
+        from.emplace_back(), building.fixed.emplace_back();
+        for (const Point2 p : ring) {
+          from.back().push_back(rounded(p));
+          const auto found = corners.find(p);
+          building.fixed.back().push_back(found != corners.end() && found->second > 1);
+        }
       });
-      RefinedBuilding building{.rings = from, .fixed = {}, .lean = o.lean, .doubt = o.per_metre};
+      building.rings = from;
       for (std::vector<Point2>& ring : building.rings)
         for (Point2& p : ring) p = movement(p);
       building.lean.x += by * o.per_metre.x, building.lean.y += by * o.per_metre.y;

@@ -102,6 +102,8 @@ void add_refinement(Json& j, const observation::RefinedOutline& r) {
                                       {"length_m", rounded(e.length, 10)},
                                       {"height_doubt_m", rounded(e.doubt, 100)},
                                       {"rim_m", rounded(e.rim, 10)},
+                                      {"margin", rounded(e.margin, 1000)},
+                                      {"lean_m", rounded(e.lean, 100)},
                                       {"side", rounded(e.side, 100)},
                                       {"others", rounded(e.others, 1000)},
                                       {"confidence", e.confidence},

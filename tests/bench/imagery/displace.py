@@ -7,8 +7,8 @@ A row: buildings and building parts that share nodes, belong to one relation, li
 one: turned about its centre (counter-clockwise, at most so far that no corner moves 1.5 m by it), then shifted. Lengths are metres
 in the projected system of the build (UTM of the extract's middle unless told), that is on the ground. Nodes that other ways use
 too (streets, fences, areas) are copied, the others' stay. Truth: OUT.csv, a line per building. --share: share of the buildings
-that are moved (whole rows), the rest stays: the test of false corrections. --jitter: deviation of every corner's own error, m. --walls: share of the houses alone in their
-row of which one or two walls are shifted along their normal by 0.3 to 1 m, the other walls staying on their lines.
+that are moved (whole rows), the rest stays: the test of false corrections. --jitter: deviation of every corner's own error, m. --walls: share of the rows in which a house
+has one or two walls, at corners that no neighbour has, shifted along their normal by 0.3 to 1 m, the other walls staying on their lines.
 """
 import argparse
 import csv
@@ -155,44 +155,50 @@ def moved(p, move):
     return (np.asarray(p) - centre) @ np.array([[c, s], [-s, c]]) + centre + (dx, dy)
 
 
-def shift_wall(ring, rng):
-    """A ring (n, 2), not closed, with one wall between two clear corners shifted by 0.3 to 1 m, or None where there is none that can be."""
+def shift_wall(ring, rng, done, free):
+    """A ring (n, 2), not closed, with one wall between two clear corners shifted by 0.3 to 1 m, or None where there is none that can be; done: walls that were, by their first corner; free: corners that may move."""
     n, edge = len(ring), np.roll(ring, -1, 0) - ring
     length = np.hypot(*edge.T)
     if (length < 1e-6).any():
         return None
     unit = edge / length[:, None]
     turn = np.abs([unit[i - 1, 0] * unit[i, 1] - unit[i - 1, 1] * unit[i, 0] for i in range(n)])   # at the corner where edge i begins
-    fit = [i for i in range(n) if length[i] >= 3 and min(length[i - 1], length[(i + 1) % n]) >= 3 and turn[i] > .7 and turn[(i + 1) % n] > .7]
+    fit = [i for i in range(n) if free[i] and free[(i + 1) % n] and length[i] >= 3 and min(length[i - 1], length[(i + 1) % n]) >= 3 and turn[i] > .7 and turn[(i + 1) % n] > .7 and i not in done]
     if n < 4 or not fit:
         return None
     i, by = int(rng.choice(fit)), rng.uniform(.3, 1) * rng.choice([-1, 1])
     normal, out = np.array([unit[i, 1], -unit[i, 0]]), ring.copy()
     for corner, way in ((i, unit[i - 1]), ((i + 1) % n, unit[(i + 1) % n])):
         out[corner] = ring[corner] + way * (by / (way @ normal))
+    done.add(i)
     return out
 
 
 def plan_walls(b, rng, share):
-    """Row -> {node: (2,) place} of houses with shifted walls, before their row is moved."""
-    rows, plans = {}, {}
+    """Row -> {node: (2,) place} of houses with shifted walls, before their row is moved: of each row one house at most, at corners that it has for itself."""
+    rows, plans, used = {}, {}, {}
     for o, r in b.rows.items():
         rows.setdefault(r, []).append(o)
+        for w in b.objects[o][0]:
+            for n in set(b.extract.ways[w][0]):
+                used[n] = used.get(n, 0) + 1
     for r in sorted(rows):
-        chance, count = rng.random(), int(rng.integers(1, 3))
-        o = rows[r][0]
+        chance, count, o = rng.random(), int(rng.integers(1, 3)), rows[r][int(rng.integers(len(rows[r])))]
         ways = b.objects[o][0]
-        if chance >= share or len(rows[r]) != 1 or len(ways) != 1 or not b.objects[o][1]:
+        if chance >= share or len(ways) != 1 or not b.objects[o][1]:
             continue
         refs = b.extract.ways[ways[0]][0]
         if len(refs) < 5 or refs[0] != refs[-1] or any(n not in b.xy for n in refs) or len(set(refs)) != len(refs) - 1:
             continue
-        ring = b.rings[o][0][:-1]
+        others = [x for k in rows[r] if k != o for x in b.rings[k]]
+        apart = lambda p: not others or to_segments(np.array([p]), segments(others)) > .7
+        ring, done = b.rings[o][0][:-1], set()
+        free = [used[n] == 1 and apart(b.xy[n]) for n in refs[:-1]]
         for _ in range(count):
-            shifted = shift_wall(ring, rng)
+            shifted = shift_wall(ring, rng, done, free)
             ring = ring if shifted is None else shifted
         if not np.array_equal(ring, b.rings[o][0][:-1]):
-            plans[r] = dict(zip(refs[:-1], ring))
+            plans[r] = o, dict(zip(refs[:-1], ring))
     return plans
 
 
@@ -210,7 +216,7 @@ def displace(source, target, seed, low, high, rotate=0.0, share=1.0, jitter=0.0,
     back = osm.transformation(b.epsg, 4326)
     for n in sorted(node_row):
         row = node_row[n]
-        p = np.asarray(reshaped.get(row, {}).get(n, b.xy[n]), float)
+        p = np.asarray(reshaped[row][1].get(n, b.xy[n]) if row in reshaped else b.xy[n], float)
         if row in moves:
             p = moved(p[None], moves[row])[0] + (rng.normal(0, jitter, 2) if jitter else 0)
         lon, lat, _ = back.TransformPoint(float(p[0]), float(p[1]))
@@ -249,7 +255,7 @@ def displace(source, target, seed, low, high, rotate=0.0, share=1.0, jitter=0.0,
         for o, r in b.rows.items():
             dx, dy, turn, centre = moves.get(r, (0.0, 0.0, 0.0, centroid(b.rings[o])))
             c = centroid(b.rings[o])
-            w.writerow([o, int(not b.objects[o][1]), r, int(r in moves), f"{dx:.4f}", f"{dy:.4f}", f"{turn:.4f}", f"{centre[0]:.3f}", f"{centre[1]:.3f}", f"{c[0]:.3f}", f"{c[1]:.3f}", int(r in reshaped)])
+            w.writerow([o, int(not b.objects[o][1]), r, int(r in moves), f"{dx:.4f}", f"{dy:.4f}", f"{turn:.4f}", f"{centre[0]:.3f}", f"{centre[1]:.3f}", f"{c[0]:.3f}", f"{c[1]:.3f}", int(r in reshaped and reshaped[r][0] == o)])
     return b, moves
 
 
