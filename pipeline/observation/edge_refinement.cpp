@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "pipeline/base/portable_math.h"
 
@@ -47,7 +48,9 @@ constexpr double kLeastGain = 0.06, kLeastGainOfAll = 0.02;
 constexpr double kSureWall = 0.5;
 /// Of the walls by length: where more are seen elsewhere, those are not the ones that are wrong. Cosine between the directions of
 /// walls that are opposite to each other.
-constexpr double kMostElsewhere = 0.45, kOpposite = -0.9;
+constexpr double kMostElsewhere = 0.5, kOpposite = -0.9;
+/// m: with a wider rim, or where the image shows a roof farther from its ground, single walls are not sure of their places.
+constexpr double kSureRim = 0.55, kMostLean = 1.5;
 /// m: eaves reach so far out over all walls, copings lie so far within them; what it costs, in clearness, to be as much.
 constexpr double kMostRim = 0.8, kRimCost = 0.03;
 
@@ -159,8 +162,9 @@ double add_wall(const Wall& wall, Point2 lean, const Patch& patch, Curve& curve)
   return seen;
 }
 
-double confidence_of(const WallEvidence& e) {
-  const double sum = -2.0 + 8 * (e.there - e.here) + 2 * e.there;
+double confidence_of(const WallEvidence& e, const RefinedBuilding& building) {
+  const double lean = std::sqrt(building.lean.x * building.lean.x + building.lean.y * building.lean.y);
+  const double sum = e.there - e.here - lean;
   return 1 / (1 + base::exp(-sum));
 }
 
@@ -184,11 +188,8 @@ class Refiner {
     tabulate();
     pose_ = best_pose(curves_.size());
     find_candidates();
-    if (evidence_.empty()) return left_alone("its walls stand where the image shows them");
-    doubt_pairs();
-    double elsewhere = 0;
-    for (const WallEvidence& e : evidence_) elsewhere += e.length;
-    if (elsewhere > kMostElsewhere * length_) return left_alone("too many of its walls are seen beside the others");
+    if (too_many_) return left_alone("too many of its walls are seen beside the others");
+    if (evidence_.empty()) return left_alone("no wall is clearly seen beside the others");
     take_surest();
     return conclude();
   }
@@ -302,56 +303,83 @@ class Refiner {
     return best;
   }
 
+  /// A wall beside the pose: its best shift, and how clear it is near where it stands and there. An edge within 0.2 m is its own.
+  struct Seen {
+    double shift = 0, here = 0, there = 0;
+    bool elsewhere() const { return std::fabs(shift) >= kLeastShift && there - here >= kLeastGain; }
+  };
+  Seen seen(std::size_t g) const {
+    const double off = this->off(g);
+    Seen out;
+    for (int k = -2; k <= 2; ++k) out.here = std::max(out.here, curves_[g].at(off + k * kStep));
+    std::tie(out.shift, out.there) = best_shift(g, off);
+    return out;
+  }
+
+  /// Walls that are clearly seen elsewhere, and by nothing else than that they stand there.
   void find_candidates() {
-    double all = 0, length = 0;
-    for (std::size_t g = 0; g < curves_.size(); ++g)
-      if (curves_[g].seen())
-        all += walls_.lengths[g] * curves_[g].at(off(g)), length += walls_.lengths[g];
+    if (std::fabs(pose_.rim) > kSureRim) return;
+    if (building_.lean.x * building_.lean.x + building_.lean.y * building_.lean.y > kMostLean * kMostLean) return;
+    std::vector<Seen> walls(curves_.size());
+    double elsewhere = 0;
+    for (std::size_t g = 0; g < curves_.size(); ++g) {
+      if (!curves_[g].seen()) continue;
+      walls[g] = seen(g);
+      if (walls[g].elsewhere()) elsewhere += walls_.lengths[g];
+    }
+    too_many_ = elsewhere > kMostElsewhere * length_;
+    if (too_many_) return;
     for (std::uint32_t g = 0; g < curves_.size(); ++g) {
-      if (!walls_.movable[g] || !curves_[g].seen() || walls_.lengths[g] < kShortestSought) continue;
-      const Curve& curve = curves_[g];
-      const double off = this->off(g);
-      // An edge so near is the wall's own.
-      double here = curve.at(off);
-      for (const double s : {-2 * kStep, -kStep, kStep, 2 * kStep}) here = std::max(here, curve.at(off + s));
-      auto [shift, there] = best_shift(g, off);
+      if (!walls_.movable[g] || !walls[g].elsewhere() || walls_.lengths[g] < kShortestSought) continue;
       // Between the steps: the top of the parabola through the best and its neighbours.
-      const double left = curve.at(shift - kStep + off), right = curve.at(shift + kStep + off),
+      const double off = this->off(g), at = walls[g].shift, there = walls[g].there,
+                   left = curves_[g].at(at - kStep + off), right = curves_[g].at(at + kStep + off),
                    bend = left - 2 * there + right;
       if (!(bend < 0 && left <= there && right <= there)) continue;  // it comes out clearer beyond the bound
-      shift = std::clamp(shift + kStep * (left - right) / (2 * bend), -bound_, bound_);
-      const double lean = building_.lean.x * directions_[g].x + building_.lean.y * directions_[g].y;
-      if (std::fabs(shift) < kLeastShift + kByHeight * std::fabs(lean) || there - here < kLeastGain) continue;
-      if (lean < -kWallSeen && shift > 0) continue;
-      WallEvidence e;
-      e.at = {rounded(middles_[g].x, 1000), rounded(middles_[g].y, 1000)};
-      e.normal = {rounded(directions_[g].x, 10000), rounded(directions_[g].y, 10000)};
-      e.shift = rounded(shift, 1000), e.here = here, e.there = there, e.length = walls_.lengths[g];
-      e.doubt = std::fabs(building_.doubt.x * directions_[g].x + building_.doubt.y * directions_[g].y);
-      e.margin = (pose_.value - best_pose(g).value) * length_ / walls_.lengths[g];
-      e.lean = lean;
-      e.rim = pose_.rim, e.side = fits_its_side(curve, off, shift);
-      double sum = 0, count = 0;
-      for (double s = -bound_; s <= bound_ + 1e-9; s += kStep) {
-        const double clear = curve.at(s + off);
-        sum += clear, count += 1;
-        if (std::fabs(s - shift) >= kElsewhere) e.second = std::max(e.second, clear);
-      }
-      e.usual = sum / count;
-      e.others = length > e.length ? (all - e.length * here) / (length - e.length) : 0;
-      e.confidence = rounded(confidence_of(e), 1000);
-      evidence_.push_back(e);
+      const double shift = at + kStep * (left - right) / (2 * bend);
+      if (std::fabs(shift) > bound_ - kStep / 2 || explained(g, shift, walls)) continue;
+      evidence_.push_back(evidence_of(g, shift, walls));
       groups_.push_back(g);
     }
   }
 
-  /// Walls opposite to each other that are both seen farther out, or both farther in, have a rim of their own: eaves, where the
-  /// others have none. Nothing is sure of them.
-  void doubt_pairs() {
-    for (WallEvidence& a : evidence_)
-      for (const WallEvidence& b : evidence_)
-        if (a.normal.x * b.normal.x + a.normal.y * b.normal.y < kOpposite && (a.shift > 0) == (b.shift > 0))
-          a.confidence = 0;
+  /// Another height of the roof, the foot of the wall, or a rim that only walls across have, shows the edge there as well.
+  bool explained(std::size_t g, double shift, const std::vector<Seen>& walls) const {
+    const double lean = lean_outwards(g);
+    if (std::fabs(shift) < kLeastShift + kByHeight * std::fabs(lean) || (lean < -kWallSeen && shift > 0)) return true;
+    for (std::size_t other = 0; other < walls.size(); ++other) {
+      const double facing = directions_[g].x * directions_[other].x + directions_[g].y * directions_[other].y;
+      if (facing < kOpposite && walls[other].elsewhere() && (walls[other].shift > 0) == (shift > 0)) return true;
+    }
+    return false;
+  }
+
+  double lean_outwards(std::size_t g) const {
+    return building_.lean.x * directions_[g].x + building_.lean.y * directions_[g].y;
+  }
+
+  WallEvidence evidence_of(std::size_t g, double shift, const std::vector<Seen>& walls) const {
+    const Curve& curve = curves_[g];
+    const double off = this->off(g);
+    WallEvidence e;
+    e.at = {rounded(middles_[g].x, 1000), rounded(middles_[g].y, 1000)};
+    e.normal = {rounded(directions_[g].x, 10000), rounded(directions_[g].y, 10000)};
+    e.shift = rounded(shift, 1000), e.here = walls[g].here, e.there = walls[g].there, e.length = walls_.lengths[g];
+    e.rim = pose_.rim, e.lean = lean_outwards(g), e.side = fits_its_side(curve, off, shift), e.pose = pose_.value;
+    const int most = static_cast<int>(bound_ / kStep + 1e-9);
+    for (int k = -most; k <= most; ++k) {
+      const double clear = curve.at(k * kStep + off);
+      e.usual += clear / (2 * most + 1);
+      if (std::fabs(k * kStep - shift) >= kElsewhere) e.second = std::max(e.second, clear);
+    }
+    const double length = length_ - e.length;
+    for (std::size_t other = 0; other < walls.size(); ++other)
+      if (other != g && curves_[other].seen() && length > 0) {
+        e.others += walls_.lengths[other] * walls[other].here / length;
+        if (walls[other].there - walls[other].here < kLeastGain) e.steady += walls_.lengths[other] / length;
+      }
+    e.confidence = rounded(confidence_of(e, building_), 1000);
+    return e;
   }
 
   /// The surest first; one that would spoil the outline stays.
@@ -428,7 +456,7 @@ class Refiner {
   std::vector<std::uint32_t> groups_;  ///< of the evidence
   std::vector<double> shifts_;         ///< m, by group
   Rings outline_;
-  bool spoils_ = false;
+  bool spoils_ = false, too_many_ = false;
 };
 
 }  // namespace

@@ -53,17 +53,18 @@ constexpr std::string_view name(RefinementState s) {
 
 /// What the image shows of walls on one line, if they are shifted along their normal (edge_refinement.h).
 struct WallEvidence {
-  model::Point2 at, normal;       ///< m, middle of the longest of them; unit vector, outwards
-  double shift = 0;               ///< m outwards: the best within the bound
-  double here = 0, there = 0;     ///< how clear the edge is without and with it, [0, 1]
-  double second = 0, usual = 0;   ///< at the next best shift, and on the average of all
-  double length = 0, doubt = 0;   ///< m of wall; m by which the doubt about the roof's height may show them elsewhere
-  double rim = 0;                 ///< m: how far outside all its walls the building's roof seems to end
-  double margin = 0;              ///< clearness that no place of the whole roof explains as well
-  double lean = 0;                ///< m outwards: how far the image shows the roof from its ground there
-  double side = 0;                ///< from -1 to 1: what lies between looks like roof if shifted outwards, else like ground
-  double others = 0;              ///< how clear the edges of the building's other walls are where they stand
-  double confidence = 0;          ///< that they stand nearer to the truth afterwards
+  model::Point2 at, normal;      ///< m, middle of the longest of them; unit vector, outwards
+  double shift = 0;              ///< m outwards: the best within the bound
+  double here = 0, there = 0;    ///< how clear the edge is where the wall stands, and where it is seen, [0, 1]
+  double second = 0, usual = 0;  ///< at the next best shift, and on the average of all
+  double length = 0;             ///< m of wall
+  double rim = 0;                ///< m: how far outside all its walls the building's roof seems to end
+  double lean = 0;               ///< m outwards: how far the image shows the roof from its ground there
+  double side = 0;               ///< from -1 to 1: what lies between looks like roof if shifted outwards, else like ground
+  double others = 0;             ///< how clear the building's other walls are where they stand
+  double steady = 0;             ///< share of them that is clearer nowhere else
+  double pose = 0;               ///< clearness of all walls at their best shifts, less what these cost
+  double confidence = 0;         ///< that they stand nearer to the truth afterwards
   bool taken = false;
 };
 

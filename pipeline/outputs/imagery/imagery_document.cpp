@@ -100,12 +100,12 @@ void add_refinement(Json& j, const observation::RefinedOutline& r) {
                                       {"elsewhere", rounded(e.second, 1000)},
                                       {"usual", rounded(e.usual, 1000)},
                                       {"length_m", rounded(e.length, 10)},
-                                      {"height_doubt_m", rounded(e.doubt, 100)},
                                       {"rim_m", rounded(e.rim, 10)},
-                                      {"margin", rounded(e.margin, 1000)},
                                       {"lean_m", rounded(e.lean, 100)},
                                       {"side", rounded(e.side, 100)},
                                       {"others", rounded(e.others, 1000)},
+                                      {"steady", rounded(e.steady, 100)},
+                                      {"pose", rounded(e.pose, 1000)},
                                       {"confidence", e.confidence},
                                       {"taken", e.taken}});
 }

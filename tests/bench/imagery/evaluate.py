@@ -180,11 +180,11 @@ class Bench:
     # ---- single walls ---------------------------------------------------------------------------------------------
 
     def walls(self):
-        """Houses with one or two walls shifted by 0.3 to 1 m, a third of the rows moved as well; and all corners of half the rows off by --jitter."""
+        """Houses with one or two walls shifted by 0.3 to 1 m in every row that has such, a third of the rows moved as well; and all corners of half the rows off by --jitter."""
         places = [p for p in ["kampala"] + self.a.places if p == "kampala" or os.path.exists(self.image_of(p))]
         labels = truth_rows("kampala_labels.csv")
         right_labels = {f"w{int(r['index']) + 1}": (float(r["dx_m"]), float(r["dy_m"])) for r in labels if r["verdict"] == "right"}
-        for kind, how in (("walls", dict(low=1, high=3, share=.33, jitter=0, walls=.5)), (f"corners by {self.a.jitter or .3} m", dict(low=0, high=0, share=.5, jitter=self.a.jitter or .3, walls=0))):
+        for kind, how in (("walls", dict(low=1, high=3, share=.33, jitter=0, walls=1.0)), (f"corners by {self.a.jitter or .3} m", dict(low=0, high=0, share=.5, jitter=self.a.jitter or .3, walls=0))):
             lines, pooled = [], {}
             for place in places:
                 extract, image = (self.kampala_osm, self.kampala_image) if place == "kampala" else (self.extract_of(place), self.image_of(place))

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Fits the logistic regressions of pipeline/observation (verdict.cpp, roof_view.cpp, presence.cpp) on the tuning images; prints weights and what each
+"""Fits the logistic regressions of pipeline/observation (verdict.cpp, edge_refinement.cpp, roof_view.cpp, presence.cpp) on the tuning images; prints weights and what each
 place that is left out says.
 
-    fit.py confidence|form|ridge|gone [--work FOLDER] [--images FOLDER] [--places PLACE ...]
+    fit.py confidence|walls|form|ridge|gone [--work FOLDER] [--images FOLDER] [--places PLACE ...]
 
 confidence: of the runs that `evaluate.py synthetic --set tuning` and `evaluate.py kampala` left in --work; a row is right when it is
-found within 0.6 m; of those that are found 0.4 m or more from where they are mapped. form, ridge: of builds of the tuning images, which are made here where --work lacks them.
+found within 0.6 m; of those that are found 0.4 m or more from where they are mapped. walls: of what `evaluate.py walls --set tuning` left
+in --work/walls.json; a wall is right when it stands nearer to the truth by 0.05 m afterwards. form, ridge: of builds of the tuning images, which are made here where --work lacks them.
 """
 import argparse
 import collections
@@ -73,6 +74,18 @@ def confidence(a):
                          [1, min(3, (b["evidence_after"] - b["evidence_before"]) / d), min(2.5, (b["evidence_after"] - b["score_elsewhere"]) / d),
                           min(4.5, (b["evidence_after"] - b["score_mean"]) / d), b["evidence_after"], math.log(max(1, b["walls_m"]) / 50),
                           max(0, math.hypot(dx, dy) - 2.8), min(2, b["height_doubt_m"]), math.log(houses[b["row"]])], off < .6))
+    report(rows)
+
+
+def walls(a):
+    rows = []
+    with open(os.path.join(a.work, "walls.json")) as f:
+        runs = json.load(f)["walls"]
+    for run in runs:
+        for w in run["walls"]:
+            here, there = w["clear"]
+            rows.append((run["place"], [1, there - here, there, here, there - w["elsewhere"], there - w["usual"], math.log(w["length_m"]), w["shift_m"] > 0, w["side"], w["others"], w["steady"],
+                                        abs(w["rim_m"]), max(0, w["lean_m"]), w["leans"], w["state"] == "corrected", w["pose"]], abs(w["off"] - w["shift_m"]) + .05 < abs(w["off"])))
     report(rows)
 
 
@@ -170,7 +183,7 @@ def gone(a):
 
 def main():
     a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    a.add_argument("what", choices=["confidence", "form", "ridge", "gone"])
+    a.add_argument("what", choices=["confidence", "walls", "form", "ridge", "gone"])
     a.add_argument("--program", default=os.path.join(HERE, "../../../build/release/blockrand"))
     a.add_argument("--shared", default="/work/shared" if os.path.isdir("/work/shared") else os.path.join(HERE, "../../../../shared"))
     a.add_argument("--images", default="/work/imagery_bench")

@@ -39,7 +39,7 @@ def judge(answers, right, wrong, touched, offsets=None):
         for w in told.get("seen_elsewhere", []):
             at, normal = np.array(w["at"]), np.array(w["normal"])
             off = float((true_place(at, now, goal) - at) @ normal)
-            walls.append(dict(w, id=a["id"], off=off, before=abs(off), after=abs(off - w["shift_m"]), clear=(w["before"], w["after"]), touched=a["id"] in touched, state=a["state"],
+            walls.append(dict(w, id=a["id"], off=off, before=abs(off), after=abs(off - w["shift_m"]), clear=(w["before"], w["after"]), touched=a["id"] in touched, state=a["state"], leans=float(np.hypot(*a["lean_m"])),
                               taken=w["taken"] and told["state"] == "refined"))
         corners = lambda rings: np.vstack([r[:-1] for r in rings])
         error = lambda rings: np.hypot(*(corners(rings) - corners(goal)).T)
