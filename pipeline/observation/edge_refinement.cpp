@@ -365,7 +365,8 @@ class Refiner {
     e.at = {rounded(middles_[g].x, 1000), rounded(middles_[g].y, 1000)};
     e.normal = {rounded(directions_[g].x, 10000), rounded(directions_[g].y, 10000)};
     e.shift = rounded(shift, 1000), e.here = walls[g].here, e.there = walls[g].there, e.length = walls_.lengths[g];
-    e.rim = pose_.rim, e.lean = lean_outwards(g), e.side = fits_its_side(curve, off, shift), e.pose = pose_.value;
+    e.rim = pose_.rim, e.lean = lean_outwards(g), e.side = fits_its_side(curve, off, shift);
+    e.margin = (pose_.value - best_pose(g).value) * length_ / e.length;
     const int most = static_cast<int>(bound_ / kStep + 1e-9);
     for (int k = -most; k <= most; ++k) {
       const double clear = curve.at(k * kStep + off);

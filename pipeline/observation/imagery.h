@@ -63,7 +63,7 @@ struct WallEvidence {
   double side = 0;               ///< from -1 to 1: what lies between looks like roof if shifted outwards, else like ground
   double others = 0;             ///< how clear the building's other walls are where they stand
   double steady = 0;             ///< share of them that is clearer nowhere else
-  double pose = 0;               ///< clearness of all walls at their best shifts, less what these cost
+  double margin = 0;             ///< clearness that no place of the roof, and no shift of other walls, explains as well
   double confidence = 0;         ///< that they stand nearer to the truth afterwards
   bool taken = false;
 };

@@ -105,7 +105,7 @@ void add_refinement(Json& j, const observation::RefinedOutline& r) {
                                       {"side", rounded(e.side, 100)},
                                       {"others", rounded(e.others, 1000)},
                                       {"steady", rounded(e.steady, 100)},
-                                      {"pose", rounded(e.pose, 1000)},
+                                      {"margin", rounded(e.margin, 1000)},
                                       {"confidence", e.confidence},
                                       {"taken", e.taken}});
 }

@@ -184,7 +184,7 @@ class Bench:
         places = [p for p in ["kampala"] + self.a.places if p == "kampala" or os.path.exists(self.image_of(p))]
         labels = truth_rows("kampala_labels.csv")
         right_labels = {f"w{int(r['index']) + 1}": (float(r["dx_m"]), float(r["dy_m"])) for r in labels if r["verdict"] == "right"}
-        for kind, how in (("walls", dict(low=1, high=3, share=.33, jitter=0, walls=1.0)), (f"corners by {self.a.jitter or .3} m", dict(low=0, high=0, share=.5, jitter=self.a.jitter or .3, walls=0))):
+        for kind, how in [k for k in (("walls", dict(low=1, high=3, share=.33, jitter=0, walls=1.0)), (f"corners by {self.a.jitter or .3} m", dict(low=0, high=0, share=.5, jitter=self.a.jitter or .3, walls=0))) if k[0].split()[0] in self.a.kinds]:
             lines, pooled = [], {}
             for place in places:
                 extract, image = (self.kampala_osm, self.kampala_image) if place == "kampala" else (self.extract_of(place), self.image_of(place))
@@ -479,6 +479,7 @@ def main():
     a.add_argument("--rotate", type=float, default=0)
     a.add_argument("--jitter", type=float, default=0)
     a.add_argument("--share", type=float, default=.5, help="synthetic: share of the buildings that are displaced")
+    a.add_argument("--kinds", nargs="+", default=["walls", "corners"], choices=["walls", "corners"], help="walls: what is off")
     a.add_argument("--lod", type=int, default=0)
     a.add_argument("--work", default="/tmp/imagery_bench")
     a.add_argument("--json", help="else WORK/WHAT.json")

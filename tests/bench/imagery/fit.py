@@ -85,7 +85,7 @@ def walls(a):
         for w in run["walls"]:
             here, there = w["clear"]
             rows.append((run["place"], [1, there - here, there, here, there - w["elsewhere"], there - w["usual"], math.log(w["length_m"]), w["shift_m"] > 0, w["side"], w["others"], w["steady"],
-                                        abs(w["rim_m"]), max(0, w["lean_m"]), w["leans"], w["state"] == "corrected", w["pose"]], abs(w["off"] - w["shift_m"]) + .05 < abs(w["off"])))
+                                        abs(w["rim_m"]), max(0, w["lean_m"]), w["leans"], w["state"] == "corrected", w["margin"]], abs(w["off"] - w["shift_m"]) + .05 < abs(w["off"])))
     report(rows)
 
 
