@@ -13,7 +13,8 @@ namespace {
 using footprints::Movement;
 using model::Polygon;
 
-constexpr std::string_view kKept = "an override keeps it where it is mapped", kInTheWay = "it would stand on a neighbour";
+constexpr std::string_view kKept = "an override keeps it where it is mapped",
+                           kInTheWay = "it would stand on a neighbour";
 
 /// m2: more of two houses on each other is more than the rounding of their corners.
 constexpr double kNewOverlap = 0.05;
@@ -63,8 +64,7 @@ class Refuser {
       for (const auto& [a, b] : pairs_) {
         if (!corrected(a) && !corrected(b)) continue;
         if (!overlap(a, b)) continue;
-        refuse(corrected(b) && (!corrected(a) || surer(a, b)) ? receipts_[b].row : receipts_[a].row,
-               kInTheWay);
+        refuse(corrected(b) && (!corrected(a) || surer(a, b)) ? receipts_[b].row : receipts_[a].row, kInTheWay);
         again = true;
       }
     }
@@ -90,7 +90,8 @@ class Refuser {
       for (const auto& [a, b] : pairs) {
         if (!refined(a) && !refined(b)) continue;
         if (geometry::common_area(at(a), at(b)) <= geometry::common_area(in_row(a), in_row(b)) + kNewOverlap) continue;
-        const bool first = refined(a) && (!refined(b) || receipts_[a].refined.confidence < receipts_[b].refined.confidence);
+        const bool first =
+            refined(a) && (!refined(b) || receipts_[a].refined.confidence < receipts_[b].refined.confidence);
         refuse_walls(first ? a : b, kInTheWay);
         again = true;
       }
@@ -159,10 +160,8 @@ void refuse_corrections(ImageryObservations& observations, const footprints::Foo
 
 Movement movement_of(const OutlineReceipt& receipt) {
   Movement movement;
-  if (receipt.state == RowState::corrected)
-    movement = {receipt.shift, receipt.centre, receipt.turn};
-  if (receipt.refined.state == RefinementState::refined)
-    movement.reshape = {receipt.refined.from, receipt.refined.to};
+  if (receipt.state == RowState::corrected) movement = {receipt.shift, receipt.centre, receipt.turn};
+  if (receipt.refined.state == RefinementState::refined) movement.reshape = {receipt.refined.from, receipt.refined.to};
   return movement;
 }
 

@@ -23,7 +23,6 @@ struct RefinedBuilding {
   std::vector<std::vector<char>> fixed;  ///< as find_walls() has it
   model::Point2 lean;                    ///< m: how far the image shows its roof from its ground
   model::Point2 doubt;  ///< m: by how much another height, as likely as not, would show it farther along the lean
-  bool moved = false;   ///< its row was
 };
 
 /// What the image shows of a building's walls within `bound` m of where they stand. \returns  `left_alone` with a reason, or `refined`

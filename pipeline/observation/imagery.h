@@ -60,11 +60,11 @@ struct WallEvidence {
   double length = 0;             ///< m of wall
   double rim = 0;                ///< m: how far outside all its walls the building's roof seems to end
   double lean = 0;               ///< m outwards: how far the image shows the roof from its ground there
-  double side = 0;               ///< from -1 to 1: what lies between looks like roof if shifted outwards, else like ground
-  double others = 0;             ///< how clear the building's other walls are where they stand
-  double steady = 0;             ///< share of them that is clearer nowhere else
-  double margin = 0;             ///< clearness that no place of the roof, and no shift of other walls, explains as well
-  double confidence = 0;         ///< that they stand nearer to the truth afterwards
+  double side = 0;        ///< from -1 to 1: what lies between looks like roof if shifted outwards, else like ground
+  double others = 0;      ///< how clear the building's other walls are where they stand
+  double steady = 0;      ///< share of them that is clearer nowhere else
+  double margin = 0;      ///< clearness that no place of the roof, and no shift of other walls, explains as well
+  double confidence = 0;  ///< that they stand nearer to the truth afterwards
   bool taken = false;
 };
 

@@ -510,7 +510,7 @@ class Observer {
         continue;
       }
       Rings from;
-      RefinedBuilding building{.rings = {}, .fixed = {}, .lean = o.lean, .doubt = o.per_metre, .moved = corrected};
+      RefinedBuilding building{.rings = {}, .fixed = {}, .lean = o.lean, .doubt = o.per_metre};
       of_.footprints.for_each_ring(b, [&](std::span<const Point2> ring, bool) {
         from.emplace_back(), building.fixed.emplace_back();
         for (const Point2 p : ring) {

@@ -19,16 +19,16 @@ std::vector<std::string> paths(const I& options) {
 }
 
 base::Option<I> refine_option() {
-  base::Option<I> option = base::number<I>(
-      {.name = "imagery-refine",
-       .key = "imagery_refine",
-       .argument = "METRES",
-       .minimum = 0,
-       .maximum = kMostRefineWithin,
-       .help = "how far single walls are looked for beside where their house stands (told or moved as "
-               "--imagery-correct says); 0: they are not",
-       .record = base::OptionRecord::yes},
-      &I::refine);
+  base::Option<I> option =
+      base::number<I>({.name = "imagery-refine",
+                       .key = "imagery_refine",
+                       .argument = "METRES",
+                       .minimum = 0,
+                       .maximum = kMostRefineWithin,
+                       .help = "how far single walls are looked for beside where their house stands (told or moved as "
+                               "--imagery-correct says); 0: they are not",
+                       .record = base::OptionRecord::yes},
+                      &I::refine);
   option.recorded = [number = option.recorded](const I& o) { return o.images.empty() ? std::nullopt : number(o); };
   return option;
 }

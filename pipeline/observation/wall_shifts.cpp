@@ -117,7 +117,9 @@ void group(const Rings& rings, const std::vector<std::vector<char>>& fixed, Wall
   std::vector<Point2> directions;
   for (std::uint32_t k = 0; k < walls.size(); ++k) {
     const std::uint32_t root = groups.find(k);
-    if (root == k) numbers[k] = static_cast<std::uint32_t>(out.movable.size()), out.movable.push_back(1), out.lengths.push_back(0), directions.push_back(walls[k].along);
+    if (root == k)
+      numbers[k] = static_cast<std::uint32_t>(out.movable.size()), out.movable.push_back(1), out.lengths.push_back(0),
+      directions.push_back(walls[k].along);
     walls[k].group = numbers[root];
     out.lengths[walls[k].group] += walls[k].length;
     // Once around a curve there is no direction in which to shift it.

@@ -110,7 +110,8 @@ std::vector<Column> footprint_before_columns() {
   return {
       {"id", kText, "", "Id of the building, in the layer buildings"},
       {"state", kText, "",
-       "moved: it stands where the image shows it; seen_elsewhere: it was not to be moved; reshaped: single walls stand where "
+       "moved: it stands where the image shows it; seen_elsewhere: it was not to be moved; reshaped: single walls "
+       "stand where "
        "the image shows them; seen_reshaped: they were not to be shifted; as_mapped; undecided; refused"},
       {"reason", kText, "", "Why it was not moved"},
       {"shift", kReal, "m", "From where it is mapped to where the image shows it"},

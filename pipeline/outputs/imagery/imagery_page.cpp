@@ -67,14 +67,16 @@ std::string wall_rows(const OverlayInputs& in) {
     if (r.refined.state != observation::RefinementState::none) ++counts[{r.refined.state, r.refined.reason}];
   if (counts.empty()) return "";
   std::string out =
-      "<h2>Single walls</h2>\n<p>Of houses that stand where the image shows them, or were moved there: walls that it shows "
+      "<h2>Single walls</h2>\n<p>Of houses that stand where the image shows them, or were moved there: walls that it "
+      "shows "
       "beside the others.</p>\n<table><thead><tr><th>What</th><th>Why</th><th class=\"n\">Buildings</th></tr></thead>"
       "<tbody>\n";
   for (const auto& [key, count] : counts) {
     const auto& [state, reason] = key;
     std::string_view what = "as mapped";
     if (state == observation::RefinementState::refused) what = "refused";
-    if (state == observation::RefinementState::refined) what = in.seen.applied ? "walls shifted" : "walls seen elsewhere";
+    if (state == observation::RefinementState::refined)
+      what = in.seen.applied ? "walls shifted" : "walls seen elsewhere";
     out += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"n\">{}</td></tr>\n", what, escaped(reason),
                        base::with_thousands(count));
   }

@@ -117,7 +117,8 @@ std::string walls_text(const SeenOutline& seen) {
                                            w.before, w.after, w.confidence);
   if (!seen.walls_shifted())
     return fmt::format("; {} seen beside, up to {:.2f} m, left: {} ({})", walls, w.largest, w.reason, evidence);
-  return fmt::format("; {} {} by up to {:.2f} m ({})", walls, seen.applied ? "shifted" : "seen beside,", w.largest, evidence);
+  return fmt::format("; {} {} by up to {:.2f} m ({})", walls, seen.applied ? "shifted" : "seen beside,", w.largest,
+                     evidence);
 }
 
 }  // namespace

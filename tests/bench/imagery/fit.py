@@ -35,7 +35,7 @@ def fit(a, y, ridge=1.0, rounds=50):
     return w
 
 
-def report(rows):
+def report(rows, ridge=1.0):
     """rows: (place, features, right)."""
     a, y, place = np.array([r[1] for r in rows]), np.array([r[2] for r in rows], float), np.array([r[0] for r in rows])
     p = np.zeros(len(y))
@@ -43,13 +43,13 @@ def report(rows):
         here = place == left_out
         if here.all():
             continue
-        p[here] = 1 / (1 + np.exp(-a[here] @ fit(a[~here], y[~here])))
+        p[here] = 1 / (1 + np.exp(-a[here] @ fit(a[~here], y[~here], ridge)))
         print(f"{left_out:32} {here.sum():6}   right {np.mean((p[here] > .5) == (y[here] > .5)):.3f}   share of ones {y[here].mean():.2f}")
     sure, right = np.maximum(p, 1 - p), (p > .5) == (y > .5)
     for least in (.5, .6, .7, .75, .8, .85, .9):
         said = sure >= least
         print(f"from {least:.2f} on: said {said.mean():.2f}, of them right {right[said].mean() if said.any() else math.nan:.3f}")
-    print("weights", [float(v) for v in np.round(fit(a, y), 2)])
+    print("weights", [float(v) for v in np.round(fit(a, y, ridge), 2)])
 
 
 def confidence(a):
@@ -84,9 +84,9 @@ def walls(a):
     for run in runs:
         for w in run["walls"]:
             here, there = w["clear"]
-            rows.append((run["place"], [1, there - here, there, here, there - w["elsewhere"], there - w["usual"], math.log(w["length_m"]), w["shift_m"] > 0, w["side"], w["others"], w["steady"],
-                                        abs(w["rim_m"]), max(0, w["lean_m"]), w["leans"], w["state"] == "corrected", w["margin"]], abs(w["off"] - w["shift_m"]) + .05 < abs(w["off"])))
-    report(rows)
+            rows.append((run["place"], [1, there - here, there, here, there - w["elsewhere"], math.log(w["length_m"]), w["shift_m"] > 0, w["side"], w["others"], abs(w["rim_m"]), w["leans"],
+                                        w["margin"]], abs(w["off"] - w["shift_m"]) + .05 < abs(w["off"])))
+    report(rows, .1)
 
 
 def roofs(a):
