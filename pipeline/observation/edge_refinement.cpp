@@ -44,8 +44,8 @@ constexpr double kByHeight = 0.6;
 constexpr double kWallSeen = 0.2;
 /// Of clearness, of one wall and on the average of all: smaller gains are none.
 constexpr double kLeastGain = 0.06, kLeastGainOfAll = 0.02;
-/// Walls are shifted from this confidence on, and where the image is explained so much worse without.
-constexpr double kSureWall = 0.6, kLeastMargin = 0.1;
+/// Walls are shifted from this confidence on.
+constexpr double kSureWall = 0.65;
 /// Of the walls by length: where more are seen elsewhere, those are not the ones that are wrong. Cosine between the directions of
 /// walls that are opposite to each other.
 constexpr double kMostElsewhere = 0.5, kOpposite = -0.9;
@@ -166,9 +166,8 @@ double add_wall(const Wall& wall, Point2 lean, const Patch& patch, Curve& curve)
 /// Weights of a logistic regression (fit.py of tests/bench/imagery) on walls of Kampala and of the synthetic images of set `tuning`,
 /// of houses with one or two walls shifted by known amounts; right are those that stand nearer to the truth by 0.05 m afterwards.
 double confidence_of(const WallEvidence& e, Point2 lean) {
-  const double sum = -1.64 + 1.10 * (e.there - e.here) - 1.29 * e.there - 2.39 * e.here + 3.33 * (e.there - e.second) +
-                     0.51 * base::log(e.length) - (e.shift > 0 ? 0.91 : 0) + 1.15 * e.side + 2.52 * e.others -
-                     0.60 * std::fabs(e.rim) - 0.56 * std::sqrt(lean.x * lean.x + lean.y * lean.y) - 2.73 * e.margin;
+  const double sum = -1.91 - 2.49 * e.here + 1.58 * (e.there - e.second) + 0.37 * base::log(e.length) + 1.08 * e.side +
+                     1.72 * e.others - 0.55 * std::sqrt(lean.x * lean.x + lean.y * lean.y);
   return 1 / (1 + base::exp(-sum));
 }
 
@@ -396,7 +395,7 @@ class Refiner {
     shifts_.assign(walls_.movable.size(), 0.0);
     for (const std::size_t i : order) {
       WallEvidence& e = evidence_[i];
-      if (e.confidence < kSureWall || e.margin < kLeastMargin) continue;
+      if (e.confidence < kSureWall) continue;
       shifts_[groups_[i]] = e.shift;
       Rings outline = shifted_outline(building_.rings, walls_, shifts_, kMostCornerShift * bound_);
       if (outline.empty()) {

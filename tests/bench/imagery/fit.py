@@ -84,9 +84,8 @@ def walls(a):
     for run in runs:
         for w in run["walls"]:
             here, there = w["clear"]
-            rows.append((run["place"], [1, there - here, there, here, there - w["elsewhere"], math.log(w["length_m"]), w["shift_m"] > 0, w["side"], w["others"], abs(w["rim_m"]), w["leans"],
-                                        w["margin"]], abs(w["off"] - w["shift_m"]) + .05 < abs(w["off"])))
-    report(rows, .1)
+            rows.append((run["place"], [1, here, there - w["elsewhere"], math.log(w["length_m"]), w["side"], w["others"], w["leans"]], abs(w["off"] - w["shift_m"]) + .05 < abs(w["off"])))
+    report(rows, .3)
 
 
 def roofs(a):
