@@ -25,7 +25,7 @@ def outlines(path, epsg):
 
 def rigid(points, answer):
     """Points (n, 2) where the row of a building was moved: turned (counter-clockwise) about its centre, then shifted; as they are where it was not."""
-    if answer.get("state") != "corrected":
+    if answer.get("state", "corrected") != "corrected":
         return points
     shift, turn = answer.get("shift_m") or (0, 0), math.radians(answer.get("rotation_deg") or 0)
     centre = np.array(answer.get("centre") or points.mean(0))
