@@ -45,7 +45,7 @@ constexpr double kWallSeen = 0.2;
 /// Of clearness, of one wall and on the average of all: smaller gains are none.
 constexpr double kLeastGain = 0.06, kLeastGainOfAll = 0.02;
 /// Walls are shifted from this confidence on.
-constexpr double kSureWall = 0.65;
+constexpr double kSureWall = 0.75;
 /// Of the walls by length: where more are seen elsewhere, those are not the ones that are wrong. Cosine between the directions of
 /// walls that are opposite to each other.
 constexpr double kMostElsewhere = 0.5, kOpposite = -0.9;
