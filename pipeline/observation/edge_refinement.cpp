@@ -44,7 +44,7 @@ constexpr double kByHeight = 0.6;
 constexpr double kWallSeen = 0.2;
 /// Of clearness, of one wall and on the average of all: smaller gains are none.
 constexpr double kLeastGain = 0.06, kLeastGainOfAll = 0.02;
-/// Walls are shifted from this confidence on.
+/// Walls are shifted from this confidence on: wrong ones had up to 0.74 (docs/internal/RESULTS.md, "Aerial images").
 constexpr double kSureWall = 0.75;
 /// Of the walls by length: where more are seen elsewhere, those are not the ones that are wrong. Cosine between the directions of
 /// walls that are opposite to each other.
