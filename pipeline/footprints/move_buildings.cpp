@@ -22,6 +22,9 @@ using model::MappedBuilding;
 using model::MappedRing;
 using model::Point2;
 
+/// m: outlines are written in millimetres.
+constexpr double kRounded = 0.002;
+
 constexpr FeatureKind kOnBuildings[] = {FeatureKind::roof_line, FeatureKind::roof_apex, FeatureKind::entrance,
                                         FeatureKind::address,   FeatureKind::shop,      FeatureKind::amenity};
 
@@ -118,10 +121,36 @@ class Mover {
 
 }  // namespace
 
-Point2 Movement::operator()(Point2 p) const {
+Point2 Movement::rigid(Point2 p) const {
   const base::SinCos t = base::sin_cos(turn * base::kRadiansPerDegree);
   const double x = p.x - centre.x, y = p.y - centre.y;
   return {centre.x + x * t.cos - y * t.sin + shift.x, centre.y + x * t.sin + y * t.cos + shift.y};
+}
+
+Point2 Movement::operator()(Point2 p) const {
+  const Point2 moved = rigid(p);
+  double nearest = 0, along = 0;
+  std::size_t ring = reshape.before.size(), wall = 0;
+  for (std::size_t r = 0; r < reshape.before.size(); ++r) {
+    const std::vector<Point2>& points = reshape.before[r];
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Point2 a = points[i], b = points[(i + 1) % points.size()], d{b.x - a.x, b.y - a.y};
+      const double squared = d.x * d.x + d.y * d.y;
+      const double t = squared > 0 ? std::clamp(((p.x - a.x) * d.x + (p.y - a.y) * d.y) / squared, 0.0, 1.0) : 0;
+      const Point2 off{p.x - a.x - t * d.x, p.y - a.y - t * d.y};
+      const double distance = off.x * off.x + off.y * off.y;
+      if (ring < reshape.before.size() && distance >= nearest) continue;
+      nearest = distance, along = t, ring = r, wall = i;
+    }
+  }
+  if (ring == reshape.before.size()) return moved;
+  const auto beside = [&](std::size_t i) {
+    const Point2 without = rigid(reshape.before[ring][i]), with = reshape.after[ring][i];
+    const Point2 by{with.x - without.x, with.y - without.y};
+    return by.x * by.x + by.y * by.y > kRounded * kRounded ? by : Point2{};
+  };
+  const Point2 begin = beside(wall), end = beside((wall + 1) % reshape.before[ring].size());
+  return {moved.x + begin.x * (1 - along) + end.x * along, moved.y + begin.y * (1 - along) + end.y * along};
 }
 
 void move_buildings(Extract& extract, std::span<const Shard> shards, std::span<const MovedBuilding> moved,

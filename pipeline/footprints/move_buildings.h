@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "pipeline/footprints/shard.h"
 #include "pipeline/georef/projection.h"
@@ -11,12 +12,21 @@
 
 namespace blockrand::footprints {
 
-/// A rigid movement in the plan of the build CRS.
+/// Where each point of an outline goes; rings without repeated last point, in m. Both have the same rings and points.
+struct Reshape {
+  std::vector<std::vector<model::Point2>> before, after;
+};
+
+/// A rigid movement in the plan of the build CRS, and what walls are shifted by beside it.
 struct Movement {
   model::Point2 shift;   ///< m
   model::Point2 centre;  ///< m: of the turn, which comes before the shift
   double turn = 0;       ///< degrees, counter-clockwise
+  /// Any point goes along with the wall of `before` that is nearest to it: beside the rigid movement it goes as far as the ends of
+  /// that wall do, in proportion. Corners that go no farther than the rigid movement, to 2 mm, keep to it. Empty: nothing is reshaped.
+  Reshape reshape{};
   model::Point2 operator()(model::Point2 p) const;
+  model::Point2 rigid(model::Point2 p) const;  ///< without the reshaping
 };
 
 struct MovedBuilding {

@@ -44,6 +44,43 @@ constexpr std::string_view words(RowState s) {
   return all[static_cast<int>(s)];
 }
 
+/// What became of the search for the edges of single walls.
+enum class RefinementState : std::uint8_t { none, left_alone, refused, refined };
+constexpr std::string_view name(RefinementState s) {
+  constexpr std::string_view names[] = {"none", "left_alone", "refused", "refined"};
+  return names[static_cast<int>(s)];
+}
+
+/// What the image shows of walls on one line, if they are shifted along their normal (edge_refinement.h).
+struct WallEvidence {
+  model::Point2 at, normal;      ///< m, middle of the longest of them; unit vector, outwards
+  double shift = 0;              ///< m outwards: the best within the bound
+  double here = 0, there = 0;    ///< how clear the edge is where the wall stands, and where it is seen, [0, 1]
+  double second = 0, usual = 0;  ///< at the next best shift, and on the average of all
+  double length = 0;             ///< m of wall
+  double rim = 0;                ///< m: how far outside all its walls the building's roof seems to end
+  double lean = 0;               ///< m outwards: how far the image shows the roof from its ground there
+  double side = 0;        ///< from -1 to 1: what lies between looks like roof if shifted outwards, else like ground
+  double others = 0;      ///< how clear the building's other walls are where they stand
+  double steady = 0;      ///< share of them that is clearer nowhere else
+  double margin = 0;      ///< clearness that no place of the roof, and no shift of other walls, explains as well
+  double confidence = 0;  ///< that they stand nearer to the truth afterwards
+  bool taken = false;
+};
+
+/// A building's outline with walls shifted to where the image shows them; the receipt of it.
+struct RefinedOutline {
+  RefinementState state = RefinementState::none;
+  std::string reason;            ///< a sentence; empty for `refined` and `none`
+  std::uint32_t walls = 0;       ///< that were shifted; those on one line count as one
+  double largest = 0;            ///< m: the largest of their shifts
+  double before = 0, after = 0;  ///< how clear the edges of all its walls are, [0, 1]
+  double confidence = 0;         ///< of the least sure wall, that it stands nearer to the truth afterwards
+  /// Rings point by point, m: as repaired where it is mapped, and where the image shows them. Empty but for `refined`, `refused`.
+  std::vector<std::vector<model::Point2>> from, to;
+  std::vector<WallEvidence> evidence;  ///< of walls that the image shows elsewhere
+};
+
 /// The receipt of a building; all buildings of a row have the same movement.
 struct OutlineReceipt {
   static constexpr std::uint32_t kNoImage = 0xffffffff;
@@ -59,6 +96,7 @@ struct OutlineReceipt {
   double eaves = 0;    ///< m: the height that it was reckoned with
   double mean = 0, deviation = 0, second = 0, weight = 0, height_doubt = 0;
   double gone = 0;  ///< probability that no building stands there, where that is likely (kPerhapsGone); else 0
+  RefinedOutline refined;
 };
 
 /// A height that a shadow tells.

@@ -15,6 +15,7 @@
 #include "pipeline/footprints/terrace_rows.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/observation/eaves.h"
+#include "pipeline/observation/edge_refinement.h"
 #include "pipeline/observation/image_fit.h"
 #include "pipeline/observation/image_quality.h"
 #include "pipeline/observation/lean.h"
@@ -89,8 +90,13 @@ Point2 rounded(Point2 p) { return {rounded(p.x, 1000), rounded(p.y, 1000)}; }
 class Observer {
  public:
   Observer(const ObservedExtract& of, std::span<const importers::imagery::AerialImage> images, int workers,
-           Correction correct, base::Progress& progress)
-      : of_(of), images_(images), correct_(correct), workers_(workers), progress_(progress) {}
+           Correction correct, double refine_within, base::Progress& progress)
+      : of_(of),
+        images_(images),
+        correct_(correct),
+        refine_within_(refine_within),
+        workers_(workers),
+        progress_(progress) {}
 
   ImageryObservations run() {
     ImageryObservations out;
@@ -156,7 +162,8 @@ class Observer {
       if (gone < kPerhapsGone) continue;
       receipt.gone = rounded(gone, 100);
       if (receipt.state == RowState::corrected && rows_[receipt.row].buildings.size() == 1)
-        receipt.state = RowState::undecided, receipt.reason = "perhaps it does not stand any more";
+        restate(receipt, RowState::undecided, "perhaps it does not stand any more");
+      receipt.refined = {};
     }
   }
 
@@ -188,7 +195,7 @@ class Observer {
     out.images[image].alike = rounded(usual);
     for (OutlineReceipt& r : out.outlines)
       if (r.image == image && r.state == RowState::corrected)
-        r.state = RowState::undecided, r.reason = "the image shows most rows off alike: it may be the image that is shifted";
+        restate(r, RowState::undecided, "the image shows most rows off alike: it may be the image that is shifted");
   }
 
   SearchedOutline searched(std::uint32_t building, const std::map<std::pair<Point2, Point2>, int>* shared) const {
@@ -395,7 +402,8 @@ class Observer {
       RowMatch match;
       Verdict verdict;
       Point2 centre;
-      std::vector<RoofView> roofs;  ///< by outline
+      std::vector<RoofView> roofs;          ///< by outline
+      std::vector<RefinedOutline> refined;  ///< by outline
     };
     std::vector<Looked> looked(rows_.size());
     base::ordered_parallel(
@@ -416,10 +424,11 @@ class Observer {
                                                                    : "whether the image fits the map is not known";
           }
           look_at_roofs(rows_[r], row, windows, looked[r].match, looked[r].verdict, looked[r].roofs);
+          looked[r].refined = refine_row(rows_[r], row, windows, looked[r].match, looked[r].verdict);
         },
         [&](std::size_t r) {
           progress_.advance_to(image * rows_.size() + r + 1);
-          const Looked row = std::move(looked[r]);
+          Looked row = std::move(looked[r]);
           looked[r] = {};
           if (row.roofs.empty()) return;
           // A row moves as one: where images overlap, the one that is surest of it speaks for all its houses, and the others
@@ -435,10 +444,13 @@ class Observer {
           std::size_t place = 0;
           for (const std::uint32_t b : rows_[r].buildings) {
             if (!searchable(b)) continue;
-            const RoofView& roof = row.roofs[place++];
+            const RoofView& roof = row.roofs[place];
+            RefinedOutline& refined = row.refined[place++];
             const bool first = out.outlines[b].state == RowState::outside;
-            if (surest || (!judged && first && roof.pixels > 0))
+            if (surest || (!judged && first && roof.pixels > 0)) {
               out.outlines[b] = receipt(image, static_cast<std::uint32_t>(r), b, row.match, verdict, row.centre);
+              if (verdict.state == row.verdict.state) out.outlines[b].refined = std::move(refined);
+            }
             if (roof.pixels > 0 && (surest || out.roofs[b].pixels == 0))
               out.roofs[b] = roof, out.roofs[b].image = image;
           }
@@ -446,11 +458,16 @@ class Observer {
     judge_roofs(image, out);
   }
 
+  /// Walls are looked for where their row was thought to stand: with another verdict they say nothing.
+  static void restate(OutlineReceipt& receipt, RowState state, std::string_view reason) {
+    receipt.state = state, receipt.reason = std::string(reason), receipt.refined = {};
+  }
+
   /// What the images before said of a row is judged anew.
   void revise(const footprints::TerraceRowPlan& plan, const Verdict& verdict, ImageryObservations& out) const {
     for (const std::uint32_t b : plan.buildings) {
       if (!searchable(b) || out.outlines[b].image == OutlineReceipt::kNoImage) continue;
-      out.outlines[b].state = verdict.state, out.outlines[b].reason = std::string(verdict.reason);
+      if (verdict.state != out.outlines[b].state) restate(out.outlines[b], verdict.state, verdict.reason);
       out.outlines[b].confidence = rounded(verdict.confidence, 1000);
     }
   }
@@ -552,9 +569,71 @@ class Observer {
     }
   }
 
+  /// How many houses have a corner, of all corners in a row with several; empty for a house that stands alone.
+  std::map<Point2, int> shared_corners(const footprints::TerraceRowPlan& plan) const {
+    std::map<Point2, int> corners;
+    if (plan.buildings.size() + plan.beyond.size() < 2) return corners;
+    for (const auto* part : {&plan.buildings, &plan.beyond})
+      for (const std::uint32_t b : *part)
+        of_.footprints.for_each_ring(b, [&](std::span<const Point2> ring, bool) {
+          for (const Point2 p : ring) ++corners[p];
+        });
+    return corners;
+  }
+
+  /// The walls of the row's houses, where the row was found or, if it is left alone, as mapped. By outline.
+  std::vector<RefinedOutline> refine_row(const footprints::TerraceRowPlan& plan, const SearchedRow& row,
+                                         const ImageWindows& windows, const RowMatch& match,
+                                         const Verdict& verdict) const {
+    std::vector<RefinedOutline> refined(row.outlines.size());
+    const bool corrected = verdict.state == RowState::corrected;
+    if (refine_within_ <= 0 || !(corrected || verdict.state == RowState::left_alone)) return refined;
+    const double beside = std::sqrt(match.shift.x * match.shift.x + match.shift.y * match.shift.y);
+    if (std::ranges::any_of(row.outlines, [](const SearchedOutline& o) { return o.pieces.empty(); })) return refined;
+    const std::map<Point2, int> corners = shared_corners(plan);
+    footprints::Movement movement{{}, rounded(row.centre), 0};
+    if (corrected) movement.shift = rounded(match.shift), movement.turn = rounded(match.turn, 100);
+    std::size_t place = 0;
+    for (const std::uint32_t b : plan.buildings) {
+      if (!searchable(b)) continue;
+      const SearchedOutline& o = row.outlines[place];
+      RefinedOutline& out = refined[place];
+      const double by = corrected && place < match.heights.size() ? match.heights[place] - o.height : 0;
+      ++place;
+      out.state = RefinementState::left_alone;
+      if (!corrected && beside >= kLeastCorrection) {
+        out.reason = "its place is not sure enough";
+        continue;
+      }
+      if (of_.footprints[b].has_parts) {
+        out.reason = "its parts are mapped";
+        continue;
+      }
+      Rings from;
+      RefinedBuilding building{.rings = {}, .fixed = {}, .lean = o.lean, .doubt = o.per_metre};
+      of_.footprints.for_each_ring(b, [&](std::span<const Point2> ring, bool) {
+        from.emplace_back(), building.fixed.emplace_back();
+        for (const Point2 p : ring) {
+          from.back().push_back(rounded(p));
+          const auto found = corners.find(p);
+          building.fixed.back().push_back(found != corners.end() && found->second > 1);
+        }
+      });
+      building.rings = from;
+      for (std::vector<Point2>& ring : building.rings)
+        for (Point2& p : ring) p = movement(p);
+      building.lean.x += by * o.per_metre.x, building.lean.y += by * o.per_metre.y;
+      building.doubt.x *= o.height * o.uncertainty, building.doubt.y *= o.height * o.uncertainty;
+      out = refine_edges(building, windows, refine_within_);
+      if (out.state == RefinementState::refined) out.from = std::move(from);
+    }
+    return refined;
+  }
+
   const ObservedExtract& of_;
   std::span<const importers::imagery::AerialImage> images_;
   Correction correct_;
+  double refine_within_;  ///< m
   int workers_;
   base::Progress& progress_;
   std::vector<footprints::TerraceRowPlan> rows_;
@@ -568,8 +647,8 @@ class Observer {
 }  // namespace
 
 ImageryObservations observe_extract(const ObservedExtract& of, std::span<const importers::imagery::AerialImage> images,
-                                    Correction correct, int workers, base::Progress& progress) {
-  return Observer(of, images, workers, correct, progress).run();
+                                    Correction correct, double refine_within, int workers, base::Progress& progress) {
+  return Observer(of, images, workers, correct, refine_within, progress).run();
 }
 
 }  // namespace blockrand::observation

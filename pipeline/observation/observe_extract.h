@@ -23,8 +23,9 @@ struct ObservedExtract {
 
 /// Whether each image fits the map (fit_image), how its roofs lean (LeanField), and where those that fit show each row of
 /// buildings (match_row, judge). The outlines stay where they are. Deterministic for any number of workers.
-/// \param correct  off: rows are not looked for, their roofs are looked at as mapped
+/// \param correct        off: rows are not looked for, their roofs are looked at as mapped
+/// \param refine_within  m: single walls are looked for within it (refine_edges) where their row is sure; 0: they are not
 ImageryObservations observe_extract(const ObservedExtract& of, std::span<const importers::imagery::AerialImage> images,
-                                    Correction correct, int workers, base::Progress& progress);
+                                    Correction correct, double refine_within, int workers, base::Progress& progress);
 
 }  // namespace blockrand::observation

@@ -18,6 +18,21 @@ std::vector<std::string> paths(const I& options) {
   return all;
 }
 
+base::Option<I> refine_option() {
+  base::Option<I> option =
+      base::number<I>({.name = "imagery-refine",
+                       .key = "imagery_refine",
+                       .argument = "METRES",
+                       .minimum = 0,
+                       .maximum = kMostRefineWithin,
+                       .help = "how far single walls are looked for beside where their house stands (told or moved as "
+                               "--imagery-correct says); 0: they are not",
+                       .record = base::OptionRecord::yes},
+                      &I::refine);
+  option.recorded = [number = option.recorded](const I& o) { return o.images.empty() ? std::nullopt : number(o); };
+  return option;
+}
+
 }  // namespace
 
 // A tile that is built alone takes what the build of the whole found (imagery.json), not these. A build without images has no record of them: its bytes are those of programs that knew none.
@@ -49,7 +64,8 @@ base::OptionTable<ImageryOptions> imagery_options() {
           [](const I& o) { return base::word_of(kCorrections, o.correct); },
           [](const I& o) {
             return o.images.empty() ? std::nullopt : std::optional(RecordValue(base::word_of(kCorrections, o.correct)));
-          })};
+          }),
+      refine_option()};
 }
 
 }  // namespace blockrand::observation

@@ -6,6 +6,7 @@
 
 #include "importers/imagery/aerial_image.h"
 #include "pipeline/base/option_table.h"
+#include "pipeline/observation/edge_refinement.h"
 
 namespace blockrand::observation {
 
@@ -19,6 +20,7 @@ enum class Correction : std::uint8_t {
 struct ImageryOptions {
   std::vector<importers::imagery::ImageSource> images;
   Correction correct = Correction::report;
+  double refine = kRefineWithin;  ///< m: how far single walls are looked for beside where they stand; 0: they are not
 };
 
 /// How users set them: in the main section of a build's options.

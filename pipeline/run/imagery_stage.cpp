@@ -128,7 +128,7 @@ bool ImageryStage::correct(std::span<const footprints::Shard> shards, const foot
     if (inputs_.images.empty()) return false;
     const Correction how = options_.imagery.correct;
     seen_ = observation::observe_extract({located_.extract, store, located_.projection}, inputs_.images, how,
-                                         base::worker_count(options_.jobs), progress_);
+                                         options_.imagery.refine, base::worker_count(options_.jobs), progress_);
     observation::refuse_corrections(*seen_, store, [&](std::uint32_t b) { return keeps_place(b, store); });
     seen_->applied = how == Correction::apply;
   }
@@ -183,6 +183,12 @@ void ImageryStage::tell(BuildRecord& record) const {
   for (const auto& [state, count] : states)
     figures += fmt::format("{}{} {}", figures.empty() ? "" : ", ", base::with_thousands(count),
                            state == RowState::corrected && seen_->applied ? "moved" : observation::words(state));
+  const auto reshaped = std::ranges::count_if(seen_->outlines, [](const auto& receipt) {
+    return receipt.refined.state == observation::RefinementState::refined;
+  });
+  if (reshaped > 0)
+    figures += fmt::format("; walls of {} {}", base::with_thousands(static_cast<std::uint64_t>(reshaped)),
+                           seen_->applied ? "shifted" : "seen elsewhere");
   const auto gone = std::ranges::count_if(seen_->outlines, [](const auto& receipt) { return receipt.gone > 0; });
   if (gone > 0) figures += fmt::format("; {} perhaps gone", base::with_thousands(static_cast<std::uint64_t>(gone)));
   if (!seen_->unmapped.empty())

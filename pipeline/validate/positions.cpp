@@ -18,6 +18,7 @@ constexpr double kMetresPerUnit = 0.0111319;  // 1e-7 degrees of latitude
 
 constexpr double kRoundedPlaces = 0.02;  // m: moved places are rounded to 1e-7 degrees, twice
 constexpr double kWritten = 0.0005;      // m: shifts are written in millimetres
+constexpr double kStill = 0.002;         // m: outlines are written in millimetres
 constexpr double kStraight = 0.02;       // m: flatter corners are points on a straight wall
 // The median of n values that spread normally by s has the standard error 1.2533 s / sqrt(n); s is 1.4826 times their
 // median distance from their median. Three of them: one sound build in 370 is beyond by chance, along one axis.
@@ -42,7 +43,46 @@ std::uint64_t rank_of(const std::string& body, model::Location at) {
       h ^ (static_cast<std::uint64_t>(static_cast<std::uint32_t>(at.lon)) << 32 | static_cast<std::uint32_t>(at.lat)));
 }
 
+/// The walls of one ring that stands in two lists of numbers x, y, x, y ...; as many as are whole in both.
+void add_walls(const Json* before, const Json* after, MovementSaid& said) {
+  if (!before || !after || !before->is_array() || !after->is_array()) return;
+  std::vector<std::pair<model::Point2, model::Point2>> corners;
+  for (std::uint64_t i = 0; i + 1 < std::min(before->size(), after->size()); i += 2) {
+    const auto x = number(element(before, i)), y = number(element(before, i + 1)), u = number(element(after, i)),
+               v = number(element(after, i + 1));
+    if (!x || !y || !u || !v) return;
+    const model::Point2 rigid = said.rigid({*x, *y});
+    model::Point2 by{*u - rigid.x, *v - rigid.y};
+    if (std::hypot(by.x, by.y) <= kStill) by = {};
+    corners.push_back({{*x, *y}, by});
+  }
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto &a = corners[i], &b = corners[(i + 1) % corners.size()];
+    said.walls.push_back({a.first, b.first, a.second, b.second});
+  }
+}
+
 }  // namespace
+
+model::Point2 MovementSaid::rigid(model::Point2 p) const {
+  const double s = std::sin(turn * kRadians), c = std::cos(turn * kRadians), x = p.x - centre.x, y = p.y - centre.y;
+  return {centre.x + x * c - y * s + shift.x, centre.y + x * s + y * c + shift.y};
+}
+
+model::Point2 MovementSaid::operator()(model::Point2 p) const {
+  model::Point2 to = rigid(p), by;
+  double nearest = -1;
+  for (const Wall& w : walls) {
+    const double dx = w.end.x - w.begin.x, dy = w.end.y - w.begin.y, squared = dx * dx + dy * dy;
+    const double share = squared <= 0 ? 0 : ((p.x - w.begin.x) * dx + (p.y - w.begin.y) * dy) / squared,
+                 t = std::clamp(share, 0.0, 1.0);
+    const double distance = std::hypot(p.x - w.begin.x - t * dx, p.y - w.begin.y - t * dy);
+    if (nearest >= 0 && distance >= nearest) continue;
+    nearest = distance;
+    by = {w.begin_by.x * (1 - t) + w.end_by.x * t, w.begin_by.y * (1 - t) + w.end_by.y * t};
+  }
+  return {to.x + by.x, to.y + by.y};
+}
 
 void PositionSampler::add(const std::string& body, const std::vector<model::Location>& ring) {
   if (ring.size() < 3) return;
@@ -199,11 +239,20 @@ std::unordered_map<std::string, MovementSaid> movements_said(const Json& imagery
   const Json* buildings = member(imagery, "buildings");
   if (!applied || !applied->is_boolean() || !applied->get<bool>() || !buildings || !buildings->is_array()) return moved;
   for (const Json& building : *buildings) {
-    if (text(member(building, "state")) != "corrected") continue;
+    const Json* walls = member(building, "walls");
+    const bool in_row = text(member(building, "state")) == "corrected",
+               reshaped = text(member(walls, "state")) == "refined";
+    if (!in_row && !reshaped) continue;
+    MovementSaid said;
     const auto at = [&](const char* name, std::uint64_t i) { return number(element(member(building, name), i)); };
     const auto x = at("shift_m", 0), y = at("shift_m", 1), cx = at("centre", 0), cy = at("centre", 1);
     const auto turn = number(member(building, "rotation_deg"));
-    if (x && y && cx && cy && turn) moved[text(member(building, "id"))] = {{*x, *y}, {*cx, *cy}, *turn};
+    if (in_row && !(x && y && cx && cy && turn)) continue;
+    if (in_row) said.shift = {*x, *y}, said.centre = {*cx, *cy}, said.turn = *turn;
+    const Json *before = member(walls, "outline_before"), *after = member(walls, "outline_after");
+    for (std::uint64_t r = 0; reshaped && before && after && r < std::min(before->size(), after->size()); ++r)
+      add_walls(element(before, r), element(after, r), said);
+    moved[text(member(building, "id"))] = std::move(said);
   }
   return moved;
 }
@@ -214,12 +263,9 @@ void move_positions(PositionSample& sample, const std::unordered_map<std::string
     const auto said = moved.find(id);
     if (said == moved.end()) continue;
     const MovementSaid& m = said->second;
-    const double s = std::sin(m.turn * kRadians), c = std::cos(m.turn * kRadians);
     for (SampledCorner& corner : corners) {
       const model::Point2 p = proj_transform.forward({corner.at.lon_degrees(), corner.at.lat_degrees()});
-      const double x = p.x - m.centre.x, y = p.y - m.centre.y;
-      const georef::LonLat to =
-          proj_transform.inverse({m.centre.x + x * c - y * s + m.shift.x, m.centre.y + x * s + y * c + m.shift.y});
+      const georef::LonLat to = proj_transform.inverse(m(p));
       if (!(std::fabs(to.lon) <= 180 && std::fabs(to.lat) <= 90)) continue;
       corner.at = {static_cast<std::int32_t>(std::lround(to.lon * 1e7)),
                    static_cast<std::int32_t>(std::lround(to.lat * 1e7))};

@@ -87,10 +87,18 @@ RepairsSaid repairs_of_explanations(const std::vector<std::string>& paths, const
 void bound_positions(PositionSample& sample, const RepairsSaid& said, const std::set<std::string>& moved,
                      double otherwise);
 
-/// How an aerial image moved a building: turned about `centre`, then shifted; m and degrees in the build CRS.
+/// How an aerial image moved a building: turned about `centre`, then shifted; m and degrees in the build CRS. Then walls: what lies
+/// nearest to the wall from `begin` to `end` went, beside that, as far as its ends did, in proportion.
 struct MovementSaid {
+  struct Wall {
+    model::Point2 begin, end;        ///< m, as mapped
+    model::Point2 begin_by, end_by;  ///< m
+  };
   model::Point2 shift, centre;
   double turn = 0;
+  std::vector<Wall> walls{};
+  model::Point2 rigid(model::Point2 p) const;
+  model::Point2 operator()(model::Point2 p) const;
 };
 
 /// The buildings that a build says it moved. \param imagery  its imagery.json

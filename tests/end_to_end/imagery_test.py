@@ -12,7 +12,7 @@ import xml.etree.ElementTree as ET
 import zipfile
 
 from blockrand_run import SAMPLE, BuildTest, blockrand, files_of, main, read_json
-from osm_files import METRE, Relation, ring, write_xml
+from osm_files import METRE, Node, Relation, Way, ring, write_xml
 
 LON, LAT = 11.3, 51.4
 STRETCH = 1 / math.cos(math.radians(LAT))
@@ -242,6 +242,57 @@ class Imagery(BuildTest):
         self.assertEqual(without.code, 2, without.err)
         self.assertIn('--imagery', without.err)
         self.assertFalse(os.path.exists(self.path('other.png')))
+    def test_a_wall_that_the_map_has_elsewhere_is_shifted(self):
+        """Of one house the east wall is drawn 0.8 m too far out, of another one too, of a third 0.7 m too far in; one of them has an entrance."""
+        houses = village(7)
+        drawn = [list(h) for h in self.drawn]
+        off = {3: 0.8, 10: 0.8, 33: -0.7}
+        for k, by in off.items():
+            (ax, ay), (bx, by_), (cx, cy) = drawn[k][:3]
+            length = math.hypot(bx - ax, by_ - ay)
+            ux, uy = (bx - ax) / length, (by_ - ay) / length
+            for n in (1, 2):
+                x, y = drawn[k][n]
+                drawn[k][n] = (x + by * ux, y + by * uy)
+        objects = extract(drawn)
+        (bx, by_), (cx, cy) = drawn[3][1:3]
+        door = ((bx + cx) / 2, (by_ + cy) / 2)
+        way, = [o for o in objects if isinstance(o, Way) and o.id == 103]
+        way.refs.insert(2, 7000)
+        source = write_xml(self.path('walls.osm'), objects + [Node(7000, LON + door[0] * METRE * STRETCH, LAT + door[1] * METRE, {'entrance': 'main'})])
+        report = self.build(source, 'walls_report', '--imagery', self.image, '--lod', '1')
+        seen = {b['id']: b for b in read_json(report, 'imagery.json')['buildings']}
+        self.assertEqual({i for i, b in seen.items() if b.get('walls', {}).get('state') == 'refined'}, {f'w{100 + k}' for k in off}, {i: b.get('walls') for i, b in seen.items() if i in ('w103', 'w110', 'w133')})
+        mapped = self.build(source, 'walls_mapped', '--lod', '1')
+        self.assertEqual(middles(report), middles(mapped))
+        out = self.build(source, 'walls_apply', '--imagery', self.image, '--imagery-correct', 'apply')
+        self.assertEqual(blockrand('validate', out).code, 0, self.last)
+        self.assertIn('walls of 3 shifted', self.last.out)
+        there, wanted = middles(out), middles(self.build(self.truth, 'walls_true', '--lod', '1'))
+        for k in off:
+            self.assertLess(math.dist(there[f'w{100 + k}'], wanted[f'w{100 + k}']), 0.15, k)
+            receipt = seen[f'w{100 + k}']['walls']
+            self.assertEqual(receipt['shifted'], 1)
+            self.assertAlmostEqual(receipt['largest_shift_m'], abs(off[k]), delta=0.15)
+        self.assertEqual(middles(out, 'footprint_before'), middles(mapped))
+        rows = dict(query(out, "SELECT id, state FROM footprint_before WHERE walls_shifted > 0"))
+        self.assertEqual(rows, {f'w{100 + k}': 'reshaped' for k in off})
+        self.assertIn('1 wall shifted by', ' '.join(blockrand('explain', out, 'w103').out.split()))
+        self.assertIn('imagery_walls_shifted', ''.join(read_text(out, f) for f in files_of(out) if f.endswith('.gml')))
+        self.assertIn('Single walls', read_text(out, 'imagery.html'))
+        tile, = {f.split('/')[1] for f in files_of(out) if f.startswith('explain/') and f != 'explain/index.txt'}
+        alone = self.build(source, 'walls_alone', '--tile', tile.split('.')[0].replace('_', '/'), '--pinned', os.path.join(out, 'build.json'))
+        self.same_files(out, alone, 'tiles', 'citygml', 'cityjson', 'explain')
+        # Two threads or one, the same bytes; an override keeps a house; 0 looks for no walls.
+        one = self.build(source, 'walls_one', '--imagery', self.image, '--imagery-correct', 'apply', '--jobs', '1')
+        self.same_files(out, one, 'tiles', 'citygml', 'cityjson', 'explain', 'imagery.json')
+        kept = self.build(source, 'walls_kept', '--imagery', self.image, '--imagery-correct', 'apply', '--lod', '0', '--formats', 'gpkg', '--overrides', self.place('walls.toml', '[w103]\nimagery = "off"\n'))
+        self.assertEqual(read_json(kept, 'imagery.json')['buildings'][3]['walls']['state'], 'refused')
+        self.assertEqual(middles(kept)['w103'], middles(mapped)['w103'])
+        none = self.build(source, 'walls_none', '--imagery', self.image, '--imagery-refine', '0', '--lod', '0', '--formats', 'gpkg')
+        self.assertFalse([b for b in read_json(none, 'imagery.json')['buildings'] if 'walls' in b])
+        self.assertEqual(read_json(none, 'build.json')['configuration']['imagery_refine'], 0)
+        self.refused(blockrand('build', source, '-o', self.path('no'), '--imagery', self.image, '--imagery-refine', '9'), 1, 'imagery-refine', target=self.path('no'))
 
     def test_shadows_tell_heights_of_houses_that_nobody_counted(self):
         """A third of the houses is tagged: by them the sun is measured, and the others by the sun."""

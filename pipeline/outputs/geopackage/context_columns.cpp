@@ -110,8 +110,9 @@ std::vector<Column> footprint_before_columns() {
   return {
       {"id", kText, "", "Id of the building, in the layer buildings"},
       {"state", kText, "",
-       "moved: it stands where the image shows it; seen_elsewhere: it was not to be moved; as_mapped; undecided; "
-       "refused"},
+       "moved: it stands where the image shows it; seen_elsewhere: it was not to be moved; reshaped: single walls "
+       "stand where "
+       "the image shows them; seen_reshaped: they were not to be shifted; as_mapped; undecided; refused"},
       {"reason", kText, "", "Why it was not moved"},
       {"shift", kReal, "m", "From where it is mapped to where the image shows it"},
       {"shift_east", kReal, "m", "Of that: to the east"},
@@ -122,6 +123,12 @@ std::vector<Column> footprint_before_columns() {
       {"evidence_after", kReal, "", "The same where the image shows it"},
       {"gain", kReal, "", "The difference of the two"},
       {"confidence", kReal, "", "How sure it is that it stands there, from 0 to 1"},
+      {"walls_shifted", kInteger, "", "How many of its walls the image shows beside the others"},
+      {"largest_wall_shift", kReal, "m", "How far, the farthest of them"},
+      {"walls_reason", kText, "", "Why they stay where they are, where they do"},
+      {"walls_evidence_before", kReal, "", "How clear the edges of all its walls are without that, from 0 to 1"},
+      {"walls_evidence_after", kReal, "", "The same with it"},
+      {"walls_confidence", kReal, "", "How sure it is that they stand nearer to the truth then, from 0 to 1"},
       {"perhaps_gone", kReal, "", "How likely it is that nothing stands there any more, from 0.85 on; else 0"},
       {"lean", kReal, "m", "How far the image shows its roof from its ground"},
       {"image", kText, "", "The image"},

@@ -52,7 +52,11 @@ void append_row(CellTable& table, const FootprintBeforeRow& f) {
   row.text(r.reason);
   row.real(rounded(std::sqrt(r.shift.x * r.shift.x + r.shift.y * r.shift.y)));
   for (const double value : {r.shift.x, r.shift.y, r.turn}) row.real(rounded(value));
-  for (const double value : {r.before, r.after, r.after - r.before, r.confidence, r.gone}) row.real(share(value));
+  for (const double value : {r.before, r.after, r.after - r.before, r.confidence}) row.real(share(value));
+  row.integer(r.refined.walls);
+  row.real(rounded(r.refined.largest));
+  row.text(r.refined.reason);
+  for (const double value : {r.refined.before, r.refined.after, r.refined.confidence, r.gone}) row.real(share(value));
   row.real(rounded(std::sqrt(r.lean.x * r.lean.x + r.lean.y * r.lean.y)));
   row.text(source.path.substr(source.path.find_last_of('/') + 1));
   row.text(source.date);

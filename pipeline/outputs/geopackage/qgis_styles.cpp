@@ -300,6 +300,8 @@ std::string image_states() {
   qml.categories("state");
   qml.category("moved", "moved to where the image shows it", {214, 96, 77});
   qml.category("seen_elsewhere", "the image shows it elsewhere", {244, 165, 130});
+  qml.category("reshaped", "walls shifted to where the image shows them", {223, 140, 40});
+  qml.category("seen_reshaped", "the image shows walls elsewhere", {246, 200, 120});
   qml.category("as_mapped", "where the image shows it", {120, 190, 130});
   qml.category("refused", "not moved: in the way, or as ordered", {150, 120, 190});
   qml.category("", "not decided", kOthers);

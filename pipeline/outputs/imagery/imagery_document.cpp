@@ -52,6 +52,66 @@ Json image_json(const observation::ImageReceipt& image) {
   return j;
 }
 
+Json rings_json(const std::vector<std::vector<model::Point2>>& rings) {
+  Json all = Json::array();
+  for (const auto& ring : rings) {
+    Json numbers = Json::array();  // x, y, x, y ...
+    for (const model::Point2 p : ring) {
+      numbers.push_back(rounded(p.x, 1000));
+      numbers.push_back(rounded(p.y, 1000));
+    }
+    all.push_back(std::move(numbers));
+  }
+  return all;
+}
+
+std::vector<std::vector<model::Point2>> rings_of(const nlohmann::json& j) {
+  std::vector<std::vector<model::Point2>> rings;
+  for (const nlohmann::json& numbers : j) {
+    rings.emplace_back();
+    for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
+      rings.back().push_back({numbers[i].get<double>(), numbers[i + 1].get<double>()});
+  }
+  return rings;
+}
+
+void add_refinement(Json& j, const observation::RefinedOutline& r) {
+  if (r.state == observation::RefinementState::none) return;
+  Json& told = j["walls"];
+  told["state"] = observation::name(r.state);
+  if (!r.reason.empty()) told["reason"] = r.reason;
+  if (r.walls > 0) {
+    told["shifted"] = r.walls;
+    told["largest_shift_m"] = rounded(r.largest, 1000);
+  }
+  if (!r.evidence.empty()) {
+    told["evidence_before"] = rounded(r.before, 10000);
+    told["evidence_after"] = rounded(r.after, 10000);
+    told["confidence"] = rounded(r.confidence, 1000);
+  }
+  if (!r.to.empty()) {
+    told["outline_before"] = rings_json(r.from);
+    told["outline_after"] = rings_json(r.to);
+  }
+  for (const observation::WallEvidence& e : r.evidence)
+    told["seen_elsewhere"].push_back({{"at", metres(e.at)},
+                                      {"normal", {e.normal.x, e.normal.y}},
+                                      {"shift_m", e.shift},
+                                      {"before", rounded(e.here, 1000)},
+                                      {"after", rounded(e.there, 1000)},
+                                      {"elsewhere", rounded(e.second, 1000)},
+                                      {"usual", rounded(e.usual, 1000)},
+                                      {"length_m", rounded(e.length, 10)},
+                                      {"rim_m", rounded(e.rim, 10)},
+                                      {"lean_m", rounded(e.lean, 100)},
+                                      {"side", rounded(e.side, 100)},
+                                      {"others", rounded(e.others, 1000)},
+                                      {"steady", rounded(e.steady, 100)},
+                                      {"margin", rounded(e.margin, 1000)},
+                                      {"confidence", e.confidence},
+                                      {"taken", e.taken}});
+}
+
 Json building_json(const std::string& id, const OutlineReceipt& r) {
   Json j;
   j["id"] = id;
@@ -75,6 +135,7 @@ Json building_json(const std::string& id, const OutlineReceipt& r) {
     j["walls_m"] = rounded(r.weight, 10);
     j["height_doubt_m"] = rounded(r.height_doubt, 100);
     if (r.gone > 0) j["perhaps_gone"] = rounded(r.gone, 100);
+    add_refinement(j, r.refined);
   }
   return j;
 }
@@ -167,6 +228,26 @@ Enum named(const std::string& text, Enum last) {
   throw std::runtime_error("unknown state '" + text + "'");
 }
 
+observation::RefinedOutline refinement_of(const nlohmann::json& j) {
+  observation::RefinedOutline r;
+  if (!j.contains("walls")) return r;
+  const nlohmann::json& told = j.at("walls");
+  r.state = named(told.at("state").get<std::string>(), observation::RefinementState::refined);
+  r.reason = told.value("reason", std::string());
+  r.walls = told.value("shifted", 0U);
+  r.largest = told.value("largest_shift_m", 0.0);
+  r.before = told.value("evidence_before", 0.0);
+  r.after = told.value("evidence_after", 0.0);
+  r.confidence = told.value("confidence", 0.0);
+  if (!told.contains("outline_before")) return r;
+  r.from = rings_of(told.at("outline_before"));
+  r.to = rings_of(told.at("outline_after"));
+  if (r.from.size() != r.to.size()) throw std::runtime_error("rings are missing");
+  for (std::size_t k = 0; k < r.from.size(); ++k)
+    if (r.from[k].size() != r.to[k].size()) throw std::runtime_error("corners are missing");
+  return r;
+}
+
 OutlineReceipt receipt_of(const nlohmann::json& j) {
   OutlineReceipt r;
   r.state = named(j.at("state").get<std::string>(), observation::RowState::corrected);
@@ -183,6 +264,7 @@ OutlineReceipt receipt_of(const nlohmann::json& j) {
   r.lean = point(j.at("lean_m"));
   r.eaves = j.at("eaves_m").get<double>();
   r.gone = j.value("perhaps_gone", 0.0);
+  r.refined = refinement_of(j);
   return r;
 }
 

@@ -20,7 +20,13 @@ using observation::RowState;
 /// m: around a house on its picture, and a pixel of it.
 constexpr double kAround = 8, kChipPixel = 0.25, kLargestChip = 120;
 
-double size_of(const OutlineReceipt& r) { return std::sqrt(r.shift.x * r.shift.x + r.shift.y * r.shift.y); }
+bool walls_shifted(const OutlineReceipt& r) { return r.refined.state == observation::RefinementState::refined; }
+
+/// m: of the row, and of the wall that is shifted most.
+double size_of(const OutlineReceipt& r) {
+  const double row = r.state == RowState::corrected ? std::sqrt(r.shift.x * r.shift.x + r.shift.y * r.shift.y) : 0;
+  return row + (walls_shifted(r) ? r.refined.largest : 0);
+}
 
 std::string swatch(model::Colour colour, std::string_view what) {
   return fmt::format(
@@ -52,6 +58,29 @@ std::string count_rows(const OverlayInputs& in) {
                        base::with_thousands(count));
   }
   return out;
+}
+
+/// What became of single walls of houses; empty where nobody looked for them.
+std::string wall_rows(const OverlayInputs& in) {
+  std::map<std::pair<observation::RefinementState, std::string>, std::uint64_t> counts;
+  for (const OutlineReceipt& r : in.seen.outlines)
+    if (r.refined.state != observation::RefinementState::none) ++counts[{r.refined.state, r.refined.reason}];
+  if (counts.empty()) return "";
+  std::string out =
+      "<h2>Single walls</h2>\n<p>Of houses that stand where the image shows them, or were moved there: walls that it "
+      "shows "
+      "beside the others.</p>\n<table><thead><tr><th>What</th><th>Why</th><th class=\"n\">Buildings</th></tr></thead>"
+      "<tbody>\n";
+  for (const auto& [key, count] : counts) {
+    const auto& [state, reason] = key;
+    std::string_view what = "as mapped";
+    if (state == observation::RefinementState::refused) what = "refused";
+    if (state == observation::RefinementState::refined)
+      what = in.seen.applied ? "walls shifted" : "walls seen elsewhere";
+    out += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"n\">{}</td></tr>\n", what, escaped(reason),
+                       base::with_thousands(count));
+  }
+  return out + "</tbody></table>\n";
 }
 
 /// A house with its surroundings; the largest halls are cut. \param name  of what the picture shows
@@ -140,7 +169,7 @@ std::string unmapped_figures(const OverlayInputs& in) {
 std::string imagery_page(const OverlayInputs& in, const std::vector<std::string>& overlays) {
   std::vector<std::uint32_t> largest;
   for (std::uint32_t b = 0; b < in.seen.outlines.size(); ++b)
-    if (in.seen.outlines[b].state == RowState::corrected) largest.push_back(b);
+    if (in.seen.outlines[b].state == RowState::corrected || walls_shifted(in.seen.outlines[b])) largest.push_back(b);
   const std::size_t all = largest.size();
   std::ranges::stable_sort(largest, [&](std::uint32_t a, std::uint32_t b) {
     return size_of(in.seen.outlines[a]) > size_of(in.seen.outlines[b]);
@@ -163,8 +192,8 @@ std::string imagery_page(const OverlayInputs& in, const std::vector<std::string>
   out +=
       "<h2>Buildings</h2>\n<table><thead><tr><th>What</th><th>Why</th><th "
       "class=\"n\">Buildings</th></tr></thead><tbody>\n" +
-      count_rows(in) + "</tbody></table>\n";
-  const std::string what = in.seen.applied ? "moved" : "seen elsewhere";
+      count_rows(in) + "</tbody></table>\n" + wall_rows(in);
+  const std::string what = in.seen.applied ? "moved or reshaped" : "seen elsewhere or reshaped";
   out += fmt::format("<h2>The largest of {} {}</h2>\n<ul>", base::with_thousands(all), what);
   out += swatch(kBefore, "as mapped") + swatch(kAfterUnsure, "where the image shows it, just sure enough") +
          swatch(kAfterSure, "the same, quite sure") + swatch(kRefused, "the same, but it stays as mapped") +

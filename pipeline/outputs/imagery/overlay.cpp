@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pipeline/footprints/move_buildings.h"
+#include "pipeline/observation/corrections.h"
 #include "pipeline/picture/plan.h"
 
 namespace blockrand::outputs {
@@ -91,13 +92,16 @@ picture::Image draw_overlay(const OverlayInputs& in, const geometry::PlanBox& bo
     for (const std::uint32_t b : buildings) {
       const observation::OutlineReceipt& r = in.seen.outlines[b];
       if (r.image >= in.images.size()) continue;
-      const bool elsewhere = r.state == RowState::corrected || r.state == RowState::refused;
+      const bool refined = r.refined.state == observation::RefinementState::refined;
+      const bool elsewhere = r.state == RowState::corrected || r.state == RowState::refused || refined;
       if (elsewhere != moved) continue;
       const std::vector<model::Polygon> before = outlines_before(in, b);
       draw(plan, before, nullptr, r.lean, elsewhere ? kBefore : kAsMapped);
       if (!elsewhere) continue;
-      const footprints::Movement movement{r.shift, r.centre, r.turn};
-      draw(plan, before, &movement, r.lean, r.state == RowState::refused ? kRefused : after_colour(r.confidence));
+      const footprints::Movement refused{r.shift, r.centre, r.turn},
+          movement = r.state == RowState::refused ? refused : observation::movement_of(r);
+      const double confidence = refined ? r.refined.confidence : r.confidence;
+      draw(plan, before, &movement, r.lean, r.state == RowState::refused ? kRefused : after_colour(confidence));
     }
   for (const observation::UnmappedBuilding& u : in.seen.unmapped) {
     if (!geometry::box_of(u.outline).near(box, 0)) continue;

@@ -28,6 +28,7 @@ std::string_view SeenOutline::state() const {
     case RowState::corrected:
       return applied ? "moved" : "seen_elsewhere";
     case RowState::left_alone:
+      if (walls_shifted()) return applied ? "reshaped" : "seen_reshaped";
       return "as_mapped";
     case RowState::refused:
       return "refused";
@@ -62,6 +63,15 @@ SeenOutlines seen_outlines(const observation::ImageryObservations* observations,
   };
 }
 
+namespace {
+
+std::string_view walls_state(const SeenOutline& seen) {
+  if (seen.walls_shifted()) return seen.applied ? "shifted" : "seen_elsewhere";
+  return seen.receipt.refined.state == observation::RefinementState::refused ? "refused" : "as_mapped";
+}
+
+}  // namespace
+
 std::vector<ImageryAttribute> imagery_attributes(const SeenOutline& seen) {
   const observation::OutlineReceipt& r = seen.receipt;
   std::vector<ImageryAttribute> out = {
@@ -74,6 +84,15 @@ std::vector<ImageryAttribute> imagery_attributes(const SeenOutline& seen) {
   if (const auto courtyard = seen.told_courtyard()) {
     out.emplace_back("imagery_courtyard", std::string(observation::name(courtyard->state)));
     out.emplace_back("imagery_courtyard_built_over", courtyard->built_over);
+  }
+  if (const observation::RefinedOutline& w = r.refined; w.walls > 0) {
+    out.emplace_back("imagery_walls_state", std::string(walls_state(seen)));
+    if (!w.reason.empty()) out.emplace_back("imagery_walls_reason", w.reason);
+    out.emplace_back("imagery_walls_shifted", static_cast<double>(w.walls));
+    out.emplace_back("imagery_largest_wall_shift", w.largest);
+    out.emplace_back("imagery_walls_evidence_before", w.before);
+    out.emplace_back("imagery_walls_evidence", w.after);
+    out.emplace_back("imagery_walls_confidence", w.confidence);
   }
   if (!seen.image.description.source.date.empty()) out.emplace_back("imagery_date", seen.image.description.source.date);
   return out;
@@ -105,10 +124,23 @@ std::string place_text(const SeenOutline& seen) {
   return fmt::format("left where it is mapped: {} ({})", r.reason, image);
 }
 
+/// What became of single walls; empty where none is seen elsewhere.
+std::string walls_text(const SeenOutline& seen) {
+  const observation::RefinedOutline& w = seen.receipt.refined;
+  if (w.walls == 0) return "";
+  const std::string walls = w.walls == 1 ? "1 wall" : fmt::format("{} walls", w.walls);
+  const std::string evidence = fmt::format("clearness of all edges {:.2f} before, {:.2f} after; confidence {:.2f}",
+                                           w.before, w.after, w.confidence);
+  if (!seen.walls_shifted())
+    return fmt::format("; {} seen beside, up to {:.2f} m, left: {} ({})", walls, w.largest, w.reason, evidence);
+  return fmt::format("; {} {} by up to {:.2f} m ({})", walls, seen.applied ? "shifted" : "seen beside,", w.largest,
+                     evidence);
+}
+
 }  // namespace
 
 std::string imagery_text(const SeenOutline& seen) {
-  std::string place = place_text(seen);
+  std::string place = place_text(seen) + walls_text(seen);
   if (const auto courtyard = seen.told_courtyard())
     place += courtyard->state == CourtyardState::open
                  ? fmt::format("; courtyard: open ({:.2f})", 1 - courtyard->built_over)

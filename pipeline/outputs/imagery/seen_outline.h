@@ -24,10 +24,11 @@ struct SeenOutline {
   geometry::PlanBox box{};   ///< m in the build CRS: of its outline as it stands
   std::span<const observation::CourtyardView> courtyards{};  ///< holes of its outline
 
-  /// "moved" or "seen_elsewhere"; "as_mapped", "undecided", "refused".
+  /// "moved" or "seen_elsewhere"; "reshaped" or "seen_reshaped" where its walls alone are; "as_mapped", "undecided", "refused".
   std::string_view state() const;
   /// What is surely seen in its courtyards: perhaps built over if one is; nothing where none is sure.
   std::optional<observation::CourtyardView> told_courtyard() const;
+  bool walls_shifted() const { return receipt.refined.state == observation::RefinementState::refined; }
 };
 
 /// Receipts by building; nothing for one that no image shows. May be empty: no images.

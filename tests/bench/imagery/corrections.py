@@ -23,12 +23,38 @@ def outlines(path, epsg):
     return {o: np.vstack([x[:-1] for x in r]) for o, r in b.rings.items()}
 
 
-def corrected(points, answer):
-    """Corners (n, 2) after the correction that a building's answer holds: turned (counter-clockwise) about its centre, then shifted."""
+def rigid(points, answer):
+    """Points (n, 2) where the row of a building was moved: turned (counter-clockwise) about its centre, then shifted; as they are where it was not."""
+    if answer.get("state", "corrected") != "corrected":
+        return points
     shift, turn = answer.get("shift_m") or (0, 0), math.radians(answer.get("rotation_deg") or 0)
     centre = np.array(answer.get("centre") or points.mean(0))
     c, s = math.cos(turn), math.sin(turn)
     return (points - centre) @ np.array([[c, s], [-s, c]]) + centre + np.asarray(shift, float)
+
+
+def refined(answer):
+    """Were walls of it shifted by themselves?"""
+    return answer.get("walls", {}).get("state") == "refined"
+
+
+def corrected(points, answer):
+    """Corners (n, 2) after the correction that a building's answer holds: moved with their row, then with the nearest wall of their outline."""
+    moved = rigid(points, answer)
+    if not refined(answer):
+        return moved
+    before = [np.array(r).reshape(-1, 2) for r in answer["walls"]["outline_before"]]
+    by = np.vstack([np.array(r).reshape(-1, 2) - rigid(b, answer) for r, b in zip(answer["walls"]["outline_after"], before)])
+    a, b = np.vstack(before), np.vstack([np.roll(r, -1, 0) for r in before])
+    next_by, at = [], 0
+    for r in before:
+        next_by.append(np.roll(by[at:at + len(r)], -1, 0))
+        at += len(r)
+    next_by, d = np.vstack(next_by), b - a
+    t = np.clip(((points[:, None] - a) * d).sum(2) / np.maximum((d * d).sum(1), 1e-12), 0, 1)
+    wall = np.hypot(*np.moveaxis(points[:, None] - a - t[..., None] * d, 2, 0)).argmin(1)
+    t = t[np.arange(len(points)), wall][:, None]
+    return moved + by[wall] * (1 - t) + next_by[wall] * t
 
 
 class Judged:
@@ -51,9 +77,8 @@ class Judged:
                 continue
             goal = right[id_] + (offsets.get(id_, (0, 0)) if offsets else (0, 0))
             before = np.hypot(*(wrong[id_] - goal).T).mean()
-            taken = a["state"] == "corrected"
-            after = np.hypot(*(corrected(wrong[id_], a) - goal).T).mean() if taken else before
-            self.rows.append(dict(id=id_, row=int(t["row"]), moved=bool(t["moved"]), state=a["state"], reason=a.get("reason") or "", before=float(before), after=float(after),
+            after = np.hypot(*(corrected(wrong[id_], a) - goal).T).mean()
+            self.rows.append(dict(id=id_, row=int(t["row"]), moved=bool(t["moved"]), state=a["state"], changed=a["state"] == "corrected" or refined(a), reason=a.get("reason") or "", before=float(before), after=float(after),
                                   confidence=a.get("confidence"), gain=a.get("gain")))
 
     def summary(self):
@@ -68,9 +93,9 @@ def summarise(rows):
     worse = lambda rs: sum(r["after"] - r["before"] > WORSE for r in rs)
     return dict(displaced=len(moved), right=len(right), before_median=q(before, .5), before_p90=q(before, .9), taken=len(taken),
                 taken_share=len(taken) / len(moved) if moved else None, after_median=q(after, .5), after_p90=q(after, .9),
-                worse_of_displaced=worse(moved), right_changed=sum(r["state"] == "corrected" for r in right), worse_of_right=worse(right),
+                worse_of_displaced=worse(moved), right_changed=sum(r["changed"] for r in right), worse_of_right=worse(right),
                 worse_share=worse(right) / len(right) if right else None,
-                right_after_median=q(np.array([r["after"] for r in right if r["state"] == "corrected"]), .5),
+                right_after_median=q(np.array([r["after"] for r in right if r["changed"]]), .5),
                 states={s: sum(r["state"] == s for r in rows) for s in sorted({r["state"] for r in rows})})
 
 

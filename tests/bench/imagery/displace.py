@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 """Moves the buildings of an extract by known amounts, row by row; nothing else changes.
 
-    displace.py IN.osm[.pbf|.gz] OUT.osm --seed N --min 1 --max 3 [--rotate DEG] [--share 1.0] [--jitter M] [--epsg CODE]
+    displace.py IN.osm[.pbf|.gz] OUT.osm --seed N --min 1 --max 3 [--rotate DEG] [--share 1.0] [--jitter M] [--walls 0.5] [--epsg CODE]
 
 A row: buildings and building parts that share nodes, belong to one relation, lie in one another or are nearer than 2 m. It moves as
 one: turned about its centre (counter-clockwise, at most so far that no corner moves 1.5 m by it), then shifted. Lengths are metres
 in the projected system of the build (UTM of the extract's middle unless told), that is on the ground. Nodes that other ways use
 too (streets, fences, areas) are copied, the others' stay. Truth: OUT.csv, a line per building. --share: share of the buildings
-that are moved (whole rows), the rest stays: the test of false corrections. --jitter: deviation of every corner's own error, m.
+that are moved (whole rows), the rest stays: the test of false corrections. --jitter: deviation of every corner's own error, m. --walls: share of the rows in which a house
+has one or two walls, at corners that no neighbour has, shifted along their normal by 0.3 to 1 m, the other walls staying on their lines.
 """
 import argparse
 import csv
@@ -154,19 +155,70 @@ def moved(p, move):
     return (np.asarray(p) - centre) @ np.array([[c, s], [-s, c]]) + centre + (dx, dy)
 
 
-def displace(source, target, seed, low, high, rotate=0.0, share=1.0, jitter=0.0, epsg=None):
+def shift_wall(ring, rng, done, free):
+    """A ring (n, 2), not closed, with one wall between two clear corners shifted by 0.3 to 1 m, or None where there is none that can be; done: walls that were, by their first corner; free: corners that may move."""
+    n, edge = len(ring), np.roll(ring, -1, 0) - ring
+    length = np.hypot(*edge.T)
+    if (length < 1e-6).any():
+        return None
+    unit = edge / length[:, None]
+    turn = np.abs([unit[i - 1, 0] * unit[i, 1] - unit[i - 1, 1] * unit[i, 0] for i in range(n)])   # at the corner where edge i begins
+    fit = [i for i in range(n) if free[i] and free[(i + 1) % n] and length[i] >= 3 and min(length[i - 1], length[(i + 1) % n]) >= 3 and turn[i] > .7 and turn[(i + 1) % n] > .7 and i not in done]
+    if n < 4 or not fit:
+        return None
+    i, by = int(rng.choice(fit)), rng.uniform(.3, 1) * rng.choice([-1, 1])
+    normal, out = np.array([unit[i, 1], -unit[i, 0]]), ring.copy()
+    for corner, way in ((i, unit[i - 1]), ((i + 1) % n, unit[(i + 1) % n])):
+        out[corner] = ring[corner] + way * (by / (way @ normal))
+    done.add(i)
+    return out
+
+
+def plan_walls(b, rng, share):
+    """Row -> {node: (2,) place} of houses with shifted walls, before their row is moved: of each row one house at most, at corners that it has for itself."""
+    rows, plans, used = {}, {}, {}
+    for o, r in b.rows.items():
+        rows.setdefault(r, []).append(o)
+        for w in b.objects[o][0]:
+            for n in set(b.extract.ways[w][0]):
+                used[n] = used.get(n, 0) + 1
+    for r in sorted(rows):
+        chance, count, o = rng.random(), int(rng.integers(1, 3)), rows[r][int(rng.integers(len(rows[r])))]
+        ways = b.objects[o][0]
+        if chance >= share or len(ways) != 1 or not b.objects[o][1]:
+            continue
+        refs = b.extract.ways[ways[0]][0]
+        if len(refs) < 5 or refs[0] != refs[-1] or any(n not in b.xy for n in refs) or len(set(refs)) != len(refs) - 1:
+            continue
+        others = [x for k in rows[r] if k != o for x in b.rings[k]]
+        apart = lambda p: not others or to_segments(np.array([p]), segments(others)) > .7
+        ring, done = b.rings[o][0][:-1], set()
+        free = [used[n] == 1 and apart(b.xy[n]) for n in refs[:-1]]
+        for _ in range(count):
+            shifted = shift_wall(ring, rng, done, free)
+            ring = ring if shifted is None else shifted
+        if not np.array_equal(ring, b.rings[o][0][:-1]):
+            plans[r] = o, dict(zip(refs[:-1], ring))
+    return plans
+
+
+def displace(source, target, seed, low, high, rotate=0.0, share=1.0, jitter=0.0, epsg=None, walls=0.0):
     xml = osm.as_xml(source)
     b = Buildings(osm.Extract(xml), epsg)
     rng = np.random.default_rng([seed, 4])
     moves = plan_moves(b, rng, low, high, rotate, share)
+    reshaped = plan_walls(b, np.random.default_rng([seed, 5]), walls) if walls else {}
     way_row = {w: b.rows[o] for o in b.rings for w in b.objects[o][0]}
     mine = set(way_row)
     foreign = {n for w, (refs, _) in b.extract.ways.items() if w not in mine for n in refs}
-    node_row = {n: r for w, r in way_row.items() if r in moves for n in b.extract.ways[w][0] if n in b.xy}
+    node_row = {n: r for w, r in way_row.items() if r in moves or r in reshaped for n in b.extract.ways[w][0] if n in b.xy}
     new, copies, next_id = {}, {}, max(b.extract.nodes, default=0) + 1
     back = osm.transformation(b.epsg, 4326)
     for n in sorted(node_row):
-        p = moved(np.array([b.xy[n]]), moves[node_row[n]])[0] + (rng.normal(0, jitter, 2) if jitter else 0)
+        row = node_row[n]
+        p = np.asarray(reshaped[row][1].get(n, b.xy[n]) if row in reshaped else b.xy[n], float)
+        if row in moves:
+            p = moved(p[None], moves[row])[0] + (rng.normal(0, jitter, 2) if jitter else 0)
         lon, lat, _ = back.TransformPoint(float(p[0]), float(p[1]))
         new[n] = f"{lon:.9f}", f"{lat:.9f}"
         if n in foreign:
@@ -185,7 +237,7 @@ def displace(source, target, seed, low, high, rotate=0.0, share=1.0, jitter=0.0,
             elif i in new:
                 e.set("lon", new[i][0])
                 e.set("lat", new[i][1])
-        elif e.tag == "way" and i in mine and way_row[i] in moves:
+        elif e.tag == "way" and i in mine and (way_row[i] in moves or way_row[i] in reshaped):
             for nd in e.iter("nd"):
                 r = int(nd.get("ref"))
                 if r in copies:
@@ -197,13 +249,13 @@ def displace(source, target, seed, low, high, rotate=0.0, share=1.0, jitter=0.0,
     if xml != source:
         shutil.rmtree(os.path.dirname(xml))
     with open(os.path.splitext(target)[0] + ".csv", "w", newline="") as f:
-        f.write(f"# EPSG:{b.epsg} seed {seed} shift {low}-{high} m rotation {rotate} share {share} jitter {jitter}; dx, dy: how far the building was moved, m\n")
+        f.write(f"# EPSG:{b.epsg} seed {seed} shift {low}-{high} m rotation {rotate} share {share} jitter {jitter} walls {walls}; dx, dy: how far the building was moved, m\n")
         w = csv.writer(f)
-        w.writerow("id part row moved dx dy rotation_deg row_x row_y x y".split())
+        w.writerow("id part row moved dx dy rotation_deg row_x row_y x y reshaped".split())
         for o, r in b.rows.items():
             dx, dy, turn, centre = moves.get(r, (0.0, 0.0, 0.0, centroid(b.rings[o])))
             c = centroid(b.rings[o])
-            w.writerow([o, int(not b.objects[o][1]), r, int(r in moves), f"{dx:.4f}", f"{dy:.4f}", f"{turn:.4f}", f"{centre[0]:.3f}", f"{centre[1]:.3f}", f"{c[0]:.3f}", f"{c[1]:.3f}"])
+            w.writerow([o, int(not b.objects[o][1]), r, int(r in moves), f"{dx:.4f}", f"{dy:.4f}", f"{turn:.4f}", f"{centre[0]:.3f}", f"{centre[1]:.3f}", f"{c[0]:.3f}", f"{c[1]:.3f}", int(r in reshaped and reshaped[r][0] == o)])
     return b, moves
 
 
@@ -217,9 +269,10 @@ def main():
     a.add_argument("--rotate", type=float, default=0)
     a.add_argument("--share", type=float, default=1)
     a.add_argument("--jitter", type=float, default=0)
+    a.add_argument("--walls", type=float, default=0)
     a.add_argument("--epsg", type=int)
     a = a.parse_args()
-    b, moves = displace(a.source, a.target, a.seed, a.min, a.max, a.rotate, a.share, a.jitter, a.epsg)
+    b, moves = displace(a.source, a.target, a.seed, a.min, a.max, a.rotate, a.share, a.jitter, a.epsg, a.walls)
     print(f"{len(b.rows)} outlines in {len(set(b.rows.values()))} rows; {len(moves)} rows moved; EPSG:{b.epsg}")
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Judges the program's analysis of aerial images (issue 20). Markdown tables to stdout, everything to a JSON file.
 
-    evaluate.py kampala|synthetic|pariser-platz|georeference|colours|ridges|gone|unmapped|courtyards [options]
+    evaluate.py kampala|synthetic|walls|pariser-platz|georeference|colours|ridges|gone|unmapped|courtyards [options]
 
 Runs `blockrand build EXTRACT --imagery IMAGE --imagery-correct report` and reads imagery.json of the build. Needs the data folder
 (--shared), rendered pictures (--images: FOLDER/SET/PLACE.tif with .truth.json, by render.py), osmium-tool, python3-gdal, python3-numpy.
@@ -28,6 +28,7 @@ import holes
 import misregister
 import omit
 import osm
+import refinement
 from corrections import HEAD, Judged, cells, outlines, read_truth, summarise, table
 from displace import Buildings, displace
 
@@ -184,6 +185,42 @@ class Bench:
                 if r["state"] != "corrected":
                     reasons[(r["state"], r["reason"])] = reasons.get((r["state"], r["reason"]), 0) + 1
         print("Why not corrected: " + "; ".join(f"{s} {w} {n}" for (s, w), n in sorted(reasons.items(), key=lambda x: -x[1])[:12]) + "\n")
+
+    # ---- single walls ---------------------------------------------------------------------------------------------
+
+    def walls(self):
+        """Houses with one or two walls shifted by 0.3 to 1 m in every row that has such, a third of the rows moved as well; and all corners of half the rows off by --jitter."""
+        places = [p for p in ["kampala"] + self.a.places if p == "kampala" or os.path.exists(self.image_of(p))]
+        labels = truth_rows("kampala_labels.csv")
+        right_labels = {f"w{int(r['index']) + 1}": (float(r["dx_m"]), float(r["dy_m"])) for r in labels if r["verdict"] == "right"}
+        for kind, how in [k for k in (("walls", dict(low=1, high=3, share=.33, jitter=0, walls=1.0)), (f"corners by {self.a.jitter or .3} m", dict(low=0, high=0, share=.5, jitter=self.a.jitter or .3, walls=0))) if k[0].split()[0] in self.a.kinds]:
+            lines, pooled = [], {}
+            for place in places:
+                extract, image = (self.kampala_osm, self.kampala_image) if place == "kampala" else (self.extract_of(place), self.image_of(place))
+                for seed in self.a.seeds:
+                    name = f"{kind.split()[0]}-{place}-{'real' if place == 'kampala' else self.a.set}-{seed}"
+                    path = os.path.join(self.a.work, name + ".osm")
+                    displace(extract, path, seed, how["low"], how["high"], 0, how["share"], how["jitter"], walls=how["walls"])
+                    epsg, truth = read_truth(path[:-4] + ".csv")
+                    answer = self.run(name, path, image)
+                    if "error" in answer:
+                        print(f"{name}: {answer['error']}", file=sys.stderr)
+                    touched = {i for i, t in truth.items() if t["moved"] or t["reshaped"]}
+                    told = [b for b in answer["buildings"] if place != "kampala" or b["id"] in right_labels]
+                    w, b = refinement.judge(told, refinement.rings_of(extract, epsg), refinement.rings_of(path, epsg), touched, right_labels if place == "kampala" else None)
+                    lines.append([place, seed] + refinement.cells(w, b))
+                    group = "kampala" if place == "kampala" else "synthetic"
+                    pooled.setdefault(group, ([], []))
+                    pooled[group][0].extend(w), pooled[group][1].extend(b)
+                    self.result.setdefault("walls", []).append(dict(kind=kind, place=place, seed=seed, walls=w, buildings=b))
+            print(f"### Single walls, {kind}, set `{self.a.set}`\n")
+            table(["place", "seed"] + refinement.HEAD, lines + [[g, "all"] + refinement.cells(*p) for g, p in pooled.items()])
+            reasons = {}
+            for _, b in pooled.values():
+                for x in b:
+                    if not x["taken"]:
+                        reasons[x["reason"]] = reasons.get(x["reason"], 0) + 1
+            print("Not refined: " + "; ".join(f"{w} {n}" for w, n in sorted(reasons.items(), key=lambda x: -x[1])) + "\n")
 
     # ---- Pariser Platz --------------------------------------------------------------------------------------------
 
@@ -502,7 +539,7 @@ def merge(shapes):
 
 def main():
     a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    a.add_argument("what", choices=["kampala", "synthetic", "pariser-platz", "georeference", "colours", "ridges", "gone", "unmapped", "courtyards"])
+    a.add_argument("what", choices=["kampala", "synthetic", "walls", "pariser-platz", "georeference", "colours", "ridges", "gone", "unmapped", "courtyards"])
     a.add_argument("--program", default=os.path.join(HERE, "../../../build/release/blockrand"))
     a.add_argument("--shared", default="/work/shared" if os.path.isdir("/work/shared") else os.path.join(HERE, "../../../../shared"))
     a.add_argument("--images", default="/work/imagery_bench", help="rendered pictures: FOLDER/SET/PLACE.tif; estate.osm")
@@ -515,6 +552,7 @@ def main():
     a.add_argument("--rotate", type=float, default=0)
     a.add_argument("--jitter", type=float, default=0)
     a.add_argument("--share", type=float, default=.5, help="synthetic: share of the buildings that are displaced")
+    a.add_argument("--kinds", nargs="+", default=["walls", "corners"], choices=["walls", "corners"], help="walls: what is off")
     a.add_argument("--lod", type=int, default=0)
     a.add_argument("--work", default="/tmp/imagery_bench")
     a.add_argument("--json", help="else WORK/WHAT.json")

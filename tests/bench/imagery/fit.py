@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Fits the logistic regressions of pipeline/observation (verdict.cpp, roof_view.cpp, presence.cpp, unmapped.cpp, courtyard_view.cpp) on the tuning images; prints weights and what each
+"""Fits the logistic regressions of pipeline/observation (verdict.cpp, edge_refinement.cpp, roof_view.cpp, presence.cpp, unmapped.cpp, courtyard_view.cpp) on the tuning images; prints weights and what each
 place that is left out says.
 
-    fit.py confidence|form|ridge|gone|unmapped|courtyards [--work FOLDER] [--images FOLDER] [--places PLACE ...]
+    fit.py confidence|walls|form|ridge|gone|unmapped|courtyards [--work FOLDER] [--images FOLDER] [--places PLACE ...]
 
 confidence: of the runs that `evaluate.py synthetic --set tuning` and `evaluate.py kampala` left in --work; a row is right when it is
-found within 0.6 m; of those that are found 0.4 m or more from where they are mapped. form, ridge: of builds of the tuning images, which are made here where --work lacks them.
+found within 0.6 m; of those that are found 0.4 m or more from where they are mapped. walls: of what `evaluate.py walls --set tuning` left
+in --work/walls.json; a wall is right when it stands nearer to the truth by 0.05 m afterwards. form, ridge: of builds of the tuning images, which are made here where --work lacks them.
 """
 import argparse
 import collections
@@ -40,7 +41,7 @@ def fit(a, y, ridge=1.0, rounds=50):
 LAST = []  # (probability by the other places, is it so) of the last report
 
 
-def report(rows):
+def report(rows, ridge=1.0):
     """rows: (place, features, right)."""
     a, y, place = np.array([r[1] for r in rows]), np.array([r[2] for r in rows], float), np.array([r[0] for r in rows])
     p = np.zeros(len(y))
@@ -48,14 +49,14 @@ def report(rows):
         here = place == left_out
         if here.all():
             continue
-        p[here] = 1 / (1 + np.exp(-a[here] @ fit(a[~here], y[~here])))
+        p[here] = 1 / (1 + np.exp(-a[here] @ fit(a[~here], y[~here], ridge)))
         print(f"{left_out:32} {here.sum():6}   right {np.mean((p[here] > .5) == (y[here] > .5)):.3f}   share of ones {y[here].mean():.2f}")
     LAST[:] = list(zip(p.tolist(), (y > .5).tolist()))
     sure, right = np.maximum(p, 1 - p), (p > .5) == (y > .5)
     for least in (.5, .6, .7, .75, .8, .85, .9):
         said = sure >= least
         print(f"from {least:.2f} on: said {said.mean():.2f}, of them right {right[said].mean() if said.any() else math.nan:.3f}")
-    print("weights", [float(v) for v in np.round(fit(a, y), 2)])
+    print("weights", [float(v) for v in np.round(fit(a, y, ridge), 2)])
 
 
 def confidence(a):
@@ -81,6 +82,17 @@ def confidence(a):
                           min(4.5, (b["evidence_after"] - b["score_mean"]) / d), b["evidence_after"], math.log(max(1, b["walls_m"]) / 50),
                           max(0, math.hypot(dx, dy) - 2.8), min(2, b["height_doubt_m"]), math.log(houses[b["row"]])], off < .6))
     report(rows)
+
+
+def walls(a):
+    rows = []
+    with open(os.path.join(a.work, "walls.json")) as f:
+        runs = json.load(f)["walls"]
+    for run in runs:
+        for w in run["walls"]:
+            here, there = w["clear"]
+            rows.append((run["place"], [1, here, there - w["elsewhere"], math.log(w["length_m"]), w["side"], w["others"], w["leans"]], abs(w["off"] - w["shift_m"]) + .05 < abs(w["off"])))
+    report(rows, .3)
 
 
 def roofs(a):
@@ -242,7 +254,7 @@ def courtyards(a):
 
 def main():
     a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    a.add_argument("what", choices=["confidence", "form", "ridge", "gone", "unmapped", "courtyards"])
+    a.add_argument("what", choices=["confidence", "walls", "form", "ridge", "gone", "unmapped", "courtyards"])
     a.add_argument("--program", default=os.path.join(HERE, "../../../build/release/blockrand"))
     a.add_argument("--shared", default="/work/shared" if os.path.isdir("/work/shared") else os.path.join(HERE, "../../../../shared"))
     a.add_argument("--images", default="/work/imagery_bench")

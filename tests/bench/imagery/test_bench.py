@@ -318,5 +318,26 @@ class Misregistration(InFolder):
         np.testing.assert_array_equal(gdal.Open(bad).ReadAsArray(), np.moveaxis(picture, 2, 0)[:, :, ::-1])
 
 
+class Walls(unittest.TestCase):
+    def test_corners_go_with_the_nearest_wall_of_the_refined_outline(self):
+        box = [0, 0, 10, 0, 10, 8, 0, 8]
+        answer = dict(state="left_alone", shift_m=[.2, 0], rotation_deg=0, centre=[5, 4],
+                      walls=dict(state="refined", outline_before=[box], outline_after=[[0, 0, 10.8, 0, 10.8, 8, 0, 8]]))
+        got = corrections.corrected(np.array([[0., 0], [10, 0], [10.1, 4], [5, 8]]), answer)
+        np.testing.assert_allclose(got, [[0, 0], [10.8, 0], [10.9, 4], [5.4, 8]], atol=1e-9)
+        answer["walls"]["state"] = "refused"
+        np.testing.assert_allclose(corrections.corrected(np.array([[10., 0]]), answer), [[10, 0]])
+
+    def test_a_shifted_wall_leaves_the_others_on_their_lines(self):
+        ring = np.array([[0., 0], [12, 0], [12, 8], [0, 8]])
+        rng, done = np.random.default_rng(3), set()
+        got = displace.shift_wall(ring, rng, done, [True] * 4)
+        moved = [i for i in range(4) if np.hypot(*(got[i] - ring[i])) > .29]
+        self.assertEqual(len(moved), 2)
+        self.assertEqual(len(done), 1)
+        self.assertEqual(sum(abs(got[i] - ring[i]).min() > 1e-9 for i in range(4)), 0)
+        self.assertIsNone(displace.shift_wall(ring, rng, set(), [True, False, True, False]), "no wall has both its corners for itself")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -102,6 +102,25 @@ TEST_F(MoveBuildings, TheTileStaysThatOfWhatIsMapped) {
   EXPECT_EQ(box_centre(extract_, extract_.buildings[0]), before);
 }
 
+TEST(Movement, WhatLiesOnAWallGoesWithIt) {
+  Movement wider{{0, 3}, {}, 0};
+  wider.reshape.before = {{{0, 0}, {10, 0}, {10, 8}, {0, 8}}};
+  wider.reshape.after = {{{0, 3}, {11, 3}, {11, 11}, {0, 11}}};
+  const auto expect = [&](Point2 p, double x, double y) {
+    EXPECT_NEAR(wider(p).x, x, 1e-12) << p.x << ", " << p.y;
+    EXPECT_NEAR(wider(p).y, y, 1e-12) << p.x << ", " << p.y;
+  };
+  expect({10, 0}, 11, 3);
+  expect({10.1, 4}, 11.1, 7);  // an entrance on the wall, mapped a little beside it
+  expect({9, 5}, 10, 8);       // a shop behind it
+  expect({5, 0}, 5.5, 3);      // a point of the wall that grows
+  expect({0, 4}, 0, 7);
+  wider.reshape.after[0][3].x += 0.0015;  // rounded: it keeps to the others
+  expect({0, 8}, 0, 11);
+  wider.reshape = {};
+  expect({10, 0}, 10, 3);
+}
+
 TEST(Movement, TurnsAboutItsCentreBeforeItShifts) {
   const Movement quarter{{10, 0}, {1, 1}, 90};
   const Point2 p = quarter({2, 1});

@@ -35,6 +35,16 @@ struct Street {
     seen.outlines[b].turn = turn;
     seen.outlines[b].confidence = confidence;
   }
+  /// The wall to the east of house b is seen farther out.
+  void widen(std::uint32_t b, double by, double confidence = 0.9) {
+    RefinedOutline& r = seen.outlines[b].refined;
+    r.state = RefinementState::refined, r.walls = 1, r.largest = by, r.confidence = confidence;
+    r.from = {store.polygons(b)[0].outer.points}, r.to = r.from;
+    for (model::Point2& p : r.to[0]) {
+      if (p.x > r.from[0][0].x) p.x += by;
+      if (seen.outlines[b].state == RowState::corrected) p.x += seen.outlines[b].shift.x;
+    }
+  }
   std::vector<std::uint32_t> moved(const std::function<bool(std::uint32_t)>& keeps = [](std::uint32_t) {
     return false;
   }) {
@@ -84,6 +94,37 @@ TEST(Corrections, WhatOverlappedBeforeMayStillDoSo) {
   street.show(0, -1);
   street.show(1, 0.6);
   EXPECT_THAT(street.moved(), ElementsAre(0, 1));
+}
+
+TEST(Corrections, AWallIsNotShiftedIntoANeighbour) {
+  Street street({0, 10.5, 40});
+  street.widen(0, 0.8);
+  street.widen(2, 0.8);
+  EXPECT_THAT(street.moved(), ElementsAre(2));
+  EXPECT_EQ(street.seen.outlines[0].refined.state, RefinementState::refused);
+  EXPECT_EQ(street.seen.outlines[0].refined.reason, "it would stand on a neighbour");
+  EXPECT_NEAR(movements(street.seen, street.store)[0].movement({50, 5}).x, 50.8, 1e-9);
+  EXPECT_NEAR(movements(street.seen, street.store)[0].movement({45, 0}).x, 45.4, 1e-9);
+}
+
+TEST(Corrections, WallsGoWithTheirRowAndAreRefusedWithIt) {
+  Street street({0, 12, 40});
+  street.show(0, 4);
+  street.widen(0, 0.5);
+  street.show(2, 3);
+  street.widen(2, 0.5);
+  EXPECT_THAT(street.moved(), ElementsAre(2));
+  EXPECT_EQ(street.seen.outlines[0].refined.state, RefinementState::refused);
+  EXPECT_NEAR(movements(street.seen, street.store)[0].movement({50, 0}).x, 53.5, 1e-9);
+  EXPECT_NEAR(movements(street.seen, street.store)[0].movement({40, 10}).x, 43, 1e-9);
+}
+
+TEST(Corrections, AUserKeepsWallsToo) {
+  Street street({0, 30});
+  street.widen(0, 0.5);
+  street.widen(1, 0.5);
+  EXPECT_THAT(street.moved([](std::uint32_t b) { return b == 0; }), ElementsAre(1));
+  EXPECT_EQ(street.seen.outlines[0].refined.reason, "an override keeps it where it is mapped");
 }
 
 TEST(Corrections, ARowStaysWhereAUserKeepsOneOfItsHouses) {

@@ -23,6 +23,12 @@ struct Seen {
     moved.state = RowState::corrected, moved.row = 7, moved.image = 1;
     moved.shift = {1.5, 1.4}, moved.centre = {500'000.123, 5'700'000.5}, moved.turn = 0.53;
     moved.before = 0.1234, moved.after = 0.4321, moved.confidence = 0.871, moved.lean = {0.1, -0.2}, moved.eaves = 8.5;
+    observation::RefinedOutline& walls = moved.refined;
+    walls.state = observation::RefinementState::refined, walls.walls = 2, walls.largest = 0.812;
+    walls.before = 0.4321, walls.after = 0.6543, walls.confidence = 0.712;
+    walls.from = {{{500'000.123, 5'700'000.001}, {500'010.5, 5'700'000}, {500'010.5, 5'700'008.25}}};
+    walls.to = {{{500'001.623, 5'700'001.401}, {500'012.812, 5'700'001.4}, {500'012.812, 5'700'009.65}}};
+    walls.evidence.resize(1);
     observation::OutlineReceipt& undecided = observations.outlines[2];
     undecided.state = RowState::undecided, undecided.image = 1;
     undecided.reason = "another place fits nearly as well";
@@ -84,6 +90,15 @@ TEST(ImageryDocument, ReadsWhatItWrote) {
   EXPECT_EQ(height.uncertainty, 1.1);
   EXPECT_EQ(height.confidence, 0.8);
   EXPECT_EQ(read.buildings[0].height.image, observation::SeenHeight::kNoImage);
+  EXPECT_EQ(receipt.refined.state, observation::RefinementState::refined);
+  EXPECT_EQ(receipt.refined.walls, 2u);
+  EXPECT_EQ(receipt.refined.largest, wrote.refined.largest);
+  EXPECT_EQ(receipt.refined.before, wrote.refined.before);
+  EXPECT_EQ(receipt.refined.after, wrote.refined.after);
+  EXPECT_EQ(receipt.refined.confidence, wrote.refined.confidence);
+  EXPECT_EQ(receipt.refined.from, wrote.refined.from);
+  EXPECT_EQ(receipt.refined.to, wrote.refined.to);
+  EXPECT_EQ(read.buildings[2].receipt.refined.state, observation::RefinementState::none);
   EXPECT_EQ(receipt.gone, 0);
   EXPECT_EQ(read.buildings[2].receipt.gone, 0.93);
   EXPECT_EQ(read.buildings[2].id.text(), "r102");
