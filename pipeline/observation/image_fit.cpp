@@ -152,7 +152,8 @@ model::Point2 sharpest(std::span<const ScoreMap> maps, const Displacements& grid
   const int i0 = static_cast<int>(std::lround(about.x / kStep)), j0 = static_cast<int>(std::lround(about.y / kStep));
   std::vector<double> sum(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0.0);
   const auto at = [&](int i, int j) -> double& {
-    return sum[static_cast<std::size_t>(j + half + 1) * static_cast<std::size_t>(side) + static_cast<std::size_t>(i + half + 1)];
+    return sum[static_cast<std::size_t>(j + half + 1) * static_cast<std::size_t>(side) +
+               static_cast<std::size_t>(i + half + 1)];
   };
   for (const ScoreMap& map : maps) {
     if (!seen(map)) continue;

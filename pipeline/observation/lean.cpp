@@ -333,7 +333,8 @@ LeanField::LeanField(std::span<const SightedOutline> outlines, int workers) {
         [&](std::size_t n) {
           Votes votes(kMostLean, kLeanStep);
           supports[n] =
-              vote(votes, outlines, near[n], middle_of(fullest[n].second), steps * kCurvatureStep, true, shift_).support;
+              vote(votes, outlines, near[n], middle_of(fullest[n].second), steps * kCurvatureStep, true, shift_)
+                  .support;
         },
         [&](std::size_t n) { support += fullest[n].first * supports[n]; });
     if (support > best) best = support, curvature_ = steps * kCurvatureStep;
@@ -342,7 +343,8 @@ LeanField::LeanField(std::span<const SightedOutline> outlines, int workers) {
   const int coarse = static_cast<int>(std::lround(curvature_ / kCurvatureStep));
   for (int by = 1; by < kCoarseCurvature; ++by) try_curvature(coarse - by), try_curvature(coarse + by);
   for (std::size_t n = 0; n < fullest.size(); ++n) {
-    shift_support += fullest[n].first * vote(shifts, outlines, near[n], middle_of(fullest[n].second), 0, false, {}).support;
+    shift_support +=
+        fullest[n].first * vote(shifts, outlines, near[n], middle_of(fullest[n].second), 0, false, {}).support;
     weight += fullest[n].first;
   }
   if (weight <= 0) return;

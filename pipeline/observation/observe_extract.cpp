@@ -177,9 +177,10 @@ class Observer {
       judged.insert(r.row);
       if (r.state == RowState::corrected) moved.emplace(r.row, r.shift);
     }
-    if (moved.size() < kFewestAlike || static_cast<double>(moved.size()) < kMostMoved * static_cast<double>(judged.size()))
+    if (moved.size() < kFewestAlike ||
+        static_cast<double>(moved.size()) < kMostMoved * static_cast<double>(judged.size()))
       return;
-    const auto median = [&](double Point2::* axis) {
+    const auto median = [&](double Point2::*axis) {
       std::vector<double> values;
       for (const auto& [row, shift] : moved) values.push_back(shift.*axis);
       const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -322,9 +323,8 @@ class Observer {
           sighted[n].guessed = !eaves_.is_tagged(b);
           sighted[n].row = row_of_[b];
           sighted[n].weight = 1 / std::sqrt(static_cast<double>(rows_[row_of_[b]].buildings.size()));
-          const ScoreMap map =
-              score_outline(o.pieces, windows.window(o.box, score_margin(grid, windows.size())), grid, o.box.centre(),
-                            {}, kContrast);
+          const ScoreMap map = score_outline(o.pieces, windows.window(o.box, score_margin(grid, windows.size())), grid,
+                                             o.box.centre(), {}, kContrast);
           if (map.weight > 0 && map.missing <= 0.2 * (map.weight + map.missing))
             sighted[n].sightings = sightings_of(map);
         },

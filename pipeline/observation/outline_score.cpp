@@ -96,8 +96,7 @@ class ChangeTable {
   static constexpr double kCorner = 2;
 
   const float* strip(std::size_t band, int i, int reach) const {
-    return strips_[band].data() +
-           static_cast<std::size_t>(i + side_ + kStrip) * static_cast<std::size_t>(columns()) +
+    return strips_[band].data() + static_cast<std::size_t>(i + side_ + kStrip) * static_cast<std::size_t>(columns()) +
            static_cast<std::size_t>(side_ - reach);
   }
 
@@ -140,8 +139,8 @@ class ChangeTable {
   std::vector<Sample> pixels_, before_;  ///< the second: sums before each sample of a line
   double radius_;
   int side_;
-  std::vector<int> chord_;                        ///< by line, from the middle on
-  std::array<std::vector<float>, 4> strips_;      ///< by band, line by line
+  std::vector<int> chord_;                    ///< by line, from the middle on
+  std::array<std::vector<float>, 4> strips_;  ///< by band, line by line
   std::vector<float> values_;
 };
 

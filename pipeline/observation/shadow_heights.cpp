@@ -102,9 +102,7 @@ class Measurer {
   }
 
   /// Lean of a building for each metre of its height.
-  Point2 lean_of(std::uint32_t b) const {
-    return field_.per_metre(in_.sighted[b].place).value_or(Point2{});
-  }
+  Point2 lean_of(std::uint32_t b) const { return field_.per_metre(in_.sighted[b].place).value_or(Point2{}); }
 
   /// m between an edge and its shadow for each metre of height.
   double apart(std::uint32_t b, const ImageSun& sun) const {

@@ -14,7 +14,7 @@ namespace blockrand::observation {
 /// How bright a patch is, without the blue of the sky, which lights the shadows: one number a pixel, levels of 255; far below 0
 /// where the image has none.
 struct Brightness {
-  Brightness(const Patch& patch);  // NOLINT(google-explicit-constructor): any patch is one
+  Brightness(const Patch& patch);        // NOLINT(google-explicit-constructor): any patch is one
   double west = 0, north = 0, size = 0;  ///< as Patch has them
   int width = 0, height = 0;
   std::vector<float> values;  ///< width * height
@@ -67,8 +67,8 @@ struct Obstacles {
 
 /// Scans along one direction. \param roof  m: how far the image shows the walls' upper edges from `pieces`
 /// \param away  unit vector: where the image shows the shadow of an edge from the edge itself
-ShadowScan scan_shadow(std::span<const WallPiece> pieces, const Brightness& patch, model::Point2 roof, model::Point2 away,
-                       std::span<const Obstacles> others, double reach);
+ShadowScan scan_shadow(std::span<const WallPiece> pieces, const Brightness& patch, model::Point2 roof,
+                       model::Point2 away, std::span<const Obstacles> others, double reach);
 
 /// The clearest end of a shadow between two lengths; nothing where no wall shows one. \param usual  m: length that is
 /// likely before anything is seen; 0: nobody knows

@@ -162,13 +162,15 @@ void ImageryStage::tell(BuildRecord& record) const {
       progress_.warn(
           fmt::format("{}: partly clouded, {:.0f} % of the houses in it lie under white", path, 100 * image.clouded));
     if (image.shift != model::Point2{})
-      progress_.warn(fmt::format("{}: shows the whole map {:.1f} m east, {:.1f} m north of where it is; taken for an error "
-                                 "of the image, and undone",
-                                 path, image.shift.x, image.shift.y));
+      progress_.warn(
+          fmt::format("{}: shows the whole map {:.1f} m east, {:.1f} m north of where it is; taken for an error "
+                      "of the image, and undone",
+                      path, image.shift.x, image.shift.y));
     if (image.alike != model::Point2{})
-      progress_.warn(fmt::format("{}: shows most rows {:.1f} m east, {:.1f} m north of where they are mapped: image or map "
-                                 "is shifted, so nothing is moved by it",
-                                 path, image.alike.x, image.alike.y));
+      progress_.warn(
+          fmt::format("{}: shows most rows {:.1f} m east, {:.1f} m north of where they are mapped: image or map "
+                      "is shifted, so nothing is moved by it",
+                      path, image.alike.x, image.alike.y));
     if (image.edited_later > 0)
       progress_.warn(fmt::format("{}: {} in it were edited after it was taken ({}): the map may be right there", path,
                                  base::with_thousands(image.edited_later), image.description.source.date));

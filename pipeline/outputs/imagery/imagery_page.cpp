@@ -101,7 +101,8 @@ std::string chip(const OverlayInputs& in, geometry::PlanBox box, std::uint32_t i
 
 std::string figure(const OverlayInputs& in, std::uint32_t building) {
   const OutlineReceipt& r = in.seen.outlines[building];
-  const SeenOutline seen{r, in.seen.images[r.image], in.seen.applied, in.footprints[building].box, in.seen.roofs[building].courtyards};
+  const SeenOutline seen{r, in.seen.images[r.image], in.seen.applied, in.footprints[building].box,
+                         in.seen.roofs[building].courtyards};
   const footprints::StoredFootprint& footprint = in.footprints[building];
   return "<figure>" + chip(in, footprint.box, r.image, footprint.id.text()) + "<figcaption>" +
          osm_link(in.footprints[building].id) + ": " + escaped(imagery_text(seen)) + "</figcaption></figure>\n";

@@ -20,8 +20,8 @@ namespace blockrand::outputs {
 struct SeenOutline {
   const observation::OutlineReceipt& receipt;
   const observation::ImageReceipt& image;
-  bool applied = false;      ///< what is corrected stands where the image shows it
-  geometry::PlanBox box{};   ///< m in the build CRS: of its outline as it stands
+  bool applied = false;                                      ///< what is corrected stands where the image shows it
+  geometry::PlanBox box{};                                   ///< m in the build CRS: of its outline as it stands
   std::span<const observation::CourtyardView> courtyards{};  ///< holes of its outline
 
   /// "moved" or "seen_elsewhere"; "reshaped" or "seen_reshaped" where its walls alone are; "as_mapped", "undecided", "refused".

@@ -52,7 +52,8 @@ TEST(Verdict, LongRowsNeedLessOfALeadOverOtherPlaces) {
 SeenPlace seen(RowState state, double confidence, model::Point2 shift) { return {{state, "", confidence}, shift}; }
 
 TEST(TwoImages, ThatAgreeAreSurerThanEither) {
-  const auto [second, verdict] = joined(seen(RowState::undecided, 0.5, {1.5, 0}), seen(RowState::undecided, 0.55, {1.7, 0.2}));
+  const auto [second, verdict] =
+      joined(seen(RowState::undecided, 0.5, {1.5, 0}), seen(RowState::undecided, 0.55, {1.7, 0.2}));
   EXPECT_TRUE(second);
   EXPECT_EQ(verdict.state, RowState::corrected);
   EXPECT_TRUE(verdict.reason.empty());
@@ -61,7 +62,8 @@ TEST(TwoImages, ThatAgreeAreSurerThanEither) {
 }
 
 TEST(TwoImages, ThatAreSureOfDifferentPlacesLeaveItUndecided) {
-  const auto [second, verdict] = joined(seen(RowState::corrected, 0.8, {2, 0}), seen(RowState::left_alone, 0.7, {0.1, 0}));
+  const auto [second, verdict] =
+      joined(seen(RowState::corrected, 0.8, {2, 0}), seen(RowState::left_alone, 0.7, {0.1, 0}));
   EXPECT_FALSE(second);
   EXPECT_EQ(verdict.state, RowState::undecided);
   EXPECT_EQ(verdict.reason, "another image shows it at another place");
@@ -82,7 +84,8 @@ TEST(TwoImages, OneThatIsNotSureSaysNothing) {
 }
 
 TEST(TwoImages, WhatStandsWhereItIsMappedStaysThere) {
-  const auto state = joined(seen(RowState::left_alone, 0.6, {0.2, 0}), seen(RowState::undecided, 0.6, {0.3, 0})).second.state;
+  const auto state =
+      joined(seen(RowState::left_alone, 0.6, {0.2, 0}), seen(RowState::undecided, 0.6, {0.3, 0})).second.state;
   EXPECT_EQ(state, RowState::left_alone);
   EXPECT_EQ(joined(seen(RowState::undecided, 0.6, {0.2, 0}), seen(RowState::undecided, 0.6, {0.3, 0})).second.state,
             RowState::undecided);
