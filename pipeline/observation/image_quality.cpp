@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
 
 namespace blockrand::observation {
 
@@ -66,6 +68,17 @@ ImageQuality measure_quality(std::span<const SearchedOutline> houses, const Imag
     out.haze = *middle;
   }
   return out;
+}
+
+std::optional<std::uint32_t> last_second(const std::string& date) {
+  int year = 0, month = 12, day = 31;
+  const int read = std::sscanf(date.c_str(), "%4d-%2d-%2d", &year, &month, &day);
+  if (read < 1 || year < 1970 || year > 2100 || month < 1 || month > 12 || day < 1 || day > 31) return std::nullopt;
+  using namespace std::chrono;
+  const year_month ym = std::chrono::year(year) / std::chrono::month(static_cast<unsigned>(month));
+  const sys_days last =
+      read < 3 ? sys_days(ym / std::chrono::last) : sys_days(ym / std::chrono::day(static_cast<unsigned>(day)));
+  return static_cast<std::uint32_t>((last + days(1)).time_since_epoch().count() * 86400LL);
 }
 
 }  // namespace blockrand::observation

@@ -1,8 +1,10 @@
-// Is an image clear enough to be trusted: haze, clouds.
+// Is an image clear and young enough to be trusted: haze, clouds, date.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 
 #include "pipeline/observation/image_windows.h"
 #include "pipeline/observation/row_match.h"
@@ -24,5 +26,8 @@ inline constexpr std::uint64_t kFewestForQuality = 5;
 
 /// Looks around a sample of houses. \param windows  of coarse pixels
 ImageQuality measure_quality(std::span<const SearchedOutline> houses, const ImageWindows& windows);
+
+/// Seconds since 1970 at the end of "2014", "2014-06" or "2014-06-21"; nothing for any other text.
+std::optional<std::uint32_t> last_second(const std::string& date);
 
 }  // namespace blockrand::observation

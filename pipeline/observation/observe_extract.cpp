@@ -1,12 +1,9 @@
 #include "pipeline/observation/observe_extract.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <optional>
-#include <set>
 #include <tuple>
 
 #include "pipeline/base/parallel.h"
@@ -22,6 +19,7 @@
 #include "pipeline/observation/presence.h"
 #include "pipeline/observation/roof_view.h"
 #include "pipeline/observation/row_match.h"
+#include "pipeline/observation/rows_off_alike.h"
 #include "pipeline/observation/shadow_heights.h"
 #include "pipeline/observation/unmapped.h"
 #include "pipeline/observation/verdict.h"
@@ -62,26 +60,9 @@ constexpr int kShadowRounds = 1;
 /// of those that tell the eaves to a quarter (docs/internal/RESULTS.md, "Aerial images").
 constexpr double kSureShadow = 0.2, kSureWalls = 10, kShadowConfidence = 0.8;
 
-/// Rows that are shown elsewhere: fewer may be off alike by chance; of all rows judged, and of those shown elsewhere: as many
-/// are off alike, within m, where the image is shifted.
-constexpr std::size_t kFewestAlike = 4;
-constexpr double kMostMoved = 0.5, kMostAlike = 0.7, kAlike = 0.8;
-
 std::uint64_t mixed(std::uint64_t v) {
   v ^= v >> 33, v *= 0xff51afd7ed558ccdULL, v ^= v >> 33, v *= 0xc4ceb9fe1a85ec53ULL, v ^= v >> 33;
   return v;
-}
-
-/// Seconds since 1970 at the end of "2014", "2014-06" or "2014-06-21"; nothing for any other text.
-std::optional<std::uint32_t> last_second(const std::string& date) {
-  int year = 0, month = 12, day = 31;
-  const int read = std::sscanf(date.c_str(), "%4d-%2d-%2d", &year, &month, &day);
-  if (read < 1 || year < 1970 || year > 2100 || month < 1 || month > 12 || day < 1 || day > 31) return std::nullopt;
-  using namespace std::chrono;
-  const year_month ym = std::chrono::year(year) / std::chrono::month(static_cast<unsigned>(month));
-  const sys_days last =
-      read < 3 ? sys_days(ym / std::chrono::last) : sys_days(ym / std::chrono::day(static_cast<unsigned>(day)));
-  return static_cast<std::uint32_t>((last + days(1)).time_since_epoch().count() * 86400LL);
 }
 
 double rounded(double value, double steps) { return std::round(value * steps) / steps + 0.0; }
@@ -136,7 +117,7 @@ class Observer {
       out.images[k].leans = field_.leans(), out.images[k].flight_height = field_.flight_height(),
       out.images[k].support = field_.support(), out.images[k].shift = rounded(field_.shift());
       match_rows(static_cast<std::uint32_t>(k), judges, out);
-      doubt_alike(static_cast<std::uint32_t>(k), out);
+      doubt_rows_off_alike(static_cast<std::uint32_t>(k), out);
     }
     flag_gone(out);
     out.unmapped = without_overlaps(std::move(out.unmapped));
@@ -165,38 +146,6 @@ class Observer {
         restate(receipt, RowState::undecided, "perhaps it does not stand any more");
       receipt.refined = {};
     }
-  }
-
-  /// Where the map is wrong here and there, rows are off in all directions. Where an image shows most of its rows off alike,
-  /// it may be the image: nobody can tell from here, and nothing is moved by it.
-  void doubt_alike(std::uint32_t image, ImageryObservations& out) const {
-    std::map<std::uint32_t, Point2> moved;  // by row
-    std::set<std::uint32_t> judged;
-    for (const OutlineReceipt& r : out.outlines) {
-      if (r.image != image || r.confidence <= 0) continue;
-      judged.insert(r.row);
-      if (r.state == RowState::corrected) moved.emplace(r.row, r.shift);
-    }
-    if (moved.size() < kFewestAlike ||
-        static_cast<double>(moved.size()) < kMostMoved * static_cast<double>(judged.size()))
-      return;
-    const auto median = [&](double Point2::*axis) {
-      std::vector<double> values;
-      for (const auto& [row, shift] : moved) values.push_back(shift.*axis);
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), middle, values.end());
-      return *middle;
-    };
-    const Point2 usual{median(&Point2::x), median(&Point2::y)};
-    const auto alike = static_cast<double>(std::ranges::count_if(moved, [&](const auto& row) {
-      const double x = row.second.x - usual.x, y = row.second.y - usual.y;
-      return x * x + y * y <= kAlike * kAlike;
-    }));
-    if (alike < kMostAlike * static_cast<double>(moved.size())) return;
-    out.images[image].alike = rounded(usual);
-    for (OutlineReceipt& r : out.outlines)
-      if (r.image == image && r.state == RowState::corrected)
-        restate(r, RowState::undecided, "the image shows most rows off alike: it may be the image that is shifted");
   }
 
   SearchedOutline searched(std::uint32_t building, const std::map<std::pair<Point2, Point2>, int>* shared) const {
@@ -456,11 +405,6 @@ class Observer {
           }
         });
     judge_roofs(image, out);
-  }
-
-  /// Walls are looked for where their row was thought to stand: with another verdict they say nothing.
-  static void restate(OutlineReceipt& receipt, RowState state, std::string_view reason) {
-    receipt.state = state, receipt.reason = std::string(reason), receipt.refined = {};
   }
 
   /// What the images before said of a row is judged anew.
