@@ -22,6 +22,9 @@ namespace fs = std::filesystem;
 constexpr double kAround = 8;
 constexpr int kLeastSide = 400, kMostTimes = 4;
 
+/// What is added to a file's name until it is whole.
+constexpr const char* kBeside = ".part";
+
 std::string content_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
@@ -56,11 +59,12 @@ picture::Image enlarged(const picture::Image& image, int times) {
 
 picture::Image piece_of(const std::string& overlay, const Json& imagery) {
   const World world = world_of(content_of(overlay.substr(0, overlay.size() - 4) + ".pgw"));
-  const double shift = std::hypot(imagery.value("shift_east", 0.0), imagery.value("shift_north", 0.0));
-  const Json& box = imagery.at("box");
-  const double around = kAround + shift, west = box.at(0).get<double>() - around,
-               south = box.at(1).get<double>() - around, east = box.at(2).get<double>() + around,
-               north = box.at(3).get<double>() + around;
+  const auto length = [](double x, double y) { return std::sqrt(x * x + y * y); };
+  const Json &box = imagery.at("box"), &lean = imagery.at("lean");
+  const double around = kAround + length(imagery.value("shift_east", 0.0), imagery.value("shift_north", 0.0)) +
+                        length(lean.at(0).get<double>(), lean.at(1).get<double>()),
+               west = box.at(0).get<double>() - around, south = box.at(1).get<double>() - around,
+               east = box.at(2).get<double>() + around, north = box.at(3).get<double>() + around;
   const auto pixels = [&](double metres) {
     return static_cast<int>(std::clamp(std::round(metres / world.pixel), -1e6, 1e6));
   };
@@ -72,7 +76,7 @@ picture::Image piece_of(const std::string& overlay, const Json& imagery) {
 
 /// Through a file beside it: what is there under its name is whole.
 void write_whole(const std::string& file, const std::string& bytes) {
-  const std::string beside = file + ".part";
+  const std::string beside = file + kBeside;
   std::error_code error;
   {
     std::ofstream out(beside, std::ios::binary);
@@ -101,7 +105,8 @@ void write_chip(const std::string& folder, const outputs::FoundExplanation& foun
     throw base::InputError(folder, what, "this build has no aerial image of it",
                            "Build with --imagery FILE of an image that shows it, or leave out --chip");
   std::error_code error;
-  if (fs::exists(file, error)) throw base::UsageError(file + " is there already. Name another file, or remove it");
+  for (const std::string& there : {file, file + kBeside})
+    if (fs::exists(there, error)) throw base::UsageError(there + " is there already. Name another file, or remove it");
   std::string bytes;
   try {
     bytes = picture::png(piece_of(overlay, Json::parse(found.json).at("imagery")));

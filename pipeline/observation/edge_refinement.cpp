@@ -215,7 +215,7 @@ class Refiner {
       curve.colours.assign(static_cast<std::size_t>(2 * (half + kStrip) + 1), Colour{});
     }
     for (const Wall& wall : walls_.walls) {
-      seen[wall.group] += add_wall(wall, building_.lean, patch, curves_[wall.group]);
+      seen[wall.group] += add_wall(wall, building_.seen, patch, curves_[wall.group]);
       if (wall.length <= longest[wall.group]) continue;
       longest[wall.group] = wall.length;
       directions_[wall.group] = wall.normal(), middles_[wall.group] = wall.at(wall.length / 2);

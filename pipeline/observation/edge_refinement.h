@@ -21,7 +21,8 @@ inline constexpr double kRefineWithin = 1.0, kMostRefineWithin = 2.0;
 struct RefinedBuilding {
   Rings rings;                           ///< where it stands by what was decided of its row
   std::vector<std::vector<char>> fixed;  ///< as find_walls() has it
-  model::Point2 lean;                    ///< m: how far the image shows its roof from its ground
+  model::Point2 seen;                    ///< m: how far the image shows its roof from its plan
+  model::Point2 lean;                    ///< m: of that, from its ground: without the image's own shift
   model::Point2 doubt;  ///< m: by how much another height, as likely as not, would show it farther along the lean
 };
 

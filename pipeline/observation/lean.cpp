@@ -454,6 +454,7 @@ LeanField::LeanField(std::span<const SightedOutline> outlines, int workers) {
 }
 
 std::optional<Point2> LeanField::at(Point2 place, double height) const {
+  if (!found()) return Point2{};
   const std::optional<Point2> k = told(place);
   if (!k) return std::nullopt;
   return leans_ ? Point2{shift_.x + k->x * height, shift_.y + k->y * height} : *k;

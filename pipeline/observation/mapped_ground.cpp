@@ -161,7 +161,7 @@ void fill_rings(const Patch& patch, std::span<const std::span<const Point2>> rin
 
 MappedGround::MappedGround(const model::Extract& extract, const footprints::FootprintStore& footprints,
                            const footprints::BoxIndex& index, const georef::Projection& projection,
-                           const std::function<Point2(std::uint32_t)>& lean)
+                           const std::function<Point2(std::uint32_t)>& lean, Point2 shift)
     : footprints_(footprints), index_(index), leans_(footprints.size()) {
   for (std::uint32_t b = 0; b < footprints.size(); ++b) {
     if (footprints[b].box.empty()) continue;
@@ -177,7 +177,8 @@ MappedGround::MappedGround(const model::Extract& extract, const footprints::Foot
     for (const model::MappedRing& ring : extract.rings_of(f.rings)) {
       std::vector<Point2>& points = way.rings.emplace_back();
       for (const model::Location at : extract.vertices_of(ring)) {
-        points.push_back(projection.forward(at));
+        const Point2 p = projection.forward(at);
+        points.push_back({p.x + shift.x, p.y + shift.y});
         way.box.include(points.back());
       }
     }

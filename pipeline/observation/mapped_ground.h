@@ -26,9 +26,10 @@ inline constexpr double kBesideBuilding = 1.5;
 class MappedGround {
  public:
   /// \param lean  m: how far the image shows a building's roof from its plan, by its number. All references outlive this.
+  /// \param shift  m: how far it shows the ground
   MappedGround(const model::Extract& extract, const footprints::FootprintStore& footprints,
                const footprints::BoxIndex& index, const georef::Projection& projection,
-               const std::function<model::Point2(std::uint32_t)>& lean);
+               const std::function<model::Point2(std::uint32_t)>& lean, model::Point2 shift);
 
   /// Of each pixel of a patch, row by row.
   std::vector<Mapped> on(const Patch& patch) const;

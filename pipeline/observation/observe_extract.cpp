@@ -117,8 +117,9 @@ class Observer {
       out.images[k].leans = field_.leans(), out.images[k].flight_height = field_.flight_height(),
       out.images[k].support = field_.support(), out.images[k].shift = rounded(field_.shift());
       match_rows(static_cast<std::uint32_t>(k), judges, out);
-      doubt_rows_off_alike(static_cast<std::uint32_t>(k), out);
     }
+    // When all images have spoken: what one says of a row may be what another one decides.
+    for (std::uint32_t k = 0; k < images_.size(); ++k) doubt_rows_off_alike(k, out);
     flag_gone(out);
     out.unmapped = without_overlaps(std::move(out.unmapped));
     const auto unsure = std::ranges::find_if(out.unmapped, [](const auto& u) { return u.probability < kTellUnmapped; });
@@ -386,10 +387,11 @@ class Observer {
           bool surest = judged;
           Verdict verdict = row.verdict;
           if (judged && spoken_[r]) {
-            std::tie(surest, verdict) = joined(*spoken_[r], {row.verdict, row.match.shift});
+            std::tie(surest, verdict) = joined(*spoken_[r], seen_place(image, row.verdict, row.match, row.centre));
             if (!surest) revise(rows_[r], verdict, out);
           }
-          if (judged) spoken_[r] = {verdict, surest ? row.match.shift : spoken_[r]->shift};
+          if (judged && surest) spoken_[r] = seen_place(image, verdict, row.match, row.centre);
+          if (judged) spoken_[r]->verdict = verdict;
           std::size_t place = 0;
           for (const std::uint32_t b : rows_[r].buildings) {
             if (!searchable(b)) continue;
@@ -405,6 +407,10 @@ class Observer {
           }
         });
     judge_roofs(image, out);
+  }
+
+  SeenPlace seen_place(std::uint32_t image, const Verdict& verdict, const RowMatch& match, Point2 centre) const {
+    return {verdict, match.shift, images_[image].describe().source.date, field_.per_metre(centre).value_or(Point2{})};
   }
 
   /// What the images before said of a row is judged anew.
@@ -476,8 +482,11 @@ class Observer {
     for (const std::uint32_t b : index_.near(of_.footprints[building].box, 0)) {
       if (b == building || of_.footprints[b].settled != model::ObjectState::pending) continue;
       for (model::Polygon& polygon : of_.footprints.polygons(b)) {
-        for (Point2& p : polygon.outer.points) p.x += lean.x, p.y += lean.y;
-        polygon.holes.clear();
+        const auto move = [lean](model::Ring& ring) {
+          for (Point2& p : ring.points) p.x += lean.x, p.y += lean.y;
+        };
+        move(polygon.outer);
+        for (model::Ring& hole : polygon.holes) move(hole);
         out.push_back(std::move(polygon));
       }
     }
@@ -554,7 +563,8 @@ class Observer {
         continue;
       }
       Rings from;
-      RefinedBuilding building{.rings = {}, .fixed = {}, .lean = o.lean, .doubt = o.per_metre};
+      const Point2 lean{o.lean.x - o.ground.x, o.lean.y - o.ground.y};
+      RefinedBuilding building{.rings = {}, .fixed = {}, .seen = o.lean, .lean = lean, .doubt = o.per_metre};
       of_.footprints.for_each_ring(b, [&](std::span<const Point2> ring, bool) {
         from.emplace_back(), building.fixed.emplace_back();
         for (const Point2 p : ring) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/polygon_measures.h"
@@ -57,8 +58,7 @@ std::optional<double> along_piece(const WallPiece& piece, const Brightness& patc
     const float upper = at[0] + u * (at[1] - at[0]), lower = at[width] + u * (at[width + 1] - at[width]);
     sum += upper + v * (lower - upper);
   }
-  // One missing pixel outweighs all others.
-  if (sum < 0) return std::nullopt;
+  if (std::isnan(sum)) return std::nullopt;
   return static_cast<double>(sum) / count;
 }
 
@@ -105,8 +105,8 @@ std::vector<float> steps_of(const std::vector<double>& brightness) {
   return out;
 }
 
-/// Of a missing pixel: no sum of others along a piece makes up for a share of 1/1000 of it.
-constexpr float kMissing = -1e9F;
+/// Of a missing pixel: whatever it is added to is missing as well.
+constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 

@@ -11,8 +11,8 @@
 
 namespace blockrand::observation {
 
-/// How bright a patch is, without the blue of the sky, which lights the shadows: one number a pixel, levels of 255; far below 0
-/// where the image has none.
+/// How bright a patch is, without the blue of the sky, which lights the shadows: one number a pixel, levels of 255; no
+/// number where the image has none.
 struct Brightness {
   Brightness(const Patch& patch);        // NOLINT(google-explicit-constructor): any patch is one
   double west = 0, north = 0, size = 0;  ///< as Patch has them

@@ -33,7 +33,7 @@ constexpr std::size_t kColourSample = 300;
 constexpr double kGround = 8;
 /// RoofColours: a pixel that is rarer on roofs belongs to none: lawn, shadow.
 constexpr float kNoRoof = -1.6F;
-/// m2: of a region that goes on its own with no other; of a part of two.
+/// m2: of a region that goes on its own with no other; of a part of a roof of several.
 constexpr double kLeastRegion = 3, kLeastPart = 8;
 /// RoofColours: of a region's mean colour, at least. Parts of a plan: a hipped roof has four slopes.
 constexpr float kLikeRoofs = -0.7F;
@@ -135,9 +135,13 @@ void add(Sums& s, const Window& w, std::size_t i, const RoofColours& colours) {
 class Searcher {
  public:
   explicit Searcher(const UnmappedSearch& in)
-      : in_(in), ground_(in.extract, in.footprints, in.index, in.projection, [&in](std::uint32_t b) {
-          return in.field.at(in.footprints[b].box.centre(), in.eaves[b]).value_or(Point2{});
-        }) {}
+      : in_(in),
+        ground_(
+            in.extract, in.footprints, in.index, in.projection,
+            [&in](std::uint32_t b) {
+              return in.field.at(in.footprints[b].box.centre(), in.eaves[b]).value_or(Point2{});
+            },
+            in.field.shift()) {}
 
   std::vector<UnmappedBuilding> run() {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> houses;

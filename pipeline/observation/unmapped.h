@@ -33,8 +33,8 @@ struct UnmappedSearch {
   int workers = 1;
 };
 
-/// Looks at the ground of an image around the mapped buildings, square by square of a fixed grid: what has one colour, or two
-/// that meet in a ridge, fills a rectangle whose sides lie on edges, and has a colour that roofs have. Mapped buildings as
+/// Looks at the ground of an image around the mapped buildings, square by square of a fixed grid: what has one colour, or up to
+/// four that meet in ridges, fills a rectangle whose sides lie on edges, and has a colour that roofs have. Mapped buildings as
 /// far as they lean, streets, railways, water, car parks and pitches are left out, and what lies beyond the convex hull of the mapped buildings.
 /// \returns  all that was measured, the likeliest first, none on another; from kTellUnmapped on they are candidates.
 ///           Deterministic for any number of workers.

@@ -34,7 +34,16 @@ constexpr double kSpeaks = 0.3;
 /// are taken for others, stand in both.
 constexpr double kWrongAlike = 0.3;
 
+/// m for each metre of height: leans that differ by more are those of two pictures.
+constexpr double kOtherLean = 0.05;
+
 double length_of(model::Point2 v) { return std::sqrt(v.x * v.x + v.y * v.y); }
+
+/// Two copies of one picture, or what two tiles of one mosaic share, are one witness.
+bool other_flight(const SeenPlace& a, const SeenPlace& b) {
+  return (!a.date.empty() && !b.date.empty() && a.date != b.date) ||
+         length_of({a.lean.x - b.lean.x, a.lean.y - b.lean.y}) > kOtherLean;
+}
 
 }  // namespace
 
@@ -46,8 +55,10 @@ std::pair<bool, Verdict> joined(const SeenPlace& a, const SeenPlace& b) {
   if (d < kSpeaks) return {second, verdict};
   const double apart = length_of({sure.shift.x - other.shift.x, sure.shift.y - other.shift.y});
   if (apart <= kSamePlace) {
+    if (!other_flight(a, b)) return {second, verdict};
     verdict.confidence = c * d / (c * d + (1 - c) * (1 - d) * kWrongAlike);
-    const bool open = verdict.state == RowState::undecided && length_of(sure.shift) >= kLeastCorrection;
+    const bool open =
+        verdict.state == RowState::undecided && !verdict.by_height && length_of(sure.shift) >= kLeastCorrection;
     if (open && verdict.confidence >= kSureCorrection) verdict.state = RowState::corrected, verdict.reason = {};
   } else if ((apart > kOtherPlace || other.verdict.state == RowState::left_alone) &&
              verdict.state == RowState::corrected) {
@@ -69,7 +80,7 @@ Verdict judge(const RowMatch& match, bool lean_known, bool by_height) {
     return {RowState::left_alone, "it stands where the image shows it", confidence};
   if (match.best - match.here < kLeastGain * match.deviation)
     return {RowState::left_alone, "it stands nearly as well where it is mapped", confidence};
-  if (by_height) return {RowState::undecided, "another height of its roof would explain it as well", confidence};
+  if (by_height) return {RowState::undecided, "another height of its roof would explain it as well", confidence, true};
   const double margin = match.weight < kLongWalls ? kLeastMargin : kLeastMarginLong;
   if (match.best - match.second < margin * match.deviation)
     return {RowState::undecided, "another place fits nearly as well", confidence};

@@ -1,6 +1,7 @@
 // Is what an image shows of a row enough to move it?
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -13,6 +14,7 @@ struct Verdict {
   RowState state = RowState::outside;
   std::string_view reason{};  ///< empty for `corrected`
   double confidence = 0;      ///< that the row stands within 0.6 m of where the match says, [0, 1]
+  bool by_height = false;     ///< it is undecided since another height of its roofs explains the movement as well
 };
 
 /// m: less is the error of the search.
@@ -23,10 +25,13 @@ inline constexpr double kSureCorrection = 0.6;
 /// Where one image shows a row, and how sure that is.
 struct SeenPlace {
   Verdict verdict;
-  model::Point2 shift;  ///< m
+  model::Point2 shift;   ///< m
+  std::string date{};    ///< of the image; empty: unknown
+  model::Point2 lean{};  ///< m for each metre of height, at the row
 };
 
-/// What two images say of one row together. Where both show it at one place that is surer than what either says, and may be
+/// What two images say of one row together. Where both show it at one place, and are not the same flight (their dates or their leans
+/// differ), that is surer than what either says, and may be
 /// enough for a correction though neither was; where they show it at different places one of them at least is wrong. Else the
 /// surer one is right.
 /// \returns  whether `b` is the one to go by, and the verdict

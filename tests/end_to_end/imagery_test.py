@@ -541,6 +541,30 @@ class Imagery(BuildTest):
             self.assertEqual(said.pop()[0], 'corrected')
             self.assertEqual(blockrand('validate', out).code, 0)
 
+    def test_images_that_overlap_speak_for_and_against_each_other(self):
+        """A second picture of another year has two of the moved houses elsewhere again, and all others where the first has them."""
+        houses = village(7)
+        for k, (east, north) in {5: (2.2, 1.4), 27: (-2.4, 0.8)}.items():
+            houses[k] = [(x + east, y + north) for x, y in houses[k]]
+        second = Picture(houses, 31).write(os.path.join(self.folder, 'other.ppm'))
+        config = self.place('two.toml', f'[[image]]\npath = "{self.image}"\ndate = "2019"\n[[image]]\npath = "{second}"\ndate = "2022"\n')
+        out = self.build(self.map, 'two', '--config', config, '--lod', '0', '--formats', 'gpkg')
+        seen = {b['id']: b for b in read_json(out, 'imagery.json')['buildings']}
+        one = {b['id']: b for b in read_json(self.build(self.map, 'one', '--imagery', self.image, '--lod', '0', '--formats', 'gpkg'), 'imagery.json')['buildings']}
+        for k in (5, 27):
+            self.assertEqual(one[f'w{100 + k}']['state'], 'corrected')
+            self.assertLess(seen[f'w{100 + k}']['confidence'], one[f'w{100 + k}']['confidence'])
+        for k in (18, 44, 58):
+            self.assertEqual(seen[f'w{100 + k}']['state'], 'corrected', seen[f'w{100 + k}'])
+            self.assertGreater(seen[f'w{100 + k}']['confidence'], one[f'w{100 + k}']['confidence'])
+
+    def test_an_image_that_shows_all_rows_off_alike_moves_none(self):
+        shifted = self.picture.write(os.path.join(self.folder, 'shifted.ppm'), east=1.5, north=-1.0)
+        out = self.build(self.truth, 'alike', '--imagery', shifted, '--imagery', self.image, '--imagery-correct', 'apply', '--lod', '0', '--formats', 'gpkg')
+        moved = [b['id'] for b in read_json(out, 'imagery.json')['buildings'] if b['state'] == 'corrected']
+        self.assertEqual(moved, [])
+        self.assertEqual(middles(out), middles(self.build(self.truth, 'alike_mapped', '--lod', '0', '--formats', 'gpkg')))
+
     def test_a_house_mapped_twice_stays_one(self):
         drawn = [h for h in self.drawn]
         twice = [(x + 0.13, y) for x, y in drawn[5]]

@@ -212,6 +212,10 @@ void append_imagery(JsonText& json, const SeenOutline& seen) {
   for (const double v : {seen.box.minimum.x, seen.box.minimum.y, seen.box.maximum.x, seen.box.maximum.y})
     json.element(rounded(v));
   json.close(']');
+  json.key("lean");
+  json.open('[');
+  for (const double v : {seen.receipt.lean.x, seen.receipt.lean.y}) json.element(rounded(v));
+  json.close(']');
   json.close('}');
 }
 

@@ -7,6 +7,7 @@
 
 #include "pipeline/footprints/move_buildings.h"
 #include "pipeline/observation/corrections.h"
+#include "pipeline/observation/verdict.h"
 #include "pipeline/picture/plan.h"
 
 namespace blockrand::outputs {
@@ -20,7 +21,8 @@ constexpr std::uint8_t kNoImage = 128;  // grey where no image has a pixel
 constexpr double kLine = 1.6;
 
 model::Colour after_colour(double confidence) {
-  const double sure = std::clamp((confidence - 0.7) / 0.3, 0.0, 1.0);
+  const double sure =
+      std::clamp((confidence - observation::kSureCorrection) / (1 - observation::kSureCorrection), 0.0, 1.0);
   const auto mix = [sure](std::uint8_t a, std::uint8_t b) {
     return static_cast<std::uint8_t>(std::lround(a + sure * (static_cast<double>(b) - a)));
   };

@@ -23,7 +23,7 @@ struct OverlayInputs {
 };
 
 /// The colours of outlines, for legends: as mapped where it stays; as mapped where the image shows it elsewhere; there, by
-/// confidence from 0.7 to 1; refused; what looks like a building where none is mapped.
+/// confidence from kSureCorrection to 1; refused; what looks like a building where none is mapped.
 inline constexpr model::Colour kAsMapped{255, 255, 255}, kBefore{255, 214, 0}, kAfterUnsure{255, 0, 190},
     kAfterSure{0, 230, 255}, kRefused{255, 40, 40}, kUnmapped{70, 255, 70};
 

@@ -49,11 +49,13 @@ TEST(Verdict, LongRowsNeedLessOfALeadOverOtherPlaces) {
   EXPECT_EQ(judge(m, true).state, RowState::undecided);
 }
 
-SeenPlace seen(RowState state, double confidence, model::Point2 shift) { return {{state, "", confidence}, shift}; }
+SeenPlace seen(RowState state, double confidence, model::Point2 shift, std::string date = "") {
+  return {{state, "", confidence}, shift, std::move(date)};
+}
 
 TEST(TwoImages, ThatAgreeAreSurerThanEither) {
   const auto [second, verdict] =
-      joined(seen(RowState::undecided, 0.5, {1.5, 0}), seen(RowState::undecided, 0.55, {1.7, 0.2}));
+      joined(seen(RowState::undecided, 0.5, {1.5, 0}, "2019"), seen(RowState::undecided, 0.55, {1.7, 0.2}, "2022"));
   EXPECT_TRUE(second);
   EXPECT_EQ(verdict.state, RowState::corrected);
   EXPECT_TRUE(verdict.reason.empty());
@@ -67,6 +69,27 @@ TEST(TwoImages, ThatAreSureOfDifferentPlacesLeaveItUndecided) {
   EXPECT_FALSE(second);
   EXPECT_EQ(verdict.state, RowState::undecided);
   EXPECT_EQ(verdict.reason, "another image shows it at another place");
+}
+
+TEST(TwoImages, OfOneFlightAreOneWitness) {
+  // Two copies of a picture, or two tiles of a mosaic where they overlap.
+  for (const char* date : {"", "2022"}) {
+    const SeenPlace a = seen(RowState::undecided, 0.5, {1.5, 0}, date),
+                    b = seen(RowState::undecided, 0.5, {1.5, 0}, date);
+    EXPECT_EQ(joined(a, b).second.state, RowState::undecided);
+    EXPECT_EQ(joined(a, b).second.confidence, 0.5);
+  }
+  // Undated pictures whose roofs lean differently are two.
+  SeenPlace a = seen(RowState::undecided, 0.5, {1.5, 0}), b = seen(RowState::undecided, 0.5, {1.5, 0});
+  a.lean = {0.1, 0}, b.lean = {-0.1, 0};
+  EXPECT_EQ(joined(a, b).second.state, RowState::corrected);
+}
+
+TEST(TwoImages, AnotherHeightExplainsItStill) {
+  SeenPlace a = seen(RowState::undecided, 0.5, {1.5, 0}, "2019");
+  const SeenPlace b = seen(RowState::undecided, 0.45, {1.5, 0}, "2022");
+  a.verdict.by_height = true;
+  EXPECT_EQ(joined(a, b).second.state, RowState::undecided);
 }
 
 TEST(TwoImages, OneThatIsNotSureSaysNothing) {

@@ -151,8 +151,8 @@ TEST(ImageryDocument, RefusesCandidatesOfNoImageOrWithoutOutline) {
 
 TEST(ImageryDocument, OfSeveralCourtyardsTheOneThatIsBuiltOverIsTold) {
   const Seen seen = with_courtyards();
-  SeenOutline outline{seen.observations.outlines[1], seen.observations.images[1], true,
-                      seen.observations.roofs[1].courtyards};
+  SeenOutline outline{
+      seen.observations.outlines[1], seen.observations.images[1], true, {}, seen.observations.roofs[1].courtyards};
   ASSERT_TRUE(outline.told_courtyard());
   EXPECT_EQ(outline.told_courtyard()->state, observation::CourtyardState::built_over);
   EXPECT_NE(imagery_text(outline).find("courtyard of 33 m²: perhaps built over (0.97)"), std::string::npos);
