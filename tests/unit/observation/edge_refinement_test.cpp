@@ -69,7 +69,7 @@ class PaintedHouse : public testing::Test {
     const georef::GeoBox box{13.3, 52.4, 13.5, 52.6};
     const georef::Projection projection(georef::open_crs("EPSG:25833", box), box);
     const ImageWindows windows(image, projection, 0.2);
-    return refine_edges({.rings = {at(mapped)}, .fixed = {}, .lean = lean, .doubt = {}}, windows, bound);
+    return refine_edges({.rings = {at(mapped)}, .fixed = {}, .seen = lean, .lean = lean, .doubt = {}}, windows, bound);
   }
 
   std::filesystem::path path_;

@@ -53,7 +53,7 @@ struct Place {
   }
   /// What covers a place, in metres from the middle.
   Mapped at(Point2 p, Point2 lean = {}) const {
-    const MappedGround ground(extract, store, index, projection, [&](std::uint32_t) { return lean; });
+    const MappedGround ground(extract, store, index, projection, [&](std::uint32_t) { return lean; }, {});
     Patch patch;
     patch.size = 0.5, patch.width = patch.height = 160;
     patch.west = middle.x - 40, patch.north = middle.y + 40;

@@ -60,8 +60,10 @@ TEST(RowsOffAlike, OtherImagesKeepTheirOwn) {
   for (OutlineReceipt& r : seen.outlines) r.image = 1;
   doubt_rows_off_alike(0, seen);
   EXPECT_EQ(seen.outlines.front().state, RowState::corrected);
-  doubt_rows_off_alike(0, seen = {.images = std::vector<ImageReceipt>(1)});
-  EXPECT_EQ(seen.images[0].alike, model::Point2{});
+  ImageryObservations nothing;
+  nothing.images.resize(1);
+  doubt_rows_off_alike(0, nothing);
+  EXPECT_EQ(nothing.images[0].alike, model::Point2{});
 }
 
 }  // namespace
