@@ -46,8 +46,8 @@ constexpr int kRounds = 4;
 constexpr double kFriend = 0.2, kEnoughWithFriends = 0.6;
 /// Nodes that are worked on at a time, at most.
 constexpr std::size_t kInFlight = 64;
-/// Nodes that decide on the image's shift; m: shifts that are looked for, and the step between them.
-constexpr std::size_t kShiftNodes = 12;
+/// Nodes that decide on the image's shift, at most and at least: within a few streets chance makes any shift please; m: shifts that are looked for, and the step between them.
+constexpr std::size_t kShiftNodes = 12, kFewestShiftNodes = 8;
 constexpr double kFarthestShift = 3, kShiftsApart = 1;
 /// The support with a shift must be more than that without any by this share, divided by the root of the number of rows: a few
 /// rows that the map has elsewhere look like a shifted image. On synthetic images rows that were moved reach 1.1, images that
@@ -200,6 +200,7 @@ std::size_t rows_in(std::span<const SightedOutline> all, std::span<const Neighbo
 
 /// The shift of a whole image, in m: with it low and high roofs agree best on how they lean. Nothing that is not clear.
 Point2 image_shift(std::span<const SightedOutline> all, std::span<const Neighbourhood> places, int workers) {
+  if (places.size() < kFewestShiftNodes) return {};
   constexpr int kSteps = static_cast<int>(kFarthestShift / kShiftsApart), kSide = 2 * kSteps + 1;
   const auto at = [](int i, int j) { return static_cast<std::size_t>((j + kSteps) * kSide + i + kSteps); };
   std::vector<double> support(static_cast<std::size_t>(kSide * kSide), 0.0);
