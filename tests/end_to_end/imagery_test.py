@@ -548,9 +548,9 @@ class Imagery(BuildTest):
             houses[k] = [(x + east, y + north) for x, y in houses[k]]
         second = Picture(houses, 31).write(os.path.join(self.folder, 'other.ppm'))
         config = self.place('two.toml', f'[[image]]\npath = "{self.image}"\ndate = "2019"\n[[image]]\npath = "{second}"\ndate = "2022"\n')
-        out = self.build(self.map, 'two', '--config', config, '--lod', '0', '--formats', 'gpkg')
+        out = self.build(self.map, 'overlapping', '--config', config, '--lod', '0', '--formats', 'gpkg')
         seen = {b['id']: b for b in read_json(out, 'imagery.json')['buildings']}
-        one = {b['id']: b for b in read_json(self.build(self.map, 'one', '--imagery', self.image, '--lod', '0', '--formats', 'gpkg'), 'imagery.json')['buildings']}
+        one = {b['id']: b for b in read_json(self.build(self.map, 'one_image', '--imagery', self.image, '--lod', '0', '--formats', 'gpkg'), 'imagery.json')['buildings']}
         for k in (5, 27):
             self.assertEqual(one[f'w{100 + k}']['state'], 'corrected')
             self.assertLess(seen[f'w{100 + k}']['confidence'], one[f'w{100 + k}']['confidence'])
