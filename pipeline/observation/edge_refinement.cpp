@@ -163,7 +163,7 @@ double add_wall(const Wall& wall, Point2 lean, const Patch& patch, Curve& curve)
   return seen;
 }
 
-/// Weights of a logistic regression (fit.py of tests/bench/imagery) on walls of Kampala and of the synthetic images of set `tuning`,
+/// Weights of a logistic regression (fit.py of tests/bench/imagery) on walls of one real image and of the synthetic ones of set `tuning`,
 /// of houses with one or two walls shifted by known amounts; right are those that stand nearer to the truth by 0.05 m afterwards.
 double confidence_of(const WallEvidence& e, Point2 lean) {
   const double sum = -1.91 - 2.49 * e.here + 1.58 * (e.there - e.second) + 0.37 * base::log(e.length) + 1.08 * e.side +

@@ -16,6 +16,7 @@
 #include "pipeline/observation/image_fit.h"
 #include "pipeline/observation/image_quality.h"
 #include "pipeline/observation/lean.h"
+#include "pipeline/observation/mixed_bits.h"
 #include "pipeline/observation/presence.h"
 #include "pipeline/observation/roof_view.h"
 #include "pipeline/observation/row_match.h"
@@ -49,9 +50,6 @@ constexpr double kLargestBuilding = 400;
 /// m: displacements at which outlines are sighted before the lean is known, and their step.
 constexpr double kSightingReach = 8, kSightingStep = 0.5;
 
-/// How many times its uncertainty a height may be off, so that the lean explains a movement; m: how far beside the lean's
-/// direction that still holds; m: less of a lean explains nothing.
-constexpr double kHeightDoubt = 2.5, kBesideLean = 0.5, kLeastLean = 0.4;
 /// Of a row's walls: where the lean of as many is known, they decide.
 constexpr double kMostlyKnown = 0.75;
 /// How often shadows and lean are measured anew, each with what the other told.
@@ -59,11 +57,6 @@ constexpr int kShadowRounds = 1;
 /// Shadows that storeys are counted by: how clear they are (ShadowLength::clearness), m of wall that cast them; and the share
 /// of those that tell the eaves to a quarter (docs/internal/RESULTS.md, "Aerial images").
 constexpr double kSureShadow = 0.2, kSureWalls = 10, kShadowConfidence = 0.8;
-
-std::uint64_t mixed(std::uint64_t v) {
-  v ^= v >> 33, v *= 0xff51afd7ed558ccdULL, v ^= v >> 33, v *= 0xc4ceb9fe1a85ec53ULL, v ^= v >> 33;
-  return v;
-}
 
 double rounded(double value, double steps) { return std::round(value * steps) / steps + 0.0; }
 Point2 rounded(Point2 p) { return {rounded(p.x, 1000), rounded(p.y, 1000)}; }
@@ -438,23 +431,6 @@ class Observer {
       for (double* p : {&roof.colour_confidence, &roof.form_confidence, &roof.ridge_confidence}) *p = rounded(*p, 100);
       if (roof.ridge) roof.ridge = std::fmod(rounded(*roof.ridge, 10), 180);
     }
-  }
-
-  /// A movement along the lean of roofs whose heights nobody told is perhaps only another height.
-  static bool explained_by_height(const SearchedRow& row, const RowMatch& match) {
-    Point2 lean;
-    double length = 0;
-    for (const SearchedOutline& o : row.outlines) {
-      double own = 0;
-      for (const WallPiece& p : o.pieces) own += p.length;
-      lean.x += own * o.per_metre.x * o.height, lean.y += own * o.per_metre.y * o.height;
-      length += own;
-    }
-    const double size = std::sqrt(lean.x * lean.x + lean.y * lean.y);
-    if (length <= 0 || size < kLeastLean * length) return false;
-    const double along = std::fabs(match.shift.x * lean.x + match.shift.y * lean.y) / size,
-                 across = std::fabs(match.shift.x * lean.y - match.shift.y * lean.x) / size;
-    return across <= kBesideLean && along <= kHeightDoubt * match.height_doubt;
   }
 
   OutlineReceipt receipt(std::uint32_t image, std::uint32_t row, std::uint32_t building, const RowMatch& m,

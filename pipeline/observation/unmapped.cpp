@@ -15,6 +15,7 @@
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/observation/eaves.h"
 #include "pipeline/observation/image_regions.h"
+#include "pipeline/observation/mixed_bits.h"
 #include "pipeline/observation/plan_rectangle.h"
 #include "pipeline/observation/roof_colours.h"
 
@@ -67,11 +68,6 @@ double brightness(const Patch& p, std::size_t i) { return (2.0 * p.red[i] + 5.0 
 bool is_green(const Patch& p, std::size_t i) {
   const double red = p.red[i], green = p.green[i], blue = p.blue[i];
   return 2 * green - red - blue > 0.05 * (red + green + blue) && green > 1.1 * blue && green >= red;
-}
-
-std::uint64_t mixed(std::uint64_t v) {
-  v ^= v >> 33, v *= 0xff51afd7ed558ccdULL, v ^= v >> 33, v *= 0xc4ceb9fe1a85ec53ULL, v ^= v >> 33;
-  return v;
 }
 
 double rounded(double value, double steps) { return std::round(value * steps) / steps + 0.0; }

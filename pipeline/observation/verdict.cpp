@@ -13,7 +13,7 @@ namespace {
 /// holds for rows of so many m of wall and more: that many walls seldom agree on a wrong place.
 constexpr double kLeastGain = 0.8, kLeastMargin = 0.5, kLeastMarginLong = 0.25, kLongWalls = 150;
 
-/// Weights of a logistic regression (fit.py of tests/bench/imagery) on rows of Kampala and of synthetic images, of which half
+/// Weights of a logistic regression (fit.py of tests/bench/imagery) on rows of one real image and of synthetic ones, of which half
 /// were moved by known amounts, where the search found a movement; what is measured is cut at the values behind which nothing
 /// changes.
 double confidence_of(const RowMatch& m) {
@@ -25,6 +25,10 @@ double confidence_of(const RowMatch& m) {
       0.95 * std::min(2.0, m.height_doubt) + 0.29 * base::log(std::max(1.0, static_cast<double>(m.heights.size())));
   return 1 / (1 + base::exp(-sum));
 }
+
+/// How many times its uncertainty a height may be off, so that the lean explains a movement; m: how far beside the lean's
+/// direction that still holds; m: less of a lean explains nothing.
+constexpr double kHeightDoubt = 2.5, kBesideLean = 0.5, kLeastLean = 0.4;
 
 /// m: places of one row in two images that are one; places that are two for certain.
 constexpr double kSamePlace = 0.5, kOtherPlace = 1.0;
@@ -87,6 +91,22 @@ Verdict judge(const RowMatch& match, bool lean_known, bool by_height) {
   if (confidence < kSureCorrection)
     return {RowState::undecided, "the edges in the image do not say it clearly", confidence};
   return {RowState::corrected, {}, confidence};
+}
+
+bool explained_by_height(const SearchedRow& row, const RowMatch& match) {
+  model::Point2 lean;
+  double length = 0;
+  for (const SearchedOutline& o : row.outlines) {
+    double own = 0;
+    for (const WallPiece& p : o.pieces) own += p.length;
+    lean.x += own * o.per_metre.x * o.height, lean.y += own * o.per_metre.y * o.height;
+    length += own;
+  }
+  const double size = std::sqrt(lean.x * lean.x + lean.y * lean.y);
+  if (length <= 0 || size < kLeastLean * length) return false;
+  const double along = std::fabs(match.shift.x * lean.x + match.shift.y * lean.y) / size,
+               across = std::fabs(match.shift.x * lean.y - match.shift.y * lean.x) / size;
+  return across <= kBesideLean && along <= kHeightDoubt * match.height_doubt;
 }
 
 }  // namespace blockrand::observation

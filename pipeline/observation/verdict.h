@@ -41,4 +41,7 @@ std::pair<bool, Verdict> joined(const SeenPlace& a, const SeenPlace& b);
 /// \param by_height   other heights of its roofs, as likely as those that were reckoned with, would show them there too
 Verdict judge(const RowMatch& match, bool lean_known, bool by_height = false);
 
+/// A movement along the lean of roofs whose heights nobody told is perhaps only another height: judge()'s `by_height`.
+bool explained_by_height(const SearchedRow& row, const RowMatch& match);
+
 }  // namespace blockrand::observation
