@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/model/osm_keys.h"
 
 namespace blockrand::observation {
 
@@ -52,21 +53,24 @@ double half_width(std::string_view highway) {
 std::optional<double> covers(const model::Extract& extract, const Feature& f) {
   const auto tag = [&](std::string_view key) { return extract.tag(f.tags, key); };
   const auto below = [&] {
-    const std::string_view tunnel = tag("tunnel"), layer = tag("layer");
+    const std::string_view tunnel = tag(model::osm_key::kTunnel), layer = tag(model::osm_key::kLayer);
     return (!tunnel.empty() && tunnel != "no") || (!layer.empty() && layer.front() == '-');
   };
   if (f.area) {
-    const std::string_view leisure = tag("leisure");
-    const bool bare = f.is(FeatureKind::water) || f.is(FeatureKind::street) || tag("amenity") == "parking" ||
-                      leisure == "pitch" || leisure == "track" || leisure == "swimming_pool";
+    const std::string_view leisure = tag(model::osm_key::kLeisure);
+    const bool bare = f.is(FeatureKind::water) || f.is(FeatureKind::street) ||
+                      tag(model::osm_key::kAmenity) == "parking" || leisure == "pitch" || leisure == "track" ||
+                      leisure == "swimming_pool";
     return bare && !below() ? std::optional(0.0) : std::nullopt;
   }
   double half = 0;
-  if (f.is(FeatureKind::street)) half = half_width(tag("highway"));
+  if (f.is(FeatureKind::street)) half = half_width(tag(model::osm_key::kHighway));
   if (f.is(FeatureKind::railway) &&
-      (tag("railway") == "rail" || tag("railway") == "tram" || tag("railway") == "light_rail"))
+      (tag(model::osm_key::kRailway) == "rail" || tag(model::osm_key::kRailway) == "tram" ||
+       tag(model::osm_key::kRailway) == "light_rail"))
     half = kTrack;
-  if (f.is(FeatureKind::water)) half = tag("waterway") == "river" || tag("waterway") == "canal" ? kRiver : kStream;
+  if (f.is(FeatureKind::water))
+    half = tag(model::osm_key::kWaterway) == "river" || tag(model::osm_key::kWaterway) == "canal" ? kRiver : kStream;
   return half > 0 && !below() ? std::optional(half) : std::nullopt;
 }
 
