@@ -1,6 +1,9 @@
 #include "pipeline/footprints/repair/parts.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -10,6 +13,7 @@
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/slivers.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "pipeline/model/vector.h"
 
 namespace blockrand::repair {
 
@@ -18,10 +22,13 @@ namespace {
 using model::Building;
 using model::BuildingPart;
 using model::IssueCode;
+using model::Point2;
 using model::Polygon;
 using model::Ring;
 
 constexpr double kOutsideWidth = 0.1;  // m; narrower strips outside the outline are two drawings of one wall
+constexpr double kStripSlope = 0.1;    // of two walls that are one: 10 cm between their ends on a metre
+constexpr double kLeastStrip = 0.05;   // m; shorter ones are where two walls meet
 
 double area_of(std::span<const Polygon> polygons) {
   double sum = 0;
@@ -123,22 +130,96 @@ void report_outside(const Building& building, const std::vector<PartBody>& bodie
   }
 }
 
+/// A wall, from a to b with the inside on its left, and where it lies.
+struct Wall {
+  Point2 a, b;
+  Point2 along;  ///< of length 1
+  double length;
+
+  /// x along the wall, y to its left. m
+  Point2 place(Point2 p) const { return {model::dot(p - a, along), model::cross(along, p - a)}; }
+  Point2 back(Point2 p) const {
+    return model::snap(Point2{a.x + p.x * along.x - p.y * along.y, a.y + p.x * along.y + p.y * along.x});
+  }
+};
+
+std::vector<Wall> walls_of(std::span<const Polygon> polygons) {
+  std::vector<Wall> out;
+  const auto add = [&](const Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point2 a = ring.points[i], b = ring.points[(i + 1) % ring.size()];
+      const double length = model::distance(a, b);
+      out.push_back({a, b, {(b.x - a.x) / length, (b.y - a.y) / length}, length});
+    }
+  };
+  for (const Polygon& p : polygons) {
+    add(p.outer);
+    for (const Ring& hole : p.holes) add(hole);
+  }
+  return out;
+}
+
+/// The ground between a wall of a part and a wall of the outline that is almost the same, as far as they lie within
+/// kOutsideWidth of each other; nothing where they are two walls.
+std::optional<Polygon> strip_between(const Wall& wall, const Wall& outer) {
+  const Point2 from = wall.place(outer.a), to = wall.place(outer.b);
+  const double slope = (to.y - from.y) / (to.x - from.x);
+  if (!(to.x > from.x) || std::fabs(slope) > kStripSlope) return std::nullopt;
+  double first = std::max(from.x, 0.0), last = std::min(to.x, wall.length);
+  if (slope != 0) {
+    const double middle = from.x - from.y / slope, half = kOutsideWidth / std::fabs(slope);
+    first = std::max(first, middle - half);
+    last = std::min(last, middle + half);
+  } else if (std::fabs(from.y) > kOutsideWidth) {
+    return std::nullopt;
+  }
+  if (last - first < kLeastStrip) return std::nullopt;
+  // At the wall's own corners to the point; else a little into the part, so that rounding leaves nothing between.
+  constexpr double kInto = 0.01;  // m
+  Polygon strip;
+  strip.outer.points = {wall.back({first, -kOutsideWidth}), wall.back({last, -kOutsideWidth}),
+                        last == wall.length ? wall.b : wall.back({last, kInto}),
+                        first == 0 ? wall.a : wall.back({first, kInto})};
+  strip.outer.nodes.assign(strip.outer.points.size(), 0);
+  return strip;
+}
+
+/// What parts leave free of an outline, without what is too little to be built.
+std::vector<Polygon> rest_of(std::span<const Polygon> outline, std::vector<Polygon> covered,
+                             const RepairOptions& options) {
+  const auto left = [&] {
+    geometry::ValidPolygons rest =
+        geometry::difference(outline, covered, options.parts_free_area, options.ring_clearance);
+    std::erase_if(rest.polygons,
+                  [&](const Polygon& p) { return geometry::equivalent_width(p) < options.parts_free_width; });
+    return rest;
+  };
+  geometry::ValidPolygons rest = left();
+  if (!rest.separated) return std::move(rest.polygons);
+  // Where a wall of a part runs beside one of the outline, a strip between the two touches itself at many places.
+  const std::vector<Wall> outer = walls_of(outline);
+  std::vector<Polygon> strips;
+  for (const Wall& wall : walls_of(covered))
+    for (const Wall& other : outer)
+      if (std::optional<Polygon> strip = strip_between(wall, other)) strips.push_back(std::move(*strip));
+  if (strips.empty()) return std::move(rest.polygons);
+  covered.insert(covered.end(), std::make_move_iterator(strips.begin()), std::make_move_iterator(strips.end()));
+  return left().polygons;
+}
+
 void add_rest(Building& building, const std::vector<PartBody>& bodies, const RepairOptions& options,
               model::Report& report) {
   const std::vector<Polygon> covered = all_polygons(bodies);
-  geometry::ValidPolygons rest =
-      geometry::difference(building.outline, covered, options.parts_free_area, options.ring_clearance);
-  std::erase_if(rest.polygons,
-                [&](const Polygon& p) { return geometry::equivalent_width(p) < options.parts_free_width; });
-  if (rest.polygons.empty()) return;
-  geometry::cut_slivers(rest.polygons, options.spike_width);
-  restore_nodes(rest.polygons, building.outline);
-  restore_nodes(rest.polygons, covered);
-  report.add(building.osm, IssueCode::parts_incomplete, square_metres(area_of(rest.polygons)));
+  std::vector<Polygon> rest = rest_of(building.outline, covered, options);
+  if (rest.empty()) return;
+  geometry::cut_slivers(rest, options.spike_width);
+  restore_nodes(rest, building.outline);
+  restore_nodes(rest, covered);
+  report.add(building.osm, IssueCode::parts_incomplete, square_metres(area_of(rest)));
   BuildingPart pattern = whole(building);
   pattern.id += ".rest";
   pattern.rest = true;
-  add_pieces(building.parts, pattern, std::move(rest.polygons));
+  add_pieces(building.parts, pattern, std::move(rest));
 }
 
 std::vector<PartBody> repaired_bodies(const Building& building, const KeptNodes& kept, const RepairOptions& options,

@@ -357,7 +357,7 @@ bool separate_once(model::Building& building, const RepairOptions& options, std:
       const double lost = drawing.drawn(i) - drawing.kept(i);
       std::vector<Polygon> polygons = drawing.united(i, lost <= 0);
       if (geometry::cut_slivers(polygons, options.spike_width) > 0 || lost > 0) again = true;
-      if (lost > 0) drop_slivers(polygons, vanishes(drawing, i));
+      if (lost > 0 || polygons.size() > 1) drop_slivers(polygons, vanishes(drawing, i));
       if (polygons.empty() && lost > 0 && vanishes(drawing, i)) {
         if (const auto taker = drawing.strongest_over(i)) {
           const BuildingPart& other = parts[group[*taker].part];

@@ -256,7 +256,7 @@ TEST(PartsShare, ASetbackOfAnUpperStoreyIsNoGap) {
 TEST(PartsShare, NoCourtTurnsInsideOut) {
   // A shaft narrower than corners may move, with the walls of other parts on either side: drawn to them it would change sides.
   Random random(8);
-  for (int round = 0; round < 300; ++round) {
+  for (int round = 0; round < 3000; ++round) {
     const double x = 8 + 2 * random.unit(), width = 0.06 + 0.5 * random.unit(), low = 2 + random.unit(),
                  high = low + 1 + 5 * random.unit(), left = x + 0.8 * (random.unit() - 0.5),
                  right = x + 0.8 * (random.unit() - 0.5);
@@ -388,6 +388,56 @@ TEST(PartsApart, TowersAtTheWallOfACourtHouse) {
     double sum = 0;
     for (const BuildingPart& part : s.building.parts) sum += geometry::area(part.plan);
     EXPECT_NEAR(sum, 360, 0.5);
+  }
+}
+
+TEST(PartsApart, ATowerWhoseWallIsAlmostTheOutlines) {
+  // Berlin 2014, r29971 in metres from (396300, 5818400): of 13 storeys, its towers of 14. One corner of the tower 687 is
+  // the outline's, the other lies 3 cm inside of it.
+  Scene s({{59.6025, 32.1924},
+           {63.3438, 34.8965},
+           {67.6611, 38.0654},
+           {70.0820, 39.8506},
+           {76.7861, 44.7715},
+           {97.0107, 56.8203},
+           {98.9346, 57.9561},
+           {102.2754, 59.5430},
+           {106.9766, 61.7930},
+           {110.0811, 63.2949},
+           {112.4902, 80.5918},
+           {87.1162, 67.7090},
+           {63.6182, 53.0059},
+           {38.8818, 33.5781},
+           {52.9209, 27.2500}});
+  s.part(685, {{97.6523, 68.6094}, {102.2744, 59.5400}, {110.0811, 63.2949}, {105.3877, 72.5293}}, {{}, {}, 14.0f, {}})
+      .part(687, {{57.1836, 43.5254}, {63.3604, 34.9326}, {70.0820, 39.8506}, {63.9893, 48.3691}}, {{}, {}, 14.0f, {}})
+      .fit();
+  EXPECT_EQ(s.ids(), (Ids{"w1.w685", "w1.w687", "w1.rest"}));
+  expect_apart(s);
+  // Nothing is opened or bent for it: the towers keep their corners, the rest has no staircase.
+  for (const BuildingPart& part : s.building.parts) EXPECT_LE(part.plan.outer.size(), part.rest ? 20u : 6u) << part.id;
+}
+
+TEST(PartsApart, TowersWhoseWallsAreAlmostTheOutlines) {
+  // One corner on the outline or beyond, the other a little off it; the outline has a corner between the two.
+  Random random(7);
+  for (int round = 0; round < 3000; ++round) {
+    SCOPED_TRACE(round);
+    const double angle = 2 * std::acos(-1) * random.unit(), c = std::cos(angle), sn = std::sin(angle);
+    const auto turned = [&](std::vector<Point2> points) {
+      for (Point2& p : points) p = model::snap(Point2{c * p.x - sn * p.y, sn * p.x + c * p.y});
+      return points;
+    };
+    const double at = 4 + 8 * random.unit(), wide = 4 + 6 * random.unit(), bend = 0.1 * random.unit() - 0.05,
+                 off = 0.1 * random.unit() - 0.02, start = round % 3 == 0 ? 0 : 0.04 * random.unit() - 0.02;
+    Scene s(
+        turned({{0, 0}, {at, 0}, {at + wide * random.unit(), bend}, {at + wide, off / 4}, {30, 0}, {30, 15}, {0, 15}}));
+    s.part(2, turned({{at, start}, {at + wide, off}, {at + wide, 6}, {at, 6}})).fit();
+    EXPECT_EQ(s.ids(), (Ids{"w1.w2", "w1.rest"}));
+    expect_apart(s);
+    double sum = 0;
+    for (const BuildingPart& part : s.building.parts) sum += geometry::area(part.plan);
+    EXPECT_NEAR(sum, geometry::area(s.building.outline[0]), 1.2);
   }
 }
 
