@@ -85,31 +85,21 @@ class Observer {
     for (std::uint32_t r = 0; r < rows_.size(); ++r)
       for (const std::uint32_t b : rows_[r].buildings) row_of_[b] = r;
     eaves_ = EavesHeights(of_.extract, store);
-    progress_.begin("fit images", images_.size(), "images");
-    for (std::size_t k = 0; k < images_.size(); ++k) {
-      const ImageWindows coarse(images_[k], of_.projection, kCoarsePixel);
-      out.images.emplace_back();
-      out.images.back().description = images_[k].describe();
-      ImageFit& fit = out.images.back().fit;
-      fit = fit_image(sample(images_[k], kFirstFitSample), coarse, workers_);
-      if (fit.state != ImageState::used || fit.margin < kClearMargin)
-        fit = fit_image(sample(images_[k], kFitSample), coarse, workers_);
-      const ImageQuality quality = measure_quality(sample(images_[k], kFirstFitSample), coarse);
-      if (quality.houses >= kFewestForQuality)
-        out.images.back().haze = rounded(quality.haze, 100), out.images.back().clouded = rounded(quality.clouded, 1000);
-      out.images.back().edited_later = edited_later(images_[k]);
-      progress_.advance_to(k + 1);
-    }
     progress_.begin("match outlines", rows_.size() * images_.size(), "rows");
-    for (std::size_t k = 0; k < images_.size(); ++k) {
-      if (out.images[k].fit.state == ImageState::misfit) continue;
-      field_ = {};
-      const bool judges = out.images[k].fit.state == ImageState::used && correct_ != Correction::off;
-      eaves_.forget_shadows();
-      if (judges) sight(static_cast<std::uint32_t>(k), out);
-      out.images[k].leans = field_.leans(), out.images[k].flight_height = field_.flight_height(),
-      out.images[k].support = field_.support(), out.images[k].shift = rounded(field_.shift());
-      match_rows(static_cast<std::uint32_t>(k), judges, out);
+    for (std::uint32_t k = 0; k < images_.size(); ++k) {
+      const ImageWindows coarse(images_[k], of_.projection, kCoarsePixel);
+      out.images.push_back(fitted(k, coarse));
+      ImageReceipt& image = out.images.back();
+      if (image.fit.state != ImageState::misfit) {
+        field_ = {};
+        const bool judges = image.fit.state == ImageState::used && correct_ != Correction::off;
+        eaves_.forget_shadows();
+        if (judges) sight(k, coarse, out);
+        image.leans = field_.leans(), image.flight_height = field_.flight_height(), image.support = field_.support(),
+        image.shift = rounded(field_.shift());
+        match_rows(k, judges, out);
+      }
+      progress_.advance_to((k + 1) * rows_.size());
     }
     // When all images have spoken: what one says of a row may be what another one decides.
     for (std::uint32_t k = 0; k < images_.size(); ++k) doubt_rows_off_alike(k, out);
@@ -249,9 +239,22 @@ class Observer {
            within(image, {box.minimum.x, box.maximum.y}) || within(image, {box.maximum.x, box.minimum.y});
   }
 
+  /// Whether an image fits the map, and how good it is.
+  ImageReceipt fitted(std::uint32_t k, const ImageWindows& coarse) const {
+    ImageReceipt out;
+    out.description = images_[k].describe();
+    out.fit = fit_image(sample(images_[k], kFirstFitSample), coarse, workers_);
+    if (out.fit.state != ImageState::used || out.fit.margin < kClearMargin)
+      out.fit = fit_image(sample(images_[k], kFitSample), coarse, workers_);
+    const ImageQuality quality = measure_quality(sample(images_[k], kFirstFitSample), coarse);
+    if (quality.houses >= kFewestForQuality)
+      out.haze = rounded(quality.haze, 100), out.clouded = rounded(quality.clouded, 1000);
+    out.edited_later = edited_later(images_[k]);
+    return out;
+  }
+
   /// Where the image shows each outline, before anything is known of its lean.
-  void sight(std::uint32_t image, ImageryObservations& out) {
-    const ImageWindows windows(images_[image], of_.projection, kCoarsePixel);
+  void sight(std::uint32_t image, const ImageWindows& windows, ImageryObservations& out) {
     std::vector<SightedOutline> sighted(of_.footprints.size());
     const Displacements grid{kSightingStep, static_cast<int>(std::lround(kSightingReach / kSightingStep))};
     base::ordered_parallel(

@@ -17,26 +17,12 @@ constexpr int kStrip = 2;
 /// Of the displacements of a piece: with more of them beyond the image's pixels it is not seen.
 constexpr double kMostUnseen = 0.4;
 
-/// Of the bands, and of what the image does not show. Four numbers that g++ and clang keep in one register: the same sums on
-/// any x86-64.
-typedef float Sample __attribute__((vector_size(16)));
-
-/// The patch's pixels side by side.
-std::vector<Sample> samples_of(const Patch& patch) {
-  std::vector<Sample> out(patch.valid.size());
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = Sample{static_cast<float>(patch.red[i]), static_cast<float>(patch.green[i]),
-                    static_cast<float>(patch.blue[i]), patch.valid[i] ? 0.0F : 1.0F};
-  return out;
-}
-
 /// The change of brightness across a piece, displaced by whole pixels along its normal (lines) and along itself (cells), within
 /// the reach of the search. Negative where the image has no pixels. Kept between pieces for its memory.
 class ChangeTable {
  public:
-  ChangeTable(const Patch& patch, double reach)
+  ChangeTable(const PatchSamples& patch, double reach)
       : patch_(patch),
-        pixels_(samples_of(patch)),
         radius_(reach / patch.size + kCorner),
         side_(static_cast<int>(std::ceil(reach / patch.size)) + 1) {
     for (int i = 0; i <= side_ + kStrip; ++i) {
@@ -118,7 +104,8 @@ class ChangeTable {
         sum[3] += 1;
       } else {
         const int c = static_cast<int>(x), r = static_cast<int>(y);
-        const Sample* const at = pixels_.data() + static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c);
+        const Sample* const at =
+            patch_.pixels.data() + static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c);
         const Sample* const below = at + width;
         const auto u = static_cast<float>(x - c), v = static_cast<float>(y - r);
         const Sample upper = at[0] + u * (at[1] - at[0]), lower = below[0] + u * (below[1] - below[0]);
@@ -135,8 +122,8 @@ class ChangeTable {
     return sum[3] <= 0;
   }
 
-  const Patch& patch_;
-  std::vector<Sample> pixels_, before_;  ///< the second: sums before each sample of a line
+  const PatchSamples& patch_;
+  std::vector<Sample> before_;  ///< sums before each sample of a line
   double radius_;
   int side_;
   std::vector<int> chord_;                    ///< by line, from the middle on
@@ -145,6 +132,14 @@ class ChangeTable {
 };
 
 }  // namespace
+
+PatchSamples::PatchSamples(const Patch& patch)
+    : west(patch.west), north(patch.north), size(patch.size), width(patch.width), height(patch.height) {
+  pixels.resize(patch.valid.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    pixels[i] = Sample{static_cast<float>(patch.red[i]), static_cast<float>(patch.green[i]),
+                       static_cast<float>(patch.blue[i]), patch.valid[i] ? 0.0F : 1.0F};
+}
 
 void add_pieces(std::span<const Point2> ring, std::span<const double> weight_of, std::vector<WallPiece>& pieces) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -177,8 +172,8 @@ double score_margin(const Displacements& grid, double pixel) {
   return grid.reach() + kPieceLength / 2 + (kStrip + 3) * pixel;
 }
 
-ScoreMap score_outline(std::span<const WallPiece> pieces, const Patch& patch, const Displacements& grid, Point2 centre,
-                       base::SinCos turn, double contrast) {
+ScoreMap score_outline(std::span<const WallPiece> pieces, const PatchSamples& patch, const Displacements& grid,
+                       Point2 centre, base::SinCos turn, double contrast) {
   ScoreMap map(grid);
   std::vector<double> total(map.score.size(), 0.0);
   if (pieces.empty()) return map;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "pipeline/base/portable_math.h"
@@ -36,23 +37,57 @@ struct NearestEdge {
   Point2 outward;           ///< unit vector
 };
 
-NearestEdge nearest_edge(std::span<const Polygon> plan, Point2 p) {
-  NearestEdge nearest;
-  const auto ring = [&](const model::Ring& r) {
-    for (std::size_t i = 0; i < r.size(); ++i) {
-      const Point2 a = r.points[i], b = r.points[(i + 1) % r.size()];
-      const double d = geometry::distance_to_segment(p, a, b);
+/// The edges of a plan.
+class PlanEdges {
+ public:
+  explicit PlanEdges(std::span<const Polygon> plan) {
+    const auto ring = [&](const model::Ring& r) {
+      for (std::size_t i = 0; i < r.size(); ++i) edges_.push_back({r.points[i], r.points[(i + 1) % r.size()]});
+    };
+    for (const Polygon& polygon : plan) {
+      ring(polygon.outer);
+      for (const model::Ring& hole : polygon.holes) ring(hole);
+    }
+  }
+
+  /// Where a line of pixels crosses the rings, m east, ascending: between the first two it is inside, and so on.
+  std::vector<double> crossings(double y) const {
+    std::vector<double> out;
+    for (const auto& [a, b] : edges_)
+      if ((a.y > y) != (b.y > y)) out.push_back(a.x + (y - a.y) * (b.x - a.x) / (b.y - a.y));
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+
+  /// From now on places on this line are asked for.
+  void set_line(double y) {
+    near_.clear();
+    for (const auto& [a, b] : edges_)
+      if (std::min(a.y, b.y) - kStripDepth <= y && y <= std::max(a.y, b.y) + kStripDepth)
+        near_.push_back({a, b, std::min(a.x, b.x) - kStripDepth, std::max(a.x, b.x) + kStripDepth});
+  }
+
+  /// Of edges within kStripDepth; others are farther. \param p  on the line
+  NearestEdge nearest(Point2 p) const {
+    NearestEdge nearest;
+    for (const Near& e : near_) {
+      if (p.x < e.west || p.x > e.east) continue;
+      const double d = geometry::distance_to_segment(p, e.a, e.b);
       if (d >= nearest.distance) continue;
-      const double dx = b.x - a.x, dy = b.y - a.y, length = std::sqrt(dx * dx + dy * dy);
+      const double dx = e.b.x - e.a.x, dy = e.b.y - e.a.y, length = std::sqrt(dx * dx + dy * dy);
       nearest = {d, length > 0 ? Point2{dy / length, -dx / length} : Point2{}};
     }
-  };
-  for (const Polygon& polygon : plan) {
-    ring(polygon.outer);
-    for (const model::Ring& hole : polygon.holes) ring(hole);
+    return nearest;
   }
-  return nearest;
-}
+
+ private:
+  struct Near {
+    Point2 a, b;
+    double west, east;  ///< m: elsewhere it is farther than kStripDepth
+  };
+  std::vector<std::pair<Point2, Point2>> edges_;
+  std::vector<Near> near_;
+};
 
 /// The roof's pixels and how far each is from its edge.
 struct Roof {
@@ -68,30 +103,16 @@ void add(EdgeStrips& s, double b, Point2 n) {
   s.nxx += n.x * n.x, s.nxy += n.x * n.y, s.nyy += n.y * n.y;
 }
 
-/// Where a line of pixels crosses the rings, m east, ascending: between the first two it is inside, and so on.
-std::vector<double> crossings(std::span<const Polygon> plan, double y) {
-  std::vector<double> out;
-  const auto ring = [&](const model::Ring& r) {
-    for (std::size_t i = 0; i < r.size(); ++i) {
-      const Point2 a = r.points[i], b = r.points[(i + 1) % r.size()];
-      if ((a.y > y) != (b.y > y)) out.push_back(a.x + (y - a.y) * (b.x - a.x) / (b.y - a.y));
-    }
-  };
-  for (const Polygon& polygon : plan) {
-    ring(polygon.outer);
-    for (const model::Ring& hole : polygon.holes) ring(hole);
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
 Roof pixels_of(std::span<const Polygon> plan, const Patch& patch) {
   Roof roof;
+  PlanEdges edges(plan);
   const double all = static_cast<double>(patch.width) * patch.height;
   const int every = std::max(1, static_cast<int>(std::sqrt(all / kMostPixels)));
   for (int r = 0; r < patch.height; r += every) {
     const double y = patch.north - (r + 0.5) * patch.size;
-    const std::vector<double> borders = crossings(plan, y);
+    const std::vector<double> borders = edges.crossings(y);
+    if (borders.empty()) continue;
+    edges.set_line(y);
     for (std::size_t k = 0; k + 1 < borders.size(); k += 2) {
       const auto column = [&](double x) { return static_cast<int>(std::ceil((x - patch.west) / patch.size - 0.5)); };
       const int first = std::max(0, column(borders[k])), last = std::min(patch.width, column(borders[k + 1]));
@@ -103,7 +124,7 @@ Roof pixels_of(std::span<const Polygon> plan, const Patch& patch) {
           continue;
         }
         const Point2 p{patch.west + (c + 0.5) * patch.size, y};
-        const NearestEdge edge = nearest_edge(plan, p);
+        const NearestEdge edge = edges.nearest(p);
         if (edge.distance < kSmallInset) continue;
         roof.pixels.push_back({p.x, p.y, patch.red[i], patch.green[i], patch.blue[i]});
         roof.inset.push_back(edge.distance);
@@ -184,18 +205,18 @@ void find_colour(const std::vector<Pixel>& all, RoofView& view) {
   std::vector<int> cells(static_cast<std::size_t>(kCells * kCells * kCells), 0);
   const auto at = [](int r, int g, int b) { return static_cast<std::size_t>((r * kCells + g) * kCells + b); };
   for (const Pixel& p : pixels) ++cells[at(p.red / kCell, p.green / kCell, p.blue / kCell)];
-  std::vector<int> smooth(cells.size(), 0);
-  int fullest = 0;
-  for (int r = 0; r < kCells; ++r)
-    for (int g = 0; g < kCells; ++g)
-      for (int b = 0; b < kCells; ++b) {
-        int sum = 0;
-        for (int dr = std::max(0, r - 1); dr <= std::min(kCells - 1, r + 1); ++dr)
-          for (int dg = std::max(0, g - 1); dg <= std::min(kCells - 1, g + 1); ++dg)
-            for (int db = std::max(0, b - 1); db <= std::min(kCells - 1, b + 1); ++db) sum += cells[at(dr, dg, db)];
-        smooth[at(r, g, b)] = sum;
-        fullest = std::max(fullest, sum);
-      }
+  // The sum of each cell and all its neighbours, one direction after the other.
+  std::vector<int> smooth = cells, before;
+  for (const int along : {kCells * kCells, kCells, 1}) {
+    before = smooth;
+    const auto stride = static_cast<std::size_t>(along);
+    for (std::size_t i = 0; i < smooth.size(); ++i) {
+      const int place = static_cast<int>(i) / along % kCells;
+      if (place > 0) smooth[i] += before[i - stride];
+      if (place < kCells - 1) smooth[i] += before[i + stride];
+    }
+  }
+  const int fullest = *std::max_element(smooth.begin(), smooth.end());
   std::array<double, 3> middle{};
   int brightest = -1;
   for (int r = 0; r < kCells; ++r)

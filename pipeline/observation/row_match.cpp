@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "pipeline/model/vector.h"
 
 namespace blockrand::observation {
 
@@ -64,31 +69,55 @@ double as_mapped(const SearchedOutline& o, const ScoreMap& roof) {
   return best;
 }
 
-OutlineScores score_building(const SearchedOutline& o, const ImageWindows& windows, const Displacements& grid,
-                             double extra, Point2 shift, Point2 lean, Point2 centre, base::SinCos angle, double by_turn,
-                             double contrast) {
-  OutlineScores scores;
-  std::vector<WallPiece> moved;
-  const auto score = [&](Point2 by, const Displacements& wanted) {
-    geometry::PlanBox box = o.box;
-    box.minimum.x += by.x, box.maximum.x += by.x, box.minimum.y += by.y, box.maximum.y += by.y;
-    const Patch patch = windows.window(box, score_margin(wanted, windows.size()) + by_turn);
-    for (WallPiece& piece : moved) piece.middle.x += by.x, piece.middle.y += by.y;
-    return score_outline(moved, patch, wanted, {centre.x + by.x, centre.y + by.y}, angle, contrast);
-  };
-  moved = o.pieces;
-  scores.roof = score({shift.x + lean.x, shift.y + lean.y},
-                      {grid.step, grid.half + static_cast<int>(std::ceil(extra / grid.step))});
-  if (length_of({o.lean.x - o.ground.x, o.lean.y - o.ground.y}) > kLeastLean) {
+/// A building, where its roof and the ground before it are searched in an image: made once for several turns.
+class SearchedPlace {
+ public:
+  /// \param extra    m: how far beyond the displacements the roof is looked for
+  /// \param by_turn  m: no wall moves farther by the turns that are tried
+  SearchedPlace(const SearchedOutline& o, const ImageWindows& windows, const Displacements& grid, double extra,
+                Point2 shift, Point2 lean, Point2 centre, double by_turn)
+      : roof_(o, o.pieces, windows, {grid.step, grid.half + static_cast<int>(std::ceil(extra / grid.step))},
+              {shift.x + lean.x, shift.y + lean.y}, centre, by_turn) {
+    if (length_of({o.lean.x - o.ground.x, o.lean.y - o.ground.y}) <= kLeastLean) return;
     const double size = length_of(o.per_metre);
-    moved.clear();
+    std::vector<WallPiece> seen;
     for (const WallPiece& p : o.pieces)
       if (p.weight >= 1 && size > 0 && -(p.along.y * o.per_metre.x - p.along.x * o.per_metre.y) > kFacing * size)
-        moved.push_back(p);
-    if (!moved.empty()) scores.foot = score({shift.x + o.ground.x, shift.y + o.ground.y}, grid);
+        seen.push_back(p);
+    if (!seen.empty())
+      foot_.emplace(o, std::move(seen), windows, grid, Point2{shift.x + o.ground.x, shift.y + o.ground.y}, centre,
+                    by_turn);
   }
-  return scores;
-}
+
+  OutlineScores scores(base::SinCos angle, double contrast) const {
+    OutlineScores scores;
+    scores.roof = roof_.score(angle, contrast);
+    if (foot_) scores.foot = foot_->score(angle, contrast);
+    return scores;
+  }
+
+ private:
+  struct Edges {
+    Edges(const SearchedOutline& o, std::vector<WallPiece> walls, const ImageWindows& windows,
+          const Displacements& wanted, Point2 by, Point2 about, double by_turn)
+        : pieces(std::move(walls)), grid(wanted), centre(about + by), patch(window(o, windows, wanted, by, by_turn)) {
+      for (WallPiece& piece : pieces) piece.middle.x += by.x, piece.middle.y += by.y;
+    }
+    static Patch window(const SearchedOutline& o, const ImageWindows& windows, const Displacements& grid, Point2 by,
+                        double by_turn) {
+      return windows.window({o.box.minimum + by, o.box.maximum + by}, score_margin(grid, windows.size()) + by_turn);
+    }
+    ScoreMap score(base::SinCos angle, double contrast) const {
+      return score_outline(pieces, patch, grid, centre, angle, contrast);
+    }
+    std::vector<WallPiece> pieces;
+    Displacements grid;
+    Point2 centre;
+    PatchSamples patch;
+  };
+  Edges roof_;
+  std::optional<Edges> foot_;
+};
 
 template <class Visit>
 void for_each(const Displacements& grid, Visit&& visit) {
@@ -139,7 +168,7 @@ class RowScores {
     for (const SearchedOutline& o : row.outlines) {
       const double reach = height_reach(o);
       const OutlineScores scores =
-          score_building(o, windows, map_.grid, reach, {}, o.lean, row.centre, {}, 0, contrast);
+          SearchedPlace(o, windows, map_.grid, reach, {}, o.lean, row.centre, 0).scores({}, contrast);
       here_ +=
           scores.roof.weight * as_mapped(o, scores.roof) +
           (scores.foot.weight > 0 ? kFootWeight * scores.foot.weight * static_cast<double>(scores.foot.at(0, 0)) : 0);
@@ -227,7 +256,7 @@ RowMatch match_row(const SearchedRow& row, const ImageWindows& windows, const Se
     double height = o.height;
     if (reach >= kHeightStep) {
       const OutlineScores near =
-          score_building(o, windows, Displacements{kStep, 0}, reach, start, o.lean, row.centre, {}, 0, contrast);
+          SearchedPlace(o, windows, Displacements{kStep, 0}, reach, start, o.lean, row.centre, 0).scores({}, contrast);
       height = RowScores::best_height(o, near.roof, 0, 0, reach).first;
     }
     match.heights.push_back(height);
@@ -235,34 +264,48 @@ RowMatch match_row(const SearchedRow& row, const ImageWindows& windows, const Se
   }
   const double steepest =
       row.radius > 0 ? std::min(bounds.turn, bounds.at_end / row.radius * base::kDegreesPerRadian) : 0;
+  // Of each building its part of the image is taken once for several turns, and not kept: rows may be long.
   match.best = -1;
-  const auto try_turn = [&](double turn) {
-    const base::SinCos angle = base::sin_cos(turn * base::kRadiansPerDegree);
-    ScoreMap sum(fine);
-    std::vector<double> total(sum.score.size(), 0.0);
-    double weight = 0;
-    for (std::size_t n = 0; n < row.outlines.size(); ++n) {
-      const OutlineScores near = score_building(row.outlines[n], windows, fine, 0, start, leans[n], row.centre, angle,
-                                                row.radius * std::fabs(angle.sin) + 1, contrast);
-      weight += near.weight();
-      for (std::size_t i = 0; i < total.size(); ++i)
-        total[i] +=
-            near.roof.weight * static_cast<double>(near.roof.score[i]) +
-            (near.foot.weight > 0 ? kFootWeight * near.foot.weight * static_cast<double>(near.foot.score[i]) : 0);
+  const auto try_turns = [&](std::span<const double> turns) {
+    std::vector<base::SinCos> angles;
+    double steepest_of = 0;
+    for (const double turn : turns) {
+      angles.push_back(base::sin_cos(turn * base::kRadiansPerDegree));
+      steepest_of = std::max(steepest_of, std::fabs(angles.back().sin));
     }
-    for (std::size_t i = 0; i < total.size() && weight > 0; ++i) sum.score[i] = static_cast<float>(total[i] / weight);
-    const Peak peak = highest(sum);
-    if (peak.score <= match.best) return;
-    match.best = peak.score;
-    match.turn = turn;
-    match.shift = {start.x + peak.i * kFineStep, start.y + peak.j * kFineStep};
+    ScoreMap sum(fine);
+    std::vector<std::vector<double>> totals(turns.size(), std::vector<double>(sum.score.size(), 0.0));
+    std::vector<double> weights(turns.size(), 0.0);
+    for (std::size_t n = 0; n < row.outlines.size(); ++n) {
+      const SearchedPlace place(row.outlines[n], windows, fine, 0, start, leans[n], row.centre,
+                                row.radius * steepest_of + 1);
+      for (std::size_t k = 0; k < turns.size(); ++k) {
+        const OutlineScores near = place.scores(angles[k], contrast);
+        weights[k] += near.weight();
+        for (std::size_t i = 0; i < sum.score.size(); ++i)
+          totals[k][i] +=
+              near.roof.weight * static_cast<double>(near.roof.score[i]) +
+              (near.foot.weight > 0 ? kFootWeight * near.foot.weight * static_cast<double>(near.foot.score[i]) : 0);
+      }
+    }
+    for (std::size_t k = 0; k < turns.size(); ++k) {
+      for (std::size_t i = 0; i < sum.score.size(); ++i)
+        sum.score[i] = weights[k] > 0 ? static_cast<float>(totals[k][i] / weights[k]) : 0.0F;
+      const Peak peak = highest(sum);
+      if (peak.score <= match.best) continue;
+      match.best = peak.score;
+      match.turn = turns[k];
+      match.shift = {start.x + peak.i * kFineStep, start.y + peak.j * kFineStep};
+    }
   };
   // Whole steps first, 0, -1, 1, -2 ..., then half a step to both sides of the best.
-  const int turns = static_cast<int>(steepest / kTurnStep);
-  for (int k = 0; k <= 2 * turns; ++k) try_turn((k % 2 == 0 ? k / 2 : -(k + 1) / 2) * kTurnStep);
-  const double best_turn = match.turn;
-  for (const double turn : {best_turn - kTurnStep / 2, best_turn + kTurnStep / 2})
-    if (std::fabs(turn) <= steepest) try_turn(turn);
+  std::vector<double> turns;
+  for (int k = 0; k <= 2 * static_cast<int>(steepest / kTurnStep); ++k)
+    turns.push_back((k % 2 == 0 ? k / 2 : -(k + 1) / 2) * kTurnStep);
+  try_turns(turns);
+  turns = {match.turn - kTurnStep / 2, match.turn + kTurnStep / 2};
+  std::erase_if(turns, [&](double turn) { return std::fabs(turn) > steepest; });
+  if (!turns.empty()) try_turns(turns);
   return match;
 }
 

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "pipeline/base/portable_math.h"
-#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::observation {
 
@@ -64,14 +63,44 @@ std::optional<double> along_piece(const WallPiece& piece, const Brightness& patc
 
 Point2 outward(const WallPiece& piece) { return {piece.along.y, -piece.along.x}; }
 
+/// The first of the places from + k * step, k > 2, that lies in another house, as k; no larger than `most`.
+int first_within(std::span<const Obstacles> others, Point2 from, Point2 step, int most) {
+  constexpr int kFirst = 3;
+  const Point2 end{from.x + step.x * most, from.y + step.y * most};
+  const geometry::PlanBox way{{std::min(from.x, end.x), std::min(from.y, end.y)},
+                              {std::max(from.x, end.x), std::max(from.y, end.y)}};
+  std::vector<double> borders;
+  for (const Obstacles& o : others) {
+    if (!o.box.near(way, 0)) continue;
+    // Where the way crosses walls, in steps: from the first such place to the second it lies within, and so on.
+    borders.clear();
+    for (const std::vector<Point2>& ring : o.rings)
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Point2 a = ring[i], b = ring[(i + 1) % ring.size()];
+        const double side_a = step.x * (a.y - from.y) - step.y * (a.x - from.x),
+                     side_b = step.x * (b.y - from.y) - step.y * (b.x - from.x);
+        if ((side_a > 0) == (side_b > 0)) continue;
+        const double u = side_a / (side_a - side_b), x = a.x + u * (b.x - a.x) - from.x,
+                     y = a.y + u * (b.y - a.y) - from.y;
+        borders.push_back((x * step.x + y * step.y) / (step.x * step.x + step.y * step.y));
+      }
+    std::sort(borders.begin(), borders.end());
+    for (std::size_t i = 0; i + 1 < borders.size(); i += 2) {
+      const double first = std::max(std::ceil(borders[i]), static_cast<double>(kFirst));
+      if (first <= borders[i + 1] && first < most) most = static_cast<int>(first);
+    }
+  }
+  return most;
+}
+
 /// Brightness behind a piece by distance, in steps of kShadowStep from 0; ends where the image or another house does.
 std::vector<double> behind(const WallPiece& piece, const Brightness& patch, Point2 roof, Point2 away,
                            std::span<const Obstacles> others, double reach) {
   std::vector<double> out;
-  for (int k = 0; k * kShadowStep <= reach; ++k) {
+  const int end = first_within(others, {piece.middle.x + roof.x, piece.middle.y + roof.y},
+                               {away.x * kShadowStep, away.y * kShadowStep}, static_cast<int>(reach / kShadowStep) + 1);
+  for (int k = 0; k < end; ++k) {
     const Point2 by{roof.x + away.x * k * kShadowStep, roof.y + away.y * k * kShadowStep};
-    const Point2 p{piece.middle.x + by.x, piece.middle.y + by.y};
-    if (k > 2 && std::ranges::any_of(others, [p](const Obstacles& o) { return o.contain(p); })) break;
     const auto b = along_piece(piece, patch, by);
     if (!b) break;
     out.push_back(*b);
@@ -155,13 +184,6 @@ std::optional<Point2> SunnySides::to_sun() const {
   if (size < std::max(kAgreeing, kBeyondChance / std::sqrt(static_cast<double>(houses_))) * weight_)
     return std::nullopt;
   return Point2{sum_.x / size, sum_.y / size};
-}
-
-bool Obstacles::contain(Point2 p) const {
-  if (!box.near({p, p}, 0)) return false;
-  bool inside = false;
-  for (const std::vector<Point2>& ring : rings) inside ^= geometry::contains(ring, p);
-  return inside;
 }
 
 ShadowScan scan_shadow(std::span<const WallPiece> pieces, const Brightness& patch, Point2 roof, Point2 away,

@@ -62,7 +62,6 @@ struct ShadowLength {
 struct Obstacles {
   geometry::PlanBox box;
   std::vector<std::vector<model::Point2>> rings;  ///< where the image shows them
-  bool contain(model::Point2 p) const;
 };
 
 /// Scans along one direction. \param roof  m: how far the image shows the walls' upper edges from `pieces`
