@@ -249,6 +249,15 @@ class LevelReader {
     return block_->at(static_cast<int>(column % kBlockSide), static_cast<int>(row % kBlockSide));
   }
 
+  /// The first of two by two pixels that lie in one block: the next stands five bytes farther, the lower ones kBlockLine.
+  /// Null where they do not.
+  const std::uint8_t* four(long long column, long long row) {
+    if (column < 0 || row < 0 || column + 1 >= columns_ || row + 1 >= rows_) return nullptr;
+    if (column % kBlockSide == kBlockSide - 1 || row % kBlockSide == kBlockSide - 1) return nullptr;
+    return (*this)(column, row);
+  }
+  static constexpr std::size_t kBlockLine = 5UL * kBlockSide;
+
  private:
   PixelBlocks& blocks_;
   int level_;
@@ -329,11 +338,18 @@ Patch AerialImage::patch(const georef::Projection& projection, double size, long
                                             (kFractions - u) * v, u * v};
       std::array<unsigned, 4> sum{};
       bool valid = true;
-      for (unsigned k = 0; k < 4 && valid; ++k) {
-        if (weights[k] == 0) continue;
-        const std::uint8_t* sample = read(x0 / kFractions + (k & 1), y0 / kFractions + (k >> 1));
-        valid = sample != nullptr && sample[4] != 0;
-        for (unsigned b = 0; b < 4 && valid; ++b) sum[b] += weights[k] * sample[b];
+      const auto add = [&](unsigned weight, const std::uint8_t* sample) {
+        if (weight == 0) return;
+        valid = valid && sample != nullptr && sample[4] != 0;
+        for (unsigned b = 0; b < 4 && valid; ++b) sum[b] += weight * sample[b];
+      };
+      const long long pixel = x0 / kFractions, line = y0 / kFractions;
+      if (const std::uint8_t* const at = read.four(pixel, line)) {
+        add(weights[0], at), add(weights[1], at + 5);
+        add(weights[2], at + LevelReader::kBlockLine), add(weights[3], at + LevelReader::kBlockLine + 5);
+      } else {
+        for (unsigned k = 0; k < 4 && valid; ++k)
+          if (weights[k] != 0) add(weights[k], read(pixel + (k & 1), line + (k >> 1)));
       }
       if (!valid) continue;
       const auto byte = [](unsigned s) {

@@ -100,13 +100,20 @@ std::size_t index_in(const Patch& patch, int column, int row) {
 void fill_line(const Patch& patch, std::span<const Point2> line, double half, std::vector<std::uint8_t>& filled) {
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
     const Point2 a = line[i], b = line[i + 1];
-    const Columns rows = rows_of(patch, std::min(a.y, b.y) - half, std::max(a.y, b.y) + half),
-                  columns = columns_of(patch, std::min(a.x, b.x) - half, std::max(a.x, b.x) + half);
-    for (int r = rows.first; r < rows.last; ++r)
+    const Columns rows = rows_of(patch, std::min(a.y, b.y) - half, std::max(a.y, b.y) + half);
+    const double west = std::min(a.x, b.x) - half, east = std::max(a.x, b.x) + half;
+    // Of a row only what is so near the line that goes on at both ends.
+    const double dx = b.x - a.x, dy = b.y - a.y,
+                 beside = dy != 0 ? half * std::sqrt(dx * dx + dy * dy) / std::fabs(dy) + patch.size : 0;
+    for (int r = rows.first; r < rows.last; ++r) {
+      const double y = patch.north - (r + 0.5) * patch.size, x = dy != 0 ? a.x + dx * (y - a.y) / dy : 0;
+      const Columns columns = dy != 0 ? columns_of(patch, std::max(west, x - beside), std::min(east, x + beside))
+                                      : columns_of(patch, west, east);
       for (int c = columns.first; c < columns.last; ++c) {
-        const Point2 p{patch.west + (c + 0.5) * patch.size, patch.north - (r + 0.5) * patch.size};
+        const Point2 p{patch.west + (c + 0.5) * patch.size, y};
         if (geometry::distance_to_segment(p, a, b) <= half) filled[index_in(patch, c, r)] = 1;
       }
+    }
   }
 }
 

@@ -45,7 +45,8 @@ class ChangeTable {
   const float* values() const { return values_.data(); }
 
   /// Fills it. \param contrast  as score_outline() has it
-  void fill(Point2 middle, Point2 along, double length, float contrast) {
+  /// \returns  whether the image shows all of it
+  bool fill(Point2 middle, Point2 along, double length, float contrast) {
     const int cells = std::max(1, static_cast<int>(std::lround(length / patch_.size)));
     bool all_seen = true;
     for (int i = -side_ - kStrip; i <= side_ + kStrip; ++i) all_seen &= sum_line(i, middle, along, cells);
@@ -74,6 +75,23 @@ class ChangeTable {
       for (std::size_t j = 0; j < count; ++j)
         if (a[j] + b[j] + c[j] + d[j] > 0) out[j] = -1;
     }
+    return all_seen;
+  }
+
+  /// What lies beyond the image speaks neither for a displacement nor against it: it becomes as what is seen is on average.
+  /// \returns  false where too little is seen, or not the piece as it lies
+  bool fill_unseen() {
+    std::size_t all = 0, unseen = 0;
+    double sum = 0;
+    const auto for_each = [&](const auto& visit) {
+      for (int i = -side_; i <= side_; ++i)
+        for (int j = -chord(i); j <= chord(i); ++j) visit(line(i)[j + side_]);
+    };
+    for_each([&](float x) { ++all, unseen += x < 0, sum += x < 0 ? 0 : static_cast<double>(x); });
+    if (static_cast<double>(unseen) > kMostUnseen * static_cast<double>(all) || line(0)[side_] < 0) return false;
+    const auto usual = static_cast<float>(sum / static_cast<double>(all - unseen));
+    for_each([&](float& x) { x = x < 0 ? usual : x; });
+    return true;
   }
 
  private:
@@ -98,20 +116,30 @@ class ChangeTable {
     const auto width = static_cast<std::size_t>(patch_.width);
     Sample sum{};
     before_[0] = sum;
-    for (int j = 0; j < samples; ++j) {
+    const auto inside = [&](int j) {
       const double x = x0 + along.x * j, y = y0 - along.y * j;
-      if (x < 0 || y < 0 || x >= patch_.width - 1 || y >= patch_.height - 1) {
-        sum[3] += 1;
-      } else {
-        const int c = static_cast<int>(x), r = static_cast<int>(y);
-        const Sample* const at =
-            patch_.pixels.data() + static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c);
-        const Sample* const below = at + width;
-        const auto u = static_cast<float>(x - c), v = static_cast<float>(y - r);
-        const Sample upper = at[0] + u * (at[1] - at[0]), lower = below[0] + u * (below[1] - below[0]);
-        sum += upper + v * (lower - upper);
+      return x >= 0 && y >= 0 && x < patch_.width - 1 && y < patch_.height - 1;
+    };
+    const auto pixel = [&](int j) {
+      const double x = x0 + along.x * j, y = y0 - along.y * j;
+      const int c = static_cast<int>(x), r = static_cast<int>(y);
+      const Sample* const at = patch_.pixels.data() + static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c);
+      const Sample* const below = at + width;
+      const auto u = static_cast<float>(x - c), v = static_cast<float>(y - r);
+      const Sample upper = at[0] + u * (at[1] - at[0]), lower = below[0] + u * (below[1] - below[0]);
+      return upper + v * (lower - upper);
+    };
+    Sample* next = before_.data() + 1;
+    if (inside(0) && inside(samples - 1)) {  // and so are all between
+      for (int j = 0; j < samples; ++j) *next++ = sum += pixel(j);
+    } else {
+      for (int j = 0; j < samples; ++j) {
+        if (inside(j))
+          sum += pixel(j);
+        else
+          sum[3] += 1;
+        *next++ = sum;
       }
-      before_[static_cast<std::size_t>(j) + 1] = sum;
     }
     const std::size_t start = static_cast<std::size_t>(i + side_ + kStrip) * static_cast<std::size_t>(columns()) +
                               static_cast<std::size_t>(side_ - reach);
@@ -188,27 +216,11 @@ ScoreMap score_outline(std::span<const WallPiece> pieces, const PatchSamples& pa
                         centre.y + from.x * turn.sin + from.y * turn.cos};
     const Point2 along{piece.along.x * turn.cos - piece.along.y * turn.sin,
                        piece.along.x * turn.sin + piece.along.y * turn.cos};
-    table.fill(middle, along, piece.length, static_cast<float>(contrast));
-    std::size_t all = 0, unseen = 0;
-    double sum = 0;
-    for (int i = -side; i <= side; ++i)
-      for (int j = -table.chord(i); j <= table.chord(i); ++j) {
-        const float x = table.line(i)[j + side];
-        ++all;
-        unseen += x < 0;
-        sum += x < 0 ? 0 : static_cast<double>(x);
-      }
-    if (static_cast<double>(unseen) > kMostUnseen * static_cast<double>(all) || table.line(0)[side] < 0) {
+    if (!table.fill(middle, along, piece.length, static_cast<float>(contrast)) && !table.fill_unseen()) {
       map.missing += weight;
       continue;
     }
     map.weight += weight;
-    // What lies beyond the image speaks neither for a displacement nor against it.
-    const auto usual = static_cast<float>(sum / static_cast<double>(all - unseen));
-    if (unseen > 0)
-      for (int i = -side; i <= side; ++i)
-        for (int j = -table.chord(i); j <= table.chord(i); ++j)
-          if (table.line(i)[j + side] < 0) table.line(i)[j + side] = usual;
     // The displacement in lines and cells, bilinear between them: all four lie within the table's reach.
     const double scale = grid.step / patch.size, reach = static_cast<double>(grid.half) * grid.half + 0.5;
     for (int j = -grid.half; j <= grid.half; ++j) {

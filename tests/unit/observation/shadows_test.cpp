@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+
+#include "pipeline/geometry/polygon_measures.h"
 
 namespace blockrand::observation {
 namespace {
@@ -114,13 +117,55 @@ TEST(Shadows, OneThatReachesTheNextHouseIsNotRead) {
     ring.push_back({across.x * u + away.x * v, across.y * u + away.y * v});
   for (const Point2 q : ring) other.box.include(q);
   other.rings = {ring};
-  EXPECT_TRUE(other.contain({away.x * 20, away.y * 20}));
-  EXPECT_FALSE(other.contain({away.x * 5, away.y * 5}));
   const std::vector<Obstacles> others{other};
   const auto free = p.seen(1.5, 24), stopped = p.seen(1.5, 24, others);
   ASSERT_TRUE(free);
   EXPECT_NEAR(free->length, 12, 0.3);
   EXPECT_TRUE(!stopped || stopped->clearness < free->clearness / 2);
+}
+
+TEST(Shadows, AreReadAsFarAsTheNextHouse) {
+  // Houses of any form, with courts: where the way behind a wall first lies in one, point by point.
+  Patch ground;
+  ground.west = -40, ground.north = 40, ground.size = 0.4, ground.width = ground.height = 200;
+  for (auto* band : {&ground.red, &ground.green, &ground.blue}) band->assign(40000, 100);
+  ground.valid.assign(40000, 1);
+  const Brightness brightness(ground);
+  std::mt19937 random(11);
+  const auto unit = [&] { return static_cast<double>(random() % 10000) / 10000; };
+  int stopped = 0;
+  for (int round = 0; round < 300; ++round) {
+    std::vector<Obstacles> others(3);
+    for (Obstacles& o : others) {
+      const Point2 middle{60 * unit() - 30, 60 * unit() - 30};
+      for (const double size : {1.0, 0.5}) {
+        std::vector<Point2>& ring = o.rings.emplace_back();
+        for (int k = 0; k < 9; ++k) {
+          const double a = 2 * std::acos(-1) * k / 9, r = size * (3 + 9 * unit());
+          ring.push_back({middle.x + r * std::cos(a), middle.y + r * std::sin(a)});
+          o.box.include(ring.back());
+        }
+      }
+    }
+    const double angle = 7 * unit(), reach = 25;
+    const Point2 away{std::cos(angle), std::sin(angle)};
+    const std::vector<WallPiece> wall{{{4 * unit(), 4 * unit()}, {-away.y, away.x}, 2, 1}};
+    std::size_t places = 0;
+    for (; places * kShadowStep <= reach; ++places) {
+      const double at = static_cast<double>(places) * kShadowStep;
+      const Point2 p{wall[0].middle.x + away.x * at, wall[0].middle.y + away.y * at};
+      const auto within = [p](const Obstacles& o) {
+        return geometry::contains(o.rings[0], p) != geometry::contains(o.rings[1], p);
+      };
+      if (places > 2 && std::ranges::any_of(others, within)) break;
+    }
+    stopped += static_cast<double>(places) * kShadowStep < reach;
+    const ShadowScan scan = scan_shadow(wall, brightness, {}, away, others, reach);
+    // A place speaks where 1.75 m behind it were read.
+    const auto speak = std::ranges::count_if(scan.walls, [](float w) { return w > 0; });
+    EXPECT_EQ(speak, std::max<std::ptrdiff_t>(0, static_cast<std::ptrdiff_t>(places) - 6)) << round;
+  }
+  EXPECT_GT(stopped, 100);
 }
 
 TEST(Shadows, AUsualLengthDecidesBetweenTwoEdges) {
