@@ -49,6 +49,8 @@ constexpr std::size_t kInFlight = 64;
 /// Nodes that decide on the image's shift, at most and at least: within a few streets chance makes any shift please; m: shifts that are looked for, and the step between them.
 constexpr std::size_t kShiftNodes = 12, kFewestShiftNodes = 8;
 constexpr double kFarthestShift = 3, kShiftsApart = 1;
+/// Lean in m per m of height: cells of votes, of which the support alone counts.
+constexpr double kCoarseLeanStep = 0.03;
 /// The support with a shift must be more than that without any by this share, divided by the root of the number of rows: a few
 /// rows that the map has elsewhere look like a shifted image. On synthetic images rows that were moved reach 1.1, images that
 /// were moved 1.4 where there are 90 rows and more (docs/internal/RESULTS.md, "Aerial images").
@@ -208,7 +210,7 @@ Point2 image_shift(std::span<const SightedOutline> all, std::span<const Neighbou
   base::ordered_parallel(
       places.size(), workers, places.size(),
       [&](std::size_t n) {
-        Votes votes(kMostLean, kLeanStep);
+        Votes votes(kMostLean, kCoarseLeanStep);
         for (int j = -kSteps; j <= kSteps; ++j)
           for (int i = -kSteps; i <= kSteps; ++i) {
             if (i * i + j * j > kSteps * kSteps + 1) continue;

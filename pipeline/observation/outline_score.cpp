@@ -203,11 +203,10 @@ double score_margin(const Displacements& grid, double pixel) {
 ScoreMap score_outline(std::span<const WallPiece> pieces, const PatchSamples& patch, const Displacements& grid,
                        Point2 centre, base::SinCos turn, double contrast) {
   ScoreMap map(grid);
-  std::vector<double> total(map.score.size(), 0.0);
   if (pieces.empty()) return map;
   ChangeTable table(patch, grid.reach());
   const int side = table.side();
-  const auto columns = static_cast<std::size_t>(table.columns());
+  const std::ptrdiff_t columns = table.columns();
   for (const WallPiece& piece : pieces) {
     const double weight = piece.length * piece.weight;
     if (weight <= 0) continue;
@@ -223,23 +222,26 @@ ScoreMap score_outline(std::span<const WallPiece> pieces, const PatchSamples& pa
     map.weight += weight;
     // The displacement in lines and cells, bilinear between them: all four lie within the table's reach.
     const double scale = grid.step / patch.size, reach = static_cast<double>(grid.half) * grid.half + 0.5;
+    const auto step_across = static_cast<float>(along.y * scale), step_onward = static_cast<float>(along.x * scale);
+    const auto share = static_cast<float>(weight);
     for (int j = -grid.half; j <= grid.half; ++j) {
       const int chord = static_cast<int>(std::sqrt(reach - static_cast<double>(j) * j));
-      double* to = total.data() + static_cast<std::size_t>(j + grid.half) * static_cast<std::size_t>(grid.side()) +
-                   static_cast<std::size_t>(grid.half - chord);
+      const auto across = static_cast<float>(side - j * along.x * scale),
+                 onward = static_cast<float>(side + j * along.y * scale);
+      float* to = map.score.data() + static_cast<std::size_t>(j + grid.half) * static_cast<std::size_t>(grid.side()) +
+                  static_cast<std::size_t>(grid.half - chord);
       for (int i = -chord; i <= chord; ++i, ++to) {
-        const double across = (i * along.y - j * along.x) * scale + side,
-                     onward = (i * along.x + j * along.y) * scale + side;
-        const int a = static_cast<int>(across), b = static_cast<int>(onward);
-        const auto u = static_cast<float>(across - a), v = static_cast<float>(onward - b);
-        const float* t = table.values() + static_cast<std::size_t>(a) * columns + static_cast<std::size_t>(b);
+        const float x = across + static_cast<float>(i) * step_across, y = onward + static_cast<float>(i) * step_onward;
+        const int a = static_cast<int>(x), b = static_cast<int>(y);
+        const float u = x - static_cast<float>(a), v = y - static_cast<float>(b);
+        const float* t = table.values() + static_cast<std::ptrdiff_t>(a) * columns + b;
         const float near = t[0] + v * (t[1] - t[0]), far = t[columns] + v * (t[columns + 1] - t[columns]);
-        *to += weight * static_cast<double>(near + u * (far - near));
+        *to += share * (near + u * (far - near));
       }
     }
   }
   if (map.weight > 0)
-    for (std::size_t i = 0; i < total.size(); ++i) map.score[i] = static_cast<float>(total[i] / map.weight);
+    for (float& s : map.score) s = static_cast<float>(static_cast<double>(s) / map.weight);
   return map;
 }
 

@@ -169,7 +169,7 @@ def told(buildings, scene, materials, picture, owner, seen_roof, frames, p, gsd,
         if own:
             count = np.array([end[i] - begin[i] for i in own])
             facing = np.array([float(scene.normal[i] @ direction) for i in own])
-            large = count > .1 * count.sum()
+            large = (count > .1 * count.sum()) | (count == count.max())  # of a roof in many pieces none may be a tenth
             best = facing >= facing[large].max() - .05
             pixels = np.concatenate([order[begin[i]:end[i]] for i, take in zip(own, best) if take])
             if len(pixels) >= 25:
