@@ -36,7 +36,7 @@ namespace blockrand::outputs {
 struct OutputContext {
   const OutputOptions& options;
   int lod = 2;             ///< highest level of detail
-  std::string_view input;  ///< the extract's path as given
+  std::string name;  ///< of the build, for people
   base::StagedFolder& folder;
   const georef::Projection& projection;
   const georef::Crs& crs;

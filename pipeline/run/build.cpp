@@ -27,6 +27,7 @@
 #include "pipeline/outputs/statistics.h"
 #include "pipeline/run/account.h"
 #include "pipeline/run/build_inputs.h"
+#include "pipeline/run/data_identity.h"
 #include "pipeline/run/documents.h"
 #include "pipeline/run/imagery_stage.h"
 #include "pipeline/run/outcome.h"
@@ -58,6 +59,15 @@ std::uint64_t current_rss_bytes() {
 
 // ---- before the tiles
 
+/// What pages call the build: the name given, else that of the extract without the endings of its format.
+std::string name_of(const BuildOptions& options) {
+  if (!options.name.empty()) return options.name;
+  std::string name = options.input.substr(options.input.find_last_of('/') + 1);
+  for (const std::string_view end : {".gz", ".bz2", ".pbf", ".osm"})
+    if (name.size() > end.size() && name.ends_with(end)) name.resize(name.size() - end.size());
+  return name;
+}
+
 const std::string& checked_output(const BuildOptions& options) {
   std::vector<std::string> inputs = {options.input,  options.terrain, options.overrides,
                                      options.pinned, options.configs, options.districts};
@@ -81,6 +91,7 @@ struct Place {
 void record_extract(const BuildOptions& options, const BuildInputs& inputs, const LocatedExtract& located,
                     BuildRecord& record) {
   record.inputs = input_files(options, inputs);
+  record.data_sha256 = data_sha256(located.extract);
   if (inputs.terrain) record.terrain = inputs.terrain->describe();
   record.heights = inputs.heights;
   record.data_time = located.extract.data_time;
@@ -243,7 +254,7 @@ void finish_outputs(const OpenOutputs& open, const Region& whole, const Account&
 }
 
 /// Completes the summary; the rest of what differs from run to run.
-RunRecord run_record(std::chrono::steady_clock::time_point start, double context_seconds, int workers,
+RunRecord run_record(const BuildOptions& options, std::chrono::steady_clock::time_point start, double context_seconds, int workers,
                      const base::Progress& progress, BuildSummary& summary) {
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   summary.peak_rss_bytes = peak_rss_bytes();
@@ -255,6 +266,7 @@ RunRecord run_record(std::chrono::steady_clock::time_point start, double context
   run.tiles_in_flight = summary.tiles_in_flight;
   run.tile_context_seconds = context_seconds;
   run.jobs = workers;
+  run.inputs = {extract_file(options)};
   char host[256] = "";
   gethostname(host, sizeof host - 1);
   run.host = host;
@@ -290,8 +302,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   ImageryStage imagery(options, inputs, located, progress);
 
   // The whole extract: footprints, context, evidence.
-  model::Report report = override_extract(options, inputs, extract, progress);
   record_extract(options, inputs, located, record);
+  model::Report report = override_extract(options, inputs, extract, progress);
   PreparedExtract prepared =
       prepare_extract(located, options, tile, inputs.tables, inputs.rules.book, progress,
                       [&](std::span<const footprints::Shard> shards, const footprints::RepairedExtract& repaired) {
@@ -332,7 +344,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const outputs::OutputContext output_context{
       .options = output_options,
       .lod = options.lod,
-      .input = options.input,
+      .name = name_of(options),
       .folder = folder,
       .projection = projection,
       .crs = record.crs,
@@ -402,7 +414,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
 
   summary.tiles_in_flight = std::min<std::uint64_t>(in_flight, todo.size());
   const double context_seconds = 1e-9 * static_cast<double>(context_time.load());
-  folder.write("run.json", run_json(run_record(start, context_seconds, workers, progress, summary), summary));
+  folder.write("run.json", run_json(run_record(options, start, context_seconds, workers, progress, summary), summary));
   publish(folder, options, summary, progress);
   return summary;
 }

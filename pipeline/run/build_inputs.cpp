@@ -61,7 +61,7 @@ std::string BuildInputs::rule_file(std::string_view preset) const {
 }
 
 std::vector<InputFile> input_files(const BuildOptions& options, const BuildInputs& inputs) {
-  std::vector<InputFile> files = {input_file("extract", options.input)};
+  std::vector<InputFile> files;
   if (inputs.terrain) files.push_back(input_file("terrain", options.terrain));
   for (const importers::imagery::ImageSource& s : options.imagery.images)
     for (importers::imagery::ImageFile& f : importers::imagery::files_of_image(s.path))
@@ -82,5 +82,7 @@ std::vector<InputFile> input_files(const BuildOptions& options, const BuildInput
   if (!options.overrides.empty()) files.push_back(input_file("overrides", options.overrides));
   return files;
 }
+
+InputFile extract_file(const BuildOptions& options) { return input_file("extract", options.input); }
 
 }  // namespace blockrand::run

@@ -39,7 +39,10 @@ struct BuildInputs {
   std::string rule_file(std::string_view preset) const;
 };
 
-/// Every file that went into the build, in the order of build.json. Where configs lie differs between installations;
+/// The file by which the data came.
+InputFile extract_file(const BuildOptions& options);
+
+/// Every other file that went into the build, in the order of build.json. Where configs lie differs between installations;
 /// what they say does not: their paths are those below the folder of configs.
 std::vector<InputFile> input_files(const BuildOptions& options, const BuildInputs& inputs);
 

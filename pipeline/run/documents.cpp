@@ -155,6 +155,13 @@ Json statistics_json(const outputs::Statistics& t) {
   return j;
 }
 
+Json inputs_json(const std::vector<InputFile>& inputs) {
+  Json j = Json::array();
+  for (const InputFile& f : inputs)
+    j.push_back({{"role", f.role}, {"path", f.path}, {"bytes", f.bytes}, {"sha256", f.sha256}});
+  return j;
+}
+
 Json image_json(const observation::ImageReceipt& image) {
   const importers::imagery::ImageDescription& d = image.description;
   return {{"path", d.source.path},
@@ -174,9 +181,8 @@ Json image_json(const observation::ImageReceipt& image) {
 std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   Json j;
   j["program"] = {{"name", "blockrand"}, {"version", base::kVersion}};
-  j["inputs"] = Json::array();
-  for (const InputFile& f : r.inputs)
-    j["inputs"].push_back({{"role", f.role}, {"path", f.path}, {"bytes", f.bytes}, {"sha256", f.sha256}});
+  j["data"] = {{"sha256", r.data_sha256}};
+  j["inputs"] = inputs_json(r.inputs);
   j["data_time"] = r.data_time;
   j["configuration"] = configuration(options);
   j["crs"] = crs_json(r);
@@ -206,6 +212,7 @@ std::string run_json(const RunRecord& run, const BuildSummary& summary) {
   j["tiles_in_flight"] = run.tiles_in_flight;
   j["jobs"] = run.jobs;
   j["host"] = run.host;
+  j["inputs"] = inputs_json(run.inputs);
   return j.dump(1) + "\n";
 }
 

@@ -23,7 +23,7 @@ namespace blockrand::run {
 
 /// A file that went into the build.
 struct InputFile {
-  std::string role;  ///< "extract", "terrain", "config"
+  std::string role;  ///< "extract", "terrain", "config", "overrides", "imagery"
   std::string path;  ///< as given
   std::uint64_t bytes = 0;
   std::string sha256;
@@ -31,7 +31,8 @@ struct InputFile {
 
 /// Everything that the same call writes again byte for byte.
 struct BuildRecord {
-  std::vector<InputFile> inputs;
+  std::vector<InputFile> inputs;  ///< without the extract: `data_sha256` says what was in it
+  std::string data_sha256;
   std::string data_time;
   georef::Crs crs;
   bool portable = true;
@@ -57,6 +58,7 @@ struct RunRecord {
   std::uint64_t tiles_in_flight = 0;
   int jobs = 0;
   std::string host;
+  std::vector<InputFile> inputs;  ///< files by which the data came
 };
 
 std::string build_json(const BuildOptions& options, const BuildRecord& record);

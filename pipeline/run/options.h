@@ -17,6 +17,7 @@ namespace blockrand::run {
 /// What the user asked for. Defaults are those of `blockrand build`.
 struct BuildOptions {
   std::string input;                          ///< .osm, .osm.pbf, .osm.gz, .osm.bz2
+  std::string name;                           ///< of the build, for people; empty: that of `input`
   std::string output;                         ///< folder that the build becomes
   std::string configs;                        ///< folder with defaults/ and materials/; empty: found by the program
   std::optional<std::array<double, 4>> bbox;  ///< west, south, east, north in degrees

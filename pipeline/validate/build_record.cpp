@@ -45,14 +45,13 @@ class Reader {
   void read_inputs() {
     const Json* inputs = member(r_.json, "inputs");
     if (!inputs || !inputs->is_array() || inputs->empty()) return wrong("inputs", "missing");
+    if (!is_digest(text(member(member(r_.json, "data"), "sha256")))) wrong("data", "no SHA-256 of the data");
     for (const Json& input : *inputs) {
       const std::string role = text(member(input, "role")), path = text(member(input, "path")),
                         digest = text(member(input, "sha256"));
       if (role.empty() || path.empty() || !whole(member(input, "bytes")) || !is_digest(digest))
         wrong("inputs", "an input without role, path, bytes or sha256");
-      if (role == "extract") r_.extract_path = path, r_.extract_sha256 = digest;
     }
-    if (r_.extract_path.empty()) wrong("inputs", "no extract");
   }
 
   void read_configuration() {
@@ -153,6 +152,13 @@ std::optional<BuildRecord> read_build_record(const std::string& folder, FindingL
   BuildRecord record;
   record.json = std::move(*json);
   Reader(record, log).read();
+  // By which file the data came differs from run to run: run.json has it. A build without it is one all the same.
+  const auto run_bytes = file_bytes((fs::path(folder) / "run.json").string());
+  const auto run = run_bytes ? parse_json(*run_bytes) : std::nullopt;
+  if (const Json* inputs = run ? member(*run, "inputs") : nullptr; inputs && inputs->is_array())
+    for (const Json& input : *inputs)
+      if (text(member(input, "role")) == "extract")
+        record.extract_path = text(member(input, "path")), record.extract_sha256 = text(member(input, "sha256"));
   return record;
 }
 

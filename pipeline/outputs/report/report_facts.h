@@ -48,7 +48,7 @@ struct ContextFacts {
 };
 
 struct ReportFacts {
-  std::string input;      ///< path as given; the page shows its last component
+  std::string name;       ///< of the build, for people
   std::string data_time;  ///< ISO 8601, of the data; may be empty
   std::string program_version;
   std::string crs_code, crs_name;

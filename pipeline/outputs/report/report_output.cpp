@@ -40,7 +40,7 @@ std::vector<std::pair<std::string, std::string>> repair_lines(const footprints::
 /// Everything but the pictures.
 ReportFacts report_facts(const OutputContext& context, const FinishedBuild& build, const ReportBuilder& page) {
   ReportFacts f;
-  f.input = context.input;
+  f.name = context.name;
   f.data_time = context.data_time;
   f.program_version = base::kVersion;
   f.crs_code = context.crs.authority_code;

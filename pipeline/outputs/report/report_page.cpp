@@ -45,7 +45,7 @@ std::string ReportBuilder::html(const ReportFacts& facts, const ReportOptions& o
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<meta name=\"generator\" "
       "content=\"Blockrand " +
       escaped(facts.program_version) + "\"/>\n<link rel=\"icon\" href=\"data:,\"/>\n<title>Blockrand report: " +
-      escaped(facts.input.substr(facts.input.find_last_of('/') + 1)) + "</title>\n<style>";
+      escaped(facts.name) + "</title>\n<style>";
   out += base::kPageStyle;
   out += kReportStyle;
   out += "</style>\n</head>\n<body>\n";

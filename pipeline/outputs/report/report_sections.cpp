@@ -14,11 +14,6 @@ std::string count_of(std::uint64_t n, std::string_view one, std::string_view man
   return with_thousands(n) + " " + std::string(n == 1 ? one : many);
 }
 
-std::string file_name(std::string_view path) {
-  const std::size_t slash = path.find_last_of('/');
-  return std::string(slash == std::string_view::npos ? path : path.substr(slash + 1));
-}
-
 void fact(std::string& out, std::string_view name, std::string_view escaped_value) {
   if (escaped_value.empty()) return;
   out += "<dt>" + std::string(name) + "</dt><dd>" + std::string(escaped_value) + "</dd>\n";
@@ -66,7 +61,7 @@ std::string swatch(const std::string& css_class) {
 
 std::string head_section(const ReportFacts& f, bool styles) {
   std::string out =
-      "<header>\n<p class=\"kicker\">Blockrand report</p>\n<h1>" + escaped(file_name(f.input)) + "</h1>\n";
+      "<header>\n<p class=\"kicker\">Blockrand report</p>\n<h1>" + escaped(f.name) + "</h1>\n";
   out += "<p class=\"lead\">" + count_of(f.buildings_built, "building", "buildings") + " rebuilt in 3D as " +
          count_of(f.bodies, "body", "bodies") +
          ", from what OpenStreetMap says about them and, where it is silent, from " +

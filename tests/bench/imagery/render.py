@@ -70,7 +70,7 @@ def render(build, seed, set_, gsd, extract=None, log=sys.stderr, bare=False):
     step = np.array(sun_step(azimuth, elevation))
     direction = np.array([*step, 1]) / np.linalg.norm([*step, 1])
     if extract is None:
-        with open(os.path.join(build, "build.json")) as f:
+        with open(os.path.join(build, "run.json")) as f:
             extract = next(i["path"] for i in json.load(f)["inputs"] if i["role"] == "extract")
     fine = gsd / 2
     occupancy = S.Occupancy(buildings, west, north, width, height)
@@ -201,7 +201,7 @@ def main():
     a.add_argument("--seed", type=int, default=1)
     a.add_argument("--set", choices=list(SETS), required=True)
     a.add_argument("--gsd", type=float, default=.2, help="metres per pixel")
-    a.add_argument("--extract", help="else the one that build.json names")
+    a.add_argument("--extract", help="else the one that run.json names")
     a.add_argument("--no-jpeg", action="store_true", help="lossless")
     a = a.parse_args()
     picture, truth, epsg, transform = render(a.build, a.seed, a.set, a.gsd, a.extract)

@@ -67,7 +67,7 @@ class Page {
 
 ReportFacts some_facts() {
   ReportFacts f;
-  f.input = "maps/A & B <1>.osm";
+  f.name = "A & B <1>";
   f.program_version = "1.2.3";
   f.crs_code = "EPSG:25833";
   f.crs_name = "ETRS89 / UTM zone 33N";
@@ -114,7 +114,7 @@ TEST(Report, TheZooAsPage) {
   EXPECT_EQ(page.bodies(), 9u);
   const Page html(page.html(some_facts()));
   ASSERT_TRUE(html.well_formed());
-  EXPECT_EQ(html.one("//h:h1"), "A & B <1>.osm");
+  EXPECT_EQ(html.one("//h:h1"), "A & B <1>");
   // Halo buildings are not of this tile; every other one has its footprint, title and link.
   EXPECT_EQ(html.count("//s:g[@class='footprints']//s:path"), 6u);
   EXPECT_EQ(html.count("//s:path[@id='w70']"), 0u);
@@ -269,7 +269,7 @@ TEST(Report, HostileTextStaysText) {
   ReportBuilder page;
   page.add(report_tile(sample.region()));
   ReportFacts facts = some_facts();
-  facts.input = evil + "/" + "<b onload=\"x\">.osm";
+  facts.name = evil + "<b onload=\"x\">";
   facts.data_time = facts.height_reference = facts.crs_name = facts.crs_code = facts.program_version = evil;
   facts.pictures_note = evil;
   facts.pictures = {{"\x89PNG", 10, 10, evil}};
