@@ -201,10 +201,37 @@ void OsmFile::clean_strings() {
   cleaned_ = std::move(cleaned.cleaned);
 }
 
-void OsmFile::for_each(osmium::osm_entity_bits::type type, const Visit& visit, const Progress& progress) {
+void throw_in_words(const std::string& path) {
   const auto unreadable = [&](const std::exception& error) {
-    return base::InputError(path_, "", error.what(), kFetchAgain);
+    return base::InputError(path, "", error.what(), kFetchAgain);
   };
+  try {
+    throw;
+  } catch (const osmium::xml_error& error) {
+    // expat's text without its place, which stands where all places stand.
+    std::string what = error.what();
+    if (const std::size_t place = what.find(" at line ");
+        place != std::string::npos && what.find(": ", place) != std::string::npos)
+      what.erase(place, what.find(": ", place) - place);
+    throw base::InputError(
+        path, error.line > 0 ? "line " + std::to_string(error.line) + ", column " + std::to_string(error.column) : "",
+        what, kFetchAgain);
+  } catch (const osmium::io_error& error) {
+    throw unreadable(error);
+  } catch (const osmium::invalid_location& error) {
+    throw base::InputError(path, "", error.what(), "A longitude or latitude is not a number; mend the file");
+  } catch (const protozero::exception& error) {
+    throw unreadable(error);
+  } catch (const std::system_error& error) {
+    throw unreadable(error);
+  } catch (const std::logic_error& error) {  // libosmium: ids out of range, strings too long, indexes outside a table
+    throw unreadable(error);
+  } catch (const std::range_error& error) {
+    throw unreadable(error);
+  }
+}
+
+void OsmFile::for_each(osmium::osm_entity_bits::type type, const Visit& visit, const Progress& progress) {
   try {
     const osmium::io::File file = !buffer_.empty() ? osmium::io::File(buffer_.data(), buffer_.size(), "pbf")
                                                    : osmium::io::File(file_name_, format_ == "xml"      ? "osm"
@@ -218,27 +245,8 @@ void OsmFile::for_each(osmium::osm_entity_bits::type type, const Visit& visit, c
         progress(std::min(1.0, static_cast<double>(reader.offset()) / static_cast<double>(reader.file_size())));
     }
     reader.close();
-  } catch (const osmium::xml_error& error) {
-    // expat's text without its place, which stands where all places stand.
-    std::string what = error.what();
-    if (const std::size_t place = what.find(" at line ");
-        place != std::string::npos && what.find(": ", place) != std::string::npos)
-      what.erase(place, what.find(": ", place) - place);
-    throw base::InputError(
-        path_, error.line > 0 ? "line " + std::to_string(error.line) + ", column " + std::to_string(error.column) : "",
-        what, kFetchAgain);
-  } catch (const osmium::io_error& error) {
-    throw unreadable(error);
-  } catch (const osmium::invalid_location& error) {
-    throw base::InputError(path_, "", error.what(), "A longitude or latitude is not a number; mend the file");
-  } catch (const protozero::exception& error) {
-    throw unreadable(error);
-  } catch (const std::system_error& error) {
-    throw unreadable(error);
-  } catch (const std::logic_error& error) {  // libosmium: ids out of range, strings too long, indexes outside a table
-    throw unreadable(error);
-  } catch (const std::range_error& error) {
-    throw unreadable(error);
+  } catch (const std::exception&) {
+    throw_in_words(path_);
   }
 }
 

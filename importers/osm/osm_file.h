@@ -53,6 +53,10 @@ class OsmFile {
   std::unique_ptr<Workers> workers_;
 };
 
+/// In a catch block: what libosmium and protozero throw about a file, in our words.
+/// \throws base::InputError  always
+[[noreturn]] void throw_in_words(const std::string& path);
+
 /// Calls `visit(key, value)` for every tag. libosmium's own iteration runs past the end when a string holds a NUL.
 /// \throws NulInText when the strings do not come in pairs
 template <class Visit>
