@@ -25,6 +25,12 @@ std::string_view name(Commands command) {
       return "districts";
     case kGrammar:
       return "grammar";
+    case kUpdate:
+      return "update";
+    case kStatus:
+      return "status";
+    case kRollback:
+      return "rollback";
   }
   return "";
 }

@@ -29,9 +29,13 @@ enum Commands : unsigned {
   kValidate = 8,
   kCompare = 16,
   kDistricts = 32,
-  kGrammar = 64
+  kGrammar = 64,
+  kUpdate = 128,
+  kStatus = 256,
+  kRollback = 512
 };
-inline constexpr Commands kAllCommands[] = {kBuild, kInfo, kExplain, kValidate, kCompare, kDistricts, kGrammar};
+inline constexpr Commands kAllCommands[] = {kBuild,     kInfo,    kExplain, kValidate, kCompare,
+                                            kDistricts, kGrammar, kUpdate,  kStatus,   kRollback};
 std::string_view name(Commands command);  ///< "build"
 
 /// Where an option stands in help and reference. One with keys is a table of the config file, too, and all but the main

@@ -9,13 +9,15 @@
 #include "pipeline/cli/grammar_command.h"
 #include "pipeline/cli/help.h"
 #include "pipeline/cli/info_command.h"
+#include "pipeline/cli/region_commands.h"
 #include "pipeline/cli/validate_command.h"
 
 namespace blockrand::cli {
 
 const std::vector<Command>& commands() {
   static const std::vector<Command> all = {
-      {build_text(), run_build},         {explain_text(), run_explain}, {compare_text(), run_compare},
+      {build_text(), run_build},         {update_text(), run_update},   {status_text(), run_status},
+      {rollback_text(), run_rollback},   {explain_text(), run_explain}, {compare_text(), run_compare},
       {districts_text(), run_districts}, {grammar_text(), run_grammar}, {validate_text(), run_validate},
       {info_text(), run_info},           {help_text(), run_help},
   };

@@ -9,6 +9,7 @@ enum ExitCode : int {
   kInvalidInput = 2,   ///< an input that is unreadable or invalid
   kBelowQuality = 3,   ///< finished with buildings below the asked quality; only with --strict
   kInternalError = 4,  ///< the output could not be written, or a bug
+  kRefused = 5,        ///< built, but refused by a gate: nothing was published
   kSignalBase = 128,   ///< ended by a signal: 128 plus its number
 };
 

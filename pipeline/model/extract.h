@@ -132,7 +132,7 @@ struct ExtractCounts {
 
 struct Extract {
   std::string file;       ///< path as given
-  std::string data_time;  ///< newest timestamp in the file's header or objects, ISO 8601, or empty
+  std::string data_time;  ///< newest timestamp of the objects in the file, ISO 8601, or empty
   base::StringPool strings;
   std::vector<MappedBuilding> buildings;  ///< sorted by id
   std::vector<BuildingRelation> building_relations;

@@ -254,8 +254,8 @@ void finish_outputs(const OpenOutputs& open, const Region& whole, const Account&
 }
 
 /// Completes the summary; the rest of what differs from run to run.
-RunRecord run_record(const BuildOptions& options, std::chrono::steady_clock::time_point start, double context_seconds, int workers,
-                     const base::Progress& progress, BuildSummary& summary) {
+RunRecord run_record(const BuildOptions& options, std::chrono::steady_clock::time_point start, double context_seconds,
+                     int workers, const base::Progress& progress, BuildSummary& summary) {
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   summary.peak_rss_bytes = peak_rss_bytes();
   RunRecord run;

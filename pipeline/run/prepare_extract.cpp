@@ -31,7 +31,8 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
     facts = tile->facts;
   } else {
     if (area) facts = {"", area->box, area->centre, {}, {}, {}};
-    facts.crs = options.crs.empty() ? georef::choose_crs(facts.centre.lon, facts.centre.lat) : options.crs;
+    // Nothing lies anywhere: PROJ could not say how good the asked one is there.
+    facts.crs = options.crs.empty() || !area ? georef::choose_crs(facts.centre.lon, facts.centre.lat) : options.crs;
   }
   const georef::GeoBox box = facts.box;
   const georef::Crs crs = georef::open_crs(facts.crs, box);

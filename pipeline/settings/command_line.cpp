@@ -45,8 +45,9 @@ void set(const Option& option, Settings& settings, const std::string& value) {
 
 }  // namespace
 
-CommandLine read_command_line(Commands command, const std::vector<std::string>& arguments) {
+CommandLine read_command_line(Commands command, const std::vector<std::string>& arguments, Settings before) {
   CommandLine line;
+  line.settings = std::move(before);
   CLI::App app;
   app.set_help_flag("-h,--help");
   app.allow_extras();

@@ -17,6 +17,7 @@ struct CommandLine {
 /// \throws base::UsageError  unknown options (with the nearest known one), missing or wrong values, no INPUT or what
 ///                          else the command needs
 /// \throws base::InputError  from the config file
-CommandLine read_command_line(Commands command, const std::vector<std::string>& arguments);
+/// \param before  what holds where the arguments say nothing
+CommandLine read_command_line(Commands command, const std::vector<std::string>& arguments, Settings before = {});
 
 }  // namespace blockrand::settings

@@ -9,6 +9,7 @@ namespace {
 using base::choice;
 using base::custom;
 using base::flag;
+using base::integer;
 using base::number;
 using base::OptionRecord;
 using base::text;
@@ -26,6 +27,41 @@ Table of_finished_builds() {
                 .if_missing = "no FOLDER is given: name the output folder of a build.",
                 .after = "INPUT"},
                &S::folder)};
+}
+
+Table of_regions() {
+  constexpr unsigned regions = kUpdate | kStatus | kRollback;
+  return {text({.name = "REGION",
+                .argument = "REGION",
+                .type = OptionType::folder,
+                .commands = regions,
+                .help = "folder of a region that is rebuilt again and again",
+                .if_missing = "no REGION is given: name the folder of a region.",
+                .after = "FOLDER"},
+               &S::region),
+          texts({.name = "DATA",
+                 .argument = "DATA",
+                 .type = OptionType::path,
+                 .commands = kUpdate,
+                 .help = "an extract, change files (.osc, .osc.gz, .osc.bz2), or an extract and then change files; "
+                         "without any, what region.toml names"},
+                &S::data),
+          flag({.name = "dry-run",
+                .commands = kUpdate,
+                .help = "tell what would be done and how long that may take; nothing is built",
+                .after = "force"},
+               &S::dry_run),
+          flag({.name = "break-lock",
+                .commands = kUpdate | kRollback,
+                .help = "go on although a run on another host seems to hold the region; only if it is gone for sure"},
+               &S::break_lock),
+          integer({.name = "to",
+                   .argument = "N",
+                   .commands = kRollback,
+                   .minimum = -1,
+                   .maximum = 999999,
+                   .help = "number of the build to go back to; -1: the one before the current one"},
+                  &S::to)};
 }
 
 Table of_districts() {
@@ -190,7 +226,8 @@ Table of_compare() {
 }
 
 Table of_several() {
-  return {flag({.name = "json", .commands = kInfo | kExplain | kValidate | kCompare, .help = "print JSON"}, &S::json)};
+  return {flag({.name = "json", .commands = kInfo | kExplain | kValidate | kCompare | kStatus, .help = "print JSON"},
+               &S::json)};
 }
 
 const base::Choices<base::ProgressStyle> kProgressStyles = {{"auto", base::ProgressStyle::automatic},
@@ -200,7 +237,7 @@ const base::Choices<base::ProgressStyle> kProgressStyles = {{"auto", base::Progr
 const base::Choices<base::LogFormat> kLogFormats = {{"text", base::LogFormat::text}, {"json", base::LogFormat::json}};
 
 Table of_messages() {
-  constexpr unsigned all = kBuild | kInfo | kValidate | kCompare | kDistricts | kGrammar;
+  constexpr unsigned all = kBuild | kInfo | kValidate | kCompare | kDistricts | kGrammar | kUpdate | kRollback;
   constexpr base::OptionSection messages{.name = "messages", .title = "Messages"};
   return base::in_section<S>(
       messages,
@@ -220,8 +257,8 @@ Table of_messages() {
 }  // namespace
 
 std::vector<base::OptionTable<Settings>> command_options() {
-  return {of_finished_builds(), of_districts(), of_grammar(), of_build(),
-          of_explain(),         of_several(),   of_compare(), of_messages()};
+  return {of_finished_builds(), of_regions(), of_districts(), of_grammar(), of_build(),
+          of_explain(),         of_several(), of_compare(),   of_messages()};
 }
 
 }  // namespace blockrand::settings

@@ -1,5 +1,6 @@
 #include "pipeline/settings/config_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -39,6 +40,13 @@ std::optional<std::string> value_text(base::TomlTable& table, const Option& opti
   return std::nullopt;
 }
 
+/// Whether a table of the file is about one of the commands.
+bool is_of(const base::OptionSection& section, unsigned commands) {
+  return std::ranges::any_of(options(), [&](const Option& o) {
+    return o.section == section && !o.key.empty() && (o.commands & commands) != 0;
+  });
+}
+
 /// Empty, "2014", "2014-06" or "2014-06-21".
 bool is_date(std::string_view text) {
   static constexpr std::string_view kPattern = "dddd-dd-dd";
@@ -50,11 +58,11 @@ bool is_date(std::string_view text) {
 
 }  // namespace
 
-void read_config(const std::string& path, Settings& settings) {
+void read_config(const std::string& path, Settings& settings, unsigned commands) {
   base::TomlTable root = base::TomlTable::read(path);
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   for (const base::OptionSection& section : sections()) {
-    if (!in_config(section)) continue;
+    if (!in_config(section) || !is_of(section, commands)) continue;
     std::optional<base::TomlTable> table = root.table(section.name);
     if (!table) continue;
     for (const Option& option : options()) {
@@ -88,15 +96,20 @@ void read_config(const std::string& path, Settings& settings) {
   root.finish();
 }
 
-std::string config_template() {
+std::string config_template(unsigned commands) {
   std::string text =
-      "# Options of `blockrand build`, read with --config FILE.toml; the command line is stronger.\n"
-      "# Every key stands here with its default. Relative paths start at this file's folder.\n";
+      commands & kUpdate
+          ? "# How this region is built: `blockrand update` reads it. Every key stands here with its default.\n"
+            "# Relative paths start at this file's folder. Limits in [gates] keep a bad night's build back.\n"
+          : "# Options of `blockrand build`, read with --config FILE.toml; the command line is stronger.\n"
+            "# Every key stands here with its default. Relative paths start at this file's folder.\n";
   for (const base::OptionSection& section : sections()) {
-    if (!in_config(section)) continue;
+    if (!in_config(section) || !is_of(section, commands)) continue;
     text += "\n[" + std::string(section.name) + "]\n";
     for (const Option& option : options()) {
       if (option.section != section || option.key.empty()) continue;
+      // Where builds of a region lie, the region knows.
+      if ((commands & kUpdate) && option.name == "output") continue;
       const Settings fresh;
       std::string value = option.show(fresh);
       const bool bare =

@@ -10,6 +10,7 @@
 #include "pipeline/base/progress.h"
 #include "pipeline/compare/options.h"
 #include "pipeline/run/options.h"
+#include "pipeline/run/region_options.h"
 #include "pipeline/validate/options.h"
 
 namespace blockrand::settings {
@@ -19,6 +20,12 @@ struct Settings {
   run::BuildOptions build;
   std::string config;  ///< the config file, for the record; its values are in the other fields
   std::string folder;  ///< a finished build, for the commands that read one
+  std::string region;  ///< folder of a region, for the commands that are about one
+  run::RegionOptions region_options;
+  std::vector<std::string> data;  ///< of `update`: an extract, change files
+  bool dry_run = false;           ///< `update` tells what it would do
+  bool break_lock = false;        ///< the lock of another host is taken over
+  std::int64_t to = -1;           ///< build that `rollback` goes to; -1: the one before
   blockrand::validate::ValidateOptions validation;  ///< but for its folder and jobs, which other commands have too
   blockrand::compare::CompareOptions comparison;    ///< but for its jobs, seed and CRS, which other commands have too
   blockrand::compare::ReportOptions comparison_report;

@@ -1,0 +1,259 @@
+#include "pipeline/cli/region_commands.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/progress.h"
+#include "pipeline/base/text.h"
+#include "pipeline/base/version.h"
+#include "pipeline/cli/configs_folder.h"
+#include "pipeline/cli/errors.h"
+#include "pipeline/cli/exit_codes.h"
+#include "pipeline/cli/signals.h"
+#include "pipeline/run/region_folder.h"
+#include "pipeline/run/update_region.h"
+#include "pipeline/settings/command_line.h"
+#include "pipeline/settings/config_file.h"
+
+namespace blockrand::cli {
+namespace {
+
+/// Options of a region: those of its region.toml, and the arguments, which are stronger.
+settings::CommandLine region_line(settings::Commands command, const std::vector<std::string>& arguments) {
+  settings::CommandLine line = settings::read_command_line(command, arguments);
+  if (line.help) return line;
+  const run::RegionFolder region(line.settings.region);
+  std::error_code error;
+  if (!std::filesystem::exists(region.settings(), error)) return line;
+  settings::Settings file;
+  settings::read_config(region.settings(), file, settings::kBuild | settings::kUpdate);
+  const auto refuse = [&](const char* key, const char* remedy) {
+    throw base::InputError(region.settings(), std::string("[build] ") + key, "has no place in a region", remedy);
+  };
+  if (!file.build.output.empty()) refuse("output", "Take it out: builds lie in the region's folder builds/");
+  if (!file.build.outputs.explain)
+    refuse("explain = false", "Take it out: builds of a region are compared by explanations");
+  return settings::read_command_line(command, arguments, std::move(file));
+}
+
+std::string seconds_text(double seconds) {
+  if (seconds < 90) return fmt::format("{:.1f} s", seconds);
+  return seconds < 5400 ? fmt::format("{:.0f} min", seconds / 60) : fmt::format("{:.1f} h", seconds / 3600);
+}
+
+std::string update_report(const run::UpdateOptions& options, const run::UpdateSummary& s) {
+  std::string out;
+  for (const std::string& why : s.why) out += "  " + why + "\n";
+  if (s.created + s.modified + s.deleted + s.known > 0)
+    out +=
+        fmt::format("  {} OSM objects new, {} changed, {} deleted, {} known already\n", base::with_thousands(s.created),
+                    base::with_thousands(s.modified), base::with_thousands(s.deleted), base::with_thousands(s.known));
+  const run::BuildChanges& c = s.changes;
+  const auto gates = [&] {
+    for (const run::Gate& g : s.gates)
+      if (g.exceeded())
+        out += fmt::format("  refused: {}: {:.2f}, {} in region.toml is {:g}\n", g.words, g.value, g.key, g.limit);
+  };
+  switch (s.state) {
+    case run::UpdateState::unchanged:
+      out += s.before ? fmt::format("nothing to build: build {} is up to date\n", s.number) : "nothing to build\n";
+      break;
+    case run::UpdateState::planned:
+      out +=
+          fmt::format("run {} would build {}{}\n", s.number, options.folder,
+                      s.expected_seconds > 0 ? ", which took " + seconds_text(s.expected_seconds) + " last time" : "");
+      break;
+    case run::UpdateState::published:
+      out +=
+          fmt::format("build {} is published, {}: {} buildings; {} new, {} gone; {} footprints and {} values differ\n",
+                      s.number, seconds_text(s.seconds), base::with_thousands(c.after),
+                      base::with_thousands(c.added.size()), base::with_thousands(c.removed.size()),
+                      base::with_thousands(c.outlines.size()), base::with_thousands(c.attributes.size()));
+      if (s.linked > 0)
+        out += fmt::format("  {} files ({}) are those of build {}: one on disk\n", base::with_thousands(s.linked),
+                           base::with_byte_unit(s.linked_bytes), s.before.value_or(0));
+      out += "  " + options.folder + "/current        what is published\n";
+      out += fmt::format("  {}/log/{}.changes.html   what differs, and why\n", options.folder,
+                         run::RegionFolder::digits(s.number));
+      break;
+    case run::UpdateState::refused:
+      out += fmt::format("build {} is not published{}\n", s.number,
+                         s.before ? fmt::format("; build {} stays", *s.before) : std::string());
+      gates();
+      out += "  " + s.folder + "   the build, to look at\n";
+      out +=
+          fmt::format("  {}/log/{}.changes.html   what differs\n", options.folder, run::RegionFolder::digits(s.number));
+      break;
+  }
+  return out;
+}
+
+std::string update_json(const run::UpdateSummary& s) {
+  constexpr const char* kStates[] = {"published", "unchanged", "refused", "planned"};
+  nlohmann::ordered_json j = {{"state", kStates[static_cast<int>(s.state)]}, {"run", s.number}, {"folder", s.folder}};
+  j["why"] = s.why;
+  j["osm_objects"] = {{"created", s.created}, {"modified", s.modified}, {"deleted", s.deleted}, {"known", s.known}};
+  j["buildings"] = {{"before", s.changes.before},
+                    {"after", s.changes.after},
+                    {"added", s.changes.added.size()},
+                    {"removed", s.changes.removed.size()}};
+  j["gates"] = nlohmann::ordered_json::array();
+  for (const run::Gate& g : s.gates)
+    j["gates"].push_back({{"gate", g.key}, {"value", g.value}, {"limit", g.limit}, {"exceeded", g.exceeded()}});
+  j["expected_seconds"] = s.expected_seconds, j["seconds"] = s.seconds;
+  return j.dump() + "\n";
+}
+
+}  // namespace
+
+settings::CommandText update_text() {
+  return {
+      .name = "update",
+      .summary = "new data into a region; a build is published when gates let it",
+      .usage = "REGION [DATA ...] [options]",
+      .description =
+          "Brings a region up to date: an extract or change files in, a new build beside the published one, a report "
+          "of "
+          "what differs, and the switch. REGION/current leads to the published build at any moment; a run that fails, "
+          "is killed or is refused by a limit of region.toml leaves it as it was.\n"
+          "The first update with an extract makes the region, with a region.toml to edit. Without DATA, what "
+          "region.toml "
+          "names is taken: the change files of a replication folder that are new, or its input.",
+      .options = settings::kUpdate,
+      .examples = {{"blockrand update leipzig leipzig.osm.pbf", "makes the region, or takes a newer extract"},
+                   {"blockrand update leipzig monday.osc.gz tuesday.osc.gz", "applies change files"},
+                   {"blockrand update leipzig", "every night, by cron or a timer"},
+                   {"blockrand update leipzig --dry-run", "what would be done"}},
+      .exit_codes = {{"0", "all well; a build was published, or there was nothing to build"},
+                     {"1", "wrong usage, or another run holds the region"},
+                     {"2", "unreadable or invalid input; what is published stays"},
+                     {"4", "output could not be written or internal error; what is published stays"},
+                     {"5", "built but refused by a gate; what is published stays"},
+                     {"128 + N", "ended by signal N"}}};
+}
+
+int run_update(const std::vector<std::string>& arguments) {
+  settings::CommandLine line = region_line(settings::kUpdate, arguments);
+  if (line.help) {
+    std::fputs(settings::command_help(update_text()).c_str(), stdout);
+    return kSuccess;
+  }
+  settings::Settings& s = line.settings;
+  clean_up_on_signals(s.log_format);
+  base::Progress progress(s.progress, s.log_format, s.quiet);
+  run::UpdateOptions options;
+  options.folder = run::RegionFolder(s.region).path();
+  options.inputs = s.data;
+  options.build = s.build;
+  options.build.configs = configs_folder(s.build.configs, program_file());
+  options.build.outputs.imagery = !s.build.imagery.images.empty();
+  options.region = s.region_options;
+  options.dry_run = s.dry_run, options.break_lock = s.break_lock;
+  options.version = base::kVersion;
+  const run::RegionFolder region(options.folder);
+  std::error_code error;
+  if (!std::filesystem::exists(region.settings(), error) && !s.dry_run) {
+    if (s.data.empty())
+      throw base::UsageError(options.folder + " is no region yet. Begin with an extract: blockrand update " +
+                             options.folder + " EXTRACT.osm.pbf");
+    region.make();
+    run::write_whole(region.settings(), settings::config_template(settings::kBuild | settings::kUpdate));
+  }
+  const run::UpdateSummary summary = run::update_region(options, progress);
+  progress.end();
+  if (s.log_format == base::LogFormat::json)
+    std::fputs(update_json(summary).c_str(), stdout);
+  else if (!s.quiet || summary.state == run::UpdateState::refused)
+    std::fputs(update_report(options, summary).c_str(), stdout);
+  return summary.state == run::UpdateState::refused ? kRefused : kSuccess;
+}
+
+settings::CommandText status_text() {
+  return {.name = "status",
+          .summary = "which build of a region is published, and what the next run will do",
+          .usage = "REGION [options]",
+          .description =
+              "Tells the published build of a region, how old its data are, which builds are kept, how the "
+              "last run ended, and which change files wait. Nothing is changed.",
+          .options = settings::kStatus,
+          .examples = {{"blockrand status leipzig", ""}, {"blockrand status leipzig --json | jq .data_time", ""}},
+          .exit_codes = {{"0", "all well"}, {"1", "wrong usage"}, {"2", "an unreadable region.toml or pointer"}}};
+}
+
+int run_status(const std::vector<std::string>& arguments) {
+  const settings::CommandLine line = region_line(settings::kStatus, arguments);
+  if (line.help) {
+    std::fputs(settings::command_help(status_text()).c_str(), stdout);
+    return kSuccess;
+  }
+  const settings::Settings& s = line.settings;
+  const run::RegionStatus status = run::region_status(s.region, s.region_options);
+  if (s.json) {
+    nlohmann::ordered_json j;
+    j["current"] = status.current ? nlohmann::ordered_json(*status.current) : nlohmann::ordered_json();
+    j["published"] = status.published;
+    j["data_time"] = status.data_time;
+    j["sequence"] = status.sequence ? nlohmann::ordered_json(*status.sequence) : nlohmann::ordered_json();
+    j["models"] = status.models, j["build_seconds"] = status.seconds;
+    j["last_run"] = nlohmann::ordered_json::parse(status.last_run, nullptr, false);
+    if (j["last_run"].is_discarded()) j["last_run"] = nullptr;
+    j["waiting"] = status.waiting, j["waiting_problem"] = status.waiting_problem;
+    std::fputs((j.dump(1) + "\n").c_str(), stdout);
+    return kSuccess;
+  }
+  std::string out;
+  if (!status.current) {
+    out += "no build is published\n";
+  } else {
+    out += fmt::format(
+        "build {} is published: {} buildings, data of {}{}; it took {}\n", *status.current,
+        base::with_thousands(status.models), status.data_time.empty() ? "unknown time" : status.data_time,
+        status.sequence ? fmt::format(", sequence {}", *status.sequence) : std::string(), seconds_text(status.seconds));
+    std::string kept;
+    for (const int number : status.published) kept += (kept.empty() ? "" : ", ") + std::to_string(number);
+    out += "builds that are kept: " + kept + "\n";
+  }
+  if (!status.last_run.empty()) out += "last run: " + status.last_run + "\n";
+  if (!status.waiting_problem.empty())
+    out += "the next run will fail: " + status.waiting_problem + "\n";
+  else if (!s.region_options.replication.empty())
+    out += fmt::format("change files that wait: {}\n", status.waiting.size());
+  std::fputs(out.c_str(), stdout);
+  return kSuccess;
+}
+
+settings::CommandText rollback_text() {
+  return {
+      .name = "rollback",
+      .summary = "publishes an earlier build of a region again",
+      .usage = "REGION [--to N] [options]",
+      .description =
+          "Points REGION/current to an earlier build, in one step. The next update goes on from that "
+          "build's data.",
+      .options = settings::kRollback,
+      .examples = {{"blockrand rollback leipzig", "to the build before"}, {"blockrand rollback leipzig --to 12", ""}},
+      .exit_codes = {{"0", "all well"},
+                     {"1", "wrong usage, no such build, or another run holds the region"},
+                     {"4", "output could not be written or internal error"}}};
+}
+
+int run_rollback(const std::vector<std::string>& arguments) {
+  const settings::CommandLine line = settings::read_command_line(settings::kRollback, arguments);
+  if (line.help) {
+    std::fputs(settings::command_help(rollback_text()).c_str(), stdout);
+    return kSuccess;
+  }
+  const settings::Settings& s = line.settings;
+  base::Progress progress(s.progress, s.log_format, s.quiet);
+  const int number =
+      run::roll_back(s.region, s.to < 0 ? std::nullopt : std::optional(static_cast<int>(s.to)), s.break_lock, progress);
+  if (!s.quiet) std::fputs(fmt::format("build {} is published\n", number).c_str(), stdout);
+  return kSuccess;
+}
+
+}  // namespace blockrand::cli

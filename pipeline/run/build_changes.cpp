@@ -1,0 +1,255 @@
+#include "pipeline/run/build_changes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/markup.h"
+#include "pipeline/base/text.h"
+#include "pipeline/outputs/gzip.h"
+
+namespace blockrand::run {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Rows of a table of the page, at most; the JSON has all.
+constexpr std::size_t kMostRows = 500;
+
+/// What a build says of one building, as far as it is compared.
+struct Told {
+  bool modelled = false, simpler = false;
+  double area = 0;  ///< m2
+  std::string ring;
+  std::optional<double> height;
+  struct Attribute {
+    std::string name, value, source, why;
+  };
+  std::vector<Attribute> attributes;
+};
+
+std::string text_of(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  return value.is_null() ? std::string() : value.dump();
+}
+
+std::string member(const Json& j, const char* key) { return j.is_object() && j.contains(key) ? text_of(j[key]) : ""; }
+
+Told told_of(const Json& line, int asked) {
+  Told told;
+  told.modelled = member(line, "state") == "modelled";
+  const bool parts = line.contains("lod") && line["lod"].is_number_integer();
+  told.simpler = told.modelled ? parts && line["lod"].get<int>() < asked : member(line, "state") == "reported";
+  if (line.contains("outline")) told.ring = line["outline"].dump();
+  if (line.contains("repair") && line["repair"].is_object() && line["repair"].contains("area") &&
+      line["repair"]["area"].is_number())
+    told.area = line["repair"]["area"].get<double>();
+  if (line.contains("attributes") && line["attributes"].is_array())
+    for (const Json& a : line["attributes"]) {
+      told.attributes.push_back({member(a, "name"), member(a, "value"), member(a, "source"), member(a, "why")});
+      if (told.attributes.back().name == "height" && a.contains("value") && a["value"].is_number())
+        told.height = a["value"].get<double>();
+    }
+  return told;
+}
+
+/// By id. Read tile by tile, but all of a build at once: see docs/nightly.md for what that costs.
+std::map<std::string, Told> read_build(const std::string& folder) {
+  std::map<std::string, Told> out;
+  std::ifstream record_file(folder + "/build.json", std::ios::binary);
+  const Json record = Json::parse(record_file, nullptr, false);
+  if (!record.is_object() || !record.contains("configuration") || !record["configuration"].contains("lod"))
+    throw base::InputError(folder + "/build.json", "", "is no record of a build", "Put the build back, or roll back");
+  const int asked = record["configuration"]["lod"].get<int>();
+  std::error_code error;
+  if (!fs::is_directory(folder + "/explain", error) && record["counts"].value("models", 0) > 0)
+    throw base::InputError(folder, "", "was built without explanations, which builds are compared by",
+                           "Take explain = false out of region.toml");
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry(folder + "/explain", error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().string().ends_with(".jsonl.gz")) files.push_back(entry->path());
+  std::sort(files.begin(), files.end());
+  for (const fs::path& path : files) {
+    std::ifstream file(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    const auto damaged = [&](const std::string& why) {
+      return base::InputError(path.string(), "", why, "The build is damaged: build it again, or roll back");
+    };
+    std::string text;
+    try {
+      text = outputs::gunzip(bytes);
+    } catch (const std::runtime_error& failed) {
+      throw damaged(failed.what());
+    }
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = std::min(text.find('\n', at), text.size());
+      const Json line = Json::parse(text.begin() + static_cast<std::ptrdiff_t>(at),
+                                    text.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
+      if (!line.is_object()) throw damaged("a line of it is no JSON");
+      out.emplace(member(line, "id"), told_of(line, asked));
+      at = end + 1;
+    }
+  }
+  return out;
+}
+
+void compare(const std::string& id, const Told& before, const Told& after, BuildChanges& out) {
+  if (before.ring != after.ring || std::fabs(before.area - after.area) >= 0.01)
+    out.outlines.push_back({id, before.area, after.area});
+  std::map<std::string, const Told::Attribute*> old;
+  for (const Told::Attribute& a : before.attributes) old[a.name] = &a;
+  for (const Told::Attribute& a : after.attributes) {
+    const auto found = old.find(a.name);
+    const Told::Attribute* was = found == old.end() ? nullptr : found->second;
+    if (found != old.end()) old.erase(found);
+    if (!was || was->value != a.value || was->source != a.source)
+      out.attributes.push_back({id, a.name, was ? was->value : "", a.value, was ? was->source : "", a.source, a.why});
+  }
+  for (const Told::Attribute& a : before.attributes)
+    if (old.contains(a.name)) out.attributes.push_back({id, a.name, a.value, "", a.source, "", ""});
+}
+
+double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : part > 0 ? 100 : 0; }
+
+std::string rounded(const std::string& value) {
+  // Long fractions are for machines.
+  const std::size_t point = value.find('.');
+  return point != std::string::npos && value.size() - point > 3 &&
+                 value.find_first_not_of("0123456789.-") == std::string::npos
+             ? value.substr(0, point + 3)
+             : value;
+}
+
+}  // namespace
+
+BuildChanges compare_builds(const std::string& before, const std::string& after) {
+  BuildChanges out;
+  const std::map<std::string, Told> old = before.empty() ? std::map<std::string, Told>() : read_build(before),
+                                    now = read_build(after);
+  out.all_before = old.size(), out.all_after = now.size();
+  double heights_before = 0, heights_after = 0;
+  for (const auto& [id, told] : old) {
+    out.before += told.modelled, out.simpler_before += told.simpler;
+    const auto found = now.find(id);
+    if (told.modelled && (found == now.end() || !found->second.modelled)) out.removed.push_back(id);
+  }
+  for (const auto& [id, told] : now) {
+    out.after += told.modelled, out.simpler_after += told.simpler;
+    const auto found = old.find(id);
+    if (told.modelled && (found == old.end() || !found->second.modelled)) out.added.push_back(id);
+    if (!told.modelled || found == old.end() || !found->second.modelled) continue;
+    compare(id, found->second, told, out);
+    if (!told.height || !found->second.height) continue;
+    heights_before += *found->second.height, heights_after += *told.height;
+    ++out.both;
+  }
+  if (out.both > 0)
+    out.height_before = heights_before / static_cast<double>(out.both),
+    out.height_after = heights_after / static_cast<double>(out.both);
+  return out;
+}
+
+std::vector<Gate> gates_of(const BuildChanges& c, const RegionOptions& o, bool first) {
+  const auto n = [](auto count) { return static_cast<double>(count); };
+  std::vector<Gate> gates;
+  gates.push_back({"no_buildings", "builds without any building", c.after == 0 ? 1.0 : 0.0, 0});
+  if (first) return gates;
+  gates.push_back({"max_lost", "buildings that are gone", percent(n(c.removed.size()), n(c.before)), o.max_lost});
+  gates.push_back({"max_added", "buildings that are new", percent(n(c.added.size()), n(c.before)), o.max_added});
+  gates.push_back({"max_simpler", "more buildings that are simpler than asked, or have no model",
+                   percent(n(c.simpler_after), n(c.all_after)) - percent(n(c.simpler_before), n(c.all_before)),
+                   o.max_simpler});
+  gates.push_back({"max_height_change", "change of the mean height",
+                   percent(std::fabs(c.height_after - c.height_before), c.height_before), o.max_height_change});
+  return gates;
+}
+
+std::string changes_json(const BuildChanges& c, const std::vector<Gate>& gates) {
+  const auto hundredths = [](double v) { return std::round(v * 100) / 100; };
+  Json j;
+  j["buildings"] = {{"before", c.before}, {"after", c.after}, {"added", c.added.size()}, {"removed", c.removed.size()}};
+  j["gates"] = Json::array();
+  for (const Gate& g : gates)
+    j["gates"].push_back({{"gate", g.key},
+                          {"what", g.words},
+                          {"value", hundredths(g.value)},
+                          {"limit", g.limit},
+                          {"exceeded", g.exceeded()}});
+  j["added"] = c.added, j["removed"] = c.removed;
+  j["outlines"] = Json::array();
+  for (const OutlineChange& o : c.outlines)
+    j["outlines"].push_back(
+        {{"id", o.id}, {"area_before_m2", hundredths(o.area_before)}, {"area_after_m2", hundredths(o.area_after)}});
+  j["attributes"] = Json::array();
+  for (const AttributeChange& a : c.attributes)
+    j["attributes"].push_back({{"id", a.id},
+                               {"attribute", a.name},
+                               {"from", a.from},
+                               {"to", a.to},
+                               {"from_source", a.from_source},
+                               {"to_source", a.to_source},
+                               {"why", a.why}});
+  return j.dump(1) + "\n";
+}
+
+std::string changes_page(const std::string& title, const BuildChanges& c, const std::vector<Gate>& gates) {
+  using base::escaped;
+  std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<title>" + escaped(title) +
+                    "</title>\n<style>" + std::string(base::kPageStyle) + "</style>\n</head>\n<body>\n<main>\n<h1>" +
+                    escaped(title) + "</h1>\n";
+  out += fmt::format(
+      "<p>{} buildings before, {} now: {} new, {} gone; {} footprints and {} values of others differ.</p>\n",
+      base::with_thousands(c.before), base::with_thousands(c.after), base::with_thousands(c.added.size()),
+      base::with_thousands(c.removed.size()), base::with_thousands(c.outlines.size()),
+      base::with_thousands(c.attributes.size()));
+  const auto table = [&](const std::string& heading, const std::vector<std::string>& columns,
+                         const std::vector<std::vector<std::string>>& rows, std::size_t all) {
+    if (rows.empty()) return;
+    out += "<h2>" + heading + "</h2>\n<table>\n<tr>";
+    for (const std::string& column : columns) out += "<th>" + column + "</th>";
+    out += "</tr>\n";
+    for (const auto& row : rows) {
+      out += "<tr>";
+      for (const std::string& cell : row) out += "<td>" + escaped(cell) + "</td>";
+      out += "</tr>\n";
+    }
+    out += "</table>\n";
+    if (all > rows.size())
+      out +=
+          fmt::format("<p>{} more stand in the JSON beside this page.</p>\n", base::with_thousands(all - rows.size()));
+  };
+  std::vector<std::vector<std::string>> rows;
+  for (const Gate& g : gates)
+    rows.push_back(
+        {g.words, fmt::format("{:.2f}", g.value), fmt::format("{:g}", g.limit), g.exceeded() ? "too much" : "well"});
+  table("Gates", {"what", "percent", "limit", ""}, rows, rows.size());
+  const auto list = [&](const std::string& heading, const std::vector<std::string>& ids) {
+    rows.clear();
+    for (std::size_t i = 0; i < std::min(ids.size(), kMostRows); ++i) rows.push_back({ids[i]});
+    table(heading, {"building"}, rows, ids.size());
+  };
+  list("New buildings", c.added);
+  list("Buildings that are gone", c.removed);
+  rows.clear();
+  for (std::size_t i = 0; i < std::min(c.outlines.size(), kMostRows); ++i)
+    rows.push_back({c.outlines[i].id, fmt::format("{:.1f}", c.outlines[i].area_before),
+                    fmt::format("{:.1f}", c.outlines[i].area_after)});
+  table("Footprints", {"building", "m² before", "m² now"}, rows, c.outlines.size());
+  rows.clear();
+  for (std::size_t i = 0; i < std::min(c.attributes.size(), kMostRows); ++i) {
+    const AttributeChange& a = c.attributes[i];
+    rows.push_back({a.id, a.name, rounded(a.from), rounded(a.to), a.from_source, a.to_source, a.why});
+  }
+  table("Values", {"building", "what", "from", "to", "source before", "source now", "why"}, rows, c.attributes.size());
+  return out + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace blockrand::run

@@ -1,0 +1,79 @@
+#include "pipeline/run/region_options.h"
+
+#include "pipeline/base/option.h"
+
+namespace blockrand::run {
+namespace {
+
+using base::integer;
+using base::number;
+using base::OptionRecord;
+using base::OptionType;
+using base::text;
+using enum base::Commands;
+using R = RegionOptions;
+
+constexpr base::OptionSection kRegion{.name = "region", .title = "A region that is rebuilt again and again"};
+constexpr base::OptionSection kGates{.name = "gates", .title = "What a new build of a region may lose"};
+
+base::OptionTable<R> of_region() {
+  return base::in_section<R>(
+      kRegion, {integer({.name = "keep",
+                         .key = "keep",
+                         .argument = "N",
+                         .commands = kUpdate,
+                         .minimum = 1,
+                         .maximum = 10000,
+                         .help = "published builds that stay, the current one among them",
+                         .record = OptionRecord::none},
+                        &R::keep),
+                text({.name = "replication",
+                      .key = "replication",
+                      .argument = "FOLDER",
+                      .type = OptionType::folder,
+                      .commands = kUpdate,
+                      .help = "folder of change files with sequence numbers, as download servers have them: state.txt, "
+                              "000/001/234.osc.gz; update takes all that are new",
+                      .record = OptionRecord::none},
+                     &R::replication),
+                integer({.name = "first-sequence",
+                         .key = "first_sequence",
+                         .argument = "N",
+                         .commands = kUpdate,
+                         .minimum = -1,
+                         .maximum = 999999999,
+                         .help = "number of the first change file to apply; -1: the one after that which the extract "
+                                 "names",
+                         .record = OptionRecord::none},
+                        &R::first_sequence)});
+}
+
+base::OptionTable<R> of_gates() {
+  const auto percent = [](std::string_view name, std::string_view key, std::string_view help, double R::*member) {
+    return number({.name = name,
+                   .key = key,
+                   .argument = "PERCENT",
+                   .commands = kUpdate,
+                   .minimum = 0,
+                   .maximum = 1e9,
+                   .help = help,
+                   .record = OptionRecord::none},
+                  member);
+  };
+  return base::in_section<R>(
+      kGates,
+      {percent("max-lost", "max_lost", "of the buildings that the published build has, so many may be gone",
+               &R::max_lost),
+       percent("max-added", "max_added", "new buildings, of as many as the published build has", &R::max_added),
+       percent("max-simpler", "max_simpler",
+               "by so many points the share of buildings that are simpler than asked, or have no model, may grow",
+               &R::max_simpler),
+       percent("max-height-change", "max_height_change",
+               "by so much the mean height of the buildings that both builds have may change", &R::max_height_change)});
+}
+
+}  // namespace
+
+base::OptionTable<RegionOptions> region_options() { return base::concatenated({of_region(), of_gates()}); }
+
+}  // namespace blockrand::run

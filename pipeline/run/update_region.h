@@ -1,0 +1,71 @@
+// The nightly job: new data into a region, a build of it, gates, and the switch to the new build.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/base/progress.h"
+#include "pipeline/run/build.h"
+#include "pipeline/run/build_changes.h"
+#include "pipeline/run/region_options.h"
+
+namespace blockrand::run {
+
+struct UpdateOptions {
+  std::string folder;               ///< of the region
+  std::vector<std::string> inputs;  ///< an extract first, or none; change files
+  BuildOptions build;               ///< from region.toml; input, output and name are the region's
+  RegionOptions region;
+  bool dry_run = false;     ///< tell what would be done
+  bool break_lock = false;  ///< take over the lock of another host
+  std::string version;      ///< of the program
+};
+
+enum class UpdateState {
+  published,  ///< a new build stands
+  unchanged,  ///< nothing to build: data, settings and program are those of the published build
+  refused,    ///< built, but a gate is exceeded: not published
+  planned     ///< dry run
+};
+
+struct UpdateSummary {
+  UpdateState state = UpdateState::unchanged;
+  int number = 0;                ///< of the run; of the published build where nothing changed
+  std::optional<int> before;     ///< the build that was published
+  std::string folder;            ///< where the new build lies
+  std::vector<std::string> why;  ///< for what a build is made, in words
+  std::uint64_t created = 0, modified = 0, deleted = 0, known = 0;  ///< OSM objects, by change files
+  std::optional<std::uint64_t> sequence;                            ///< of the newest change file
+  BuildChanges changes;
+  std::vector<Gate> gates;
+  std::uint64_t linked = 0, linked_bytes = 0;  ///< files that are those of the build before
+  double expected_seconds = 0;                 ///< as long as the build before took; 0: unknown
+  double seconds = 0;
+};
+
+/// Builds and publishes, or leaves what is published as it is.
+/// \throws base::UsageError   no data yet and no extract given; the region is locked
+/// \throws base::InputError   unreadable data, a gap in the change files, damaged store
+/// \throws base::OutputError  the disk is full or cannot be written
+UpdateSummary update_region(const UpdateOptions& options, base::Progress& progress);
+
+/// What `blockrand status` tells.
+struct RegionStatus {
+  std::optional<int> current;
+  std::vector<int> published;
+  std::string data_time;
+  std::optional<std::uint64_t> sequence;
+  std::uint64_t models = 0;
+  double seconds = 0;                ///< that the build took
+  std::string last_run;              ///< the newest line of log/runs.jsonl
+  std::vector<std::string> waiting;  ///< change files that the next run will take
+  std::string waiting_problem;       ///< why they cannot be taken
+};
+RegionStatus region_status(const std::string& folder, const RegionOptions& options);
+
+/// Publishes an earlier build again. \param to  its number; nothing: the one before the current one
+/// \returns  its number \throws base::UsageError  there is none
+int roll_back(const std::string& folder, std::optional<int> to, bool break_lock, base::Progress& progress);
+
+}  // namespace blockrand::run
