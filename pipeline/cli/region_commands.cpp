@@ -120,7 +120,8 @@ settings::CommandText update_text() {
           "Brings a region up to date: an extract or change files in, a new build beside the published one, a report "
           "of "
           "what differs, and the switch. REGION/current leads to the published build at any moment; a run that fails, "
-          "is killed or is refused by a limit of region.toml leaves it as it was.\n"
+          "is killed, or is refused by a limit of region.toml leaves it as it was; so does one that finds another run "
+          "at work (exit code 1).\n"
           "The first update with an extract makes the region, with a region.toml to edit. Without DATA, what "
           "region.toml "
           "names is taken: the change files of a replication folder that are new, or its input.",
@@ -129,11 +130,11 @@ settings::CommandText update_text() {
                    {"blockrand update leipzig monday.osc.gz tuesday.osc.gz", "applies change files"},
                    {"blockrand update leipzig", "every night, by cron or a timer"},
                    {"blockrand update leipzig --dry-run", "what would be done"}},
-      .exit_codes = {{"0", "all well; a build was published, or there was nothing to build"},
-                     {"1", "wrong usage, or another run holds the region"},
-                     {"2", "unreadable or invalid input; what is published stays"},
-                     {"4", "output could not be written or internal error; what is published stays"},
-                     {"5", "built but refused by a gate; what is published stays"},
+      .exit_codes = {{"0", "all well"},
+                     {"1", "wrong usage"},
+                     {"2", "unreadable or invalid input"},
+                     {"4", "output could not be written or internal error"},
+                     {"5", "built, but refused by a gate of the region"},
                      {"128 + N", "ended by signal N"}}};
 }
 
@@ -182,7 +183,7 @@ settings::CommandText status_text() {
               "last run ended, and which change files wait. Nothing is changed.",
           .options = settings::kStatus,
           .examples = {{"blockrand status leipzig", ""}, {"blockrand status leipzig --json | jq .data_time", ""}},
-          .exit_codes = {{"0", "all well"}, {"1", "wrong usage"}, {"2", "an unreadable region.toml or pointer"}}};
+          .exit_codes = {{"0", "all well"}, {"1", "wrong usage"}, {"2", "unreadable or invalid input"}}};
 }
 
 int run_status(const std::vector<std::string>& arguments) {
@@ -237,9 +238,7 @@ settings::CommandText rollback_text() {
           "build's data.",
       .options = settings::kRollback,
       .examples = {{"blockrand rollback leipzig", "to the build before"}, {"blockrand rollback leipzig --to 12", ""}},
-      .exit_codes = {{"0", "all well"},
-                     {"1", "wrong usage, no such build, or another run holds the region"},
-                     {"4", "output could not be written or internal error"}}};
+      .exit_codes = {{"0", "all well"}, {"1", "wrong usage"}, {"4", "output could not be written or internal error"}}};
 }
 
 int run_rollback(const std::vector<std::string>& arguments) {
