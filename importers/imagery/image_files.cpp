@@ -31,9 +31,8 @@ ImageFile hashed(const std::string& path) {
   return out;
 }
 
-}  // namespace
-
-std::vector<ImageFile> files_of_image(const std::string& path) {
+/// The raster's own file, then those that belong to it.
+std::vector<std::string> names_of_files(const std::string& path) {
   gdal::register_drivers();
   const gdal::GdalScope quiet;
   std::vector<std::string> others;
@@ -55,12 +54,30 @@ std::vector<ImageFile> files_of_image(const std::string& path) {
   }
   std::sort(others.begin(), others.end());
   others.erase(std::unique(others.begin(), others.end()), others.end());
-  std::vector<ImageFile> files = {hashed(path)};
+  std::vector<std::string> names = {path};
   for (const std::string& other : others) {
     VSIStatBufL status;
-    if (VSIStatL(other.c_str(), &status) == 0 && !VSI_ISDIR(status.st_mode)) files.push_back(hashed(other));
+    if (VSIStatL(other.c_str(), &status) == 0 && !VSI_ISDIR(status.st_mode)) names.push_back(other);
   }
+  return names;
+}
+
+}  // namespace
+
+std::vector<ImageFile> files_of_image(const std::string& path) {
+  std::vector<ImageFile> files;
+  for (const std::string& name : names_of_files(path)) files.push_back(hashed(name));
   return files;
+}
+
+std::vector<FileStamp> stamps_of_raster(const std::string& path) {
+  std::vector<FileStamp> stamps;
+  for (const std::string& name : names_of_files(path)) {
+    VSIStatBufL status;
+    if (VSIStatL(name.c_str(), &status) == 0)
+      stamps.push_back({name, static_cast<std::uint64_t>(status.st_size), static_cast<std::int64_t>(status.st_mtime)});
+  }
+  return stamps;
 }
 
 }  // namespace blockrand::importers::imagery

@@ -38,12 +38,39 @@ bool before(const OSMObject& a, const OSMObject& b) {
          std::make_tuple(b.type(), !negative_b, std::abs(b.id()));
 }
 
+/// Place or members, then tags: to order versions that nothing else tells apart.
+std::pair<std::vector<std::int64_t>, std::vector<std::pair<std::string, std::string>>> content_of(
+    const OSMObject& object) {
+  std::vector<std::int64_t> numbers;
+  if (object.type() == osmium::item_type::node) {
+    const osmium::Location at = static_cast<const osmium::Node&>(object).location();
+    numbers = {at.x(), at.y()};
+  } else if (object.type() == osmium::item_type::way) {
+    for (const osmium::NodeRef& n : static_cast<const osmium::Way&>(object).nodes()) numbers.push_back(n.ref());
+  } else {
+    for (const osmium::RelationMember& m : static_cast<const osmium::Relation&>(object).members())
+      numbers.push_back(m.ref()), numbers.push_back(static_cast<int>(m.type()));
+  }
+  std::vector<std::pair<std::string, std::string>> tags;
+  for (const osmium::Tag& tag : object.tags()) tags.emplace_back(tag.key(), tag.value());
+  std::sort(tags.begin(), tags.end());
+  return {std::move(numbers), std::move(tags)};
+}
+
 /// Buffers of a file's objects, kept.
 using Buffers = std::vector<osmium::memory::Buffer>;
 
+std::string small_letters(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
+
 std::string format_of_changes(const std::string& path) {
-  if (path.ends_with(".gz")) return "osc.gz";
-  return path.ends_with(".bz2") ? "osc.bz2" : "osc";
+  const std::string name = small_letters(path);
+  if (name.ends_with(".gz")) return "osc.gz";
+  return name.ends_with(".bz2") ? "osc.bz2" : "osc";
 }
 
 /// \throws base::InputError
@@ -78,6 +105,8 @@ class Changes {
       for (const osmium::memory::Buffer& buffer : buffers_.back())
         for (const OSMObject& object : buffer.select<OSMObject>()) newest_.push_back({&object, f + 1});
     }
+    // Of what is the same otherwise the last one comes first.
+    std::ranges::reverse(newest_);
     std::ranges::stable_sort(newest_, [](const Versioned& a, const Versioned& b) {
       if (!same_object(*a.object, *b.object)) return before(*a.object, *b.object);
       return std::make_pair(a.object->version(), a.file) > std::make_pair(b.object->version(), b.file);
@@ -93,31 +122,34 @@ class Changes {
   std::vector<Versioned> newest_;
 };
 
+base::OutputError cannot_write(const std::string& path, const std::exception& error) {
+  return base::OutputError(path + ": cannot be written: " + error.what() +
+                           ". Free some space or check the permissions");
+}
+
 /// Merges a sorted base with the changes, object by object.
 class Merge {
  public:
-  Merge(std::span<const Versioned> changes, osmium::io::Writer& out) : changes_(changes), out_(out) {}
+  Merge(std::span<const Versioned> changes, osmium::io::Writer& out, const std::string& path)
+      : changes_(changes), out_(out), path_(path) {}
 
-  /// In the order of before(); of several versions of an object the last one that is given counts.
+  /// In the order of before(), each object once; one that is not visible was deleted before.
   void add(const OSMObject& object) {
-    while (next_ < changes_.size() && before(*changes_[next_].object, object)) create(*changes_[next_++].object);
-    if (next_ >= changes_.size() || !same_object(*changes_[next_].object, object)) {
-      if (object.visible()) out_(object);
-      return;
-    }
+    while (next_ < changes_.size() && before(*changes_[next_].object, object)) take_new(*changes_[next_++].object);
+    if (next_ >= changes_.size() || !same_object(*changes_[next_].object, object)) return write(object);
     const OSMObject& change = *changes_[next_++].object;
     if (change.version() < object.version() || (change.version() == object.version() && same_content(change, object))) {
       ++applied_.known;
-      if (object.visible()) out_(object);
-    } else if (change.visible()) {
-      ++applied_.modified;
-      out_(change);
-    } else {
-      ++applied_.deleted;
+      return write(object);
     }
+    if (change.visible() != object.visible())
+      ++(change.visible() ? applied_.created : applied_.deleted);
+    else
+      ++(change.visible() ? applied_.modified : applied_.known);
+    write(change);
   }
   AppliedChanges finish() {
-    while (next_ < changes_.size()) create(*changes_[next_++].object);
+    while (next_ < changes_.size()) take_new(*changes_[next_++].object);
     return applied_;
   }
 
@@ -140,17 +172,22 @@ class Merge {
                         return x.type() == y.type() && x.ref() == y.ref() && std::string_view(x.role()) == y.role();
                       });
   }
-  void create(const OSMObject& object) {
-    if (!object.visible()) {
-      ++applied_.known;  // what is not there cannot be deleted
-      return;
+  void take_new(const OSMObject& object) {
+    ++(object.visible() ? applied_.created : applied_.known);
+    write(object);
+  }
+  /// \throws base::OutputError  the reader that calls must not take it for an error of its own file
+  void write(const OSMObject& object) {
+    try {
+      out_(object);
+    } catch (const std::exception& error) {
+      throw cannot_write(path_, error);
     }
-    ++applied_.created;
-    out_(object);
   }
 
   std::span<const Versioned> changes_;
   osmium::io::Writer& out_;
+  const std::string& path_;
   std::size_t next_ = 0;
   AppliedChanges applied_;
 };
@@ -180,11 +217,15 @@ class Base {
       sorted_ = scan();
     } catch (const NulInText&) {
       file_.clean_strings();
+      cleaned_ = true;
       sorted_ = scan();
     }
   }
 
+  bool cleaned() const { return cleaned_; }
+
   void for_each(const OsmFile::Visit& visit) {
+    // What an editor marked as deleted was never sent anywhere: it has no version to keep.
     const auto alive = [&](const OSMObject& object) { return !file_.deleted_by_editor(object.type(), object.id()); };
     constexpr auto all = osmium::osm_entity_bits::nwr;
     if (sorted_) {
@@ -205,77 +246,88 @@ class Base {
                    {});
     std::vector<const OSMObject*> order;
     for (const OSMObject& object : kept.select<OSMObject>()) order.push_back(&object);
+    // As the reader of extracts chooses (raw_data.cpp): of equal versions the newer one, of equal times that whose place and
+    // members, then tags, come first.
     std::ranges::stable_sort(order, [](const OSMObject* a, const OSMObject* b) {
-      return same_object(*a, *b) ? a->version() < b->version() : before(*a, *b);
+      if (!same_object(*a, *b)) return before(*a, *b);
+      if (a->version() != b->version()) return a->version() > b->version();
+      if (a->timestamp() != b->timestamp()) return a->timestamp() > b->timestamp();
+      return content_of(*a) < content_of(*b);
     });
     for (std::size_t i = 0; i < order.size(); ++i)
-      if (i + 1 == order.size() || !same_object(*order[i], *order[i + 1])) visit(*order[i]);
+      if (i == 0 || !same_object(*order[i], *order[i - 1])) visit(*order[i]);
   }
 
  private:
   OsmFile file_;
-  bool sorted_ = true;
+  bool sorted_ = true, cleaned_ = false;
 };
 
 }  // namespace
 
 bool is_change_file(std::string_view path) {
-  return path.ends_with(".osc") || path.ends_with(".osc.gz") || path.ends_with(".osc.bz2");
+  const std::string name = small_letters(path);
+  return name.ends_with(".osc") || name.ends_with(".osc.gz") || name.ends_with(".osc.bz2");
 }
 
-ReplicationState replication_state(const std::string& path) {
-  ReplicationState state;
-  if (!path.ends_with(".pbf")) return state;
+std::optional<std::uint64_t> replication_sequence(const std::string& path) {
+  std::error_code missing;
+  // What is wrong with a file that is none is told by whoever reads it.
+  if (!small_letters(path).ends_with(".pbf") || !fs::is_regular_file(path, missing)) return std::nullopt;
   try {
-    osmium::io::Reader reader(fs::absolute(path).string(), osmium::osm_entity_bits::nothing);
-    const osmium::io::Header header = reader.header();
+    osmium::io::Reader reader(osmium::io::File(fs::absolute(path).string(), "pbf"), osmium::osm_entity_bits::nothing);
+    const std::string number = reader.header().get("osmosis_replication_sequence_number");
     reader.close();
-    const std::string number = header.get("osmosis_replication_sequence_number");
     std::uint64_t sequence = 0;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), sequence);
-    if (!number.empty() && error == std::errc() && end == number.data() + number.size()) state.sequence = sequence;
-    state.time = header.get("osmosis_replication_timestamp");
+    if (!number.empty() && error == std::errc() && end == number.data() + number.size()) return sequence;
   } catch (const std::exception&) {
     throw_in_words(path);
   }
-  return state;
+  return std::nullopt;
 }
 
-AppliedChanges apply_changes(const std::string& base_path, std::span<const std::string> files, const std::string& out,
-                             const ReplicationState& state) {
+AppliedChanges apply_changes(const std::string& base_path, std::span<const std::string> files, const std::string& out) {
   use_own_bzip2();
   osmium::thread::Pool pool(2);
   Base base(base_path);
   const Changes changes(files, pool);
   osmium::io::Header header;
   header.set("generator", "blockrand");
-  if (state.sequence) header.set("osmosis_replication_sequence_number", std::to_string(*state.sequence));
-  if (!state.time.empty()) header.set("osmosis_replication_timestamp", state.time);
   header.set("sorting", "Type_then_ID");
+  header.set_has_multiple_object_versions(true);  // else nobody would read who was deleted
+  osmium::io::File file(fs::absolute(out).string(), "pbf");
+  file.set_has_multiple_object_versions(true);
   AppliedChanges applied;
-  const auto cannot_write = [&](const std::exception& error) {
-    std::error_code ignored;
-    fs::remove(out, ignored);
-    return base::OutputError(out + ": cannot be written: " + error.what() +
-                             ". Free some space or check the permissions");
-  };
   std::optional<osmium::io::Writer> writer;
-  try {
-    writer.emplace(osmium::io::File(fs::absolute(out).string(), "pbf"), header, osmium::io::overwrite::allow,
-                   osmium::io::fsync::yes, pool);
-    Merge merge(changes.newest(), *writer);
+  bool done = false;
+  const auto write = [&] {
+    try {
+      writer.emplace(file, header, osmium::io::overwrite::allow, osmium::io::fsync::yes, pool);
+    } catch (const std::exception& error) {
+      throw cannot_write(out, error);
+    }
+    Merge merge(changes.newest(), *writer, out);
     base.for_each([&](const OSMObject& object) { merge.add(object); });
     applied = merge.finish();
-    writer->close();
-  } catch (const base::InputError&) {
+    applied.cleaned_texts = base.cleaned();
+    try {
+      writer->close();
+    } catch (const std::exception& error) {
+      throw cannot_write(out, error);
+    }
+    done = true;
+  };
+  const auto remove = [&] {
     std::error_code ignored;
     writer.reset();
-    fs::remove(out, ignored);
+    if (!done) fs::remove(out, ignored);
+  };
+  try {
+    write();
+  } catch (...) {
+    remove();
     throw;
-  } catch (const std::system_error& error) {
-    throw cannot_write(error);
-  } catch (const std::runtime_error& error) {
-    throw cannot_write(error);
   }
   return applied;
 }

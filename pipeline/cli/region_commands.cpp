@@ -9,6 +9,7 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/progress.h"
+#include "pipeline/base/sha256.h"
 #include "pipeline/base/text.h"
 #include "pipeline/base/version.h"
 #include "pipeline/cli/configs_folder.h"
@@ -24,20 +25,27 @@ namespace blockrand::cli {
 namespace {
 
 /// Options of a region: those of its region.toml, and the arguments, which are stronger.
-settings::CommandLine region_line(settings::Commands command, const std::vector<std::string>& arguments) {
+/// \param sha256  becomes that of region.toml
+settings::CommandLine region_line(settings::Commands command, const std::vector<std::string>& arguments,
+                                  std::string& sha256) {
   settings::CommandLine line = settings::read_command_line(command, arguments);
   if (line.help) return line;
   const run::RegionFolder region(line.settings.region);
   std::error_code error;
   if (!std::filesystem::exists(region.settings(), error)) return line;
   settings::Settings file;
+  sha256 = base::sha256_file(region.settings());
   settings::read_config(region.settings(), file, settings::kBuild | settings::kUpdate);
   const auto refuse = [&](const char* key, const char* remedy) {
     throw base::InputError(region.settings(), std::string("[build] ") + key, "has no place in a region", remedy);
   };
   if (!file.build.output.empty()) refuse("output", "Take it out: builds lie in the region's folder builds/");
-  if (!file.build.outputs.explain)
-    refuse("explain = false", "Take it out: builds of a region are compared by explanations");
+  if (!file.build.outputs.explain) refuse("explain", "Take it out: builds of a region are compared by explanations");
+  const run::BuildOptions fresh;
+  const char* const by_gates = "Take it out: [gates] say when a build is not published";
+  if (file.build.strict) refuse("strict", by_gates);
+  if (file.build.allow_empty) refuse("allow_empty", by_gates);
+  if (file.build.allow_shrink != fresh.allow_shrink) refuse("allow_shrink", by_gates);
   return settings::read_command_line(command, arguments, std::move(file));
 }
 
@@ -56,8 +64,10 @@ std::string update_report(const run::UpdateOptions& options, const run::UpdateSu
   const run::BuildChanges& c = s.changes;
   const auto gates = [&] {
     for (const run::Gate& g : s.gates)
-      if (g.exceeded())
-        out += fmt::format("  refused: {}: {:.2f}, {} in region.toml is {:g}\n", g.words, g.value, g.key, g.limit);
+      if (g.exceeded() && g.key.starts_with("max_"))
+        out += fmt::format("  refused: {}: {:.2f} %, {} in region.toml is {:g}\n", g.words, g.value, g.key, g.limit);
+      else if (g.exceeded())
+        out += fmt::format("  refused: {} ({})\n", g.words, g.key);
   };
   switch (s.state) {
     case run::UpdateState::unchanged:
@@ -106,7 +116,7 @@ std::string update_json(const run::UpdateSummary& s) {
   for (const run::Gate& g : s.gates)
     j["gates"].push_back({{"gate", g.key}, {"value", g.value}, {"limit", g.limit}, {"exceeded", g.exceeded()}});
   j["expected_seconds"] = s.expected_seconds, j["seconds"] = s.seconds;
-  return j.dump() + "\n";
+  return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -139,7 +149,8 @@ settings::CommandText update_text() {
 }
 
 int run_update(const std::vector<std::string>& arguments) {
-  settings::CommandLine line = region_line(settings::kUpdate, arguments);
+  std::string sha256;
+  settings::CommandLine line = region_line(settings::kUpdate, arguments, sha256);
   if (line.help) {
     std::fputs(settings::command_help(update_text()).c_str(), stdout);
     return kSuccess;
@@ -156,14 +167,16 @@ int run_update(const std::vector<std::string>& arguments) {
   options.region = s.region_options;
   options.dry_run = s.dry_run, options.break_lock = s.break_lock;
   options.version = base::kVersion;
+  options.settings_sha256 = std::move(sha256);
   const run::RegionFolder region(options.folder);
   std::error_code error;
   if (!std::filesystem::exists(region.settings(), error) && !s.dry_run) {
     if (s.data.empty())
       throw base::UsageError(options.folder + " is no region yet. Begin with an extract: blockrand update " +
                              options.folder + " EXTRACT.osm.pbf");
-    region.make();
+    std::filesystem::create_directories(options.folder, error);
     run::write_whole(region.settings(), settings::config_template(settings::kBuild | settings::kUpdate));
+    options.settings_sha256 = base::sha256_file(region.settings());
   }
   const run::UpdateSummary summary = run::update_region(options, progress);
   progress.end();
@@ -187,7 +200,8 @@ settings::CommandText status_text() {
 }
 
 int run_status(const std::vector<std::string>& arguments) {
-  const settings::CommandLine line = region_line(settings::kStatus, arguments);
+  std::string sha256;
+  const settings::CommandLine line = region_line(settings::kStatus, arguments, sha256);
   if (line.help) {
     std::fputs(settings::command_help(status_text()).c_str(), stdout);
     return kSuccess;
@@ -204,7 +218,7 @@ int run_status(const std::vector<std::string>& arguments) {
     j["last_run"] = nlohmann::ordered_json::parse(status.last_run, nullptr, false);
     if (j["last_run"].is_discarded()) j["last_run"] = nullptr;
     j["waiting"] = status.waiting, j["waiting_problem"] = status.waiting_problem;
-    std::fputs((j.dump(1) + "\n").c_str(), stdout);
+    std::fputs((j.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n").c_str(), stdout);
     return kSuccess;
   }
   std::string out;
@@ -212,7 +226,7 @@ int run_status(const std::vector<std::string>& arguments) {
     out += "no build is published\n";
   } else {
     out += fmt::format(
-        "build {} is published: {} buildings, data of {}{}; it took {}\n", *status.current,
+        "build {} is published: {} models, data of {}{}; it took {}\n", *status.current,
         base::with_thousands(status.models), status.data_time.empty() ? "unknown time" : status.data_time,
         status.sequence ? fmt::format(", sequence {}", *status.sequence) : std::string(), seconds_text(status.seconds));
     std::string kept;

@@ -35,7 +35,7 @@ namespace blockrand::outputs {
 /// extract's objects, which are complete when the outputs finish.
 struct OutputContext {
   const OutputOptions& options;
-  int lod = 2;             ///< highest level of detail
+  int lod = 2;       ///< highest level of detail
   std::string name;  ///< of the build, for people
   base::StagedFolder& folder;
   const georef::Projection& projection;

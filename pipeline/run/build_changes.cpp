@@ -70,7 +70,8 @@ std::map<std::string, Told> read_build(const std::string& folder) {
     throw base::InputError(folder + "/build.json", "", "is no record of a build", "Put the build back, or roll back");
   const int asked = record["configuration"]["lod"].get<int>();
   std::error_code error;
-  if (!fs::is_directory(folder + "/explain", error) && record["counts"].value("models", 0) > 0)
+  const bool empty = record.contains("counts") && record["counts"].value("models", 0) == 0;
+  if (!fs::is_directory(folder + "/explain", error) && !empty)
     throw base::InputError(folder, "", "was built without explanations, which builds are compared by",
                            "Take explain = false out of region.toml");
   std::vector<fs::path> files;

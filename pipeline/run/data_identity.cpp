@@ -63,6 +63,7 @@ std::string data_sha256(const Extract& e) {
     digest.add(b.id), digest.add(static_cast<int>(b.kind)), digest.add(static_cast<int>(b.state));
     digest.add(model::info(b.code).text), digest.add(b.related), digest.add(b.geometry_from), digest.add(b.edited);
     add_rings(e, b.rings, digest), add_tags(e, b.tags, digest);
+    digest.add(static_cast<int>(b.place.has_value()));
     if (b.place) digest.add(b.place->lon), digest.add(b.place->lat);
   }
   digest.add(e.building_relations.size());
@@ -75,6 +76,7 @@ std::string data_sha256(const Extract& e) {
     digest.add(f.id), digest.add(f.kinds), digest.add(static_cast<int>(f.area));
     add_rings(e, f.rings, digest), add_tags(e, f.tags, digest);
   }
+  digest.add(e.report.rows.size());
   for (const model::ReportRow& row : e.report.rows)
     digest.add(row.object), digest.add(model::info(row.code).text), digest.add(row.detail);
   return digest.finish();

@@ -1,6 +1,7 @@
 #include "pipeline/run/region_folder.h"
 
 #include <fcntl.h>
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -9,11 +10,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
+#include <condition_variable>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <mutex>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/text.h"
@@ -23,16 +26,43 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRefused = ".refused";
-/// s: a lock of another host that nobody touched for so long is stale.
+constexpr std::string_view kRefused = ".refused";
+/// s: a lock of another host that nobody touched for so long is stale; how often its run touches it.
 constexpr std::time_t kStale = 24L * 3600;
+constexpr std::chrono::seconds kTouched{300};
 
-/// The number that a name begins with, six digits; -1: it has none.
-int number_of(const std::string& name) {
+/// The number that a name is or begins with, six digits, and what follows; -1: it has none.
+struct Numbered {
   int number = -1;
-  if (name.size() < 6) return -1;
+  std::string rest;
+};
+Numbered numbered(const std::string& name) {
+  Numbered out;
+  if (name.size() < 6) return out;
+  int number = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + 6, number);
-  return error == std::errc() && end == name.data() + 6 && (name.size() == 6 || name[6] == '.') ? number : -1;
+  if (error == std::errc() && end == name.data() + 6) out = {number, name.substr(6)};
+  return out;
+}
+
+bool is_number(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// `.000012.part-4711`: what base::StagedFolder makes beside a build.
+bool is_staging(const std::string& name) {
+  if (!name.starts_with('.')) return false;
+  const Numbered n = numbered(name.substr(1));
+  const std::size_t dash = n.rest.find('-');
+  return n.number >= 0 && dash != std::string::npos && is_number(std::string_view(n.rest).substr(dash + 1));
+}
+
+/// \throws base::OutputError  nobody can tell
+bool is_there(const std::string& path) {
+  std::error_code error;
+  const bool there = fs::exists(path, error);
+  if (error) throw base::OutputError(path + ": cannot be looked at: " + error.message() + ". Nothing was removed");
+  return there;
 }
 
 std::vector<fs::path> entries(const std::string& folder) {
@@ -49,17 +79,20 @@ std::vector<fs::path> entries(const std::string& folder) {
                           ". Check permissions and free space; what is published stays as it was");
 }
 
-void sync_folder(const std::string& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
-  ::close(descriptor);
-}
-
 std::string host_name() {
   char host[256] = "";
   ::gethostname(host, sizeof host - 1);
   return host;
+}
+
+/// Everything written so far to the disk of a folder is on it.
+void sync_disk(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) cannot_write(folder, errno);
+  const bool synced = ::syncfs(descriptor) == 0;
+  const int error = errno;
+  ::close(descriptor);
+  if (!synced) cannot_write(folder, error);
 }
 
 std::string read_all(int descriptor) {
@@ -80,17 +113,24 @@ RegionFolder::RegionFolder(std::string path) : path_(std::move(path)) {
     throw base::UsageError(path_ +
                            " is a build, not a region. A region is a folder of its own, which holds its builds: "
                            "name another one; the first 'blockrand update' makes it.");
-  if (!exists() && !entries(path_).empty() && !fs::exists(settings(), error))
-    throw base::UsageError(path_ + " is no region and not empty. Name a region, or a new or empty folder.");
+  if (exists() || entries(path_).empty()) return;
+  if (fs::exists(path_ + "/log/runs.jsonl", error) || fs::is_symlink(path_ + "/current", error))
+    throw base::UsageError(settings() +
+                           " is missing: it says how the region is built. Put it back, or write a new one.");
+  throw base::UsageError(path_ + " is no region and not empty. Name a region, or a new or empty folder.");
 }
 
-std::string RegionFolder::name() const { return fs::absolute(path_).lexically_normal().filename().string(); }
+std::string RegionFolder::name() const {
+  std::error_code error;
+  const fs::path place = fs::weakly_canonical(fs::absolute(path_), error);
+  return (error ? fs::absolute(path_).lexically_normal() : place).filename().string();
+}
 
 std::string RegionFolder::digits(int number) { return fmt::format("{:06}", number); }
 
 bool RegionFolder::exists() const {
   std::error_code error;
-  return fs::is_directory(path_ + "/builds", error) && fs::is_directory(path_ + "/store", error);
+  return fs::is_regular_file(settings(), error);
 }
 
 void RegionFolder::make() const {
@@ -104,23 +144,30 @@ void RegionFolder::make() const {
 std::optional<int> RegionFolder::current() const {
   std::error_code error;
   const fs::path link = path_ + "/current";
-  if (!fs::is_symlink(link, error)) return std::nullopt;
-  const int number = number_of(fs::read_symlink(link, error).filename().string());
+  if (!fs::is_symlink(link, error)) {
+    if (fs::exists(link, error))
+      throw base::InputError(link.string(), "", "is no link to a build",
+                             "The region was copied without its links: remove it, then blockrand rollback --to N");
+    if (const std::vector<int> there = passed(); !there.empty())
+      throw base::InputError(link.string(), "", "is missing, but there are builds",
+                             fmt::format("Publish one: blockrand rollback {} --to {}", path_, there.back()));
+    return std::nullopt;
+  }
+  const int number = numbered(fs::read_symlink(link, error).filename().string()).number;
   if (number < 0 || !fs::is_regular_file(build(number) + "/build.json", error))
     throw base::InputError(link.string(), "", "leads to no build",
                            "Put the build back, or go to an earlier one: blockrand rollback");
   return number;
 }
 
-std::vector<int> RegionFolder::published() const {
-  std::error_code error;
-  const fs::path link = path_ + "/current";
-  const int now = fs::is_symlink(link, error) ? number_of(fs::read_symlink(link, error).filename().string()) : -1;
+std::vector<int> RegionFolder::passed() const {
   std::vector<int> out;
+  std::error_code error;
   for (const fs::path& entry : entries(path_ + "/builds")) {
-    const std::string name = entry.filename().string();
-    const int number = number_of(name);
-    if (number >= 0 && name.size() == 6 && (number == now || fs::exists(log(number), error))) out.push_back(number);
+    const Numbered name = numbered(entry.filename().string());
+    if (name.number >= 0 && name.rest.empty() && fs::is_regular_file(entry / "build.json", error) &&
+        is_there(state(name.number)))
+      out.push_back(name.number);
   }
   return out;
 }
@@ -128,13 +175,12 @@ std::vector<int> RegionFolder::published() const {
 int RegionFolder::next() const {
   int most = 0;
   for (const char* folder : {"/builds", "/store", "/log"})
-    for (const fs::path& entry : entries(path_ + folder)) most = std::max(most, number_of(entry.filename().string()));
+    for (const fs::path& entry : entries(path_ + folder))
+      most = std::max(most, numbered(entry.filename().string()).number);
   return most + 1;
 }
 
 std::vector<std::string> RegionFolder::remove_unfinished() const {
-  const std::vector<int> good = published();
-  const std::set<int> known(good.begin(), good.end());
   std::vector<std::string> removed;
   const auto remove = [&](const fs::path& path) {
     std::error_code error;
@@ -142,55 +188,75 @@ std::vector<std::string> RegionFolder::remove_unfinished() const {
     if (error) throw base::OutputError(path.string() + ": cannot be removed: " + error.message());
     removed.push_back(path.string());
   };
-  // What has another name is somebody else's.
   for (const fs::path& entry : entries(path_ + "/builds")) {
     const std::string name = entry.filename().string();
-    const bool staged = name.starts_with('.') && name.find(".part-") != std::string::npos;
-    const bool lost = number_of(name) >= 0 && name.size() == 6 && !known.contains(number_of(name));
-    if (staged || lost) remove(entry);
+    const Numbered n = numbered(name);
+    const bool lost =
+        n.number >= 0 && n.rest.empty() && is_there((entry / "build.json").string()) && !is_there(state(n.number));
+    if (lost || is_staging(name)) remove(entry);
   }
   for (const fs::path& entry : entries(path_ + "/store")) {
-    const int number = number_of(entry.filename().string());
-    if (number >= 0 && (!known.contains(number) || entry.string().ends_with(".part"))) remove(entry);
+    const Numbered n = numbered(entry.filename().string());
+    const bool part = n.rest == ".osm.pbf.part" || n.rest == ".json.part";
+    if (n.number >= 0 && (part || (n.rest == ".osm.pbf" && !is_there(state(n.number))))) remove(entry);
   }
-  for (const fs::path& entry : entries(path_))
-    if (entry.filename() == "current.new") remove(entry);
+  for (const fs::path& entry : entries(path_ + "/log"))
+    if (const Numbered n = numbered(entry.filename().string()); n.number >= 0 && n.rest.ends_with(".part"))
+      remove(entry);
+  std::error_code error;
+  if (fs::is_symlink(path_ + "/current.new", error)) remove(path_ + "/current.new");
   return removed;
 }
 
 void RegionFolder::publish(int number) const {
   const std::string fresh = path_ + "/current.new", place = path_ + "/current";
+  sync_disk(path_);
   ::unlink(fresh.c_str());
   if (::symlink(("builds/" + digits(number)).c_str(), fresh.c_str()) != 0) cannot_write(fresh, errno);
-  sync_folder(path_ + "/builds");
   if (::rename(fresh.c_str(), place.c_str()) != 0) cannot_write(place, errno);
-  sync_folder(path_);
+  // From here on it is published: whether the disk has it already changes nothing for readers.
+  const int descriptor = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
 }
 
 std::string RegionFolder::set_aside(int number) const {
   std::error_code error;
-  for (const fs::path& entry : entries(path_ + "/builds"))
-    if (entry.string().ends_with(kRefused)) fs::remove_all(entry, error);
-  const std::string aside = build(number) + kRefused;
+  const std::string aside = build(number) + std::string(kRefused);
   fs::rename(build(number), aside, error);
+  if (error) cannot_write(aside, error.value());
+  for (const fs::path& entry : entries(path_ + "/builds"))
+    if (const Numbered n = numbered(entry.filename().string());
+        n.number >= 0 && n.number != number && n.rest == kRefused)
+      fs::remove_all(entry, error);
   for (const std::string& path : {data(number), state(number)}) fs::remove(path, error);
   return aside;
 }
 
-void RegionFolder::prune(int keep) const {
-  std::vector<int> all = published();
+std::vector<std::string> RegionFolder::prune(int keep, std::optional<int> also) const {
+  std::vector<int> all = passed();
   const std::optional<int> now = current();
-  std::erase_if(all, [&](int number) { return number == now; });
-  std::error_code error;
-  // What goes first is its entry in the log: a run that is broken off here removes the rest.
-  while (all.size() + 1 > static_cast<std::size_t>(keep)) {
-    const int oldest = all.front();
-    all.erase(all.begin());
-    fs::remove(log(oldest), error);
-    fs::remove_all(build(oldest), error);
-    for (const std::string& path : {data(oldest), state(oldest), changes(oldest) + ".json", changes(oldest) + ".html"})
-      fs::remove(path, error);
+  std::size_t kept = all.size();
+  std::vector<std::string> failed;
+  const auto remove = [&](const std::string& path) {
+    std::error_code error;
+    fs::remove_all(path, error);
+    if (error) failed.push_back(path + ": " + error.message());
+  };
+  for (const int number : all) {
+    if (kept <= static_cast<std::size_t>(keep)) break;
+    if (number == now || number == also) continue;
+    // Its mark goes first: what a run that is broken off here leaves, the next one removes.
+    for (const std::string& path : {state(number), build(number), data(number)}) remove(path);
+    --kept;
   }
+  all = passed();
+  for (const fs::path& entry : entries(path_ + "/log")) {
+    const Numbered n = numbered(entry.filename().string());
+    if (n.number >= 0 && !all.empty() && n.number < all.front()) remove(entry.string());
+  }
+  return failed;
 }
 
 RegionLock::RegionLock(const RegionFolder& region, bool take_over, base::Progress& progress) {
@@ -208,9 +274,21 @@ RegionLock::RegionLock(const RegionFolder& region, bool take_over, base::Progres
     return holder.is_object() && holder.contains(key) && holder[key].is_string() ? holder[key].get<std::string>()
                                                                                  : std::string();
   };
-  const std::string who = fmt::format("process {} on {}, since {}", text("pid"), text("host"), text("since"));
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
+  const std::string who = holder.is_object()
+                              ? fmt::format("process {} on {}, since {}", text("pid"), text("host"), text("since"))
+                              : std::string("one that has just begun");
+  int locked = 0;
+  do locked = ::flock(descriptor_, LOCK_EX | LOCK_NB);
+  while (locked != 0 && errno == EINTR);
+  if (locked != 0 && errno == EWOULDBLOCK)
     give_up("another run works on this region (" + who + "). Wait for it, or end it.");
+  if (locked != 0) {
+    const int error = errno;
+    ::close(descriptor_);
+    descriptor_ = -1;
+    throw base::OutputError(path + ": cannot be locked: " + std::strerror(error) +
+                            ". The disk must know locks (flock); put the region on another one");
+  }
   if (!before.empty()) {
     // Its process is gone, if it ran here: the kernel let go of the lock. Network disks may keep locks apart.
     struct stat info {};
@@ -223,7 +301,7 @@ RegionLock::RegionLock(const RegionFolder& region, bool take_over, base::Progres
   }
   const nlohmann::json mine = {{"pid", std::to_string(::getpid())},
                                {"host", host_name()},
-                               {"since", fmt::format("{} (Unix time)", std::time(nullptr))}};
+                               {"since", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))}};
   const std::string bytes = mine.dump() + "\n";
   if (::ftruncate(descriptor_, 0) != 0 ||
       ::pwrite(descriptor_, bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
@@ -232,9 +310,17 @@ RegionLock::RegionLock(const RegionFolder& region, bool take_over, base::Progres
     descriptor_ = -1;
     cannot_write(path, error);
   }
+  alive_ = std::jthread([descriptor = descriptor_](const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any ended;
+    std::unique_lock lock(mutex);
+    while (!ended.wait_for(lock, stop, kTouched, [&] { return stop.stop_requested(); }))
+      ::futimens(descriptor, nullptr);
+  });
 }
 
 RegionLock::~RegionLock() {
+  alive_ = {};
   if (descriptor_ < 0) return;
   // An empty file is nobody's.
   if (::ftruncate(descriptor_, 0) != 0) { /* the next run tells it */

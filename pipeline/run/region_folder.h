@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <thread>
 #include <vector>
 
 #include "pipeline/base/progress.h"
@@ -12,10 +14,12 @@ namespace blockrand::run {
 
 /// `region.toml`, `store/N.osm.pbf` and `store/N.json`, `builds/N/`, `current` -> `builds/N`, `log/N.json`, `lock`. N is the
 /// number of a run, six digits. What `current` leads to is published, whatever else lies there: the one step that
-/// publishes is the renaming of that link.
+/// publishes is the renaming of that link. `store/N.json` is written when gates have let a build N pass: a build without it
+/// is left by a run that was broken off.
 class RegionFolder {
  public:
-  /// Nothing is made. \throws base::UsageError  the place is a file, or a folder that is no region and not empty
+  /// Nothing is made. \throws base::UsageError  the place is a file, a build, a region without its region.toml, or a folder
+  /// that is no region and not empty
   explicit RegionFolder(std::string path);
 
   const std::string& path() const { return path_; }
@@ -31,25 +35,28 @@ class RegionFolder {
 
   /// Whether it is one already.
   bool exists() const;
-  /// Makes what is missing. \throws base::OutputError
+  /// Makes what is missing but region.toml. \throws base::OutputError
   void make() const;
 
-  /// The build that is published. \throws base::InputError  `current` leads to no build
+  /// The build that is published. \throws base::InputError  `current` is no link, or leads to no build; there is none, but
+  /// there are builds
   std::optional<int> current() const;
-  /// Builds that were published and are still there, ascending.
-  std::vector<int> published() const;
+  /// Builds that gates have let pass and that are still there, ascending.
+  std::vector<int> passed() const;
   /// Larger than any that was used.
   int next() const;
 
-  /// Removes what a run that was broken off left: builds and data that no run has ended with. \returns  what was removed
+  /// Removes what a run that was broken off left: builds and data without `store/N.json`, unfinished files. What has other
+  /// names than this program's stays. \returns  what was removed
+  /// \throws base::OutputError  something cannot be removed, or nobody can tell what it is (a disk that does not answer)
   std::vector<std::string> remove_unfinished() const;
-  /// Publishes a build. \throws base::OutputError
+  /// Publishes a build, when all that was written is on the disk. \throws base::OutputError
   void publish(int number) const;
-  /// Sets a build that was refused aside, as `builds/N.refused`; an earlier one makes room.
-  /// \returns  where it lies
+  /// Sets a build that was refused aside, as `builds/N.refused`; earlier ones make room.
+  /// \returns  where it lies \throws base::OutputError
   std::string set_aside(int number) const;
-  /// Removes the oldest published builds, with their data, but for `keep` and the current one.
-  void prune(int keep) const;
+  /// Removes the oldest builds, with their data, but for `keep`, the current one and `also`. \returns  what could not be removed
+  std::vector<std::string> prune(int keep, std::optional<int> also) const;
 
  private:
   std::string path_;
@@ -60,7 +67,7 @@ class RegionLock {
  public:
   /// \param take_over  even where a run on another host seems to hold it
   /// \throws base::UsageError   another run holds it: which, since when
-  /// \throws base::OutputError  the folder cannot be written
+  /// \throws base::OutputError  the folder cannot be written, or its disk knows no locks
   RegionLock(const RegionFolder& region, bool take_over, base::Progress& progress);
   ~RegionLock();
   RegionLock(const RegionLock&) = delete;
@@ -68,6 +75,7 @@ class RegionLock {
 
  private:
   int descriptor_ = -1;
+  std::jthread alive_;  ///< touches the lock, so that other hosts see that its run lives
 };
 
 /// Writes a small file beside its place and renames it there, so that a reader finds the old one or the new one whole.

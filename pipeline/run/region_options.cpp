@@ -52,7 +52,7 @@ base::OptionTable<R> of_gates() {
   const auto percent = [](std::string_view name, std::string_view key, std::string_view help, double R::*member) {
     return number({.name = name,
                    .key = key,
-                   .argument = "PERCENT",
+                   .argument = "NUMBER",
                    .commands = kUpdate,
                    .minimum = 0,
                    .maximum = 1e9,

@@ -53,6 +53,10 @@ std::vector<ReplicationFile> replication_files(const std::string& folder, std::u
   if (!state.sequence)
     throw base::InputError(newest, "", "has no line sequenceNumber=N",
                            "Fetch it again from where the change files come");
+  if (*state.sequence + 1 < from)
+    throw base::InputError(newest, fmt::format("sequence {}", *state.sequence),
+                           fmt::format("is behind: the region has change file {} already", from - 1),
+                           "Is it the folder of another server, or was its file cut off? Fetch it again");
   std::vector<ReplicationFile> files;
   for (std::uint64_t n = from; n <= *state.sequence; ++n) {
     const std::string stem = fmt::format("{}/{:03}/{:03}/{:03}", folder, n / 1'000'000, n / 1000 % 1000, n % 1000);

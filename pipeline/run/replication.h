@@ -16,7 +16,7 @@ struct ReplicationFile {
 
 /// \param from  number of the first file that is wanted
 /// \returns  the files from there to the newest that state.txt names, without a gap; empty where there is nothing new
-/// \throws base::InputError  no folder, no state.txt or one without a number, a file that is missing
+/// \throws base::InputError  no folder, no state.txt, one without a number or one that is behind, a file that is missing
 std::vector<ReplicationFile> replication_files(const std::string& folder, std::uint64_t from);
 
 }  // namespace blockrand::run

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "importers/imagery/image_files.h"
 #include "importers/osm/apply_changes.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/sha256.h"
@@ -26,7 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using importers::osm::AppliedChanges;
-using importers::osm::ReplicationState;
 
 Json read_json(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -38,35 +38,56 @@ std::string text_in(const Json& j, const char* key) {
   return j.contains(key) && j[key].is_string() ? j[key].get<std::string>() : std::string();
 }
 
+/// Texts of others, as names of files, may not be UTF-8.
+std::string dumped(const Json& j, int indent = -1) {
+  return j.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 /// What is known of the data of a build: `store/N.json`.
 struct DataState {
   std::string sha256, settings;           ///< of the data's file; of what is built from it (settings_sha256())
   std::optional<std::uint64_t> sequence;  ///< of the newest change file in it
-  std::string time;                       ///< of that file
+  std::string input;                      ///< the input of region.toml when it was last taken: path, size, time
+  bool crs_chosen = false;                ///< by the program, not by region.toml
+  std::optional<int> replaced;            ///< the build that was published before
 
   static DataState read(const std::string& path) {
     const Json j = read_json(path);
-    DataState state{text_in(j, "data_sha256"), text_in(j, "settings_sha256"), std::nullopt, text_in(j, "time")};
+    DataState state;
+    state.sha256 = text_in(j, "data_sha256"), state.settings = text_in(j, "settings_sha256");
+    state.input = text_in(j, "input");
     if (j.contains("sequence") && j["sequence"].is_number_unsigned())
       state.sequence = j["sequence"].get<std::uint64_t>();
+    state.crs_chosen = j.contains("crs_chosen") && j["crs_chosen"] == true;
+    if (j.contains("replaced") && j["replaced"].is_number_unsigned()) state.replaced = j["replaced"].get<int>();
     return state;
   }
   void write(const std::string& path) const {
     const Json j = {{"data_sha256", sha256},
                     {"settings_sha256", settings},
                     {"sequence", sequence ? Json(*sequence) : Json()},
-                    {"time", time}};
-    write_whole(path, j.dump(1) + "\n");
+                    {"input", input},
+                    {"crs_chosen", crs_chosen},
+                    {"replaced", replaced ? Json(static_cast<unsigned>(*replaced)) : Json()}};
+    write_whole(path, dumped(j, 1));
   }
 };
 
-/// Everything but the data that a build hangs on: settings, program, files of rules and styles, size and time of rasters.
-std::string settings_sha256(const UpdateOptions& options, const RegionFolder& region) {
+/// Says cheaply whether a file is the same.
+std::string stamp_of(const std::string& path) {
+  std::error_code error;
+  if (path.empty() || !fs::is_regular_file(path, error)) return "";
+  return fmt::format("{}, {} bytes, {}", path, fs::file_size(path, error),
+                     fs::last_write_time(path, error).time_since_epoch().count());
+}
+
+/// Everything but the data that a build hangs on: settings, program, files of rules and styles, rasters by the size and time
+/// of their files.
+std::string settings_sha256(const UpdateOptions& options) {
   base::Sha256 hash;
   const auto add = [&](std::string_view text) { hash.add(std::to_string(text.size()) + ":" + std::string(text)); };
-  add(options.version);
+  add(options.version), add(options.settings_sha256);
   std::error_code error;
-  if (fs::is_regular_file(region.settings(), error)) add(base::sha256_file(region.settings()));
   std::vector<fs::path> files;
   for (fs::recursive_directory_iterator entry(options.build.configs, error), end; !error && entry != end;
        entry.increment(error))
@@ -74,25 +95,33 @@ std::string settings_sha256(const UpdateOptions& options, const RegionFolder& re
   std::sort(files.begin(), files.end());
   for (const fs::path& path : files)
     add(path.lexically_relative(options.build.configs).string()), add(base::sha256_file(path.string()));
-  if (!options.build.overrides.empty()) add(base::sha256_file(options.build.overrides));
-  std::vector<std::string> rasters{options.build.terrain, options.build.districts};
+  for (const std::string& path : {options.build.overrides, options.build.districts})
+    if (!path.empty() && fs::is_regular_file(path, error)) add(base::sha256_file(path));
+  std::vector<std::string> rasters;
+  if (!options.build.terrain.empty()) rasters.push_back(options.build.terrain);
   for (const importers::imagery::ImageSource& image : options.build.imagery.images) rasters.push_back(image.path);
-  for (const std::string& path : rasters) {
-    add(path);
-    if (path.empty() || !fs::is_regular_file(path, error)) continue;
-    add(std::to_string(fs::file_size(path, error)));
-    add(std::to_string(fs::last_write_time(path, error).time_since_epoch().count()));
-  }
+  for (const std::string& path : rasters)
+    for (const importers::imagery::FileStamp& file : importers::imagery::stamps_of_raster(path))
+      add(file.path), add(std::to_string(file.bytes)), add(std::to_string(file.changed));
   return hash.finish();
 }
 
 /// Where the next data come from.
 struct Plan {
-  std::string extract;               ///< a full one; empty: the data in the store
-  std::vector<std::string> changes;  ///< change files, in their order
-  ReplicationState replication;      ///< after them
+  std::string extract;                    ///< a full one; empty: the data in the store
+  std::vector<std::string> changes;       ///< change files, in their order
+  std::optional<std::uint64_t> sequence;  ///< after them
   std::vector<std::string> why;
 };
+
+/// The first change file of the replication folder that is to be applied. \throws base::InputError  nobody knows
+std::uint64_t next_sequence(const RegionOptions& options, std::optional<std::uint64_t> applied,
+                            const RegionFolder& region) {
+  if (applied) return *applied + 1;
+  if (options.first_sequence >= 0) return static_cast<std::uint64_t>(options.first_sequence);
+  throw base::InputError(region.settings(), "[region]", "the extract does not say after which change file it was made",
+                         "Set first_sequence to the number of the first one to apply");
+}
 
 Plan plan_of(const UpdateOptions& options, const RegionFolder& region, std::optional<int> current,
              const DataState& state) {
@@ -106,31 +135,26 @@ Plan plan_of(const UpdateOptions& options, const RegionFolder& region, std::opti
       plan.extract = input;
     }
   }
-  if (options.inputs.empty() && options.region.replication.empty()) plan.extract = options.build.input;
-  if (!current && plan.extract.empty()) plan.extract = options.build.input;
+  // The input of region.toml, when it is another file than when it was last taken: change files came since.
+  const std::string& input = options.build.input;
+  if (plan.extract.empty() && !input.empty() &&
+      (!current || (options.inputs.empty() && stamp_of(input) != state.input)))
+    plan.extract = input;
   if (!current && plan.extract.empty())
     throw base::UsageError(region.path() + " has no data yet. Begin with an extract: blockrand update " +
                            region.path() + " EXTRACT.osm.pbf");
-  plan.replication = {state.sequence, state.time};
+  plan.sequence = state.sequence;
   if (!plan.extract.empty()) {
-    plan.replication = importers::osm::replication_state(plan.extract);
+    // One that does not say where it ends is newer than what is there, or applying again does no harm.
+    if (const auto own = importers::osm::replication_sequence(plan.extract)) plan.sequence = own;
     plan.why.push_back("a full extract: " + plan.extract);
   }
-  if (options.inputs.empty() && !options.region.replication.empty()) {
-    std::optional<std::uint64_t> from;
-    if (plan.replication.sequence) from = *plan.replication.sequence + 1;
-    if (!from && options.region.first_sequence >= 0) from = static_cast<std::uint64_t>(options.region.first_sequence);
-    if (!from)
-      throw base::InputError(region.settings(), "[region]",
-                             "the extract does not say after which change file it was made",
-                             "Set first_sequence to the number of the first one to apply");
-    for (const ReplicationFile& file : replication_files(options.region.replication, *from)) {
+  if (options.inputs.empty() && !options.region.replication.empty())
+    for (const ReplicationFile& file :
+         replication_files(options.region.replication, next_sequence(options.region, plan.sequence, region))) {
       plan.changes.push_back(file.path);
-      plan.replication = {file.sequence, file.time};
+      plan.sequence = file.sequence;
     }
-  } else if (!plan.changes.empty()) {
-    plan.replication.time.clear();  // files that are named one by one: the newest object tells
-  }
   if (!plan.changes.empty())
     plan.why.push_back(plan.changes.size() == 1
                            ? "a change file: " + plan.changes.front()
@@ -221,7 +245,7 @@ Json run_line(const UpdateSummary& s) {
 
 /// One line for each run. A line that cannot be written fails nothing: the run is done.
 void append_run(const RegionFolder& region, const Json& line, base::Progress& progress) {
-  const std::string path = region.path() + "/log/runs.jsonl", text = line.dump() + "\n";
+  const std::string path = region.path() + "/log/runs.jsonl", text = dumped(line);
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   const bool written =
       descriptor >= 0 && ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
@@ -236,14 +260,14 @@ void write_changes(const RegionFolder& region, int number, const UpdateSummary& 
 }
 
 BuildOptions build_options_for(const UpdateOptions& options, const RegionFolder& region, int number,
-                               std::optional<int> current) {
+                               std::optional<int> current, const DataState& before) {
   BuildOptions build = options.build;
   build.name = region.name();
   build.input = region.data(number);
   build.output = region.build(number);
   build.force = false;
   // The first build chose; what comes in later must not choose anew.
-  if (build.crs.empty() && current) {
+  if (build.crs.empty() && current && before.crs_chosen) {
     const Json record = read_json(region.build(*current) + "/build.json");
     if (record.contains("crs")) build.crs = text_in(record["crs"], "code");
   }
@@ -256,46 +280,58 @@ class Updater {
       : options_(options), region_(region), progress_(progress) {}
 
   UpdateSummary run() {
-    const auto start = std::chrono::steady_clock::now();
-    const auto ended = [&](UpdateState state) {
-      summary_.state = state;
-      summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      if (state != UpdateState::planned) append_run(region_, run_line(summary_), progress_);
-      return summary_;
-    };
     const std::optional<int> current = region_.current();
     summary_.before = current;
     if (current) {
       before_ = DataState::read(region_.state(*current));
-      if (!fs::exists(region_.log(*current))) write_whole(region_.log(*current), "{}\n");  // a run died just before it
       const Json last = read_json(region_.build(*current) + "/run.json");
       if (last.contains("seconds") && last["seconds"].is_number())
         summary_.expected_seconds = last["seconds"].get<double>();
     }
     const Plan plan = plan_of(options_, region_, current, before_);
     summary_.why = plan.why;
-    summary_.sequence = plan.replication.sequence;
-    DataState fresh{"", settings_sha256(options_, region_), plan.replication.sequence, plan.replication.time};
+    summary_.sequence = plan.sequence;
+    DataState fresh = before_;
+    fresh.settings = settings_sha256(options_), fresh.sequence = plan.sequence, fresh.replaced = current;
+    fresh.crs_chosen = options_.build.crs.empty();
+    if (!plan.extract.empty() && plan.extract == options_.build.input) fresh.input = stamp_of(plan.extract);
     const bool new_settings = current && fresh.settings != before_.settings;
     if (new_settings) summary_.why.emplace_back("region.toml, rules or the program differ from the published build's");
     summary_.number = region_.next();
 
     const bool nothing_came = current && plan.extract.empty() && plan.changes.empty();
-    if (nothing_came && !new_settings) return stay(*current, plan, ended);
-    Scratch data(region_.data(summary_.number) + ".part");
+    if (nothing_came && !new_settings) return stay(*current, fresh);
+    if (options_.dry_run && !region_.exists()) return ended(UpdateState::planned);
+    // A dry run holds no lock: it writes where no other run does.
+    Scratch data(options_.dry_run
+                     ? (fs::temp_directory_path() / fmt::format("blockrand-{}.osm.pbf", ::getpid())).string()
+                     : region_.data(summary_.number) + ".part");
     const AppliedChanges applied = make_data(plan, current, data.path);
     fresh.sha256 = base::sha256_file(data.path);
     const bool same_data = current && (fresh.sha256 == before_.sha256 || (plan.extract.empty() && !applied.any()));
-    if (same_data && !new_settings) return stay(*current, plan, ended);
+    if (same_data && !new_settings) return stay(*current, fresh);
     if (options_.dry_run) return ended(UpdateState::planned);
 
-    if (std::rename(data.path.c_str(), region_.data(summary_.number).c_str()) != 0)
-      throw base::OutputError(region_.data(summary_.number) + ": cannot be written: " + std::strerror(errno));
+    const std::string place = region_.data(summary_.number);
+    if (std::rename(data.path.c_str(), place.c_str()) != 0)
+      throw base::OutputError(place + ": cannot be written: " + std::strerror(errno));
+    data.path = place;
+    UpdateSummary done = build_and_publish(current, fresh);
     data.path.clear();
-    return build_and_publish(current, fresh, ended);
+    return done;
   }
 
+  /// What is known of a run that throws.
+  const UpdateSummary& so_far() const { return summary_; }
+
  private:
+  UpdateSummary ended(UpdateState state) {
+    summary_.state = state;
+    summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    if (!options_.dry_run) append_run(region_, run_line(summary_), progress_);
+    return summary_;
+  }
+
   AppliedChanges make_data(const Plan& plan, std::optional<int> current, const std::string& path) {
     progress_.begin("apply changes");
     std::string base = plan.extract;
@@ -307,53 +343,84 @@ class Updater {
                                "is missing or damaged: the published build is whole, but changes need its data",
                                "Update from a full extract: blockrand update " + region_.path() + " EXTRACT.osm.pbf");
     }
-    const AppliedChanges applied = importers::osm::apply_changes(base, plan.changes, path, plan.replication);
+    const AppliedChanges applied = importers::osm::apply_changes(base, plan.changes, path);
+    if (applied.cleaned_texts)
+      progress_.warn(base + ": NUL characters in its texts were replaced; reports of builds do not repeat that");
     summary_.created = applied.created, summary_.modified = applied.modified, summary_.deleted = applied.deleted;
     summary_.known = applied.known;
     return applied;
   }
 
   /// The published build stays; what is known of its data may go on.
-  template <class Ended>
-  UpdateSummary stay(int current, const Plan& plan, const Ended& ended) {
+  UpdateSummary stay(int current, const DataState& fresh) {
     summary_.number = current;
     summary_.folder = region_.build(current);
-    if (!options_.dry_run && plan.replication.sequence && plan.replication.sequence != before_.sequence) {
-      before_.sequence = plan.replication.sequence, before_.time = plan.replication.time;
+    if (!options_.dry_run && (fresh.sequence != before_.sequence || fresh.input != before_.input)) {
+      before_.sequence = fresh.sequence, before_.input = fresh.input;
       before_.write(region_.state(current));
     }
     return ended(UpdateState::unchanged);
   }
 
-  template <class Ended>
-  UpdateSummary build_and_publish(std::optional<int> current, const DataState& fresh, const Ended& ended) {
-    const int number = summary_.number;
-    const BuildSummary built = build(build_options_for(options_, region_, number, current), progress_);
+  /// Against the published build; where that is damaged, by its counts alone.
+  void compare(std::optional<int> current) {
     progress_.begin("compare builds");
+    const std::string fresh = region_.build(summary_.number);
+    if (current) try {
+        summary_.changes = compare_builds(region_.build(*current), fresh);
+        summary_.gates = gates_of(summary_.changes, options_.region, false);
+        return;
+      } catch (const base::InputError& error) {
+        progress_.warn(fmt::format("{}. The new build is compared by its number of models alone", error.what()));
+      }
+    summary_.changes = compare_builds("", fresh);
+    summary_.gates = gates_of(summary_.changes, options_.region, true);
+    if (!current) return;
+    const auto models = [](const Json& record) {
+      return record.contains("counts") && record["counts"].contains("models") &&
+                     record["counts"]["models"].is_number_unsigned()
+                 ? record["counts"]["models"].get<double>()
+                 : 0.0;
+    };
+    const double before = models(read_json(region_.build(*current) + "/build.json")),
+                 after = models(read_json(fresh + "/build.json"));
+    if (before > 0)
+      summary_.gates.push_back(
+          {"max_lost", "models that are gone", 100 * std::max(0.0, before - after) / before, options_.region.max_lost});
+  }
+
+  UpdateSummary build_and_publish(std::optional<int> current, const DataState& fresh) {
+    const int number = summary_.number;
+    const BuildSummary built = build(build_options_for(options_, region_, number, current, before_), progress_);
     summary_.folder = region_.build(number);
-    summary_.changes = compare_builds(current ? region_.build(*current) : "", region_.build(number));
-    summary_.gates = gates_of(summary_.changes, options_.region, !current);
+    compare(current);
     if (!built.unaccounted.empty())
       summary_.gates.push_back(
           {"unaccounted", "objects that no stage decided on", static_cast<double>(built.unaccounted.size()), 0});
+    write_changes(region_, number, summary_);
     if (std::ranges::any_of(summary_.gates, &Gate::exceeded)) {
-      write_changes(region_, number, summary_);
       summary_.folder = region_.set_aside(number);
       return ended(UpdateState::refused);
     }
     if (current) link_unchanged(region_.build(*current), region_.build(number), summary_);
     fresh.write(region_.state(number));
-    write_changes(region_, number, summary_);
     region_.publish(number);
+    // It is published: what fails now is told, and no more.
     UpdateSummary done = ended(UpdateState::published);
-    write_whole(region_.log(number), run_line(done).dump(1) + "\n");
-    region_.prune(options_.region.keep);
+    try {
+      write_whole(region_.log(number), dumped(run_line(done), 1));
+      for (const std::string& path : region_.prune(options_.region.keep, current))
+        progress_.warn("could not be removed: " + path);
+    } catch (const std::exception& error) {
+      progress_.warn(fmt::format("build {} is published, but: {}", number, error.what()));
+    }
     return done;
   }
 
   const UpdateOptions& options_;
   const RegionFolder& region_;
   base::Progress& progress_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   UpdateSummary summary_;
   DataState before_;
 };
@@ -366,11 +433,20 @@ UpdateSummary update_region(const UpdateOptions& options, base::Progress& progre
         "a region needs explanations, which its builds are compared by: take explain = false out of "
         "region.toml.");
   const RegionFolder region(options.folder);
+  if (options.dry_run) return Updater(options, region, progress).run();
   region.make();
   const RegionLock lock(region, options.break_lock, progress);
   for (const std::string& path : region.remove_unfinished())
     progress.warn("removed " + path + ": left by a run that was broken off");
-  return Updater(options, region, progress).run();
+  Updater updater(options, region, progress);
+  try {
+    return updater.run();
+  } catch (const std::exception& error) {
+    Json line = run_line(updater.so_far());
+    line["state"] = "failed", line["error"] = error.what();
+    append_run(region, line, progress);
+    throw;
+  }
 }
 
 RegionStatus region_status(const std::string& folder, const RegionOptions& options) {
@@ -378,7 +454,7 @@ RegionStatus region_status(const std::string& folder, const RegionOptions& optio
   if (!region.exists())
     throw base::UsageError(folder + " is no region. 'blockrand update " + folder + " EXTRACT.osm.pbf' makes one.");
   RegionStatus status;
-  status.current = region.current(), status.published = region.published();
+  status.current = region.current(), status.published = region.passed();
   DataState state;
   if (status.current) {
     const Json record = read_json(region.build(*status.current) + "/build.json"),
@@ -392,10 +468,9 @@ RegionStatus region_status(const std::string& folder, const RegionOptions& optio
   std::ifstream runs(folder + "/log/runs.jsonl", std::ios::binary);
   for (std::string line; std::getline(runs, line);)
     if (!line.empty()) status.last_run = line;
-  if (!options.replication.empty() && (state.sequence || options.first_sequence >= 0)) try {
-      const std::uint64_t from =
-          state.sequence ? *state.sequence + 1 : static_cast<std::uint64_t>(options.first_sequence);
-      for (const ReplicationFile& file : replication_files(options.replication, from))
+  if (!options.replication.empty() && status.current) try {
+      for (const ReplicationFile& file :
+           replication_files(options.replication, next_sequence(options, state.sequence, region)))
         status.waiting.push_back(file.path);
     } catch (const base::InputError& error) {
       status.waiting_problem = error.what();
@@ -407,26 +482,28 @@ int roll_back(const std::string& folder, std::optional<int> to, bool break_lock,
   const RegionFolder region(folder);
   if (!region.exists()) throw base::UsageError(folder + " is no region.");
   const RegionLock lock(region, break_lock, progress);
-  const std::vector<int> builds = region.published();
-  std::error_code error;
+  const std::vector<int> builds = region.passed();
   // A `current` that leads nowhere is a reason to go back, not an obstacle.
   std::optional<int> now;
   try {
     now = region.current();
   } catch (const base::InputError&) {
   }
+  const auto is_there = [&](int number) { return std::ranges::find(builds, number) != builds.end(); };
+  if (!to && now) {
+    const std::optional<int> replaced = DataState::read(region.state(*now)).replaced;
+    if (replaced && is_there(*replaced)) to = replaced;
+  }
   if (!to) {
     for (const int number : builds)
       if (!now || number < *now) to = number;
     if (!to) throw base::UsageError(folder + " has no earlier build to go back to.");
   }
-  if (std::ranges::find(builds, *to) == builds.end() ||
-      !fs::is_regular_file(region.build(*to) + "/build.json", error)) {
+  if (!is_there(*to)) {
     std::string known;
     for (const int number : builds) known += (known.empty() ? "" : ", ") + std::to_string(number);
     throw base::UsageError(fmt::format("{} has no build {}. It has {}.", folder, *to, known.empty() ? "none" : known));
   }
-  if (now && !fs::exists(region.log(*now), error)) write_whole(region.log(*now), "{}\n");
   region.publish(*to);
   append_run(region, {{"run", *to}, {"ended", now_utc()}, {"state", "rolled back"}}, progress);
   return *to;

@@ -17,9 +17,10 @@ struct UpdateOptions {
   std::vector<std::string> inputs;  ///< an extract first, or none; change files
   BuildOptions build;               ///< from region.toml; input, output and name are the region's
   RegionOptions region;
-  bool dry_run = false;     ///< tell what would be done
-  bool break_lock = false;  ///< take over the lock of another host
-  std::string version;      ///< of the program
+  bool dry_run = false;         ///< tell what would be done
+  bool break_lock = false;      ///< take over the lock of another host
+  std::string version;          ///< of the program
+  std::string settings_sha256;  ///< of region.toml as it was read
 };
 
 enum class UpdateState {

@@ -108,8 +108,10 @@ std::string config_template(unsigned commands) {
     text += "\n[" + std::string(section.name) + "]\n";
     for (const Option& option : options()) {
       if (option.section != section || option.key.empty()) continue;
-      // Where builds of a region lie, the region knows.
-      if ((commands & kUpdate) && option.name == "output") continue;
+      // Where builds of a region lie, the region knows; whether they may be published, its gates.
+      if ((commands & kUpdate) &&
+          (option.name == "output" || option.name == "strict" || option.name.starts_with("allow-")))
+        continue;
       const Settings fresh;
       std::string value = option.show(fresh);
       const bool bare =

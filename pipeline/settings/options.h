@@ -22,10 +22,10 @@ struct Settings {
   std::string folder;  ///< a finished build, for the commands that read one
   std::string region;  ///< folder of a region, for the commands that are about one
   run::RegionOptions region_options;
-  std::vector<std::string> data;  ///< of `update`: an extract, change files
-  bool dry_run = false;           ///< `update` tells what it would do
-  bool break_lock = false;        ///< the lock of another host is taken over
-  std::int64_t to = -1;           ///< build that `rollback` goes to; -1: the one before
+  std::vector<std::string> data;                    ///< of `update`: an extract, change files
+  bool dry_run = false;                             ///< `update` tells what it would do
+  bool break_lock = false;                          ///< the lock of another host is taken over
+  std::int64_t to = -1;                             ///< build that `rollback` goes to; -1: the one before
   blockrand::validate::ValidateOptions validation;  ///< but for its folder and jobs, which other commands have too
   blockrand::compare::CompareOptions comparison;    ///< but for its jobs, seed and CRS, which other commands have too
   blockrand::compare::ReportOptions comparison_report;

@@ -236,6 +236,10 @@ class Updates(RegionTest):
         self.update(folder)
         self.assertEqual(read_json(folder, 'store', '000003.json')['sequence'], 4126)
         self.same_files(self.current(folder), self.clean(map_, folder))
+        with open(os.path.join(server, 'state.txt'), 'r+', encoding='utf-8') as f:
+            text = f.read()
+            f.seek(0), f.truncate(), f.write(text.replace('4126', '41'))
+        self.refused(blockrand('update', folder), 2, 'is behind')
         offer(4127), offer(4128)
         os.remove(os.path.join(server, '000', '004', '127.osc.gz'))
         run = self.update(folder, code=2)
@@ -259,6 +263,7 @@ class Gates(RegionTest):
         self.assertIn('max_lost', [g['gate'] for g in told['gates'] if g['exceeded']])
         self.assertTrue(os.path.exists(os.path.join(folder, 'builds', '000002.refused', 'build.json')))
         self.assertEqual(sorted(os.listdir(os.path.join(folder, 'store'))), ['000001.json', '000001.osm.pbf'])
+        self.assertFalse(os.path.exists(os.path.join(folder, 'builds', '000002')))
 
     def test_each_limit(self):
         begin = Map(read_xml(SAMPLE))
@@ -315,6 +320,133 @@ class Gates(RegionTest):
         self.same_files(self.current(folder), os.path.join(folder, 'builds', '000003'))
 
 
+class Care(RegionTest):
+    """What is somebody else's stays; what was once done is not undone by chance."""
+
+    def test_foreign_files_stay(self):
+        folder = self.region('shared')
+        self.update(folder, SAMPLE)
+        kept = [os.path.join(folder, *p) for p in (('builds', '202411', 'thesis.txt'), ('builds', 'mine.refused', 'x'), ('builds', '.notes.part-x'),
+                                                   ('store', '202411.csv'), ('store', 'readme'), ('log', 'mine.txt'), ('notes.txt',))]
+        for path in kept:
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            with open(path, 'w', encoding='utf-8') as f:
+                f.write('mine')
+        map_ = Map(read_xml(SAMPLE))
+        map_.edit(map_.ways('building')[0], tags={'building': 'yes', 'height': '9'})
+        for house in map_.ways('building')[1:]:
+            map_.edit(house, tags=dict(house.tags, note='x'))
+        self.update(folder, map_.write_changes(self.path('f.osc')))
+        self.assertEqual([p for p in kept if not os.path.exists(p)], [])
+        # Nor is a folder a region for its names.
+        other = self.path('project')
+        os.makedirs(os.path.join(other, 'builds', '202411'))
+        os.makedirs(os.path.join(other, 'store'))
+        self.refused(blockrand('update', other, SAMPLE), 1, 'not empty')
+        self.assertTrue(os.path.isdir(os.path.join(other, 'builds', '202411')))
+
+    def test_the_log_may_be_cleared(self):
+        folder, map_ = self.region('log'), Map(read_xml(SAMPLE))
+        self.update(folder, SAMPLE)
+        for night in range(2):
+            map_.random_edits(random.Random(night), 1)
+            self.update(folder, map_.write_changes(self.path(f'l{night}.osc')))
+            shutil.rmtree(os.path.join(folder, 'log'))
+        self.assertEqual(json.loads(blockrand('status', folder, '--json').out)['published'], [1, 2, 3])
+        self.assertEqual(blockrand('rollback', folder).code, 0)
+        self.stands(folder, '000002')
+
+    def test_what_was_deleted_does_not_come_back(self):
+        folder, map_ = self.region('deleted'), Map(read_xml(SAMPLE))
+        self.update(folder, SAMPLE)
+        house = map_.ways('building')[3]
+        map_.edit(house, tags=dict(house.tags, height='9'))
+        monday = map_.write_changes(self.path('monday.osc'))
+        map_.delete(map_.objects[key(house)])
+        tuesday = map_.write_changes(self.path('tuesday.osc'))
+        for changes in (monday, tuesday, monday):
+            self.update(folder, changes)
+        self.same_files(self.current(folder), self.clean(map_, folder))
+
+    def test_what_was_published_before_stays(self):
+        folder, map_ = self.region('held', LIMITS_OFF + '[region]\nkeep = 2\n'), Map(read_xml(SAMPLE))
+        self.update(folder, SAMPLE)
+        for night in range(1):
+            map_.random_edits(random.Random(night), 1)
+            self.update(folder, map_.write_changes(self.path('h.osc')))
+        self.assertEqual(blockrand('rollback', folder).code, 0)
+        self.update(folder, self.path('h.osc'))
+        self.stands(folder, '000003')
+        self.hashes_match(os.path.join(folder, 'builds', '000001'))
+        self.assertEqual(blockrand('rollback', folder).code, 0)
+        self.stands(folder, '000001')
+
+    def test_the_input_of_the_settings_does_not_undo_changes(self):
+        begin = self.path('begin_i.osm')
+        shutil.copy(SAMPLE, begin)
+        folder, map_ = self.region('input', LIMITS_OFF + f'[build]\ninput = "{begin}"\n'), Map(read_xml(SAMPLE))
+        self.update(folder)
+        map_.random_edits(random.Random(8), 2)
+        self.update(folder, map_.write_changes(self.path('i.osc')))
+        self.assertIn('up to date', self.update(folder).out)
+        self.stands(folder, '000002')
+        map_.random_edits(random.Random(9), 2)
+        map_.write(begin)
+        self.update(folder)
+        self.stands(folder, '000003')
+
+    def test_a_damaged_published_build_is_replaced(self):
+        folder, map_ = self.region('broken', ''), Map(read_xml(SAMPLE))
+        self.update(folder, SAMPLE)
+        records = os.path.join(self.current(folder), 'explain')
+        victim = os.path.join(records, next(n for n in os.listdir(records) if n.endswith('.gz')))
+        with open(victim, 'r+b') as f:
+            f.truncate(100)
+        map_.edit(map_.ways('building')[0], tags={'building': 'yes'})
+        self.assertIn('compared by its number', self.update(folder, map_.write_changes(self.path('b.osc'))).err)
+        self.stands(folder, '000002')
+        # Without its record it is none: the way out is to go back, or to say so.
+        os.remove(os.path.join(self.current(folder), 'build.json'))
+        self.refused(blockrand('update', folder, SAMPLE), 2, 'rollback')
+        self.assertEqual(blockrand('rollback', folder).code, 0)
+        self.assertEqual(os.path.basename(self.current(folder)), '000001')
+
+    def test_failures_are_on_record(self):
+        folder = self.region('record')
+        self.update(folder, SAMPLE)
+        self.refused(blockrand('update', folder, self.path('absent.osc')), 2, 'no such file')
+        last = json.loads(blockrand('status', folder, '--json').out)['last_run']
+        self.assertEqual(last['state'], 'failed')
+        self.assertIn('absent.osc', last['error'])
+
+    def test_pointers_that_are_none(self):
+        folder = self.region('copied')
+        self.update(folder, SAMPLE)
+        current = os.path.join(folder, 'current')
+        build = self.current(folder)
+        os.remove(current)
+        self.refused(blockrand('update', folder, SAMPLE), 2, 'rollback')
+        shutil.copytree(build, current)
+        self.refused(blockrand('update', folder, SAMPLE), 2, 'no link')
+        shutil.rmtree(current)
+        self.assertEqual(blockrand('rollback', folder, '--to', '1').code, 0)
+        self.stands(folder, '000001')
+        os.remove(os.path.join(folder, 'region.toml'))
+        self.refused(blockrand('update', folder, SAMPLE), 1, 'region.toml is missing')
+
+    def test_names(self):
+        folder = self.region('named')
+        self.assertEqual(blockrand('update', '.', SAMPLE, cwd=folder).code, 0)
+        with open(os.path.join(self.current(folder), 'report.html'), encoding='utf-8') as f:
+            self.assertIn('<h1>named</h1>', f.read())
+        odd = os.path.join(self.folder.encode(), b'm\xfcn.osm')
+        with open(SAMPLE, 'rb') as f, open(odd, 'wb') as g:
+            g.write(f.read().replace(b'building:levels" v="4"', b'building:levels" v="5"', 1))
+        run = subprocess.run([Setup.program.encode(), b'update', folder.encode(), odd, b'-q'], capture_output=True)
+        self.assertEqual(run.returncode, 0, run)
+        self.stands(folder, '000002')
+
+
 class Nights(RegionTest):
     """The worst of them. Each ends with what was published before, whole, and with words."""
 
@@ -351,7 +483,7 @@ class Nights(RegionTest):
         self.update(folder, SAMPLE)
         for text, words in (('[region]\nkeep = 0\n', ('keep', 'region.toml:2:')), ('[region]\nkepp = 3\n', ('kepp', 'keep')),
                             ('[gates]\nmax_lost = "all"\n', ('max_lost',)), ('[build]\noutput = "/tmp/x"\n', ('output',)),
-                            ('[build]\nexplain = false\n', ('explain',)), ('[build\n', ('region.toml',)), ('[nights]\nx = 1\n', ('nights',)),
+                            ('[build]\nexplain = false\n', ('explain',)), ('[build]\nstrict = true\n', ('strict',)), ('[build\n', ('region.toml',)), ('[nights]\nx = 1\n', ('nights',)),
                             ('[gates]\nmax_lost = -1\n', ('max_lost',)), ('[gates]\nmax_lost = nan\n', ('max_lost',))):
             with self.subTest(text):
                 with open(os.path.join(folder, 'region.toml'), 'w', encoding='utf-8') as f:

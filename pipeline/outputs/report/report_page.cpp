@@ -44,8 +44,9 @@ std::string ReportBuilder::html(const ReportFacts& facts, const ReportOptions& o
       "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<meta name=\"generator\" "
       "content=\"Blockrand " +
-      escaped(facts.program_version) + "\"/>\n<link rel=\"icon\" href=\"data:,\"/>\n<title>Blockrand report: " +
-      escaped(facts.name) + "</title>\n<style>";
+      escaped(facts.program_version) +
+      "\"/>\n<link rel=\"icon\" href=\"data:,\"/>\n<title>Blockrand report: " + escaped(facts.name) +
+      "</title>\n<style>";
   out += base::kPageStyle;
   out += kReportStyle;
   out += "</style>\n</head>\n<body>\n";

@@ -60,8 +60,7 @@ std::string swatch(const std::string& css_class) {
 }  // namespace
 
 std::string head_section(const ReportFacts& f, bool styles) {
-  std::string out =
-      "<header>\n<p class=\"kicker\">Blockrand report</p>\n<h1>" + escaped(f.name) + "</h1>\n";
+  std::string out = "<header>\n<p class=\"kicker\">Blockrand report</p>\n<h1>" + escaped(f.name) + "</h1>\n";
   out += "<p class=\"lead\">" + count_of(f.buildings_built, "building", "buildings") + " rebuilt in 3D as " +
          count_of(f.bodies, "body", "bodies") +
          ", from what OpenStreetMap says about them and, where it is silent, from " +

@@ -39,8 +39,10 @@ TEST(DeclaredOptions, EveryMemberOfABuildIsOne) {
   EXPECT_EQ(of_outputs + set_by_the_build, member_count<outputs::OutputOptions>());
   const std::size_t of_imagery = observation::imagery_options().size();
   EXPECT_EQ(of_imagery, member_count<observation::ImageryOptions>());
-  EXPECT_EQ(own - of_outputs - of_imagery + 2 + stages.size(), member_count<run::BuildOptions>())
-      << "the options of the outputs are one member, those of the images another, and so are those of each stage";
+  EXPECT_EQ(own - of_outputs - of_imagery + 2 + 1 + stages.size(), member_count<run::BuildOptions>())
+      << "the options of the outputs are one member, those of the images another, and so are those of each stage; a "
+         "build's "
+         "name is its region's";
 }
 
 TEST(DeclaredOptions, EveryMemberOfValidationIsOne) {
@@ -63,7 +65,8 @@ TEST(DeclaredOptions, PlacesAmongOthersExist) {
 TEST(DeclaredOptions, TheTableGoesSectionBySection) {
   std::vector<std::string_view> names;
   for (const base::OptionSection& section : sections()) names.push_back(section.name);
-  EXPECT_EQ(names, (std::vector<std::string_view>{"build", "repair", "generate", "compare", "messages"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string_view>{"build", "repair", "generate", "region", "gates", "compare", "messages"}));
   for (const base::OptionSection& section : sections())
     EXPECT_EQ(in_config(section), section.name != "compare" && section.name != "messages") << section.name;
 }
