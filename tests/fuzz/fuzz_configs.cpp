@@ -61,7 +61,7 @@ void read(std::uint8_t kind, const std::uint8_t* data, std::size_t size) {
   switch (kind) {
     case 0: {
       settings::Settings settings;
-      settings::read_config(input(), settings);
+      settings::read_config(input(), settings, settings::kBuild | settings::kUpdate);
       break;
     }
     case 1:
