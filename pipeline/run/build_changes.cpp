@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/markup.h"
@@ -61,28 +62,48 @@ Told told_of(const Json& line, int asked) {
   return told;
 }
 
-/// By id. Read tile by tile, but all of a build at once: see docs/nightly.md for what that costs.
-std::map<std::string, Told> read_build(const std::string& folder) {
-  std::map<std::string, Told> out;
-  std::ifstream record_file(folder + "/build.json", std::ios::binary);
-  const Json record = Json::parse(record_file, nullptr, false);
-  if (!record.is_object() || !record.contains("configuration") || !record["configuration"].contains("lod"))
-    throw base::InputError(folder + "/build.json", "", "is no record of a build", "Put the build back, or roll back");
-  const int asked = record["configuration"]["lod"].get<int>();
-  std::error_code error;
-  const bool empty = record.contains("counts") && record["counts"].value("models", 0) == 0;
-  if (!fs::is_directory(folder + "/explain", error) && !empty)
-    throw base::InputError(folder, "", "was built without explanations, which builds are compared by",
-                           "Take explain = false out of region.toml");
-  std::vector<fs::path> files;
-  for (fs::directory_iterator entry(folder + "/explain", error), end; !error && entry != end; entry.increment(error))
-    if (entry->path().string().ends_with(".jsonl.gz")) files.push_back(entry->path());
-  std::sort(files.begin(), files.end());
-  for (const fs::path& path : files) {
+using ToldById = std::map<std::string, Told>;
+
+/// The explanations of a build, tile by tile.
+class Explained {
+ public:
+  /// \throws base::InputError  no build, or one without explanations
+  explicit Explained(std::string folder) : folder_(std::move(folder)) {
+    std::ifstream record_file(folder_ + "/build.json", std::ios::binary);
+    const Json record = Json::parse(record_file, nullptr, false);
+    if (!record.is_object() || !record.contains("configuration") || !record["configuration"].contains("lod"))
+      throw base::InputError(folder_ + "/build.json", "", "is no record of a build",
+                             "Put the build back, or roll back");
+    asked_ = record["configuration"]["lod"].get<int>();
+    std::error_code error;
+    const bool empty = record.contains("counts") && record["counts"].value("models", 0) == 0;
+    if (!fs::is_directory(folder_ + "/explain", error) && !empty)
+      throw base::InputError(folder_, "", "was built without explanations, which builds are compared by",
+                             "Take explain = false out of region.toml");
+    for (fs::directory_iterator entry(folder_ + "/explain", error), end; !error && entry != end; entry.increment(error))
+      if (const std::string name = entry->path().filename().string(); name.ends_with(".jsonl.gz")) tiles_.insert(name);
+    if (record.contains("files") && record["files"].is_object())
+      for (const std::string& tile : tiles_)
+        if (const auto file = record["files"].find("explain/" + tile); file != record["files"].end())
+          hashes_[tile] = member(*file, "sha256");
+  }
+  const std::set<std::string>& tiles() const { return tiles_; }
+
+  /// Of a tile's file, as build.json has it; empty where it does not say.
+  std::string hash(const std::string& tile) const {
+    const auto found = hashes_.find(tile);
+    return found == hashes_.end() ? std::string() : found->second;
+  }
+
+  /// Empty for a tile that it has not. \throws base::InputError  the file is damaged
+  ToldById read(const std::string& tile) const {
+    ToldById out;
+    if (!tiles_.contains(tile)) return out;
+    const std::string path = folder_ + "/explain/" + tile;
     std::ifstream file(path, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
     const auto damaged = [&](const std::string& why) {
-      return base::InputError(path.string(), "", why, "The build is damaged: build it again, or roll back");
+      return base::InputError(path, "", why, "The build is damaged: build it again, or roll back");
     };
     std::string text;
     try {
@@ -95,12 +116,18 @@ std::map<std::string, Told> read_build(const std::string& folder) {
       const Json line = Json::parse(text.begin() + static_cast<std::ptrdiff_t>(at),
                                     text.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
       if (!line.is_object()) throw damaged("a line of it is no JSON");
-      out.emplace(member(line, "id"), told_of(line, asked));
+      out.emplace(member(line, "id"), told_of(line, asked_));
       at = end + 1;
     }
+    return out;
   }
-  return out;
-}
+
+ private:
+  std::string folder_;
+  int asked_ = 0;  ///< level of detail
+  std::set<std::string> tiles_;
+  std::map<std::string, std::string> hashes_;  ///< by tile
+};
 
 void compare(const std::string& id, const Told& before, const Told& after, BuildChanges& out) {
   if (before.ring != after.ring || std::fabs(before.area - after.area) >= 0.01)
@@ -133,25 +160,73 @@ std::string rounded(const std::string& value) {
 
 BuildChanges compare_builds(const std::string& before, const std::string& after) {
   BuildChanges out;
-  const std::map<std::string, Told> old = before.empty() ? std::map<std::string, Told>() : read_build(before),
-                                    now = read_build(after);
-  out.all_before = old.size(), out.all_after = now.size();
+  const std::optional<Explained> old = before.empty() ? std::nullopt : std::optional<Explained>(before);
+  const Explained now(after);
+  std::set<std::string> tiles = now.tiles();
+  if (old) tiles.insert(old->tiles().begin(), old->tiles().end());
   double heights_before = 0, heights_after = 0;
-  for (const auto& [id, told] : old) {
-    out.before += told.modelled, out.simpler_before += told.simpler;
-    const auto found = now.find(id);
-    if (told.modelled && (found == now.end() || !found->second.modelled)) out.removed.push_back(id);
-  }
-  for (const auto& [id, told] : now) {
-    out.after += told.modelled, out.simpler_after += told.simpler;
-    const auto found = old.find(id);
-    if (told.modelled && (found == old.end() || !found->second.modelled)) out.added.push_back(id);
-    if (!told.modelled || found == old.end() || !found->second.modelled) continue;
-    compare(id, found->second, told, out);
-    if (!told.height || !found->second.height) continue;
-    heights_before += *found->second.height, heights_after += *told.height;
+  const auto meet = [&](const std::string& id, const Told& was, const Told& is) {
+    if (!was.modelled || !is.modelled) {
+      if (was.modelled) out.removed.push_back(id);
+      if (is.modelled) out.added.push_back(id);
+      return;
+    }
+    compare(id, was, is, out);
+    if (!is.height || !was.height) return;
+    heights_before += *was.height, heights_after += *is.height;
     ++out.both;
+  };
+  // A tile of both at a time. What only one of them has there may lie in another tile of the other one: it was moved.
+  ToldById gone, come;
+  for (const std::string& tile : tiles) {
+    ToldById its = now.read(tile);
+    if (old && !now.hash(tile).empty() && old->hash(tile) == now.hash(tile)) {
+      out.all_before += its.size(), out.all_after += its.size();
+      for (const auto& [id, told] : its) {
+        out.before += told.modelled, out.after += told.modelled;
+        out.simpler_before += told.simpler, out.simpler_after += told.simpler;
+        if (!told.modelled || !told.height) continue;
+        heights_before += *told.height, heights_after += *told.height;
+        ++out.both;
+      }
+      continue;
+    }
+    ToldById mine = old ? old->read(tile) : ToldById();
+    out.all_before += mine.size(), out.all_after += its.size();
+    for (const auto& [id, told] : mine) out.before += told.modelled, out.simpler_before += told.simpler;
+    for (auto& [id, told] : its) {
+      out.after += told.modelled, out.simpler_after += told.simpler;
+      const auto found = mine.find(id);
+      if (found == mine.end()) {
+        come.emplace(id, std::move(told));
+        continue;
+      }
+      meet(id, found->second, told);
+      mine.erase(found);
+    }
+    gone.merge(mine);
+    for (auto at = come.begin(); at != come.end();) {
+      const auto found = gone.find(at->first);
+      if (!old) {
+        // Nothing to wait for.
+        if (at->second.modelled) out.added.push_back(at->first);
+      } else if (found == gone.end()) {
+        ++at;
+        continue;
+      } else {
+        meet(at->first, found->second, at->second);
+        gone.erase(found);
+      }
+      at = come.erase(at);
+    }
   }
+  for (const auto& [id, told] : gone)
+    if (told.modelled) out.removed.push_back(id);
+  for (const auto& [id, told] : come)
+    if (told.modelled) out.added.push_back(id);
+  std::ranges::sort(out.added), std::ranges::sort(out.removed);
+  std::ranges::sort(out.outlines, {}, &OutlineChange::id);
+  std::ranges::stable_sort(out.attributes, {}, &AttributeChange::id);
   if (out.both > 0)
     out.height_before = heights_before / static_cast<double>(out.both),
     out.height_after = heights_after / static_cast<double>(out.both);
