@@ -438,6 +438,14 @@ UpdateSummary update_region(const UpdateOptions& options, base::Progress& progre
   const RegionLock lock(region, options.break_lock, progress);
   for (const std::string& path : region.remove_unfinished())
     progress.warn("removed " + path + ": left by a run that was broken off");
+  // A run that died between its gates and the switch left the region's first build without a pointer.
+  std::error_code error;
+  const std::string pointer = region.path() + "/current";
+  if (const std::vector<int> builds = region.passed();
+      builds.size() == 1 && !fs::is_symlink(pointer, error) && !fs::exists(pointer, error)) {
+    region.publish(builds.front());
+    progress.warn(fmt::format("{} was missing; it leads to the only build now, {}", pointer, builds.front()));
+  }
   Updater updater(options, region, progress);
   try {
     return updater.run();

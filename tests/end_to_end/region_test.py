@@ -425,6 +425,12 @@ class Care(RegionTest):
         current = os.path.join(folder, 'current')
         build = self.current(folder)
         os.remove(current)
+        self.assertIn('was missing', self.update(folder, SAMPLE).err)  # as after a kill between gates and switch
+        self.stands(folder, '000001')
+        map_ = Map(read_xml(SAMPLE))
+        map_.random_edits(random.Random(2), 1)
+        self.update(folder, map_.write_changes(self.path('p.osc')))
+        os.remove(current)
         self.refused(blockrand('update', folder, SAMPLE), 2, 'rollback')
         shutil.copytree(build, current)
         self.refused(blockrand('update', folder, SAMPLE), 2, 'no link')
