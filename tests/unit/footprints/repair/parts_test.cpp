@@ -10,103 +10,25 @@
 #include "pipeline/footprints/repair/rings.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/geometry/valid_polygon.h"
+#include "tests/unit/footprints/repair/parts_scene.h"
 #include "tests/unit/geometry/find_slivers.h"
 #include "tests/unit/geometry/shapes.h"
 
 namespace blockrand::repair {
 namespace {
 
-using model::Building;
-using model::BuildingPart;
-using model::IssueCode;
-using model::Point2;
-using model::Polygon;
-using model::Ring;
-using testing_shapes::polygon;
-using testing_shapes::Random;
-using testing_shapes::ring;
-
-struct Tags {
-  std::optional<float> height, min_height, storeys, min_storey;
-};
-
-/// A building w1 with an outline already repaired, and parts as mapped.
-struct Scene {
-  Building building;
-  std::vector<Polygon> before;
-  std::vector<model::PartFailure> failures;
-  std::vector<model::SettledPart> settled;
-  model::Report report;
-
-  explicit Scene(std::vector<Point2> outline) {
-    building.osm = {model::OsmType::way, 1};
-    building.mapped_index = 1;
-    if (!outline.empty()) before = {polygon(std::move(outline))};
-    building.outline = before;
-  }
-  Scene& part(std::int64_t number, std::vector<Point2> points, Tags tags = {}) {
-    BuildingPart p;
-    p.osm = {model::OsmType::way, number};
-    p.mapped_index = static_cast<std::uint32_t>(number);
-    p.id = building.id() + "." + p.osm.text();
-    p.rings = {{ring(std::move(points))}, {false}};
-    p.mapped.height = tags.height;
-    p.mapped.min_height = tags.min_height;
-    p.mapped.storeys = tags.storeys;
-    p.mapped.min_storey = tags.min_storey;
-    building.parts.push_back(std::move(p));
-    building.has_mapped_parts = true;
-    return *this;
-  }
-  Scene& moved_to(std::vector<Point2> outline) {
-    building.outline = {polygon(std::move(outline))};
-    return *this;
-  }
-  Scene& fit(const RepairOptions& options = {}) {
-    fit_parts(building, before, {}, options, failures, settled, report);
-    for (const BuildingPart& p : building.parts) {
-      EXPECT_TRUE(geometry::strictly_simple(p.plan)) << p.id;
-      EXPECT_TRUE(well_wound(p.plan)) << p.id;
-    }
-    return *this;
-  }
-  const Polygon& plan(const std::string& id) const {
-    const auto found =
-        std::find_if(building.parts.begin(), building.parts.end(), [&](const auto& p) { return p.id == id; });
-    static const Polygon none;
-    EXPECT_NE(found, building.parts.end()) << id;
-    return found == building.parts.end() ? none : found->plan;
-  }
-  double area(const std::string& id) const { return geometry::area(plan(id)); }
-  bool has_point(const std::string& id, Point2 p) const {
-    const Polygon& of = plan(id);
-    if (std::count(of.outer.points.begin(), of.outer.points.end(), p) > 0) return true;
-    return std::any_of(of.holes.begin(), of.holes.end(),
-                       [&](const Ring& h) { return std::count(h.points.begin(), h.points.end(), p) > 0; });
-  }
-  /// The corner nearest to a place.
-  Point2 point_near(const std::string& id, Point2 p) const {
-    const auto& points = plan(id).outer.points;
-    return *std::min_element(points.begin(), points.end(), [&](Point2 a, Point2 b) {
-      return std::fabs(a.x - p.x) + std::fabs(a.y - p.y) < std::fabs(b.x - p.x) + std::fabs(b.y - p.y);
-    });
-  }
-  double common(const std::string& a, const std::string& b) const {
-    return geometry::common_area(std::vector{plan(a)}, std::vector{plan(b)});
-  }
-  std::vector<std::string> ids() const {
-    std::vector<std::string> out;
-    for (const auto& p : building.parts) out.push_back(p.id);
-    return out;
-  }
-  std::string detail(IssueCode code) const {
-    for (const auto& row : report.rows)
-      if (row.code == code) return row.object.text() + " " + row.detail;
-    return "-";
-  }
-};
-
-using Ids = std::vector<std::string>;
+using test::Building;
+using test::BuildingPart;
+using test::Ids;
+using test::IssueCode;
+using test::Point2;
+using test::Polygon;
+using test::polygon;
+using test::Random;
+using test::Ring;
+using test::ring;
+using test::Scene;
+using test::Tags;
 
 // ---- slivers --------------------------------------------------------------------------------------------------------
 
@@ -288,176 +210,6 @@ TEST(PartsShare, CanBeSwitchedOff) {
       .part(3, {{10.125, 0}, {20, 0}, {20, 10}, {10.125, 10}})
       .fit(options);
   EXPECT_TRUE(s.has_point("w1.w2", {9.875, 0}));
-}
-
-// ---- plans apart on the grid ----------------------------------------------------------------------------------------
-
-/// Edges of both that run the same line in opposite directions.
-int common_walls(const Polygon& a, const Polygon& b) {
-  int n = 0;
-  for (std::size_t i = 0; i < a.outer.size(); ++i)
-    for (std::size_t k = 0; k < b.outer.size(); ++k)
-      n += a.outer.points[i] == b.outer.points[(k + 1) % b.outer.size()] &&
-           a.outer.points[(i + 1) % a.outer.size()] == b.outer.points[k];
-  return n;
-}
-
-TEST(PartsApart, WallsInPartDrawnOverEachOtherBecomeOne) {
-  // Overlaps below half a square metre, at many angles: corners of one part on walls of another, a hair inside.
-  for (int turn = 1; turn <= 12; ++turn) {
-    SCOPED_TRACE(turn);
-    const double slope = 0.013 * turn * turn, scale = 1 / std::sqrt(1 + slope * slope);
-    const auto box = [&](double x0, double y0, double x1, double y1) {
-      std::vector<Point2> out;
-      for (const Point2 p : {Point2{x0, y0}, Point2{x1, y0}, Point2{x1, y1}, Point2{x0, y1}})
-        out.push_back(model::snap(Point2{(p.x - slope * p.y) * scale, (slope * p.x + p.y) * scale}));
-      return out;
-    };
-    Scene s(box(0, 0, 30, 12));
-    RepairOptions options;
-    options.share_walls = false;
-    s.part(2, box(0, 0, 10.004, 12)).part(3, box(10, 0, 20, 5)).part(4, box(10.002, 5, 20.003, 12.0)).fit(options);
-    const std::vector<std::string> ids = s.ids();
-    for (std::size_t a = 0; a < ids.size(); ++a)
-      for (std::size_t b = 0; b < a; ++b) EXPECT_EQ(s.common(ids[a], ids[b]), 0) << ids[a] << " and " << ids[b];
-    EXPECT_GE(common_walls(s.plan("w1.w2"), s.plan("w1.w3")), 1);
-    EXPECT_GE(common_walls(s.plan("w1.w2"), s.plan("w1.w4")), 1);
-    EXPECT_NEAR(s.area("w1.w2") + s.area("w1.w3") + s.area("w1.w4"), 240, 0.1);
-  }
-}
-
-/// No two plans have ground in common, and none almost touches itself.
-void expect_apart(const Scene& s) {
-  for (std::size_t a = 0; a < s.building.parts.size(); ++a) {
-    EXPECT_TRUE(geometry::rings_apart(s.building.parts[a].plan)) << s.building.parts[a].id;
-    for (std::size_t b = 0; b < a; ++b)
-      EXPECT_EQ(s.common(s.building.parts[a].id, s.building.parts[b].id), 0)
-          << s.building.parts[a].id << " and " << s.building.parts[b].id;
-  }
-}
-
-TEST(PartsApart, ATowerWhoseCornerReachesTheWallAroundIt) {
-  // Berlin 2014, w233890595 in metres from (399540, 5825310): a corner of the tower 601 goes to the common wall of 597 and
-  // 600, so that what is left of 600 would touch itself there.
-  const std::vector<Point2>
-      block = {{-0.2227, 22.6826}, {10.8916, 29.6865}, {15.4912, 33.1084}, {23.2314, 22.7568}, {18.7695, 19.4326}},
-      inner = {{16.3809, 22.6191}, {13.7666, 25.0547}, {10.8857, 23.4551}, {8.2676, 21.4062}, {6.2832, 18.8770}},
-      bow = {{20.1904, 15.9980}, {20.5371, 11.0957}, {19.3984, 6.1338}, {17.2588, 2.3164}, {14.2227, -0.5811},
-             {9.8271, -2.9834},  {6.1045, 1.2666},   {4.0322, 6.3379},  {3.6973, 11.4863}, {4.8584, 15.8574}},
-      tower = {{8.7422, 13.1514},  {9.3076, 18.2695},  {10.2500, 18.2500}, {10.5498, 21.9385},
-               {17.0029, 21.2158}, {16.3633, 13.8740}, {13.6719, 14.1963}, {13.4775, 12.6758}};
-  const auto together = [](std::initializer_list<std::vector<Point2>> pieces) {
-    std::vector<Point2> out;
-    for (const auto& piece : pieces)
-      for (const Point2 p : piece) out.push_back(model::snap(p));
-    return out;
-  };
-  Scene s(together({block, bow}));
-  s.part(597, together({{bow.back()}, block, inner}), {{}, {}, 11.0f, 3.0f})
-      .part(600, together({{block.back()}, bow, {inner.rbegin(), inner.rend()}}), {{}, {}, 14.0f, {}})
-      .part(601, together({tower}), {{}, {}, 15.0f, {}})
-      .fit();
-  EXPECT_EQ(s.ids(), (Ids{"w1.w597", "w1.w600", "w1.w601"}));
-  expect_apart(s);
-}
-
-TEST(PartsApart, TowersAtTheWallOfACourtHouse) {
-  // A tower in a house, its corner on the house's wall, just inside or just outside of it, with a part on the other side of
-  // the wall: at any angle nothing overlaps, and each keeps its ground.
-  Random random(5);
-  for (int round = 0; round < 400; ++round) {
-    SCOPED_TRACE(round);
-    const double angle = 2 * std::acos(-1) * random.unit(), c = std::cos(angle), sn = std::sin(angle);
-    const auto turned = [&](std::vector<Point2> points) {
-      for (Point2& p : points) p = model::snap(Point2{c * p.x - sn * p.y, sn * p.x + c * p.y});
-      return points;
-    };
-    const double off = round % 8 < 2 ? 0 : 0.5 * random.unit() - 0.1, size = 2 + 3 * random.unit(),
-                 spread = 0.3 + 0.5 * random.unit(), at = 6 + 8 * random.unit();
-    const auto tower =
-        turned({{at, 12 - off}, {at - spread * size, 12 - off - size}, {at + spread * size, 12 - off - size}});
-    Scene s(turned({{0, 0}, {20, 0}, {20, 18}, {0, 18}}));
-    s.part(2, turned({{0, 0}, {20, 0}, {20, 12}, {0, 12}}));
-    if (round % 2 == 1) {
-      // The tower's ground is a court of the house.
-      s.building.parts.back().rings.rings.push_back(ring(tower));
-      s.building.parts.back().rings.inner.push_back(true);
-    }
-    s.part(3, turned({{0, 12}, {20, 12}, {20, 18}, {0, 18}})).part(4, tower).fit();
-    expect_apart(s);
-    double sum = 0;
-    for (const BuildingPart& part : s.building.parts) sum += geometry::area(part.plan);
-    EXPECT_NEAR(sum, 360, 0.5);
-  }
-}
-
-TEST(PartsApart, ATowerWhoseWallIsAlmostTheOutlines) {
-  // Berlin 2014, r29971 in metres from (396300, 5818400): of 13 storeys, its towers of 14. One corner of the tower 687 is
-  // the outline's, the other lies 3 cm inside of it.
-  Scene s({{59.6025, 32.1924},
-           {63.3438, 34.8965},
-           {67.6611, 38.0654},
-           {70.0820, 39.8506},
-           {76.7861, 44.7715},
-           {97.0107, 56.8203},
-           {98.9346, 57.9561},
-           {102.2754, 59.5430},
-           {106.9766, 61.7930},
-           {110.0811, 63.2949},
-           {112.4902, 80.5918},
-           {87.1162, 67.7090},
-           {63.6182, 53.0059},
-           {38.8818, 33.5781},
-           {52.9209, 27.2500}});
-  s.part(685, {{97.6523, 68.6094}, {102.2744, 59.5400}, {110.0811, 63.2949}, {105.3877, 72.5293}}, {{}, {}, 14.0f, {}})
-      .part(687, {{57.1836, 43.5254}, {63.3604, 34.9326}, {70.0820, 39.8506}, {63.9893, 48.3691}}, {{}, {}, 14.0f, {}})
-      .fit();
-  EXPECT_EQ(s.ids(), (Ids{"w1.w685", "w1.w687", "w1.rest"}));
-  expect_apart(s);
-  // Nothing is opened or bent for it: the towers keep their corners, the rest has no staircase.
-  for (const BuildingPart& part : s.building.parts) EXPECT_LE(part.plan.outer.size(), part.rest ? 20u : 6u) << part.id;
-}
-
-TEST(PartsApart, TowersWhoseWallsAreAlmostTheOutlines) {
-  // One corner on the outline or beyond, the other a little off it; the outline has a corner between the two.
-  Random random(7);
-  for (int round = 0; round < 3000; ++round) {
-    SCOPED_TRACE(round);
-    const double angle = 2 * std::acos(-1) * random.unit(), c = std::cos(angle), sn = std::sin(angle);
-    const auto turned = [&](std::vector<Point2> points) {
-      for (Point2& p : points) p = model::snap(Point2{c * p.x - sn * p.y, sn * p.x + c * p.y});
-      return points;
-    };
-    const double at = 4 + 8 * random.unit(), wide = 4 + 6 * random.unit(), bend = 0.1 * random.unit() - 0.05,
-                 off = 0.1 * random.unit() - 0.02, start = round % 3 == 0 ? 0 : 0.04 * random.unit() - 0.02;
-    Scene s(
-        turned({{0, 0}, {at, 0}, {at + wide * random.unit(), bend}, {at + wide, off / 4}, {30, 0}, {30, 15}, {0, 15}}));
-    s.part(2, turned({{at, start}, {at + wide, off}, {at + wide, 6}, {at, 6}})).fit();
-    EXPECT_EQ(s.ids(), (Ids{"w1.w2", "w1.rest"}));
-    expect_apart(s);
-    double sum = 0;
-    for (const BuildingPart& part : s.building.parts) sum += geometry::area(part.plan);
-    EXPECT_NEAR(sum, geometry::area(s.building.outline[0]), 1.2);
-  }
-}
-
-TEST(PartsApart, PartsOneAboveTheOtherStayAsTheyAre) {
-  Scene s({{0, 0}, {20, 0}, {20, 10}, {0, 10}});
-  s.part(2, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}, {10.0f, {}, {}, {}})
-      .part(3, {{0.003, 2}, {8, 2}, {8, 8}, {0.003, 8}}, {30.0f, 10.0f, {}, {}})
-      .fit();
-  EXPECT_NEAR(s.common("w1.w2", "w1.w3"), s.area("w1.w3"), 1e-9);
-}
-
-TEST(PartsApart, OfASmallThingSmallPiecesStay) {
-  // A cross on a spire: the post divides the crossbar into pieces of which none would be worth a part of a house.
-  Scene s({{0, 0}, {8, 0}, {8, 8}, {0, 8}});
-  s.part(2, {{3.8, 3.8}, {4.2, 3.8}, {4.2, 4.2}, {3.8, 4.2}}, {41.0f, 37.0f, {}, {}})
-      .part(3, {{3, 3.9}, {5, 3.9}, {5, 4.1}, {3, 4.1}}, {40.2f, 39.8f, {}, {}})
-      .fit();
-  EXPECT_EQ(s.common("w1.w2", "w1.w3.1") + s.common("w1.w2", "w1.w3.2"), 0);
-  EXPECT_NEAR(s.area("w1.w2"), 0.16, 0.01);
-  EXPECT_NEAR(s.area("w1.w3.1") + s.area("w1.w3.2"), 0.32, 0.02);
 }
 
 // ---- overlaps -------------------------------------------------------------------------------------------------------
