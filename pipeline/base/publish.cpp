@@ -369,6 +369,17 @@ PublishedFile StagedFolder::write(const std::string& relative_path, std::string_
   return file.close();
 }
 
+void StagedFolder::link(const PublishedFile& file, const std::string& place) {
+  const std::string path = staging_ + "/" + file.path;
+  const WriteGate gate;
+  std::error_code error;
+  fs::create_directories(fs::path(path).parent_path(), error);
+  if (error) throw output_error(path, error.value(), staging_);
+  if (::link(place.c_str(), path.c_str()) == 0) return;
+  fs::copy_file(place, path, error);
+  if (error) throw output_error(path, error.value(), staging_);
+}
+
 PublishedFile StagedFolder::adopt(const std::string& relative_path) const {
   const std::string path = staging_ + "/" + relative_path;
   std::error_code error;

@@ -69,6 +69,10 @@ class StagedFolder {
   /// Starts a file that is written piece by piece. Safe as write(). The folder must outlive it.
   StagedFile create(const std::string& relative_path);
 
+  /// Takes in a file of an earlier run: one on disk with it where the file system can (a hard link), else a copy. The file at
+  /// `place` must not change afterwards. Safe as write(). \throws OutputError as write
+  void link(const PublishedFile& file, const std::string& place);
+
   /// Takes in a file that a library wrote itself below staging_path(): notes its size and hash.
   /// \throws OutputError when it cannot be read
   PublishedFile adopt(const std::string& relative_path) const;

@@ -84,6 +84,9 @@ std::string update_report(const run::UpdateOptions& options, const run::UpdateSu
                       s.number, seconds_text(s.seconds), base::with_thousands(c.after),
                       base::with_thousands(c.added.size()), base::with_thousands(c.removed.size()),
                       base::with_thousands(c.outlines.size()), base::with_thousands(c.attributes.size()));
+      if (s.tiles_kept > 0)
+        out += fmt::format("  {} tiles were built, {} are those of earlier runs\n", base::with_thousands(s.tiles_built),
+                           base::with_thousands(s.tiles_kept));
       if (s.linked > 0)
         out += fmt::format("  {} files ({}) are those of build {}: one on disk\n", base::with_thousands(s.linked),
                            base::with_byte_unit(s.linked_bytes), s.before.value_or(0));
@@ -112,6 +115,7 @@ std::string update_json(const run::UpdateSummary& s) {
                     {"after", s.changes.after},
                     {"added", s.changes.added.size()},
                     {"removed", s.changes.removed.size()}};
+  j["tiles"] = {{"built", s.tiles_built}, {"kept", s.tiles_kept}};
   j["gates"] = nlohmann::ordered_json::array();
   for (const run::Gate& g : s.gates)
     j["gates"].push_back({{"gate", g.key}, {"value", g.value}, {"limit", g.limit}, {"exceeded", g.exceeded()}});

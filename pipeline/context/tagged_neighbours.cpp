@@ -55,4 +55,10 @@ std::optional<NeighbourVote<model::RoofShape>> TaggedNeighbours::roof_shape(mode
                                          static_cast<double>(*best) / voices};
 }
 
+std::vector<TaggedBuilding> TaggedNeighbours::near(const geometry::PlanBox& box) const {
+  std::vector<TaggedBuilding> out;
+  for (const std::uint32_t i : places_.near(box, reach_)) out.push_back(buildings_[i]);
+  return out;
+}
+
 }  // namespace blockrand::context

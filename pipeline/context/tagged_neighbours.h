@@ -46,6 +46,9 @@ class TaggedNeighbours {
                                                             int minimum) const;
   double reach() const { return reach_; }
 
+  /// Those that a building in `box` may ask, in the order in which they were given.
+  std::vector<TaggedBuilding> near(const geometry::PlanBox& box) const;
+
  private:
   template <class Visit>
   void for_each_near(model::Point2 place, std::uint8_t group, model::OsmId self, Visit&& visit) const;

@@ -29,57 +29,53 @@ VicinityFinder::VicinityFinder(const model::Extract& extract, const footprints::
   courtyards_ = geometry::BoxIndex(std::move(boxes));
 }
 
+FoundVicinity VicinityFinder::around(const geometry::PlanBox& box) const {
+  constexpr double kReach = context::kWallSegmentReach;
+  FoundVicinity found;
+  for (const std::uint32_t n : buildings_.near(box, kReach)) {
+    const model::Range tags = extract_.buildings[footprints_[n].lead].tags;
+    found.addresses.push_back(context::building_address(extract_, footprints_[n].id, tags));
+    for (model::Polygon& polygon : footprints_.polygons(n))
+      found.footprints.push_back({footprints_[n].id, std::move(polygon), std::nullopt, footprints_[n].level.canopy});
+  }
+  std::erase_if(found.addresses, [](const auto& a) { return a.street.empty() && a.house_number.empty(); });
+  std::sort(found.addresses.begin(), found.addresses.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  std::stable_sort(found.footprints.begin(), found.footprints.end(),
+                   [](const context::Footprint& a, const context::Footprint& b) { return a.id < b.id; });
+  for (const std::uint32_t i : lines_.near(box, kReach)) found.lines.push_back(context_.lines[i]);
+  for (const std::uint32_t i : passages_.near(box, kReach)) found.passages.push_back(context_.passages[i]);
+  for (const std::uint32_t i : points_.near(box, kReach)) found.points.push_back(context_.points[i]);
+
+  std::map<std::uint32_t, std::size_t> place;  // of a block of the extract among those here
+  for (const std::uint32_t b : blocks_.near(box, kReach)) {
+    place[b] = found.blocks.size();
+    found.blocks.push_back(context_.blocks[b]);
+    found.figures.emplace_back();
+  }
+  // Courtyards that lie in no block stand with a block of no extent.
+  place[model::kNoIndex] = found.blocks.size();
+  found.blocks.emplace_back();
+  found.figures.emplace_back();
+  for (const std::uint32_t i : courtyards_.near(box, kReach)) {
+    const ExtractCourtyard& yard = context_.courtyards[i];
+    if (const auto block = place.find(yard.block); block != place.end())
+      found.figures[block->second].courtyards.push_back(yard.courtyard);
+  }
+  return found;
+}
+
 void VicinityFinder::label_wall_segments(model::Region& region, std::span<const std::uint32_t> numbers) const {
   geometry::PlanBox box;
   for (const std::uint32_t n : numbers) box.include(footprints_[n].box);
   if (box.empty()) return;
-  constexpr double kReach = context::kWallSegmentReach;
-
-  std::vector<context::Footprint> footprints;
-  std::vector<context::BuildingAddress> addresses;
-  for (const std::uint32_t n : buildings_.near(box, kReach)) {
-    const model::Range tags = extract_.buildings[footprints_[n].lead].tags;
-    addresses.push_back(context::building_address(extract_, footprints_[n].id, tags));
-    for (model::Polygon& polygon : footprints_.polygons(n))
-      footprints.push_back({footprints_[n].id, std::move(polygon), std::nullopt, footprints_[n].level.canopy});
-  }
-  std::erase_if(addresses, [](const auto& a) { return a.street.empty() && a.house_number.empty(); });
-  std::sort(addresses.begin(), addresses.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-  std::stable_sort(footprints.begin(), footprints.end(),
-                   [](const context::Footprint& a, const context::Footprint& b) { return a.id < b.id; });
-  std::vector<context::NetworkLine> lines;
-  for (const std::uint32_t i : lines_.near(box, kReach)) lines.push_back(context_.lines[i]);
-  std::vector<context::PassageWay> passages;
-  for (const std::uint32_t i : passages_.near(box, kReach)) passages.push_back(context_.passages[i]);
-  std::vector<context::SitePoint> points;
-  for (const std::uint32_t i : points_.near(box, kReach)) points.push_back(context_.points[i]);
-
-  std::vector<context::Block> blocks;
-  std::vector<context::BlockFigures> figures;
-  std::map<std::uint32_t, std::size_t> place;  // of a block of the extract among those here
-  const std::vector<std::uint32_t> near = blocks_.near(box, kReach);
-  for (const std::uint32_t b : near) {
-    place[b] = blocks.size();
-    blocks.push_back(context_.blocks[b]);
-    figures.emplace_back();
-  }
-  // Courtyards that lie in no block stand with a block of no extent.
-  place[model::kNoIndex] = blocks.size();
-  blocks.emplace_back();
-  figures.emplace_back();
-  for (const std::uint32_t i : courtyards_.near(box, kReach)) {
-    const ExtractCourtyard& yard = context_.courtyards[i];
-    if (const auto found = place.find(yard.block); found != place.end())
-      figures[found->second].courtyards.push_back(yard.courtyard);
-  }
-
-  const context::VicinityIndex index({.footprints = footprints,
-                                      .lines = lines,
-                                      .blocks = blocks,
-                                      .figures = figures,
-                                      .passages = passages,
-                                      .points = points,
-                                      .addresses = addresses});
+  const FoundVicinity found = around(box);
+  const context::VicinityIndex index({.footprints = found.footprints,
+                                      .lines = found.lines,
+                                      .blocks = found.blocks,
+                                      .figures = found.figures,
+                                      .passages = found.passages,
+                                      .points = found.points,
+                                      .addresses = found.addresses});
   for (model::Building& building : region.buildings)
     context::label_wall_segments(building, index, context::address_street(extract_, building.tags));
 }

@@ -6,11 +6,23 @@
 #include <vector>
 
 #include "pipeline/context/context_extract.h"
+#include "pipeline/context/wall_segments.h"
 #include "pipeline/footprints/footprint_store.h"
 #include "pipeline/geometry/box_index.h"
 #include "pipeline/model/region.h"
 
 namespace blockrand::context {
+
+/// A Vicinity that holds what it shows. The views of its addresses live as long as the extract.
+struct FoundVicinity {
+  std::vector<Footprint> footprints;
+  std::vector<NetworkLine> lines;
+  std::vector<Block> blocks;          ///< the last one has no extent: courtyards that lie in no block stand with it
+  std::vector<BlockFigures> figures;  ///< parallel to `blocks`: their courtyards alone
+  std::vector<PassageWay> passages;
+  std::vector<SitePoint> points;
+  std::vector<BuildingAddress> addresses;
+};
 
 /// Read-only after construction, safe to share between threads; keeps references to what it is made of.
 class VicinityFinder {
@@ -21,6 +33,14 @@ class VicinityFinder {
   /// Labels the edges of a region's buildings (context::label_wall_segments) with everything around them in view.
   /// \param numbers  of the region's buildings in the store, in their order
   void label_wall_segments(model::Region& region, std::span<const std::uint32_t> numbers) const;
+
+  /// Everything within kWallSegmentReach of `box`, which must not be empty. Numbers of buildings in it are those of the store.
+  FoundVicinity around(const geometry::PlanBox& box) const;
+
+  /// The buildings at most `distance` metres from `box` along both axes, ascending.
+  std::vector<std::uint32_t> buildings_near(const geometry::PlanBox& box, double distance) const {
+    return buildings_.near(box, distance);
+  }
 
  private:
   const model::Extract& extract_;

@@ -124,6 +124,15 @@ std::vector<std::string> GrammarLibrary::files() const {
   return {out.begin(), out.end()};
 }
 
+std::vector<std::string> GrammarLibrary::files_of(std::string_view preset) const {
+  std::set<std::string> out;
+  const Entry* entry = find(preset);
+  for (const auto& file : files_)
+    if (entry && &*file->deriver == entry->deriver)
+      for (const grammar::SourceFile& source : file->program.files) out.insert(source.path);
+  return {out.begin(), out.end()};
+}
+
 const GrammarLibrary::Entry* GrammarLibrary::find(std::string_view preset) const {
   const auto place = std::lower_bound(entries_.begin(), entries_.end(), preset,
                                       [](const Entry& e, std::string_view name) { return e.preset < name; });

@@ -49,6 +49,8 @@ class GrammarLibrary {
   bool empty() const { return entries_.empty(); }
   /// Paths of all files that were read, imports included, by name.
   std::vector<std::string> files() const;
+  /// Those of one preset; none when it has no grammar.
+  std::vector<std::string> files_of(std::string_view preset) const;
 
  private:
   struct File;

@@ -176,4 +176,10 @@ void RoofLineFinder::fit(model::Region& region) const {
   }
 }
 
+std::vector<RoofLine> RoofLineFinder::near(const PlanBox& box) const {
+  std::vector<RoofLine> out;
+  for (const std::uint32_t i : boxes_.near(box, kRoofLineReach)) out.push_back(lines_[i]);
+  return out;
+}
+
 }  // namespace blockrand::footprints

@@ -30,6 +30,8 @@ class RoofLineFinder {
   RoofLineFinder(const model::Extract& extract, const georef::Projection& projection);
   /// fit_roof_lines for every building of a region that has plans.
   void fit(model::Region& region) const;
+  /// The lines that plans in `box` may get, by id.
+  std::vector<model::RoofLine> near(const PlanBox& box) const;
 
  private:
   std::vector<model::RoofLine> lines_;  ///< by id

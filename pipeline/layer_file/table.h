@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pipeline/base/markup.h"
+#include "pipeline/base/pack.h"
 
 namespace blockrand::layer_file {
 
@@ -35,6 +36,20 @@ struct Cell {
 
 /// Rows of one layer, flat: `width` cells each. Texts are clean UTF-8 and end with a zero byte; geometries are
 /// well-known binary, little-endian.
+}  // namespace blockrand::layer_file
+
+template <>
+struct blockrand::base::PackTraits<blockrand::layer_file::Cell> {
+  using Cell = layer_file::Cell;
+  static void pack(Packer& out, const Cell& cell) { out << cell.kind << cell.integer; }
+  static void unpack(Unpacker& in, Cell& cell) {
+    in >> cell.kind >> cell.integer;
+    if (cell.kind > Cell::Kind::text) throw UnpackError();
+  }
+};
+
+namespace blockrand::layer_file {
+
 struct CellTable {
   std::size_t width = 0;
   std::vector<Cell> cells;

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/base/pack.h"
 #include "pipeline/base/publish.h"
 #include "pipeline/context/context_extract.h"
 #include "pipeline/context/height_reference.h"
@@ -87,12 +88,29 @@ class Output {
   /// Writes a tile's files, notes them in `tile.files`, and returns what `take` wants to know of the tile. Called for
   /// different tiles at the same time.
   virtual std::any write_tile(FinishedTile& tile) const = 0;
+  /// What write_tile returned, as bytes (pipeline/base/pack.h) for a run that finds the tile unchanged, and back.
+  virtual std::string packed_product(const std::any& product) const = 0;
+  /// \throws base::UnpackError
+  virtual std::any unpacked_product(std::string_view bytes) const = 0;
+  /// What write_tile reads of a tile beside its region and what OutputContext says of all tiles alike: packed, so that a tile
+  /// for which it is another counts as changed.
+  virtual std::string reads_of_tile(std::size_t /*shard*/) const { return {}; }
   /// Takes over what write_tile returned, in tile order, one at a time. `tile.files` is complete.
   virtual void take(const FinishedTile& /*tile*/, std::any /*product*/) {}
   /// Writes the files of the whole build.
   virtual void finish(const FinishedBuild& /*build*/) {}
   /// Writes the files that list all others: after every output has finished.
   virtual void conclude(const FinishedBuild& /*build*/) {}
+};
+
+/// A format whose write_tile returns a Product.
+template <class Product>
+class OutputOf : public Output {
+ public:
+  std::string packed_product(const std::any& product) const override {
+    return base::packed(*std::any_cast<Product>(&product));
+  }
+  std::any unpacked_product(std::string_view bytes) const override { return base::unpacked<Product>(bytes); }
 };
 
 /// A file or folder, and what people find in it.

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/base/pack.h"
 #include "pipeline/model/colour.h"
 #include "pipeline/model/point.h"
 #include "pipeline/model/solid.h"
@@ -77,6 +78,7 @@ class Scene {
   const std::optional<Ground>& ground() const { return ground_; }
 
  private:
+  friend struct base::PackTraits<Scene>;
   Vector local(Point3 p) const;
   void push(const std::array<Point3, 3>& corners, const std::array<Colour, 3>& colours, std::uint32_t object,
             bool closed);
@@ -87,3 +89,10 @@ class Scene {
 };
 
 }  // namespace blockrand::picture
+
+/// Triangles as they lie.
+template <>
+struct blockrand::base::PackTraits<blockrand::picture::Scene> {
+  static void pack(Packer& out, const picture::Scene& scene) { out << scene.origin_ << scene.triangles_ << scene.ground_; }
+  static void unpack(Unpacker& in, picture::Scene& scene) { in >> scene.origin_ >> scene.triangles_ >> scene.ground_; }
+};

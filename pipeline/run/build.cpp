@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <any>
 #include <atomic>
 #include <chrono>
 #include <fstream>
@@ -34,7 +33,9 @@
 #include "pipeline/run/output_place.h"
 #include "pipeline/run/prepare_extract.h"
 #include "pipeline/run/tile_choice.h"
+#include "pipeline/run/tile_key.h"
 #include "pipeline/run/tile_stages.h"
+#include "pipeline/run/tile_work.h"
 #include "pipeline/run/whole_model.h"
 
 namespace blockrand::run {
@@ -151,50 +152,6 @@ void check_free_space(const BuildOptions& options, std::uint64_t buildings, cons
 
 // ---- the tiles
 
-/// The formats that a build writes, and what they want to be given.
-struct OpenOutputs {
-  explicit OpenOutputs(const outputs::OutputContext& context) {
-    for (const outputs::OutputFormat& format : outputs::all_outputs()) {
-      if (!format.asked(context.options)) continue;
-      list.push_back(format.open(context));
-      takes_regions = takes_regions || (format.takes_regions && format.takes_regions(context.options));
-      keeps_whole = keeps_whole || (format.keeps_whole && format.keeps_whole(context.options));
-    }
-  }
-  std::vector<std::unique_ptr<outputs::Output>> list;
-  bool takes_regions = false, keeps_whole = false;
-};
-
-/// A tile between its work and its turn.
-struct TileResult {
-  Outcomes outcomes;
-  std::vector<model::ReportRow> rows;
-  outputs::TileStatistics statistics;
-  std::vector<std::any> products;  ///< parallel to OpenOutputs::list
-  std::vector<base::PublishedFile> files;
-  Region region;  ///< kept only for files of the whole build
-};
-
-/// All stages and all outputs of a tile. Safe for different tiles at the same time.
-TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenOutputs& open, const Account& account) {
-  TileResult result;
-  Region region = run_tile(shard, inputs);
-  result.outcomes = decide_outcomes(region, inputs.lod);
-  result.statistics = outputs::count_statistics(region);
-  outputs::FinishedTile tile{
-      .region = region,
-      .shard = shard,
-      .name = outputs::tile_name(region.tile),
-      .has_parts = std::ranges::any_of(region.buildings, [](const model::Building& b) { return !b.parts.empty(); }),
-      .final_state = account.final_states(result.outcomes.list),
-      .files = {}};
-  for (const auto& output : open.list) result.products.push_back(output->write_tile(tile));
-  result.files = std::move(tile.files);
-  result.rows = std::move(region.report.rows);
-  if (open.takes_regions || open.keeps_whole) result.region = std::move(region);
-  return result;
-}
-
 /// What the tiles add up to, taken in their order.
 struct Sums {
   std::vector<outputs::PartySide> party_sides;
@@ -223,6 +180,33 @@ struct Sums {
     record.summary.roofscape = record.statistics.roofscape;
   }
 };
+
+// ---- work of earlier runs
+
+/// Null where none is kept.
+std::unique_ptr<WorkCache> open_cache(const BuildOptions& options, const BuildInputs& inputs,
+                                      const std::optional<TileChoice>& tile, const OpenOutputs& open,
+                                      base::Progress& progress) {
+  if (options.cache.empty()) return nullptr;
+  const char* why = tile                                           ? "a tile is built alone"
+                    : !inputs.images.empty()                       ? "aerial images are looked at as a whole"
+                    : open.takes_regions || open.keeps_whole       ? "a file of the whole model needs every tile anew"
+                                                                   : nullptr;
+  if (why) {
+    progress.warn(fmt::format("{}: no work is kept there, nor taken from there: {}", options.cache, why));
+    return nullptr;
+  }
+  return std::make_unique<WorkCache>(options.cache, program_identity(), progress);
+}
+
+void tell_cache(const WorkCache& cache, const BuildOptions& options, BuildSummary& summary, base::Progress& progress) {
+  summary.kept_work = cache.used();
+  if (cache.damaged() > 0)
+    progress.warn(fmt::format("{}: the work on {} tiles was damaged there and is done anew", options.cache,
+                              base::with_thousands(cache.damaged())));
+  if (const std::string trouble = cache.trouble(); !trouble.empty())
+    progress.warn("work on tiles could not be kept for the next run: " + trouble);
+}
 
 // ---- after the tiles
 
@@ -390,18 +374,34 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
                                .has_terrain = inputs.terrain.has_value(),
                                .ground = [&](const model::Building& building) { return ground.under(building); },
                                .context_time = context_time};
+  const std::unique_ptr<WorkCache> cache = open_cache(options, inputs, tile, open, progress);
+  std::optional<TileKeys> keys;
+  if (cache)
+    keys.emplace(tile_inputs, inputs, shared_key(options, inputs, record), account.earlier(), open.list);
   progress.begin("tiles", to_build, "buildings");
   std::vector<TileResult> slots(in_flight);
   Sums sums;
   std::uint64_t done = 0;
-  const auto work = [&](std::size_t i) { slots[i % in_flight] = work_on_tile(todo[i], tile_inputs, open, account); };
+  const auto work = [&](std::size_t i) {
+    TileResult& slot = slots[i % in_flight];
+    const std::string key = cache ? keys->key(todo[i]) : std::string();
+    if (cache)
+      if (std::optional<TileResult> kept = kept_tile(key, open, extract, folder, *cache)) {
+        slot = std::move(*kept);
+        return;
+      }
+    slot = work_on_tile(todo[i], tile_inputs, open, account);
+    if (cache) keep_tile(key, slot, open, extract, folder.staging_path(), *cache);
+  };
   const auto consume = [&](std::size_t i) {
     TileResult result = std::move(slots[i % in_flight]);
+    ++(result.kept ? summary.tiles_kept : summary.tiles_built);
     sums.take(std::move(result), todo[i], options, open, account, record);
     done += shards[todo[i]].seeds.size();
     progress.advance_to(done);
   };
   base::ordered_parallel(todo.size(), workers, in_flight, work, consume);
+  if (cache) tell_cache(*cache, options, summary, progress);
   sums.settle(record);
   warn_of_terrain(inputs, progress);
   account.close(tile, summary);

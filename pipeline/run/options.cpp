@@ -187,6 +187,13 @@ base::OptionTable<B> how_it_runs() {
                    .help = "worker threads; 0 is one per core",
                    .record = OptionRecord::none},
                   &B::jobs),
+          text({.name = "cache",
+                .argument = "FOLDER",
+                .type = OptionType::folder,
+                .help = "keep the work on tiles there, and take from there what an earlier run, ended or not, has of them; "
+                        "update has a folder of its own",
+                .record = OptionRecord::none},
+               &B::cache),
           flag({.name = "strict",
                 .key = "strict",
                 .help = "exit with code 3 when a building is simpler than asked or has no solid",

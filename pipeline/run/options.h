@@ -30,6 +30,7 @@ struct BuildOptions {
   double allow_shrink = 50;                   ///< percent fewer models than the build that is replaced
   bool strict = false;                        ///< exit code 3 when a building is below the asked quality
   int jobs = 0;                               ///< worker threads; 0: one per core
+  std::string cache;                          ///< folder where the work on tiles is kept for later runs, or empty
   std::uint64_t seed = 1;                     ///< of all random choices
   std::string terrain;                        ///< raster with ground heights, or empty
   std::string terrain_height_reference;       ///< "EPSG:7837", "sea-level", "ellipsoid"; empty: what the raster says

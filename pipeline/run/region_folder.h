@@ -31,6 +31,8 @@ class RegionFolder {
   std::string state(int number) const { return path_ + "/store/" + digits(number) + ".json"; }
   std::string log(int number) const { return path_ + "/log/" + digits(number) + ".json"; }
   std::string changes(int number) const { return path_ + "/log/" + digits(number) + ".changes"; }
+  /// Where work on tiles is kept from run to run.
+  std::string cache() const { return path_ + "/cache"; }
   static std::string digits(int number);
 
   /// Whether it is one already.

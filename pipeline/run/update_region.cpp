@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@
 #include "pipeline/base/text.h"
 #include "pipeline/run/region_folder.h"
 #include "pipeline/run/replication.h"
+#include "pipeline/run/work_cache.h"
 
 namespace blockrand::run {
 namespace {
@@ -192,6 +194,13 @@ void link_unchanged(const std::string& before, const std::string& after, UpdateS
   for (const auto& [path, entry] : now["files"].items()) {
     if (!old["files"].contains(path) || old["files"][path] != entry) continue;
     const std::string from = before + "/" + path, to = after + "/" + path, link = to + ".link";
+    struct stat one {}, other {};
+    if (::stat(from.c_str(), &one) == 0 && ::stat(to.c_str(), &other) == 0 && one.st_ino == other.st_ino &&
+        one.st_dev == other.st_dev) {  // by way of the cache
+      ++summary.linked;
+      summary.linked_bytes += static_cast<std::uint64_t>(one.st_size);
+      continue;
+    }
     // A disk may have lost what the record says: bytes are compared, not hashes.
     if (!same_bytes(from, to)) continue;
     ::unlink(link.c_str());
@@ -233,6 +242,7 @@ Json run_line(const UpdateSummary& s) {
       {"run", s.number}, {"ended", now_utc()}, {"state", word(s.state)}, {"seconds", std::round(s.seconds * 10) / 10}};
   j["why"] = s.why;
   if (s.sequence) j["sequence"] = *s.sequence;
+  if (s.tiles_built + s.tiles_kept > 0) j["tiles"] = {{"built", s.tiles_built}, {"kept", s.tiles_kept}};
   j["osm_objects"] = {{"created", s.created}, {"modified", s.modified}, {"deleted", s.deleted}};
   j["buildings"] = {{"before", s.changes.before},
                     {"after", s.changes.after},
@@ -266,6 +276,7 @@ BuildOptions build_options_for(const UpdateOptions& options, const RegionFolder&
   build.input = region.data(number);
   build.output = region.build(number);
   build.force = false;
+  build.cache = region.cache();
   // The first build chose; what comes in later must not choose anew.
   if (build.crs.empty() && current && before.crs_chosen) {
     const Json record = read_json(region.build(*current) + "/build.json");
@@ -393,6 +404,7 @@ class Updater {
     const int number = summary_.number;
     const BuildSummary built = build(build_options_for(options_, region_, number, current, before_), progress_);
     summary_.folder = region_.build(number);
+    summary_.tiles_built = built.tiles_built, summary_.tiles_kept = built.tiles_kept;
     compare(current);
     if (!built.unaccounted.empty())
       summary_.gates.push_back(
@@ -411,6 +423,10 @@ class Updater {
       write_whole(region_.log(number), dumped(run_line(done), 1));
       for (const std::string& path : region_.prune(options_.region.keep, current))
         progress_.warn("could not be removed: " + path);
+      std::set<std::string> builds;
+      for (const int passed : region_.passed()) builds.insert(RegionFolder::digits(passed));
+      if (!built.kept_work.empty())
+        keep_work_of(region_.cache(), RegionFolder::digits(number), built.kept_work, builds);
     } catch (const std::exception& error) {
       progress_.warn(fmt::format("build {} is published, but: {}", number, error.what()));
     }

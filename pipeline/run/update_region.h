@@ -40,6 +40,7 @@ struct UpdateSummary {
   std::optional<std::uint64_t> sequence;                            ///< of the newest change file
   BuildChanges changes;
   std::vector<Gate> gates;
+  std::uint64_t tiles_built = 0, tiles_kept = 0;  ///< worked on; taken from earlier runs
   std::uint64_t linked = 0, linked_bytes = 0;  ///< files that are those of the build before
   double expected_seconds = 0;                 ///< as long as the build before took; 0: unknown
   double seconds = 0;

@@ -111,6 +111,7 @@ class FeatureVector {
   float operator[](Feature f) const { return values_[static_cast<std::size_t>(f)]; }
   float at(std::size_t f) const { return values_[f]; }
   bool has(Feature f) const { return (*this)[f] == (*this)[f]; }
+  const std::array<float, kFeatureCount>& values() const { return values_; }
 
  private:
   std::array<float, kFeatureCount> values_;

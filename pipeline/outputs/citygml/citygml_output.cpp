@@ -23,7 +23,7 @@ CityGmlOptions citygml_options(const model::Region& region, const OutputContext&
   return o;
 }
 
-class CityGmlOutput : public Output {
+class CityGmlOutput : public OutputOf<bool> {
  public:
   explicit CityGmlOutput(const OutputContext& context) : context_(context) {}
 

@@ -1,5 +1,10 @@
 #include "pipeline/outputs/cityjson/cityjson_output.h"
 
+#include <fmt/chrono.h>
+
+#include <algorithm>
+#include <ctime>
+
 #include "pipeline/outputs/cityjson/cityjson_writer.h"
 
 namespace blockrand::outputs {
@@ -29,7 +34,7 @@ struct WholeFile {
   SingleCityJson model;
 };
 
-class CityJsonOutput : public Output {
+class CityJsonOutput : public OutputOf<bool> {
  public:
   explicit CityJsonOutput(const OutputContext& context)
       : context_(context), sequences_(context.options.writes("cityjson")) {
@@ -38,7 +43,7 @@ class CityJsonOutput : public Output {
 
   std::any write_tile(FinishedTile& tile) const override {
     const bool written = sequences_ && tile.has_parts;
-    if (written) tile.files.push_back(write(tile.region, tile.name));
+    if (written) tile.files.push_back(write(tile.region, tile.name, newest_edit(tile.shard)));
     return written;
   }
   void take(const FinishedTile& tile, std::any product) override {
@@ -47,17 +52,29 @@ class CityJsonOutput : public Output {
   }
   void finish(const FinishedBuild& build) override {
     // A file without city objects is a valid city model and says more than no file.
-    if (sequences_ && empty_) build.files.push_back(write(model::Region{}, "empty"));
+    if (sequences_ && empty_) build.files.push_back(write(model::Region{}, "empty", context_.data_time));
     if (!whole_) return;
     whole_->model.finish();
     build.files.push_back(whole_->file.close());
   }
 
  private:
-  base::PublishedFile write(const model::Region& region, const std::string& name) const {
-    return write_text_file("cityjson/" + name + ".city.jsonl",
-                           write_cityjson_sequence(region, cityjson_options(context_, model_name(region.tile))),
-                           context_);
+  base::PublishedFile write(const model::Region& region, const std::string& name, std::string_view date) const {
+    CityJsonOptions options = cityjson_options(context_, model_name(region.tile));
+    options.data_time = date;
+    return write_text_file("cityjson/" + name + ".city.jsonl", write_cityjson_sequence(region, options), context_);
+  }
+
+  /// When an object of the tile was last edited: a file changes when what is in it does, not with every edit of the extract.
+  std::string newest_edit(std::size_t shard) const {
+    std::uint32_t newest = 0;
+    const auto look = [&](std::uint32_t object) { newest = std::max(newest, context_.extract.buildings[object].edited); };
+    for (const footprints::Seed& seed : context_.shards[shard].seeds) {
+      if (seed.outline != model::kNoIndex) look(seed.outline);
+      for (const std::uint32_t part : seed.parts) look(part);
+    }
+    return newest > 0 ? fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(static_cast<std::time_t>(newest)))
+                      : std::string();
   }
 
   const OutputContext& context_;

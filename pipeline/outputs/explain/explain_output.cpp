@@ -28,7 +28,7 @@ std::string explain_index(std::vector<ExplainedObject> objects) {
   return text;
 }
 
-class ExplainOutput : public Output {
+class ExplainOutput : public OutputOf<ExplainedObjects> {
  public:
   explicit ExplainOutput(const OutputContext& context) : context_(context) {}
 

@@ -95,7 +95,7 @@ void add_reported(GeoPackageWriter& out, const model::Extract& extract, const st
   }
 }
 
-class GeoPackageOutput : public Output {
+class GeoPackageOutput : public OutputOf<TileProduct> {
  public:
   explicit GeoPackageOutput(const OutputContext& context)
       : context_(context),

@@ -191,7 +191,7 @@ void write_model(const FinishedBuild& build, const OutputContext& context) {
         reach / 1000));
 }
 
-class GltfOutput : public Output {
+class GltfOutput : public OutputOf<std::optional<TileEntry>> {
  public:
   explicit GltfOutput(const OutputContext& context) : context_(context), tiled_(context.options.writes("gltf")) {}
 

@@ -14,7 +14,7 @@ namespace {
 /// m: the finest pixel of the pictures of tiles. Pixels: of their longer side, about.
 constexpr double kOverlayPixel = 0.2, kOverlaySide = 1800;
 
-class ImageryOutput : public Output {
+class ImageryOutput : public OutputOf<std::vector<base::PublishedFile>> {
  public:
   explicit ImageryOutput(const OutputContext& context) : context_(context) {}
 

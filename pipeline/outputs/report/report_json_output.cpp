@@ -49,11 +49,11 @@ std::string report_json(const model::Extract& extract, const std::vector<model::
   return j.dump(1) + "\n";
 }
 
-class ReportJsonOutput : public Output {
+class ReportJsonOutput : public OutputOf<std::monostate> {
  public:
   explicit ReportJsonOutput(const OutputContext& context) : context_(context) {}
 
-  std::any write_tile(FinishedTile&) const override { return {}; }
+  std::any write_tile(FinishedTile&) const override { return std::monostate(); }
   void finish(const FinishedBuild& build) override {
     build.files.push_back(context_.folder.write("report.json", report_json(context_.extract, build.rows)));
   }

@@ -88,7 +88,7 @@ struct TileShare {
   picture::PlanTile plan;
 };
 
-class ReportOutput : public Output {
+class ReportOutput : public OutputOf<TileShare> {
  public:
   explicit ReportOutput(const OutputContext& context)
       : context_(context),
@@ -102,6 +102,13 @@ class ReportOutput : public Output {
     share.picture = picture_tile(tile.region, picture_plan_, tile.shard);
     if (plan_choice_.chosen[tile.shard]) share.plan = picture::plan_tile(tile.region);
     return share;
+  }
+  std::string reads_of_tile(std::size_t shard) const override {
+    base::Packer packer;
+    const bool pictured = picture_plan_.chosen[shard];
+    packer << pictured << plan_choice_.chosen[shard];
+    if (pictured) packer << picture_plan_.origin;
+    return std::move(packer.bytes);
   }
   void take(const FinishedTile&, std::any product) override {
     TileShare& share = *std::any_cast<TileShare>(&product);

@@ -1,0 +1,226 @@
+#include "pipeline/run/tile_key.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/pack.h"
+#include "pipeline/base/sha256.h"
+#include "pipeline/base/version.h"
+#include "pipeline/run/configuration.h"
+
+namespace blockrand::run {
+namespace {
+
+using base::Packer;
+using model::MappedBuilding;
+
+/// m. Walls of neighbours that are party walls lie nearer (WallSegmentOptions::touching).
+constexpr double kTouching = 1;
+/// m. How far plans may lie outside the box of a repaired outline: repair moves no corner by more (RepairOptions::max_shift).
+constexpr double kBoxSlack = 5;
+
+std::string sha256_of(std::string_view bytes) {
+  base::Sha256 hash;
+  hash.add(bytes);
+  return hash.finish();
+}
+
+void pack_tags(const model::Extract& extract, model::Range range, Packer& out) {
+  out << range.count;
+  for (const model::Tag& tag : extract.tags_of(range))
+    out << extract.strings.view(tag.key) << extract.strings.view(tag.value);
+}
+
+/// An object as it was mapped. \param kept  nodes that stay on straight walls
+void pack_mapped(const model::Extract& extract, const MappedBuilding& object, const repair::KeptNodes& kept,
+                 Packer& out) {
+  MappedBuilding b = object;
+  b.rings = {}, b.tags = {};
+  // What becomes of objects is noted while tiles run. Those of a tile are pending when it begins.
+  b.state = model::ObjectState::pending, b.code = model::IssueCode::none, b.related = {};
+  b.attributes.wall_material = b.attributes.roof_material = b.attributes.use = 0;
+  out << b;
+  for (const base::StringId text :
+       {object.attributes.wall_material, object.attributes.roof_material, object.attributes.use})
+    out << extract.strings.view(text);
+  pack_tags(extract, object.tags, out);
+  out << object.rings.count;
+  for (const model::MappedRing& ring : extract.rings_of(object.rings)) {
+    out << ring.inner << extract.vertices_of(ring) << extract.nodes_of(ring);
+    if (!extract.mapped_vertices.empty()) out << extract.mapped_vertices_of(ring);
+    for (const std::int64_t node : extract.nodes_of(ring)) out << kept.contains(node);
+  }
+}
+
+void pack_rows(std::span<const model::ReportRow> rows, model::OsmId id, Packer& out) {
+  const auto [first, last] = std::equal_range(rows.begin(), rows.end(), model::ReportRow{id, {}, {}},
+                                              [](const auto& a, const auto& b) { return a.object < b.object; });
+  out << std::span<const model::ReportRow>(first, last);
+}
+
+}  // namespace
+
+struct TileKeys::Impl {
+  const TileInputs& in;
+  std::string shared;
+  std::span<const model::ReportRow> earlier;
+  std::span<const std::unique_ptr<outputs::Output>> outputs;
+  std::map<std::string, std::string, std::less<>> grammars;  ///< hash of the rule files, by preset
+  bool position_matters = false;                             ///< a rule asks for the position in the block
+
+  void pack_own(const footprints::Seed& seed, std::uint32_t number, Packer& out) const {
+    const model::Extract& extract = in.extract;
+    const auto object = [&](std::uint32_t index) {
+      const MappedBuilding& mapped = extract.buildings[index];
+      pack_mapped(extract, mapped, in.kept, out);
+      pack_rows(earlier, mapped.id, out);
+      if (const attributes::OverrideEntry* order = in.overrides.find(mapped.id)) out << *order;
+    };
+    out << (seed.outline != model::kNoIndex);
+    if (seed.outline != model::kNoIndex) object(seed.outline);
+    out << static_cast<std::uint64_t>(seed.parts.size());
+    for (const std::uint32_t part : seed.parts) object(part);
+
+    footprints::StoredFootprint stored = in.repaired.footprints[number];
+    stored.lead = 0, stored.rings = {}, stored.arcs = {};
+    out << stored << in.repaired.footprints.polygons(number) << in.repaired.footprints.arcs(number);
+    pack_rows(in.repaired.rows, stored.id, out);
+
+    const evidence::StyleInputs& s = in.styles;
+    out << s.facts.features[number].values();
+    out << s.tags.dates[number] << s.tags.years[number] << s.tags.roofs[number] << s.tags.points_of(number);
+    if (const std::int32_t why = s.tags.non_house[number]; why >= 0) {
+      const classify::NonHouse& reason = s.tags.reasons[static_cast<std::size_t>(why)];
+      out << reason.why;
+    }
+    out << s.styles.styles[number] << s.styles.storeys[number] << s.styles.roofs[number] << s.styles.elsewhere[number]
+        << s.styles.region[number];
+  }
+
+  void pack_preset(std::uint32_t number, Packer& out) const {
+    const int positions = position_matters ? model::kBuildingPositionCount : 1;
+    for (int p = 0; p < positions; ++p) {
+      districts::Assignment a = in.assigner.assign(number, static_cast<model::BuildingPosition>(p));
+      const std::uint32_t preset = a.decision.preset;
+      // Numbers of sets, rules and presets are those of this run's files.
+      a.decision.set = a.decision.preset = a.decision.rule = 0;
+      a.fired.clear();
+      for (districts::Parameter& parameter : a.parameters) parameter.rule = 0;
+      out << a;
+      if (preset == districts::Decision::kNone) continue;
+      const std::string& name = in.assigner.book().presets[preset].name;
+      out << name;
+      if (const auto rules = grammars.find(name); rules != grammars.end()) out << rules->second;
+    }
+  }
+
+  /// What the stages up to the attributes see around buildings.
+  void pack_around(geometry::PlanBox box, Packer& out) const {
+    const context::FoundVicinity found = in.vicinity.around(box);
+    out << found.footprints << found.lines << found.blocks << found.passages << found.points << found.addresses;
+    for (const context::BlockFigures& figures : found.figures)
+      for (context::Courtyard yard : figures.courtyards) {
+        yard.buildings.clear();
+        out << yard;
+      }
+    box.minimum = {box.minimum.x - kBoxSlack, box.minimum.y - kBoxSlack};
+    box.maximum = {box.maximum.x + kBoxSlack, box.maximum.y + kBoxSlack};
+    out << in.neighbours.near(box) << in.roof_lines.near(box);
+  }
+};
+
+TileKeys::TileKeys(const TileInputs& inputs, const BuildInputs& files, std::string shared,
+                   std::span<const model::ReportRow> earlier,
+                   std::span<const std::unique_ptr<outputs::Output>> outputs)
+    : impl_(new Impl{inputs, std::move(shared), earlier, outputs, {}, false}) {
+  std::map<std::string, std::string> hashes;  // by path
+  for (const districts::Preset& preset : files.rules.book.presets) {
+    if (!files.grammars) break;
+    const facades::GrammarLibrary::Entry* entry = files.grammars->find(preset.name);
+    if (!entry) continue;
+    Packer rules;
+    rules << entry->file << preset.attributes;
+    for (const std::string& path : files.grammars->files_of(preset.name)) {
+      std::string& hash = hashes[path];
+      if (hash.empty()) hash = base::sha256_file(path);
+      rules << hash;
+    }
+    impl_->grammars.emplace(preset.name, sha256_of(rules.bytes));
+  }
+  for (const districts::RuleSet& set : files.rules.book.sets)
+    for (const districts::Rule& rule : set.rules)
+      impl_->position_matters = impl_->position_matters || !rule.which.positions.empty();
+}
+
+TileKeys::~TileKeys() = default;
+
+std::string TileKeys::key(std::size_t shard) const {
+  const Impl& in = *impl_;
+  const TileInputs& tiles = in.in;
+  const std::vector<footprints::Seed>& seeds = tiles.shards[shard].seeds;
+  const std::uint32_t first = tiles.repaired.first[shard];
+  Packer out;
+  out << in.shared << tiles.shards[shard].tile;
+  for (const auto& output : in.outputs) out << output->reads_of_tile(shard);
+
+  geometry::PlanBox box;
+  std::set<std::uint32_t> beside;  // of other tiles, that may share a wall
+  for (std::uint32_t i = 0; i < seeds.size(); ++i) {
+    in.pack_own(seeds[i], first + i, out);
+    in.pack_preset(first + i, out);
+    const geometry::PlanBox& own = tiles.repaired.footprints[first + i].box;
+    if (own.empty()) continue;
+    box.include(own);
+    for (const std::uint32_t other : tiles.vicinity.buildings_near(own, kTouching))
+      if (other < first || other >= first + seeds.size()) beside.insert(other);
+  }
+  out << static_cast<std::uint64_t>(beside.size());
+  for (const std::uint32_t other : beside) {
+    const auto after = std::upper_bound(tiles.repaired.first.begin(), tiles.repaired.first.end(), other);
+    const auto its = static_cast<std::size_t>(after - tiles.repaired.first.begin()) - 1;
+    in.pack_own(tiles.shards[its].seeds[other - tiles.repaired.first[its]], other, out);
+    box.include(tiles.repaired.footprints[other].box);
+  }
+  // Mapped parts may stand outside of their outline.
+  for (const footprints::Seed& seed : seeds)
+    for (const std::uint32_t part : seed.parts)
+      for (const model::MappedRing& ring : tiles.extract.rings_of(tiles.extract.buildings[part].rings))
+        for (const model::Location v : tiles.extract.vertices_of(ring)) {
+          const model::Point2 p = tiles.projection.forward(v);
+          if (p.x == p.x && p.y == p.y) box.include(p);
+        }
+  if (!box.empty()) in.pack_around(box, out);
+  return sha256_of(out.bytes);
+}
+
+std::string shared_key(const BuildOptions& options, const BuildInputs& inputs, const BuildRecord& record) {
+  Packer out;
+  out << program_identity();
+  nlohmann::ordered_json settings = configuration(options);
+  settings.erase("bbox");  // says which data there are, not what becomes of them
+  out << settings.dump();
+  // Presets and rules come with what they decide for each building, their grammars and orders by building.
+  std::set<std::string> elsewhere;
+  for (const auto& [name, path] : inputs.rules.files) elsewhere.insert(name);
+  for (const InputFile& file : record.inputs)
+    if (file.role != "overrides" && !elsewhere.contains(file.path) && !file.path.starts_with("grammars/"))
+      out << file.role << file.sha256;
+  out << inputs.overrides.name << record.crs << record.portable;
+  out << record.heights.words << record.heights.vertical_crs << record.heights.in_tiles << record.heights.raised_from
+      << record.heights.raised_by.has_value();
+  return std::move(out.bytes);
+}
+
+const std::string& program_identity() {
+  static const std::string identity = [] {
+    try {
+      return std::string(base::kVersion) + " " + base::sha256_file("/proc/self/exe");
+    } catch (const base::InputError&) {
+      return std::string(base::kVersion);
+    }
+  }();
+  return identity;
+}
+
+}  // namespace blockrand::run

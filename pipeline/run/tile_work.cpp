@@ -1,0 +1,103 @@
+#include "pipeline/run/tile_work.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "pipeline/base/pack.h"
+
+namespace blockrand::run {
+namespace {
+
+constexpr std::string_view kKind = "tiles";
+
+/// An Outcome by the object's id: its index is that of one run.
+struct KeptOutcome {
+  model::OsmId object;
+  model::ObjectState state = model::ObjectState::modelled;
+  model::IssueCode code = model::IssueCode::none;
+  model::OsmId related;
+  std::int32_t lod = -1;
+};
+
+/// A TileResult as it lies in the cache, but for its files.
+struct KeptTile {
+  std::vector<KeptOutcome> outcomes;
+  bool below_quality = false;
+  std::vector<model::ReportRow> rows;
+  outputs::TileStatistics statistics;
+  std::vector<std::string> products;
+};
+
+}  // namespace
+
+OpenOutputs::OpenOutputs(const outputs::OutputContext& context) {
+  for (const outputs::OutputFormat& format : outputs::all_outputs()) {
+    if (!format.asked(context.options)) continue;
+    list.push_back(format.open(context));
+    takes_regions = takes_regions || (format.takes_regions && format.takes_regions(context.options));
+    keeps_whole = keeps_whole || (format.keeps_whole && format.keeps_whole(context.options));
+  }
+}
+
+TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenOutputs& open, const Account& account) {
+  TileResult result;
+  model::Region region = run_tile(shard, inputs);
+  result.outcomes = decide_outcomes(region, inputs.lod);
+  result.statistics = outputs::count_statistics(region);
+  outputs::FinishedTile tile{
+      .region = region,
+      .shard = shard,
+      .name = outputs::tile_name(region.tile),
+      .has_parts = std::ranges::any_of(region.buildings, [](const model::Building& b) { return !b.parts.empty(); }),
+      .final_state = account.final_states(result.outcomes.list),
+      .files = {}};
+  for (const auto& output : open.list) result.products.push_back(output->write_tile(tile));
+  result.files = std::move(tile.files);
+  result.rows = std::move(region.report.rows);
+  if (open.takes_regions || open.keeps_whole) result.region = std::move(region);
+  return result;
+}
+
+void keep_tile(const std::string& key, const TileResult& result, const OpenOutputs& open, const model::Extract& extract,
+               const std::string& folder, WorkCache& cache) {
+  KeptTile kept;
+  for (const Outcome& o : result.outcomes.list)
+    kept.outcomes.push_back({extract.buildings[o.index].id, o.state, o.code, o.related, o.lod});
+  kept.below_quality = result.outcomes.below_quality;
+  kept.rows = result.rows;
+  kept.statistics = result.statistics;
+  for (std::size_t i = 0; i < open.list.size(); ++i)
+    kept.products.push_back(open.list[i]->packed_product(result.products[i]));
+  cache.keep(kKind, key, base::packed(kept), result.files, folder);
+}
+
+std::optional<TileResult> kept_tile(const std::string& key, const OpenOutputs& open, const model::Extract& extract,
+                                    base::StagedFolder& folder, WorkCache& cache) {
+  std::optional<WorkCache::Found> found = cache.find(kKind, key);
+  if (!found) return std::nullopt;
+  TileResult result;
+  result.kept = true;
+  try {
+    KeptTile kept = base::unpacked<KeptTile>(found->bytes);
+    if (kept.products.size() != open.list.size()) return std::nullopt;
+    for (const KeptOutcome& o : kept.outcomes) {
+      const auto object = std::lower_bound(extract.buildings.begin(), extract.buildings.end(), o.object,
+                                           [](const auto& b, model::OsmId wanted) { return b.id < wanted; });
+      if (object == extract.buildings.end() || !(object->id == o.object)) return std::nullopt;
+      result.outcomes.list.push_back(
+          {static_cast<std::uint32_t>(object - extract.buildings.begin()), o.state, o.code, o.related, o.lod});
+    }
+    result.outcomes.below_quality = kept.below_quality;
+    result.rows = std::move(kept.rows);
+    result.statistics = std::move(kept.statistics);
+    for (std::size_t i = 0; i < open.list.size(); ++i)
+      result.products.push_back(open.list[i]->unpacked_product(kept.products[i]));
+  } catch (const base::UnpackError&) {
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < found->files.size(); ++i) folder.link(found->files[i], found->places[i]);
+  result.files = std::move(found->files);
+  return result;
+}
+
+}  // namespace blockrand::run

@@ -1,0 +1,49 @@
+// All that is done for one tile, its stages and its files, and the same taken from an earlier run.
+#pragma once
+
+#include <any>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/outputs/output.h"
+#include "pipeline/outputs/statistics.h"
+#include "pipeline/run/account.h"
+#include "pipeline/run/outcome.h"
+#include "pipeline/run/tile_stages.h"
+#include "pipeline/run/work_cache.h"
+
+namespace blockrand::run {
+
+/// The formats that a build writes, and what they want to be given.
+struct OpenOutputs {
+  explicit OpenOutputs(const outputs::OutputContext& context);
+  std::vector<std::unique_ptr<outputs::Output>> list;
+  bool takes_regions = false, keeps_whole = false;
+};
+
+/// A tile between its work and its turn.
+struct TileResult {
+  Outcomes outcomes;
+  std::vector<model::ReportRow> rows;
+  outputs::TileStatistics statistics;
+  std::vector<std::any> products;  ///< parallel to OpenOutputs::list
+  std::vector<base::PublishedFile> files;
+  model::Region region;  ///< kept only for files of the whole build
+  bool kept = false;     ///< it is from an earlier run
+};
+
+/// All stages and all outputs of a tile. Safe for different tiles at the same time.
+TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenOutputs& open, const Account& account);
+
+/// Keeps a tile's work for the next run. Safe for different tiles at the same time. \param folder  where its files lie
+void keep_tile(const std::string& key, const TileResult& result, const OpenOutputs& open, const model::Extract& extract,
+               const std::string& folder, WorkCache& cache);
+
+/// The work of an earlier run, its files put into `folder`; nothing where there is none. Safe for different tiles at the same
+/// time.
+std::optional<TileResult> kept_tile(const std::string& key, const OpenOutputs& open, const model::Extract& extract,
+                                    base::StagedFolder& folder, WorkCache& cache);
+
+}  // namespace blockrand::run

@@ -1,0 +1,371 @@
+#include "pipeline/run/work_cache.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/pack.h"
+#include "pipeline/base/sha256.h"
+#include "pipeline/base/text.h"
+
+namespace blockrand::run {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kEntry = "entry", kNew = "new", kProgram = "program", kOpen = "open", kLock = "lock",
+                           kOf = "of";
+constexpr std::size_t kHashLength = 64;  // hex digits of a SHA-256
+
+std::string sha256_of(std::string_view bytes) {
+  base::Sha256 hash;
+  hash.add(bytes);
+  return hash.finish();
+}
+
+struct KeptFile {
+  base::PublishedFile file;
+  std::int64_t changed = 0;  ///< ns since 1970, of its content
+};
+
+struct Stored {
+  std::vector<KeptFile> files;
+  std::string bytes;
+};
+
+std::optional<std::string> read_all(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (file.bad()) return std::nullopt;
+  return bytes;
+}
+
+void write_all(const std::string& path, std::string_view bytes) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (descriptor < 0) throw base::OutputError(path + ": " + std::strerror(errno));
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(descriptor, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      const int error = errno;
+      ::close(descriptor);
+      throw base::OutputError(path + ": " + std::strerror(error));
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+  if (::close(descriptor) != 0) throw base::OutputError(path + ": " + std::strerror(errno));
+}
+
+std::int64_t changed_of(const struct stat& s) {
+  return static_cast<std::int64_t>(s.st_mtim.tv_sec) * 1'000'000'000 + s.st_mtim.tv_nsec;
+}
+
+/// \returns nothing where the entry is damaged
+std::optional<Stored> read_entry(const std::string& folder) {
+  const std::optional<std::string> bytes = read_all(folder + "/" + std::string(kEntry));
+  if (!bytes || bytes->size() < kHashLength) return std::nullopt;
+  const std::string_view content = std::string_view(*bytes).substr(0, bytes->size() - kHashLength);
+  if (sha256_of(content) != bytes->substr(content.size())) return std::nullopt;
+  try {
+    return base::unpacked<Stored>(content);
+  } catch (const base::UnpackError&) {
+    return std::nullopt;
+  }
+}
+
+bool file_is_whole(const std::string& path, const KeptFile& kept, bool read) {
+  struct stat s {};
+  if (::stat(path.c_str(), &s) != 0 || static_cast<std::uint64_t>(s.st_size) != kept.file.bytes) return false;
+  if (!read && changed_of(s) == kept.changed) return true;
+  try {
+    return base::sha256_file(path) == kept.file.sha256;
+  } catch (const base::InputError&) {
+    return false;
+  }
+}
+
+bool entry_is_whole(const std::string& folder, const Stored& stored, bool read) {
+  for (std::size_t i = 0; i < stored.files.size(); ++i)
+    if (!file_is_whole(folder + "/" + std::to_string(i), stored.files[i], read)) return false;
+  return true;
+}
+
+/// Calls `visit` with kind, key and path of each entry.
+template <class Visit>
+void for_each_entry(const std::string& folder, Visit&& visit) {
+  std::error_code error;
+  for (fs::directory_iterator kind(folder, error), end; !error && kind != end; kind.increment(error)) {
+    const std::string name = kind->path().filename().string();
+    if (!kind->is_directory(error) || name == kNew || name == kOf) continue;
+    for (fs::directory_iterator part(kind->path(), error); !error && part != end; part.increment(error)) {
+      if (!part->is_directory(error)) continue;
+      for (fs::directory_iterator entry(part->path(), error); !error && entry != end; entry.increment(error))
+        visit(name, entry->path().filename().string(), entry->path().string());
+      error.clear();
+    }
+    error.clear();
+  }
+}
+
+std::uint64_t count_entries(const std::string& folder) {
+  std::uint64_t n = 0;
+  for_each_entry(folder, [&](const std::string&, const std::string&, const std::string&) { ++n; });
+  return n;
+}
+
+void remove(const std::string& path) {
+  std::error_code error;
+  fs::remove_all(path, error);
+}
+
+/// \returns false where it is not there
+bool check_is_cache(const std::string& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return false;
+  const bool is_cache = fs::is_directory(folder, error) &&
+                        (fs::is_empty(folder, error) || fs::exists(folder + "/" + std::string(kProgram), error));
+  if (!is_cache)
+    throw base::UsageError(folder + ": is no folder of kept work, and not empty: name another one");
+  return true;
+}
+
+}  // namespace
+
+WorkCache::WorkCache(std::string folder, const std::string& program, base::Progress& progress)
+    : folder_(std::move(folder)) {
+  check_is_cache(folder_);
+  std::error_code error;
+  fs::create_directories(folder_ + "/" + std::string(kNew), error);
+  if (error) throw base::OutputError(folder_ + ": cannot be made: " + error.message());
+  lock_ = ::open((folder_ + "/" + std::string(kLock)).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (lock_ < 0) throw base::OutputError(folder_ + ": cannot be written: " + std::strerror(errno));
+  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    ::close(lock_);
+    throw base::UsageError(folder_ + ": another run works with it. Wait for its end, or name another folder");
+  }
+  remove(folder_ + "/" + std::string(kNew));
+  fs::create_directories(folder_ + "/" + std::string(kNew), error);
+  const std::string made_by = folder_ + "/" + std::string(kProgram), open = folder_ + "/" + std::string(kOpen);
+  doubtful_ = fs::exists(open, error);
+  try {
+    write_all(open, "");
+    const std::string earlier = read_all(made_by).value_or("");
+    if (!program.empty() && earlier != program) {
+      if (const std::uint64_t n = count_entries(folder_); n > 0 && !earlier.empty())
+        progress.warn(fmt::format("{}: the program is another one than that which kept the work of {} tiles there: they "
+                                  "are built anew",
+                                  folder_, base::with_thousands(n)));
+      // Whole or not at all: what names the program is what makes the folder one of kept work.
+      write_all(made_by + ".new", program);
+      fs::rename(made_by + ".new", made_by, error);
+    }
+  } catch (const base::OutputError&) {
+    ::close(lock_);
+    throw;
+  }
+}
+
+WorkCache::~WorkCache() {
+  std::error_code error;
+  fs::remove(folder_ + "/" + std::string(kOpen), error);
+  ::close(lock_);
+}
+
+std::string WorkCache::place(std::string_view kind, const std::string& key) const {
+  return folder_ + "/" + std::string(kind) + "/" + key.substr(0, 2) + "/" + key;
+}
+
+std::optional<WorkCache::Found> WorkCache::find(std::string_view kind, const std::string& key) {
+  const std::string folder = place(kind, key);
+  std::error_code error;
+  if (!fs::exists(folder, error)) return std::nullopt;
+  std::optional<Stored> stored = read_entry(folder);
+  if (!stored || !entry_is_whole(folder, *stored, doubtful_)) {
+    remove(folder);
+    ++damaged_;
+    return std::nullopt;
+  }
+  Found found;
+  found.bytes = std::move(stored->bytes);
+  for (std::size_t i = 0; i < stored->files.size(); ++i) {
+    found.files.push_back(std::move(stored->files[i].file));
+    found.places.push_back(folder + "/" + std::to_string(i));
+  }
+  // The time of its folder says when it was last of use.
+  ::utimensat(AT_FDCWD, folder.c_str(), nullptr, 0);
+  const std::lock_guard lock(mutex_);
+  used_.insert(std::string(kind) + "/" + key);
+  return found;
+}
+
+void WorkCache::keep(std::string_view kind, const std::string& key, std::string_view bytes,
+                     std::span<const base::PublishedFile> files, const std::string& folder) {
+  const std::string making = fmt::format("{}/{}/{}-{}", folder_, kNew, ::getpid(), made_++);
+  try {
+    std::error_code error;
+    fs::create_directory(making, error);
+    if (error) throw base::OutputError(making + ": " + error.message());
+    Stored stored;
+    stored.bytes = bytes;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      const std::string from = folder + "/" + files[i].path, to = making + "/" + std::to_string(i);
+      if (::link(from.c_str(), to.c_str()) != 0) {
+        fs::copy_file(from, to, error);  // another disk, too many links
+        if (error) throw base::OutputError(to + ": " + error.message());
+      }
+      struct stat s {};
+      if (::stat(to.c_str(), &s) != 0) throw base::OutputError(to + ": " + std::strerror(errno));
+      stored.files.push_back({files[i], changed_of(s)});
+    }
+    std::string content = base::packed(stored);
+    content += sha256_of(content);
+    write_all(making + "/" + std::string(kEntry), content);
+    const std::string to = place(kind, key);
+    fs::create_directories(fs::path(to).parent_path(), error);
+    fs::rename(making, to, error);
+    if (error && !fs::exists(to)) throw base::OutputError(to + ": " + error.message());
+    if (error) remove(making);
+    const std::lock_guard lock(mutex_);
+    used_.insert(std::string(kind) + "/" + key);
+  } catch (const base::OutputError& failed) {
+    remove(making);
+    const std::lock_guard lock(mutex_);
+    if (trouble_.empty()) trouble_ = failed.what();
+  }
+}
+
+std::set<std::string> WorkCache::used() const {
+  const std::lock_guard lock(mutex_);
+  return used_;
+}
+
+std::string WorkCache::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return trouble_;
+}
+
+void keep_work_of(const std::string& folder, const std::string& build, const std::set<std::string>& used,
+                  const std::set<std::string>& builds) {
+  const std::string notes = folder + "/" + std::string(kOf);
+  std::error_code error;
+  fs::create_directories(notes, error);
+  std::string text;
+  for (const std::string& name : used) text += name + "\n";
+  write_all(notes + "/" + build + ".new", text);
+  fs::rename(notes + "/" + build + ".new", notes + "/" + build, error);
+  std::set<std::string> wanted = used;
+  for (fs::directory_iterator note(notes, error), end; !error && note != end; note.increment(error)) {
+    const std::string name = note->path().filename().string();
+    if (!builds.contains(name)) {
+      remove(note->path().string());
+      continue;
+    }
+    std::ifstream lines(note->path());
+    for (std::string line; std::getline(lines, line);) wanted.insert(line);
+  }
+  std::vector<std::string> unused;
+  for_each_entry(folder, [&](const std::string& kind, const std::string& key, const std::string& path) {
+    if (!wanted.contains(kind + "/" + key)) unused.push_back(path);
+  });
+  for (const std::string& path : unused) remove(path);
+}
+
+// ---- questions of a user
+
+namespace {
+
+struct EntrySize {
+  std::uint64_t bytes = 0, shared = 0, files = 0;
+};
+
+EntrySize size_of(const std::string& entry) {
+  EntrySize size;
+  std::error_code error;
+  for (fs::directory_iterator file(entry, error), end; !error && file != end; file.increment(error)) {
+    struct stat s {};
+    if (::stat(file->path().c_str(), &s) != 0) continue;
+    ++size.files;
+    size.bytes += static_cast<std::uint64_t>(s.st_size);
+    if (s.st_nlink > 1) size.shared += static_cast<std::uint64_t>(s.st_size);
+  }
+  return size;
+}
+
+void require(const std::string& folder) {
+  std::error_code error;
+  if (!fs::exists(folder + "/" + std::string(kProgram), error))
+    throw base::InputError(folder, "", "holds no kept work",
+                           "Name the folder cache/ of a region, or that of build --cache");
+}
+
+}  // namespace
+
+CacheFigures cache_figures(const std::string& folder) {
+  require(folder);
+  CacheFigures figures;
+  figures.program = read_all(folder + "/" + std::string(kProgram)).value_or("");
+  for_each_entry(folder, [&](const std::string&, const std::string&, const std::string& path) {
+    const EntrySize size = size_of(path);
+    ++figures.entries;
+    figures.bytes += size.bytes, figures.shared_bytes += size.shared, figures.files += size.files;
+  });
+  return figures;
+}
+
+CacheFigures verify_cache(const std::string& folder, base::Progress& progress) {
+  require(folder);
+  const WorkCache opened(folder, "", progress);
+  std::uint64_t damaged = 0;
+  for_each_entry(folder, [&](const std::string&, const std::string&, const std::string& path) {
+    const std::optional<Stored> stored = read_entry(path);
+    if (stored && entry_is_whole(path, *stored, true)) return;
+    remove(path);
+    ++damaged;
+  });
+  CacheFigures figures = cache_figures(folder);
+  figures.damaged = figures.removed = damaged;
+  return figures;
+}
+
+CacheFigures prune_cache(const std::string& folder, std::uint64_t bytes, base::Progress& progress) {
+  require(folder);
+  const WorkCache opened(folder, "", progress);
+  struct Entry {
+    std::int64_t used = 0;
+    std::string path;
+    std::uint64_t bytes = 0;
+  };
+  std::vector<Entry> entries;
+  std::uint64_t sum = 0;
+  for_each_entry(folder, [&](const std::string&, const std::string&, const std::string& path) {
+    struct stat s {};
+    if (::stat(path.c_str(), &s) != 0) return;
+    entries.push_back({changed_of(s), path, size_of(path).bytes});
+    sum += entries.back().bytes;
+  });
+  std::sort(entries.begin(), entries.end(),
+            [](const Entry& a, const Entry& b) { return std::tie(a.used, a.path) < std::tie(b.used, b.path); });
+  std::uint64_t removed = 0;
+  for (const Entry& entry : entries) {
+    if (sum <= bytes) break;
+    remove(entry.path);
+    sum -= entry.bytes;
+    ++removed;
+  }
+  CacheFigures figures = cache_figures(folder);
+  figures.removed = removed;
+  return figures;
+}
+
+}  // namespace blockrand::run
