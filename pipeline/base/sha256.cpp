@@ -52,6 +52,12 @@ std::string Sha256::finish() {
   return hex;
 }
 
+std::string sha256_of(std::string_view bytes) {
+  Sha256 hash;
+  hash.add(bytes);
+  return hash.finish();
+}
+
 std::string sha256_file(const std::string& path) {
   const auto fail = [&path] {
     return InputError(path, "", std::strerror(errno), "Check the path and the file's permissions.");

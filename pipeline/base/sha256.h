@@ -23,6 +23,9 @@ class Sha256 {
   std::unique_ptr<State> state_;
 };
 
+/// Lower-case hex digest of bytes.
+std::string sha256_of(std::string_view bytes);
+
 /// Lower-case hex digest of a file's content. \throws InputError when it cannot be read.
 std::string sha256_file(const std::string& path);
 

@@ -29,6 +29,17 @@ VicinityFinder::VicinityFinder(const model::Extract& extract, const footprints::
   courtyards_ = geometry::BoxIndex(std::move(boxes));
 }
 
+void pack(const FoundVicinity& found, base::Packer& out) {
+  out << found.footprints << found.lines << found.blocks << found.passages << found.points << found.addresses;
+  for (const BlockFigures& figures : found.figures) {
+    out << static_cast<std::uint64_t>(figures.courtyards.size());
+    for (Courtyard yard : figures.courtyards) {
+      yard.buildings.clear();
+      out << yard;
+    }
+  }
+}
+
 FoundVicinity VicinityFinder::around(const geometry::PlanBox& box) const {
   constexpr double kReach = context::kWallSegmentReach;
   FoundVicinity found;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/base/pack.h"
 #include "pipeline/context/context_extract.h"
 #include "pipeline/context/wall_segments.h"
 #include "pipeline/footprints/footprint_store.h"
@@ -23,6 +24,9 @@ struct FoundVicinity {
   std::vector<SitePoint> points;
   std::vector<BuildingAddress> addresses;
 };
+
+/// Everything of it that does not number things in this run alone.
+void pack(const FoundVicinity& found, base::Packer& out);
 
 /// Read-only after construction, safe to share between threads; keeps references to what it is made of.
 class VicinityFinder {

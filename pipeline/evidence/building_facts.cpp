@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "pipeline/base/memo.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/portable_math.h"
 #include "pipeline/geometry/polygon_measures.h"
@@ -467,19 +468,37 @@ model::Region labelled(const model::Extract& extract, const footprints::Footprin
   return region;
 }
 
-/// Buildings are looked at in runs of this many.
+/// What `labelled` reads for buildings of a run.
+void pack_labelled(const model::Extract& extract, const footprints::FootprintStore& store,
+                   const context::VicinityFinder& vicinity, std::span<const std::uint32_t> numbers, base::Packer& out) {
+  geometry::PlanBox box;
+  for (const std::uint32_t n : numbers) {
+    footprints::StoredFootprint stored = store[n];
+    box.include(stored.box);
+    stored.lead = 0, stored.rings = {}, stored.arcs = {};
+    out << stored << store.polygons(n) << store.arcs(n)
+        << context::address_street(extract, extract.buildings[store[n].lead].tags);
+  }
+  if (!box.empty()) context::pack(vicinity.around(box), out);
+}
+
+/// Buildings are looked at in runs of at most this many.
 constexpr std::size_t kRun = 256;
 /// m. Those of a run are no farther from its first: what is seen from walls is filed in one grid over the run.
 constexpr double kRunExtent = 2000;
 
-/// Where runs begin, and the end. Results do not depend on it.
-std::vector<std::size_t> runs_of(const footprints::FootprintStore& store) {
+/// Where runs begin, and the end. Results do not depend on it. A run lies in one tile, so that what is mapped elsewhere does not
+/// change which buildings it has.
+std::vector<std::size_t> runs_of(const footprints::FootprintStore& store, std::span<const std::uint32_t> tiles) {
   std::vector<std::size_t> starts;
   Point2 first{};
+  auto tile = tiles.begin();
   for (std::uint32_t b = 0; b < store.size(); ++b) {
+    bool begins = starts.empty();
+    for (; tile != tiles.end() && *tile <= b; ++tile) begins = true;
     const bool known = !store[b].box.empty();
     const Point2 d = known ? store[b].box.centre() - first : Point2{};
-    if (starts.empty() || b - starts.back() == kRun || dot(d, d) > kRunExtent * kRunExtent) {
+    if (begins || b - starts.back() == kRun || dot(d, d) > kRunExtent * kRunExtent) {
       starts.push_back(b);
       if (known) first = store[b].box.centre();
     }
@@ -506,8 +525,9 @@ void PlaceIndex::near(Point2 place, double distance, std::vector<std::uint32_t>&
 }
 
 FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& store,
-                           const context::ContextExtract& context, const context::VicinityFinder& vicinity, int workers,
-                           base::Progress& progress) {
+                           std::span<const std::uint32_t> first, const context::ContextExtract& context,
+                           const context::VicinityFinder& vicinity, int workers, base::Progress& progress,
+                           const base::Memo* memo) {
   progress.begin("measure");
   const std::size_t count = store.size();
   FactsExtract facts;
@@ -516,12 +536,10 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
   const footprints::BuildingNumbers numbers(store);
 
   // Each building alone, with what its walls look at.
-  const std::vector<std::size_t> starts = runs_of(store);
+  const std::vector<std::size_t> starts = runs_of(store, first);
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2, runs = starts.size() - 1;
   std::vector<std::vector<Own>> slots(in_flight);
-  const auto look = [&](std::size_t i) {
-    std::vector<std::uint32_t> mine;
-    for (std::size_t b = starts[i]; b < starts[i + 1]; ++b) mine.push_back(static_cast<std::uint32_t>(b));
+  const auto measured = [&](const std::vector<std::uint32_t>& mine) {
     const model::Region region = labelled(extract, store, vicinity, mine);
     std::vector<Own> run;
     for (std::size_t k = 0; k < mine.size(); ++k) {
@@ -529,13 +547,22 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
       Own& own = run.emplace_back();
       if (stored.box.empty() || stored.settled != model::ObjectState::pending) continue;
       own.place.place = context::place_of(store, mine[k]);
-      own.place.block = context.block_of[mine[k]];
       measure_plan(region.buildings[k], own.features);
       measure_situation(region.buildings[k], own);
       own.place.house = !stored.level.canopy && stored.level.low <= 0 && own.features.has(Feature::area) &&
                         static_cast<double>(own.features[Feature::area]) >= kHouseArea;
     }
-    slots[i % in_flight] = std::move(run);
+    return run;
+  };
+  const auto look = [&](std::size_t i) {
+    std::vector<std::uint32_t> mine;
+    for (std::size_t b = starts[i]; b < starts[i + 1]; ++b) mine.push_back(static_cast<std::uint32_t>(b));
+    slots[i % in_flight] = base::remembered<std::vector<Own>>(
+        memo, "measured", [&](base::Packer& out) { pack_labelled(extract, store, vicinity, mine, out); },
+        [&] { return measured(mine); });
+    for (std::size_t k = 0; k < mine.size(); ++k)
+      if (!store[mine[k]].box.empty() && store[mine[k]].settled == model::ObjectState::pending)
+        slots[i % in_flight][k].place.block = context.block_of[mine[k]];
   };
   const auto keep = [&](std::size_t i) {
     for (std::size_t k = 0; k < slots[i % in_flight].size(); ++k) {

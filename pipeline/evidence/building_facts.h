@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/base/memo.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/context/context_extract.h"
 #include "pipeline/context/vicinity_finder.h"
@@ -57,8 +58,11 @@ class PlaceIndex {
 
 /// Measures all buildings. Deterministic for any number of workers. What a building gets depends on data within
 /// BlockOptions::max_extent + kNearReach + kWallSegmentReach of it.
+/// \param first  per tile: the number of its first building, as RepairedExtract has it
+/// \param memo   where measurements of an earlier run are found again; null: none
 FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& footprints,
-                           const context::ContextExtract& context, const context::VicinityFinder& vicinity, int workers,
-                           base::Progress& progress);
+                           std::span<const std::uint32_t> first, const context::ContextExtract& context,
+                           const context::VicinityFinder& vicinity, int workers, base::Progress& progress,
+                           const base::Memo* memo = nullptr);
 
 }  // namespace blockrand::evidence

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "pipeline/base/memo.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/footprints/load.h"
 #include "pipeline/footprints/repair/nested_outlines.h"
@@ -25,9 +26,6 @@ using model::Extract;
 using model::MappedBuilding;
 using model::Point2;
 using model::Polygon;
-
-/// Buildings that one piece of work takes: rows are small as a rule, and threads should not wait for each other.
-constexpr std::size_t kBatch = 400;
 
 /// Of the mapped area: less is the rounding of coordinates.
 constexpr double kAreaChanged = 0.001;
@@ -70,10 +68,25 @@ struct RingsOfShard {
 
 void repair_all_rings(const Extract& extract, std::span<const Shard> shards, const georef::Projection& projection,
                       const repair::KeptNodes& kept, const repair::RepairOptions& options, int workers,
-                      RepairedExtract& out, FootprintStore& store) {
+                      const base::Memo* memo, RepairedExtract& out, FootprintStore& store) {
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2;
   std::vector<RingsOfShard> slots(in_flight);
-  const auto work = [&](std::size_t i) {
+  const auto reads = [&](std::size_t i, base::Packer& packer) {
+    const auto object = [&](std::uint32_t index) {
+      const MappedBuilding& mapped = extract.buildings[index];
+      packer << mapped.id << mapped.rings.count;
+      for (const model::MappedRing& ring : extract.rings_of(mapped.rings)) {
+        packer << ring.inner << extract.vertices_of(ring) << extract.nodes_of(ring);
+        for (const std::int64_t node : extract.nodes_of(ring)) packer << kept.contains(node);
+      }
+    };
+    for (const Seed& seed : shards[i].seeds) {
+      packer << (seed.outline != model::kNoIndex) << static_cast<std::uint64_t>(seed.parts.size());
+      if (seed.outline != model::kNoIndex) object(seed.outline);
+      for (const std::uint32_t part : seed.parts) object(part);
+    }
+  };
+  const auto repaired_rings = [&](std::size_t i) {
     RingsOfShard result;
     model::Region region = load_region(extract, shards[i], projection);
     for (model::Building& building : region.buildings) {
@@ -93,7 +106,11 @@ void repair_all_rings(const Extract& extract, std::span<const Shard> shards, con
       for (const Polygon& p : outline.polygons) outline.mapped_area += geometry::area(p);
       result.outlines.push_back(std::move(outline));
     }
-    slots[i % in_flight] = std::move(result);
+    return result;
+  };
+  const auto work = [&](std::size_t i) {
+    slots[i % in_flight] = base::remembered<RingsOfShard>(
+        memo, "rings", [&](base::Packer& packer) { reads(i, packer); }, [&] { return repaired_rings(i); });
   };
   const auto consume = [&](std::size_t i) {
     RingsOfShard result = std::move(slots[i % in_flight]);
@@ -154,20 +171,18 @@ std::vector<double> shared_lengths(const repair::TerraceRow& row) {
 }
 
 struct RepairedRow {
-  const TerraceRowPlan* plan = nullptr;
   repair::TerraceRow row;
   std::vector<double> shared;
 };
 
+/// Rows, parallel to the plans of a batch.
 struct TerraceRowBatch {
   std::vector<RepairedRow> rows;
   model::Report report;
 };
 
-RepairedRow run_row(const Extract& extract, const FootprintStore& store, const TerraceRowPlan& plan,
-                    const repair::RepairOptions& options, model::Report& report) {
-  RepairedRow out;
-  out.plan = &plan;
+repair::TerraceRow mapped_row(const Extract& extract, const FootprintStore& store, const TerraceRowPlan& plan) {
+  repair::TerraceRow row;
   for (const std::uint32_t b : plan.buildings) {
     repair::TerraceBuilding building;
     building.id = store[b].id;
@@ -176,12 +191,18 @@ RepairedRow run_row(const Extract& extract, const FootprintStore& store, const T
     building.has_parts = store[b].has_parts;
     building.tags = static_cast<int>(extract.buildings[store[b].lead].tags.count);
     building.record = store[b].record;
-    out.row.buildings.push_back(std::move(building));
+    row.buildings.push_back(std::move(building));
   }
   for (const std::uint32_t b : plan.beyond) {
     std::vector<Polygon> polygons = store.polygons(b);
-    std::move(polygons.begin(), polygons.end(), std::back_inserter(out.row.beyond_cut));
+    std::move(polygons.begin(), polygons.end(), std::back_inserter(row.beyond_cut));
   }
+  return row;
+}
+
+RepairedRow repaired_row(repair::TerraceRow row, const repair::RepairOptions& options, model::Report& report) {
+  RepairedRow out;
+  out.row = std::move(row);
   if (options.settle_coverings) repair::settle_coverings(out.row, options, report);
   repair::TerraceRow standing;  // what is settled has no polygons left to repair
   standing.beyond_cut = std::move(out.row.beyond_cut);
@@ -301,7 +322,8 @@ class Totals {
 
 RepairedExtract repair_extract(const Extract& extract, std::span<const Shard> shards,
                                const georef::Projection& projection, const repair::KeptNodes& kept,
-                               const repair::RepairOptions& options, int workers, base::Progress& progress) {
+                               const repair::RepairOptions& options, int workers, base::Progress& progress,
+                               const base::Memo* memo) {
   RepairedExtract out;
   std::uint32_t count = 0;
   for (const Shard& shard : shards) {
@@ -310,17 +332,19 @@ RepairedExtract repair_extract(const Extract& extract, std::span<const Shard> sh
   }
   progress.begin("repair", count, "buildings");
   FootprintStore mapped(count);
-  repair_all_rings(extract, shards, projection, kept, options, workers, out, mapped);
+  repair_all_rings(extract, shards, projection, kept, options, workers, memo, out, mapped);
 
   // Two corners that come towards each other by max_shift each must know of each other.
   const std::vector<TerraceRowPlan> plans = find_terrace_rows(mapped, 2 * options.max_shift);
+  // Rows that begin in one shard are one piece of work: which they are does not hang on what was mapped elsewhere.
+  const auto shard_of = [&](const TerraceRowPlan& plan) {
+    const std::uint32_t least = *std::min_element(plan.buildings.begin(), plan.buildings.end());
+    return std::upper_bound(out.first.begin(), out.first.end(), least);
+  };
   std::vector<std::size_t> batches{0};
-  for (std::size_t i = 0, size = 0; i < plans.size(); ++i) {
-    size += plans[i].buildings.size();
-    if (size < kBatch && i + 1 < plans.size()) continue;
-    batches.push_back(i + 1);
-    size = 0;
-  }
+  for (std::size_t i = 1; i < plans.size(); ++i)
+    if (shard_of(plans[i]) != shard_of(plans[i - 1])) batches.push_back(i);
+  batches.push_back(plans.size());
   out.footprints = FootprintStore(count);
   for (std::uint32_t b = 0; b < count; ++b)  // those without an outline are in no row
     if (mapped[b].box.empty()) out.footprints.set(b, mapped[b], {});
@@ -329,18 +353,26 @@ RepairedExtract repair_extract(const Extract& extract, std::span<const Shard> sh
   std::vector<TerraceRowBatch> slots(in_flight);
   std::uint64_t done = 0;
   const auto work = [&](std::size_t i) {
-    TerraceRowBatch batch;
-    for (std::size_t k = batches[i]; k < batches[i + 1]; ++k)
-      batch.rows.push_back(run_row(extract, mapped, plans[k], options, batch.report));
-    slots[i % in_flight] = std::move(batch);
+    std::vector<repair::TerraceRow> rows;
+    for (std::size_t k = batches[i]; k < batches[i + 1]; ++k) rows.push_back(mapped_row(extract, mapped, plans[k]));
+    slots[i % in_flight] = base::remembered<TerraceRowBatch>(
+        memo, "rows", [&](base::Packer& packer) { packer << rows; },
+        [&] {
+          TerraceRowBatch batch;
+          for (repair::TerraceRow& row : rows)
+            batch.rows.push_back(repaired_row(std::move(row), options, batch.report));
+          return batch;
+        });
   };
   const auto consume = [&](std::size_t i) {
     TerraceRowBatch batch = std::move(slots[i % in_flight]);
-    for (RepairedRow& row : batch.rows) {
+    for (std::size_t r = 0; r < batch.rows.size(); ++r) {
+      RepairedRow& row = batch.rows[r];
+      const TerraceRowPlan& plan = plans[batches[i] + r];
       totals.totals_.rows += row.row.buildings.size() > 1;
       std::vector<bool> cut(row.row.buildings.size(), false);
       for (std::size_t k = 0; k < row.row.buildings.size(); ++k) {
-        const std::uint32_t b = row.plan->buildings[k];
+        const std::uint32_t b = plan.buildings[k];
         repair::TerraceBuilding& building = row.row.buildings[k];
         StoredFootprint f = mapped[b];
         f.record = building.record;
@@ -351,7 +383,7 @@ RepairedExtract repair_extract(const Extract& extract, std::span<const Shard> sh
         f.party_wall_length = row.shared[k];
         out.footprints.set(b, f, building.polygons, building.arcs);
         if (building.settled == model::ObjectState::pending) totals.add(out.footprints[b]);
-        for (const std::uint32_t other : row.plan->beyond)
+        for (const std::uint32_t other : plan.beyond)
           cut[k] = cut[k] || mapped[b].box.near(mapped[other].box, 2 * options.max_shift);
         if (cut[k]) {
           ++totals.totals_.at_cuts;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/base/memo.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/footprints/footprint_store.h"
 #include "pipeline/footprints/repair/kept_nodes.h"
@@ -41,8 +42,10 @@ struct RepairedExtract {
 
 /// Repairs every outline of the shards. Deterministic for any number of workers. A building's outline depends on data
 /// within kMaxTerraceRowExtent of its row (terrace_rows.h).
+/// \param memo  where rings and rows of an earlier run are found again; null: none
 RepairedExtract repair_extract(const model::Extract& extract, std::span<const Shard> shards,
                                const georef::Projection& projection, const repair::KeptNodes& kept,
-                               const repair::RepairOptions& options, int workers, base::Progress& progress);
+                               const repair::RepairOptions& options, int workers, base::Progress& progress,
+                               const base::Memo* memo = nullptr);
 
 }  // namespace blockrand::footprints

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/base/memo.h"
 #include "pipeline/base/pack.h"
 #include "pipeline/base/publish.h"
 #include "pipeline/context/context_extract.h"
@@ -55,6 +56,7 @@ struct OutputContext {
   std::span<const model::ReportRow> earlier;                  ///< rows from before the tiles, sorted
   std::function<std::string(std::string_view preset)> rule_file;  ///< as ExplainOptions has it; may be empty
   int workers = 1;
+  const base::Memo* memo = nullptr;  ///< where an earlier run left pictures; null: nothing is remembered
 };
 
 /// A tile on which all stages have worked.

@@ -184,28 +184,39 @@ struct Sums {
 // ---- work of earlier runs
 
 /// Null where none is kept.
-std::unique_ptr<WorkCache> open_cache(const BuildOptions& options, const BuildInputs& inputs,
-                                      const std::optional<TileChoice>& tile, const OpenOutputs& open,
+std::unique_ptr<WorkCache> open_cache(const BuildOptions& options, const std::optional<TileChoice>& tile,
                                       base::Progress& progress) {
   if (options.cache.empty()) return nullptr;
-  const char* why = tile                                           ? "a tile is built alone"
-                    : !inputs.images.empty()                       ? "aerial images are looked at as a whole"
-                    : open.takes_regions || open.keeps_whole       ? "a file of the whole model needs every tile anew"
-                                                                   : nullptr;
-  if (why) {
-    progress.warn(fmt::format("{}: no work is kept there, nor taken from there: {}", options.cache, why));
-    return nullptr;
-  }
+  if (tile) throw base::UsageError("--cache is of no use with --tile: a tile that is built alone keeps no work");
   return std::make_unique<WorkCache>(options.cache, program_identity(), progress);
+}
+
+/// How the stages before the tiles see it.
+std::optional<base::Memo> memo_of(WorkCache* cache, const BuildOptions& options, const BuildRecord& record) {
+  if (!cache) return std::nullopt;
+  base::Packer shared;
+  shared << program_identity() << record.crs << record.portable << options.repair;
+  return memo_in(*cache, std::move(shared.bytes));
+}
+
+/// Whether tiles may be taken from earlier runs, and are kept for later ones.
+bool tiles_are_kept(const WorkCache* cache, const BuildInputs& inputs, const OpenOutputs& open,
+                    base::Progress& progress) {
+  if (!cache) return false;
+  const char* why = !inputs.images.empty()                 ? "aerial images are looked at as a whole"
+                    : open.takes_regions || open.keeps_whole ? "a file of the whole model needs every tile anew"
+                                                             : nullptr;
+  if (why) progress.warn(std::string("work on tiles is not kept, nor taken from earlier runs: ") + why);
+  return !why;
 }
 
 void tell_cache(const WorkCache& cache, const BuildOptions& options, BuildSummary& summary, base::Progress& progress) {
   summary.kept_work = cache.used();
   if (cache.damaged() > 0)
-    progress.warn(fmt::format("{}: the work on {} tiles was damaged there and is done anew", options.cache,
+    progress.warn(fmt::format("{}: {} pieces of kept work were damaged there and are worked out anew", options.cache,
                               base::with_thousands(cache.damaged())));
   if (const std::string trouble = cache.trouble(); !trouble.empty())
-    progress.warn("work on tiles could not be kept for the next run: " + trouble);
+    progress.warn("work could not be kept for the next run: " + trouble);
 }
 
 // ---- after the tiles
@@ -279,6 +290,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   base::StagedFolder& folder = place.folder;
   BuildInputs inputs(options);
   const std::optional<TileChoice>& tile = inputs.tile;
+  const std::unique_ptr<WorkCache> cache = open_cache(options, tile, progress);
   LocatedExtract located = locate_extract(options, tile, progress);
   Extract& extract = located.extract;
   const georef::Projection& projection = located.projection;
@@ -288,11 +300,13 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   // The whole extract: footprints, context, evidence.
   record_extract(options, inputs, located, record);
   model::Report report = override_extract(options, inputs, extract, progress);
+  const std::optional<base::Memo> memo = memo_of(cache.get(), options, record);
   PreparedExtract prepared =
       prepare_extract(located, options, tile, inputs.tables, inputs.rules.book, progress,
                       [&](std::span<const footprints::Shard> shards, const footprints::RepairedExtract& repaired) {
                         return imagery.correct(shards, repaired);
-                      });
+                      },
+                      memo ? &*memo : nullptr);
   const std::vector<footprints::Shard>& shards = prepared.shards;
   const footprints::RepairedExtract& repaired = prepared.repaired;
   const context::ContextExtract& context = prepared.context;
@@ -345,7 +359,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       .alone = tile ? std::optional(tile->id) : std::nullopt,
       .earlier = account.earlier(),
       .rule_file = [&](std::string_view preset) { return inputs.rule_file(preset); },
-      .workers = workers};
+      .workers = workers,
+      .memo = memo ? &*memo : nullptr};
   const OpenOutputs open(output_context);
   const context::Ground ground(inputs.terrain ? &*inputs.terrain : nullptr, options.ground_height, projection);
   std::atomic<std::int64_t> context_time = 0;
@@ -374,9 +389,8 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
                                .has_terrain = inputs.terrain.has_value(),
                                .ground = [&](const model::Building& building) { return ground.under(building); },
                                .context_time = context_time};
-  const std::unique_ptr<WorkCache> cache = open_cache(options, inputs, tile, open, progress);
   std::optional<TileKeys> keys;
-  if (cache)
+  if (tiles_are_kept(cache.get(), inputs, open, progress))
     keys.emplace(tile_inputs, inputs, shared_key(options, inputs, record), account.earlier(), open.list);
   progress.begin("tiles", to_build, "buildings");
   std::vector<TileResult> slots(in_flight);
@@ -384,14 +398,14 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   std::uint64_t done = 0;
   const auto work = [&](std::size_t i) {
     TileResult& slot = slots[i % in_flight];
-    const std::string key = cache ? keys->key(todo[i]) : std::string();
-    if (cache)
+    const std::string key = keys ? keys->key(todo[i]) : std::string();
+    if (keys)
       if (std::optional<TileResult> kept = kept_tile(key, open, extract, folder, *cache)) {
         slot = std::move(*kept);
         return;
       }
     slot = work_on_tile(todo[i], tile_inputs, open, account);
-    if (cache) keep_tile(key, slot, open, extract, folder.staging_path(), *cache);
+    if (keys) keep_tile(key, slot, open, extract, folder.staging_path(), *cache);
   };
   const auto consume = [&](std::size_t i) {
     TileResult result = std::move(slots[i % in_flight]);
@@ -401,7 +415,6 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     progress.advance_to(done);
   };
   base::ordered_parallel(todo.size(), workers, in_flight, work, consume);
-  if (cache) tell_cache(*cache, options, summary, progress);
   sums.settle(record);
   warn_of_terrain(inputs, progress);
   account.close(tile, summary);
@@ -409,6 +422,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
 
   progress.begin("documents");
   finish_outputs(open, sums.whole, account, record, progress);
+  if (cache) tell_cache(*cache, options, summary, progress);
   folder.write("build.json", build_json(options, record));
   progress.end();
 

@@ -89,6 +89,8 @@ class Explained {
   }
   const std::set<std::string>& tiles() const { return tiles_; }
 
+  int asked() const { return asked_; }
+
   /// Of a tile's file, as build.json has it; empty where it does not say.
   std::string hash(const std::string& tile) const {
     const auto found = hashes_.find(tile);
@@ -145,6 +147,24 @@ void compare(const std::string& id, const Told& before, const Told& after, Build
     if (old.contains(a.name)) out.attributes.push_back({id, a.name, a.value, "", a.source, "", ""});
 }
 
+/// What a tile counts for where both builds have it alike.
+struct TileSums {
+  std::uint64_t all = 0, modelled = 0, simpler = 0, with_height = 0;
+  double heights = 0;  ///< m
+};
+
+TileSums sums_of(const ToldById& tile) {
+  TileSums sums;
+  sums.all = tile.size();
+  for (const auto& [id, told] : tile) {
+    sums.modelled += told.modelled, sums.simpler += told.simpler;
+    if (!told.modelled || !told.height) continue;
+    ++sums.with_height;
+    sums.heights += *told.height;
+  }
+  return sums;
+}
+
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : part > 0 ? 100 : 0; }
 
 std::string rounded(const std::string& value) {
@@ -158,7 +178,7 @@ std::string rounded(const std::string& value) {
 
 }  // namespace
 
-BuildChanges compare_builds(const std::string& before, const std::string& after) {
+BuildChanges compare_builds(const std::string& before, const std::string& after, const base::Memo* memo) {
   BuildChanges out;
   const std::optional<Explained> old = before.empty() ? std::nullopt : std::optional<Explained>(before);
   const Explained now(after);
@@ -179,18 +199,29 @@ BuildChanges compare_builds(const std::string& before, const std::string& after)
   // A tile of both at a time. What only one of them has there may lie in another tile of the other one: it was moved.
   ToldById gone, come;
   for (const std::string& tile : tiles) {
-    ToldById its = now.read(tile);
-    if (old && !now.hash(tile).empty() && old->hash(tile) == now.hash(tile)) {
-      out.all_before += its.size(), out.all_after += its.size();
-      for (const auto& [id, told] : its) {
-        out.before += told.modelled, out.after += told.modelled;
-        out.simpler_before += told.simpler, out.simpler_after += told.simpler;
-        if (!told.modelled || !told.height) continue;
-        heights_before += *told.height, heights_after += *told.height;
-        ++out.both;
-      }
+    const std::string hash = now.hash(tile);
+    ToldById its;
+    bool read = false;
+    const auto sums_now = [&] {
+      return base::remembered<TileSums>(
+          hash.empty() ? nullptr : memo, "told", [&](base::Packer& packer) { packer << hash << now.asked(); },
+          [&] {
+            if (!read) its = now.read(tile);
+            read = true;
+            return sums_of(its);
+          });
+    };
+    if (old && !hash.empty() && old->hash(tile) == hash && old->asked() == now.asked()) {
+      const TileSums sums = sums_now();
+      out.all_before += sums.all, out.all_after += sums.all;
+      out.before += sums.modelled, out.after += sums.modelled;
+      out.simpler_before += sums.simpler, out.simpler_after += sums.simpler;
+      heights_before += sums.heights, heights_after += sums.heights;
+      out.both += sums.with_height;
       continue;
     }
+    its = now.read(tile), read = true;
+    sums_now();  // for the next night
     ToldById mine = old ? old->read(tile) : ToldById();
     out.all_before += mine.size(), out.all_after += its.size();
     for (const auto& [id, told] : mine) out.before += told.modelled, out.simpler_before += told.simpler;

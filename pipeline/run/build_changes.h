@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/memo.h"
 #include "pipeline/run/region_options.h"
 
 namespace blockrand::run {
@@ -35,8 +36,9 @@ struct BuildChanges {
 };
 
 /// Compares the explanations of two builds. \param before  folder of a build, or empty: all is new
+/// \param memo  where sums of tiles are found again, so that those that both builds have alike need not be read; null: none
 /// \throws base::InputError  a build has no explanations, or damaged ones
-BuildChanges compare_builds(const std::string& before, const std::string& after);
+BuildChanges compare_builds(const std::string& before, const std::string& after, const base::Memo* memo = nullptr);
 
 /// A limit, and what it was held against.
 struct Gate {

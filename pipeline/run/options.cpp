@@ -190,7 +190,7 @@ base::OptionTable<B> how_it_runs() {
           text({.name = "cache",
                 .argument = "FOLDER",
                 .type = OptionType::folder,
-                .help = "keep the work on tiles there, and take from there what an earlier run, ended or not, has of them; "
+                .help = "keep work there for later runs, and take from there what an earlier run, ended or not, has left; "
                         "update has a folder of its own",
                 .record = OptionRecord::none},
                &B::cache),

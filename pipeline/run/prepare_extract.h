@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/base/memo.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/context/context_extract.h"
 #include "pipeline/evidence/building_facts.h"
@@ -58,9 +59,10 @@ using CorrectPlaces = std::function<bool(std::span<const footprints::Shard>, con
 
 /// Cuts into shards, repairs, finds the context, measures, classifies; fills facts.coverage where no earlier build
 /// pinned it. Tiles and coverage are those of the extract as mapped. \param located  stays where it is while the result is used
+/// \param memo  what an earlier run left; null: nothing
 PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& options,
                                 const std::optional<TileChoice>& tile, const classify::Tables& tables,
                                 const districts::RuleSets& book, base::Progress& progress,
-                                const CorrectPlaces& correct = {});
+                                const CorrectPlaces& correct = {}, const base::Memo* memo = nullptr);
 
 }  // namespace blockrand::run

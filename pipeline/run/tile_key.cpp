@@ -20,12 +20,6 @@ constexpr double kTouching = 1;
 /// m. How far plans may lie outside the box of a repaired outline: repair moves no corner by more (RepairOptions::max_shift).
 constexpr double kBoxSlack = 5;
 
-std::string sha256_of(std::string_view bytes) {
-  base::Sha256 hash;
-  hash.add(bytes);
-  return hash.finish();
-}
-
 void pack_tags(const model::Extract& extract, model::Range range, Packer& out) {
   out << range.count;
   for (const model::Tag& tag : extract.tags_of(range))
@@ -88,7 +82,7 @@ struct TileKeys::Impl {
     pack_rows(in.repaired.rows, stored.id, out);
 
     const evidence::StyleInputs& s = in.styles;
-    out << s.facts.features[number].values();
+    out << s.facts.features[number];
     out << s.tags.dates[number] << s.tags.years[number] << s.tags.roofs[number] << s.tags.points_of(number);
     if (const std::int32_t why = s.tags.non_house[number]; why >= 0) {
       const classify::NonHouse& reason = s.tags.reasons[static_cast<std::size_t>(why)];
@@ -117,13 +111,7 @@ struct TileKeys::Impl {
 
   /// What the stages up to the attributes see around buildings.
   void pack_around(geometry::PlanBox box, Packer& out) const {
-    const context::FoundVicinity found = in.vicinity.around(box);
-    out << found.footprints << found.lines << found.blocks << found.passages << found.points << found.addresses;
-    for (const context::BlockFigures& figures : found.figures)
-      for (context::Courtyard yard : figures.courtyards) {
-        yard.buildings.clear();
-        out << yard;
-      }
+    context::pack(in.vicinity.around(box), out);
     box.minimum = {box.minimum.x - kBoxSlack, box.minimum.y - kBoxSlack};
     box.maximum = {box.maximum.x + kBoxSlack, box.maximum.y + kBoxSlack};
     out << in.neighbours.near(box) << in.roof_lines.near(box);
@@ -146,7 +134,7 @@ TileKeys::TileKeys(const TileInputs& inputs, const BuildInputs& files, std::stri
       if (hash.empty()) hash = base::sha256_file(path);
       rules << hash;
     }
-    impl_->grammars.emplace(preset.name, sha256_of(rules.bytes));
+    impl_->grammars.emplace(preset.name, base::sha256_of(rules.bytes));
   }
   for (const districts::RuleSet& set : files.rules.book.sets)
     for (const districts::Rule& rule : set.rules)
@@ -191,7 +179,7 @@ std::string TileKeys::key(std::size_t shard) const {
           if (p.x == p.x && p.y == p.y) box.include(p);
         }
   if (!box.empty()) in.pack_around(box, out);
-  return sha256_of(out.bytes);
+  return base::sha256_of(out.bytes);
 }
 
 std::string shared_key(const BuildOptions& options, const BuildInputs& inputs, const BuildRecord& record) {

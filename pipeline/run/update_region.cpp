@@ -21,6 +21,7 @@
 #include "pipeline/base/text.h"
 #include "pipeline/run/region_folder.h"
 #include "pipeline/run/replication.h"
+#include "pipeline/run/tile_key.h"
 #include "pipeline/run/work_cache.h"
 
 namespace blockrand::run {
@@ -374,17 +375,17 @@ class Updater {
   }
 
   /// Against the published build; where that is damaged, by its counts alone.
-  void compare(std::optional<int> current) {
+  void compare(std::optional<int> current, const base::Memo& memo) {
     progress_.begin("compare builds");
     const std::string fresh = region_.build(summary_.number);
     if (current) try {
-        summary_.changes = compare_builds(region_.build(*current), fresh);
+        summary_.changes = compare_builds(region_.build(*current), fresh, &memo);
         summary_.gates = gates_of(summary_.changes, options_.region, false);
         return;
       } catch (const base::InputError& error) {
         progress_.warn(fmt::format("{}. The new build is compared by its number of models alone", error.what()));
       }
-    summary_.changes = compare_builds("", fresh);
+    summary_.changes = compare_builds("", fresh, &memo);
     summary_.gates = gates_of(summary_.changes, options_.region, true);
     if (!current) return;
     const auto models = [](const Json& record) {
@@ -405,7 +406,12 @@ class Updater {
     const BuildSummary built = build(build_options_for(options_, region_, number, current, before_), progress_);
     summary_.folder = region_.build(number);
     summary_.tiles_built = built.tiles_built, summary_.tiles_kept = built.tiles_kept;
-    compare(current);
+    std::set<std::string> kept_work = built.kept_work;
+    {
+      WorkCache cache(region_.cache(), program_identity(), progress_);
+      compare(current, memo_in(cache, program_identity()));
+      kept_work.merge(cache.used());
+    }
     if (!built.unaccounted.empty())
       summary_.gates.push_back(
           {"unaccounted", "objects that no stage decided on", static_cast<double>(built.unaccounted.size()), 0});
@@ -425,8 +431,7 @@ class Updater {
         progress_.warn("could not be removed: " + path);
       std::set<std::string> builds;
       for (const int passed : region_.passed()) builds.insert(RegionFolder::digits(passed));
-      if (!built.kept_work.empty())
-        keep_work_of(region_.cache(), RegionFolder::digits(number), built.kept_work, builds);
+      keep_work_of(region_.cache(), RegionFolder::digits(number), kept_work, builds);
     } catch (const std::exception& error) {
       progress_.warn(fmt::format("build {} is published, but: {}", number, error.what()));
     }

@@ -27,12 +27,6 @@ constexpr std::string_view kEntry = "entry", kNew = "new", kProgram = "program",
                            kOf = "of";
 constexpr std::size_t kHashLength = 64;  // hex digits of a SHA-256
 
-std::string sha256_of(std::string_view bytes) {
-  base::Sha256 hash;
-  hash.add(bytes);
-  return hash.finish();
-}
-
 struct KeptFile {
   base::PublishedFile file;
   std::int64_t changed = 0;  ///< ns since 1970, of its content
@@ -76,7 +70,7 @@ std::optional<Stored> read_entry(const std::string& folder) {
   const std::optional<std::string> bytes = read_all(folder + "/" + std::string(kEntry));
   if (!bytes || bytes->size() < kHashLength) return std::nullopt;
   const std::string_view content = std::string_view(*bytes).substr(0, bytes->size() - kHashLength);
-  if (sha256_of(content) != bytes->substr(content.size())) return std::nullopt;
+  if (base::sha256_of(content) != bytes->substr(content.size())) return std::nullopt;
   try {
     return base::unpacked<Stored>(content);
   } catch (const base::UnpackError&) {
@@ -229,7 +223,7 @@ void WorkCache::keep(std::string_view kind, const std::string& key, std::string_
       stored.files.push_back({files[i], changed_of(s)});
     }
     std::string content = base::packed(stored);
-    content += sha256_of(content);
+    content += base::sha256_of(content);
     write_all(making + "/" + std::string(kEntry), content);
     const std::string to = place(kind, key);
     fs::create_directories(fs::path(to).parent_path(), error);
@@ -253,6 +247,16 @@ std::set<std::string> WorkCache::used() const {
 std::string WorkCache::trouble() const {
   const std::lock_guard lock(mutex_);
   return trouble_;
+}
+
+base::Memo memo_in(WorkCache& cache, std::string shared) {
+  return {.shared = std::move(shared),
+          .find = [&cache](std::string_view kind, const std::string& key) -> std::optional<std::string> {
+            std::optional<WorkCache::Found> found = cache.find(kind, key);
+            return found ? std::optional(std::move(found->bytes)) : std::nullopt;
+          },
+          .keep = [&cache](std::string_view kind, const std::string& key,
+                           std::string_view bytes) { cache.keep(kind, key, bytes, {}, ""); }};
 }
 
 void keep_work_of(const std::string& folder, const std::string& build, const std::set<std::string>& used,

@@ -22,6 +22,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/base/memo.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/base/publish.h"
 
@@ -71,6 +72,9 @@ class WorkCache {
   std::string trouble_;
   std::atomic<std::uint64_t> damaged_{0}, made_{0};
 };
+
+/// Pieces of work that have no files. \param cache  outlives the result \param shared  as base::Memo has it
+base::Memo memo_in(WorkCache& cache, std::string shared);
 
 /// Notes what a build used, under its name, and removes every entry that no build of `builds` used, with the notes of others.
 /// \param builds  names, that of this one among them

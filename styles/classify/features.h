@@ -7,6 +7,8 @@
 #include <limits>
 #include <string_view>
 
+#include "pipeline/base/pack.h"
+
 namespace blockrand::classify {
 
 /// X(name, unit, group, meaning). Groups: `footprint` the building's own plan, `situation` how it stands, `around` houses
@@ -111,10 +113,16 @@ class FeatureVector {
   float operator[](Feature f) const { return values_[static_cast<std::size_t>(f)]; }
   float at(std::size_t f) const { return values_[f]; }
   bool has(Feature f) const { return (*this)[f] == (*this)[f]; }
-  const std::array<float, kFeatureCount>& values() const { return values_; }
 
  private:
+  friend struct base::PackTraits<FeatureVector>;
   std::array<float, kFeatureCount> values_;
 };
 
 }  // namespace blockrand::classify
+
+template <>
+struct blockrand::base::PackTraits<blockrand::classify::FeatureVector> {
+  static void pack(Packer& out, const classify::FeatureVector& f) { out << f.values_; }
+  static void unpack(Unpacker& in, classify::FeatureVector& f) { in >> f.values_; }
+};

@@ -79,16 +79,21 @@ PlanChoice choose_plan(std::span<const footprints::Shard> shards, const georef::
 }
 
 PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::ContextExtract& context,
-                    const PlanChoice& choice) {
-  PlanSheet out;
+                    const PlanChoice& choice, const base::Memo* memo) {
   const picture::PlanBox all = picture::box_of(tiles);
-  if (!(all.width() > 0 && all.height() > 0)) return out;
+  if (!(all.width() > 0 && all.height() > 0)) return {};
   const picture::PlanBox box = cropped(all, choice.middle);
   tiles.push_back(vicinity(context, box));
-  out.png = picture::png(sheet(tiles, box, kFilePixels));
-  const picture::Image small = sheet(tiles, box, kReportPixels);
-  out.in_report = {picture::png(small), small.width, small.height,
-                   "From above, north up. Walls in the colours of what they face."};
+  auto out = base::remembered<PlanSheet>(
+      memo, "plan", [&](base::Packer& packer) { packer << tiles << box; },
+      [&] {
+        PlanSheet drawn;
+        drawn.png = picture::png(sheet(tiles, box, kFilePixels));
+        const picture::Image small = sheet(tiles, box, kReportPixels);
+        drawn.in_report = {picture::png(small), small.width, small.height,
+                           "From above, north up. Walls in the colours of what they face."};
+        return drawn;
+      });
   if (!choice.whole || box.width() < all.width() || box.height() < all.height())
     out.note =
         fmt::format("The plan shows {:.0f} by {:.0f} m of the build's densest part. All of it is in the GeoPackage.",

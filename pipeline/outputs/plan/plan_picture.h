@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/memo.h"
 #include "pipeline/context/context_extract.h"
 #include "pipeline/outputs/report/pictures.h"
 #include "pipeline/outputs/report/report_facts.h"
@@ -35,7 +36,8 @@ struct PlanSheet {
 /// Draws blocks, streets, courtyards, buildings and their edges. A plan wider than 2 * kPlanReach shows the surroundings
 /// of the middle of the densest tile only: on more, walls would be too thin to tell their colours.
 /// \param tiles  the chosen ones, in tile order
+/// \param memo   where the sheet of an earlier run is found again; null: none
 PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::ContextExtract& context,
-                    const PlanChoice& choice);
+                    const PlanChoice& choice, const base::Memo* memo = nullptr);
 
 }  // namespace blockrand::outputs

@@ -239,9 +239,17 @@ std::string Pictures::note() const {
                      base::with_thousands(plan_.buildings));
 }
 
-std::vector<outputs::ReportPicture> Pictures::take(int workers) {
+std::vector<outputs::ReportPicture> Pictures::take(int workers, const base::Memo* memo) {
+  if (buildings_.empty()) return {};
+  auto out = base::remembered<std::vector<outputs::ReportPicture>>(
+      memo, "pictures", [&](base::Packer& packer) { packer << scene_ << buildings_; }, [&] { return shoot(workers); });
+  scene_ = picture::Scene(plan_.origin);
+  buildings_ = {};
+  return out;
+}
+
+std::vector<outputs::ReportPicture> Pictures::shoot(int workers) {
   std::vector<outputs::ReportPicture> out;
-  if (buildings_.empty()) return out;
   lay_ground();
 
   struct Shot {
@@ -252,7 +260,7 @@ std::vector<outputs::ReportPicture> Pictures::take(int workers) {
   std::vector<Shot> shots;
   const std::vector<Point3> core = core_points(buildings_);
   const View view = best_view(core);
-  const auto shoot = [&](std::span<const Point3> points, Direction from, double field_of_view, int width, int height,
+  const auto add = [&](std::span<const Point3> points, Direction from, double field_of_view, int width, int height,
                          std::string caption) {
     Shot shot;
     shot.options.width = width;
@@ -262,11 +270,11 @@ std::vector<outputs::ReportPicture> Pictures::take(int workers) {
     shot.caption = std::move(caption);
     shots.push_back(std::move(shot));
   };
-  shoot(core, {view.azimuth, kElevation}, kFieldOfView, kWidth, kHeight, fmt::format("Seen from the {}.", view.from));
-  shoot(core, {view.azimuth + 180, kElevation}, kFieldOfView, 960, 600, fmt::format("The same from the {}.", view.to));
+  add(core, {view.azimuth, kElevation}, kFieldOfView, kWidth, kHeight, fmt::format("Seen from the {}.", view.from));
+  add(core, {view.azimuth + 180, kElevation}, kFieldOfView, 960, 600, fmt::format("The same from the {}.", view.to));
   constexpr double kDetailReach = 75;  // m
   std::vector<Point3> near = points_near(scene_, densest_spot(buildings_), kDetailReach);
-  shoot(near.empty() ? core : near, {view.azimuth, 27}, 40, 960, 600, "Where houses stand densest.");
+  add(near.empty() ? core : near, {view.azimuth, 27}, 40, 960, 600, "Where houses stand densest.");
   shots.back().options.sky_directions = 64;  // near by, single shades of the sky would show
 
   out.resize(shots.size());
@@ -278,8 +286,6 @@ std::vector<outputs::ReportPicture> Pictures::take(int workers) {
                   shot.options.height, shot.caption};
       },
       [](std::size_t) {});
-  scene_ = picture::Scene(plan_.origin);
-  buildings_ = {};
   return out;
 }
 

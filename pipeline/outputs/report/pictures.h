@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/memo.h"
 #include "pipeline/footprints/shard.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/model/region.h"
@@ -56,12 +57,14 @@ class Pictures {
   void add(PictureTile&& tile);
   /// The pictures, on up to `workers` threads; none where no building has a solid. The same bytes for any number of
   /// threads. Leaves the collection empty, so that its memory is free.
-  std::vector<outputs::ReportPicture> take(int workers);
+  /// \param memo  where those of an earlier run are found again; null: none
+  std::vector<outputs::ReportPicture> take(int workers, const base::Memo* memo = nullptr);
   /// What they show, where that is not the whole build.
   std::string note() const;
 
  private:
   void lay_ground();
+  std::vector<outputs::ReportPicture> shoot(int workers);
   PicturePlan plan_;
   picture::Scene scene_;
   std::vector<PicturedBuilding> buildings_;

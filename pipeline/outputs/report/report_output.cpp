@@ -118,14 +118,14 @@ class ReportOutput : public OutputOf<TileShare> {
   }
   /// The page lists the files of all outputs.
   void conclude(const FinishedBuild& build) override {
-    PlanSheet plan = draw_plan(std::move(plans_), context_.context, plan_choice_);
+    PlanSheet plan = draw_plan(std::move(plans_), context_.context, plan_choice_, context_.memo);
     if (!plan.png.empty()) build.files.push_back(context_.folder.write("plan.png", plan.png));
     std::ranges::sort(build.files, {}, &base::PublishedFile::path);
     ReportFacts facts = report_facts(context_, build, page_);
     if (!plan.png.empty()) facts.context.plan = std::move(plan.in_report);
     facts.context.plan_note = std::move(plan.note);
     facts.pictures_note = pictures_.note();
-    facts.pictures = pictures_.take(context_.workers);
+    facts.pictures = pictures_.take(context_.workers, context_.memo);
     build.files.push_back(context_.folder.write("report.html", page_.html(facts)));
   }
 

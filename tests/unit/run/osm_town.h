@@ -109,7 +109,7 @@ struct MeasuredTown {
                                        context::coverage_of(footprints::building_places(extract, *projection)),
                                        *projection, workers, quiet);
     const context::VicinityFinder vicinity(extract, repaired->footprints, context);
-    facts = evidence::facts_extract(extract, repaired->footprints, context, vicinity, workers, quiet);
+    facts = evidence::facts_extract(extract, repaired->footprints, repaired->first, context, vicinity, workers, quiet);
   }
   std::uint32_t number(std::int64_t id, model::OsmType type = model::OsmType::way) const {
     for (std::uint32_t b = 0; b < repaired->footprints.size(); ++b)
