@@ -31,6 +31,10 @@ std::string_view name(Commands command) {
       return "status";
     case kRollback:
       return "rollback";
+    case kRegion:
+      return "region";
+    case kCache:
+      return "cache";
   }
   return "";
 }

@@ -32,10 +32,13 @@ enum Commands : unsigned {
   kGrammar = 64,
   kUpdate = 128,
   kStatus = 256,
-  kRollback = 512
+  kRollback = 512,
+  kRegion = 1024,
+  kCache = 2048
 };
 inline constexpr Commands kAllCommands[] = {kBuild,     kInfo,    kExplain, kValidate, kCompare,
-                                            kDistricts, kGrammar, kUpdate,  kStatus,   kRollback};
+                                            kDistricts, kGrammar, kUpdate,  kStatus,   kRollback,
+                                            kRegion,    kCache};
 std::string_view name(Commands command);  ///< "build"
 
 /// Where an option stands in help and reference. One with keys is a table of the config file, too, and all but the main

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pipeline/cli/build_command.h"
+#include "pipeline/cli/cache_command.h"
 #include "pipeline/cli/compare_command.h"
 #include "pipeline/cli/districts_command.h"
 #include "pipeline/cli/explain_command.h"
@@ -17,9 +18,10 @@ namespace blockrand::cli {
 const std::vector<Command>& commands() {
   static const std::vector<Command> all = {
       {build_text(), run_build},         {update_text(), run_update},   {status_text(), run_status},
-      {rollback_text(), run_rollback},   {explain_text(), run_explain}, {compare_text(), run_compare},
-      {districts_text(), run_districts}, {grammar_text(), run_grammar}, {validate_text(), run_validate},
-      {info_text(), run_info},           {help_text(), run_help},
+      {rollback_text(), run_rollback},   {region_text(), run_region},   {cache_text(), run_cache},
+      {explain_text(), run_explain},     {compare_text(), run_compare}, {districts_text(), run_districts},
+      {grammar_text(), run_grammar},     {validate_text(), run_validate}, {info_text(), run_info},
+      {help_text(), run_help},
   };
   return all;
 }

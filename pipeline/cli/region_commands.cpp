@@ -152,13 +152,10 @@ settings::CommandText update_text() {
                      {"128 + N", "ended by signal N"}}};
 }
 
-int run_update(const std::vector<std::string>& arguments) {
-  std::string sha256;
-  settings::CommandLine line = region_line(settings::kUpdate, arguments, sha256);
-  if (line.help) {
-    std::fputs(settings::command_help(update_text()).c_str(), stdout);
-    return kSuccess;
-  }
+namespace {
+
+/// \param line  of `update`, or of `region repair` with its extract
+int update(settings::CommandLine& line, std::string sha256) {
   settings::Settings& s = line.settings;
   clean_up_on_signals(s.log_format);
   base::Progress progress(s.progress, s.log_format, s.quiet);
@@ -189,6 +186,59 @@ int run_update(const std::vector<std::string>& arguments) {
   else if (!s.quiet || summary.state == run::UpdateState::refused)
     std::fputs(update_report(options, summary).c_str(), stdout);
   return summary.state == run::UpdateState::refused ? kRefused : kSuccess;
+}
+
+}  // namespace
+
+int run_update(const std::vector<std::string>& arguments) {
+  std::string sha256;
+  settings::CommandLine line = region_line(settings::kUpdate, arguments, sha256);
+  if (line.help) {
+    std::fputs(settings::command_help(update_text()).c_str(), stdout);
+    return kSuccess;
+  }
+  return update(line, std::move(sha256));
+}
+
+settings::CommandText region_text() {
+  return {.name = "region",
+          .summary = "repairs a region: its data from an extract, its kept work",
+          .usage = "repair REGION [EXTRACT] [options]",
+          .description =
+              "Reads the kept work and removes what is damaged, then the data of the published build. Where those are "
+              "damaged they are made anew from EXTRACT, or from the input of region.toml, and built. What is published "
+              "stays until the new build is.",
+          .options = settings::kRegion,
+          .examples = {{"blockrand region repair leipzig leipzig.osm.pbf", ""}},
+          .exit_codes = {{"0", "all well, or well again"},
+                         {"1", "wrong usage"},
+                         {"2", "the data are damaged and no extract is given"},
+                         {"4", "output could not be written or internal error"},
+                         {"5", "built, but refused by a gate of the region"}}};
+}
+
+int run_region(const std::vector<std::string>& arguments) {
+  std::string sha256;
+  settings::CommandLine line = region_line(settings::kRegion, arguments, sha256);
+  if (line.help) {
+    std::fputs(settings::command_help(region_text()).c_str(), stdout);
+    return kSuccess;
+  }
+  settings::Settings& s = line.settings;
+  base::Progress progress(s.progress, s.log_format, s.quiet);
+  const run::RegionHealth health = run::check_region(s.region, s.break_lock, progress);
+  progress.end();
+  if (!s.quiet) std::fputs(health.words.c_str(), stdout);
+  if (health.data_whole) {
+    if (!s.data.empty() && !s.quiet)
+      std::fputs("the extract is not needed: blockrand update takes it in\n", stdout);
+    return kSuccess;
+  }
+  if (s.data.empty() && !s.build.input.empty()) s.data = {s.build.input};
+  if (s.data.empty())
+    throw base::InputError(s.region + "/store", "", "the data of the published build are damaged",
+                           "Give a full extract: blockrand region repair " + s.region + " EXTRACT.osm.pbf");
+  return update(line, std::move(sha256));
 }
 
 settings::CommandText status_text() {

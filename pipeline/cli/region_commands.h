@@ -1,4 +1,4 @@
-// blockrand update, status, rollback: a region that is rebuilt again and again.
+// blockrand update, status, rollback, region repair: a region that is rebuilt again and again.
 #pragma once
 
 #include <string>
@@ -13,9 +13,11 @@ namespace blockrand::cli {
 int run_update(const std::vector<std::string>& arguments);
 int run_status(const std::vector<std::string>& arguments);
 int run_rollback(const std::vector<std::string>& arguments);
+int run_region(const std::vector<std::string>& arguments);
 
 settings::CommandText update_text();
 settings::CommandText status_text();
 settings::CommandText rollback_text();
+settings::CommandText region_text();
 
 }  // namespace blockrand::cli

@@ -13,12 +13,12 @@ using base::text;
 using enum base::Commands;
 using R = RegionOptions;
 
-constexpr base::OptionSection kRegion{.name = "region", .title = "A region that is rebuilt again and again"};
-constexpr base::OptionSection kGates{.name = "gates", .title = "What a new build of a region may lose"};
+constexpr base::OptionSection kRegionSection{.name = "region", .title = "A region that is rebuilt again and again"};
+constexpr base::OptionSection kGatesSection{.name = "gates", .title = "What a new build of a region may lose"};
 
 base::OptionTable<R> of_region() {
   return base::in_section<R>(
-      kRegion, {integer({.name = "keep",
+      kRegionSection, {integer({.name = "keep",
                          .key = "keep",
                          .argument = "N",
                          .commands = kUpdate,
@@ -61,7 +61,7 @@ base::OptionTable<R> of_gates() {
                   member);
   };
   return base::in_section<R>(
-      kGates,
+      kGatesSection,
       {percent("max-lost", "max_lost", "of the buildings that the published build has, so many may be gone",
                &R::max_lost),
        percent("max-added", "max_added", "new buildings, of as many as the published build has", &R::max_added),

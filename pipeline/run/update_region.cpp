@@ -478,6 +478,32 @@ UpdateSummary update_region(const UpdateOptions& options, base::Progress& progre
   }
 }
 
+RegionHealth check_region(const std::string& folder, bool break_lock, base::Progress& progress) {
+  const RegionFolder region(folder);
+  if (!region.exists())
+    throw base::UsageError(folder + " is no region. 'blockrand update " + folder + " EXTRACT.osm.pbf' makes one.");
+  const RegionLock lock(region, break_lock, progress);
+  RegionHealth health;
+  std::error_code error;
+  progress.begin("check work");
+  if (fs::exists(region.cache() + "/program", error)) {
+    const CacheFigures work = verify_cache(region.cache(), progress);
+    health.words += fmt::format("kept work: {} pieces are whole, {} were damaged and are removed\n",
+                                base::with_thousands(work.entries), base::with_thousands(work.removed));
+  }
+  progress.begin("check data");
+  const std::optional<int> current = region.current();
+  if (!current) {
+    health.data_whole = false, health.words += "no build is published\n";
+    return health;
+  }
+  const std::string data = region.data(*current);
+  health.data_whole = fs::is_regular_file(data, error) &&
+                      base::sha256_file(data) == DataState::read(region.state(*current)).sha256;
+  health.words += fmt::format("data of build {}: {}\n", *current, health.data_whole ? "whole" : "damaged");
+  return health;
+}
+
 RegionStatus region_status(const std::string& folder, const RegionOptions& options) {
   const RegionFolder region(folder);
   if (!region.exists())

@@ -52,6 +52,14 @@ struct UpdateSummary {
 /// \throws base::OutputError  the disk is full or cannot be written
 UpdateSummary update_region(const UpdateOptions& options, base::Progress& progress);
 
+/// What `blockrand region repair` finds, after it has removed damaged work.
+struct RegionHealth {
+  bool data_whole = true;  ///< of the published build
+  std::string words;       ///< a line each
+};
+/// \throws base::UsageError  no region; another run works on it
+RegionHealth check_region(const std::string& folder, bool break_lock, base::Progress& progress);
+
 /// What `blockrand status` tells.
 struct RegionStatus {
   std::optional<int> current;

@@ -38,8 +38,9 @@ struct Stored {
 };
 
 std::optional<std::string> read_all(const std::string& path) {
+  std::error_code error;
   std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
+  if (!file || !fs::is_regular_file(path, error)) return std::nullopt;
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
   if (file.bad()) return std::nullopt;
   return bytes;

@@ -30,21 +30,29 @@ Table of_finished_builds() {
 }
 
 Table of_regions() {
-  constexpr unsigned regions = kUpdate | kStatus | kRollback;
-  return {text({.name = "REGION",
+  constexpr unsigned regions = kUpdate | kStatus | kRollback | kRegion;
+  return {word({.name = "REPAIR",
+                .argument = "REPAIR",
+                .commands = kRegion,
+                .help = "repair",
+                .if_missing = "nothing to do is given: repair.",
+                .choices = {"repair"},
+                .after = "FOLDER"},
+               &S::region_work),
+          text({.name = "REGION",
                 .argument = "REGION",
                 .type = OptionType::folder,
                 .commands = regions,
                 .help = "folder of a region that is rebuilt again and again",
                 .if_missing = "no REGION is given: name the folder of a region.",
-                .after = "FOLDER"},
+                .after = "REPAIR"},
                &S::region),
           texts({.name = "DATA",
                  .argument = "DATA",
                  .type = OptionType::path,
-                 .commands = kUpdate,
+                 .commands = kUpdate | kRegion,
                  .help = "an extract, change files (.osc, .osc.gz, .osc.bz2), or an extract and then change files; "
-                         "without any, what region.toml names"},
+                         "without any, what region.toml names; region repair: an extract"},
                 &S::data),
           flag({.name = "dry-run",
                 .commands = kUpdate,
@@ -52,7 +60,7 @@ Table of_regions() {
                 .after = "force"},
                &S::dry_run),
           flag({.name = "break-lock",
-                .commands = kUpdate | kRollback,
+                .commands = kUpdate | kRollback | kRegion,
                 .help = "go on although a run on another host seems to hold the region; only if it is gone for sure"},
                &S::break_lock),
           integer({.name = "to",
@@ -62,6 +70,32 @@ Table of_regions() {
                    .maximum = 999999,
                    .help = "number of the build to go back to; -1: the one before the current one"},
                   &S::to)};
+}
+
+Table of_caches() {
+  return {word({.name = "WORK",
+                .argument = "WORK",
+                .commands = kCache,
+                .help = "stat, verify or prune",
+                .if_missing = "no WORK is given: stat, verify or prune.",
+                .choices = {"stat", "verify", "prune"},
+                .after = "FOLDER"},
+               &S::cache_work),
+          text({.name = "CACHE",
+                .argument = "CACHE",
+                .type = OptionType::folder,
+                .commands = kCache,
+                .help = "folder of kept work: cache/ of a region, or the region, or that of build --cache",
+                .if_missing = "no CACHE is given: name a region, or the folder of build --cache.",
+                .after = "WORK"},
+               &S::cache),
+          integer({.name = "keep-bytes",
+                   .argument = "N",
+                   .commands = kCache,
+                   .minimum = -1,
+                   .maximum = 1e18,
+                   .help = "prune: how many bytes may stay"},
+                  &S::keep_bytes)};
 }
 
 Table of_districts() {
@@ -226,7 +260,9 @@ Table of_compare() {
 }
 
 Table of_several() {
-  return {flag({.name = "json", .commands = kInfo | kExplain | kValidate | kCompare | kStatus, .help = "print JSON"},
+  return {flag({.name = "json",
+                .commands = kInfo | kExplain | kValidate | kCompare | kStatus | kCache,
+                .help = "print JSON"},
                &S::json)};
 }
 
@@ -237,13 +273,14 @@ const base::Choices<base::ProgressStyle> kProgressStyles = {{"auto", base::Progr
 const base::Choices<base::LogFormat> kLogFormats = {{"text", base::LogFormat::text}, {"json", base::LogFormat::json}};
 
 Table of_messages() {
-  constexpr unsigned all = kBuild | kInfo | kValidate | kCompare | kDistricts | kGrammar | kUpdate | kRollback;
+  constexpr unsigned all =
+      kBuild | kInfo | kValidate | kCompare | kDistricts | kGrammar | kUpdate | kRollback | kRegion | kCache;
   constexpr base::OptionSection messages{.name = "messages", .title = "Messages"};
   return base::in_section<S>(
       messages,
       {choice({.name = "progress",
                .argument = "STYLE",
-               .commands = all,
+               .commands = all | kCache,
                .help = "auto (bar on a terminal, else plain), bar, plain (lines) or none"},
               kProgressStyles, &S::progress),
        choice({.name = "log-format",
@@ -257,7 +294,7 @@ Table of_messages() {
 }  // namespace
 
 std::vector<base::OptionTable<Settings>> command_options() {
-  return {of_finished_builds(), of_regions(), of_districts(), of_grammar(), of_build(),
+  return {of_finished_builds(), of_regions(), of_caches(),  of_districts(), of_grammar(), of_build(),
           of_explain(),         of_several(), of_compare(),   of_messages()};
 }
 
