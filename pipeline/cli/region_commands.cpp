@@ -54,6 +54,14 @@ std::string seconds_text(double seconds) {
   return seconds < 5400 ? fmt::format("{:.0f} min", seconds / 60) : fmt::format("{:.1f} h", seconds / 3600);
 }
 
+/// ". What differed: mapped in 3, surroundings in 12"
+std::string reasons(const std::map<std::string, std::uint64_t>& counts) {
+  std::string out;
+  for (const auto& [what, count] : counts)
+    out += fmt::format("{}{} in {}", out.empty() ? ". What differed: " : ", ", what, base::with_thousands(count));
+  return out;
+}
+
 std::string update_report(const run::UpdateOptions& options, const run::UpdateSummary& s) {
   std::string out;
   for (const std::string& why : s.why) out += "  " + why + "\n";
@@ -85,8 +93,8 @@ std::string update_report(const run::UpdateOptions& options, const run::UpdateSu
                       base::with_thousands(c.added.size()), base::with_thousands(c.removed.size()),
                       base::with_thousands(c.outlines.size()), base::with_thousands(c.attributes.size()));
       if (s.tiles_kept > 0)
-        out += fmt::format("  {} tiles were built, {} are those of earlier runs\n", base::with_thousands(s.tiles_built),
-                           base::with_thousands(s.tiles_kept));
+        out += fmt::format("  {} tiles were built, {} are those of earlier runs{}\n", base::with_thousands(s.tiles_built),
+                           base::with_thousands(s.tiles_kept), reasons(s.tiles_built_for));
       if (s.linked > 0)
         out += fmt::format("  {} files ({}) are those of build {}: one on disk\n", base::with_thousands(s.linked),
                            base::with_byte_unit(s.linked_bytes), s.before.value_or(0));
@@ -115,7 +123,7 @@ std::string update_json(const run::UpdateSummary& s) {
                     {"after", s.changes.after},
                     {"added", s.changes.added.size()},
                     {"removed", s.changes.removed.size()}};
-  j["tiles"] = {{"built", s.tiles_built}, {"kept", s.tiles_kept}};
+  j["tiles"] = {{"built", s.tiles_built}, {"kept", s.tiles_kept}, {"built_for", s.tiles_built_for}};
   j["gates"] = nlohmann::ordered_json::array();
   for (const run::Gate& g : s.gates)
     j["gates"].push_back({{"gate", g.key}, {"value", g.value}, {"limit", g.limit}, {"exceeded", g.exceeded()}});

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "pipeline/base/memo.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/footprints/terrace_rows.h"
 #include "pipeline/geometry/box_index.h"
@@ -57,7 +58,7 @@ void renumber(std::vector<std::uint32_t>& indices, const std::vector<std::uint32
 
 /// Figures of all blocks, batch by batch.
 void measure_all(const Extract& extract, const footprints::FootprintStore& store, const geometry::BoxIndex& index,
-                 const geometry::BoxIndex& lines, int workers, ContextExtract& out) {
+                 const geometry::BoxIndex& lines, int workers, const base::Memo* memo, ContextExtract& out) {
   std::map<std::pair<std::int64_t, std::int64_t>, std::vector<std::uint32_t>> cells;
   std::vector<geometry::PlanBox> boxes;
   for (std::uint32_t b = 0; b < out.blocks.size(); ++b) {
@@ -87,7 +88,9 @@ void measure_all(const Extract& extract, const footprints::FootprintStore& store
       if (is_built_land(store[b])) append_footprints(extract, store, b, footprints, numbers);
     std::vector<NetworkLine> near;
     for (const std::uint32_t l : lines.near(box, kBeside)) near.push_back(out.lines[l]);
-    std::vector<BlockFigures> figures = context::measure_blocks(blocks, footprints, near);
+    auto figures = base::remembered<std::vector<BlockFigures>>(
+        memo, "blocks", [&](base::Packer& packer) { packer << blocks << footprints << near; },
+        [&] { return context::measure_blocks(blocks, footprints, near); });
     for (BlockFigures& f : figures) {
       for (Courtyard& yard : f.courtyards) renumber(yard.buildings, numbers);
       renumber(f.buildings, numbers);
@@ -191,7 +194,7 @@ context::CellIndex cell_of_building(const footprints::FootprintStore& footprints
 
 ContextExtract context_extract(const Extract& extract, const footprints::FootprintStore& footprints,
                                std::span<const Point2> coverage, const georef::Projection& projection, int workers,
-                               base::Progress& progress, const context::UseOfTags& use_of) {
+                               base::Progress& progress, const context::UseOfTags& use_of, const base::Memo* memo) {
   progress.begin("context");
   ContextExtract out;
   const context::Project project = [&](model::Location l) { return projection.forward(l); };
@@ -204,7 +207,7 @@ ContextExtract context_extract(const Extract& extract, const footprints::Footpri
   for (const NetworkLine& line : out.lines) line_boxes.push_back(geometry::box_of(line.points));
   const geometry::BoxIndex lines(std::move(line_boxes));
   const geometry::BoxIndex index = footprints::index_of(footprints);
-  measure_all(extract, footprints, index, lines, workers, out);
+  measure_all(extract, footprints, index, lines, workers, memo, out);
   find_loose_courtyards(extract, footprints, lines, workers, out);
   // A building that stands in two blocks has its courtyards in both: the one of the lower id keeps them.
   const auto key = [&](const ExtractCourtyard& yard) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/memo.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/context/address_points.h"
 #include "pipeline/context/block_figures.h"
@@ -41,11 +42,13 @@ struct ContextExtract {
 
 /// \param coverage  of the extract (context::coverage_of), made once and pinned
 /// \param use_of  what shops and amenities are (context::site_points)
+/// \param memo  where figures of blocks of an earlier run are found again; null: none
 /// Deterministic for any number of workers. The value of a block, a courtyard, a cell depends on data within
 /// BlockOptions::max_extent of it, and on the repair of the buildings in it.
 ContextExtract context_extract(const model::Extract& extract, const footprints::FootprintStore& footprints,
                                std::span<const model::Point2> coverage, const georef::Projection& projection,
-                               int workers, base::Progress& progress, const context::UseOfTags& use_of = {});
+                               int workers, base::Progress& progress, const context::UseOfTags& use_of = {},
+                               const base::Memo* memo = nullptr);
 
 /// The middle of the largest polygon of a building's outline, which must not be empty.
 model::Point2 place_of(const footprints::FootprintStore& footprints, std::uint32_t building);

@@ -210,6 +210,17 @@ bool tiles_are_kept(const WorkCache* cache, const BuildInputs& inputs, const Ope
   return !why;
 }
 
+/// What differs from the run before, in words of TilePart; "new" where that had no such tile.
+std::vector<std::string_view> why_built(const WorkCache& cache, const std::string& tile, const TileKey& key) {
+  const std::optional<std::vector<std::uint64_t>> before = cache.parts_before(tile);
+  if (!before || before->size() != key.parts.size()) return {"new"};
+  std::vector<std::string_view> why;
+  for (std::size_t i = 0; i < kTilePartCount; ++i)
+    if ((*before)[i] != key.parts[i]) why.push_back(name(static_cast<TilePart>(i)));
+  if (why.empty()) why.emplace_back("not kept");
+  return why;
+}
+
 void tell_cache(const WorkCache& cache, const BuildOptions& options, BuildSummary& summary, base::Progress& progress) {
   summary.kept_work = cache.used();
   if (cache.damaged() > 0)
@@ -398,18 +409,26 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   std::uint64_t done = 0;
   const auto work = [&](std::size_t i) {
     TileResult& slot = slots[i % in_flight];
-    const std::string key = keys ? keys->key(todo[i]) : std::string();
-    if (keys)
-      if (std::optional<TileResult> kept = kept_tile(key, open, extract, folder, *cache)) {
-        slot = std::move(*kept);
-        return;
-      }
-    slot = work_on_tile(todo[i], tile_inputs, open, account);
-    if (keys) keep_tile(key, slot, open, extract, folder.staging_path(), *cache);
+    if (!keys) {
+      slot = work_on_tile(todo[i], tile_inputs, open, account);
+      return;
+    }
+    const TileKey key = keys->key(todo[i]);
+    const std::string name = outputs::tile_name(shards[todo[i]].tile);
+    std::optional<TileResult> kept = kept_tile(key.key, open, extract, folder, *cache);
+    if (kept) {
+      slot = std::move(*kept);
+    } else {
+      slot = work_on_tile(todo[i], tile_inputs, open, account);
+      slot.why = why_built(*cache, name, key);
+      keep_tile(key.key, slot, open, extract, folder.staging_path(), *cache);
+    }
+    cache->note_parts(name, key.parts);
   };
   const auto consume = [&](std::size_t i) {
     TileResult result = std::move(slots[i % in_flight]);
     ++(result.kept ? summary.tiles_kept : summary.tiles_built);
+    for (const std::string_view why : result.why) ++summary.tiles_built_for[std::string(why)];
     sums.take(std::move(result), todo[i], options, open, account, record);
     done += shards[todo[i]].seeds.size();
     progress.advance_to(done);

@@ -74,7 +74,7 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
     return category ? std::string_view(tables.ground_floor.categories[*category].name) : std::string_view();
   };
   context::ContextExtract context = context::context_extract(extract, repaired.footprints, located.facts.coverage,
-                                                             located.projection, workers, progress, use_of);
+                                                             located.projection, workers, progress, use_of, memo);
   malloc_trim(0);
   evidence::FactsExtract facts =
       evidence::facts_extract(extract, repaired.footprints, repaired.first, context,

@@ -63,7 +63,7 @@ struct TileKeys::Impl {
   std::map<std::string, std::string, std::less<>> grammars;  ///< hash of the rule files, by preset
   bool position_matters = false;                             ///< a rule asks for the position in the block
 
-  void pack_own(const footprints::Seed& seed, std::uint32_t number, Packer& out) const {
+  void pack_mapped_objects(const footprints::Seed& seed, Packer& out) const {
     const model::Extract& extract = in.extract;
     const auto object = [&](std::uint32_t index) {
       const MappedBuilding& mapped = extract.buildings[index];
@@ -75,12 +75,16 @@ struct TileKeys::Impl {
     if (seed.outline != model::kNoIndex) object(seed.outline);
     out << static_cast<std::uint64_t>(seed.parts.size());
     for (const std::uint32_t part : seed.parts) object(part);
+  }
 
+  void pack_outline(std::uint32_t number, Packer& out) const {
     footprints::StoredFootprint stored = in.repaired.footprints[number];
     stored.lead = 0, stored.rings = {}, stored.arcs = {};
     out << stored << in.repaired.footprints.polygons(number) << in.repaired.footprints.arcs(number);
     pack_rows(in.repaired.rows, stored.id, out);
+  }
 
+  void pack_class(std::uint32_t number, Packer& out) const {
     const evidence::StyleInputs& s = in.styles;
     out << s.facts.features[number];
     out << s.tags.dates[number] << s.tags.years[number] << s.tags.roofs[number] << s.tags.points_of(number);
@@ -143,43 +147,58 @@ TileKeys::TileKeys(const TileInputs& inputs, const BuildInputs& files, std::stri
 
 TileKeys::~TileKeys() = default;
 
-std::string TileKeys::key(std::size_t shard) const {
+TileKey TileKeys::key(std::size_t shard) const {
   const Impl& in = *impl_;
   const TileInputs& tiles = in.in;
   const std::vector<footprints::Seed>& seeds = tiles.shards[shard].seeds;
   const std::uint32_t first = tiles.repaired.first[shard];
-  Packer out;
-  out << in.shared << tiles.shards[shard].tile;
-  for (const auto& output : in.outputs) out << output->reads_of_tile(shard);
+  std::array<Packer, kTilePartCount> parts;
+  const auto part = [&](TilePart p) -> Packer& { return parts[static_cast<std::size_t>(p)]; };
+  part(TilePart::settings) << in.shared << tiles.shards[shard].tile;
+  for (const auto& output : in.outputs) part(TilePart::settings) << output->reads_of_tile(shard);
 
   geometry::PlanBox box;
   std::set<std::uint32_t> beside;  // of other tiles, that may share a wall
   for (std::uint32_t i = 0; i < seeds.size(); ++i) {
-    in.pack_own(seeds[i], first + i, out);
-    in.pack_preset(first + i, out);
+    in.pack_mapped_objects(seeds[i], part(TilePart::mapped));
+    in.pack_outline(first + i, part(TilePart::outlines));
+    in.pack_class(first + i, part(TilePart::classification));
+    in.pack_preset(first + i, part(TilePart::presets));
     const geometry::PlanBox& own = tiles.repaired.footprints[first + i].box;
     if (own.empty()) continue;
     box.include(own);
     for (const std::uint32_t other : tiles.vicinity.buildings_near(own, kTouching))
       if (other < first || other >= first + seeds.size()) beside.insert(other);
   }
-  out << static_cast<std::uint64_t>(beside.size());
+  Packer& around = part(TilePart::surroundings);
+  around << static_cast<std::uint64_t>(beside.size());
   for (const std::uint32_t other : beside) {
     const auto after = std::upper_bound(tiles.repaired.first.begin(), tiles.repaired.first.end(), other);
     const auto its = static_cast<std::size_t>(after - tiles.repaired.first.begin()) - 1;
-    in.pack_own(tiles.shards[its].seeds[other - tiles.repaired.first[its]], other, out);
+    in.pack_mapped_objects(tiles.shards[its].seeds[other - tiles.repaired.first[its]], around);
+    in.pack_outline(other, around);
+    in.pack_class(other, around);
     box.include(tiles.repaired.footprints[other].box);
   }
   // Mapped parts may stand outside of their outline.
   for (const footprints::Seed& seed : seeds)
-    for (const std::uint32_t part : seed.parts)
-      for (const model::MappedRing& ring : tiles.extract.rings_of(tiles.extract.buildings[part].rings))
+    for (const std::uint32_t p : seed.parts)
+      for (const model::MappedRing& ring : tiles.extract.rings_of(tiles.extract.buildings[p].rings))
         for (const model::Location v : tiles.extract.vertices_of(ring)) {
-          const model::Point2 p = tiles.projection.forward(v);
-          if (p.x == p.x && p.y == p.y) box.include(p);
+          const model::Point2 place = tiles.projection.forward(v);
+          if (place.x == place.x && place.y == place.y) box.include(place);
         }
-  if (!box.empty()) in.pack_around(box, out);
-  return base::sha256_of(out.bytes);
+  if (!box.empty()) in.pack_around(box, around);
+
+  TileKey key;
+  std::string hashes;
+  for (std::size_t i = 0; i < kTilePartCount; ++i) {
+    const std::string hash = base::sha256_of(parts[i].bytes);
+    key.parts[i] = std::stoull(hash.substr(0, 16), nullptr, 16);
+    hashes += hash;
+  }
+  key.key = base::sha256_of(hashes);
+  return key;
 }
 
 std::string shared_key(const BuildOptions& options, const BuildInputs& inputs, const BuildRecord& record) {

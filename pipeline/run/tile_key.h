@@ -2,16 +2,39 @@
 // stages and outputs made.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "pipeline/outputs/output.h"
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/tile_stages.h"
 
 namespace blockrand::run {
+
+/// What can make a tile another one than in an earlier run.
+enum class TilePart : std::uint8_t {
+  settings,        ///< program, options, tables, what outputs show of the tile
+  mapped,          ///< its buildings as mapped, orders for them
+  outlines,        ///< repaired
+  classification,  ///< style, era, storeys, roofs
+  presets,         ///< district rules and grammars
+  surroundings,    ///< what stands around, and buildings of other tiles that touch
+};
+inline constexpr std::size_t kTilePartCount = 6;
+constexpr std::string_view name(TilePart part) {
+  constexpr std::string_view names[] = {"settings", "mapped", "outlines", "classification", "presets", "surroundings"};
+  return names[static_cast<std::size_t>(part)];
+}
+
+struct TileKey {
+  std::string key;                                ///< lower-case hex
+  std::array<std::uint64_t, kTilePartCount> parts{};  ///< hashes: tell what differs, and no more
+};
 
 /// Makes the keys of tiles. Read-only after construction, safe to share between threads.
 ///
@@ -29,8 +52,7 @@ class TileKeys {
            std::span<const model::ReportRow> earlier, std::span<const std::unique_ptr<outputs::Output>> outputs);
   ~TileKeys();
 
-  /// Lower-case hex.
-  std::string key(std::size_t shard) const;
+  TileKey key(std::size_t shard) const;
 
  private:
   struct Impl;

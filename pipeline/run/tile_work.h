@@ -32,6 +32,7 @@ struct TileResult {
   std::vector<base::PublishedFile> files;
   model::Region region;  ///< kept only for files of the whole build
   bool kept = false;     ///< it is from an earlier run
+  std::vector<std::string_view> why;  ///< it is not (BuildSummary::tiles_built_for)
 };
 
 /// All stages and all outputs of a tile. Safe for different tiles at the same time.

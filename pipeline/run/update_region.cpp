@@ -243,7 +243,7 @@ Json run_line(const UpdateSummary& s) {
       {"run", s.number}, {"ended", now_utc()}, {"state", word(s.state)}, {"seconds", std::round(s.seconds * 10) / 10}};
   j["why"] = s.why;
   if (s.sequence) j["sequence"] = *s.sequence;
-  if (s.tiles_built + s.tiles_kept > 0) j["tiles"] = {{"built", s.tiles_built}, {"kept", s.tiles_kept}};
+  if (s.tiles_built + s.tiles_kept > 0) j["tiles"] = {{"built", s.tiles_built}, {"kept", s.tiles_kept}, {"built_for", s.tiles_built_for}};
   j["osm_objects"] = {{"created", s.created}, {"modified", s.modified}, {"deleted", s.deleted}};
   j["buildings"] = {{"before", s.changes.before},
                     {"after", s.changes.after},
@@ -406,6 +406,7 @@ class Updater {
     const BuildSummary built = build(build_options_for(options_, region_, number, current, before_), progress_);
     summary_.folder = region_.build(number);
     summary_.tiles_built = built.tiles_built, summary_.tiles_kept = built.tiles_kept;
+    summary_.tiles_built_for = built.tiles_built_for;
     std::set<std::string> kept_work = built.kept_work;
     {
       WorkCache cache(region_.cache(), program_identity(), progress_);

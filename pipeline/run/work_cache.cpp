@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kEntry = "entry", kNew = "new", kProgram = "program", kOpen = "open", kLock = "lock",
-                           kOf = "of";
+                           kOf = "of", kParts = "parts";
 constexpr std::size_t kHashLength = 64;  // hex digits of a SHA-256
 
 struct KeptFile {
@@ -169,10 +169,22 @@ WorkCache::WorkCache(std::string folder, const std::string& program, base::Progr
     ::close(lock_);
     throw;
   }
+  if (const std::optional<std::string> noted = read_all(folder_ + "/" + std::string(kParts))) try {
+      parts_before_ = base::unpacked<std::map<std::string, std::vector<std::uint64_t>>>(*noted);
+    } catch (const base::UnpackError&) {
+      parts_before_.clear();
+    }
 }
 
 WorkCache::~WorkCache() {
   std::error_code error;
+  if (!parts_.empty()) try {
+      const std::string place = folder_ + "/" + std::string(kParts);
+      write_all(place + ".new", base::packed(parts_));
+      fs::rename(place + ".new", place, error);
+    } catch (const base::OutputError&) {
+      // The next run does not know why, and no more.
+    }
   fs::remove(folder_ + "/" + std::string(kOpen), error);
   ::close(lock_);
 }
@@ -238,6 +250,16 @@ void WorkCache::keep(std::string_view kind, const std::string& key, std::string_
     const std::lock_guard lock(mutex_);
     if (trouble_.empty()) trouble_ = failed.what();
   }
+}
+
+std::optional<std::vector<std::uint64_t>> WorkCache::parts_before(const std::string& piece) const {
+  const auto found = parts_before_.find(piece);
+  return found == parts_before_.end() ? std::nullopt : std::optional(found->second);
+}
+
+void WorkCache::note_parts(const std::string& piece, std::span<const std::uint64_t> parts) {
+  const std::lock_guard lock(mutex_);
+  parts_[piece].assign(parts.begin(), parts.end());
 }
 
 std::set<std::string> WorkCache::used() const {

@@ -5,6 +5,7 @@
 //   cache/open               there while a run works: one that did not end leaves it
 //   cache/<kind>/ab/<key>/   an entry: `entry` (its bytes with their hash), 0, 1, … (its files, hard links to those of builds)
 //   cache/new/               entries in the making
+//   cache/parts              of which parts each tile was made in the last run: says why it is built again
 //   cache/of/N               in a region: which entries build N used
 //
 // An entry appears by the renaming of its folder. Killed at any instant, a run leaves whole entries and what is in `new`, which the
@@ -14,6 +15,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -57,6 +59,12 @@ class WorkCache {
   /// "kind/key" of what was found or kept, ascending.
   std::set<std::string> used() const;
 
+  /// What a piece was made from when it was last worked on, in parts: tells a later run why it is another one now. Nothing where
+  /// none was noted.
+  std::optional<std::vector<std::uint64_t>> parts_before(const std::string& piece) const;
+  /// Notes it. Written at the end.
+  void note_parts(const std::string& piece, std::span<const std::uint64_t> parts);
+
   std::uint64_t damaged() const { return damaged_; }  ///< entries that were removed because of it
   /// Why an entry could not be kept; empty: all were.
   std::string trouble() const;
@@ -69,6 +77,7 @@ class WorkCache {
   bool doubtful_ = false;  ///< the run before did not end
   mutable std::mutex mutex_;
   std::set<std::string> used_;
+  std::map<std::string, std::vector<std::uint64_t>> parts_before_, parts_;  ///< by piece
   std::string trouble_;
   std::atomic<std::uint64_t> damaged_{0}, made_{0};
 };
