@@ -82,9 +82,11 @@ std::string update_report(const run::UpdateOptions& options, const run::UpdateSu
       out += s.before ? fmt::format("nothing to build: build {} is up to date\n", s.number) : "nothing to build\n";
       break;
     case run::UpdateState::planned:
-      out +=
-          fmt::format("run {} would build {}{}\n", s.number, options.folder,
-                      s.expected_seconds > 0 ? ", which took " + seconds_text(s.expected_seconds) + " last time" : "");
+      out += fmt::format("run {} would build {}", s.number, options.folder);
+      if (s.tiles_built + s.tiles_kept > 0)
+        out += fmt::format(": {} tiles, and take {} from earlier runs{}", base::with_thousands(s.tiles_built),
+                           base::with_thousands(s.tiles_kept), reasons(s.tiles_built_for));
+      out += s.expected_seconds > 0 ? "\nit should take about " + seconds_text(s.expected_seconds) + "\n" : "\n";
       break;
     case run::UpdateState::published:
       out +=

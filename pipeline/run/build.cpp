@@ -188,7 +188,8 @@ std::unique_ptr<WorkCache> open_cache(const BuildOptions& options, const std::op
                                       base::Progress& progress) {
   if (options.cache.empty()) return nullptr;
   if (tile) throw base::UsageError("--cache is of no use with --tile: a tile that is built alone keeps no work");
-  return std::make_unique<WorkCache>(options.cache, program_identity(), progress);
+  return std::make_unique<WorkCache>(options.cache, program_identity(), progress,
+                                     options.plan ? WorkCache::Mode::look : WorkCache::Mode::work);
 }
 
 /// How the stages before the tiles see it.
@@ -213,12 +214,42 @@ bool tiles_are_kept(const WorkCache* cache, const BuildInputs& inputs, const Ope
 /// What differs from the run before, in words of TilePart; "new" where that had no such tile.
 std::vector<std::string_view> why_built(const WorkCache& cache, const std::string& tile, const TileKey& key) {
   const std::optional<std::vector<std::uint64_t>> before = cache.parts_before(tile);
-  if (!before || before->size() != key.parts.size()) return {"new"};
+  if (!before || before->size() != kTilePartCount + 1) return {"new"};
   std::vector<std::string_view> why;
   for (std::size_t i = 0; i < kTilePartCount; ++i)
     if ((*before)[i] != key.parts[i]) why.push_back(name(static_cast<TilePart>(i)));
   if (why.empty()) why.emplace_back("not kept");
   return why;
+}
+
+/// Parts, and last how long the work took.
+void note_tile(WorkCache& cache, const std::string& tile, const TileKey& key, std::uint64_t microseconds) {
+  std::vector<std::uint64_t> parts(key.parts.begin(), key.parts.end());
+  parts.push_back(microseconds);
+  cache.note_parts(tile, parts);
+}
+
+/// What working on `todo` would do: nothing is worked on.
+void plan_tiles(std::span<const std::size_t> todo, std::span<const footprints::Shard> shards, const TileKeys* keys,
+                WorkCache* cache, int workers, BuildSummary& summary) {
+  std::uint64_t known = 0, microseconds = 0;
+  for (const std::size_t shard : todo) {
+    const TileKey key = keys ? keys->key(shard) : TileKey();
+    if (keys && tile_is_kept(key.key, *cache)) {
+      ++summary.tiles_kept;
+      continue;
+    }
+    ++summary.tiles_built;
+    if (!keys) continue;
+    const std::string name = outputs::tile_name(shards[shard].tile);
+    for (const std::string_view why : why_built(*cache, name, key)) ++summary.tiles_built_for[std::string(why)];
+    if (const auto before = cache->parts_before(name); before && before->size() > kTilePartCount)
+      ++known, microseconds += before->back();
+  }
+  // Tiles that are new take what the others took.
+  if (known > 0)
+    summary.planned_tile_seconds = 1e-6 * static_cast<double>(microseconds) / static_cast<double>(known) *
+                                   static_cast<double>(summary.tiles_built) / workers;
 }
 
 void tell_cache(const WorkCache& cache, const BuildOptions& options, BuildSummary& summary, base::Progress& progress) {
@@ -340,7 +371,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const std::vector<std::size_t> todo = shards_to_build(shards, tile);
   std::uint64_t to_build = 0;
   for (const std::size_t shard : todo) to_build += shards[shard].seeds.size();
-  check_free_space(options, to_build, folder);
+  if (!options.plan) check_free_space(options, to_build, folder);
   summary.store_bytes = current_rss_bytes();
 
   // The tiles: every stage, then every output.
@@ -403,6 +434,12 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   std::optional<TileKeys> keys;
   if (tiles_are_kept(cache.get(), inputs, open, progress))
     keys.emplace(tile_inputs, inputs, shared_key(options, inputs, record), account.earlier(), open.list);
+  if (options.plan) {
+    progress.begin("look for kept tiles");
+    plan_tiles(todo, shards, keys ? &*keys : nullptr, cache.get(), workers, summary);
+    progress.end();
+    return summary;
+  }
   progress.begin("tiles", to_build, "buildings");
   std::vector<TileResult> slots(in_flight);
   Sums sums;
@@ -423,7 +460,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       slot.why = why_built(*cache, name, key);
       keep_tile(key.key, slot, open, extract, folder.staging_path(), *cache);
     }
-    cache->note_parts(name, key.parts);
+    note_tile(*cache, name, key, slot.microseconds);
   };
   const auto consume = [&](std::size_t i) {
     TileResult result = std::move(slots[i % in_flight]);

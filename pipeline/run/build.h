@@ -24,6 +24,7 @@ struct BuildSummary : outputs::ObjectCounts {
   std::uint64_t store_bytes = 0;      ///< of it: the extract and its indices before the first tile
   std::uint64_t tiles_in_flight = 0;  ///< at most this many tiles share the rest
   std::uint64_t tiles_built = 0, tiles_kept = 0;  ///< worked on; taken from an earlier run (BuildOptions::cache)
+  double planned_tile_seconds = 0;  ///< BuildOptions::plan: how long the tiles should take; 0: nobody knows
   /// Why tiles were worked on, counted by what differs from the run before: names of TilePart, "new", "not kept".
   std::map<std::string, std::uint64_t> tiles_built_for;
   std::set<std::string> kept_work;                ///< what the run used or left in the cache (WorkCache::used)
@@ -34,7 +35,7 @@ struct BuildSummary : outputs::ObjectCounts {
   std::string folder;  ///< where the build lies: beside the output folder where it must not replace it
 };
 
-/// Builds and publishes. An existing output folder stays untouched until the new one is complete. A build with objects that
+/// Builds and publishes; with BuildOptions::plan, only says which tiles it would work on. An existing output folder stays untouched until the new one is complete. A build with objects that
 /// are unaccounted for replaces none: it lies beside, as `<output>.unaccounted`.
 /// \throws base::InputError   unreadable or invalid input
 /// \throws base::UsageError   options that contradict each other; an output place that cannot be used

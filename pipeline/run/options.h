@@ -30,6 +30,7 @@ struct BuildOptions {
   double allow_shrink = 50;                   ///< percent fewer models than the build that is replaced
   bool strict = false;                        ///< exit code 3 when a building is below the asked quality
   int jobs = 0;                               ///< worker threads; 0: one per core
+  bool plan = false;                          ///< only look what there is to do: `output` is not written
   std::string cache;                          ///< folder where the work on tiles is kept for later runs, or empty
   std::uint64_t seed = 1;                     ///< of all random choices
   std::string terrain;                        ///< raster with ground heights, or empty

@@ -1,6 +1,7 @@
 #include "pipeline/run/tile_work.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "pipeline/base/pack.h"
@@ -26,6 +27,7 @@ struct KeptTile {
   std::vector<model::ReportRow> rows;
   outputs::TileStatistics statistics;
   std::vector<std::string> products;
+  std::uint64_t microseconds = 0;
 };
 
 }  // namespace
@@ -40,6 +42,7 @@ OpenOutputs::OpenOutputs(const outputs::OutputContext& context) {
 }
 
 TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenOutputs& open, const Account& account) {
+  const auto start = std::chrono::steady_clock::now();
   TileResult result;
   model::Region region = run_tile(shard, inputs);
   result.outcomes = decide_outcomes(region, inputs.lod);
@@ -55,6 +58,8 @@ TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenO
   result.files = std::move(tile.files);
   result.rows = std::move(region.report.rows);
   if (open.takes_regions || open.keeps_whole) result.region = std::move(region);
+  result.microseconds = static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start).count());
   return result;
 }
 
@@ -66,10 +71,13 @@ void keep_tile(const std::string& key, const TileResult& result, const OpenOutpu
   kept.below_quality = result.outcomes.below_quality;
   kept.rows = result.rows;
   kept.statistics = result.statistics;
+  kept.microseconds = result.microseconds;
   for (std::size_t i = 0; i < open.list.size(); ++i)
     kept.products.push_back(open.list[i]->packed_product(result.products[i]));
   cache.keep(kKind, key, base::packed(kept), result.files, folder);
 }
+
+bool tile_is_kept(const std::string& key, WorkCache& cache) { return cache.find(kKind, key).has_value(); }
 
 std::optional<TileResult> kept_tile(const std::string& key, const OpenOutputs& open, const model::Extract& extract,
                                     base::StagedFolder& folder, WorkCache& cache) {
@@ -90,6 +98,7 @@ std::optional<TileResult> kept_tile(const std::string& key, const OpenOutputs& o
     result.outcomes.below_quality = kept.below_quality;
     result.rows = std::move(kept.rows);
     result.statistics = std::move(kept.statistics);
+    result.microseconds = kept.microseconds;
     for (std::size_t i = 0; i < open.list.size(); ++i)
       result.products.push_back(open.list[i]->unpacked_product(kept.products[i]));
   } catch (const base::UnpackError&) {

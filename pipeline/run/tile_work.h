@@ -32,6 +32,7 @@ struct TileResult {
   std::vector<base::PublishedFile> files;
   model::Region region;  ///< kept only for files of the whole build
   bool kept = false;     ///< it is from an earlier run
+  std::uint64_t microseconds = 0;  ///< of one thread, that the work took when it was done
   std::vector<std::string_view> why;  ///< it is not (BuildSummary::tiles_built_for)
 };
 
@@ -41,6 +42,9 @@ TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenO
 /// Keeps a tile's work for the next run. Safe for different tiles at the same time. \param folder  where its files lie
 void keep_tile(const std::string& key, const TileResult& result, const OpenOutputs& open, const model::Extract& extract,
                const std::string& folder, WorkCache& cache);
+
+/// Whether kept_tile would find it. Safe for different tiles at the same time.
+bool tile_is_kept(const std::string& key, WorkCache& cache);
 
 /// The work of an earlier run, its files put into `folder`; nothing where there is none. Safe for different tiles at the same
 /// time.

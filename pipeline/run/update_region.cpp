@@ -296,9 +296,6 @@ class Updater {
     summary_.before = current;
     if (current) {
       before_ = DataState::read(region_.state(*current));
-      const Json last = read_json(region_.build(*current) + "/run.json");
-      if (last.contains("seconds") && last["seconds"].is_number())
-        summary_.expected_seconds = last["seconds"].get<double>();
     }
     const Plan plan = plan_of(options_, region_, current, before_);
     summary_.why = plan.why;
@@ -322,7 +319,10 @@ class Updater {
     fresh.sha256 = base::sha256_file(data.path);
     const bool same_data = current && (fresh.sha256 == before_.sha256 || (plan.extract.empty() && !applied.any()));
     if (same_data && !new_settings) return stay(*current, fresh);
-    if (options_.dry_run) return ended(UpdateState::planned);
+    if (options_.dry_run) {
+      look_ahead(current, data.path);
+      return ended(UpdateState::planned);
+    }
 
     const std::string place = region_.data(summary_.number);
     if (std::rename(data.path.c_str(), place.c_str()) != 0)
@@ -342,6 +342,29 @@ class Updater {
     summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     if (!options_.dry_run) append_run(region_, run_line(summary_), progress_);
     return summary_;
+  }
+
+  /// Which tiles a run would build, and how long it should take.
+  void look_ahead(std::optional<int> current, const std::string& data) {
+    BuildOptions build = build_options_for(options_, region_, summary_.number, current, before_);
+    build.input = data;
+    build.output = (fs::temp_directory_path() / fmt::format("blockrand-{}.plan", ::getpid())).string();
+    build.plan = true;
+    const auto start = std::chrono::steady_clock::now();
+    const BuildSummary planned = blockrand::run::build(build, progress_);
+    summary_.tiles_built = planned.tiles_built, summary_.tiles_kept = planned.tiles_kept;
+    summary_.tiles_built_for = planned.tiles_built_for;
+    if (!current) return;
+    // What comes before the tiles was just done; what comes after them takes what it took.
+    const Json last = read_json(region_.build(*current) + "/run.json");
+    double after = 0;
+    if (last.contains("timings") && last["timings"].is_object() && last["timings"].contains("documents") &&
+        last["timings"]["documents"].is_number())
+      after = last["timings"]["documents"].get<double>();
+    if (planned.tiles_built == 0 || planned.planned_tile_seconds > 0)
+      summary_.expected_seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() +
+          planned.planned_tile_seconds + after;
   }
 
   AppliedChanges make_data(const Plan& plan, std::optional<int> current, const std::string& path) {
@@ -403,7 +426,7 @@ class Updater {
 
   UpdateSummary build_and_publish(std::optional<int> current, const DataState& fresh) {
     const int number = summary_.number;
-    const BuildSummary built = build(build_options_for(options_, region_, number, current, before_), progress_);
+    const BuildSummary built = blockrand::run::build(build_options_for(options_, region_, number, current, before_), progress_);
     summary_.folder = region_.build(number);
     summary_.tiles_built = built.tiles_built, summary_.tiles_kept = built.tiles_kept;
     summary_.tiles_built_for = built.tiles_built_for;

@@ -137,9 +137,11 @@ bool check_is_cache(const std::string& folder) {
 
 }  // namespace
 
-WorkCache::WorkCache(std::string folder, const std::string& program, base::Progress& progress)
-    : folder_(std::move(folder)) {
+WorkCache::WorkCache(std::string folder, const std::string& program, base::Progress& progress, Mode mode)
+    : folder_(std::move(folder)), mode_(mode) {
   check_is_cache(folder_);
+  read_parts();
+  if (mode_ == Mode::look) return;
   std::error_code error;
   fs::create_directories(folder_ + "/" + std::string(kNew), error);
   if (error) throw base::OutputError(folder_ + ": cannot be made: " + error.message());
@@ -169,6 +171,9 @@ WorkCache::WorkCache(std::string folder, const std::string& program, base::Progr
     ::close(lock_);
     throw;
   }
+}
+
+void WorkCache::read_parts() {
   if (const std::optional<std::string> noted = read_all(folder_ + "/" + std::string(kParts))) try {
       parts_before_ = base::unpacked<std::map<std::string, std::vector<std::uint64_t>>>(*noted);
     } catch (const base::UnpackError&) {
@@ -177,6 +182,7 @@ WorkCache::WorkCache(std::string folder, const std::string& program, base::Progr
 }
 
 WorkCache::~WorkCache() {
+  if (mode_ == Mode::look) return;
   std::error_code error;
   if (!parts_.empty()) try {
       const std::string place = folder_ + "/" + std::string(kParts);
@@ -199,7 +205,7 @@ std::optional<WorkCache::Found> WorkCache::find(std::string_view kind, const std
   if (!fs::exists(folder, error)) return std::nullopt;
   std::optional<Stored> stored = read_entry(folder);
   if (!stored || !entry_is_whole(folder, *stored, doubtful_)) {
-    remove(folder);
+    if (mode_ == Mode::work) remove(folder);
     ++damaged_;
     return std::nullopt;
   }
@@ -210,7 +216,7 @@ std::optional<WorkCache::Found> WorkCache::find(std::string_view kind, const std
     found.places.push_back(folder + "/" + std::to_string(i));
   }
   // The time of its folder says when it was last of use.
-  ::utimensat(AT_FDCWD, folder.c_str(), nullptr, 0);
+  if (mode_ == Mode::work) ::utimensat(AT_FDCWD, folder.c_str(), nullptr, 0);
   const std::lock_guard lock(mutex_);
   used_.insert(std::string(kind) + "/" + key);
   return found;
@@ -218,6 +224,7 @@ std::optional<WorkCache::Found> WorkCache::find(std::string_view kind, const std
 
 void WorkCache::keep(std::string_view kind, const std::string& key, std::string_view bytes,
                      std::span<const base::PublishedFile> files, const std::string& folder) {
+  if (mode_ == Mode::look) return;
   const std::string making = fmt::format("{}/{}/{}-{}", folder_, kNew, ::getpid(), made_++);
   try {
     std::error_code error;

@@ -33,10 +33,14 @@ namespace blockrand::run {
 /// Several threads may use one at a time. Two processes must not: who opens one holds its lock.
 class WorkCache {
  public:
+  enum class Mode {
+    work,  ///< alone: with the lock
+    look   ///< beside others: nothing is locked, written or removed
+  };
   /// Opens the folder, makes it where it is missing, and says what a newer program leaves of no use.
   /// \throws base::OutputError  it cannot be written
   /// \throws base::UsageError   another process works with it, or it is no such folder
-  WorkCache(std::string folder, const std::string& program, base::Progress& progress);
+  WorkCache(std::string folder, const std::string& program, base::Progress& progress, Mode mode = Mode::work);
   /// Of a run that ended: what lies there is known to be whole.
   ~WorkCache();
   WorkCache(const WorkCache&) = delete;
@@ -71,8 +75,10 @@ class WorkCache {
 
  private:
   std::string place(std::string_view kind, const std::string& key) const;
+  void read_parts();
 
   std::string folder_;
+  Mode mode_;
   int lock_ = -1;
   bool doubtful_ = false;  ///< the run before did not end
   mutable std::mutex mutex_;

@@ -39,10 +39,9 @@ TEST(DeclaredOptions, EveryMemberOfABuildIsOne) {
   EXPECT_EQ(of_outputs + set_by_the_build, member_count<outputs::OutputOptions>());
   const std::size_t of_imagery = observation::imagery_options().size();
   EXPECT_EQ(of_imagery, member_count<observation::ImageryOptions>());
-  EXPECT_EQ(own - of_outputs - of_imagery + 2 + 1 + stages.size(), member_count<run::BuildOptions>())
+  EXPECT_EQ(own - of_outputs - of_imagery + 2 + 2 + stages.size(), member_count<run::BuildOptions>())
       << "the options of the outputs are one member, those of the images another, and so are those of each stage; a "
-         "build's "
-         "name is its region's";
+         "build's name is its region's, and whether it only looks ahead its caller's";
 }
 
 TEST(DeclaredOptions, EveryMemberOfValidationIsOne) {
