@@ -16,6 +16,8 @@
 #include "pipeline/cli/errors.h"
 #include "pipeline/cli/exit_codes.h"
 #include "pipeline/cli/signals.h"
+#include "pipeline/compare/compare.h"
+#include "pipeline/compare/comparison_report.h"
 #include "pipeline/run/region_folder.h"
 #include "pipeline/run/update_region.h"
 #include "pipeline/settings/command_line.h"
@@ -164,6 +166,28 @@ settings::CommandText update_text() {
 
 namespace {
 
+/// As `blockrand compare` does it, without a report.
+run::ReferenceVerdict compare_with_reference(const settings::Settings& s, const std::string& build,
+                                             const std::string& baseline, base::Progress& progress) {
+  compare::CompareOptions options = s.comparison;
+  options.model = build;
+  options.reference = {s.region_options.reference};
+  options.jobs = s.build.jobs;
+  options.surface.seed = s.build.seed;
+  const compare::Comparison comparison = compare::compare_models(options, progress);
+  run::ReferenceVerdict verdict;
+  verdict.json = compare::comparison_json(comparison, {});
+  if (baseline.empty()) return verdict;
+  const compare::BaselineResult against =
+      compare::compare_with_baseline(comparison, baseline, "the published build's comparison",
+                                     s.region_options.max_worse / 100, {});
+  for (const auto& line : against.lines)
+    if (line.fails) verdict.worse.push_back(line.measure);
+  for (const std::string& measure : against.lost) verdict.worse.push_back(measure + " (lost)");
+  for (const std::string& id : against.lost_buildings) verdict.worse.push_back("building " + id + " (lost)");
+  return verdict;
+}
+
 /// \param line  of `update`, or of `region repair` with its extract
 int update(settings::CommandLine& line, std::string sha256) {
   settings::Settings& s = line.settings;
@@ -179,6 +203,9 @@ int update(settings::CommandLine& line, std::string sha256) {
   options.dry_run = s.dry_run, options.break_lock = s.break_lock;
   options.version = base::kVersion;
   options.settings_sha256 = std::move(sha256);
+  options.compare_with_reference = [&](const std::string& build, const std::string& baseline) {
+    return compare_with_reference(s, build, baseline, progress);
+  };
   const run::RegionFolder region(options.folder);
   std::error_code error;
   if (!std::filesystem::exists(region.settings(), error) && !s.dry_run) {

@@ -264,6 +264,15 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
   return out;
 }
 
+std::vector<Gate> drift_gates(const BuildChanges& c, const RegionOptions& o) {
+  RegionOptions drift = o;
+  drift.max_lost = drift.max_added = drift.max_simpler = drift.max_height_change = o.max_drift;
+  std::vector<Gate> gates = gates_of(c, drift, false);
+  std::erase_if(gates, [](const Gate& g) { return g.key == "no_buildings"; });
+  for (Gate& g : gates) g.key = "max_drift", g.words += fmt::format(", against build {}", o.baseline);
+  return gates;
+}
+
 std::vector<Gate> gates_of(const BuildChanges& c, const RegionOptions& o, bool first) {
   const auto n = [](auto count) { return static_cast<double>(count); };
   std::vector<Gate> gates;
@@ -290,6 +299,8 @@ std::string changes_json(const BuildChanges& c, const std::vector<Gate>& gates) 
                           {"value", hundredths(g.value)},
                           {"limit", g.limit},
                           {"exceeded", g.exceeded()}});
+  if (!c.settings_before.empty() || !c.settings_after.empty())
+    j["settings"] = {{"removed", c.settings_before}, {"added", c.settings_after}};
   j["added"] = c.added, j["removed"] = c.removed;
   j["outlines"] = Json::array();
   for (const OutlineChange& o : c.outlines)
@@ -338,6 +349,10 @@ std::string changes_page(const std::string& title, const BuildChanges& c, const 
     rows.push_back(
         {g.words, fmt::format("{:.2f}", g.value), fmt::format("{:g}", g.limit), g.exceeded() ? "too much" : "well"});
   table("Gates", {"what", "percent", "limit", ""}, rows, rows.size());
+  rows.clear();
+  for (const std::string& line : c.settings_before) rows.push_back({line, ""});
+  for (const std::string& line : c.settings_after) rows.push_back({"", line});
+  table("region.toml", {"before", "now"}, rows, rows.size());
   const auto list = [&](const std::string& heading, const std::vector<std::string>& ids) {
     rows.clear();
     for (std::size_t i = 0; i < std::min(ids.size(), kMostRows); ++i) rows.push_back({ids[i]});

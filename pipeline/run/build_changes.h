@@ -28,6 +28,7 @@ struct BuildChanges {
   std::vector<std::string> added, removed;  ///< ids of buildings with a model
   std::vector<AttributeChange> attributes;  ///< by id, then in the order of the new build's attributes
   std::vector<OutlineChange> outlines;
+  std::vector<std::string> settings_before, settings_after;  ///< lines of region.toml that the other has not
   std::uint64_t before = 0, after = 0;                  ///< buildings with a model
   std::uint64_t all_before = 0, all_after = 0;          ///< mapped buildings
   std::uint64_t simpler_before = 0, simpler_after = 0;  ///< of those: simpler than asked, or without a model
@@ -49,6 +50,9 @@ struct Gate {
 
 /// What region.toml's limits say of a change; percent. A build without buildings never passes.
 std::vector<Gate> gates_of(const BuildChanges& changes, const RegionOptions& options, bool first);
+
+/// The same against RegionOptions::baseline. \param changes  from there
+std::vector<Gate> drift_gates(const BuildChanges& changes, const RegionOptions& options);
 
 /// The change report. \param title  of the page, for people
 std::string changes_json(const BuildChanges& changes, const std::vector<Gate>& gates);

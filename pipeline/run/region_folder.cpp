@@ -197,8 +197,10 @@ std::vector<std::string> RegionFolder::remove_unfinished() const {
   }
   for (const fs::path& entry : entries(path_ + "/store")) {
     const Numbered n = numbered(entry.filename().string());
-    const bool part = n.rest == ".osm.pbf.part" || n.rest == ".json.part";
-    if (n.number >= 0 && (part || (n.rest == ".osm.pbf" && !is_there(state(n.number))))) remove(entry);
+    const bool part = n.rest == ".osm.pbf.part" || n.rest == ".json.part" || n.rest == ".toml.part" ||
+                      n.rest == ".compare.json.part";
+    const bool of_build = n.rest == ".osm.pbf" || n.rest == ".toml" || n.rest == ".compare.json";
+    if (n.number >= 0 && (part || (of_build && !is_there(state(n.number))))) remove(entry);
   }
   for (const fs::path& entry : entries(path_ + "/log"))
     if (const Numbered n = numbered(entry.filename().string()); n.number >= 0 && n.rest.ends_with(".part"))
@@ -234,7 +236,7 @@ std::string RegionFolder::set_aside(int number) const {
   return aside;
 }
 
-std::vector<std::string> RegionFolder::prune(int keep, std::optional<int> also) const {
+std::vector<std::string> RegionFolder::prune(int keep, const std::vector<int>& also) const {
   std::vector<int> all = passed();
   const std::optional<int> now = current();
   std::size_t kept = all.size();
@@ -246,9 +248,11 @@ std::vector<std::string> RegionFolder::prune(int keep, std::optional<int> also) 
   };
   for (const int number : all) {
     if (kept <= static_cast<std::size_t>(keep)) break;
-    if (number == now || number == also) continue;
+    if (number == now || std::ranges::find(also, number) != also.end()) continue;
     // Its mark goes first: what a run that is broken off here leaves, the next one removes.
-    for (const std::string& path : {state(number), build(number), data(number)}) remove(path);
+    for (const std::string& path :
+         {state(number), build(number), data(number), settings_of(number), comparison(number)})
+      remove(path);
     --kept;
   }
   all = passed();

@@ -29,6 +29,9 @@ class RegionFolder {
   std::string build(int number) const { return path_ + "/builds/" + digits(number); }
   std::string data(int number) const { return path_ + "/store/" + digits(number) + ".osm.pbf"; }
   std::string state(int number) const { return path_ + "/store/" + digits(number) + ".json"; }
+  /// region.toml as it was, and the comparison with the reference of its gates.
+  std::string settings_of(int number) const { return path_ + "/store/" + digits(number) + ".toml"; }
+  std::string comparison(int number) const { return path_ + "/store/" + digits(number) + ".compare.json"; }
   std::string log(int number) const { return path_ + "/log/" + digits(number) + ".json"; }
   std::string changes(int number) const { return path_ + "/log/" + digits(number) + ".changes"; }
   /// Where work on tiles is kept from run to run.
@@ -57,8 +60,9 @@ class RegionFolder {
   /// Sets a build that was refused aside, as `builds/N.refused`; earlier ones make room.
   /// \returns  where it lies \throws base::OutputError
   std::string set_aside(int number) const;
-  /// Removes the oldest builds, with their data, but for `keep`, the current one and `also`. \returns  what could not be removed
-  std::vector<std::string> prune(int keep, std::optional<int> also) const;
+  /// Removes the oldest builds, with their data, but for `keep`, the current one and those of `also`.
+  /// \returns  what could not be removed
+  std::vector<std::string> prune(int keep, const std::vector<int>& also) const;
 
  private:
   std::string path_;

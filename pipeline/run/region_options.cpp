@@ -45,7 +45,15 @@ base::OptionTable<R> of_region() {
                          .help = "number of the first change file to apply; -1: the one after that which the extract "
                                  "names",
                          .record = OptionRecord::none},
-                        &R::first_sequence)});
+                        &R::first_sequence),
+                text({.name = "hook",
+                      .key = "hook",
+                      .argument = "COMMAND",
+                      .commands = kUpdate,
+                      .help = "run by /bin/sh when a run has ended, with BLOCKRAND_STATE (published, unchanged, refused, "
+                              "failed), BLOCKRAND_REGION, BLOCKRAND_BUILD and BLOCKRAND_CHANGES in its environment",
+                      .record = OptionRecord::none},
+                     &R::hook)});
 }
 
 base::OptionTable<R> of_gates() {
@@ -69,7 +77,29 @@ base::OptionTable<R> of_gates() {
                "by so many points the share of buildings that are simpler than asked, or have no model, may grow",
                &R::max_simpler),
        percent("max-height-change", "max_height_change",
-               "by so much the mean height of the buildings that both builds have may change", &R::max_height_change)});
+               "by so much the mean height of the buildings that both builds have may change", &R::max_height_change),
+       integer({.name = "gate-baseline",
+                .key = "baseline",
+                .argument = "N",
+                .commands = kUpdate,
+                .minimum = -1,
+                .maximum = 999999,
+                .help = "number of a published build that stays, and that new ones are held against, too: many small "
+                        "steps do not lead far away unseen; -1: none",
+                .record = OptionRecord::none},
+               &R::baseline),
+       percent("max-drift", "max_drift",
+               "what may be gone, new, simpler or of another mean height against the baseline, each", &R::max_drift),
+       text({.name = "gate-reference",
+             .key = "reference",
+             .argument = "MODELS",
+             .type = OptionType::path,
+             .commands = kUpdate,
+             .help = "hand-built models, a file or a folder, that each build is compared with as `blockrand compare` does",
+             .record = OptionRecord::none},
+            &R::reference),
+       percent("max-worse", "max_worse",
+               "by so much a measure of that comparison may be worse than that of the published build", &R::max_worse)});
 }
 
 }  // namespace

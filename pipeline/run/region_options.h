@@ -18,6 +18,11 @@ struct RegionOptions {
   double max_added = 25;         ///< of as many
   double max_simpler = 2;        ///< points of the share of buildings that are simpler than asked or have no model
   double max_height_change = 5;  ///< of the mean height of buildings that both have
+  int baseline = -1;             ///< a build that stays, and that a new one is held against as well; -1: none
+  double max_drift = 10;         ///< as the four above together, against the baseline; percent
+  std::string reference;         ///< hand-built models that builds are compared with, or empty
+  double max_worse = 5;          ///< by how much a measure of that comparison may be worse; percent
+  std::string hook;              ///< command that is run when a run has ended, or empty
 };
 
 /// Sections [region] and [gates].

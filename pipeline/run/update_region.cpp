@@ -2,7 +2,9 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -297,6 +299,7 @@ class Updater {
     if (current) {
       before_ = DataState::read(region_.state(*current));
     }
+    check_baseline(current);
     const Plan plan = plan_of(options_, region_, current, before_);
     summary_.why = plan.why;
     summary_.sequence = plan.sequence;
@@ -404,6 +407,7 @@ class Updater {
     if (current) try {
         summary_.changes = compare_builds(region_.build(*current), fresh, &memo);
         summary_.gates = gates_of(summary_.changes, options_.region, false);
+        compare_baseline(*current, fresh, memo);
         return;
       } catch (const base::InputError& error) {
         progress_.warn(fmt::format("{}. The new build is compared by its number of models alone", error.what()));
@@ -424,6 +428,70 @@ class Updater {
           {"max_lost", "models that are gone", 100 * std::max(0.0, before - after) / before, options_.region.max_lost});
   }
 
+  /// Before anything is done.
+  void check_baseline(std::optional<int> current) const {
+    const int baseline = options_.region.baseline;
+    const std::vector<int> there = region_.passed();
+    std::error_code error;
+    if (baseline < 0 || !current ||
+        (std::ranges::find(there, baseline) != there.end() && fs::is_directory(region_.build(baseline), error)))
+      return;
+    throw base::InputError(region_.settings(), "[gates] baseline", fmt::format("there is no build {}", baseline),
+                           "Name one of those that blockrand status lists, or -1");
+  }
+
+  /// Against slow drift.
+  void compare_baseline(int current, const std::string& fresh, const base::Memo& memo) {
+    const int baseline = options_.region.baseline;
+    if (baseline < 0 || baseline == current) return;
+    const std::vector<Gate> drift =
+        drift_gates(compare_builds(region_.build(baseline), fresh, &memo), options_.region);
+    summary_.gates.insert(summary_.gates.end(), drift.begin(), drift.end());
+  }
+
+  /// Lines of region.toml that say something.
+  static std::vector<std::string> told_lines(const std::string& path) {
+    std::vector<std::string> lines;
+    std::ifstream file(path);
+    for (std::string line; std::getline(file, line);)
+      if (const std::size_t at = line.find_first_not_of(" \t"); at != std::string::npos && line[at] != '#')
+        lines.push_back(line.substr(at));
+    return lines;
+  }
+  static std::string read_text(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  void diff_settings(std::optional<int> current) {
+    std::error_code error;
+    if (!current || !fs::is_regular_file(region_.settings_of(*current), error)) return;
+    const std::vector<std::string> before = told_lines(region_.settings_of(*current)),
+                                   now = told_lines(region_.settings());
+    const auto only = [](const std::vector<std::string>& in, const std::vector<std::string>& other) {
+      std::vector<std::string> out;
+      for (const std::string& line : in)
+        if (std::ranges::find(other, line) == other.end()) out.push_back(line);
+      return out;
+    };
+    summary_.changes.settings_before = only(before, now), summary_.changes.settings_after = only(now, before);
+  }
+
+  /// Measures against hand-built models: against those of the published build.
+  void ask_reference(std::optional<int> current) {
+    if (options_.region.reference.empty() || !options_.compare_with_reference) return;
+    progress_.begin("compare with the reference");
+    const ReferenceVerdict verdict = options_.compare_with_reference(
+        region_.build(summary_.number), current ? read_text(region_.comparison(*current)) : std::string());
+    comparison_ = verdict.json;
+    std::string worse;
+    for (const std::string& measure : verdict.worse) worse += (worse.empty() ? "" : ", ") + measure;
+    summary_.gates.push_back({"reference",
+                              "measures against the reference that are worse by more than max_worse" +
+                                  (worse.empty() ? std::string() : ": " + worse),
+                              static_cast<double>(verdict.worse.size()), 0});
+  }
+
   UpdateSummary build_and_publish(std::optional<int> current, const DataState& fresh) {
     const int number = summary_.number;
     const BuildSummary built = blockrand::run::build(build_options_for(options_, region_, number, current, before_), progress_);
@@ -439,19 +507,26 @@ class Updater {
     if (!built.unaccounted.empty())
       summary_.gates.push_back(
           {"unaccounted", "objects that no stage decided on", static_cast<double>(built.unaccounted.size()), 0});
+    diff_settings(current);
+    ask_reference(current);
     write_changes(region_, number, summary_);
     if (std::ranges::any_of(summary_.gates, &Gate::exceeded)) {
       summary_.folder = region_.set_aside(number);
       return ended(UpdateState::refused);
     }
     if (current) link_unchanged(region_.build(*current), region_.build(number), summary_);
+    write_whole(region_.settings_of(number), read_text(region_.settings()));
+    if (!comparison_.empty()) write_whole(region_.comparison(number), comparison_);
     fresh.write(region_.state(number));
     region_.publish(number);
     // It is published: what fails now is told, and no more.
     UpdateSummary done = ended(UpdateState::published);
     try {
       write_whole(region_.log(number), dumped(run_line(done), 1));
-      for (const std::string& path : region_.prune(options_.region.keep, current))
+      std::vector<int> also;
+      if (current) also.push_back(*current);
+      if (options_.region.baseline >= 0) also.push_back(options_.region.baseline);
+      for (const std::string& path : region_.prune(options_.region.keep, also))
         progress_.warn("could not be removed: " + path);
       std::set<std::string> builds;
       for (const int passed : region_.passed()) builds.insert(RegionFolder::digits(passed));
@@ -468,7 +543,38 @@ class Updater {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   UpdateSummary summary_;
   DataState before_;
+  std::string comparison_;  ///< compare.json of the new build
 };
+
+/// What the operator wants to be done at the end of a run. It fails nothing. A dry run has no end.
+void call_hook(const UpdateOptions& options, const RegionFolder& region, std::string_view state, int number,
+               base::Progress& progress) {
+  if (options.region.hook.empty() || options.dry_run) return;
+  std::vector<std::string> environment;
+  for (char** e = environ; *e != nullptr; ++e)
+    if (!std::string_view(*e).starts_with("BLOCKRAND_")) environment.emplace_back(*e);
+  environment.push_back("BLOCKRAND_STATE=" + std::string(state));
+  environment.push_back("BLOCKRAND_REGION=" + fs::absolute(region.path()).string());
+  environment.push_back("BLOCKRAND_BUILD=" + fs::absolute(region.build(number)).string());
+  environment.push_back("BLOCKRAND_CHANGES=" + fs::absolute(region.changes(number)).string() + ".json");
+  std::vector<char*> pointers;
+  for (std::string& e : environment) pointers.push_back(e.data());
+  pointers.push_back(nullptr);
+  std::string shell = "/bin/sh", dash = "-c", command = options.region.hook;
+  char* const arguments[] = {shell.data(), dash.data(), command.data(), nullptr};
+  pid_t child = 0;
+  if (const int error = ::posix_spawn(&child, "/bin/sh", nullptr, nullptr, arguments, pointers.data()); error != 0) {
+    progress.warn(std::string("the hook could not be run: ") + std::strerror(error));
+    return;
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    progress.warn(fmt::format("the hook ended with {}",
+                              WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status))
+                                                : fmt::format("signal {}", WTERMSIG(status))));
+}
 
 }  // namespace
 
@@ -493,11 +599,14 @@ UpdateSummary update_region(const UpdateOptions& options, base::Progress& progre
   }
   Updater updater(options, region, progress);
   try {
-    return updater.run();
+    const UpdateSummary summary = updater.run();
+    call_hook(options, region, word(summary.state), summary.number, progress);
+    return summary;
   } catch (const std::exception& error) {
     Json line = run_line(updater.so_far());
     line["state"] = "failed", line["error"] = error.what();
     append_run(region, line, progress);
+    call_hook(options, region, "failed", updater.so_far().number, progress);
     throw;
   }
 }

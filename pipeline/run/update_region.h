@@ -1,6 +1,8 @@
 // The nightly job: new data into a region, a build of it, gates, and the switch to the new build.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +14,12 @@
 
 namespace blockrand::run {
 
+/// A build against hand-built models.
+struct ReferenceVerdict {
+  std::string json;                ///< compare.json
+  std::vector<std::string> worse;  ///< measures that are worse than the baseline allows, buildings that are lost
+};
+
 struct UpdateOptions {
   std::string folder;               ///< of the region
   std::vector<std::string> inputs;  ///< an extract first, or none; change files
@@ -21,6 +29,8 @@ struct UpdateOptions {
   bool break_lock = false;      ///< take over the lock of another host
   std::string version;          ///< of the program
   std::string settings_sha256;  ///< of region.toml as it was read
+  /// Compares a build with RegionOptions::reference. \param baseline  compare.json of another build, or empty
+  std::function<ReferenceVerdict(const std::string& build, const std::string& baseline)> compare_with_reference;
 };
 
 enum class UpdateState {

@@ -1,5 +1,6 @@
 """The worst of nights: torn files, a full disk, kills, locks, hostile settings. The last good model stands, always."""
 import fcntl
+import glob
 import gzip
 import json
 import os
@@ -11,7 +12,8 @@ import subprocess
 import threading
 import time
 
-from blockrand_run import SAMPLE, Setup, blockrand, hashes, main, read_json
+from blockrand_run import SAMPLE, Setup, blockrand, call, hashes, main, read_json
+from interruption_test import small_disk
 from osm_files import read_xml
 from region_run import LIMITS_OFF, Map, RegionTest
 
@@ -34,7 +36,7 @@ class Nights(RegionTest):
             with self.subTest(name):
                 self.refused(blockrand('update', folder, self.place(name, content)), 2, name)
                 self.stands(folder, '000001')
-                self.assertEqual(sorted(os.listdir(os.path.join(folder, 'store'))), ['000001.json', '000001.osm.pbf'])
+                self.assertEqual(sorted(os.listdir(os.path.join(folder, 'store'))), ['000001.json', '000001.osm.pbf', '000001.toml'])
 
     def test_a_damaged_store(self):
         folder = self.region('store')
@@ -46,6 +48,69 @@ class Nights(RegionTest):
         self.stands(folder, '000001')
         self.update(folder, self.map_.write(self.path('again.osm')))
         self.stands(folder, '000002')
+
+    def test_repair(self):
+        folder = self.region('repaired')
+        self.update(folder, SAMPLE)
+        run = blockrand('region', 'repair', folder)
+        self.assertEqual(run.code, 0, run)
+        self.assertIn('data of build 1: whole', run.out)
+        with open(os.path.join(folder, 'store', '000001.osm.pbf'), 'r+b') as f:
+            f.seek(200)
+            f.write(b'damage')
+        for path in glob.glob(os.path.join(folder, 'cache', 'tiles', '??', '*', 'entry')):
+            os.truncate(path, 3)
+        self.refused(blockrand('region', 'repair', folder), 2, 'damaged', 'EXTRACT')
+        run = blockrand('region', 'repair', folder, self.map_.write(self.path('again.osm')))
+        self.assertEqual(run.code, 0, run)
+        self.stands(folder, '000002')
+        self.refused(blockrand('region', 'repair', self.path('nowhere')), 1, 'no region')
+        self.refused(blockrand('region', 'polish', folder), 1, 'polish')
+
+    def test_damaged_work_does_no_harm(self):
+        folder, rng = self.region('rotten'), random.Random(4)
+        self.update(folder, SAMPLE)
+        for path in glob.glob(os.path.join(folder, 'cache', '*', '??', '*', 'entry')):
+            with open(path, 'r+b') as f:
+                f.seek(rng.randrange(os.path.getsize(path)))
+                f.write(b'\xff')
+        with open(os.path.join(folder, 'region.toml'), 'a', encoding='utf-8') as f:
+            f.write('[region]\nkeep = 3\n')
+        self.assertIn('damaged', self.update(folder).err)
+        self.update(folder, self.changes)
+        self.same_files(self.current(folder), self.clean(self.map_, folder))
+
+    def test_a_region_that_cannot_be_written(self):
+        with small_disk(self.path('sealed'), 'size=64m') as disk:
+            folder = os.path.join(disk, 'town')
+            os.makedirs(folder)
+            with open(os.path.join(folder, 'region.toml'), 'w', encoding='utf-8') as f:
+                f.write(LIMITS_OFF)
+            self.update(folder, SAMPLE)
+            before = hashes(os.path.realpath(os.path.join(folder, 'current')))
+            self.assertEqual(call(['mount', '-o', 'remount,ro', disk]).code, 0)
+            try:
+                self.refused(blockrand('update', folder, self.changes), 4, 'read-only')
+                self.refused(blockrand('rollback', folder), 4, 'read-only')
+                self.assertEqual(blockrand('status', folder).code, 0)
+                self.assertEqual(self.update(folder, self.changes, '--dry-run').code, 0)
+            finally:
+                call(['mount', '-o', 'remount,rw', disk])
+            self.assertEqual(hashes(os.path.realpath(os.path.join(folder, 'current'))), before)
+            self.update(folder, self.changes)
+
+    def test_a_clock_that_jumps(self):
+        """Files with times of tomorrow and of 1970: nothing is decided by a clock."""
+        folder = self.region('clock')
+        self.update(folder, SAMPLE)
+        for at in (4e9, 0):
+            for place, _, names in os.walk(folder):
+                for name in names:
+                    if not os.path.islink(os.path.join(place, name)):
+                        os.utime(os.path.join(place, name), (at, at))
+        self.update(folder, self.changes)
+        self.same_files(self.current(folder), self.clean(self.map_, folder))
+        self.assertEqual(blockrand('status', folder).code, 0)
 
     def test_hostile_settings(self):
         folder = self.region('settings')

@@ -23,7 +23,10 @@ class Updates(RegionTest):
         house = next(o for o in map_.ways('building') if 'building:levels' in o.tags)
         map_.edit(house, tags=dict(house.tags, **{'building:levels': '7'}))
         changes = map_.write_changes(self.path('one.osc.gz'))
-        self.assertIn('run 2 would build', self.update(folder, changes, '--dry-run').out)
+        planned = self.update(folder, changes, '--dry-run').out
+        self.assertIn('run 2 would build', planned)
+        self.assertIn('mapped in 1', planned)
+        self.assertIn('it should take about', planned)
         self.stands(folder, '000001')
         run = self.update(folder, changes)
         self.stands(folder, '000002')
@@ -127,7 +130,7 @@ class Gates(RegionTest):
         told = read_json(folder, 'log', '000002.changes.json')
         self.assertIn('max_lost', [g['gate'] for g in told['gates'] if g['exceeded']])
         self.assertTrue(os.path.exists(os.path.join(folder, 'builds', '000002.refused', 'build.json')))
-        self.assertEqual(sorted(os.listdir(os.path.join(folder, 'store'))), ['000001.json', '000001.osm.pbf'])
+        self.assertEqual(sorted(os.listdir(os.path.join(folder, 'store'))), ['000001.json', '000001.osm.pbf', '000001.toml'])
         self.assertFalse(os.path.exists(os.path.join(folder, 'builds', '000002')))
 
     def test_each_limit(self):
@@ -166,6 +169,60 @@ class Gates(RegionTest):
         folder = self.region('nothing', '')
         self.update(folder, write_xml(self.path('empty2.osm'), [Node(1, 11, 51)]), code=5)
         self.assertFalse(os.path.lexists(os.path.join(folder, 'current')))
+
+    def test_a_slow_drift_is_held_against_a_baseline(self):
+        settings = '[gates]\nmax_lost = 20\nmax_simpler = 1000\nmax_height_change = 1000\nbaseline = 1\nmax_drift = 15\n[region]\nkeep = 1\n'
+        folder, map_ = self.region('drift', settings), Map(read_xml(SAMPLE))
+        self.update(folder, SAMPLE)
+        for night, code in ((0, 0), (1, 5)):
+            for house in map_.ways('building')[:14]:
+                map_.delete(house)
+            run = self.update(folder, map_.write_changes(self.path(f'drift{night}.osc')), code=code)
+        self.assertIn('max_drift', run.out)
+        self.assertIn('against build 1', run.out)
+        self.stands(folder, '000002')
+        self.assertTrue(os.path.isdir(os.path.join(folder, 'builds', '000001')), 'the baseline stays')
+        with open(os.path.join(folder, 'region.toml'), 'a', encoding='utf-8') as f:
+            f.write('first_sequence = 5\n')
+        shutil.rmtree(os.path.join(folder, 'builds', '000001'))
+        self.refused(blockrand('update', folder, self.path('drift1.osc')), 2, 'no build 1', 'baseline')
+
+    def test_a_reference_is_asked(self):
+        reference = self.build(SAMPLE, 'handmade')
+        settings = LIMITS_OFF + f'reference = "{reference}"\nmax_worse = 5\n'
+        folder, map_ = self.region('measured', settings), Map(read_xml(SAMPLE))
+        self.update(folder, SAMPLE)
+        self.assertTrue(os.path.exists(os.path.join(folder, 'store', '000001.compare.json')))
+        house = map_.ways('building')[0]
+        map_.edit(house, tags=dict(house.tags, colour='red'))
+        self.update(folder, map_.write_changes(self.path('harmless.osc')))
+        self.stands(folder, '000002')
+        for house in map_.ways('building')[:40]:
+            map_.edit(house, tags=dict(house.tags, height='40'))
+        run = self.update(folder, map_.write_changes(self.path('harmful.osc')), code=5)
+        self.assertIn('against the reference', run.out)
+        self.stands(folder, '000002')
+
+    def test_settings_that_differ_are_told(self):
+        folder = self.region('told', LIMITS_OFF)
+        self.update(folder, SAMPLE)
+        with open(os.path.join(folder, 'region.toml'), 'a', encoding='utf-8') as f:
+            f.write('[build]\nlod = 1\n')
+        self.update(folder)
+        self.assertEqual(read_json(folder, 'log', '000002.changes.json')['settings'], {'removed': [], 'added': ['[build]', 'lod = 1']})
+
+    def test_a_hook_is_called_whatever_happens(self):
+        told = self.path('told.txt')
+        folder = self.region('hooked', f'[region]\nhook = "echo $BLOCKRAND_STATE $BLOCKRAND_BUILD >> {told}; exit 3"\n')
+        run = self.update(folder, SAMPLE)
+        self.assertIn('exit code 3', run.err)
+        self.update(folder, SAMPLE)
+        self.update(folder, write_xml(self.path('empty3.osm'), [Node(1, 11, 51)]), code=5)
+        self.assertEqual(blockrand('update', folder, self.path('absent.osc')).code, 2)
+        with open(told, encoding='utf-8') as f:
+            lines = [line.split() for line in f]
+        self.assertEqual([state for state, _ in lines], ['published', 'unchanged', 'refused', 'failed'])
+        self.assertEqual(os.path.realpath(lines[0][1]), self.current(folder))
 
     def test_rollback(self):
         folder, map_ = self.region('back'), Map(read_xml(SAMPLE))
