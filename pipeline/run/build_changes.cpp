@@ -15,6 +15,7 @@
 #include "pipeline/base/markup.h"
 #include "pipeline/base/text.h"
 #include "pipeline/outputs/gzip.h"
+#include "pipeline/run/changes_map.h"
 
 namespace blockrand::run {
 namespace {
@@ -83,18 +84,18 @@ class Explained {
     for (fs::directory_iterator entry(folder_ + "/explain", error), end; !error && entry != end; entry.increment(error))
       if (const std::string name = entry->path().filename().string(); name.ends_with(".jsonl.gz")) tiles_.insert(name);
     if (record.contains("files") && record["files"].is_object())
-      for (const std::string& tile : tiles_)
-        if (const auto file = record["files"].find("explain/" + tile); file != record["files"].end())
-          hashes_[tile] = member(*file, "sha256");
+      for (const auto& [path, file] : record["files"].items()) files_[path] = member(file, "sha256");
   }
+  /// Hashes by path, as build.json has them.
+  const std::map<std::string, std::string>& files() const { return files_; }
   const std::set<std::string>& tiles() const { return tiles_; }
 
   int asked() const { return asked_; }
 
   /// Of a tile's file, as build.json has it; empty where it does not say.
   std::string hash(const std::string& tile) const {
-    const auto found = hashes_.find(tile);
-    return found == hashes_.end() ? std::string() : found->second;
+    const auto found = files_.find("explain/" + tile);
+    return found == files_.end() ? std::string() : found->second;
   }
 
   /// Empty for a tile that it has not. \throws base::InputError  the file is damaged
@@ -128,7 +129,7 @@ class Explained {
   std::string folder_;
   int asked_ = 0;  ///< level of detail
   std::set<std::string> tiles_;
-  std::map<std::string, std::string> hashes_;  ///< by tile
+  std::map<std::string, std::string> files_;
 };
 
 void compare(const std::string& id, const Told& before, const Told& after, BuildChanges& out) {
@@ -187,11 +188,13 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
   double heights_before = 0, heights_after = 0;
   const auto meet = [&](const std::string& id, const Told& was, const Told& is) {
     if (!was.modelled || !is.modelled) {
-      if (was.modelled) out.removed.push_back(id);
-      if (is.modelled) out.added.push_back(id);
+      if (was.modelled) out.removed.push_back(id), out.footprints[id] = was.ring;
+      if (is.modelled) out.added.push_back(id), out.footprints[id] = is.ring;
       return;
     }
+    const std::size_t differences = out.outlines.size() + out.attributes.size();
     compare(id, was, is, out);
+    if (out.outlines.size() + out.attributes.size() > differences) out.footprints[id] = is.ring;
     if (!is.height || !was.height) return;
     heights_before += *was.height, heights_after += *is.height;
     ++out.both;
@@ -252,9 +255,16 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
     }
   }
   for (const auto& [id, told] : gone)
-    if (told.modelled) out.removed.push_back(id);
+    if (told.modelled) out.removed.push_back(id), out.footprints[id] = told.ring;
   for (const auto& [id, told] : come)
-    if (told.modelled) out.added.push_back(id);
+    if (told.modelled) out.added.push_back(id), out.footprints[id] = told.ring;
+  if (old) {
+    for (const auto& [path, hash] : now.files())
+      if (const auto found = old->files().find(path); found == old->files().end() || found->second != hash)
+        out.files_changed.push_back(path);
+    for (const auto& [path, hash] : old->files())
+      if (!now.files().contains(path)) out.files_removed.push_back(path);
+  }
   std::ranges::sort(out.added), std::ranges::sort(out.removed);
   std::ranges::sort(out.outlines, {}, &OutlineChange::id);
   std::ranges::stable_sort(out.attributes, {}, &AttributeChange::id);
@@ -302,6 +312,7 @@ std::string changes_json(const BuildChanges& c, const std::vector<Gate>& gates) 
   if (!c.settings_before.empty() || !c.settings_after.empty())
     j["settings"] = {{"removed", c.settings_before}, {"added", c.settings_after}};
   j["added"] = c.added, j["removed"] = c.removed;
+  j["files"] = {{"changed", c.files_changed}, {"removed", c.files_removed}};
   j["outlines"] = Json::array();
   for (const OutlineChange& o : c.outlines)
     j["outlines"].push_back(
@@ -328,6 +339,7 @@ std::string changes_page(const std::string& title, const BuildChanges& c, const 
       base::with_thousands(c.before), base::with_thousands(c.after), base::with_thousands(c.added.size()),
       base::with_thousands(c.removed.size()), base::with_thousands(c.outlines.size()),
       base::with_thousands(c.attributes.size()));
+  out += changes_svg(c);
   const auto table = [&](const std::string& heading, const std::vector<std::string>& columns,
                          const std::vector<std::vector<std::string>>& rows, std::size_t all) {
     if (rows.empty()) return;

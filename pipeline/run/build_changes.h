@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,10 @@ struct BuildChanges {
   std::vector<std::string> added, removed;  ///< ids of buildings with a model
   std::vector<AttributeChange> attributes;  ///< by id, then in the order of the new build's attributes
   std::vector<OutlineChange> outlines;
+  /// Of the buildings above the footprint as mapped, that of the new build where it has one: as explanations have it (JSON). Empty
+  /// where all is new.
+  std::map<std::string, std::string> footprints;
+  std::vector<std::string> files_changed, files_removed;  ///< of the build, new ones among the former: for caches of servers
   std::vector<std::string> settings_before, settings_after;  ///< lines of region.toml that the other has not
   std::uint64_t before = 0, after = 0;                  ///< buildings with a model
   std::uint64_t all_before = 0, all_after = 0;          ///< mapped buildings

@@ -21,6 +21,7 @@
 #include "pipeline/base/error.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/text.h"
+#include "pipeline/run/changes_map.h"
 #include "pipeline/run/region_folder.h"
 #include "pipeline/run/replication.h"
 #include "pipeline/run/tile_key.h"
@@ -268,6 +269,9 @@ void append_run(const RegionFolder& region, const Json& line, base::Progress& pr
 
 void write_changes(const RegionFolder& region, int number, const UpdateSummary& summary) {
   write_whole(region.changes(number) + ".json", changes_json(summary.changes, summary.gates));
+  write_changes_layers(summary.changes, region.changes(number) + ".gpkg.part");
+  if (std::rename((region.changes(number) + ".gpkg.part").c_str(), (region.changes(number) + ".gpkg").c_str()) != 0)
+    throw base::OutputError(region.changes(number) + ".gpkg: cannot be written: " + std::strerror(errno));
   write_whole(region.changes(number) + ".html",
               changes_page(region.name() + ", run " + std::to_string(number), summary.changes, summary.gates));
 }

@@ -226,7 +226,7 @@ class Nights(RegionTest):
                     problems.append(repr(error))
         reader = threading.Thread(target=read)
         reader.start()
-        for night in range(20):
+        for night in range(100):
             self.map_.random_edits(random.Random(100 + night), 1)
             self.update(folder, self.map_.write_changes(self.path('r.osc')))
         stop.set()

@@ -1,8 +1,10 @@
 """A region that is rebuilt every night: updates equal clean builds, gates hold back, nothing of others is touched."""
+import contextlib
 import json
 import os
 import random
 import shutil
+import sqlite3
 import subprocess
 import unittest
 
@@ -33,6 +35,16 @@ class Updates(RegionTest):
         told = read_json(folder, 'log', '000002.changes.json')
         row = next(a for a in told['attributes'] if a['id'] == f'w{house.id}' and a['attribute'] == 'storeys')
         self.assertEqual((row['to'], row['to_source']), ('7', 'tag'))
+        # The same for people and for a GIS; what servers must forget.
+        with open(os.path.join(folder, 'log', '000002.changes.html'), encoding='utf-8') as f:
+            self.assertIn(f'<title>w{house.id}: changed, storeys', f.read())
+        with contextlib.closing(sqlite3.connect(os.path.join(folder, 'log', '000002.changes.gpkg'))) as layers:
+            rows = dict(layers.execute('SELECT id, changed_values FROM buildings'))
+            self.assertIn('\u2192 7', rows[f'w{house.id}'])
+            self.assertEqual({r[0] for r in layers.execute('SELECT DISTINCT id FROM "values"')} - set(rows), set())
+            self.assertEqual(layers.execute('SELECT count(*) FROM buildings WHERE geom IS NULL').fetchone(), (0,))
+        first, second = (read_json(folder, 'builds', n, 'build.json')['files'] for n in ('000001', '000002'))
+        self.assertEqual(told['files']['changed'], sorted(p for p in second if first.get(p) != second[p]))
         self.assertIn('up to date', self.update(folder, changes).out, 'a replay is no change')
         # Files that did not change are one on disk.
         first, second = (os.path.join(folder, 'builds', n) for n in ('000001', '000002'))
