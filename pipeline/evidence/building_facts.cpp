@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "pipeline/base/memo.h"
 #include "pipeline/base/parallel.h"
@@ -482,6 +483,34 @@ void pack_labelled(const model::Extract& extract, const footprints::FootprintSto
   if (!box.empty()) context::pack(vicinity.around(box), out);
 }
 
+/// What Around reads of buildings of a run: their own, and all with their middle within its reach of the box of
+/// theirs.
+void pack_around(const FactsExtract& facts, const footprints::FootprintStore& store,
+                 const context::ContextExtract& context, const PlaceIndex& houses, const PlaceIndex& small,
+                 std::size_t first, std::size_t last, base::Packer& out) {
+  const auto pack_one = [&](std::uint32_t b) {
+    const BuildingPlace& place = facts.places[b];
+    out << store[b].id << facts.features[b] << place.place << place.street << place.position << place.house
+        << store[b].box;
+    store.for_each_ring(b, [&](std::span<const Point2> ring, bool hole) { out << hole << ring; });
+    out << place.contacts.count;
+    for (const Contact& c : facts.contacts_of(b)) out << store[c.other].id << c.length;
+  };
+  out << context.coverage;
+  geometry::PlanBox box;
+  for (std::size_t b = first; b < last; ++b) {
+    pack_one(static_cast<std::uint32_t>(b));
+    if (facts.features[b].has(Feature::area)) box.include(facts.places[b].place);
+  }
+  if (box.empty()) return;
+  std::set<std::uint32_t> heard;
+  for (const PlaceIndex* index : {&houses, &small})
+    for (const std::uint32_t b : index->around(box, kNearReach)) heard.insert(b);
+  out << static_cast<std::uint64_t>(heard.size());
+  for (const std::uint32_t b : heard)
+    if (b < first || b >= last) pack_one(b);
+}
+
 /// Buildings are looked at in runs of at most this many.
 constexpr std::size_t kRun = 256;
 /// m. Those of a run are no farther from its first: what is seen from walls is filed in one grid over the run.
@@ -522,6 +551,12 @@ void PlaceIndex::near(Point2 place, double distance, std::vector<std::uint32_t>&
   constexpr double kMargin = 0.001;  // m: the circle alone decides
   for (const std::uint32_t i : places_.near({place, place}, distance + kMargin))
     if (squared_distance(places_.box(i).minimum, place) <= distance * distance) out.push_back(chosen_[i]);
+}
+
+std::vector<std::uint32_t> PlaceIndex::around(const geometry::PlanBox& box, double distance) const {
+  std::vector<std::uint32_t> out = places_.near(box, distance);
+  for (std::uint32_t& i : out) i = chosen_[i];
+  return out;
 }
 
 FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& store,
@@ -596,9 +631,19 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
   // Into a copy: neighbours read what was measured alone, and nothing that this loop writes.
   std::vector<FeatureVector> out = facts.features;
   const auto around = [&](std::size_t i) {
-    Around finder(facts, store, context, house_index, small_index);
-    for (std::size_t b = starts[i]; b < starts[i + 1]; ++b)
-      if (out[b].has(Feature::area)) finder.measure(static_cast<std::uint32_t>(b), out[b]);
+    const auto measured_around = [&] {
+      Around finder(facts, store, context, house_index, small_index);
+      std::vector<FeatureVector> run(out.begin() + static_cast<std::ptrdiff_t>(starts[i]),
+                                     out.begin() + static_cast<std::ptrdiff_t>(starts[i + 1]));
+      for (std::size_t k = 0; k < run.size(); ++k)
+        if (run[k].has(Feature::area)) finder.measure(static_cast<std::uint32_t>(starts[i] + k), run[k]);
+      return run;
+    };
+    const auto run = base::remembered<std::vector<FeatureVector>>(
+        memo, "around",
+        [&](base::Packer& packer) { pack_around(facts, store, context, house_index, small_index, starts[i], starts[i + 1], packer); },
+        measured_around);
+    std::copy(run.begin(), run.end(), out.begin() + static_cast<std::ptrdiff_t>(starts[i]));
   };
   base::ordered_parallel(runs, workers, in_flight, around, [](std::size_t) {});
   facts.features = std::move(out);

@@ -50,6 +50,8 @@ class PlaceIndex {
   PlaceIndex(const FactsExtract& facts, std::span<const std::uint32_t> chosen);
   /// Ascending.
   void near(model::Point2 place, double distance, std::vector<std::uint32_t>& out) const;
+  /// Those at most `distance` from a box along both axes: more than those near its points. Ascending.
+  std::vector<std::uint32_t> around(const geometry::PlanBox& box, double distance) const;
 
  private:
   std::vector<std::uint32_t> chosen_;

@@ -458,7 +458,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
     } else {
       slot = work_on_tile(todo[i], tile_inputs, open, account);
       slot.why = why_built(*cache, name, key);
-      keep_tile(key.key, slot, open, extract, folder.staging_path(), *cache);
+      if (slot.may_be_kept) keep_tile(key.key, slot, open, extract, folder.staging_path(), *cache);
     }
     note_tile(*cache, name, key, slot.microseconds);
   };

@@ -61,7 +61,6 @@ struct TileKeys::Impl {
   std::span<const model::ReportRow> earlier;
   std::span<const std::unique_ptr<outputs::Output>> outputs;
   std::map<std::string, std::string, std::less<>> grammars;  ///< hash of the rule files, by preset
-  bool position_matters = false;                             ///< a rule asks for the position in the block
 
   void pack_mapped_objects(const footprints::Seed& seed, Packer& out) const {
     const model::Extract& extract = in.extract;
@@ -96,21 +95,20 @@ struct TileKeys::Impl {
         << s.styles.region[number];
   }
 
+  /// For the position that was measured: a tile that finds another one is not kept (positions_as_measured).
   void pack_preset(std::uint32_t number, Packer& out) const {
-    const int positions = position_matters ? model::kBuildingPositionCount : 1;
-    for (int p = 0; p < positions; ++p) {
-      districts::Assignment a = in.assigner.assign(number, static_cast<model::BuildingPosition>(p));
-      const std::uint32_t preset = a.decision.preset;
-      // Numbers of sets, rules and presets are those of this run's files.
-      a.decision.set = a.decision.preset = a.decision.rule = 0;
-      a.fired.clear();
-      for (districts::Parameter& parameter : a.parameters) parameter.rule = 0;
-      out << a;
-      if (preset == districts::Decision::kNone) continue;
-      const std::string& name = in.assigner.book().presets[preset].name;
-      out << name;
-      if (const auto rules = grammars.find(name); rules != grammars.end()) out << rules->second;
-    }
+    const model::BuildingPosition position = in.styles.facts.places[number].position;
+    districts::Assignment a = in.assigner.assign(number, position);
+    const std::uint32_t preset = a.decision.preset;
+    // Numbers of sets, rules and presets are those of this run's files.
+    a.decision.set = a.decision.preset = a.decision.rule = 0;
+    a.fired.clear();
+    for (districts::Parameter& parameter : a.parameters) parameter.rule = 0;
+    out << position << a;
+    if (preset == districts::Decision::kNone) return;
+    const std::string& name = in.assigner.book().presets[preset].name;
+    out << name;
+    if (const auto rules = grammars.find(name); rules != grammars.end()) out << rules->second;
   }
 
   /// What the stages up to the attributes see around buildings.
@@ -125,7 +123,7 @@ struct TileKeys::Impl {
 TileKeys::TileKeys(const TileInputs& inputs, const BuildInputs& files, std::string shared,
                    std::span<const model::ReportRow> earlier,
                    std::span<const std::unique_ptr<outputs::Output>> outputs)
-    : impl_(new Impl{inputs, std::move(shared), earlier, outputs, {}, false}) {
+    : impl_(new Impl{inputs, std::move(shared), earlier, outputs, {}}) {
   std::map<std::string, std::string> hashes;  // by path
   for (const districts::Preset& preset : files.rules.book.presets) {
     if (!files.grammars) break;
@@ -140,12 +138,19 @@ TileKeys::TileKeys(const TileInputs& inputs, const BuildInputs& files, std::stri
     }
     impl_->grammars.emplace(preset.name, base::sha256_of(rules.bytes));
   }
-  for (const districts::RuleSet& set : files.rules.book.sets)
-    for (const districts::Rule& rule : set.rules)
-      impl_->position_matters = impl_->position_matters || !rule.which.positions.empty();
 }
 
 TileKeys::~TileKeys() = default;
+
+bool positions_as_measured(const model::Region& region, std::uint32_t first, const evidence::FactsExtract& facts) {
+  for (std::size_t i = 0; i < region.buildings.size(); ++i) {
+    const model::Building& building = region.buildings[i];
+    if (building.settled == model::ObjectState::pending &&
+        building.situation.position != facts.places[first + i].position)
+      return false;
+  }
+  return true;
+}
 
 TileKey TileKeys::key(std::size_t shard) const {
   const Impl& in = *impl_;

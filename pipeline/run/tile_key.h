@@ -59,6 +59,10 @@ class TileKeys {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Whether the buildings of a finished tile stand in their blocks as they did when they were measured: their presets are then those
+/// of the tile's key. \param first  number of the first one
+bool positions_as_measured(const model::Region& region, std::uint32_t first, const evidence::FactsExtract& facts);
+
 /// What all tiles of a build depend on alike, packed: options, coordinate systems, tables.
 /// \param record  with its `inputs`, `crs`, `heights`
 std::string shared_key(const BuildOptions& options, const BuildInputs& inputs, const BuildRecord& record);

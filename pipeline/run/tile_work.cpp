@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "pipeline/base/pack.h"
+#include "pipeline/run/tile_key.h"
 
 namespace blockrand::run {
 namespace {
@@ -45,6 +46,7 @@ TileResult work_on_tile(std::size_t shard, const TileInputs& inputs, const OpenO
   const auto start = std::chrono::steady_clock::now();
   TileResult result;
   model::Region region = run_tile(shard, inputs);
+  result.may_be_kept = positions_as_measured(region, inputs.repaired.first[shard], inputs.styles.facts);
   result.outcomes = decide_outcomes(region, inputs.lod);
   result.statistics = outputs::count_statistics(region);
   outputs::FinishedTile tile{
