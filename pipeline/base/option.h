@@ -36,9 +36,8 @@ enum Commands : unsigned {
   kRegion = 1024,
   kCache = 2048
 };
-inline constexpr Commands kAllCommands[] = {kBuild,     kInfo,    kExplain, kValidate, kCompare,
-                                            kDistricts, kGrammar, kUpdate,  kStatus,   kRollback,
-                                            kRegion,    kCache};
+inline constexpr Commands kAllCommands[] = {kBuild,   kInfo,   kExplain, kValidate, kCompare, kDistricts,
+                                            kGrammar, kUpdate, kStatus,  kRollback, kRegion,  kCache};
 std::string_view name(Commands command);  ///< "build"
 
 /// Where an option stands in help and reference. One with keys is a table of the config file, too, and all but the main

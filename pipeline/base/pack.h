@@ -29,7 +29,9 @@ struct PackTraits;
 
 namespace pack_detail {
 template <class T>
-concept HasTraits = requires { sizeof(PackTraits<T>); };
+concept HasTraits = requires {
+  sizeof(PackTraits<T>);
+};
 template <class T>
 concept Scalar = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 /// May be copied as they lie: numbers alone have no padding.
@@ -113,7 +115,7 @@ class Packer {
   }
   void put(const std::monostate&) {}
   template <class T>
-    requires std::is_aggregate_v<T>
+  requires std::is_aggregate_v<T>
   void put(const T& value) {
     with_fields(value, [this](const auto&... f) { ((void)(*this << f), ...); });
   }
@@ -207,7 +209,7 @@ class Unpacker {
   }
   void get(std::monostate&) {}
   template <class T>
-    requires std::is_aggregate_v<T>
+  requires std::is_aggregate_v<T>
   void get(T& value) {
     with_fields(value, [this](auto&... f) { ((void)(*this >> f), ...); });
   }

@@ -30,9 +30,9 @@ std::string report(const run::CacheFigures& f) {
 }
 
 std::string report_json(const run::CacheFigures& f) {
-  const nlohmann::ordered_json j = {{"entries", f.entries},           {"files", f.files},     {"bytes", f.bytes},
-                                    {"shared_bytes", f.shared_bytes}, {"damaged", f.damaged}, {"removed", f.removed},
-                                    {"program", f.program}};
+  const nlohmann::ordered_json j = {
+      {"entries", f.entries}, {"files", f.files},     {"bytes", f.bytes},    {"shared_bytes", f.shared_bytes},
+      {"damaged", f.damaged}, {"removed", f.removed}, {"program", f.program}};
   return j.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -45,7 +45,8 @@ settings::CommandText cache_text() {
       .usage = "WORK CACHE [--keep-bytes N] [options]",
       .description =
           "stat counts what is kept, and how much of it takes no room of its own, since builds have the same files. "
-          "verify reads all of it and removes what is damaged. prune removes what was of use the longest ago, until the "
+          "verify reads all of it and removes what is damaged. prune removes what was of use the longest ago, until "
+          "the "
           "rest has at most --keep-bytes. Nothing that is removed is lost: the next build works it out anew.",
       .options = settings::kCache,
       .examples = {{"blockrand cache stat leipzig", "of a region"},

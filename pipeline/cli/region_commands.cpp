@@ -97,8 +97,9 @@ std::string update_report(const run::UpdateOptions& options, const run::UpdateSu
                       base::with_thousands(c.added.size()), base::with_thousands(c.removed.size()),
                       base::with_thousands(c.outlines.size()), base::with_thousands(c.attributes.size()));
       if (s.tiles_kept > 0)
-        out += fmt::format("  {} tiles were built, {} are those of earlier runs{}\n", base::with_thousands(s.tiles_built),
-                           base::with_thousands(s.tiles_kept), reasons(s.tiles_built_for));
+        out +=
+            fmt::format("  {} tiles were built, {} are those of earlier runs{}\n", base::with_thousands(s.tiles_built),
+                        base::with_thousands(s.tiles_kept), reasons(s.tiles_built_for));
       if (s.linked > 0)
         out += fmt::format("  {} files ({}) are those of build {}: one on disk\n", base::with_thousands(s.linked),
                            base::with_byte_unit(s.linked_bytes), s.before.value_or(0));
@@ -178,9 +179,8 @@ run::ReferenceVerdict compare_with_reference(const settings::Settings& s, const 
   run::ReferenceVerdict verdict;
   verdict.json = compare::comparison_json(comparison, {});
   if (baseline.empty()) return verdict;
-  const compare::BaselineResult against =
-      compare::compare_with_baseline(comparison, baseline, "the published build's comparison",
-                                     s.region_options.max_worse / 100, {});
+  const compare::BaselineResult against = compare::compare_with_baseline(
+      comparison, baseline, "the published build's comparison", s.region_options.max_worse / 100, {});
   for (const auto& line : against.lines)
     if (line.fails) verdict.worse.push_back(line.measure);
   for (const std::string& measure : against.lost) verdict.worse.push_back(measure + " (lost)");
@@ -267,8 +267,7 @@ int run_region(const std::vector<std::string>& arguments) {
   progress.end();
   if (!s.quiet) std::fputs(health.words.c_str(), stdout);
   if (health.data_whole) {
-    if (!s.data.empty() && !s.quiet)
-      std::fputs("the extract is not needed: blockrand update takes it in\n", stdout);
+    if (!s.data.empty() && !s.quiet) std::fputs("the extract is not needed: blockrand update takes it in\n", stdout);
     return kSuccess;
   }
   if (s.data.empty() && !s.build.input.empty()) s.data = {s.build.input};

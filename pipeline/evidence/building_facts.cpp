@@ -641,7 +641,9 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
     };
     const auto run = base::remembered<std::vector<FeatureVector>>(
         memo, "around",
-        [&](base::Packer& packer) { pack_around(facts, store, context, house_index, small_index, starts[i], starts[i + 1], packer); },
+        [&](base::Packer& packer) {
+          pack_around(facts, store, context, house_index, small_index, starts[i], starts[i + 1], packer);
+        },
         measured_around);
     std::copy(run.begin(), run.end(), out.begin() + static_cast<std::ptrdiff_t>(starts[i]));
   };

@@ -93,6 +93,8 @@ class Scene {
 /// Triangles as they lie.
 template <>
 struct blockrand::base::PackTraits<blockrand::picture::Scene> {
-  static void pack(Packer& out, const picture::Scene& scene) { out << scene.origin_ << scene.triangles_ << scene.ground_; }
+  static void pack(Packer& out, const picture::Scene& scene) {
+    out << scene.origin_ << scene.triangles_ << scene.ground_;
+  }
   static void unpack(Unpacker& in, picture::Scene& scene) { in >> scene.origin_ >> scene.triangles_ >> scene.ground_; }
 };

@@ -204,7 +204,7 @@ std::optional<base::Memo> memo_of(WorkCache* cache, const BuildOptions& options,
 bool tiles_are_kept(const WorkCache* cache, const BuildInputs& inputs, const OpenOutputs& open,
                     base::Progress& progress) {
   if (!cache) return false;
-  const char* why = !inputs.images.empty()                 ? "aerial images are looked at as a whole"
+  const char* why = !inputs.images.empty()                   ? "aerial images are looked at as a whole"
                     : open.takes_regions || open.keeps_whole ? "a file of the whole model needs every tile anew"
                                                              : nullptr;
   if (why) progress.warn(std::string("work on tiles is not kept, nor taken from earlier runs: ") + why);
@@ -343,12 +343,12 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   record_extract(options, inputs, located, record);
   model::Report report = override_extract(options, inputs, extract, progress);
   const std::optional<base::Memo> memo = memo_of(cache.get(), options, record);
-  PreparedExtract prepared =
-      prepare_extract(located, options, tile, inputs.tables, inputs.rules.book, progress,
-                      [&](std::span<const footprints::Shard> shards, const footprints::RepairedExtract& repaired) {
-                        return imagery.correct(shards, repaired);
-                      },
-                      memo ? &*memo : nullptr);
+  PreparedExtract prepared = prepare_extract(
+      located, options, tile, inputs.tables, inputs.rules.book, progress,
+      [&](std::span<const footprints::Shard> shards, const footprints::RepairedExtract& repaired) {
+        return imagery.correct(shards, repaired);
+      },
+      memo ? &*memo : nullptr);
   const std::vector<footprints::Shard>& shards = prepared.shards;
   const footprints::RepairedExtract& repaired = prepared.repaired;
   const context::ContextExtract& context = prepared.context;

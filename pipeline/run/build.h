@@ -21,13 +21,13 @@ struct BuildSummary : outputs::ObjectCounts {
   std::uint64_t files = 0, bytes = 0;           ///< written
   double seconds = 0;
   std::uint64_t peak_rss_bytes = 0;
-  std::uint64_t store_bytes = 0;      ///< of it: the extract and its indices before the first tile
-  std::uint64_t tiles_in_flight = 0;  ///< at most this many tiles share the rest
+  std::uint64_t store_bytes = 0;                  ///< of it: the extract and its indices before the first tile
+  std::uint64_t tiles_in_flight = 0;              ///< at most this many tiles share the rest
   std::uint64_t tiles_built = 0, tiles_kept = 0;  ///< worked on; taken from an earlier run (BuildOptions::cache)
   double planned_tile_seconds = 0;  ///< BuildOptions::plan: how long the tiles should take; 0: nobody knows
   /// Why tiles were worked on, counted by what differs from the run before: names of TilePart, "new", "not kept".
   std::map<std::string, std::uint64_t> tiles_built_for;
-  std::set<std::string> kept_work;                ///< what the run used or left in the cache (WorkCache::used)
+  std::set<std::string> kept_work;  ///< what the run used or left in the cache (WorkCache::used)
   std::map<std::string, std::string, std::less<>> figures;  ///< of single files, in words, by path
   bool below_quality = false;                               ///< a building is simpler than asked, or has no solid
   std::uint64_t images_misfit = 0;                          ///< aerial images that do not fit the map

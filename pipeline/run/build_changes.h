@@ -32,13 +32,14 @@ struct BuildChanges {
   /// Of the buildings above the footprint as mapped, that of the new build where it has one: as explanations have it (JSON). Empty
   /// where all is new.
   std::map<std::string, std::string> footprints;
-  std::vector<std::string> files_changed, files_removed;  ///< of the build, new ones among the former: for caches of servers
+  std::vector<std::string> files_changed,
+      files_removed;  ///< of the build, new ones among the former: for caches of servers
   std::vector<std::string> settings_before, settings_after;  ///< lines of region.toml that the other has not
-  std::uint64_t before = 0, after = 0;                  ///< buildings with a model
-  std::uint64_t all_before = 0, all_after = 0;          ///< mapped buildings
-  std::uint64_t simpler_before = 0, simpler_after = 0;  ///< of those: simpler than asked, or without a model
-  double height_before = 0, height_after = 0;           ///< m, mean of those that both have
-  std::uint64_t both = 0;                               ///< that both have, with a height
+  std::uint64_t before = 0, after = 0;                       ///< buildings with a model
+  std::uint64_t all_before = 0, all_after = 0;               ///< mapped buildings
+  std::uint64_t simpler_before = 0, simpler_after = 0;       ///< of those: simpler than asked, or without a model
+  double height_before = 0, height_after = 0;                ///< m, mean of those that both have
+  std::uint64_t both = 0;                                    ///< that both have, with a height
 };
 
 /// Compares the explanations of two builds. \param before  folder of a build, or empty: all is new

@@ -128,14 +128,16 @@ std::string drawing(const std::vector<const Shape*>& shapes, const Values& value
         high = {std::max(high.x, p.x), std::max(high.y, p.y)};
       }
   const double squeeze = std::max(0.01, base::cos((low.y + high.y) / 2 * base::kRadiansPerDegree));
-  const double width = std::max(kLeastPlace, (high.x - low.x) * squeeze), height = std::max(kLeastPlace, high.y - low.y);
+  const double width = std::max(kLeastPlace, (high.x - low.x) * squeeze),
+               height = std::max(kLeastPlace, high.y - low.y);
   const double scale = std::min(kWidth / width, kHeight / height);
   constexpr double kRim = 10;
   const auto place = [&](Point2 p) {
     return Point2{kRim + (p.x - low.x) * squeeze * scale, kRim + (high.y - p.y) * scale};
   };
   std::string out = fmt::format(
-      "<figure>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" role=\"img\">\n",
+      "<figure>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
+      "role=\"img\">\n",
       2 * kRim + width * scale, 2 * kRim + height * scale);
   for (const Shape* shape : shapes) {
     std::string path;
@@ -160,9 +162,10 @@ std::string drawing(const std::vector<const Shape*>& shapes, const Values& value
       out += "<path fill-rule=\"evenodd\" stroke=\"#fff\" stroke-width=\"0.6\" d=\"" + path + "\"/>";
     out += "</g>\n";
   }
-  return out + fmt::format("</svg>\n<figcaption>{} {} around {:.5f}, {:.5f} (latitude, longitude)</figcaption>\n</figure>\n",
-                           shapes.size(), shapes.size() == 1 ? "building" : "buildings", (low.y + high.y) / 2,
-                           (low.x + high.x) / 2);
+  return out +
+         fmt::format("</svg>\n<figcaption>{} {} around {:.5f}, {:.5f} (latitude, longitude)</figcaption>\n</figure>\n",
+                     shapes.size(), shapes.size() == 1 ? "building" : "buildings", (low.y + high.y) / 2,
+                     (low.x + high.x) / 2);
 }
 
 }  // namespace
@@ -185,20 +188,20 @@ std::string changes_svg(const BuildChanges& c) {
   }
   out += "<p>Buildings that differ, north up: new ones green, those that are gone red, others blue.";
   if (c.footprints.size() > drawn)
-    out += fmt::format(" {} more, in other places, are in the GeoPackage beside this page.", c.footprints.size() - drawn);
+    out +=
+        fmt::format(" {} more, in other places, are in the GeoPackage beside this page.", c.footprints.size() - drawn);
   return out + "</p>\n";
 }
 
 void write_changes_layers(const BuildChanges& c, const std::string& path) {
   using layer_file::Column;
   using layer_file::ColumnKind;
-  const std::vector<Column> buildings = {
-      {"id", ColumnKind::text, "", "OSM id"},
-      {"state", ColumnKind::text, "", "new, gone or changed"},
-      {"footprint", ColumnKind::integer, "", "1 where the footprint is another one"},
-      {"area_before", ColumnKind::real, "m²", "Area of the footprint before"},
-      {"area_after", ColumnKind::real, "m²", "Area of the footprint now"},
-      {"changed_values", ColumnKind::text, "", "Attributes with another value"}};
+  const std::vector<Column> buildings = {{"id", ColumnKind::text, "", "OSM id"},
+                                         {"state", ColumnKind::text, "", "new, gone or changed"},
+                                         {"footprint", ColumnKind::integer, "", "1 where the footprint is another one"},
+                                         {"area_before", ColumnKind::real, "m²", "Area of the footprint before"},
+                                         {"area_after", ColumnKind::real, "m²", "Area of the footprint now"},
+                                         {"changed_values", ColumnKind::text, "", "Attributes with another value"}};
   const std::vector<Column> values = {{"id", ColumnKind::text, "", "OSM id of the building"},
                                       {"attribute", ColumnKind::text, "", "Name of the attribute"},
                                       {"from_value", ColumnKind::text, "", "Value before"},

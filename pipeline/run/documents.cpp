@@ -210,7 +210,9 @@ std::string run_json(const RunRecord& run, const BuildSummary& summary) {
   j["peak_rss_bytes"] = run.peak_rss_bytes;
   j["store_bytes"] = run.store_bytes;
   j["tiles_in_flight"] = run.tiles_in_flight;
-  j["tiles"] = {{"built", summary.tiles_built}, {"kept", summary.tiles_kept}, {"built_for", summary.tiles_built_for}};  // the latter from an earlier run
+  j["tiles"] = {{"built", summary.tiles_built},
+                {"kept", summary.tiles_kept},
+                {"built_for", summary.tiles_built_for}};  // the latter from an earlier run
   j["jobs"] = run.jobs;
   j["host"] = run.host;
   j["inputs"] = inputs_json(run.inputs);

@@ -48,8 +48,8 @@ LocatedExtract locate_extract(const BuildOptions& options, const std::optional<T
 
 PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& options,
                                 const std::optional<TileChoice>& tile, const classify::Tables& tables,
-                                const districts::RuleSets& book, base::Progress& progress,
-                                const CorrectPlaces& correct, const base::Memo* memo) {
+                                const districts::RuleSets& book, base::Progress& progress, const CorrectPlaces& correct,
+                                const base::Memo* memo) {
   const int workers = base::worker_count(options.jobs);
   const model::Extract& extract = located.extract;
   model::Report report;
@@ -57,16 +57,15 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
       footprints::make_shards(extract, report, tile ? tile->id.level : footprints::kTileLevel);
   repair::KeptNodes kept(extract);
   footprints::RepairedExtract repaired =
-      footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress,
-                                   memo);
+      footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress, memo);
   malloc_trim(0);
   if (!tile) {
     const std::vector<model::Point2> places = footprints::building_places(extract, located.projection);
     located.facts.coverage = context::coverage_of(places);
   }
   if (correct && correct(shards, repaired)) {
-    repaired = footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress,
-                                   memo);
+    repaired =
+        footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress, memo);
     malloc_trim(0);
   }
   const context::UseOfTags use_of = [&](const std::function<std::string_view(std::string_view)>& tag) {

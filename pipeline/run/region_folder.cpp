@@ -197,8 +197,8 @@ std::vector<std::string> RegionFolder::remove_unfinished() const {
   }
   for (const fs::path& entry : entries(path_ + "/store")) {
     const Numbered n = numbered(entry.filename().string());
-    const bool part = n.rest == ".osm.pbf.part" || n.rest == ".json.part" || n.rest == ".toml.part" ||
-                      n.rest == ".compare.json.part";
+    const bool part =
+        n.rest == ".osm.pbf.part" || n.rest == ".json.part" || n.rest == ".toml.part" || n.rest == ".compare.json.part";
     const bool of_build = n.rest == ".osm.pbf" || n.rest == ".toml" || n.rest == ".compare.json";
     if (n.number >= 0 && (part || (of_build && !is_there(state(n.number))))) remove(entry);
   }

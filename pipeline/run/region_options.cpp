@@ -18,42 +18,43 @@ constexpr base::OptionSection kGatesSection{.name = "gates", .title = "What a ne
 
 base::OptionTable<R> of_region() {
   return base::in_section<R>(
-      kRegionSection, {integer({.name = "keep",
-                         .key = "keep",
-                         .argument = "N",
-                         .commands = kUpdate,
-                         .minimum = 1,
-                         .maximum = 10000,
-                         .help = "published builds that stay, the current one among them",
-                         .record = OptionRecord::none},
-                        &R::keep),
-                text({.name = "replication",
-                      .key = "replication",
-                      .argument = "FOLDER",
-                      .type = OptionType::folder,
-                      .commands = kUpdate,
-                      .help = "folder of change files with sequence numbers, as download servers have them: state.txt, "
-                              "000/001/234.osc.gz; update takes all that are new",
-                      .record = OptionRecord::none},
-                     &R::replication),
-                integer({.name = "first-sequence",
-                         .key = "first_sequence",
-                         .argument = "N",
-                         .commands = kUpdate,
-                         .minimum = -1,
-                         .maximum = 999999999,
-                         .help = "number of the first change file to apply; -1: the one after that which the extract "
-                                 "names",
-                         .record = OptionRecord::none},
-                        &R::first_sequence),
-                text({.name = "hook",
-                      .key = "hook",
-                      .argument = "COMMAND",
-                      .commands = kUpdate,
-                      .help = "run by /bin/sh when a run has ended, with BLOCKRAND_STATE (published, unchanged, refused, "
-                              "failed), BLOCKRAND_REGION, BLOCKRAND_BUILD and BLOCKRAND_CHANGES in its environment",
-                      .record = OptionRecord::none},
-                     &R::hook)});
+      kRegionSection,
+      {integer({.name = "keep",
+                .key = "keep",
+                .argument = "N",
+                .commands = kUpdate,
+                .minimum = 1,
+                .maximum = 10000,
+                .help = "published builds that stay, the current one among them",
+                .record = OptionRecord::none},
+               &R::keep),
+       text({.name = "replication",
+             .key = "replication",
+             .argument = "FOLDER",
+             .type = OptionType::folder,
+             .commands = kUpdate,
+             .help = "folder of change files with sequence numbers, as download servers have them: state.txt, "
+                     "000/001/234.osc.gz; update takes all that are new",
+             .record = OptionRecord::none},
+            &R::replication),
+       integer({.name = "first-sequence",
+                .key = "first_sequence",
+                .argument = "N",
+                .commands = kUpdate,
+                .minimum = -1,
+                .maximum = 999999999,
+                .help = "number of the first change file to apply; -1: the one after that which the extract "
+                        "names",
+                .record = OptionRecord::none},
+               &R::first_sequence),
+       text({.name = "hook",
+             .key = "hook",
+             .argument = "COMMAND",
+             .commands = kUpdate,
+             .help = "run by /bin/sh when a run has ended, with BLOCKRAND_STATE (published, unchanged, refused, "
+                     "failed), BLOCKRAND_REGION, BLOCKRAND_BUILD and BLOCKRAND_CHANGES in its environment",
+             .record = OptionRecord::none},
+            &R::hook)});
 }
 
 base::OptionTable<R> of_gates() {
@@ -95,11 +96,13 @@ base::OptionTable<R> of_gates() {
              .argument = "MODELS",
              .type = OptionType::path,
              .commands = kUpdate,
-             .help = "hand-built models, a file or a folder, that each build is compared with as `blockrand compare` does",
+             .help =
+                 "hand-built models, a file or a folder, that each build is compared with as `blockrand compare` does",
              .record = OptionRecord::none},
             &R::reference),
        percent("max-worse", "max_worse",
-               "by so much a measure of that comparison may be worse than that of the published build", &R::max_worse)});
+               "by so much a measure of that comparison may be worse than that of the published build",
+               &R::max_worse)});
 }
 
 }  // namespace

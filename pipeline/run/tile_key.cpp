@@ -121,8 +121,7 @@ struct TileKeys::Impl {
 };
 
 TileKeys::TileKeys(const TileInputs& inputs, const BuildInputs& files, std::string shared,
-                   std::span<const model::ReportRow> earlier,
-                   std::span<const std::unique_ptr<outputs::Output>> outputs)
+                   std::span<const model::ReportRow> earlier, std::span<const std::unique_ptr<outputs::Output>> outputs)
     : impl_(new Impl{inputs, std::move(shared), earlier, outputs, {}}) {
   std::map<std::string, std::string> hashes;  // by path
   for (const districts::Preset& preset : files.rules.book.presets) {

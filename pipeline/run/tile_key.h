@@ -32,7 +32,7 @@ constexpr std::string_view name(TilePart part) {
 }
 
 struct TileKey {
-  std::string key;                                ///< lower-case hex
+  std::string key;                                    ///< lower-case hex
   std::array<std::uint64_t, kTilePartCount> parts{};  ///< hashes: tell what differs, and no more
 };
 

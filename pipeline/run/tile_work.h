@@ -30,10 +30,10 @@ struct TileResult {
   outputs::TileStatistics statistics;
   std::vector<std::any> products;  ///< parallel to OpenOutputs::list
   std::vector<base::PublishedFile> files;
-  model::Region region;  ///< kept only for files of the whole build
-  bool kept = false;     ///< it is from an earlier run
-  bool may_be_kept = true;  ///< it is what its key says
-  std::uint64_t microseconds = 0;  ///< of one thread, that the work took when it was done
+  model::Region region;               ///< kept only for files of the whole build
+  bool kept = false;                  ///< it is from an earlier run
+  bool may_be_kept = true;            ///< it is what its key says
+  std::uint64_t microseconds = 0;     ///< of one thread, that the work took when it was done
   std::vector<std::string_view> why;  ///< it is not (BuildSummary::tiles_built_for)
 };
 

@@ -198,7 +198,8 @@ void link_unchanged(const std::string& before, const std::string& after, UpdateS
   for (const auto& [path, entry] : now["files"].items()) {
     if (!old["files"].contains(path) || old["files"][path] != entry) continue;
     const std::string from = before + "/" + path, to = after + "/" + path, link = to + ".link";
-    struct stat one {}, other {};
+    struct stat one {
+    }, other{};
     if (::stat(from.c_str(), &one) == 0 && ::stat(to.c_str(), &other) == 0 && one.st_ino == other.st_ino &&
         one.st_dev == other.st_dev) {  // by way of the cache
       ++summary.linked;
@@ -246,7 +247,8 @@ Json run_line(const UpdateSummary& s) {
       {"run", s.number}, {"ended", now_utc()}, {"state", word(s.state)}, {"seconds", std::round(s.seconds * 10) / 10}};
   j["why"] = s.why;
   if (s.sequence) j["sequence"] = *s.sequence;
-  if (s.tiles_built + s.tiles_kept > 0) j["tiles"] = {{"built", s.tiles_built}, {"kept", s.tiles_kept}, {"built_for", s.tiles_built_for}};
+  if (s.tiles_built + s.tiles_kept > 0)
+    j["tiles"] = {{"built", s.tiles_built}, {"kept", s.tiles_kept}, {"built_for", s.tiles_built_for}};
   j["osm_objects"] = {{"created", s.created}, {"modified", s.modified}, {"deleted", s.deleted}};
   j["buildings"] = {{"before", s.changes.before},
                     {"after", s.changes.after},
@@ -369,9 +371,8 @@ class Updater {
         last["timings"]["documents"].is_number())
       after = last["timings"]["documents"].get<double>();
     if (planned.tiles_built == 0 || planned.planned_tile_seconds > 0)
-      summary_.expected_seconds =
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() +
-          planned.planned_tile_seconds + after;
+      summary_.expected_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() +
+                                  planned.planned_tile_seconds + after;
   }
 
   AppliedChanges make_data(const Plan& plan, std::optional<int> current, const std::string& path) {
@@ -448,8 +449,7 @@ class Updater {
   void compare_baseline(int current, const std::string& fresh, const base::Memo& memo) {
     const int baseline = options_.region.baseline;
     if (baseline < 0 || baseline == current) return;
-    const std::vector<Gate> drift =
-        drift_gates(compare_builds(region_.build(baseline), fresh, &memo), options_.region);
+    const std::vector<Gate> drift = drift_gates(compare_builds(region_.build(baseline), fresh, &memo), options_.region);
     summary_.gates.insert(summary_.gates.end(), drift.begin(), drift.end());
   }
 
@@ -498,7 +498,8 @@ class Updater {
 
   UpdateSummary build_and_publish(std::optional<int> current, const DataState& fresh) {
     const int number = summary_.number;
-    const BuildSummary built = blockrand::run::build(build_options_for(options_, region_, number, current, before_), progress_);
+    const BuildSummary built =
+        blockrand::run::build(build_options_for(options_, region_, number, current, before_), progress_);
     summary_.folder = region_.build(number);
     summary_.tiles_built = built.tiles_built, summary_.tiles_kept = built.tiles_kept;
     summary_.tiles_built_for = built.tiles_built_for;
@@ -575,9 +576,9 @@ void call_hook(const UpdateOptions& options, const RegionFolder& region, std::st
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    progress.warn(fmt::format("the hook ended with {}",
-                              WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status))
-                                                : fmt::format("signal {}", WTERMSIG(status))));
+    progress.warn(fmt::format("the hook ended with {}", WIFEXITED(status)
+                                                            ? fmt::format("exit code {}", WEXITSTATUS(status))
+                                                            : fmt::format("signal {}", WTERMSIG(status))));
 }
 
 }  // namespace
@@ -635,8 +636,8 @@ RegionHealth check_region(const std::string& folder, bool break_lock, base::Prog
     return health;
   }
   const std::string data = region.data(*current);
-  health.data_whole = fs::is_regular_file(data, error) &&
-                      base::sha256_file(data) == DataState::read(region.state(*current)).sha256;
+  health.data_whole =
+      fs::is_regular_file(data, error) && base::sha256_file(data) == DataState::read(region.state(*current)).sha256;
   health.words += fmt::format("data of build {}: {}\n", *current, health.data_whole ? "whole" : "damaged");
   return health;
 }

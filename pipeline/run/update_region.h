@@ -50,10 +50,10 @@ struct UpdateSummary {
   std::optional<std::uint64_t> sequence;                            ///< of the newest change file
   BuildChanges changes;
   std::vector<Gate> gates;
-  std::uint64_t tiles_built = 0, tiles_kept = 0;  ///< worked on; taken from earlier runs
+  std::uint64_t tiles_built = 0, tiles_kept = 0;         ///< worked on; taken from earlier runs
   std::map<std::string, std::uint64_t> tiles_built_for;  ///< BuildSummary::tiles_built_for
-  std::uint64_t linked = 0, linked_bytes = 0;  ///< files that are those of the build before
-  double expected_seconds = 0;                 ///< that the run should take: of a dry run; 0: unknown
+  std::uint64_t linked = 0, linked_bytes = 0;            ///< files that are those of the build before
+  double expected_seconds = 0;                           ///< that the run should take: of a dry run; 0: unknown
   double seconds = 0;
 };
 

@@ -130,8 +130,7 @@ bool check_is_cache(const std::string& folder) {
   if (!fs::exists(folder, error)) return false;
   const bool is_cache = fs::is_directory(folder, error) &&
                         (fs::is_empty(folder, error) || fs::exists(folder + "/" + std::string(kProgram), error));
-  if (!is_cache)
-    throw base::UsageError(folder + ": is no folder of kept work, and not empty: name another one");
+  if (!is_cache) throw base::UsageError(folder + ": is no folder of kept work, and not empty: name another one");
   return true;
 }
 
@@ -160,9 +159,10 @@ WorkCache::WorkCache(std::string folder, const std::string& program, base::Progr
     const std::string earlier = read_all(made_by).value_or("");
     if (!program.empty() && earlier != program) {
       if (const std::uint64_t n = count_entries(folder_); n > 0 && !earlier.empty())
-        progress.warn(fmt::format("{}: the program is another one than that which kept the work of {} tiles there: they "
-                                  "are built anew",
-                                  folder_, base::with_thousands(n)));
+        progress.warn(
+            fmt::format("{}: the program is another one than that which kept the work of {} tiles there: they "
+                        "are built anew",
+                        folder_, base::with_thousands(n)));
       // Whole or not at all: what names the program is what makes the folder one of kept work.
       write_all(made_by + ".new", program);
       fs::rename(made_by + ".new", made_by, error);

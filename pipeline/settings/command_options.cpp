@@ -260,10 +260,9 @@ Table of_compare() {
 }
 
 Table of_several() {
-  return {flag({.name = "json",
-                .commands = kInfo | kExplain | kValidate | kCompare | kStatus | kCache,
-                .help = "print JSON"},
-               &S::json)};
+  return {flag(
+      {.name = "json", .commands = kInfo | kExplain | kValidate | kCompare | kStatus | kCache, .help = "print JSON"},
+      &S::json)};
 }
 
 const base::Choices<base::ProgressStyle> kProgressStyles = {{"auto", base::ProgressStyle::automatic},
@@ -294,8 +293,8 @@ Table of_messages() {
 }  // namespace
 
 std::vector<base::OptionTable<Settings>> command_options() {
-  return {of_finished_builds(), of_regions(), of_caches(),  of_districts(), of_grammar(), of_build(),
-          of_explain(),         of_several(), of_compare(),   of_messages()};
+  return {of_finished_builds(), of_regions(), of_caches(),  of_districts(), of_grammar(),
+          of_build(),           of_explain(), of_several(), of_compare(),   of_messages()};
 }
 
 }  // namespace blockrand::settings

@@ -68,7 +68,9 @@ class CityJsonOutput : public OutputOf<bool> {
   /// When an object of the tile was last edited: a file changes when what is in it does, not with every edit of the extract.
   std::string newest_edit(std::size_t shard) const {
     std::uint32_t newest = 0;
-    const auto look = [&](std::uint32_t object) { newest = std::max(newest, context_.extract.buildings[object].edited); };
+    const auto look = [&](std::uint32_t object) {
+      newest = std::max(newest, context_.extract.buildings[object].edited);
+    };
     for (const footprints::Seed& seed : context_.shards[shard].seeds) {
       if (seed.outline != model::kNoIndex) look(seed.outline);
       for (const std::uint32_t part : seed.parts) look(part);

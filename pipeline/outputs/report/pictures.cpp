@@ -261,7 +261,7 @@ std::vector<outputs::ReportPicture> Pictures::shoot(int workers) {
   const std::vector<Point3> core = core_points(buildings_);
   const View view = best_view(core);
   const auto add = [&](std::span<const Point3> points, Direction from, double field_of_view, int width, int height,
-                         std::string caption) {
+                       std::string caption) {
     Shot shot;
     shot.options.width = width;
     shot.options.height = height;

@@ -105,7 +105,8 @@ void write_table(const std::string& input, const std::string& configs, const std
   const auto& store = repaired.footprints;
   const auto context = context::context_extract(extract, store, coverage, projection, kWorkers, progress);
   const context::VicinityFinder vicinity(extract, store, context);
-  evidence::FactsExtract facts = evidence::facts_extract(extract, store, repaired.first, context, vicinity, kWorkers, progress);
+  evidence::FactsExtract facts =
+      evidence::facts_extract(extract, store, repaired.first, context, vicinity, kWorkers, progress);
   classify::Tables tables = answers ? classify::Tables::read(configs) : classify::Tables::read_without_weights(configs);
   const evidence::TagFacts tags = evidence::tag_facts(extract, store, context, tables, projection, facts);
 

@@ -81,7 +81,8 @@ TEST(Pack, WhatLiesBesideEachOtherIsToldApart) {
 
 TEST(Pack, DamageIsToldAndAsksForNoMemory) {
   const std::string bytes = packed(example());
-  for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_THROW(unpacked<Everything>(bytes.substr(0, n)), UnpackError) << n;
+  for (std::size_t n = 0; n < bytes.size(); ++n)
+    EXPECT_THROW(unpacked<Everything>(bytes.substr(0, n)), UnpackError) << n;
   EXPECT_THROW(unpacked<Everything>(bytes + "x"), UnpackError);
   const std::string huge = packed(std::uint64_t{1} << 62);
   EXPECT_THROW(unpacked<std::string>(huge), UnpackError);

@@ -78,7 +78,8 @@ struct BuiltTown::State {
         roof_lines(extract, projection),
         numbers(repaired.footprints),
         neighbours(attributes::tagged_buildings(extract, defaults, projection), usual_generation().neighbour_reach),
-        facts(evidence::facts_extract(extract, repaired.footprints, repaired.first, context, vicinity, workers, progress)),
+        facts(evidence::facts_extract(extract, repaired.footprints, repaired.first, context, vicinity, workers,
+                                      progress)),
         tags(evidence::tag_facts(extract, repaired.footprints, context, tables, projection, facts)),
         style_extract(classified()) {
     assigner.emplace(rules.book, attributes::AssignInputs{.extract = extract,
