@@ -211,12 +211,14 @@ std::string shared_key(const BuildOptions& options, const BuildInputs& inputs, c
   nlohmann::ordered_json settings = configuration(options);
   settings.erase("bbox");  // says which data there are, not what becomes of them
   out << settings.dump();
-  // Presets and rules come with what they decide for each building, their grammars and orders by building.
-  std::set<std::string> elsewhere;
-  for (const auto& [name, path] : inputs.rules.files) elsewhere.insert(name);
+  // Presets and rules, with the files that rules name, come with what they decide for each building; their grammars and orders by
+  // building, too. The catalogue of styles is read by more than rules.
+  std::set<std::string> by_building;
+  for (const auto& [name, path] : inputs.rules.files)
+    if (!name.starts_with("styles/") || name == "styles/presets.toml") by_building.insert(name);
   for (const InputFile& file : record.inputs)
-    if (file.role != "overrides" && !elsewhere.contains(file.path) && !file.path.starts_with("grammars/"))
-      out << file.role << file.sha256;
+    if (file.role != "overrides" && !by_building.contains(file.path) && !file.path.starts_with("grammars/"))
+      out << file.role << file.path << file.sha256;
   out << inputs.overrides.name << record.crs << record.portable;
   out << record.heights.words << record.heights.vertical_crs << record.heights.in_tiles << record.heights.raised_from
       << record.heights.raised_by.has_value();

@@ -142,6 +142,13 @@ class Cache(BuildTest):
         self.build(SAMPLE, 'a', *run)
         self.assertEqual(tiles(self.build(SAMPLE, 'b', '--lod', '3', *OPTIONS, '--cache', cache)), (0, 3), 'the same configs elsewhere')
         self.assertEqual(tiles(self.build(SAMPLE, 'a', *run, '--seed', '2')), (3, 0))
+        # Tables that every house is made with; then files that only decide, where the decision is the same.
+        for file, built in (('styles/catalogue.toml', 3), ('defaults/uses.toml', 3), ('materials/materials.toml', 3),
+                            ('styles/neighbours.toml', 3), ('styles/presets.toml', 0), ('districts/berlin.toml', 0)):
+            with self.subTest(file), open(os.path.join(configs, file), 'a', encoding='utf-8') as f:
+                f.write('\n# a remark\n')
+                f.flush()
+                self.assertEqual(tiles(self.build(SAMPLE, 'a', *run)), (built, 3 - built))
         used = self.presets_of(self.path('b'))
         book = os.path.join(configs, 'styles', 'presets.toml')
         with open(book, encoding='utf-8') as f:
