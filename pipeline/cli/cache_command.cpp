@@ -53,8 +53,8 @@ settings::CommandText cache_text() {
                    {"blockrand cache verify leipzig/cache", ""},
                    {"blockrand cache prune leipzig --keep-bytes 20000000000", "at most 20 GB stay"}},
       .exit_codes = {{"0", "all well"},
-                     {"1", "wrong usage; a run works with it"},
-                     {"2", "there is no such folder"},
+                     {"1", "wrong usage"},
+                     {"2", "unreadable or invalid input"},
                      {"3", "verify: something was damaged, and is removed"},
                      {"4", "output could not be written or internal error"}}};
 }

@@ -247,9 +247,9 @@ settings::CommandText region_text() {
               "stays until the new build is.",
           .options = settings::kRegion,
           .examples = {{"blockrand region repair leipzig leipzig.osm.pbf", ""}},
-          .exit_codes = {{"0", "all well, or well again"},
+          .exit_codes = {{"0", "all well"},
                          {"1", "wrong usage"},
-                         {"2", "the data are damaged and no extract is given"},
+                         {"2", "unreadable or invalid input"},
                          {"4", "output could not be written or internal error"},
                          {"5", "built, but refused by a gate of the region"}}};
 }

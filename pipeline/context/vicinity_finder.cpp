@@ -40,7 +40,7 @@ void pack(const FoundVicinity& found, base::Packer& out) {
   }
 }
 
-FoundVicinity VicinityFinder::around(const geometry::PlanBox& box) const {
+FoundVicinity VicinityFinder::vicinity_of(const geometry::PlanBox& box) const {
   constexpr double kReach = context::kWallSegmentReach;
   FoundVicinity found;
   for (const std::uint32_t n : buildings_.near(box, kReach)) {
@@ -79,7 +79,7 @@ void VicinityFinder::label_wall_segments(model::Region& region, std::span<const 
   geometry::PlanBox box;
   for (const std::uint32_t n : numbers) box.include(footprints_[n].box);
   if (box.empty()) return;
-  const FoundVicinity found = around(box);
+  const FoundVicinity found = vicinity_of(box);
   const context::VicinityIndex index({.footprints = found.footprints,
                                       .lines = found.lines,
                                       .blocks = found.blocks,

@@ -39,7 +39,7 @@ class VicinityFinder {
   void label_wall_segments(model::Region& region, std::span<const std::uint32_t> numbers) const;
 
   /// Everything within kWallSegmentReach of `box`, which must not be empty. Numbers of buildings in it are those of the store.
-  FoundVicinity around(const geometry::PlanBox& box) const;
+  FoundVicinity vicinity_of(const geometry::PlanBox& box) const;
 
   /// The buildings at most `distance` metres from `box` along both axes, ascending.
   std::vector<std::uint32_t> buildings_near(const geometry::PlanBox& box, double distance) const {

@@ -480,7 +480,7 @@ void pack_labelled(const model::Extract& extract, const footprints::FootprintSto
     out << stored << store.polygons(n) << store.arcs(n)
         << context::address_street(extract, extract.buildings[store[n].lead].tags);
   }
-  if (!box.empty()) context::pack(vicinity.around(box), out);
+  if (!box.empty()) context::pack(vicinity.vicinity_of(box), out);
 }
 
 /// What Around reads of buildings of a run: their own, and all with their middle within its reach of the box of

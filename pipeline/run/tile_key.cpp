@@ -113,7 +113,7 @@ struct TileKeys::Impl {
 
   /// What the stages up to the attributes see around buildings.
   void pack_around(geometry::PlanBox box, Packer& out) const {
-    context::pack(in.vicinity.around(box), out);
+    context::pack(in.vicinity.vicinity_of(box), out);
     box.minimum = {box.minimum.x - kBoxSlack, box.minimum.y - kBoxSlack};
     box.maximum = {box.maximum.x + kBoxSlack, box.maximum.y + kBoxSlack};
     out << in.neighbours.near(box) << in.roof_lines.near(box);

@@ -17,7 +17,7 @@ std::string another_value(const base::Option<Struct>& o, const Struct& s) {
   if (o.argument == "LON,LAT,H") return "1,2,3";
   if (o.argument == "PERCENT") return "5%";
   if (o.argument == "NAME=VALUE") return "height=12";
-  if (o.choices.size() > 1) return o.choices.back() == value ? o.choices.front() : o.choices.back();
+  if (!o.choices.empty()) return o.choices.back() == value ? o.choices.front() : o.choices.back();
   if (o.type == OptionType::flag) return value == "true" ? "false" : "true";
   if (o.type == OptionType::integer)
     return o.minimum > 2 ? std::to_string(static_cast<int>(o.minimum)) : value == "1" ? "2" : "1";
