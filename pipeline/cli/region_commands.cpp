@@ -96,7 +96,7 @@ std::string update_report(const run::UpdateOptions& options, const run::UpdateSu
                       s.number, seconds_text(s.seconds), base::with_thousands(c.after),
                       base::with_thousands(c.added.size()), base::with_thousands(c.removed.size()),
                       base::with_thousands(c.outlines.size()), base::with_thousands(c.attributes.size()));
-      if (s.tiles_kept > 0)
+      if (s.tiles_built + s.tiles_kept > 0)
         out +=
             fmt::format("  {} tiles were built, {} are those of earlier runs{}\n", base::with_thousands(s.tiles_built),
                         base::with_thousands(s.tiles_kept), reasons(s.tiles_built_for));
@@ -266,13 +266,14 @@ int run_region(const std::vector<std::string>& arguments) {
   const run::RegionHealth health = run::check_region(s.region, s.break_lock, progress);
   progress.end();
   if (!s.quiet) std::fputs(health.words.c_str(), stdout);
-  if (health.data_whole) {
+  if (health.published && health.data_whole) {
     if (!s.data.empty() && !s.quiet) std::fputs("the extract is not needed: blockrand update takes it in\n", stdout);
     return kSuccess;
   }
   if (s.data.empty() && !s.build.input.empty()) s.data = {s.build.input};
   if (s.data.empty())
-    throw base::InputError(s.region + "/store", "", "the data of the published build are damaged",
+    throw base::InputError(s.region + "/store", "",
+                           health.published ? "the data of the published build are damaged" : "there are no data yet",
                            "Give a full extract: blockrand region repair " + s.region + " EXTRACT.osm.pbf");
   return update(line, std::move(sha256));
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <vector>
@@ -74,6 +75,13 @@ const std::string& checked_output(const BuildOptions& options) {
                                      options.pinned, options.configs, options.districts};
   for (const importers::imagery::ImageSource& image : options.imagery.images) inputs.push_back(image.path);
   base::refuse_inputs_in(options.output, inputs);
+  if (!options.cache.empty()) {
+    std::error_code error;
+    const std::string out = std::filesystem::weakly_canonical(options.output, error).string() + "/",
+                      cache = std::filesystem::weakly_canonical(options.cache, error).string() + "/";
+    if (cache.starts_with(out))
+      throw base::UsageError("--cache " + options.cache + " lies in the output folder, which is replaced: name another one");
+  }
   return options.output;
 }
 
@@ -188,8 +196,13 @@ std::unique_ptr<WorkCache> open_cache(const BuildOptions& options, const std::op
                                       base::Progress& progress) {
   if (options.cache.empty()) return nullptr;
   if (tile) throw base::UsageError("--cache is of no use with --tile: a tile that is built alone keeps no work");
-  return std::make_unique<WorkCache>(options.cache, program_identity(), progress,
-                                     options.plan ? WorkCache::Mode::look : WorkCache::Mode::work);
+  try {
+    return std::make_unique<WorkCache>(options.cache, program_identity(), progress,
+                                       options.plan ? WorkCache::Mode::look : WorkCache::Mode::work);
+  } catch (const base::OutputError& error) {
+    progress.warn(fmt::format("no work is kept, nor taken from earlier runs: {}", error.what()));
+    return nullptr;
+  }
 }
 
 /// How the stages before the tiles see it.

@@ -1,8 +1,16 @@
 #include "pipeline/run/tile_key.h"
 
+#include <fmt/format.h>
+#include <link.h>
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
 #include <utility>
 
+#include "importers/imagery/image_files.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/pack.h"
 #include "pipeline/base/sha256.h"
@@ -29,12 +37,12 @@ void pack_tags(const model::Extract& extract, model::Range range, Packer& out) {
 /// An object as it was mapped. \param kept  nodes that stay on straight walls
 void pack_mapped(const model::Extract& extract, const MappedBuilding& object, const repair::KeptNodes& kept,
                  Packer& out) {
-  MappedBuilding b = object;
-  b.rings = {}, b.tags = {};
-  // What becomes of objects is noted while tiles run. Those of a tile are pending when it begins.
-  b.state = model::ObjectState::pending, b.code = model::IssueCode::none, b.related = {};
-  b.attributes.wall_material = b.attributes.roof_material = b.attributes.use = 0;
-  out << b;
+  // Not `state`, `code` and `related`: what becomes of objects is noted while tiles run. Those of a tile are pending when it
+  // begins.
+  static_assert(base::field_count<MappedBuilding>() == 11, "a new field belongs here");
+  model::MappedAttributes attributes = object.attributes;
+  attributes.wall_material = attributes.roof_material = attributes.use = 0;
+  out << object.id << object.kind << object.geometry_from << object.place << object.edited << attributes;
   for (const base::StringId text :
        {object.attributes.wall_material, object.attributes.roof_material, object.attributes.use})
     out << extract.strings.view(text);
@@ -219,19 +227,49 @@ std::string shared_key(const BuildOptions& options, const BuildInputs& inputs, c
   for (const InputFile& file : record.inputs)
     if (file.role != "overrides" && !by_building.contains(file.path) && !file.path.starts_with("grammars/"))
       out << file.role << file.path << file.sha256;
+  // Of a terrain all files: a VRT names others, and some lie beside the one that is named.
+  if (inputs.terrain)
+    for (const importers::imagery::ImageFile& file : importers::imagery::files_of_image(options.terrain))
+      out << file.sha256;
   out << inputs.overrides.name << record.crs << record.portable;
   out << record.heights.words << record.heights.vertical_crs << record.heights.in_tiles << record.heights.raised_from
       << record.heights.raised_by.has_value();
+  if (record.heights.raised_by)
+    out << record.heights.raised_by->undulation(record.facts.centre.lon, record.facts.centre.lat);
   return std::move(out.bytes);
 }
 
 const std::string& program_identity() {
   static const std::string identity = [] {
+    base::Sha256 hash;
+    const auto add = [&](const std::filesystem::path& path) {
+      struct stat s {};
+      if (::stat(path.c_str(), &s) == 0)
+        hash.add(fmt::format("{} {} {}.{}\n", path.string(), s.st_size, s.st_mtim.tv_sec, s.st_mtim.tv_nsec));
+    };
     try {
-      return std::string(base::kVersion) + " " + base::sha256_file("/proc/self/exe");
+      hash.add(base::sha256_file("/proc/self/exe"));
     } catch (const base::InputError&) {
-      return std::string(base::kVersion);
+      add("/proc/self/exe");
     }
+    // Libraries that it runs with, and PROJ's tables, by size and time of their files.
+    ::dl_iterate_phdr(
+        [](dl_phdr_info* info, std::size_t, void* data) {
+          if (info->dlpi_name != nullptr && *info->dlpi_name != '\0')
+            (*static_cast<const decltype(add)*>(data))(info->dlpi_name);
+          return 0;
+        },
+        const_cast<void*>(static_cast<const void*>(&add)));
+    const std::array<const char*, 3> places = {std::getenv("PROJ_DATA"), std::getenv("PROJ_LIB"), "/usr/share/proj"};
+    for (const char* place : places) {
+      std::error_code error;
+      std::set<std::filesystem::path> files;
+      if (place != nullptr)
+        for (std::filesystem::directory_iterator file(place, error), end; !error && file != end; file.increment(error))
+          files.insert(file->path());
+      for (const std::filesystem::path& file : files) add(file);
+    }
+    return std::string(base::kVersion) + " " + hash.finish();
   }();
   return identity;
 }

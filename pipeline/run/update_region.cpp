@@ -327,7 +327,10 @@ class Updater {
     const AppliedChanges applied = make_data(plan, current, data.path);
     fresh.sha256 = base::sha256_file(data.path);
     const bool same_data = current && (fresh.sha256 == before_.sha256 || (plan.extract.empty() && !applied.any()));
-    if (same_data && !new_settings) return stay(*current, fresh);
+    if (same_data && !new_settings) {
+      if (!options_.dry_run && !plan.extract.empty()) restore_data(*current, data);
+      return stay(*current, fresh);
+    }
     if (options_.dry_run) {
       look_ahead(current, data.path);
       return ended(UpdateState::planned);
@@ -394,6 +397,18 @@ class Updater {
     return applied;
   }
 
+  /// A full extract gave the data that the published build was made of: they take the place of damaged ones.
+  void restore_data(int current, Scratch& fresh) {
+    const std::string place = region_.data(current);
+    std::error_code error;
+    if (fs::is_regular_file(place, error) && base::sha256_file(place) == before_.sha256) return;
+    if (base::sha256_file(fresh.path) != before_.sha256) return;
+    if (std::rename(fresh.path.c_str(), place.c_str()) != 0)
+      throw base::OutputError(place + ": cannot be written: " + std::strerror(errno));
+    fresh.path.clear();
+    summary_.why.push_back("the data of build " + std::to_string(current) + " were damaged and are whole again");
+  }
+
   /// The published build stays; what is known of its data may go on.
   UpdateSummary stay(int current, const DataState& fresh) {
     summary_.number = current;
@@ -406,18 +421,18 @@ class Updater {
   }
 
   /// Against the published build; where that is damaged, by its counts alone.
-  void compare(std::optional<int> current, const base::Memo& memo) {
+  void compare(std::optional<int> current, const base::Memo* memo) {
     progress_.begin("compare builds");
     const std::string fresh = region_.build(summary_.number);
     if (current) try {
-        summary_.changes = compare_builds(region_.build(*current), fresh, &memo);
+        summary_.changes = compare_builds(region_.build(*current), fresh, memo);
         summary_.gates = gates_of(summary_.changes, options_.region, false);
         compare_baseline(*current, fresh, memo);
         return;
       } catch (const base::InputError& error) {
         progress_.warn(fmt::format("{}. The new build is compared by its number of models alone", error.what()));
       }
-    summary_.changes = compare_builds("", fresh, &memo);
+    summary_.changes = compare_builds("", fresh, memo);
     summary_.gates = gates_of(summary_.changes, options_.region, true);
     if (!current) return;
     const auto models = [](const Json& record) {
@@ -446,10 +461,10 @@ class Updater {
   }
 
   /// Against slow drift.
-  void compare_baseline(int current, const std::string& fresh, const base::Memo& memo) {
+  void compare_baseline(int current, const std::string& fresh, const base::Memo* memo) {
     const int baseline = options_.region.baseline;
     if (baseline < 0 || baseline == current) return;
-    const std::vector<Gate> drift = drift_gates(compare_builds(region_.build(baseline), fresh, &memo), options_.region);
+    const std::vector<Gate> drift = drift_gates(compare_builds(region_.build(baseline), fresh, memo), options_.region);
     summary_.gates.insert(summary_.gates.end(), drift.begin(), drift.end());
   }
 
@@ -504,11 +519,15 @@ class Updater {
     summary_.tiles_built = built.tiles_built, summary_.tiles_kept = built.tiles_kept;
     summary_.tiles_built_for = built.tiles_built_for;
     std::set<std::string> kept_work = built.kept_work;
-    {
-      WorkCache cache(region_.cache(), program_identity(), progress_);
-      compare(current, memo_in(cache, program_identity()));
-      kept_work.merge(cache.used());
+    std::optional<WorkCache> cache;
+    try {
+      cache.emplace(region_.cache(), program_identity(), progress_);
+    } catch (const std::exception& error) {
+      progress_.warn(fmt::format("kept work is not looked after: {}", error.what()));
     }
+    const std::optional<base::Memo> memo =
+        cache ? std::optional(memo_in(*cache, program_identity())) : std::nullopt;
+    compare(current, memo ? &*memo : nullptr);
     if (!built.unaccounted.empty())
       summary_.gates.push_back(
           {"unaccounted", "objects that no stage decided on", static_cast<double>(built.unaccounted.size()), 0});
@@ -535,7 +554,10 @@ class Updater {
         progress_.warn("could not be removed: " + path);
       std::set<std::string> builds;
       for (const int passed : region_.passed()) builds.insert(RegionFolder::digits(passed));
-      keep_work_of(region_.cache(), RegionFolder::digits(number), kept_work, builds);
+      if (cache) {
+        kept_work.merge(cache->used());
+        keep_work_of(region_.cache(), RegionFolder::digits(number), kept_work, builds);
+      }
     } catch (const std::exception& error) {
       progress_.warn(fmt::format("build {} is published, but: {}", number, error.what()));
     }
@@ -632,7 +654,7 @@ RegionHealth check_region(const std::string& folder, bool break_lock, base::Prog
   progress.begin("check data");
   const std::optional<int> current = region.current();
   if (!current) {
-    health.data_whole = false, health.words += "no build is published\n";
+    health.published = false, health.words += "no build is published\n";
     return health;
   }
   const std::string data = region.data(*current);

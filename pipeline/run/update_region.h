@@ -65,7 +65,8 @@ UpdateSummary update_region(const UpdateOptions& options, base::Progress& progre
 
 /// What `blockrand region repair` finds, after it has removed damaged work.
 struct RegionHealth {
-  bool data_whole = true;  ///< of the published build
+  bool published = true;   ///< a build is
+  bool data_whole = true;  ///< its data are
   std::string words;       ///< a line each
 };
 /// \throws base::UsageError  no region; another run works on it

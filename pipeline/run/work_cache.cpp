@@ -26,6 +26,8 @@ namespace fs = std::filesystem;
 constexpr std::string_view kEntry = "entry", kNew = "new", kProgram = "program", kOpen = "open", kLock = "lock",
                            kOf = "of", kParts = "parts";
 constexpr std::size_t kHashLength = 64;  // hex digits of a SHA-256
+/// What `program` begins with: a folder is known by it.
+constexpr std::string_view kMark = "blockrand kept work\n";
 
 struct KeptFile {
   base::PublishedFile file;
@@ -39,8 +41,9 @@ struct Stored {
 
 std::optional<std::string> read_all(const std::string& path) {
   std::error_code error;
+  if (!fs::is_regular_file(fs::symlink_status(path, error))) return std::nullopt;
   std::ifstream file(path, std::ios::binary);
-  if (!file || !fs::is_regular_file(path, error)) return std::nullopt;
+  if (!file) return std::nullopt;
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
   if (file.bad()) return std::nullopt;
   return bytes;
@@ -73,7 +76,12 @@ std::optional<Stored> read_entry(const std::string& folder) {
   const std::string_view content = std::string_view(*bytes).substr(0, bytes->size() - kHashLength);
   if (base::sha256_of(content) != bytes->substr(content.size())) return std::nullopt;
   try {
-    return base::unpacked<Stored>(content);
+    Stored stored = base::unpacked<Stored>(content);
+    // Whoever can write there must not write elsewhere by it.
+    for (const KeptFile& kept : stored.files)
+      for (const fs::path& part : fs::path("/" + kept.file.path).relative_path())
+        if (part == ".." || kept.file.path.starts_with('/')) return std::nullopt;
+    return stored;
   } catch (const base::UnpackError&) {
     return std::nullopt;
   }
@@ -81,7 +89,9 @@ std::optional<Stored> read_entry(const std::string& folder) {
 
 bool file_is_whole(const std::string& path, const KeptFile& kept, bool read) {
   struct stat s {};
-  if (::stat(path.c_str(), &s) != 0 || static_cast<std::uint64_t>(s.st_size) != kept.file.bytes) return false;
+  if (::lstat(path.c_str(), &s) != 0 || !S_ISREG(s.st_mode) ||
+      static_cast<std::uint64_t>(s.st_size) != kept.file.bytes)
+    return false;
   if (!read && changed_of(s) == kept.changed) return true;
   try {
     return base::sha256_file(path) == kept.file.sha256;
@@ -96,21 +106,43 @@ bool entry_is_whole(const std::string& folder, const Stored& stored, bool read) 
   return true;
 }
 
-/// Calls `visit` with kind, key and path of each entry.
+bool is_hex(const std::string& text, std::size_t length) {
+  return text.size() == length && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+/// Calls `visit` with kind, key and path of each entry: of what looks like one. Links are not followed.
 template <class Visit>
 void for_each_entry(const std::string& folder, Visit&& visit) {
-  std::error_code error;
-  for (fs::directory_iterator kind(folder, error), end; !error && kind != end; kind.increment(error)) {
-    const std::string name = kind->path().filename().string();
-    if (!kind->is_directory(error) || name == kNew || name == kOf) continue;
-    for (fs::directory_iterator part(kind->path(), error); !error && part != end; part.increment(error)) {
-      if (!part->is_directory(error)) continue;
-      for (fs::directory_iterator entry(part->path(), error); !error && entry != end; entry.increment(error))
-        visit(name, entry->path().filename().string(), entry->path().string());
-      error.clear();
+  const auto folders_in = [](const fs::path& place) {
+    std::vector<fs::path> out;
+    std::error_code error;
+    for (fs::directory_iterator entry(place, error), end; !error && entry != end; entry.increment(error))
+      if (std::error_code no_status; fs::is_directory(entry->symlink_status(no_status))) out.push_back(entry->path());
+    return out;
+  };
+  for (const fs::path& kind : folders_in(folder)) {
+    const std::string name = kind.filename().string();
+    if (name == kNew || name == kOf) continue;
+    for (const fs::path& part : folders_in(kind)) {
+      if (!is_hex(part.filename().string(), 2)) continue;
+      for (const fs::path& entry : folders_in(part))
+        if (const std::string key = entry.filename().string(); is_hex(key, kHashLength))
+          visit(name, key, entry.string());
     }
-    error.clear();
   }
+}
+
+/// \returns how many
+std::uint64_t remove_damaged(const std::string& folder) {
+  std::uint64_t damaged = 0;
+  for_each_entry(folder, [&](const std::string&, const std::string&, const std::string& path) {
+    const std::optional<Stored> stored = read_entry(path);
+    if (stored && entry_is_whole(path, *stored, true)) return;
+    std::error_code error;
+    fs::remove_all(path, error);
+    ++damaged;
+  });
+  return damaged;
 }
 
 std::uint64_t count_entries(const std::string& folder) {
@@ -124,14 +156,26 @@ void remove(const std::string& path) {
   fs::remove_all(path, error);
 }
 
-/// \returns false where it is not there
-bool check_is_cache(const std::string& folder) {
+/// The program whose work it is; nothing where the folder is none of kept work.
+std::optional<std::string> program_of(const std::string& folder) {
+  std::optional<std::string> text = read_all(folder + "/" + std::string(kProgram));
+  if (!text || !text->starts_with(kMark)) return std::nullopt;
+  return text->substr(kMark.size());
+}
+
+/// \throws base::UsageError  it is there, and neither one of kept work nor empty (but for what a run that was killed while it made
+///                           one left)
+void check_is_cache(const std::string& folder) {
   std::error_code error;
-  if (!fs::exists(folder, error)) return false;
-  const bool is_cache = fs::is_directory(folder, error) &&
-                        (fs::is_empty(folder, error) || fs::exists(folder + "/" + std::string(kProgram), error));
-  if (!is_cache) throw base::UsageError(folder + ": is no folder of kept work, and not empty: name another one");
-  return true;
+  if (!fs::exists(folder, error) || program_of(folder)) return;
+  bool ours = fs::is_directory(folder, error);
+  for (fs::directory_iterator entry(folder, error), end; ours && !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code not_empty;
+    ours = name == kLock || name == kOpen || name == std::string(kProgram) + ".new" ||
+           (name == kNew && fs::is_empty(entry->path(), not_empty));
+  }
+  if (!ours) throw base::UsageError(folder + ": is no folder of kept work, and not empty: name another one");
 }
 
 }  // namespace
@@ -142,31 +186,35 @@ WorkCache::WorkCache(std::string folder, const std::string& program, base::Progr
   read_parts();
   if (mode_ == Mode::look) return;
   std::error_code error;
-  fs::create_directories(folder_ + "/" + std::string(kNew), error);
+  fs::create_directories(folder_, error);
   if (error) throw base::OutputError(folder_ + ": cannot be made: " + error.message());
   lock_ = ::open((folder_ + "/" + std::string(kLock)).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (lock_ < 0) throw base::OutputError(folder_ + ": cannot be written: " + std::strerror(errno));
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    const int reason = errno;
     ::close(lock_);
+    if (reason != EWOULDBLOCK) throw base::OutputError(folder_ + ": cannot be locked: " + std::strerror(reason));
     throw base::UsageError(folder_ + ": another run works with it. Wait for its end, or name another folder");
   }
-  remove(folder_ + "/" + std::string(kNew));
-  fs::create_directories(folder_ + "/" + std::string(kNew), error);
-  const std::string made_by = folder_ + "/" + std::string(kProgram), open = folder_ + "/" + std::string(kOpen);
-  doubtful_ = fs::exists(open, error);
   try {
-    write_all(open, "");
-    const std::string earlier = read_all(made_by).value_or("");
+    const std::optional<std::string> earlier = program_of(folder_);
     if (!program.empty() && earlier != program) {
-      if (const std::uint64_t n = count_entries(folder_); n > 0 && !earlier.empty())
-        progress.warn(
-            fmt::format("{}: the program is another one than that which kept the work of {} tiles there: they "
-                        "are built anew",
-                        folder_, base::with_thousands(n)));
-      // Whole or not at all: what names the program is what makes the folder one of kept work.
-      write_all(made_by + ".new", program);
+      if (const std::uint64_t n = earlier ? count_entries(folder_) : 0; n > 0)
+        progress.warn(fmt::format("{}: the program is another one than that which kept the {} pieces of work there: it "
+                                  "works all out anew",
+                                  folder_, base::with_thousands(n)));
+      const std::string made_by = folder_ + "/" + std::string(kProgram);
+      write_all(made_by + ".new", std::string(kMark) + program);
       fs::rename(made_by + ".new", made_by, error);
+      if (error) throw base::OutputError(made_by + ": cannot be written: " + error.message());
     }
+    remove(folder_ + "/" + std::string(kNew));
+    fs::create_directories(folder_ + "/" + std::string(kNew), error);
+    if (error) throw base::OutputError(folder_ + ": cannot be written: " + error.message());
+    const std::string open = folder_ + "/" + std::string(kOpen);
+    // The run before did not end: its machine may have lost what it had not written to the disk.
+    if (fs::exists(open, error)) damaged_ += remove_damaged(folder_);
+    write_all(open, "");
   } catch (const base::OutputError&) {
     ::close(lock_);
     throw;
@@ -184,6 +232,8 @@ void WorkCache::read_parts() {
 WorkCache::~WorkCache() {
   if (mode_ == Mode::look) return;
   std::error_code error;
+  // A run that fails knows of some tiles alone.
+  if (std::uncaught_exceptions() > 0) parts_.merge(parts_before_);
   if (!parts_.empty()) try {
       const std::string place = folder_ + "/" + std::string(kParts);
       write_all(place + ".new", base::packed(parts_));
@@ -191,7 +241,8 @@ WorkCache::~WorkCache() {
     } catch (const base::OutputError&) {
       // The next run does not know why, and no more.
     }
-  fs::remove(folder_ + "/" + std::string(kOpen), error);
+  // Only what the disk has is known to be whole.
+  if (::syncfs(lock_) == 0) fs::remove(folder_ + "/" + std::string(kOpen), error);
   ::close(lock_);
 }
 
@@ -204,7 +255,7 @@ std::optional<WorkCache::Found> WorkCache::find(std::string_view kind, const std
   std::error_code error;
   if (!fs::exists(folder, error)) return std::nullopt;
   std::optional<Stored> stored = read_entry(folder);
-  if (!stored || !entry_is_whole(folder, *stored, doubtful_)) {
+  if (!stored || !entry_is_whole(folder, *stored, false)) {
     if (mode_ == Mode::work) remove(folder);
     ++damaged_;
     return std::nullopt;
@@ -337,8 +388,7 @@ EntrySize size_of(const std::string& entry) {
 }
 
 void require(const std::string& folder) {
-  std::error_code error;
-  if (!fs::exists(folder + "/" + std::string(kProgram), error))
+  if (!program_of(folder))
     throw base::InputError(folder, "", "holds no kept work",
                            "Name the folder cache/ of a region, or that of build --cache");
 }
@@ -348,7 +398,7 @@ void require(const std::string& folder) {
 CacheFigures cache_figures(const std::string& folder) {
   require(folder);
   CacheFigures figures;
-  figures.program = read_all(folder + "/" + std::string(kProgram)).value_or("");
+  figures.program = program_of(folder).value_or("");
   for_each_entry(folder, [&](const std::string&, const std::string&, const std::string& path) {
     const EntrySize size = size_of(path);
     ++figures.entries;
@@ -360,13 +410,7 @@ CacheFigures cache_figures(const std::string& folder) {
 CacheFigures verify_cache(const std::string& folder, base::Progress& progress) {
   require(folder);
   const WorkCache opened(folder, "", progress);
-  std::uint64_t damaged = 0;
-  for_each_entry(folder, [&](const std::string&, const std::string&, const std::string& path) {
-    const std::optional<Stored> stored = read_entry(path);
-    if (stored && entry_is_whole(path, *stored, true)) return;
-    remove(path);
-    ++damaged;
-  });
+  const std::uint64_t damaged = opened.damaged() + remove_damaged(folder);
   CacheFigures figures = cache_figures(folder);
   figures.damaged = figures.removed = damaged;
   return figures;
@@ -385,7 +429,8 @@ CacheFigures prune_cache(const std::string& folder, std::uint64_t bytes, base::P
   for_each_entry(folder, [&](const std::string&, const std::string&, const std::string& path) {
     struct stat s {};
     if (::stat(path.c_str(), &s) != 0) return;
-    entries.push_back({changed_of(s), path, size_of(path).bytes});
+    const EntrySize size = size_of(path);
+    entries.push_back({changed_of(s), path, size.bytes - size.shared});
     sum += entries.back().bytes;
   });
   std::sort(entries.begin(), entries.end(),

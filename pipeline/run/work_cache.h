@@ -1,7 +1,7 @@
 // Work of earlier runs, kept on disk by what it was made from: a folder of entries, each named by the hash of everything that it
 // depends on, so that none is ever wrong, only of no more use.
 //
-//   cache/program            whose work it is (program_identity)
+//   cache/program            the mark of such a folder; whose work it is (program_identity)
 //   cache/open               there while a run works: one that did not end leaves it
 //   cache/<kind>/ab/<key>/   an entry: `entry` (its bytes with their hash), 0, 1, … (its files, hard links to those of builds)
 //   cache/new/               entries in the making
@@ -37,7 +37,8 @@ class WorkCache {
     work,  ///< alone: with the lock
     look   ///< beside others: nothing is locked, written or removed
   };
-  /// Opens the folder, makes it where it is missing, and says what a newer program leaves of no use.
+  /// Opens the folder, makes it where it is missing, and says what a newer program leaves of no use. After a run that did not end
+  /// all of it is read, and what is damaged removed.
   /// \throws base::OutputError  it cannot be written
   /// \throws base::UsageError   another process works with it, or it is no such folder
   WorkCache(std::string folder, const std::string& program, base::Progress& progress, Mode mode = Mode::work);
@@ -52,7 +53,7 @@ class WorkCache {
     std::vector<std::string> places;  ///< parallel to `files`: where their content lies
   };
   /// An entry; nothing where there is none, or a damaged one, which is removed. Contents of files are read where they may have
-  /// changed since: their size or time differs, or the run before did not end.
+  /// changed since: their time differs.
   std::optional<Found> find(std::string_view kind, const std::string& key);
 
   /// Keeps an entry. Where that fails (the disk is full), the run goes on without, and is told so at its end.
@@ -80,7 +81,6 @@ class WorkCache {
   std::string folder_;
   Mode mode_;
   int lock_ = -1;
-  bool doubtful_ = false;  ///< the run before did not end
   mutable std::mutex mutex_;
   std::set<std::string> used_;
   std::map<std::string, std::vector<std::uint64_t>> parts_before_, parts_;  ///< by piece
@@ -110,7 +110,8 @@ struct CacheFigures {
 CacheFigures cache_figures(const std::string& folder);
 /// Reads everything and removes entries that are damaged. \throws as WorkCache
 CacheFigures verify_cache(const std::string& folder, base::Progress& progress);
-/// Removes entries, those first that were of use the longest ago, until the others take at most `bytes`. \throws as WorkCache
+/// Removes entries, those first that were of use the longest ago, until the others take at most `bytes` of their own.
+/// \throws as WorkCache
 CacheFigures prune_cache(const std::string& folder, std::uint64_t bytes, base::Progress& progress);
 
 }  // namespace blockrand::run

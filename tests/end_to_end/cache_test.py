@@ -9,7 +9,7 @@ import signal
 import subprocess
 import time
 
-from blockrand_run import SAMPLE, SOURCE, BuildTest, Setup, blockrand, main, read_json, stray_siblings
+from blockrand_run import SAMPLE, SOURCE, BuildTest, Setup, blockrand, hashes, main, read_json
 from interruption_test import small_disk
 from osm_files import read_xml, town, write_xml
 from region_run import Map
@@ -188,12 +188,95 @@ class Cache(BuildTest):
         cache = self.path('older')
         self.build(SAMPLE, 'older.a', *OPTIONS, '--cache', cache)
         with open(os.path.join(cache, 'program'), 'w', encoding='utf-8') as f:
-            f.write('0.0.1 0000')
+            f.write('blockrand kept work\n0.0.1 0000')
         self.build(SAMPLE, 'older.b', *OPTIONS, '--cache', cache)
         self.assertIn('another one', self.last.err)
         self.assertIn(str(len(self.entries(cache))), self.last.err.replace(',', ''))
         self.build(SAMPLE, 'older.b', *OPTIONS, '--cache', cache, '--force')
         self.assertNotIn('another one', self.last.err)
+
+    def test_a_folder_of_others_loses_nothing(self):
+        """Not even one that looks a little like kept work, nor what a link in kept work leads to."""
+        others = self.path('others')
+        for path in ('src/lib/deep/x', 'src/lib/main.c', 'new/sub/precious', 'program'):
+            os.makedirs(os.path.dirname(os.path.join(others, path)), exist_ok=True)
+            with open(os.path.join(others, path), 'w', encoding='utf-8') as f:
+                f.write('mine')
+        before = hashes(others)
+        for what in (('cache', 'stat'), ('cache', 'verify'), ('cache', 'prune', '--keep-bytes', '0')):
+            self.refused(blockrand(*what, others), 2, 'no kept work')
+        self.refused(blockrand('build', SAMPLE, '-o', self.path('out'), '--cache', others), 1, 'not empty', target=self.path('out'))
+        self.assertEqual(hashes(others), before)
+        cache = self.path('linked')
+        self.build(SAMPLE, 'linked.a', *OPTIONS, '--cache', cache)
+        os.symlink(others, os.path.join(cache, 'photos'))
+        os.makedirs(os.path.join(cache, 'notes', 'ab', 'letters'))
+        self.assertEqual(blockrand('cache', 'verify', cache).code, 0)
+        self.assertEqual(blockrand('cache', 'prune', cache, '--keep-bytes', '0').code, 0)
+        self.assertEqual(hashes(others), before)
+        self.assertTrue(os.path.isdir(os.path.join(cache, 'notes', 'ab', 'letters')))
+
+    def test_links_in_kept_work_are_not_followed(self):
+        cache, outside = self.path('trap'), self.path('outside')
+        plain = self.build(SAMPLE, 'trap.plain', *OPTIONS)
+        self.build(SAMPLE, 'trap.a', *OPTIONS, '--cache', cache)
+        for number, path in enumerate(sorted(glob.glob(os.path.join(cache, 'tiles', '??', '*', '0')))):
+            shutil.copy2(path, f'{outside}{number}')
+            os.remove(path)
+            os.symlink(f'{outside}{number}', path)
+        kept = self.build(SAMPLE, 'trap.b', *OPTIONS, '--cache', cache)
+        self.same_files(plain, kept)
+        self.assertFalse(any(os.path.islink(os.path.join(kept, p)) for p in hashes(kept)))
+
+    def test_killed_while_it_was_made(self):
+        for left in (('new',), ('new', 'lock', 'open'), ('lock', 'program.new')):
+            with self.subTest(left):
+                cache = self.path('unmade' + '-'.join(left))
+                os.makedirs(cache)
+                for name in left:
+                    if name == 'new':
+                        os.mkdir(os.path.join(cache, name))
+                    else:
+                        with open(os.path.join(cache, name), 'wb'):
+                            pass
+                self.build(SAMPLE, 'unmade', *OPTIONS, '--force', '--cache', cache)
+                self.assertEqual(tiles(self.build(SAMPLE, 'unmade', *OPTIONS, '--force', '--cache', cache)), (0, 3))
+
+    def test_doubt_outlives_runs_that_fail(self):
+        cache = self.path('doubt')
+        plain = self.build(SAMPLE, 'doubt.plain', *OPTIONS)
+        self.build(SAMPLE, 'doubt.first', *OPTIONS, '--cache', cache)
+        shutil.rmtree(self.path('doubt.first'))
+        for path in glob.glob(os.path.join(cache, 'tiles', '??', '*', '0')):
+            stamp = os.stat(path)
+            with open(path, 'r+b') as f:
+                f.write(b'\0' * 16)
+            os.utime(path, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
+        with open(os.path.join(cache, 'open'), 'wb'):
+            pass
+        with open(self.path('cut.osm'), 'w', encoding='utf-8') as f:
+            f.write('<osm version="0.6"><node')
+        self.assertEqual(blockrand('build', self.path('cut.osm'), '-o', self.path('doubt.cut'), '--cache', cache).code, 2)
+        self.same_files(plain, self.build(SAMPLE, 'doubt.again', *OPTIONS, '--cache', cache))
+
+    def test_terrain_by_way_of_others(self):
+        """A VRT is the same file when the raster behind it is another one."""
+        def raster(height):
+            text = 'ncols 20\nnrows 20\nxllcorner 11.02\nyllcorner 51.46\ncellsize 0.001\n' + '\n'.join(' '.join([f'{height}.0'] * 20) for _ in range(20))
+            with open(self.path('ground.asc'), 'w', encoding='utf-8') as f:
+                f.write(text + '\n')
+        raster(50)
+        with open(self.path('ground.vrt'), 'w', encoding='utf-8') as f:
+            f.write('<VRTDataset rasterXSize="20" rasterYSize="20"><SRS>EPSG:4326</SRS><GeoTransform>11.02, 0.001, 0, 51.48, 0, -0.001</GeoTransform>'
+                    '<VRTRasterBand dataType="Float32" band="1"><SimpleSource><SourceFilename relativeToVRT="1">ground.asc</SourceFilename>'
+                    '<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>')
+        options = ('--terrain', self.path('ground.vrt'), '--terrain-height-reference', 'sea-level', *OPTIONS)
+        cache = self.path('heights')
+        self.build(SAMPLE, 'at50', *options, '--cache', cache)
+        raster(90)
+        self.same_files(self.build(SAMPLE, 'at90.clean', *options), self.build(SAMPLE, 'at90', *options, '--cache', cache))
+        self.assertEqual(tiles(self.path('at90')), (3, 0))
+        self.assertNotEqual(hashes(self.path('at50'), 'tiles'), hashes(self.path('at90'), 'tiles'))
 
     def test_what_cannot_be_kept_is_said(self):
         cache = self.path('single')
@@ -215,8 +298,10 @@ class Cache(BuildTest):
         with open(os.path.join(cache, 'lock'), 'r+b') as f:
             fcntl.flock(f, fcntl.LOCK_EX)
             self.refused(blockrand('build', SAMPLE, '-o', self.path('out'), '--cache', cache), 1, 'another run', target=self.path('out'))
-        self.refused(blockrand('build', SAMPLE, '-o', self.path('out'), '--cache', '/proc/no'), 4, '/proc/no', target=self.path('out'))
-        self.assertEqual(stray_siblings(self.path('out')), [])
+        for inside in (self.path('out'), self.path('out', 'cache')):
+            self.refused(blockrand('build', SAMPLE, '-o', self.path('out'), '--cache', inside), 1, 'output folder', target=self.path('out'))
+        self.build(SAMPLE, 'no.cache', *OPTIONS, '--cache', '/proc/no')
+        self.assertIn('no work is kept', self.last.err)
 
     def test_a_full_disk_stops_keeping_not_building(self):
         with small_disk(self.path('disk'), 'size=200k') as disk:

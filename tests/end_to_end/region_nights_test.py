@@ -61,8 +61,11 @@ class Nights(RegionTest):
         for path in glob.glob(os.path.join(folder, 'cache', 'tiles', '??', '*', 'entry')):
             os.truncate(path, 3)
         self.refused(blockrand('region', 'repair', folder), 2, 'damaged', 'EXTRACT')
-        run = blockrand('region', 'repair', folder, self.map_.write(self.path('again.osm')))
+        run = blockrand('region', 'repair', folder, SAMPLE)
         self.assertEqual(run.code, 0, run)
+        self.stands(folder, '000001')
+        self.assertIn('data of build 1: whole', blockrand('region', 'repair', folder).out)
+        self.update(folder, self.changes)
         self.stands(folder, '000002')
         self.refused(blockrand('region', 'repair', self.path('nowhere')), 1, 'no region')
         self.refused(blockrand('region', 'polish', folder), 1, 'polish')

@@ -81,7 +81,7 @@ TEST_F(WorkCaches, WhoLooksChangesNothing) {
   cache.keep("tiles", kOther, "bytes", {}, "");
   EXPECT_TRUE(fs::exists(entry));
   EXPECT_FALSE(fs::exists(folder_ + "/tiles/bc"));
-  EXPECT_EQ(read(folder_ + "/program"), "p");
+  EXPECT_EQ(read(folder_ + "/program"), "blockrand kept work\np");
 }
 
 TEST_F(WorkCaches, FoldersOfOthersAreRefused) {
