@@ -80,7 +80,8 @@ const std::string& checked_output(const BuildOptions& options) {
     const std::string out = std::filesystem::weakly_canonical(options.output, error).string() + "/",
                       cache = std::filesystem::weakly_canonical(options.cache, error).string() + "/";
     if (cache.starts_with(out))
-      throw base::UsageError("--cache " + options.cache + " lies in the output folder, which is replaced: name another one");
+      throw base::UsageError("--cache " + options.cache +
+                             " lies in the output folder, which is replaced: name another one");
   }
   return options.output;
 }

@@ -525,8 +525,7 @@ class Updater {
     } catch (const std::exception& error) {
       progress_.warn(fmt::format("kept work is not looked after: {}", error.what()));
     }
-    const std::optional<base::Memo> memo =
-        cache ? std::optional(memo_in(*cache, program_identity())) : std::nullopt;
+    const std::optional<base::Memo> memo = cache ? std::optional(memo_in(*cache, program_identity())) : std::nullopt;
     compare(current, memo ? &*memo : nullptr);
     if (!built.unaccounted.empty())
       summary_.gates.push_back(

@@ -89,8 +89,7 @@ std::optional<Stored> read_entry(const std::string& folder) {
 
 bool file_is_whole(const std::string& path, const KeptFile& kept, bool read) {
   struct stat s {};
-  if (::lstat(path.c_str(), &s) != 0 || !S_ISREG(s.st_mode) ||
-      static_cast<std::uint64_t>(s.st_size) != kept.file.bytes)
+  if (::lstat(path.c_str(), &s) != 0 || !S_ISREG(s.st_mode) || static_cast<std::uint64_t>(s.st_size) != kept.file.bytes)
     return false;
   if (!read && changed_of(s) == kept.changed) return true;
   try {
@@ -200,9 +199,10 @@ WorkCache::WorkCache(std::string folder, const std::string& program, base::Progr
     const std::optional<std::string> earlier = program_of(folder_);
     if (!program.empty() && earlier != program) {
       if (const std::uint64_t n = earlier ? count_entries(folder_) : 0; n > 0)
-        progress.warn(fmt::format("{}: the program is another one than that which kept the {} pieces of work there: it "
-                                  "works all out anew",
-                                  folder_, base::with_thousands(n)));
+        progress.warn(
+            fmt::format("{}: the program is another one than that which kept the {} pieces of work there: it "
+                        "works all out anew",
+                        folder_, base::with_thousands(n)));
       const std::string made_by = folder_ + "/" + std::string(kProgram);
       write_all(made_by + ".new", std::string(kMark) + program);
       fs::rename(made_by + ".new", made_by, error);
