@@ -15,6 +15,8 @@ from osm_files import read_xml, town, write_xml
 from region_run import Map
 
 OPTIONS = ('--jobs', '2')
+QUICK = ('--jobs', '2', '--lod', '1', '--formats', 'gltf,gpkg', '--no-report')
+KILLED = ('--jobs', '2', '--lod', '3', '--formats', 'gltf,cityjson', '--no-report')
 
 
 def tiles(folder):
@@ -58,19 +60,18 @@ class Cache(BuildTest):
 
     def test_killed_runs_are_taken_up(self):
         """Ten runs that die at random instants; what they kept is whole, and the next ones go on with it."""
-        plain = self.build(self.town, 'whole', '--lod', '3', *OPTIONS)
+        plain = self.build(self.town, 'whole', *KILLED)
         all_tiles = sum(tiles(plain))
         cache, rng = self.path('killed'), random.Random(3)
         begun = time.monotonic()
-        self.build(self.town, 'measured', '--lod', '3', *OPTIONS)
+        self.build(self.town, 'measured', *KILLED)
         lasts = time.monotonic() - begun
         for _ in range(10):
-            run = subprocess.Popen([Setup.program, 'build', self.town, '-o', self.path('dies'), '--lod', '3', '--force', '--progress', 'none',
-                                    *OPTIONS, '--cache', cache], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            run = subprocess.Popen([Setup.program, 'build', self.town, '-o', self.path('dies'), '--force', '--progress', 'none', *KILLED, '--cache', cache], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             time.sleep(rng.uniform(0, lasts))
             run.send_signal(signal.SIGKILL)
             run.wait()
-        last = self.build(self.town, 'dies', '--lod', '3', *OPTIONS, '--force', '--cache', cache)
+        last = self.build(self.town, 'dies', *KILLED, '--force', '--cache', cache)
         self.same_files(plain, last)
         self.assertEqual(sum(tiles(last)), all_tiles)
         self.assertGreater(tiles(last)[1], 0, 'nothing of ten runs was kept')
@@ -78,7 +79,7 @@ class Cache(BuildTest):
 
     def test_damaged_entries(self):
         rng = random.Random(8)
-        plain, cache = self.build(SAMPLE, 'sound', *OPTIONS), self.path('damaged')
+        plain, cache = self.build(SAMPLE, 'sound', *QUICK), self.path('damaged')
 
         def flip(path):
             with open(path, 'r+b') as f:
@@ -106,15 +107,15 @@ class Cache(BuildTest):
             for what in ('entry', '[0-9]*'):
                 with self.subTest(f'{hurt.__name__} {what}'):
                     shutil.rmtree(cache, ignore_errors=True)
-                    self.build(SAMPLE, 'first', *OPTIONS, '--force', '--cache', cache)
+                    self.build(SAMPLE, 'first', *QUICK, '--force', '--cache', cache)
                     shutil.rmtree(self.path('first'))  # what is hurt is no file of a build
                     for path in glob.glob(os.path.join(cache, '*', '??', '*', what)):
                         hurt(path)
-                    second = self.build(SAMPLE, 'second', *OPTIONS, '--force', '--cache', cache)
+                    second = self.build(SAMPLE, 'second', *QUICK, '--force', '--cache', cache)
                     self.assertIn('damaged', self.last.err)
                     self.same_files(plain, second)
                     self.assertEqual(tiles(second), (3, 0))
-                    third = self.build(SAMPLE, 'second', *OPTIONS, '--force', '--cache', cache)
+                    third = self.build(SAMPLE, 'second', *QUICK, '--force', '--cache', cache)
                     self.same_files(plain, third)
                     self.assertEqual(tiles(third), (0, 3))
 
