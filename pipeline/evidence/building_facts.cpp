@@ -9,6 +9,7 @@
 #include "pipeline/base/memo.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/portable_math.h"
+#include "pipeline/evidence/facts_around.h"
 #include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/model/vector.h"
 
@@ -31,12 +32,8 @@ constexpr double kSectionStep = 1;      ///< m between sections across a house: 
 constexpr double kFrontCosine = 0.94;   ///< of 20 degrees: wall segments of one front
 constexpr double kRunDepth = 0.35;      ///< quantile of the first runs behind the front: its depth
                                         ///< (docs/style_measures.md 2.2)
-constexpr double kWingRatio = 1.5;      ///< depth ratio from which a house has wings (docs/style_measures.md 2.2)
 constexpr double kMinContact = 1.5;     ///< m. Shorter common walls tie no row together
-constexpr double kSameWidth = 0.75;     ///< m, and
-constexpr double kSameArea = 0.10;      ///< of the area: houses that repeat each other
 constexpr std::int32_t kTownCells = 2;  ///< cells to each side of a building's own that make its town
-constexpr int kCircleCorners = 24;
 
 float as_float(double v) { return static_cast<float>(v); }
 
@@ -45,12 +42,6 @@ std::uint64_t hash_of(std::string_view text) {
   std::uint64_t h = 1469598103934665603ull;
   for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
   return h == 0 ? 1 : h;
-}
-
-/// Of the values, which must not be empty: the one with `share` of the others below it. Sorts them.
-double quantile(std::vector<double>& values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
 // ---- the building alone ---------------------------------------------------------------------------------------------
@@ -210,188 +201,6 @@ void measure_situation(const Building& building, Own& own) {
   }
 }
 
-// ---- neighbours -----------------------------------------------------------------------------------------------------
-
-/// m² of a circle that lie within a convex counter-clockwise ring; the whole circle where there is no ring.
-double covered_circle(Point2 centre, double radius, std::span<const Point2> ring) {
-  const double whole = 0.5 * kCircleCorners * radius * radius * base::sin(2 * base::kPi / kCircleCorners);
-  if (ring.size() < 3) return whole;
-  bool inside = true;
-  for (std::size_t i = 0; i < ring.size() && inside; ++i) {
-    const Point2 a = ring[i], d = ring[(i + 1) % ring.size()] - a;
-    inside = cross(d, centre - a) >= radius * std::sqrt(dot(d, d));
-  }
-  if (inside) return whole;
-  std::vector<Point2> shape, next;
-  for (int k = 0; k < kCircleCorners; ++k) {
-    const double turn = 2 * base::kPi * k / kCircleCorners;
-    shape.push_back({centre.x + radius * base::cos(turn), centre.y + radius * base::sin(turn)});
-  }
-  for (std::size_t i = 0; i < ring.size() && !shape.empty(); ++i) {
-    const Point2 a = ring[i], d = ring[(i + 1) % ring.size()] - a;
-    next.clear();
-    for (std::size_t k = 0; k < shape.size(); ++k) {
-      const Point2 p = shape[k], q = shape[(k + 1) % shape.size()];
-      const double sp = cross(d, p - a), sq = cross(d, q - a);
-      if (sp >= 0) next.push_back(p);
-      if ((sp >= 0) != (sq >= 0))
-        next.push_back({p.x + (q.x - p.x) * sp / (sp - sq), p.y + (q.y - p.y) * sp / (sp - sq)});
-    }
-    shape.swap(next);
-  }
-  return shape.size() < 3 ? 0 : geometry::signed_area(shape);
-}
-
-/// m² from which the part of a circle within the data says anything: a tenth of it.
-constexpr double kMinCircle = 0.1;
-
-class Around {
- public:
-  Around(const FactsExtract& facts, const footprints::FootprintStore& store, const context::ContextExtract& context,
-         const PlaceIndex& houses, const PlaceIndex& small)
-      : facts_(facts), store_(store), context_(context), houses_(houses), small_(small) {}
-
-  /// What the buildings around say; the building's own features are known.
-  void measure(std::uint32_t building, FeatureVector& f) {
-    const BuildingPlace& own = facts_.places[building];
-    houses_.near(own.place, kNearReach, near_);
-    measure_near(building, f);
-    measure_row(building, f);
-    measure_street(own, f);
-    if (facts_.places[building].street == 0) measure_gap(building, f);
-  }
-
- private:
-  float feature(std::uint32_t b, Feature f) const { return facts_.features[b][f]; }
-
-  void median(Feature from, Feature to, std::uint32_t building, FeatureVector& f) {
-    values_.clear();
-    for (const std::uint32_t b : near_)
-      if (b != building && facts_.features[b].has(from)) values_.push_back(static_cast<double>(feature(b, from)));
-    if (!values_.empty()) f[to] = as_float(quantile(values_, 0.5));
-  }
-
-  void measure_near(std::uint32_t building, FeatureVector& f) {
-    const Point2 place = facts_.places[building].place;
-    const double circle = base::kPi * kNearReach * kNearReach;
-    const double covered = covered_circle(place, kNearReach, context_.coverage) / circle;
-    double n = 0, area = 0, squares = 0, party = 0, corners = 0, rear = 0, wings = 0, fronts = 0;
-    for (const std::uint32_t b : near_) {
-      if (b == building) continue;
-      const FeatureVector& o = facts_.features[b];
-      const double a = static_cast<double>(o[Feature::area]);
-      ++n;
-      area += a;
-      squares += a * a;
-      if (o.has(Feature::party_share)) party += static_cast<double>(o[Feature::party_share]);
-      corners += static_cast<double>(o[Feature::corners]);
-      const BuildingPosition p = facts_.places[b].position;
-      if (p == BuildingPosition::rear_building || p == BuildingPosition::side_wing) ++rear;
-      if (o.has(Feature::depth_ratio)) {
-        ++fronts;
-        if (static_cast<double>(o[Feature::depth_ratio]) >= kWingRatio) ++wings;
-      }
-    }
-    if (covered >= kMinCircle) {
-      const double own = facts_.places[building].house ? static_cast<double>(f[Feature::area]) : 0;
-      f[Feature::around_count] = as_float(n / covered);
-      f[Feature::around_built] = as_float((area + own) / circle / covered);
-    }
-    small_.near(place, kNearReach, others_);
-    if (n > 0) {
-      const double mean = area / n;
-      f[Feature::around_spread] = as_float(std::sqrt(std::max(0.0, squares / n - mean * mean)) / mean);
-      f[Feature::around_party_share] = as_float(party / n);
-      f[Feature::around_corners] = as_float(corners / n);
-      f[Feature::around_rear] = as_float(rear / n);
-      f[Feature::around_small] = as_float(static_cast<double>(others_.size()) / n);
-    }
-    if (fronts > 0) f[Feature::around_depth_ratio] = as_float(wings / fronts);
-    median(Feature::area, Feature::around_area, building, f);
-    median(Feature::frontage, Feature::around_frontage, building, f);
-    median(Feature::front_depth, Feature::around_depth, building, f);
-    median(Feature::elongation, Feature::around_elongation, building, f);
-  }
-
-  /// Houses that touch within the reach, one through the other.
-  void measure_row(std::uint32_t building, FeatureVector& f) {
-    std::vector<std::uint32_t>& row = others_;
-    row.assign(1, building);
-    for (std::size_t i = 0; i < row.size(); ++i)
-      for (const Contact& c : facts_.contacts_of(row[i]))
-        if (std::binary_search(near_.begin(), near_.end(), c.other) &&
-            std::find(row.begin(), row.end(), c.other) == row.end())
-          row.push_back(c.other);
-    std::sort(row.begin(), row.end());
-    double area = 0;
-    points_.clear();
-    for (const std::uint32_t b : row) {
-      area += static_cast<double>(feature(b, Feature::area));
-      store_.for_each_ring(b, [&](std::span<const Point2> ring, bool hole) {
-        if (!hole) points_.insert(points_.end(), ring.begin(), ring.end());
-      });
-    }
-    f[Feature::row_count] = as_float(static_cast<double>(row.size()));
-    f[Feature::row_area] = as_float(area);
-    const std::vector<Point2> hull = context::coverage_of(points_);
-    if (hull.size() >= 3) {
-      const Point2 axis = geometry::long_axis(hull);
-      const auto along = geometry::extent_along(hull, axis), across = geometry::extent_along(hull, {-axis.y, axis.x});
-      const double length = along.maximum - along.minimum, breadth = across.maximum - across.minimum;
-      f[Feature::row_length] = as_float(length);
-      f[Feature::row_breadth] = as_float(breadth);
-      if (length * breadth > 0) f[Feature::row_fill] = as_float(area / (length * breadth));
-    }
-    double alike = 0, touching = 0;
-    for (const Contact& c : facts_.contacts_of(building)) {
-      const FeatureVector& o = facts_.features[c.other];
-      ++touching;
-      const double a = static_cast<double>(f[Feature::area]), b = static_cast<double>(o[Feature::area]);
-      const bool widths = f.has(Feature::frontage) && o.has(Feature::frontage);
-      const double apart =
-          widths ? std::fabs(static_cast<double>(f[Feature::frontage] - o[Feature::frontage])) : kSameWidth + 1;
-      if (apart <= kSameWidth && std::fabs(a - b) <= kSameArea * std::max(a, b)) ++alike;
-    }
-    f[Feature::neighbours] = as_float(touching);
-    if (touching > 0) f[Feature::row_alike] = as_float(alike / touching);
-  }
-
-  void measure_street(const BuildingPlace& own, FeatureVector& f) {
-    if (own.street == 0) return;
-    values_.clear();
-    for (const std::uint32_t b : near_)
-      if (facts_.places[b].street == own.street && facts_.features[b].has(Feature::street_distance))
-        values_.push_back(static_cast<double>(feature(b, Feature::street_distance)));
-    if (!values_.empty()) f[Feature::street_width] = as_float(2 * quantile(values_, 0.5));
-  }
-
-  void measure_gap(std::uint32_t building, FeatureVector& f) {
-    std::vector<Point2>& own = points_;
-    own.clear();
-    store_.for_each_ring(building,
-                         [&](std::span<const Point2> ring, bool) { own.insert(own.end(), ring.begin(), ring.end()); });
-    double best = kNearReach;
-    for (const std::uint32_t b : near_) {
-      if (b == building || facts_.places[b].street == 0 || !store_[b].box.near(store_[building].box, best)) continue;
-      store_.for_each_ring(b, [&](std::span<const Point2> ring, bool) {
-        for (std::size_t i = 0; i < ring.size(); ++i)
-          for (const Point2 p : own)
-            best = std::min(best, geometry::distance_to_segment(p, ring[i], ring[(i + 1) % ring.size()]));
-      });
-    }
-    if (best < kNearReach) f[Feature::front_gap] = as_float(best);
-  }
-
-  const FactsExtract& facts_;
-  const footprints::FootprintStore& store_;
-  const context::ContextExtract& context_;
-  const PlaceIndex& houses_;
-  const PlaceIndex& small_;
-  std::vector<std::uint32_t> near_, others_;
-  std::vector<double> values_;
-  std::vector<Point2> points_;
-};
-
 // ---- blocks and town ------------------------------------------------------------------------------------------------
 
 void measure_blocks(const context::ContextExtract& context, FactsExtract& facts) {
@@ -481,34 +290,6 @@ void pack_labelled(const model::Extract& extract, const footprints::FootprintSto
         << context::address_street(extract, extract.buildings[store[n].lead].tags);
   }
   if (!box.empty()) context::pack(vicinity.vicinity_of(box), out);
-}
-
-/// What Around reads of buildings of a run: their own, and all with their middle within its reach of the box of
-/// theirs.
-void pack_around(const FactsExtract& facts, const footprints::FootprintStore& store,
-                 const context::ContextExtract& context, const PlaceIndex& houses, const PlaceIndex& small,
-                 std::size_t first, std::size_t last, base::Packer& out) {
-  const auto pack_one = [&](std::uint32_t b) {
-    const BuildingPlace& place = facts.places[b];
-    out << store[b].id << facts.features[b] << place.place << place.street << place.position << place.house
-        << store[b].box;
-    store.for_each_ring(b, [&](std::span<const Point2> ring, bool hole) { out << hole << ring; });
-    out << place.contacts.count;
-    for (const Contact& c : facts.contacts_of(b)) out << store[c.other].id << c.length;
-  };
-  out << context.coverage;
-  geometry::PlanBox box;
-  for (std::size_t b = first; b < last; ++b) {
-    pack_one(static_cast<std::uint32_t>(b));
-    if (facts.features[b].has(Feature::area)) box.include(facts.places[b].place);
-  }
-  if (box.empty()) return;
-  std::set<std::uint32_t> heard;
-  for (const PlaceIndex* index : {&houses, &small})
-    for (const std::uint32_t b : index->around(box, kNearReach)) heard.insert(b);
-  out << static_cast<std::uint64_t>(heard.size());
-  for (const std::uint32_t b : heard)
-    if (b < first || b >= last) pack_one(b);
 }
 
 /// Buildings are looked at in runs of at most this many.
@@ -630,21 +411,11 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
   const PlaceIndex house_index(facts, houses), small_index(facts, small);
   // Into a copy: neighbours read what was measured alone, and nothing that this loop writes.
   std::vector<FeatureVector> out = facts.features;
+  const AroundInputs inputs{facts, store, context, house_index, small_index};
   const auto around = [&](std::size_t i) {
-    const auto measured_around = [&] {
-      Around finder(facts, store, context, house_index, small_index);
-      std::vector<FeatureVector> run(out.begin() + static_cast<std::ptrdiff_t>(starts[i]),
-                                     out.begin() + static_cast<std::ptrdiff_t>(starts[i + 1]));
-      for (std::size_t k = 0; k < run.size(); ++k)
-        if (run[k].has(Feature::area)) finder.measure(static_cast<std::uint32_t>(starts[i] + k), run[k]);
-      return run;
-    };
     const auto run = base::remembered<std::vector<FeatureVector>>(
-        memo, "around",
-        [&](base::Packer& packer) {
-          pack_around(facts, store, context, house_index, small_index, starts[i], starts[i + 1], packer);
-        },
-        measured_around);
+        memo, "around", [&](base::Packer& packer) { pack_around(inputs, starts[i], starts[i + 1], packer); },
+        [&] { return measured_around(inputs, starts[i], starts[i + 1]); });
     std::copy(run.begin(), run.end(), out.begin() + static_cast<std::ptrdiff_t>(starts[i]));
   };
   base::ordered_parallel(runs, workers, in_flight, around, [](std::size_t) {});

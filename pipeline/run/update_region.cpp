@@ -2,28 +2,26 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "importers/imagery/image_files.h"
 #include "importers/osm/apply_changes.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/text.h"
 #include "pipeline/run/changes_map.h"
 #include "pipeline/run/region_folder.h"
-#include "pipeline/run/replication.h"
+#include "pipeline/run/region_hook.h"
+#include "pipeline/run/region_plan.h"
+#include "pipeline/run/region_state.h"
 #include "pipeline/run/tile_key.h"
 #include "pipeline/run/work_cache.h"
 
@@ -33,140 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using importers::osm::AppliedChanges;
-
-Json read_json(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  Json j = file ? Json::parse(file, nullptr, false) : Json();
-  return j.is_object() ? j : Json::object();
-}
-
-std::string text_in(const Json& j, const char* key) {
-  return j.contains(key) && j[key].is_string() ? j[key].get<std::string>() : std::string();
-}
-
-/// Texts of others, as names of files, may not be UTF-8.
-std::string dumped(const Json& j, int indent = -1) {
-  return j.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-/// What is known of the data of a build: `store/N.json`.
-struct DataState {
-  std::string sha256, settings;           ///< of the data's file; of what is built from it (settings_sha256())
-  std::optional<std::uint64_t> sequence;  ///< of the newest change file in it
-  std::string input;                      ///< the input of region.toml when it was last taken: path, size, time
-  bool crs_chosen = false;                ///< by the program, not by region.toml
-  std::optional<int> replaced;            ///< the build that was published before
-
-  static DataState read(const std::string& path) {
-    const Json j = read_json(path);
-    DataState state;
-    state.sha256 = text_in(j, "data_sha256"), state.settings = text_in(j, "settings_sha256");
-    state.input = text_in(j, "input");
-    if (j.contains("sequence") && j["sequence"].is_number_unsigned())
-      state.sequence = j["sequence"].get<std::uint64_t>();
-    state.crs_chosen = j.contains("crs_chosen") && j["crs_chosen"] == true;
-    if (j.contains("replaced") && j["replaced"].is_number_unsigned()) state.replaced = j["replaced"].get<int>();
-    return state;
-  }
-  void write(const std::string& path) const {
-    const Json j = {{"data_sha256", sha256},
-                    {"settings_sha256", settings},
-                    {"sequence", sequence ? Json(*sequence) : Json()},
-                    {"input", input},
-                    {"crs_chosen", crs_chosen},
-                    {"replaced", replaced ? Json(static_cast<unsigned>(*replaced)) : Json()}};
-    write_whole(path, dumped(j, 1));
-  }
-};
-
-/// Says cheaply whether a file is the same.
-std::string stamp_of(const std::string& path) {
-  std::error_code error;
-  if (path.empty() || !fs::is_regular_file(path, error)) return "";
-  return fmt::format("{}, {} bytes, {}", path, fs::file_size(path, error),
-                     fs::last_write_time(path, error).time_since_epoch().count());
-}
-
-/// Everything but the data that a build hangs on: settings, program, files of rules and styles, rasters by the size and time
-/// of their files.
-std::string settings_sha256(const UpdateOptions& options) {
-  base::Sha256 hash;
-  const auto add = [&](std::string_view text) { hash.add(std::to_string(text.size()) + ":" + std::string(text)); };
-  add(options.version), add(options.settings_sha256);
-  std::error_code error;
-  std::vector<fs::path> files;
-  for (fs::recursive_directory_iterator entry(options.build.configs, error), end; !error && entry != end;
-       entry.increment(error))
-    if (entry->is_regular_file(error)) files.push_back(entry->path());
-  std::sort(files.begin(), files.end());
-  for (const fs::path& path : files)
-    add(path.lexically_relative(options.build.configs).string()), add(base::sha256_file(path.string()));
-  for (const std::string& path : {options.build.overrides, options.build.districts})
-    if (!path.empty() && fs::is_regular_file(path, error)) add(base::sha256_file(path));
-  std::vector<std::string> rasters;
-  if (!options.build.terrain.empty()) rasters.push_back(options.build.terrain);
-  for (const importers::imagery::ImageSource& image : options.build.imagery.images) rasters.push_back(image.path);
-  for (const std::string& path : rasters)
-    for (const importers::imagery::FileStamp& file : importers::imagery::stamps_of_raster(path))
-      add(file.path), add(std::to_string(file.bytes)), add(std::to_string(file.changed));
-  return hash.finish();
-}
-
-/// Where the next data come from.
-struct Plan {
-  std::string extract;                    ///< a full one; empty: the data in the store
-  std::vector<std::string> changes;       ///< change files, in their order
-  std::optional<std::uint64_t> sequence;  ///< after them
-  std::vector<std::string> why;
-};
-
-/// The first change file of the replication folder that is to be applied. \throws base::InputError  nobody knows
-std::uint64_t next_sequence(const RegionOptions& options, std::optional<std::uint64_t> applied,
-                            const RegionFolder& region) {
-  if (applied) return *applied + 1;
-  if (options.first_sequence >= 0) return static_cast<std::uint64_t>(options.first_sequence);
-  throw base::InputError(region.settings(), "[region]", "the extract does not say after which change file it was made",
-                         "Set first_sequence to the number of the first one to apply");
-}
-
-Plan plan_of(const UpdateOptions& options, const RegionFolder& region, std::optional<int> current,
-             const DataState& state) {
-  Plan plan;
-  for (const std::string& input : options.inputs) {
-    if (importers::osm::is_change_file(input)) {
-      plan.changes.push_back(input);
-    } else if (!plan.extract.empty() || !plan.changes.empty()) {
-      throw base::UsageError(input + ": one extract can be given, before all change files (.osc, .osc.gz, .osc.bz2).");
-    } else {
-      plan.extract = input;
-    }
-  }
-  // The input of region.toml, when it is another file than when it was last taken: change files came since.
-  const std::string& input = options.build.input;
-  if (plan.extract.empty() && !input.empty() &&
-      (!current || (options.inputs.empty() && stamp_of(input) != state.input)))
-    plan.extract = input;
-  if (!current && plan.extract.empty())
-    throw base::UsageError(region.path() + " has no data yet. Begin with an extract: blockrand update " +
-                           region.path() + " EXTRACT.osm.pbf");
-  plan.sequence = state.sequence;
-  if (!plan.extract.empty()) {
-    // One that does not say where it ends is newer than what is there, or applying again does no harm.
-    if (const auto own = importers::osm::replication_sequence(plan.extract)) plan.sequence = own;
-    plan.why.push_back("a full extract: " + plan.extract);
-  }
-  if (options.inputs.empty() && !options.region.replication.empty())
-    for (const ReplicationFile& file :
-         replication_files(options.region.replication, next_sequence(options.region, plan.sequence, region))) {
-      plan.changes.push_back(file.path);
-      plan.sequence = file.sequence;
-    }
-  if (!plan.changes.empty())
-    plan.why.push_back(plan.changes.size() == 1
-                           ? "a change file: " + plan.changes.front()
-                           : fmt::format("{} change files, the last one {}", plan.changes.size(), plan.changes.back()));
-  return plan;
-}
 
 /// A file that is gone with the object, unless it is kept.
 struct Scratch {
@@ -233,15 +97,6 @@ std::string_view word(UpdateState state) {
   return "";
 }
 
-std::string now_utc() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  ::gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
-
 Json run_line(const UpdateSummary& s) {
   Json j = {
       {"run", s.number}, {"ended", now_utc()}, {"state", word(s.state)}, {"seconds", std::round(s.seconds * 10) / 10}};
@@ -257,16 +112,6 @@ Json run_line(const UpdateSummary& s) {
   for (const Gate& g : s.gates)
     if (g.exceeded()) j["refused_by"].push_back(g.key);
   return j;
-}
-
-/// One line for each run. A line that cannot be written fails nothing: the run is done.
-void append_run(const RegionFolder& region, const Json& line, base::Progress& progress) {
-  const std::string path = region.path() + "/log/runs.jsonl", text = dumped(line);
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  const bool written =
-      descriptor >= 0 && ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  if (descriptor >= 0) ::close(descriptor);
-  if (!written) progress.warn(path + ": cannot be written: " + std::strerror(errno));
 }
 
 void write_changes(const RegionFolder& region, int number, const UpdateSummary& summary) {
@@ -572,36 +417,6 @@ class Updater {
   std::string comparison_;  ///< compare.json of the new build
 };
 
-/// What the operator wants to be done at the end of a run. It fails nothing. A dry run has no end.
-void call_hook(const UpdateOptions& options, const RegionFolder& region, std::string_view state, int number,
-               base::Progress& progress) {
-  if (options.region.hook.empty() || options.dry_run) return;
-  std::vector<std::string> environment;
-  for (char** e = environ; *e != nullptr; ++e)
-    if (!std::string_view(*e).starts_with("BLOCKRAND_")) environment.emplace_back(*e);
-  environment.push_back("BLOCKRAND_STATE=" + std::string(state));
-  environment.push_back("BLOCKRAND_REGION=" + fs::absolute(region.path()).string());
-  environment.push_back("BLOCKRAND_BUILD=" + fs::absolute(region.build(number)).string());
-  environment.push_back("BLOCKRAND_CHANGES=" + fs::absolute(region.changes(number)).string() + ".json");
-  std::vector<char*> pointers;
-  for (std::string& e : environment) pointers.push_back(e.data());
-  pointers.push_back(nullptr);
-  std::string shell = "/bin/sh", dash = "-c", command = options.region.hook;
-  char* const arguments[] = {shell.data(), dash.data(), command.data(), nullptr};
-  pid_t child = 0;
-  if (const int error = ::posix_spawn(&child, "/bin/sh", nullptr, nullptr, arguments, pointers.data()); error != 0) {
-    progress.warn(std::string("the hook could not be run: ") + std::strerror(error));
-    return;
-  }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    progress.warn(fmt::format("the hook ended with {}", WIFEXITED(status)
-                                                            ? fmt::format("exit code {}", WEXITSTATUS(status))
-                                                            : fmt::format("signal {}", WTERMSIG(status))));
-}
-
 }  // namespace
 
 UpdateSummary update_region(const UpdateOptions& options, base::Progress& progress) {
@@ -626,101 +441,15 @@ UpdateSummary update_region(const UpdateOptions& options, base::Progress& progre
   Updater updater(options, region, progress);
   try {
     const UpdateSummary summary = updater.run();
-    call_hook(options, region, word(summary.state), summary.number, progress);
+    call_hook(options.region.hook, options.dry_run, region, word(summary.state), summary.number, progress);
     return summary;
   } catch (const std::exception& error) {
     Json line = run_line(updater.so_far());
     line["state"] = "failed", line["error"] = error.what();
     append_run(region, line, progress);
-    call_hook(options, region, "failed", updater.so_far().number, progress);
+    call_hook(options.region.hook, options.dry_run, region, "failed", updater.so_far().number, progress);
     throw;
   }
-}
-
-RegionHealth check_region(const std::string& folder, bool break_lock, base::Progress& progress) {
-  const RegionFolder region(folder);
-  if (!region.exists())
-    throw base::UsageError(folder + " is no region. 'blockrand update " + folder + " EXTRACT.osm.pbf' makes one.");
-  const RegionLock lock(region, break_lock, progress);
-  RegionHealth health;
-  std::error_code error;
-  progress.begin("check work");
-  if (fs::exists(region.cache() + "/program", error)) {
-    const CacheFigures work = verify_cache(region.cache(), progress);
-    health.words += fmt::format("kept work: {} pieces are whole, {} were damaged and are removed\n",
-                                base::with_thousands(work.entries), base::with_thousands(work.removed));
-  }
-  progress.begin("check data");
-  const std::optional<int> current = region.current();
-  if (!current) {
-    health.published = false, health.words += "no build is published\n";
-    return health;
-  }
-  const std::string data = region.data(*current);
-  health.data_whole =
-      fs::is_regular_file(data, error) && base::sha256_file(data) == DataState::read(region.state(*current)).sha256;
-  health.words += fmt::format("data of build {}: {}\n", *current, health.data_whole ? "whole" : "damaged");
-  return health;
-}
-
-RegionStatus region_status(const std::string& folder, const RegionOptions& options) {
-  const RegionFolder region(folder);
-  if (!region.exists())
-    throw base::UsageError(folder + " is no region. 'blockrand update " + folder + " EXTRACT.osm.pbf' makes one.");
-  RegionStatus status;
-  status.current = region.current(), status.published = region.passed();
-  DataState state;
-  if (status.current) {
-    const Json record = read_json(region.build(*status.current) + "/build.json"),
-               run = read_json(region.build(*status.current) + "/run.json");
-    status.data_time = text_in(record, "data_time");
-    if (record.contains("counts")) status.models = record["counts"].value("models", std::uint64_t{0});
-    if (run.contains("seconds") && run["seconds"].is_number()) status.seconds = run["seconds"].get<double>();
-    state = DataState::read(region.state(*status.current));
-    status.sequence = state.sequence;
-  }
-  std::ifstream runs(folder + "/log/runs.jsonl", std::ios::binary);
-  for (std::string line; std::getline(runs, line);)
-    if (!line.empty()) status.last_run = line;
-  if (!options.replication.empty() && status.current) try {
-      for (const ReplicationFile& file :
-           replication_files(options.replication, next_sequence(options, state.sequence, region)))
-        status.waiting.push_back(file.path);
-    } catch (const base::InputError& error) {
-      status.waiting_problem = error.what();
-    }
-  return status;
-}
-
-int roll_back(const std::string& folder, std::optional<int> to, bool break_lock, base::Progress& progress) {
-  const RegionFolder region(folder);
-  if (!region.exists()) throw base::UsageError(folder + " is no region.");
-  const RegionLock lock(region, break_lock, progress);
-  const std::vector<int> builds = region.passed();
-  // A `current` that leads nowhere is a reason to go back, not an obstacle.
-  std::optional<int> now;
-  try {
-    now = region.current();
-  } catch (const base::InputError&) {
-  }
-  const auto is_there = [&](int number) { return std::ranges::find(builds, number) != builds.end(); };
-  if (!to && now) {
-    const std::optional<int> replaced = DataState::read(region.state(*now)).replaced;
-    if (replaced && is_there(*replaced)) to = replaced;
-  }
-  if (!to) {
-    for (const int number : builds)
-      if (!now || number < *now) to = number;
-    if (!to) throw base::UsageError(folder + " has no earlier build to go back to.");
-  }
-  if (!is_there(*to)) {
-    std::string known;
-    for (const int number : builds) known += (known.empty() ? "" : ", ") + std::to_string(number);
-    throw base::UsageError(fmt::format("{} has no build {}. It has {}.", folder, *to, known.empty() ? "none" : known));
-  }
-  region.publish(*to);
-  append_run(region, {{"run", *to}, {"ended", now_utc()}, {"state", "rolled back"}}, progress);
-  return *to;
 }
 
 }  // namespace blockrand::run
