@@ -158,6 +158,9 @@ OsmFile::OsmFile(const std::string& path) : path_(path), workers_(std::make_uniq
     find_deletions();
 }
 
+OsmFile::OsmFile(std::string name, std::function<void(osmium::osm_entity_bits::type, const Visit&)> visit_all)
+    : stored_(std::move(visit_all)), path_(std::move(name)) {}
+
 void OsmFile::find_deletions() {
   const osmium::io::File file(file_name_, format_ == "xml" ? "osm" : format_ == "xml.gz" ? "osm.gz" : "osm.bz2");
   const auto open = [&] {
@@ -232,6 +235,7 @@ void throw_in_words(const std::string& path) {
 }
 
 void OsmFile::for_each(osmium::osm_entity_bits::type type, const Visit& visit, const Progress& progress) {
+  if (stored_) return stored_(type, visit);
   try {
     const osmium::io::File file = !buffer_.empty() ? osmium::io::File(buffer_.data(), buffer_.size(), "pbf")
                                                    : osmium::io::File(file_name_, format_ == "xml"      ? "osm"

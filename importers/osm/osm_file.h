@@ -28,6 +28,11 @@ class OsmFile {
   using Visit = std::function<void(const osmium::OSMObject&)>;
   using Progress = std::function<void(double fraction)>;
 
+  /// What lies in a store of ours (extract_store.h): kept objects alone, ways with the places of their nodes.
+  /// \param visit_all  as for_each
+  OsmFile(std::string name, std::function<void(osmium::osm_entity_bits::type, const Visit&)> visit_all);
+  bool ways_have_places() const { return stored_ != nullptr; }
+
   /// Calls `visit` for every object of the type in the order of the file, deleted ones (visible() == false) included.
   /// \throws base::InputError; whatever `visit` throws passes unchanged
   void for_each(osmium::osm_entity_bits::type type, const Visit& visit, const Progress& progress);
@@ -44,6 +49,7 @@ class OsmFile {
   void find_deletions();
 
   struct Workers;
+  std::function<void(osmium::osm_entity_bits::type, const Visit&)> stored_;
   std::string path_;       ///< as the user gave it, for messages
   std::string file_name_;  ///< absolute: libosmium takes "http:..." for an address
   std::string format_;     ///< "pbf", "xml", "xml.gz" or "xml.bz2"

@@ -8,7 +8,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "pipeline/model/osm_keys.h"
+#include "importers/osm/selection.h"
 
 namespace blockrand::importers::osm {
 namespace {
@@ -26,14 +26,6 @@ Role role_of(std::string_view text) {
   if (text == "outline") return Role::outline;
   if (text == "part") return Role::part;
   return Role::other;
-}
-
-RelationType relation_type_of(std::string_view text) {
-  if (text.empty()) return RelationType::none;
-  if (text == "multipolygon") return RelationType::multipolygon;
-  if (text == "boundary") return RelationType::boundary;
-  if (text == "building") return RelationType::building;
-  return RelationType::other;
 }
 
 class RawReader {
@@ -73,13 +65,6 @@ class RawReader {
           if (progress_) progress_(phase, fraction);
         });
     return rising;
-  }
-
-  Interest look_at(model::OsmType type, const osmium::OSMObject& object) {
-    Interest interest;
-    for_each_tag(object, [&](std::string_view key, std::string_view value) { interest.add(type, key, value); });
-    interest.finish(type);
-    return interest;
   }
 
   void keep(RawObject& raw, const osmium::OSMObject& object, const Interest& interest) {
@@ -130,31 +115,26 @@ class RawReader {
   }
 
   void read_relations() {
-    const bool rising = pass(
-        osmium::osm_entity_bits::relation, "reading relations", data_.relation_count,
-        [&](const osmium::OSMObject& object) {
-          const auto& relation = static_cast<const osmium::Relation&>(object);
-          const Interest interest = look_at(model::OsmType::relation, object);
-          RelationType type = RelationType::none;
-          for_each_tag(object, [&](std::string_view key, std::string_view value) {
-            if (key == model::osm_key::kType) type = relation_type_of(value);
-          });
-          const bool wanted = interest.is_building() || type == RelationType::multipolygon ||
-                              type == RelationType::building || (type == RelationType::boundary && interest.kinds != 0);
-          if (!wanted) return;
-          RawRelation raw;
-          keep(raw, object, interest);
-          raw.type = type;
-          raw.members.first = static_cast<std::uint32_t>(data_.members.size());
-          for (const auto& member : relation.members()) {
-            const auto member_type = member.type() == osmium::item_type::node  ? model::OsmType::node
+    const bool rising = pass(osmium::osm_entity_bits::relation, "reading relations", data_.relation_count,
+                             [&](const osmium::OSMObject& object) {
+                               const auto& relation = static_cast<const osmium::Relation&>(object);
+                               const Interest interest = interest_of(model::OsmType::relation, object);
+                               const std::optional<RelationType> type = kept_as(relation, interest);
+                               if (!type) return;
+                               RawRelation raw;
+                               keep(raw, object, interest);
+                               raw.type = *type;
+                               raw.members.first = static_cast<std::uint32_t>(data_.members.size());
+                               for (const auto& member : relation.members()) {
+                                 const auto member_type =
+                                     member.type() == osmium::item_type::node  ? model::OsmType::node
                                      : member.type() == osmium::item_type::way ? model::OsmType::way
                                                                                : model::OsmType::relation;
-            data_.members.push_back({member.ref(), member_type, role_of(member.role())});
-          }
-          raw.members.count = static_cast<std::uint32_t>(data_.members.size()) - raw.members.first;
-          data_.relations.push_back(raw);
-        });
+                                 data_.members.push_back({member.ref(), member_type, role_of(member.role())});
+                               }
+                               raw.members.count = static_cast<std::uint32_t>(data_.members.size()) - raw.members.first;
+                               data_.relations.push_back(raw);
+                             });
     if (!rising)
       leave_newest(data_.relations, osmium::osm_entity_bits::relation, [&](const RawRelation& a, const RawRelation& b) {
         const auto key = [](const RawMember& m) { return std::tuple(m.ref, m.type, m.role); };
@@ -177,10 +157,8 @@ class RawReader {
     const bool rising =
         pass(osmium::osm_entity_bits::way, "reading ways", data_.way_count, [&](const osmium::OSMObject& object) {
           const auto& way = static_cast<const osmium::Way&>(object);
-          const Interest interest = look_at(model::OsmType::way, object);
-          if (interest.kinds == 0 && !interest.is_building() &&
-              !std::binary_search(needed.begin(), needed.end(), way.id()))
-            return;
+          const Interest interest = interest_of(model::OsmType::way, object);
+          if (!is_kept(interest) && !std::binary_search(needed.begin(), needed.end(), way.id())) return;
           RawWay raw;
           keep(raw, object, interest);
           raw.refs.first = static_cast<std::uint32_t>(data_.refs.size());
@@ -205,13 +183,21 @@ class RawReader {
       needed.insert(needed.end(), refs.begin(), refs.end());
     }
     data_.positions.build(std::move(needed));
+    if (file_.ways_have_places()) {
+      // Nodes without tags of interest are not in the file.
+      file_.for_each(osmium::osm_entity_bits::way,
+                     [&](const osmium::OSMObject& object) {
+                       for (const osmium::NodeRef& node : static_cast<const osmium::Way&>(object).nodes())
+                         if (const std::size_t slot = data_.positions.slot(node.ref()); slot != NodePositions::npos) {
+                           const model::Location at{node.location().x(), node.location().y()};
+                           if (at != kMissing) data_.positions.set(slot, is_known(at) ? at : kInvalid, 1);
+                         }
+                     },
+                     {});
+    }
 
     bool rising = true, first = true;
     std::int64_t last = 0;
-    const auto position = [](const osmium::Node& node) {
-      const osmium::Location l = node.location();
-      return l.valid() ? model::Location{l.x(), l.y()} : kInvalid;
-    };
     file_.for_each(
         osmium::osm_entity_bits::node,
         [&](const osmium::OSMObject& object) {
@@ -220,16 +206,17 @@ class RawReader {
           first = false;
           last = node.id();
           if (file_.deleted_by_editor(osmium::item_type::node, node.id())) return;
-          const Interest interest = look_at(model::OsmType::node, object);
-          if (const std::size_t slot = data_.positions.slot(node.id()); slot != NodePositions::npos)
-            data_.positions.set(slot, node.visible() ? position(node) : kMissing, node.version());
+          const Interest interest = interest_of(model::OsmType::node, object);
+          if (const std::size_t slot = data_.positions.slot(node.id());
+              slot != NodePositions::npos && !file_.ways_have_places())
+            data_.positions.set(slot, node.visible() ? position_of(node.location()) : kMissing, node.version());
           if (!node.visible()) return;
           ++data_.node_count;
           data_.newest = std::max(data_.newest, seconds(node));
-          if (interest.kinds == 0 && !interest.is_building()) return;
+          if (!is_kept(interest)) return;
           RawNode raw;
           keep(raw, object, interest);
-          raw.location = position(node);
+          raw.location = position_of(node.location());
           data_.nodes.push_back(raw);
         },
         [&](double fraction) {

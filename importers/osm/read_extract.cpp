@@ -8,6 +8,7 @@
 #include "importers/osm/accounts.h"
 #include "importers/osm/attributes.h"
 #include "importers/osm/osm_features.h"
+#include "importers/osm/read_file.h"
 #include "importers/osm/text_cleaner.h"
 
 namespace blockrand::importers::osm {
@@ -45,6 +46,7 @@ class ExtractWriter {
       };
       const auto& b = *options.bbox;
       clip_ = Box{unit(b[0]), unit(b[1]), unit(b[2]), unit(b[3])};
+      placeless_ = options.placeless;
     }
   }
 
@@ -243,7 +245,7 @@ class ExtractWriter {
   void decide_clip(const Accounts& accounts, std::vector<bool>& kept) const {
     const auto centre_inside = [&](const Account& account) {
       const Box box = box_of(accounts, account);
-      if (box.empty()) return false;
+      if (box.empty()) return placeless_;
       // Doubled, so that the centre is exact.
       const std::int64_t x = box.west + box.east, y = box.south + box.north;
       return x >= 2 * clip_->west && x <= 2 * clip_->east && y >= 2 * clip_->south && y <= 2 * clip_->north;
@@ -288,6 +290,7 @@ class ExtractWriter {
   const OsmFile& file_;
   model::Extract& out_;
   std::optional<Box> clip_;
+  bool placeless_ = false;
   std::vector<Text> texts_;  ///< by raw string id
   std::deque<std::string> cleaned_;
   std::vector<std::pair<Text*, Text*>> sorted_;
@@ -298,6 +301,10 @@ class ExtractWriter {
 
 model::Extract read_extract(const std::string& path, const ReadOptions& options) {
   OsmFile file(path);
+  return read_file(file, path, options);
+}
+
+model::Extract read_file(OsmFile& file, const std::string& path, const ReadOptions& options) {
   RawData data;
   try {
     data = read_raw(file, options.progress);

@@ -20,6 +20,7 @@ struct ReadOptions {
   /// raw bounding box lies inside (a duplicate or represented object follows the one that stands for it; one without
   /// any known position is dropped), a feature when its bounding box touches. Counts of buildings are those kept.
   std::optional<std::array<double, 4>> bbox;
+  bool placeless = false;  ///< with `bbox`: buildings without any known position are kept all the same
 };
 
 /// Reads `.osm`, `.osm.gz`, `.osm.bz2`, `.osm.pbf` and `.pbf`, with the objects in any order and any versions.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "pipeline/base/portable_math.h"
+
 namespace blockrand::georef {
 
 model::TileId tile_of(model::Location location, int level) {
@@ -30,6 +32,18 @@ GeoBox bounds(const model::TileId& tile) {
 LonLat centre(const model::TileId& tile) {
   const GeoBox b = bounds(tile);
   return {0.5 * (b.west + b.east), 0.5 * (b.south + b.north)};
+}
+
+GeoBox with_halo(const model::TileId& tile, double halo) {
+  constexpr double kMetresPerDegree =
+      111'000;  // of latitude, the least on the ellipsoid is 110.6 km: rounds the halo up
+  const GeoBox box = bounds(tile);
+  const double north = halo / kMetresPerDegree;
+  const double farthest = std::min(89.0, std::max(std::abs(box.south), std::abs(box.north)) + north);
+  const double east = north / base::cos(farthest * base::kPi / 180);
+  // OSM cuts ways at 180 degrees: nothing is seen of what lies beyond.
+  return {std::max(-180.0, box.west - east), std::max(-90.0, box.south - north), std::min(180.0, box.east + east),
+          std::min(90.0, box.north + north)};
 }
 
 bool contains(const model::TileId& ancestor, const model::TileId& tile) {

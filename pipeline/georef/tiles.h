@@ -24,4 +24,7 @@ LonLat centre(const model::TileId& tile);
 /// Whether `tile` is `ancestor` or lies in it.
 bool contains(const model::TileId& ancestor, const model::TileId& tile);
 
+/// The tile and what lies within `halo` metres of it, in degrees: rounded up, ends at 180 degrees and at the poles.
+GeoBox with_halo(const model::TileId& tile, double halo);
+
 }  // namespace blockrand::georef

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "pipeline/base/error.h"
-#include "pipeline/base/portable_math.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/georef/tiles.h"
 
@@ -19,7 +18,6 @@ namespace {
 using model::MappedBuilding;
 using model::ObjectState;
 
-constexpr double kMetresPerDegree = 111'000;  // of latitude, the least on the ellipsoid is 110.6 km: rounds the halo up
 constexpr int kMinLevel = 8, kMaxLevel = 20;  // 0.7 degrees to 19 m: smaller tiles are all halo
 
 model::TileId parse_tile(const std::string& text) {
@@ -77,13 +75,8 @@ std::optional<TileChoice> choose_tile(const BuildOptions& options) {
   choice.id = parse_tile(options.tile);
   choice.facts = read_region_facts(options.pinned, options);
   choice.imagery = read_imagery(options.pinned, choice.facts.imagery_sha256);
-  const georef::GeoBox tile = georef::bounds(choice.id);
-  const double north = kHalo / kMetresPerDegree;
-  const double farthest = std::min(89.0, std::max(std::abs(tile.south), std::abs(tile.north)) + north);
-  const double east = north / base::cos(farthest * base::kPi / 180);
-  // A tile at 180 degrees sees nothing of what lies beyond: OSM cuts ways there.
-  choice.window = {std::max(-180.0, tile.west - east), std::max(-90.0, tile.south - north),
-                   std::min(180.0, tile.east + east), std::min(90.0, tile.north + north)};
+  const georef::GeoBox window = georef::with_halo(choice.id, kHalo);
+  choice.window = {window.west, window.south, window.east, window.north};
   return choice;
 }
 

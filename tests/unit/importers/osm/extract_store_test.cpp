@@ -1,0 +1,161 @@
+// A store on disk: what an area reads is what the whole extract says of it.
+#include "importers/osm/extract_store.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "importers/osm/apply_changes.h"
+#include "importers/osm/node_file.h"
+#include "importers/osm/raw_data.h"
+#include "pipeline/georef/tiles.h"
+#include "tests/unit/importers/osm/support.h"
+
+namespace blockrand::importers::osm::test {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kHalo = 3000;
+
+ReadOptions window_of(const model::TileId& tile) {
+  const georef::GeoBox w = georef::with_halo(tile, kHalo);
+  ReadOptions options;
+  options.bbox = {w.west, w.south, w.east, w.north};
+  return options;
+}
+
+/// Without what is counted of the file.
+std::string dump_objects(model::Extract&& extract) {
+  extract.counts = {};
+  extract.data_time.clear();
+  return dump(extract);
+}
+
+TEST(ExtractStore, AreasOfRealExtractsReadAsTheWholeSays) {
+  const fs::path data = fs::path(BLOCKRAND_SHARED_DIR) / "data/osm";
+  if (!fs::exists(data)) GTEST_SKIP() << "no " << data;
+  int compared = 0;
+  for (const auto& entry : fs::directory_iterator(data)) {
+    if (!entry.is_regular_file() || entry.file_size() > 1'500'000) continue;
+    SCOPED_TRACE(entry.path().filename());
+    const TempFolder folder;
+    std::string extract = entry.path().string();
+    if (!write_store(extract, folder.path("store"), 12, kHalo)) {
+      extract = folder.path("sorted.osm.pbf");
+      apply_changes(entry.path().string(), {}, extract);
+      ASSERT_TRUE(write_store(extract, folder.path("store"), 12, kHalo));
+    }
+    EXPECT_FALSE(fs::exists(folder.path("store.nodes")));
+    const ExtractStore store(folder.path("store"));
+    const model::Extract whole = read_extract(extract);
+    EXPECT_EQ(store.figures().nodes, whole.counts.nodes);
+    EXPECT_EQ(store.figures().ways, whole.counts.ways);
+    EXPECT_EQ(store.figures().relations, whole.counts.relations);
+    EXPECT_EQ(store.figures().missing_nodes, whole.counts.missing_nodes);
+    EXPECT_EQ(store.figures().missing_ways, whole.counts.missing_ways);
+    EXPECT_EQ(store.figures().data_time, whole.data_time);
+    std::size_t owned = 0, placeless = 0, n = 0;
+    for (const StoredArea& area : store.areas()) {
+      const bool first = n++ == 0;
+      const model::Extract read = store.read(area.tile, window_of(area.tile), false);
+      if (n % 7 == 1) {  // reading the whole for each would take minutes
+        EXPECT_EQ(dump_objects(store.read(area.tile, window_of(area.tile), false)),
+                  dump_objects(read_extract(extract, window_of(area.tile))));
+        ++compared;
+      }
+      const auto here = [&](const model::MappedBuilding& b) {
+        return b.place ? georef::tile_of(*b.place, 12) == area.tile : false;
+      };
+      owned += static_cast<std::size_t>(std::ranges::count_if(read.buildings, here));
+      if (first && store.has_placeless()) {
+        const model::Extract with = store.read(area.tile, window_of(area.tile), true);
+        placeless = with.buildings.size() - read.buildings.size();
+      }
+    }
+    std::size_t wanted = 0, nowhere = 0;
+    for (const model::MappedBuilding& b : whole.buildings) {
+      wanted += b.rings.count == 0 && b.place.has_value();
+      nowhere += b.rings.count == 0 && !b.place && b.state == model::ObjectState::reported;
+    }
+    EXPECT_EQ(owned, wanted);  // of objects without rings: those have their place
+    EXPECT_GE(placeless, nowhere);
+  }
+  EXPECT_GT(compared, 20);
+}
+
+TEST(ExtractStore, AnUnsortedFileIsRefused) {
+  const TempFolder folder;
+  OsmText text;
+  text.node(2, 11, 51).node(1, 11, 51);
+  EXPECT_FALSE(write_store(folder.write("a.osm", text.xml()), folder.path("store"), 12, kHalo));
+}
+
+TEST(ExtractStore, WhatIsFarAwayIsNotRead) {
+  const TempFolder folder;
+  OsmText text;
+  text.corners(1, 0, 0, 1).corners(11, 10000, 0, 1);
+  text.way(1, {1, 2, 3, 4, 1}, {{"building", "yes"}}).way(2, {11, 12, 13, 14, 11}, {{"building", "yes"}});
+  ASSERT_TRUE(write_store(folder.write("a.osm", text.xml()), folder.path("store"), 12, kHalo));
+  const ExtractStore store(folder.path("store"));
+  ASSERT_GE(store.areas().size(), 2u);
+  for (const StoredArea& a : store.areas()) {
+    const model::Extract read = store.read(a.tile, window_of(a.tile), false);
+    EXPECT_EQ(read.buildings.size(), 1u);
+  }
+}
+
+TEST(ExtractStore, ADamagedOneIsTold) {
+  const TempFolder folder;
+  OsmText text;
+  text.square(1, 1, 0, 0, 1, {{"building", "yes"}});
+  const std::string extract = folder.write("a.osm", text.xml());
+  ASSERT_TRUE(write_store(extract, folder.path("store"), 12, kHalo));
+  const model::TileId tile = ExtractStore(folder.path("store")).areas().front().tile;
+  {
+    std::fstream objects(folder.path("store") + "/objects", std::ios::binary | std::ios::in | std::ios::out);
+    objects.seekp(20);
+    objects.put('!');
+  }
+  const ExtractStore store(folder.path("store"));
+  EXPECT_THROW(store.read(tile, window_of(tile), false), base::InputError);
+  fs::resize_file(folder.path("store") + "/index", 100);
+  EXPECT_THROW(ExtractStore(folder.path("store")), base::InputError);
+  EXPECT_THROW(ExtractStore(folder.path("none")), base::InputError);
+}
+
+TEST(ExtractStore, AreasHashWhatTheyHold) {
+  const TempFolder folder;
+  const auto hashes = [&](const std::string& use) {
+    OsmText text;
+    text.corners(1, 0, 0, 1).corners(11, 10000, 0, 1);
+    text.way(1, {1, 2, 3, 4, 1}, {{"building", "yes"}}).way(2, {11, 12, 13, 14, 11}, {{"building", use}});
+    EXPECT_TRUE(write_store(folder.write("a.osm", text.xml()), folder.path("store"), 12, kHalo));
+    std::vector<std::string> out;
+    const ExtractStore store(folder.path("store"));
+    for (const StoredArea& a : store.areas()) out.push_back(a.sha256);
+    return out;
+  };
+  const auto a = hashes("yes"), b = hashes("yes"), c = hashes("shed");
+  EXPECT_EQ(a, b);
+  ASSERT_EQ(a.size(), c.size());
+  EXPECT_EQ(a.front(), c.front());
+  EXPECT_NE(a.back(), c.back());
+}
+
+TEST(NodeFile, FindsEveryNodeAndNoOther) {
+  const TempFolder folder;
+  NodeFile file(folder.path("nodes"));
+  std::vector<std::pair<std::int64_t, model::Location>> nodes = {{-1, {5, -6}}, {-7, {-1'800'000'000, 900'000'000}}};
+  for (std::int64_t i = 1; i < 5000; ++i)
+    nodes.push_back({i * i, {static_cast<std::int32_t>(i * 1000), static_cast<std::int32_t>(-i * 777)}});
+  nodes.push_back({1'000'000'000'000, kInvalid});
+  for (const auto& [id, at] : nodes) file.add(id, at);
+  file.finish();
+  for (const auto& [id, at] : nodes) EXPECT_EQ(file.find(id), at);
+  for (const std::int64_t id : {-2L, -8L, 0L, 2L, 3L, 4999L * 4999 + 1, 1'000'000'000'001L})
+    EXPECT_EQ(file.find(id), kMissing);
+}
+
+}  // namespace
+}  // namespace blockrand::importers::osm::test
