@@ -16,6 +16,8 @@ class InputError : public std::runtime_error {
   InputError(const std::string& file, const std::string& place, const std::string& what, const std::string& remedy)
       : std::runtime_error(file + (place.empty() ? "" : ":" + place) + ": " + what +
                            (remedy.empty() ? "" : ". " + remedy)) {}
+  /// One that another process threw. \param text  whole
+  explicit InputError(const std::string& text) : std::runtime_error(text) {}
 };
 
 /// Wrong options or an output place that cannot be used: exit code 1.

@@ -207,6 +207,15 @@ class Unpacker {
       *this >> map[std::move(key)];
     }
   }
+  template <class... T>
+  void get(std::set<T...>& set) {
+    set.clear();
+    for (std::size_t n = size(); n > 0; --n) {
+      typename std::set<T...>::value_type value{};
+      *this >> value;
+      set.insert(set.end(), std::move(value));
+    }
+  }
   void get(std::monostate&) {}
   template <class T>
   requires std::is_aggregate_v<T>

@@ -12,12 +12,19 @@ using model::Extract;
 using model::MappedBuilding;
 using model::ObjectState;
 
-std::optional<Area> area_of(const Extract& extract) {
+std::vector<model::Location> building_centres(const Extract& extract) {
+  std::vector<model::Location> centres;
+  for (const MappedBuilding& b : extract.buildings)
+    if (b.rings.count > 0 && b.state == ObjectState::pending) centres.push_back(box_centre(extract, b));
+  return centres;
+}
+
+std::optional<Area> area_of(const Extract& extract) { return area_of(building_centres(extract)); }
+
+std::optional<Area> area_of(std::span<const model::Location> centres) {
   std::vector<std::int64_t> xs, ys;
   constexpr std::int64_t kTurn = 3'600'000'000;
-  for (const MappedBuilding& b : extract.buildings) {
-    if (b.rings.count == 0 || b.state != ObjectState::pending) continue;
-    const model::Location c = box_centre(extract, b);
+  for (const model::Location c : centres) {
     std::int64_t x = c.lon;
     if (!xs.empty() && x - xs[0] > kTurn / 2) x -= kTurn;
     if (!xs.empty() && xs[0] - x > kTurn / 2) x += kTurn;

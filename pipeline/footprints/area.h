@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "pipeline/georef/lon_lat.h"
 #include "pipeline/model/extract.h"
@@ -17,5 +19,11 @@ struct Area {
 
 /// Empty when no pending building has an outline.
 std::optional<Area> area_of(const model::Extract& extract);
+
+/// Of the centres of their boxes. Empty without any.
+std::optional<Area> area_of(std::span<const model::Location> centres);
+
+/// Centre of the box of each pending building with an outline, in their order.
+std::vector<model::Location> building_centres(const model::Extract& extract);
 
 }  // namespace blockrand::footprints

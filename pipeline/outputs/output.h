@@ -52,7 +52,7 @@ struct OutputContext {
   const observation::ImageryObservations* imagery = nullptr;  ///< null: no images
   std::span<const importers::imagery::AerialImage> images{};  ///< parallel to those of `imagery`; empty: read earlier
   SeenOutlines seen;                                          ///< of these images
-  std::optional<model::TileId> alone;                         ///< the one tile that is built, of a larger build
+  std::optional<model::TileId> alone;                         ///< the one tile or area that is built, of a larger build
   std::span<const model::ReportRow> earlier;                  ///< rows from before the tiles, sorted
   std::function<std::string(std::string_view preset)> rule_file;  ///< as ExplainOptions has it; may be empty
   int workers = 1;

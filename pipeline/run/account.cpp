@@ -52,7 +52,7 @@ void Account::take(const Outcomes& outcomes, std::vector<model::ReportRow> rows,
 }
 
 void Account::close(const std::optional<TileChoice>& tile, BuildSummary& summary) {
-  if (tile) forget_others(extract_, tile->id, rows_);
+  if (tile) forget_others(extract_, *tile, rows_);
   for (MappedBuilding& b : extract_.buildings) {
     if (b.state == ObjectState::pending) {
       b.state = ObjectState::reported;

@@ -23,9 +23,11 @@
 #include "pipeline/context/tagged_neighbours.h"
 #include "pipeline/context/vicinity_finder.h"
 #include "pipeline/footprints/roof_lines.h"
+#include "pipeline/georef/tiles.h"
 #include "pipeline/outputs/output.h"
 #include "pipeline/outputs/statistics.h"
 #include "pipeline/run/account.h"
+#include "pipeline/run/build_areas.h"
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/data_identity.h"
 #include "pipeline/run/documents.h"
@@ -60,15 +62,6 @@ std::uint64_t current_rss_bytes() {
 }
 
 // ---- before the tiles
-
-/// What pages call the build: the name given, else that of the extract without the endings of its format.
-std::string name_of(const BuildOptions& options) {
-  if (!options.name.empty()) return options.name;
-  std::string name = options.input.substr(options.input.find_last_of('/') + 1);
-  for (const std::string_view end : {".gz", ".bz2", ".pbf", ".osm"})
-    if (name.size() > end.size() && name.ends_with(end)) name.resize(name.size() - end.size());
-  return name;
-}
 
 const std::string& checked_output(const BuildOptions& options) {
   std::vector<std::string> inputs = {options.input,  options.terrain, options.overrides,
@@ -194,12 +187,15 @@ struct Sums {
 
 /// Null where none is kept.
 std::unique_ptr<WorkCache> open_cache(const BuildOptions& options, const std::optional<TileChoice>& tile,
-                                      base::Progress& progress) {
+                                      bool part, base::Progress& progress) {
   if (options.cache.empty()) return nullptr;
-  if (tile) throw base::UsageError("--cache is of no use with --tile: a tile that is built alone keeps no work");
+  if (tile && !tile->is_area()) throw base::UsageError("--cache is of no use with --tile: a tile that is built alone keeps no work");
   try {
     return std::make_unique<WorkCache>(options.cache, program_identity(), progress,
-                                       options.plan ? WorkCache::Mode::look : WorkCache::Mode::work);
+                                       options.plan ? WorkCache::Mode::look
+                                       : part       ? WorkCache::Mode::part
+                                                    : WorkCache::Mode::work,
+                                       tile ? outputs::tile_name(tile->id) : std::string());
   } catch (const base::OutputError& error) {
     progress.warn(fmt::format("no work is kept, nor taken from earlier runs: {}", error.what()));
     return nullptr;
@@ -317,7 +313,7 @@ RunRecord run_record(const BuildOptions& options, std::chrono::steady_clock::tim
   run.tiles_in_flight = summary.tiles_in_flight;
   run.tile_context_seconds = context_seconds;
   run.jobs = workers;
-  run.inputs = {extract_file(options)};
+  if (options.areas == 0) run.inputs = {extract_file(options)};
   char host[256] = "";
   gethostname(host, sizeof host - 1);
   run.host = host;
@@ -334,9 +330,9 @@ void publish(base::StagedFolder& folder, const BuildOptions& options, BuildSumma
   }
 }
 
-}  // namespace
 
-BuildSummary build(const BuildOptions& options, base::Progress& progress) {
+/// \param part  of a build in areas; null: everything, or what the options choose
+BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part, base::Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   BuildRecord record;
   BuildSummary& summary = record.summary;
@@ -345,9 +341,10 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   Place place(options, progress);
   base::StagedFolder& folder = place.folder;
   BuildInputs inputs(options);
+  if (part) inputs.tile = part->choice;
   const std::optional<TileChoice>& tile = inputs.tile;
-  const std::unique_ptr<WorkCache> cache = open_cache(options, tile, progress);
-  LocatedExtract located = locate_extract(options, tile, progress);
+  const std::unique_ptr<WorkCache> cache = open_cache(options, tile, part != nullptr, progress);
+  LocatedExtract located = locate_extract(options, tile, progress, part ? &part->store : nullptr);
   Extract& extract = located.extract;
   const georef::Projection& projection = located.projection;
   if (located.area) warn_of_heights(options, inputs, progress);
@@ -355,6 +352,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
 
   // The whole extract: footprints, context, evidence.
   record_extract(options, inputs, located, record);
+  if (tile && tile->is_area()) record.area = tile->id;
   model::Report report = override_extract(options, inputs, extract, progress);
   const std::optional<base::Memo> memo = memo_of(cache.get(), options, record);
   PreparedExtract prepared = prepare_extract(
@@ -383,6 +381,10 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   }
 
   const std::vector<std::size_t> todo = shards_to_build(shards, tile);
+  std::vector<footprints::Shard> shards_here;  // of an area: those around it are empty for outputs
+  if (tile && tile->is_area())
+    for (const footprints::Shard& shard : shards)
+      shards_here.push_back(georef::contains(tile->id, shard.tile) ? shard : footprints::Shard{shard.tile, {}});
   std::uint64_t to_build = 0;
   for (const std::size_t shard : todo) to_build += shards[shard].seeds.size();
   if (!options.plan) check_free_space(options, to_build, folder);
@@ -398,7 +400,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   const outputs::OutputContext output_context{
       .options = output_options,
       .lod = options.lod,
-      .name = name_of(options),
+      .name = name_of(options) + (record.area ? ", area " + text_of(*record.area) : ""),
       .folder = folder,
       .projection = projection,
       .crs = record.crs,
@@ -406,7 +408,7 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
       .data_time = record.data_time,
       .centre = located.facts.centre,
       .extract = extract,
-      .shards = shards,
+      .shards = shards_here.empty() ? std::span<const footprints::Shard>(shards) : shards_here,
       .repaired = repaired,
       .context = context,
       .imagery = imagery.observations(),
@@ -501,6 +503,26 @@ BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   folder.write("run.json", run_json(run_record(options, start, context_seconds, workers, progress, summary), summary));
   publish(folder, options, summary, progress);
   return summary;
+}
+
+}  // namespace
+
+std::string name_of(const BuildOptions& options) {
+  if (!options.name.empty()) return options.name;
+  std::string name = options.input.substr(options.input.find_last_of('/') + 1);
+  for (const std::string_view end : {".gz", ".bz2", ".pbf", ".osm"})
+    if (name.size() > end.size() && name.ends_with(end)) name.resize(name.size() - end.size());
+  return name;
+}
+
+BuildSummary build_area(const BuildOptions& options, const AreaPart& part, base::Progress& progress) {
+  return build_all_or_part(options, &part, progress);
+}
+
+BuildSummary build(const BuildOptions& options, base::Progress& progress) {
+  if (options.areas > 0) return build_in_areas(options, progress);
+  if (!options.area.empty()) return build_one_area(options, progress);
+  return build_all_or_part(options, nullptr, progress);
 }
 
 }  // namespace blockrand::run

@@ -27,6 +27,9 @@ struct BuildSummary : outputs::ObjectCounts {
   double planned_tile_seconds = 0;  ///< BuildOptions::plan: how long the tiles should take; 0: nobody knows
   /// Why tiles were worked on, counted by what differs from the run before: names of TilePart, "new", "not kept".
   std::map<std::string, std::uint64_t> tiles_built_for;
+  std::uint64_t areas = 0, areas_kept = 0;     ///< of a build in areas: all, and those of the earlier build
+  std::set<std::string> areas_taken_over;      ///< the latter by name
+  std::set<std::string> kept_work_of_areas;    ///< as kept_work, each behind the area that used it: "11/1093/805 tiles/…"
   std::set<std::string> kept_work;  ///< what the run used or left in the cache (WorkCache::used)
   std::map<std::string, std::string, std::less<>> figures;  ///< of single files, in words, by path
   bool below_quality = false;                               ///< a building is simpler than asked, or has no solid
@@ -34,6 +37,14 @@ struct BuildSummary : outputs::ObjectCounts {
   std::vector<std::string> unaccounted;                     ///< objects that no stage decided on: a bug
   std::string folder;  ///< where the build lies: beside the output folder where it must not replace it
 };
+
+/// What pages call the build: the name given, else that of the extract without the endings of its format.
+std::string name_of(const BuildOptions& options);
+
+struct AreaPart;
+
+/// One area of a build in areas, as a build of its own. \throws as build
+BuildSummary build_area(const BuildOptions& options, const AreaPart& part, base::Progress& progress);
 
 /// Builds and publishes; with BuildOptions::plan, only says which tiles it would work on. An existing output folder stays untouched until the new one is complete. A build with objects that
 /// are unaccounted for replaces none: it lies beside, as `<output>.unaccounted`.

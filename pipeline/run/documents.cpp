@@ -5,6 +5,7 @@
 
 #include "pipeline/base/version.h"
 #include "pipeline/run/configuration.h"
+#include "pipeline/run/tile_choice.h"
 
 namespace blockrand::run {
 
@@ -15,30 +16,6 @@ using Json = nlohmann::ordered_json;
 /// Rounded for people; also keeps the last bits of long sums out of the file.
 double rounded(double value, double steps = 100) { return std::nearbyint(value * steps) / steps; }
 
-Json crs_json(const BuildRecord& r) {
-  Json j = {{"code", r.crs.authority_code},
-            {"name", r.crs.name},
-            {"operation", r.crs.operation},
-            {"pipeline", r.crs.pipeline},
-            {"accuracy_m", r.crs.accuracy_m},
-            {"portable", r.portable},
-            // Rounded up to 10 nm: the last bits of an error say nothing.
-            {"round_trip_error_m", std::ceil(r.round_trip.projection_m * 1e8) / 1e8},
-            {"frame_round_trip_error_m", std::ceil(r.round_trip.frame_m * 1e8) / 1e8},
-            {"height_reference", r.heights.words},
-            {"vertical_crs", r.heights.vertical_crs},
-            {"height_reference_of_tiles", r.heights.in_tiles}};
-  // How heights reach the ellipsoid in 3D Tiles; null: as they are.
-  const context::HeightReference& h = r.heights;
-  j["to_ellipsoid"] = nullptr;
-  if (h.raised_by)
-    j["to_ellipsoid"] = {
-        {"by", h.raised_by->words()},
-        {"from", h.raised_from},
-        {"accuracy_m", h.raised_by->accuracy_m() < 0 ? Json(nullptr) : Json(h.raised_by->accuracy_m())}};
-  return j;
-}
-
 Json terrain_json(const importers::elevation::TerrainDescription& t) {
   return {{"crs", t.crs_code.empty() ? t.crs_name : t.crs_code},
           {"vertical_crs", t.vertical_code.empty() ? t.vertical_name : t.vertical_code},
@@ -46,29 +23,6 @@ Json terrain_json(const importers::elevation::TerrainDescription& t) {
           {"accuracy_m", t.accuracy_m < 0 ? Json(nullptr) : Json(t.accuracy_m)},
           {"pixel", {t.pixel_width, t.pixel_height}},
           {"size", {t.columns, t.rows}}};
-}
-
-/// What a build of one tile alone takes from here (--pinned).
-Json region_json(const RegionFacts& facts) {
-  Json j = {{"box", {facts.box.west, facts.box.south, facts.box.east, facts.box.north}},
-            {"centre", {facts.centre.lon, facts.centre.lat}},
-            {"coverage", Json::array()}};
-  for (const model::Point2 p : facts.coverage) j["coverage"].push_back({p.x, p.y});
-  j["areas"] = Json::array();
-  for (const attributes::PinnedArea& area : facts.areas) {
-    Json rings = Json::array();
-    for (const auto& ring : area.rings) {
-      Json numbers = Json::array();  // 1e-7 degrees: longitude, latitude, longitude, ...
-      for (const model::Location p : ring) {
-        numbers.push_back(p.lon);
-        numbers.push_back(p.lat);
-      }
-      rings.push_back(std::move(numbers));
-    }
-    j["areas"].push_back(
-        {{"question", area.question}, {"value", area.value}, {"id", area.id.text()}, {"rings", std::move(rings)}});
-  }
-  return j;
 }
 
 Json repair_json(const footprints::RepairTotals& m) {
@@ -155,13 +109,6 @@ Json statistics_json(const outputs::Statistics& t) {
   return j;
 }
 
-Json inputs_json(const std::vector<InputFile>& inputs) {
-  Json j = Json::array();
-  for (const InputFile& f : inputs)
-    j.push_back({{"role", f.role}, {"path", f.path}, {"bytes", f.bytes}, {"sha256", f.sha256}});
-  return j;
-}
-
 Json image_json(const observation::ImageReceipt& image) {
   const importers::imagery::ImageDescription& d = image.description;
   return {{"path", d.source.path},
@@ -178,6 +125,59 @@ Json image_json(const observation::ImageReceipt& image) {
 
 }  // namespace
 
+Json crs_json(const BuildRecord& r) {
+  Json j = {{"code", r.crs.authority_code},
+            {"name", r.crs.name},
+            {"operation", r.crs.operation},
+            {"pipeline", r.crs.pipeline},
+            {"accuracy_m", r.crs.accuracy_m},
+            {"portable", r.portable},
+            // Rounded up to 10 nm: the last bits of an error say nothing.
+            {"round_trip_error_m", std::ceil(r.round_trip.projection_m * 1e8) / 1e8},
+            {"frame_round_trip_error_m", std::ceil(r.round_trip.frame_m * 1e8) / 1e8},
+            {"height_reference", r.heights.words},
+            {"vertical_crs", r.heights.vertical_crs},
+            {"height_reference_of_tiles", r.heights.in_tiles}};
+  // How heights reach the ellipsoid in 3D Tiles; null: as they are.
+  const context::HeightReference& h = r.heights;
+  j["to_ellipsoid"] = nullptr;
+  if (h.raised_by)
+    j["to_ellipsoid"] = {
+        {"by", h.raised_by->words()},
+        {"from", h.raised_from},
+        {"accuracy_m", h.raised_by->accuracy_m() < 0 ? Json(nullptr) : Json(h.raised_by->accuracy_m())}};
+  return j;
+}
+
+Json region_json(const RegionFacts& facts) {
+  Json j = {{"box", {facts.box.west, facts.box.south, facts.box.east, facts.box.north}},
+            {"centre", {facts.centre.lon, facts.centre.lat}},
+            {"coverage", Json::array()}};
+  for (const model::Point2 p : facts.coverage) j["coverage"].push_back({p.x, p.y});
+  j["areas"] = Json::array();
+  for (const attributes::PinnedArea& area : facts.areas) {
+    Json rings = Json::array();
+    for (const auto& ring : area.rings) {
+      Json numbers = Json::array();  // 1e-7 degrees: longitude, latitude, longitude, ...
+      for (const model::Location p : ring) {
+        numbers.push_back(p.lon);
+        numbers.push_back(p.lat);
+      }
+      rings.push_back(std::move(numbers));
+    }
+    j["areas"].push_back(
+        {{"question", area.question}, {"value", area.value}, {"id", area.id.text()}, {"rings", std::move(rings)}});
+  }
+  return j;
+}
+
+Json inputs_json(const std::vector<InputFile>& inputs) {
+  Json j = Json::array();
+  for (const InputFile& f : inputs)
+    j.push_back({{"role", f.role}, {"path", f.path}, {"bytes", f.bytes}, {"sha256", f.sha256}});
+  return j;
+}
+
 std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   Json j;
   j["program"] = {{"name", "blockrand"}, {"version", base::kVersion}};
@@ -188,7 +188,10 @@ std::string build_json(const BuildOptions& options, const BuildRecord& r) {
   j["crs"] = crs_json(r);
   if (r.terrain) j["terrain"] = terrain_json(*r.terrain);
   for (const observation::ImageReceipt& image : r.images) j["imagery"].push_back(image_json(image));
-  j["region"] = region_json(r.facts);
+  if (r.area)
+    j["area"] = text_of(*r.area);
+  else
+    j["region"] = region_json(r.facts);
   j["repair"] = repair_json(r.repair);
   j["counts"] = counts_json(r);
   j["issues"] = Json::object();

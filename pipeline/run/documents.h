@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,7 @@ struct BuildRecord {
   context::HeightReference heights;
   std::optional<importers::elevation::TerrainDescription> terrain;
   std::vector<observation::ImageReceipt> images;
+  std::optional<model::TileId> area;  ///< of a build in areas: what `facts` say stands in the record of the whole
   RegionFacts facts;
   footprints::RepairTotals repair;
   BuildSummary summary;
@@ -60,6 +62,11 @@ struct RunRecord {
   std::string host;
   std::vector<InputFile> inputs;  ///< files by which the data came
 };
+
+/// What a build of one tile or area alone takes from a record (--pinned).
+nlohmann::ordered_json region_json(const RegionFacts& facts);
+nlohmann::ordered_json crs_json(const BuildRecord& record);
+nlohmann::ordered_json inputs_json(const std::vector<InputFile>& inputs);
 
 std::string build_json(const BuildOptions& options, const BuildRecord& record);
 std::string run_json(const RunRecord& run, const BuildSummary& summary);

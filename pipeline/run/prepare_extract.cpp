@@ -14,11 +14,12 @@
 namespace blockrand::run {
 
 LocatedExtract locate_extract(const BuildOptions& options, const std::optional<TileChoice>& tile,
-                              base::Progress& progress) {
+                              base::Progress& progress, const importers::osm::ExtractStore* store) {
   progress.begin("read");
   importers::osm::ReadOptions read_options;
   read_options.bbox = tile ? tile->window : options.bbox;
-  model::Extract extract = importers::osm::read_extract(options.input, read_options);
+  model::Extract extract = store && tile ? store->read(tile->id, read_options, tile->placeless)
+                                         : importers::osm::read_extract(options.input, read_options);
   malloc_trim(0);  // libosmium's buffers go back to the system before tiles need the room
 
   progress.begin("locate");
@@ -54,7 +55,7 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   const model::Extract& extract = located.extract;
   model::Report report;
   std::vector<footprints::Shard> shards =
-      footprints::make_shards(extract, report, tile ? tile->id.level : footprints::kTileLevel);
+      footprints::make_shards(extract, report, tile ? tile->tile_level : footprints::kTileLevel);
   repair::KeptNodes kept(extract);
   footprints::RepairedExtract repaired =
       footprints::repair_extract(extract, shards, located.projection, kept, options.repair, workers, progress, memo);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "importers/osm/extract_store.h"
 #include "pipeline/base/memo.h"
 #include "pipeline/base/progress.h"
 #include "pipeline/context/context_extract.h"
@@ -39,8 +40,9 @@ struct LocatedExtract {
 /// Reads the extract (of a tile alone: its window) and chooses its frame, or takes the pinned one.
 /// \throws base::InputError  unreadable extract
 /// \throws base::UsageError  a CRS that cannot be used here
+/// \param store  where an area is read from; null: from the input
 LocatedExtract locate_extract(const BuildOptions& options, const std::optional<TileChoice>& tile,
-                              base::Progress& progress);
+                              base::Progress& progress, const importers::osm::ExtractStore* store = nullptr);
 
 /// What the stages before the tiles found. Keeps no reference to the extract but in `kept`.
 struct PreparedExtract {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -19,26 +20,6 @@ using model::MappedBuilding;
 using model::ObjectState;
 
 constexpr int kMinLevel = 8, kMaxLevel = 20;  // 0.7 degrees to 19 m: smaller tiles are all halo
-
-model::TileId parse_tile(const std::string& text) {
-  std::int64_t numbers[3];
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  bool ok = true;
-  for (int i = 0; i < 3 && ok; ++i) {
-    const auto [next, error] = std::from_chars(at, end, numbers[i]);
-    ok = error == std::errc() && (i == 2 ? next == end : next != end && *next == '/');
-    at = next + 1;
-  }
-  ok = ok && numbers[0] >= kMinLevel && numbers[0] <= kMaxLevel && numbers[1] >= 0 &&
-       numbers[1] < (2LL << numbers[0]) && numbers[2] >= 0 && numbers[2] < (1LL << numbers[0]);
-  if (!ok)
-    throw base::UsageError(
-        "--tile " + text +
-        " is no tile. Write level/x/y as in the file names below tiles/, for example 15/35207/25941; level from " +
-        std::to_string(kMinLevel) + " to " + std::to_string(kMaxLevel));
-  return {static_cast<int>(numbers[0]), static_cast<std::uint32_t>(numbers[1]), static_cast<std::uint32_t>(numbers[2])};
-}
 
 /// What the images showed of the whole, from the file beside the pinned build.json.
 std::optional<outputs::ReadImagery> read_imagery(const std::string& pinned, const std::string& sha256) {
@@ -58,9 +39,50 @@ std::optional<outputs::ReadImagery> read_imagery(const std::string& pinned, cons
 
 }  // namespace
 
+model::TileId parse_tile(const std::string& text, std::string_view option) {
+  std::int64_t numbers[3];
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  bool ok = true;
+  for (int i = 0; i < 3 && ok; ++i) {
+    const auto [next, error] = std::from_chars(at, end, numbers[i]);
+    ok = error == std::errc() && (i == 2 ? next == end : next != end && *next == '/');
+    at = next + 1;
+  }
+  ok = ok && numbers[0] >= kMinLevel && numbers[0] <= kMaxLevel && numbers[1] >= 0 &&
+       numbers[1] < (2LL << numbers[0]) && numbers[2] >= 0 && numbers[2] < (1LL << numbers[0]);
+  if (!ok)
+    throw base::UsageError(
+        std::string(option) + " " + text +
+        " is no tile. Write level/x/y as in the file names below tiles/, for example 15/35207/25941; level from " +
+        std::to_string(kMinLevel) + " to " + std::to_string(kMaxLevel));
+  return {static_cast<int>(numbers[0]), static_cast<std::uint32_t>(numbers[1]), static_cast<std::uint32_t>(numbers[2])};
+}
+
+std::string text_of(const model::TileId& tile) {
+  return std::to_string(tile.level) + "/" + std::to_string(tile.x) + "/" + std::to_string(tile.y);
+}
+
+TileChoice choose_area(const model::TileId& area, RegionFacts facts) {
+  TileChoice choice;
+  choice.id = area;
+  choice.tile_level = footprints::kTileLevel;
+  choice.facts = std::move(facts);
+  // Every area is the same whatever stands at the other end of the region. The box chooses among PROJ's operations.
+  georef::GeoBox& box = choice.facts.box;
+  constexpr double kSteps = 10;  // of a degree
+  box = {std::floor(box.west * kSteps) / kSteps, std::floor(box.south * kSteps) / kSteps,
+         std::ceil(box.east * kSteps) / kSteps, std::ceil(box.north * kSteps) / kSteps};
+  choice.facts.centre = georef::centre(area);
+  const georef::GeoBox window = georef::with_halo(area, kHalo);
+  choice.window = {window.west, window.south, window.east, window.north};
+  return choice;
+}
+
 std::optional<TileChoice> choose_tile(const BuildOptions& options) {
   if (options.tile.empty()) {
-    if (!options.pinned.empty()) throw base::UsageError("--pinned is of use with --tile only");
+    if (!options.pinned.empty() && options.area.empty())
+      throw base::UsageError("--pinned is of use with --tile and --area only");
     return std::nullopt;
   }
   if (options.pinned.empty())
@@ -72,7 +94,8 @@ std::optional<TileChoice> choose_tile(const BuildOptions& options) {
   if (options.bbox) throw base::UsageError("--tile and --bbox contradict each other");
   if (!options.crs.empty()) throw base::UsageError("--tile takes the CRS of --pinned: leave out --crs");
   TileChoice choice;
-  choice.id = parse_tile(options.tile);
+  choice.id = parse_tile(options.tile, "--tile");
+  choice.tile_level = choice.id.level;
   choice.facts = read_region_facts(options.pinned, options);
   choice.imagery = read_imagery(options.pinned, choice.facts.imagery_sha256);
   const georef::GeoBox window = georef::with_halo(choice.id, kHalo);
@@ -84,11 +107,11 @@ std::vector<std::size_t> shards_to_build(std::span<const footprints::Shard> shar
                                          const std::optional<TileChoice>& tile) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < shards.size(); ++i)
-    if (!tile || shards[i].tile == tile->id) out.push_back(i);
+    if (!tile || georef::contains(tile->id, shards[i].tile)) out.push_back(i);
   return out;
 }
 
-void forget_others(model::Extract& extract, model::TileId tile, std::vector<model::ReportRow>& rows) {
+void forget_others(model::Extract& extract, const TileChoice& tile, std::vector<model::ReportRow>& rows) {
   std::vector<model::OsmId> kept;
   const auto find = [&](model::OsmId id) -> const MappedBuilding* {
     const auto place = std::lower_bound(extract.buildings.begin(), extract.buildings.end(), id,
@@ -102,7 +125,7 @@ void forget_others(model::Extract& extract, model::TileId tile, std::vector<mode
     if (b.state == ObjectState::represented)
       if (const MappedBuilding* by = find(b.related)) return by->state != ObjectState::pending;
     const std::optional<model::Location> place = b.rings.count > 0 ? footprints::box_centre(extract, b) : b.place;
-    return place && georef::tile_of(*place, tile.level) == tile;
+    return place ? georef::tile_of(*place, tile.id.level) == tile.id : tile.placeless;
   };
   std::vector<MappedBuilding> buildings;
   for (const MappedBuilding& b : extract.buildings)

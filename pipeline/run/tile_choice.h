@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/footprints/shard.h"
@@ -20,24 +22,36 @@ namespace blockrand::run {
 /// are known to be longer when the data goes on; and a kilometre for what chains of these and large buildings add.
 inline constexpr double kHalo = 3000;
 
-/// A tile that is built alone.
+/// A tile that is built alone, or an area of many tiles.
 struct TileChoice {
   model::TileId id;
+  int tile_level = 0;      ///< of the tiles that are made: that of `id` for one tile
+  bool placeless = false;  ///< of an area: objects without any known position are told here
+  bool is_area() const { return tile_level > id.level; }
   RegionFacts facts;                            ///< of the whole extract
   std::optional<outputs::ReadImagery> imagery;  ///< what the build of the whole saw in its images
-  std::array<double, 4> window;  ///< west, south, east, north in degrees: the tile and its halo, all that is read
+  std::array<double, 4> window{};  ///< west, south, east, north in degrees: the tile and its halo, all that is read
 };
+
+/// The area's window. \param facts  of the whole
+TileChoice choose_area(const model::TileId& area, RegionFacts facts);
+
+/// "11/1093/805"
+std::string text_of(const model::TileId& tile);
+
+/// Reads it. \throws base::UsageError  \param option  for messages
+model::TileId parse_tile(const std::string& text, std::string_view option);
 
 /// What the options ask for; empty for the whole extract.
 /// \throws base::UsageError  `tile` is not "level/x/y", or lacks `pinned`, or contradicts other options
 /// \throws base::InputError  `pinned` cannot be used
 std::optional<TileChoice> choose_tile(const BuildOptions& options);
 
-/// Indices of the shards to build: all, or the tile's (none where it holds no building).
+/// Indices of the shards to build: all, the tile's, or those in the area (none where it holds no building).
 std::vector<std::size_t> shards_to_build(std::span<const footprints::Shard> shards,
                                          const std::optional<TileChoice>& tile);
 
 /// Removes the objects of other tiles from the extract, and their rows: they were read as surroundings only.
-void forget_others(model::Extract& extract, model::TileId tile, std::vector<model::ReportRow>& rows);
+void forget_others(model::Extract& extract, const TileChoice& tile, std::vector<model::ReportRow>& rows);
 
 }  // namespace blockrand::run

@@ -179,11 +179,12 @@ void check_is_cache(const std::string& folder) {
 
 }  // namespace
 
-WorkCache::WorkCache(std::string folder, const std::string& program, base::Progress& progress, Mode mode)
-    : folder_(std::move(folder)), mode_(mode) {
+WorkCache::WorkCache(std::string folder, const std::string& program, base::Progress& progress, Mode mode,
+                     std::string area)
+    : folder_(std::move(folder)), area_(std::move(area)), mode_(mode) {
   check_is_cache(folder_);
   read_parts();
-  if (mode_ == Mode::look) return;
+  if (mode_ != Mode::work) return;
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw base::OutputError(folder_ + ": cannot be made: " + error.message());
@@ -221,8 +222,12 @@ WorkCache::WorkCache(std::string folder, const std::string& program, base::Progr
   }
 }
 
+std::string WorkCache::notes() const {
+  return folder_ + "/" + std::string(kParts) + (area_.empty() ? "" : "." + area_);
+}
+
 void WorkCache::read_parts() {
-  if (const std::optional<std::string> noted = read_all(folder_ + "/" + std::string(kParts))) try {
+  if (const std::optional<std::string> noted = read_all(notes())) try {
       parts_before_ = base::unpacked<std::map<std::string, std::vector<std::uint64_t>>>(*noted);
     } catch (const base::UnpackError&) {
       parts_before_.clear();
@@ -235,12 +240,13 @@ WorkCache::~WorkCache() {
   // A run that fails knows of some tiles alone.
   if (std::uncaught_exceptions() > 0) parts_.merge(parts_before_);
   if (!parts_.empty()) try {
-      const std::string place = folder_ + "/" + std::string(kParts);
+      const std::string place = notes();
       write_all(place + ".new", base::packed(parts_));
       fs::rename(place + ".new", place, error);
     } catch (const base::OutputError&) {
       // The next run does not know why, and no more.
     }
+  if (mode_ == Mode::part) return;
   // Only what the disk has is known to be whole.
   if (::syncfs(lock_) == 0) fs::remove(folder_ + "/" + std::string(kOpen), error);
   ::close(lock_);
@@ -256,7 +262,7 @@ std::optional<WorkCache::Found> WorkCache::find(std::string_view kind, const std
   if (!fs::exists(folder, error)) return std::nullopt;
   std::optional<Stored> stored = read_entry(folder);
   if (!stored || !entry_is_whole(folder, *stored, false)) {
-    if (mode_ == Mode::work) remove(folder);
+    if (mode_ != Mode::look) remove(folder);
     ++damaged_;
     return std::nullopt;
   }
@@ -267,7 +273,7 @@ std::optional<WorkCache::Found> WorkCache::find(std::string_view kind, const std
     found.places.push_back(folder + "/" + std::to_string(i));
   }
   // The time of its folder says when it was last of use.
-  if (mode_ == Mode::work) ::utimensat(AT_FDCWD, folder.c_str(), nullptr, 0);
+  if (mode_ != Mode::look) ::utimensat(AT_FDCWD, folder.c_str(), nullptr, 0);
   const std::lock_guard lock(mutex_);
   used_.insert(std::string(kind) + "/" + key);
   return found;

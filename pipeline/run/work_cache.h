@@ -5,7 +5,7 @@
 //   cache/open               there while a run works: one that did not end leaves it
 //   cache/<kind>/ab/<key>/   an entry: `entry` (its bytes with their hash), 0, 1, … (its files, hard links to those of builds)
 //   cache/new/               entries in the making
-//   cache/parts              of which parts each tile was made in the last run: says why it is built again
+//   cache/parts              of which parts each tile was made in the last run: says why it is built again; parts.AREA in areas
 //   cache/of/N               in a region: which entries build N used
 //
 // An entry appears by the renaming of its folder. Killed at any instant, a run leaves whole entries and what is in `new`, which the
@@ -35,13 +35,16 @@ class WorkCache {
  public:
   enum class Mode {
     work,  ///< alone: with the lock
+    part,  ///< a process of one that has the lock
     look   ///< beside others: nothing is locked, written or removed
   };
   /// Opens the folder, makes it where it is missing, and says what a newer program leaves of no use. After a run that did not end
   /// all of it is read, and what is damaged removed.
   /// \throws base::OutputError  it cannot be written
   /// \throws base::UsageError   another process works with it, or it is no such folder
-  WorkCache(std::string folder, const std::string& program, base::Progress& progress, Mode mode = Mode::work);
+  /// \param area  notes on its pieces are kept apart: "11_1093_805"; empty: one file for all
+  WorkCache(std::string folder, const std::string& program, base::Progress& progress, Mode mode = Mode::work,
+            std::string area = {});
   /// Of a run that ended: what lies there is known to be whole.
   ~WorkCache();
   WorkCache(const WorkCache&) = delete;
@@ -76,9 +79,10 @@ class WorkCache {
 
  private:
   std::string place(std::string_view kind, const std::string& key) const;
+  std::string notes() const;
   void read_parts();
 
-  std::string folder_;
+  std::string folder_, area_;
   Mode mode_;
   int lock_ = -1;
   mutable std::mutex mutex_;

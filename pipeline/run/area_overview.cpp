@@ -1,0 +1,372 @@
+#include "pipeline/run/area_overview.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+
+#include "pipeline/base/error.h"
+#include "pipeline/base/markup.h"
+#include "pipeline/base/sha256.h"
+#include "pipeline/base/text.h"
+#include "pipeline/base/version.h"
+#include "pipeline/georef/tiles.h"
+#include "pipeline/model/issue_codes.h"
+#include "pipeline/outputs/output.h"
+#include "pipeline/run/configuration.h"
+#include "pipeline/run/documents.h"
+#include "pipeline/run/tile_choice.h"
+
+namespace blockrand::run {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using model::TileId;
+
+/// Adds numbers to numbers of the same name, at any depth. What is no sum is left out by the caller.
+void add_numbers(Json& sum, const Json& more) {
+  for (const auto& [key, value] : more.items()) {
+    if (value.is_object()) {
+      if (!sum.contains(key)) sum[key] = Json::object();
+      add_numbers(sum[key], value);
+    } else if (value.is_number()) {
+      if (!sum.contains(key))
+        sum[key] = value;
+      else if (key.ends_with("_most_m"))
+        sum[key] = std::max(sum[key].get<double>(), value.get<double>());
+      else if (value.is_number_integer())
+        sum[key] = sum[key].get<std::int64_t>() + value.get<std::int64_t>();
+      else
+        sum[key] = std::nearbyint((sum[key].get<double>() + value.get<double>()) * 100) / 100;
+    }
+  }
+}
+
+Json read_document(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  Json j = Json::parse(file, nullptr, false);
+  if (!j.is_object()) throw base::OutputError(path + ": cannot be read back");
+  return j;
+}
+
+/// West, south, east, north in radians, lowest and highest in metres: a region of 3D Tiles.
+using RegionVolume = std::array<double, 6>;
+
+struct Entry {
+  TileId tile;
+  std::string record_sha256;
+  std::uint64_t files = 0, bytes = 0, objects = 0, models = 0, reported = 0, simpler = 0;
+  std::optional<RegionVolume> volume;  ///< of its tileset; empty: it has none, or an empty one
+  double error = 0;                    ///< m, of its tileset's root
+  bool has_geopackage = false;
+};
+
+RegionVolume joined(const RegionVolume& a, const RegionVolume& b) {
+  return {std::min(a[0], b[0]), std::min(a[1], b[1]), std::max(a[2], b[2]),
+          std::max(a[3], b[3]), std::min(a[4], b[4]), std::max(a[5], b[5])};
+}
+
+TileId parent_of(const TileId& t) { return {t.level - 1, t.x / 2, t.y / 2}; }
+
+}  // namespace
+
+std::string area_path(const TileId& area) { return "areas/" + text_of(area); }
+
+struct Overview::State {
+  const BuildOptions& options;
+  const RegionFacts& facts;
+  const importers::osm::StoreFigures& data;
+  std::vector<Entry> entries;
+  Json common;  ///< of the first record: what is the same in all
+  Json counts = Json::object(), issues = Json::object(), statistics = Json::object();
+
+  std::string tileset() const {
+    struct Node {
+      RegionVolume volume{};
+      double error = 0;
+      std::map<TileId, std::string> children;
+    };
+    // Tiles of a level, each as the text of its node; the level above is made of them until one is left.
+    struct Made {
+      RegionVolume volume{};
+      double error = 0;
+      Json json;
+    };
+    std::map<TileId, Made> level;
+    for (const Entry& e : entries) {
+      if (!e.volume) continue;
+      Json node = {{"boundingVolume", {{"region", *e.volume}}},
+                   {"geometricError", e.error},
+                   {"content", {{"uri", area_path(e.tile) + "/tileset.json"}}}};
+      level[e.tile] = {*e.volume, e.error, std::move(node)};
+    }
+    const Json asset = {{"version", "1.1"},
+                        {"extras",
+                         {{"generator", outputs::generator()},
+                          {"crs", common.value("crs", Json::object()).value("code", "")},
+                          {"height_reference", common.value("crs", Json::object()).value("height_reference_of_tiles", "")},
+                          {"attribution", outputs::kAttribution}}}};
+    if (level.empty())
+      return Json({{"asset", asset},
+                   {"geometricError", 0},
+                   {"root",
+                    {{"boundingVolume", {{"box", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}}}},
+                     {"geometricError", 0},
+                     {"refine", "ADD"}}}})
+                 .dump() +
+             "\n";
+    const auto wrap = [](std::map<TileId, Made>& below) {
+      std::map<TileId, std::vector<Made*>> families;
+      for (auto& [tile, made] : below) families[parent_of(tile)].push_back(&made);
+      std::map<TileId, Made> above;
+      for (auto& [tile, children] : families) {
+        Made& made = above[tile];
+        if (children.size() == 1 && below.size() > 1) {  // nothing to divide
+          made = std::move(*children.front());
+          continue;
+        }
+        made.volume = children.front()->volume;
+        Json list = Json::array();
+        for (Made* child : children) {
+          made.volume = joined(made.volume, child->volume), made.error = std::max(made.error, child->error);
+          list.push_back(std::move(child->json));
+        }
+        made.error *= 2;
+        made.json = {{"boundingVolume", {{"region", made.volume}}}, {"geometricError", made.error}};
+        made.json["children"] = std::move(list);
+      }
+      below = std::move(above);
+    };
+    do
+      wrap(level);
+    while (level.size() > 1 && level.begin()->first.level > 0);
+    if (level.size() > 1) {  // on both sides of the prime meridian
+      Made root;
+      root.volume = level.begin()->second.volume;
+      Json list = Json::array();
+      for (auto& [tile, made] : level) {
+        root.volume = joined(root.volume, made.volume), root.error = std::max(root.error, 2 * made.error);
+        list.push_back(std::move(made.json));
+      }
+      root.json = {{"boundingVolume", {{"region", root.volume}}}, {"geometricError", root.error}};
+      root.json["children"] = std::move(list);
+      level = {{TileId{0, 0, 0}, std::move(root)}};
+    }
+    Made& root = level.begin()->second;
+    root.json["refine"] = "ADD";
+    return Json({{"asset", asset}, {"geometricError", 2 * root.error}, {"root", std::move(root.json)}}).dump() + "\n";
+  }
+
+  /// All footprints as one layer for GIS programs: GDAL's union of the areas' layers.
+  std::string vrt() const {
+    std::string out = "<OGRVRTDataSource>\n  <OGRVRTUnionLayer name=\"footprints\">\n";
+    for (const Entry& e : entries)
+      if (e.has_geopackage)
+        out += "    <OGRVRTLayer name=\"footprints\"><SrcDataSource relativeToVRT=\"1\">" + area_path(e.tile) +
+               "/buildings.gpkg</SrcDataSource></OGRVRTLayer>\n";
+    return out + "  </OGRVRTUnionLayer>\n</OGRVRTDataSource>\n";
+  }
+
+  Json area_list() const {
+    Json list = Json::object();
+    for (const Entry& e : entries)
+      list[text_of(e.tile)] = {{"build_sha256", e.record_sha256}, {"files", e.files},       {"bytes", e.bytes},
+                               {"objects", e.objects},            {"models", e.models},     {"reported", e.reported},
+                               {"simpler", e.simpler}};
+    return list;
+  }
+
+  std::string report_json(const std::vector<std::string>& unmatched) const {
+    Json j;
+    j["counts"] = counts;
+    j["issues"] = issues;
+    j["statistics"] = statistics;
+    j["overrides_unmatched"] = unmatched;
+    j["codes"] = Json::object();
+    for (const auto& [code, count] : issues.items())
+      for (const model::IssueInfo& info : model::kIssueInfo)
+        if (info.text == code) j["codes"][code] = info.meaning;
+    j["areas"] = area_list();
+    return j.dump(1) + "\n";
+  }
+
+  std::string map_svg() const {
+    if (entries.empty()) return {};
+    double west = 1e9, south = 1e9, east = -1e9, north = -1e9;
+    std::uint64_t most = 1;
+    for (const Entry& e : entries) {
+      const georef::GeoBox b = georef::bounds(e.tile);
+      west = std::min(west, b.west), south = std::min(south, b.south);
+      east = std::max(east, b.east), north = std::max(north, b.north);
+      most = std::max(most, e.models);
+    }
+    const georef::GeoBox first = georef::bounds(entries.front().tile);
+    // Pixels for one area; a tile of the quadtree is as high as it is wide in degrees.
+    const double size = std::clamp(900.0 / ((east - west) / first.width()), 8.0, 90.0);
+    const double scale = size / first.width(), squash = 1.6;  // degrees of longitude are shorter than those of latitude
+    std::string out = fmt::format(
+        "<figure>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" width=\"{:.0f}\" role=\"img\" "
+        "aria-label=\"Map of the areas: darker ones have more buildings\">\n",
+        (east - west) * scale, (north - south) * scale * squash, (east - west) * scale);
+    for (const Entry& e : entries) {
+      const georef::GeoBox b = georef::bounds(e.tile);
+      const double share = static_cast<double>(e.models) / static_cast<double>(most);
+      out += fmt::format(
+          "<a href=\"{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#2e6fb7\" "
+          "fill-opacity=\"{:.2f}\" stroke=\"#888888\"><title>{}: {} models</title></rect></a>\n",
+          link_of(e), (b.west - west) * scale, (north - b.north) * scale * squash, size, size * squash,
+          0.08 + 0.9 * std::sqrt(share), text_of(e.tile), base::with_thousands(e.models));
+    }
+    return out + "</svg>\n<figcaption>The areas; darker ones have more models. Each leads to its report. North is up.</figcaption>\n</figure>\n";
+  }
+
+  std::string link_of(const Entry& e) const {
+    return area_path(e.tile) + (options.outputs.report ? "/report.html" : "/build.json");
+  }
+
+  std::string page(const std::string& name, const std::vector<std::string>& unmatched) const {
+    using base::escaped;
+    std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" "
+                      "content=\"width=device-width, initial-scale=1\"/>\n<title>" +
+                      escaped(name) + "</title>\n<style>" + std::string(base::kPageStyle) +
+                      "</style>\n</head>\n<body>\n<main>\n<h1>" + escaped(name) + "</h1>\n";
+    const auto count = [&](const char* key) {
+      return base::with_thousands(counts.value(key, std::uint64_t{0}));
+    };
+    out += fmt::format(
+        "<p>{} buildings and {} parts in {} areas; {} models, {} objects reported. Data as of {}.</p>\n",
+        count("buildings_in"), count("parts_in"), base::with_thousands(entries.size()), count("models"),
+        count("reported"), data.data_time.empty() ? "an unknown time" : escaped(data.data_time));
+    out += "<h2>Areas</h2>\n" + map_svg();
+    out += "<table>\n<thead><tr><th scope=\"col\">area</th><th scope=\"col\">models</th><th scope=\"col\">simpler than "
+           "asked</th><th scope=\"col\">not modelled</th><th scope=\"col\">bytes</th></tr></thead>\n<tbody>\n";
+    for (const Entry& e : entries)
+      out += fmt::format("<tr><td><a href=\"{}\">{}</a></td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                         link_of(e), text_of(e.tile), base::with_thousands(e.models), base::with_thousands(e.simpler),
+                         base::with_thousands(e.reported), base::with_byte_unit(e.bytes));
+    out += "</tbody>\n</table>\n";
+    if (!issues.empty()) {
+      out += "<h2>What fell back or is missing, and why</h2>\n<table>\n<thead><tr><th scope=\"col\">code</th><th "
+             "scope=\"col\">objects</th><th scope=\"col\">meaning</th></tr></thead>\n<tbody>\n";
+      std::vector<std::pair<std::string, std::uint64_t>> rows;
+      for (const auto& [code, n] : issues.items()) rows.emplace_back(code, n.get<std::uint64_t>());
+      std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+      for (const auto& [code, n] : rows) {
+        std::string_view meaning;
+        for (const model::IssueInfo& info : model::kIssueInfo)
+          if (info.text == code) meaning = info.meaning;
+        out += "<tr><td>" + escaped(code) + "</td><td>" + base::with_thousands(n) + "</td><td>" + escaped(meaning) +
+               "</td></tr>\n";
+      }
+      out += "</tbody>\n</table>\n";
+    }
+    if (!unmatched.empty()) {
+      out += "<h2>Orders that match nothing</h2>\n<ul>\n";
+      for (const std::string& order : unmatched) out += "<li>" + escaped(order) + "</li>\n";
+      out += "</ul>\n";
+    }
+    return out + "<p>" + outputs::kAttribution + "</p>\n</main>\n</body>\n</html>\n";
+  }
+};
+
+Overview::Overview(const BuildOptions& options, const RegionFacts& facts, const importers::osm::StoreFigures& data)
+    : state_(new State{options, facts, data, {}, {}}) {}
+Overview::~Overview() = default;
+
+void Overview::add(const TileId& area, const std::string& folder) {
+  State& s = *state_;
+  const Json record = read_document(folder + "/build.json");
+  Entry entry;
+  entry.tile = area;
+  entry.record_sha256 = base::sha256_file(folder + "/build.json");
+  const Json& counts = record.at("counts");
+  entry.objects = counts.value("buildings_in", std::uint64_t{0}) + counts.value("parts_in", std::uint64_t{0});
+  entry.models = counts.value("models", std::uint64_t{0});
+  entry.reported = counts.value("reported", std::uint64_t{0});
+  for (int lod = 0; lod < s.options.lod; ++lod)
+    entry.simpler += counts.value(fmt::format("models_lod{}", lod), std::uint64_t{0});
+  for (const auto& [path, file] : record.at("files").items()) {
+    ++entry.files;
+    entry.bytes += file.value("bytes", std::uint64_t{0});
+    entry.has_geopackage = entry.has_geopackage || path == "buildings.gpkg";
+  }
+  entry.files += 2;  // build.json and run.json
+  if (std::error_code error; fs::exists(folder + "/tileset.json", error)) {
+    const Json root = read_document(folder + "/tileset.json").at("root");
+    if (root.at("boundingVolume").contains("region"))
+      entry.volume = root.at("boundingVolume").at("region").get<RegionVolume>();
+    entry.error = root.value("geometricError", 0.0);
+  }
+  add_numbers(s.counts, counts);
+  add_numbers(s.issues, record.at("issues"));
+  add_numbers(s.statistics, record.at("statistics"));
+  if (s.common.is_null()) {
+    for (const char* key : {"inputs", "crs", "terrain"})
+      if (record.contains(key)) s.common[key] = record.at(key);
+  }
+  const auto after = std::upper_bound(s.entries.begin(), s.entries.end(), area,
+                                      [](const TileId& t, const Entry& e) { return t < e.tile; });
+  s.entries.insert(after, std::move(entry));
+}
+
+void Overview::sum_up(BuildSummary& summary) const {
+  const auto count = [&](const std::string& key) { return state_->counts.value(key, std::uint64_t{0}); };
+  summary.buildings_in = count("buildings_in"), summary.parts_in = count("parts_in");
+  summary.models = count("models"), summary.reported = count("reported");
+  summary.duplicates = count("represented_as_duplicates");
+  summary.represented = count("represented") - summary.duplicates;
+  for (std::size_t lod = 0; lod < summary.models_by_lod.size(); ++lod)
+    summary.models_by_lod[lod] = count(fmt::format("models_lod{}", lod));
+  for (const auto& [code, n] : state_->issues.items()) summary.issues[code] = n.get<std::uint64_t>();
+  summary.files = summary.bytes = 0;
+  for (const Entry& e : state_->entries) summary.files += e.files, summary.bytes += e.bytes;
+}
+
+void Overview::write(base::StagedFolder& folder, const std::vector<std::string>& unmatched,
+                     BuildSummary& summary) const {
+  const State& s = *state_;
+  sum_up(summary);
+  std::vector<base::PublishedFile> files;
+  bool tilesets = false, geopackages = false;
+  for (const Entry& e : s.entries) {
+    std::error_code error;
+    tilesets = tilesets || fs::exists(folder.staging_path() + "/" + area_path(e.tile) + "/tileset.json", error);
+    geopackages = geopackages || e.has_geopackage;
+  }
+  if (tilesets) files.push_back(folder.write("tileset.json", s.tileset()));
+  if (geopackages) files.push_back(folder.write("buildings.vrt", s.vrt()));
+  files.push_back(folder.write("report.json", s.report_json(unmatched)));
+  if (s.options.outputs.report) files.push_back(folder.write("report.html", s.page(s.options.name, unmatched)));
+  std::ranges::sort(files, {}, &base::PublishedFile::path);
+  Json j;
+  j["program"] = {{"name", "blockrand"}, {"version", base::kVersion}};
+  j["data"] = {{"sha256", s.data.sha256}};
+  if (s.common.contains("inputs")) j["inputs"] = s.common["inputs"];
+  j["data_time"] = s.data.data_time;
+  j["configuration"] = configuration(s.options);
+  j["crs"] = s.common.value("crs", Json{{"code", s.facts.crs}});
+  if (s.common.contains("terrain")) j["terrain"] = s.common["terrain"];
+  j["region"] = region_json(s.facts);
+  Json counts = s.counts;
+  counts["missing_nodes"] = s.data.missing_nodes, counts["missing_ways"] = s.data.missing_ways;
+  j["counts"] = std::move(counts);
+  j["issues"] = s.issues;
+  j["statistics"] = s.statistics;
+  j["areas"] = s.area_list();
+  j["files"] = Json::object();
+  for (const base::PublishedFile& f : files) {
+    j["files"][f.path] = {{"bytes", f.bytes}, {"sha256", f.sha256}};
+    ++summary.files, summary.bytes += f.bytes;
+  }
+  folder.write("build.json", j.dump(1) + "\n");
+  summary.files += 2;
+}
+
+}  // namespace blockrand::run

@@ -1,0 +1,157 @@
+#include "pipeline/run/area_survey.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "pipeline/attributes/assign_extract.h"
+#include "pipeline/attributes/defaults.h"
+#include "pipeline/attributes/overrides.h"
+#include "pipeline/attributes/rule_sets.h"
+#include "pipeline/base/pack.h"
+#include "pipeline/base/sha256.h"
+#include "pipeline/context/context_extract.h"
+#include "pipeline/footprints/area.h"
+#include "pipeline/footprints/shard.h"
+#include "pipeline/georef/crs.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/georef/tiles.h"
+
+namespace blockrand::run {
+namespace {
+
+/// What one area says.
+struct AreaFacts {
+  std::vector<model::Location> centres;         ///< of buildings with an outline
+  std::uint64_t objects = 0;                    ///< mapped objects
+  std::vector<attributes::PinnedArea> pins;     ///< large areas that rules ask for
+  std::vector<std::uint32_t> matched;           ///< orders: indices
+};
+
+class Surveyor {
+ public:
+  Surveyor(const importers::osm::ExtractStore& store, const BuildOptions& options)
+      : store_(store),
+        options_(options),
+        defaults_(attributes::read_defaults(options.configs)),
+        rules_(attributes::read_rule_sets(options.configs, options.districts)) {
+    base::Packer key;
+    for (const auto& [name, path] : rules_.files) key << name << base::sha256_file(path);
+    key << options.districts;
+    if (!options.overrides.empty()) {
+      attributes::OverrideNames names{{}, rules_.book.substyles};
+      for (const districts::Preset& p : rules_.book.presets) names.presets.push_back(p.name);
+      overrides_ = attributes::read_overrides(options.overrides, defaults_, names);
+      key << base::sha256_file(options.overrides);
+    }
+    shared_ = std::move(key.bytes);
+  }
+
+  AreaFacts look(const importers::osm::StoredArea& area, const base::Memo* memo) const {
+    return base::remembered<AreaFacts>(
+        memo, "survey", [&](base::Packer& key) { key << area.tile << area.sha256 << shared_; },
+        [&] { return look_at(area.tile); });
+  }
+  const attributes::Overrides& overrides() const { return overrides_; }
+
+ private:
+  AreaFacts look_at(const model::TileId& tile) const {
+    const georef::GeoBox box = georef::bounds(tile);
+    importers::osm::ReadOptions read;
+    read.bbox = {box.west, box.south, box.east, box.north};
+    model::Extract extract = store_.read(tile, read, false);
+    AreaFacts facts;
+    std::set<std::uint32_t> matched;
+    attributes::Overrides overrides = overrides_;
+    model::Report report;
+    attributes::apply_overrides(overrides, extract, report);
+    for (std::uint32_t i = 0; i < overrides.entries.size(); ++i) matched.insert(i);
+    for (const model::ReportRow& row : report.rows)
+      for (std::uint32_t i = 0; i < overrides.entries.size(); ++i)
+        if (overrides.entries[i].object == row.object) matched.erase(i);
+    facts.matched.assign(matched.begin(), matched.end());
+    for (const model::MappedBuilding& b : extract.buildings) {
+      const std::optional<model::Location> place =
+          b.rings.count > 0 ? std::optional(footprints::box_centre(extract, b)) : b.place;
+      if (!place || georef::tile_of(*place, tile.level) != tile) continue;
+      ++facts.objects;
+      if (b.rings.count > 0 && b.state == model::ObjectState::pending) facts.centres.push_back(*place);
+    }
+    // Which areas are large enough does not depend on the projection: any that fits will do.
+    const georef::LonLat middle = box.centre();
+    const georef::Crs crs = georef::open_crs(georef::choose_crs(middle.lon, middle.lat), box);
+    const georef::Projection projection(crs, box);
+    const footprints::FootprintStore no_footprints;
+    const context::ContextExtract no_context;
+    const evidence::StyleExtract no_styles;
+    const context::TaggedNeighbours no_neighbours({}, options_.generate.neighbour_reach);
+    facts.pins = attributes::DistrictAssigner(rules_.book, {.extract = extract,
+                                                            .footprints = no_footprints,
+                                                            .context = no_context,
+                                                            .styles = no_styles,
+                                                            .projection = projection,
+                                                            .defaults = defaults_,
+                                                            .neighbours = no_neighbours,
+                                                            .neighbour_minimum = options_.generate.neighbour_minimum,
+                                                            .overrides = &overrides_,
+                                                            .pinned = {},
+                                                            .seed = options_.seed})
+                     .to_pin();
+    return facts;
+  }
+
+  const importers::osm::ExtractStore& store_;
+  const BuildOptions& options_;
+  attributes::Defaults defaults_;
+  attributes::ReadRuleSets rules_;
+  attributes::Overrides overrides_;
+  std::string shared_;
+};
+
+std::vector<model::Point2> projected(std::span<const model::Location> centres, const georef::Projection& projection) {
+  std::vector<model::Point2> places;
+  for (const model::Location centre : centres) {
+    const model::Point2 p = projection.forward(centre);
+    if (std::isfinite(p.x) && std::isfinite(p.y)) places.push_back(model::snap(p));
+  }
+  return places;
+}
+
+}  // namespace
+
+RegionSurvey survey_region(const importers::osm::ExtractStore& store, const BuildOptions& options,
+                           base::Progress& progress, const base::Memo* memo) {
+  const Surveyor surveyor(store, options);
+  RegionSurvey survey;
+  std::vector<model::Location> centres;
+  std::set<std::uint32_t> matched;
+  std::map<std::tuple<std::string, std::string, model::OsmId>, attributes::PinnedArea> pins;
+  for (const importers::osm::StoredArea& area : store.areas()) {
+    AreaFacts facts = surveyor.look(area, memo);
+    if (facts.objects > 0) survey.objects[area.tile] = facts.objects;
+    centres.insert(centres.end(), facts.centres.begin(), facts.centres.end());
+    matched.insert(facts.matched.begin(), facts.matched.end());
+    for (attributes::PinnedArea& pin : facts.pins) pins.try_emplace({pin.question, pin.value, pin.id}, std::move(pin));
+  }
+  for (auto& [what, pin] : pins) survey.facts.areas.push_back(std::move(pin));
+  const attributes::Overrides& orders = surveyor.overrides();
+  for (std::uint32_t i = 0; i < orders.entries.size(); ++i)
+    if (!matched.contains(i))
+      survey.unmatched.push_back(
+          fmt::format("{}:{}: {}", orders.name, orders.entries[i].line, orders.entries[i].object.text()));
+  const std::optional<footprints::Area> area = footprints::area_of(centres);
+  survey.has_outlines = area.has_value();
+  if (area) survey.facts.box = area->box, survey.facts.centre = area->centre;
+  survey.facts.crs = options.crs.empty() || !area
+                         ? georef::choose_crs(survey.facts.centre.lon, survey.facts.centre.lat)
+                         : options.crs;
+  const georef::Crs crs = georef::open_crs(survey.facts.crs, survey.facts.box);
+  survey.facts.coverage = context::coverage_of(projected(centres, georef::Projection(crs, survey.facts.box)));
+  if (!area)
+    progress.warn(options.input + ": no building with an outline; the outputs are valid but empty");
+  return survey;
+}
+
+}  // namespace blockrand::run

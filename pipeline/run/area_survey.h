@@ -1,0 +1,30 @@
+// What a region is as a whole, found area by area: so that each can be built without the others.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "importers/osm/extract_store.h"
+#include "pipeline/base/memo.h"
+#include "pipeline/base/progress.h"
+#include "pipeline/run/options.h"
+#include "pipeline/run/region_facts.h"
+
+namespace blockrand::run {
+
+struct RegionSurvey {
+  RegionFacts facts;
+  std::map<model::TileId, std::uint64_t> objects;  ///< mapped objects by area; areas without any are not here
+  bool has_outlines = false;                       ///< a building has an outline
+  std::vector<std::string> unmatched;              ///< orders of the overrides that match nothing in any area
+};
+
+/// Reads each area once. Memory: that of one area, and 8 bytes for each building.
+/// \param memo  where an earlier run left what an area says; null: nowhere
+/// \throws base::InputError, base::UsageError  as build
+RegionSurvey survey_region(const importers::osm::ExtractStore& store, const BuildOptions& options,
+                           base::Progress& progress, const base::Memo* memo);
+
+}  // namespace blockrand::run

@@ -1,0 +1,430 @@
+#include "pipeline/run/build_areas.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "importers/osm/apply_changes.h"
+#include "pipeline/base/child_process.h"
+#include "pipeline/base/error.h"
+#include "pipeline/base/pack.h"
+#include "pipeline/base/parallel.h"
+#include "pipeline/base/publish.h"
+#include "pipeline/base/sha256.h"
+#include "pipeline/base/text.h"
+#include "pipeline/georef/crs.h"
+#include "pipeline/georef/projection.h"
+#include "pipeline/georef/tiles.h"
+#include "pipeline/outputs/output.h"
+#include "pipeline/run/area_overview.h"
+#include "pipeline/run/area_survey.h"
+#include "pipeline/run/build_inputs.h"
+#include "pipeline/run/output_place.h"
+#include "pipeline/run/tile_key.h"
+#include "pipeline/run/work_cache.h"
+
+namespace blockrand::run {
+namespace {
+
+namespace fs = std::filesystem;
+using importers::osm::ExtractStore;
+using Json = nlohmann::ordered_json;
+using model::TileId;
+
+/// What an area needs, for --memory-limit: measured on Berlin at LoD3 with all formats (docs/internal/RESULTS.md). Bytes.
+constexpr std::uint64_t kAreaBase = 160'000'000;
+constexpr double kPerStoredByte = 12;
+
+/// What an area's process sends back beside its files.
+struct AreaOutcome {
+  std::uint64_t tiles_built = 0, tiles_kept = 0;
+  double planned_tile_seconds = 0;
+  std::map<std::string, std::uint64_t> tiles_built_for;
+  std::set<std::string> kept_work;
+  bool below_quality = false;
+  std::vector<std::string> unaccounted;
+  std::string folder;
+};
+
+AreaOutcome outcome_of(BuildSummary&& s) {
+  return {s.tiles_built,      s.tiles_kept,          s.planned_tile_seconds,    std::move(s.tiles_built_for),
+          std::move(s.kept_work), s.below_quality, std::move(s.unaccounted), std::move(s.folder)};
+}
+
+void refuse_contradictions(const BuildOptions& options) {
+  const char* what = options.bbox                        ? "--bbox"
+                     : !options.tile.empty()             ? "--tile"
+                     : !options.imagery.images.empty()   ? "--imagery"
+                     : options.outputs.imagery           ? "--imagery"
+                                                         : nullptr;
+  if (options.areas > 0 && !options.area.empty()) throw base::UsageError("--area and --areas contradict each other");
+  if (what)
+    throw base::UsageError(fmt::format("{} cannot be used with --{}: build without areas, or cut the extract first", what,
+                                       options.areas > 0 ? "areas" : "area"));
+}
+
+/// The extract as a store, sorted first where it is not. In a process of its own, so that its buffers are gone afterwards.
+void divide(const BuildOptions& options, int level, const std::string& work, base::Progress& progress) {
+  const base::ChildResult result = base::run_in_child(options.input, [&](base::Progress& child) {
+    std::error_code error;
+    fs::create_directories(work, error);
+    const std::string store = work + "/store", sorted = work + "/sorted.osm.pbf";
+    if (!importers::osm::write_store(options.input, store, level, kHalo)) {
+      const importers::osm::AppliedChanges applied = importers::osm::apply_changes(options.input, {}, sorted);
+      if (applied.cleaned_texts) child.warn(options.input + ": NUL characters in its texts were replaced; reports do not repeat that");
+      if (!importers::osm::write_store(sorted, store, level, kHalo))
+        throw std::logic_error("a sorted extract is not sorted");
+      fs::remove(sorted, error);
+    }
+    return std::string();
+  });
+  for (const std::string& warning : result.warnings) progress.warn(warning);
+}
+
+/// Whether a line of the outline of the data, or whether there is any, matters within the window.
+void pack_facts(base::Packer& key, const TileChoice& choice, const georef::Projection& projection) {
+  const RegionFacts& facts = choice.facts;
+  key << facts.crs << facts.box << facts.centre << choice.placeless;
+  const auto& [west, south, east, north] = choice.window;
+  const auto unit = [](double degrees) { return static_cast<std::int32_t>(std::lround(degrees * 1e7)); };
+  double low_x = 1e300, low_y = 1e300, high_x = -1e300, high_y = -1e300;
+  for (int i = 0; i <= 8; ++i)
+    for (int j = 0; j <= 8; ++j) {
+      const model::Point2 p = projection.forward(
+          model::Location{unit(west + (east - west) * i / 8), unit(south + (north - south) * j / 8)});
+      low_x = std::min(low_x, p.x), low_y = std::min(low_y, p.y);
+      high_x = std::max(high_x, p.x), high_y = std::max(high_y, p.y);
+    }
+  constexpr double kMargin = 500;  // m: sides of the window are curved in the projection
+  low_x -= kMargin, low_y -= kMargin, high_x += kMargin, high_y += kMargin;
+  for (std::size_t i = 0; i < facts.coverage.size(); ++i) {
+    const model::Point2 a = facts.coverage[i], b = facts.coverage[(i + 1) % facts.coverage.size()];
+    if (std::max(a.x, b.x) < low_x || std::min(a.x, b.x) > high_x || std::max(a.y, b.y) < low_y ||
+        std::min(a.y, b.y) > high_y)
+      continue;
+    key << a << b;
+  }
+  key << facts.coverage.empty();
+  for (const attributes::PinnedArea& area : facts.areas) {
+    std::int32_t x0 = INT32_MAX, y0 = INT32_MAX, x1 = INT32_MIN, y1 = INT32_MIN;
+    for (const auto& ring : area.rings)
+      for (const model::Location l : ring)
+        x0 = std::min(x0, l.lon), y0 = std::min(y0, l.lat), x1 = std::max(x1, l.lon), y1 = std::max(y1, l.lat);
+    // A node has a radius, which its question tells.
+    const bool point = area.rings.size() == 1 && area.rings.front().size() == 1;
+    if (point || (x0 <= unit(east) && x1 >= unit(west) && y0 <= unit(north) && y1 >= unit(south))) key << area;
+  }
+}
+
+class AreaBuild {
+ public:
+  AreaBuild(const BuildOptions& options, base::Progress& progress)
+      : options_(options),
+        progress_(progress),
+        folder_(options.output, options.force, {.foreign = foreign_files}),
+        earlier_(earlier_models(folder_.target_path())),
+        work_(folder_.staging_path() + "/.work") {
+    base::refuse_inputs_in(options.output,
+                           {options.input, options.terrain, options.overrides, options.configs, options.districts});
+    tell_removed(folder_, progress);
+  }
+
+  BuildSummary run() {
+    open_cache();
+    progress_.begin("divide");
+    divide(options_, options_.areas, work_, progress_);
+    const ExtractStore store(work_ + "/store");
+    if (store.figures().cleaned_texts)
+      progress_.warn(options_.input + ": NUL characters in its texts were replaced; reports do not repeat that");
+    progress_.begin("survey");
+    survey(store);
+    choose(store);
+    build(store);
+    if (options_.plan) return finished();
+    progress_.begin("documents");
+    Overview overview(named_, survey_.facts, store.figures());
+    for (const AreaPart& part : parts_) overview.add(part.choice.id, place_of(part.choice.id));
+    overview.sum_up(summary_);
+    refuse_shrunk(options_, summary_, earlier_);
+    overview.write(folder_, survey_.unmatched, summary_);
+    progress_.end();
+    std::error_code error;
+    fs::remove_all(work_, error);
+    summary_.areas = parts_.size(), summary_.areas_kept = kept_;
+    BuildSummary done = finished();
+    folder_.write("run.json", run_json());
+    publish(done);
+    return done;
+  }
+
+ private:
+  std::string place_of(const TileId& area) const { return folder_.staging_path() + "/" + area_path(area); }
+
+  void open_cache() {
+    if (options_.cache.empty()) return;
+    try {
+      cache_ = std::make_unique<WorkCache>(options_.cache, program_identity(), progress_,
+                                           options_.plan ? WorkCache::Mode::look : WorkCache::Mode::work);
+    } catch (const base::OutputError& error) {
+      progress_.warn(fmt::format("no work is kept, nor taken from earlier runs: {}", error.what()));
+    }
+    if (!cache_) named_.cache.clear();
+  }
+
+  void survey(const ExtractStore& store) {
+    base::ChildResult result = base::run_in_child(options_.input, [&](base::Progress& child) {
+      std::optional<WorkCache> cache;
+      std::optional<base::Memo> memo;
+      if (!named_.cache.empty()) {
+        cache.emplace(named_.cache, program_identity(), child, child_mode(), "survey");
+        memo = memo_in(*cache, program_identity());
+      }
+      const RegionSurvey survey = survey_region(store, options_, child, memo ? &*memo : nullptr);
+      return base::packed(std::pair(survey, cache ? cache->used() : std::set<std::string>()));
+    });
+    note(result);
+    auto [survey, used] = base::unpacked<std::pair<RegionSurvey, std::set<std::string>>>(result.bytes);
+    survey_ = std::move(survey);
+    for (const std::string& entry : used) summary_.kept_work.insert(entry);
+    if (!survey_.unmatched.empty())
+      progress_.warn(fmt::format("{}: {} entries match nothing in the extract, the first is {}; report.json lists them",
+                                 options_.overrides, survey_.unmatched.size(), survey_.unmatched.front()));
+  }
+  WorkCache::Mode child_mode() const { return options_.plan ? WorkCache::Mode::look : WorkCache::Mode::part; }
+
+  /// Which areas there are, and what each is made from.
+  void choose(const ExtractStore& store) {
+    std::map<TileId, std::string> hashes;
+    std::uint64_t largest = 0;
+    for (const importers::osm::StoredArea& a : store.areas())
+      if (survey_.objects.contains(a.tile)) hashes[a.tile] = a.sha256, largest = std::max(largest, a.bytes);
+    // What has no place needs one that tells of it.
+    if (hashes.empty()) hashes[store.areas().empty() ? TileId{options_.areas, 0, 0} : store.areas().front().tile] = "";
+    const georef::Crs crs = georef::open_crs(survey_.facts.crs, survey_.facts.box);
+    const georef::Projection projection(crs, survey_.facts.box);
+    for (const auto& [tile, hash] : hashes) {
+      AreaPart& part = parts_.emplace_back(AreaPart{store, choose_area(tile, survey_.facts)});
+      part.choice.placeless = parts_.size() == 1 && store.has_placeless();
+      base::Packer key;
+      key << program_identity() << options_.settings << named_.name << tile << hash;
+      pack_facts(key, part.choice, projection);
+      // Objects without a place have no hash of their own.
+      if (part.choice.placeless) key << store.figures().sha256;
+      keys_.push_back(base::sha256_of(key.bytes));
+    }
+    const std::uint64_t each = kAreaBase + static_cast<std::uint64_t>(kPerStoredByte * static_cast<double>(largest));
+    const int workers = base::worker_count(options_.jobs);
+    at_once_ = 1;
+    if (options_.memory_limit > 0) {
+      at_once_ = std::clamp<std::size_t>(static_cast<std::size_t>(options_.memory_limit) / each, 1,
+                                         static_cast<std::size_t>(workers));
+      if (static_cast<std::uint64_t>(options_.memory_limit) < each)
+        progress_.warn(fmt::format("--memory-limit: one area needs about {}. Choose smaller ones, --areas {}",
+                                   base::with_byte_unit(each), options_.areas + 1));
+    }
+    jobs_ = std::max(1, workers / static_cast<int>(at_once_));
+  }
+
+  /// The same area of the earlier build, where it was made from the same.
+  bool take_over(std::size_t i) {
+    if (options_.earlier.empty() || options_.settings.empty()) return false;
+    const std::string from = options_.earlier + "/" + area_path(parts_[i].choice.id);
+    const Json run = json_of(from + "/run.json"), record = json_of(from + "/build.json");
+    if (!run.is_object() || run.value("made_from", "") != keys_[i] || !record.is_object() ||
+        !record.contains("files"))
+      return false;
+    std::vector<std::string> paths = {"build.json", "run.json"};
+    for (const auto& [path, file] : record["files"].items()) {
+      std::error_code error;
+      if (fs::file_size(from + "/" + path, error) != file.value("bytes", std::uint64_t{0}) || error) return false;
+      paths.push_back(path);
+    }
+    if (!options_.plan)
+      for (const std::string& path : paths) {
+        base::PublishedFile file;
+        file.path = area_path(parts_[i].choice.id) + "/" + path;
+        folder_.link(file, from + "/" + path);
+      }
+    const Json tiles = run.value("tiles", Json::object());
+    summary_.tiles_kept += tiles.value("built", std::uint64_t{0}) + tiles.value("kept", std::uint64_t{0});
+    summary_.below_quality = summary_.below_quality || run.value("below_quality", false);
+    summary_.areas_taken_over.insert(text_of(parts_[i].choice.id));
+    ++kept_;
+    return true;
+  }
+  static Json json_of(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return file ? Json::parse(file, nullptr, false) : Json();
+  }
+
+  void build(const ExtractStore& store) {
+    std::uint64_t all = 0, done = 0;
+    for (const auto& [tile, objects] : survey_.objects) all += objects;
+    progress_.begin("areas", all, "buildings");
+    std::vector<std::size_t> todo;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const auto objects = survey_.objects.find(parts_[i].choice.id);
+      if (!take_over(i))
+        todo.push_back(i);
+      else if (objects != survey_.objects.end())
+        done += objects->second;
+    }
+    progress_.advance_to(done);
+    BuildOptions of_area = named_;
+    of_area.force = false;
+    of_area.jobs = jobs_;
+    base::run_in_children(
+        todo.size(), at_once_,
+        [&](std::size_t t, base::Progress& child) {
+          of_area.output = place_of(parts_[todo[t]].choice.id);
+          return base::packed(outcome_of(build_area(of_area, parts_[todo[t]], child)));
+        },
+        [&](std::size_t t, base::ChildResult result) {
+          note(result);
+          const TileId area = parts_[todo[t]].choice.id;
+          take(base::unpacked<AreaOutcome>(result.bytes), todo[t]);
+          if (const auto objects = survey_.objects.find(area); objects != survey_.objects.end())
+            done += objects->second;
+          progress_.advance_to(done);
+        },
+        [&](std::size_t t) { return "area " + text_of(parts_[todo[t]].choice.id); });
+    summary_.store_bytes = store.figures().bytes;
+  }
+
+  void take(AreaOutcome&& outcome, std::size_t i) {
+    summary_.tiles_built += outcome.tiles_built, summary_.tiles_kept += outcome.tiles_kept;
+    summary_.planned_tile_seconds += outcome.planned_tile_seconds;
+    for (const auto& [why, n] : outcome.tiles_built_for) summary_.tiles_built_for[why] += n;
+    const std::string area = text_of(parts_[i].choice.id);
+    for (const std::string& entry : outcome.kept_work) summary_.kept_work_of_areas.insert(area + " " + entry);
+    summary_.below_quality = summary_.below_quality || outcome.below_quality;
+    summary_.unaccounted.insert(summary_.unaccounted.end(), outcome.unaccounted.begin(), outcome.unaccounted.end());
+    if (options_.plan) return;
+    const std::string place = place_of(parts_[i].choice.id);
+    if (outcome.folder != place) {  // objects that no stage decided on
+      std::error_code error;
+      fs::rename(outcome.folder, place, error);
+      if (error) throw base::OutputError(place + ": cannot be written: " + error.message());
+    }
+    Json run = json_of(place + "/run.json");
+    run["made_from"] = keys_[i];
+    run["below_quality"] = outcome.below_quality;
+    folder_.write(area_path(parts_[i].choice.id) + "/run.json.new", run.dump(1) + "\n");
+    std::error_code error;
+    fs::rename(place + "/run.json.new", place + "/run.json", error);
+    if (error) throw base::OutputError(place + "/run.json: cannot be written: " + error.message());
+  }
+
+  void note(const base::ChildResult& result) {
+    peak_ = std::max(peak_, result.peak_rss_bytes);
+    cpu_seconds_ += result.cpu_seconds;
+    for (const std::string& warning : result.warnings)
+      if (told_.insert(warning).second) progress_.warn(warning);
+  }
+
+  BuildSummary finished() {
+    progress_.end();
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    own_peak_ = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+    summary_.peak_rss_bytes = std::max(peak_, own_peak_);
+    summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    summary_.tiles_in_flight = at_once_ * (static_cast<std::size_t>(jobs_) * 2 + 2);
+    summary_.folder = options_.output;
+    return summary_;
+  }
+
+  std::string run_json() const {
+    Json j;
+    j["timings"] = Json::object();
+    for (const auto& t : progress_.times()) j["timings"][t.name] = std::nearbyint(t.seconds * 1000) / 1000;
+    j["seconds"] = std::nearbyint(summary_.seconds * 1000) / 1000;
+    j["cpu_seconds_of_processes"] = std::nearbyint(cpu_seconds_ * 1000) / 1000;
+    j["peak_rss_bytes"] = summary_.peak_rss_bytes;
+    j["peak_rss_bytes_of_the_first_process"] = own_peak_;
+    j["store_bytes"] = summary_.store_bytes;
+    j["areas"] = {{"all", parts_.size()}, {"taken_over", kept_}, {"at_once", at_once_}};
+    j["tiles"] = {{"built", summary_.tiles_built},
+                  {"kept", summary_.tiles_kept},
+                  {"built_for", summary_.tiles_built_for}};
+    j["jobs"] = base::worker_count(options_.jobs);
+    char host[256] = "";
+    ::gethostname(host, sizeof host - 1);
+    j["host"] = host;
+    const InputFile file = extract_file(options_);
+    j["inputs"] = {{{"role", file.role}, {"path", file.path}, {"bytes", file.bytes}, {"sha256", file.sha256}}};
+    return j.dump(1) + "\n";
+  }
+
+  void publish(BuildSummary& summary) {
+    if (!summary.unaccounted.empty()) {
+      const std::string asked = folder_.target_path(), place = folder_.publish_beside("unaccounted");
+      if (place != asked) summary.folder = place;
+    } else if (const std::string left = folder_.publish(); !left.empty()) {
+      progress_.warn("the old build could not be removed: " + left);
+    }
+  }
+
+  const BuildOptions& options_;
+  BuildOptions named_ = with_name(options_);
+  base::Progress& progress_;
+  base::StagedFolder folder_;
+  std::optional<std::uint64_t> earlier_;
+  std::string work_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::unique_ptr<WorkCache> cache_;
+  RegionSurvey survey_;
+  std::vector<AreaPart> parts_;
+  std::vector<std::string> keys_;  ///< parallel to parts_
+  std::size_t at_once_ = 1, kept_ = 0;
+  int jobs_ = 1;
+  std::uint64_t peak_ = 0, own_peak_ = 0;
+  double cpu_seconds_ = 0;
+  std::set<std::string> told_;
+  BuildSummary summary_;
+
+  static BuildOptions with_name(BuildOptions options) {
+    options.name = name_of(options);
+    return options;
+  }
+};
+
+}  // namespace
+
+BuildSummary build_in_areas(const BuildOptions& options, base::Progress& progress) {
+  refuse_contradictions(options);
+  return AreaBuild(options, progress).run();
+}
+
+BuildSummary build_one_area(const BuildOptions& options, base::Progress& progress) {
+  refuse_contradictions(options);
+  if (options.pinned.empty())
+    throw base::UsageError(
+        "--area needs --pinned build.json of a build with --areas: an area alone cannot choose the CRS");
+  if (!options.crs.empty()) throw base::UsageError("--area takes the CRS of --pinned: leave out --crs");
+  BuildOptions of_area = options;
+  of_area.name = name_of(options);
+  of_area.areas = parse_tile(options.area, "--area").level;
+  TileChoice choice = choose_area(parse_tile(options.area, "--area"), read_region_facts(options.pinned, options));
+  of_area.area.clear(), of_area.pinned.clear();
+  base::StagedFolder place(options.output + ".store", false, {.name = "store", .marker = "index"});
+  divide(options, choice.id.level, place.staging_path(), progress);
+  const ExtractStore store(place.staging_path() + "/store");
+  std::ifstream file(options.pinned, std::ios::binary);
+  const Json pinned = Json::parse(file, nullptr, false);
+  if (!pinned.is_object() || !pinned.contains("areas") || !pinned["areas"].contains(options.area))
+    throw base::InputError(options.pinned, "areas", "has no area " + options.area,
+                           "Name one of those that it lists, and the record of a build with --areas");
+  choice.placeless = store.has_placeless() && pinned["areas"].begin().key() == options.area;
+  return build_area(of_area, {store, choice}, progress);
+}
+
+}  // namespace blockrand::run

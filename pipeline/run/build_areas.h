@@ -1,0 +1,33 @@
+// A region of any size in bounded memory: the extract goes to disk, cut into areas of the quadtree, and each is built as a build of
+// its own, in a process of its own, from what lies in it and 3 km around.
+//
+//   OUT/areas/11/1093/805/   a build as any other: tiles, tileset, GeoPackage, report, explanations, build.json
+//   OUT/tileset.json         leads to their tilesets
+//   OUT/build.json           what is true of all, and the hash of each area's build.json
+//   OUT/report.html, .json   sums, and where to go on
+//
+// Nothing of it grows with the region but one line per area.
+#pragma once
+
+#include <string>
+
+#include "importers/osm/extract_store.h"
+#include "pipeline/base/progress.h"
+#include "pipeline/run/build.h"
+#include "pipeline/run/tile_choice.h"
+
+namespace blockrand::run {
+
+/// An area in work.
+struct AreaPart {
+  const importers::osm::ExtractStore& store;
+  TileChoice choice;
+};
+
+/// BuildOptions::areas. \throws as build
+BuildSummary build_in_areas(const BuildOptions& options, base::Progress& progress);
+
+/// BuildOptions::area: one of them, from the extract, as a build of its own. \throws as build
+BuildSummary build_one_area(const BuildOptions& options, base::Progress& progress);
+
+}  // namespace blockrand::run
