@@ -158,6 +158,10 @@ std::vector<std::string> files_of_build(const fs::path& folder) {
 void collect(const fs::path& folder, bool in_tileset, int depth, std::vector<std::string>& out) {
   constexpr int kDeepest = 64;  // links to folders may stand in a circle
   if (depth > kDeepest) return;
+  if (is_file(folder / "build.json") && is_folder(folder / "areas")) {
+    collect(folder / "areas", true, depth + 1, out);  // each is a build
+    return;
+  }
   if (is_file(folder / "build.json")) {
     for (std::string& path : files_of_build(folder)) out.push_back(std::move(path));
     return;

@@ -11,6 +11,7 @@
 #include "pipeline/base/error.h"
 #include "pipeline/base/side_files.h"
 #include "pipeline/base/text.h"
+#include "pipeline/outputs/area_folders.h"
 
 namespace blockrand::run {
 namespace {
@@ -31,6 +32,12 @@ std::vector<std::string> foreign_files(const std::string& folder) {
   const Json record = record_of(folder);
   if (record.is_object() && record.contains("files") && record["files"].is_object())
     for (const auto& [path, entry] : record["files"].items()) ours.insert(path);
+  for (const std::string& area : outputs::area_folders(folder)) {
+    ours.insert(area + "/build.json"), ours.insert(area + "/run.json");
+    const Json its = record_of(folder + "/" + area);
+    if (its.is_object() && its.contains("files") && its["files"].is_object())
+      for (const auto& [path, entry] : its["files"].items()) ours.insert(area + "/" + path);
+  }
   return files_other_than(ours, folder);
 }
 

@@ -22,6 +22,7 @@
 #include "pipeline/validate/qgis_project.h"
 #include "pipeline/validate/report_check.h"
 #include "pipeline/validate/tile_check.h"
+#include "pipeline/validate/validate_areas.h"
 
 namespace blockrand::validate {
 namespace {
@@ -579,6 +580,9 @@ class Run {
 
 }  // namespace
 
-Validation validate(const ValidateOptions& options, base::Progress& progress) { return Run(options, progress).run(); }
+Validation validate(const ValidateOptions& options, base::Progress& progress) {
+  if (is_in_areas(options.folder)) return validate_areas(options, progress);
+  return Run(options, progress).run();
+}
 
 }  // namespace blockrand::validate

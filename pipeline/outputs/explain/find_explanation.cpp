@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pipeline/base/error.h"
+#include "pipeline/outputs/area_folders.h"
 #include "pipeline/outputs/gzip.h"
 
 namespace blockrand::outputs {
@@ -152,11 +153,29 @@ std::optional<model::OsmId> parse_object_id(std::string_view text) {
   return parse_short_id(text.substr(0, text.find('.')));
 }
 
+namespace {
+
+/// In a build in areas an object is modelled in one of them; a row that says why it is not may stand in several.
+std::optional<FoundExplanation> find_in_areas(const std::string& folder, const std::vector<std::string>& areas,
+                                              model::OsmId id) {
+  std::optional<FoundExplanation> told;
+  for (const std::string& area : areas) {
+    std::optional<FoundExplanation> found = find_explanation(folder + "/" + area, id);
+    if (found && found->in_model) return found;
+    if (found && !told) told = std::move(found);
+  }
+  return told;
+}
+
+}  // namespace
+
 std::optional<FoundExplanation> find_explanation(const std::string& folder, model::OsmId id) {
   std::error_code error;
   if (!fs::exists(fs::path(folder) / "build.json", error))
     throw base::UsageError(folder +
                            " is no build (it has no build.json). Name the output folder of 'blockrand build'.");
+  if (const std::vector<std::string> areas = area_folders(folder); !areas.empty())
+    return find_in_areas(folder, areas, id);
   const std::string index = folder + "/explain/index.txt";
   if (!fs::exists(index, error)) {
     const Json build = Json::parse(read_file(folder + "/build.json"), nullptr, false);

@@ -1,0 +1,211 @@
+#include "pipeline/validate/validate_areas.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "pipeline/base/sha256.h"
+#include "pipeline/base/side_files.h"
+
+namespace blockrand::validate {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Json json_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return file ? Json::parse(file, nullptr, false) : Json();
+}
+
+bool is_area(const std::string& name) {
+  return !name.empty() && name.find_first_not_of("0123456789/") == std::string::npos &&
+         std::ranges::count(name, '/') == 2;
+}
+
+class AreasRun {
+ public:
+  AreasRun(const ValidateOptions& options, base::Progress& progress)
+      : options_(options), progress_(progress), record_(json_of(full("build.json"))) {}
+
+  Validation run() {
+    for (const auto& [name, entry] : record_["areas"].items()) {
+      if (!is_area(name)) {
+        log().add(Check::build_json, "build.json", "areas." + name, "is no area");
+        continue;
+      }
+      check_area(name, entry);
+    }
+    check_files();
+    check_tileset();
+    check_sums();
+    v_.checked.insert(v_.checked.begin(), {"areas", "each as a build of its own; hashes of their build.json, sums",
+                                           record_["areas"].size(), "areas"});
+    return std::move(v_);
+  }
+
+ private:
+  FindingLog& log() { return v_.findings; }
+  std::string full(const std::string& path) const { return options_.folder + "/" + path; }
+
+  void check_area(const std::string& name, const Json& entry) {
+    const std::string path = "areas/" + name;
+    std::error_code error;
+    if (!fs::is_regular_file(full(path + "/build.json"), error)) {
+      log().add(Check::file_missing, path + "/build.json", "", "named by build.json, but not there");
+      return;
+    }
+    if (base::sha256_file(full(path + "/build.json")) != entry.value("build_sha256", ""))
+      log().add(Check::file_changed, path + "/build.json", "", "its SHA-256 differs from build.json");
+    ValidateOptions of_area = options_;
+    of_area.folder = full(path);
+    Validation area = validate(of_area, progress_);
+    FindingLog prefixed;
+    for (const Finding& f : area.findings.kept()) {
+      Finding named = f;
+      named.file = path + "/" + f.file;
+      prefixed.add(std::move(named));
+    }
+    // Those that were only counted.
+    for (std::size_t c = 0; c < kCheckCount; ++c) {
+      const auto check = static_cast<Check>(c);
+      for (std::uint64_t n = prefixed.count(check); n < area.findings.count(check); ++n)
+        prefixed.add(check, path, "", "one more of these");
+    }
+    log().append(std::move(prefixed));
+    for (Checked& c : area.checked) {
+      const auto same = std::ranges::find_if(
+          v_.checked, [&](const Checked& k) { return k.what == c.what && k.how == c.how && k.unit == c.unit; });
+      if (same == v_.checked.end())
+        v_.checked.push_back(std::move(c));
+      else
+        same->count += c.count;
+    }
+    for (std::string& note : area.notes)
+      if (std::ranges::find(v_.notes, note) == v_.notes.end()) v_.notes.push_back(std::move(note));
+    if (!area.position_source.empty()) v_.position_source = std::move(area.position_source);
+    v_.positions += area.positions, v_.positions_moved += area.positions_moved;
+    for (double Validation::*worst :
+         {&Validation::worst_glb, &Validation::worst_crs, &Validation::worst_moved, &Validation::worst_median})
+      v_.*worst = std::max(v_.*worst, area.*worst);
+    const Json its = json_of(full(path + "/build.json"));
+    if (its.contains("counts"))
+      for (const auto& [key, n] : its["counts"].items())
+        if (n.is_number_unsigned()) sums_[key] += n.get<std::uint64_t>();
+  }
+
+  /// Documents of the whole; nothing else beside them and the areas.
+  void check_files() {
+    const Json& files = record_["files"];
+    for (const auto& [path, entry] : files.items()) {
+      std::error_code error;
+      if (path.find("..") != std::string::npos || !fs::is_regular_file(full(path), error)) {
+        log().add(Check::file_missing, path, "", "listed in build.json, but not there");
+        continue;
+      }
+      if (fs::file_size(full(path), error) != entry.value("bytes", std::uint64_t{0}) ||
+          base::sha256_file(full(path)) != entry.value("sha256", ""))
+        log().add(Check::file_changed, path, "", "its size or SHA-256 differs from build.json");
+    }
+    std::error_code error;
+    for (fs::recursive_directory_iterator at(options_.folder, error), end; !error && at != end; at.increment(error)) {
+      const std::string path = at->path().lexically_relative(options_.folder).generic_string();
+      if (at->is_directory(error) && !at->is_symlink(error)) {
+        // What lies in an area is checked with it.
+        if (path.starts_with("areas/") && record_["areas"].contains(path.substr(6))) at.disable_recursion_pending();
+        continue;
+      }
+      if (path != "build.json" && path != "run.json" && !files.contains(path) && !base::is_side_file(path))
+        log().add(Check::file_unlisted, path, "", "is not listed in build.json");
+    }
+  }
+
+  /// Every area's tileset is reached once, in a volume that holds it, by errors that fall.
+  void check_tileset() {
+    if (!record_["files"].contains("tileset.json")) return;
+    const Json tileset = json_of(full("tileset.json"));
+    if (!tileset.is_object() || !tileset.contains("root")) {
+      log().add(Check::tileset_rule, "tileset.json", "", "is no tileset");
+      return;
+    }
+    std::set<std::string> reached;
+    const std::function<void(const Json&, double, const Json&)> visit = [&](const Json& node, double above,
+                                                                           const Json& around) {
+      const double error = node.value("geometricError", -1.0);
+      if (error < 0 || error > above)
+        log().add(Check::tileset_rule, "tileset.json", "", fmt::format("an error of {} m stands below one of {} m", error, above));
+      const Json volume = node.value("boundingVolume", Json::object()).value("region", Json());
+      if (volume.is_array() && volume.size() == 6 && around.is_array() && around.size() == 6)
+        for (std::size_t i = 0; i < 6; ++i) {
+          const double inner = volume[i].get<double>(), outer = around[i].get<double>();
+          const bool low = i == 0 || i == 1 || i == 4;
+          if (low ? inner < outer : inner > outer) {
+            log().add(Check::tileset_rule, "tileset.json", "", "a volume lies outside of the one above it");
+            break;
+          }
+        }
+      if (node.contains("content")) {
+        const std::string uri = node["content"].value("uri", "");
+        if (!reached.insert(uri).second) log().add(Check::tileset_rule, "tileset.json", uri, "is named twice");
+        const Json its = json_of(full(uri));
+        if (!its.is_object() || !its.contains("root")) {
+          log().add(Check::tile_missing, "tileset.json", uri, "named by the tileset, but no tileset is there");
+        } else if (its["root"].value("boundingVolume", Json::object()).value("region", Json()) != volume ||
+                   its["root"].value("geometricError", -1.0) != error) {
+          log().add(Check::tileset_rule, "tileset.json", uri, "volume or error differ from those of its root");
+        }
+      }
+      if (node.contains("children"))
+        for (const Json& child : node["children"]) visit(child, error, volume);
+    };
+    visit(tileset["root"], tileset.value("geometricError", 0.0), Json());
+    for (const auto& [name, entry] : record_["areas"].items()) {
+      const std::string uri = "areas/" + name + "/tileset.json";
+      const Json its = json_of(full(uri));
+      const bool empty = its.is_object() && its.contains("root") && its["root"].contains("boundingVolume") &&
+                         !its["root"]["boundingVolume"].contains("region");
+      if (is_area(name) && !reached.contains(uri) && !empty)
+        log().add(Check::tileset_rule, "tileset.json", uri, "is not reached");
+    }
+    v_.checked.push_back({"tileset.json of the whole", "volumes and errors of the areas' tilesets", reached.size(),
+                          "tilesets"});
+  }
+
+  void check_sums() {
+    if (!record_.contains("counts")) {
+      log().add(Check::build_json, "build.json", "counts", "is missing");
+      return;
+    }
+    for (const char* key : {"buildings_in", "parts_in", "models", "reported", "buildings", "bodies", "solids_lod1",
+                            "solids_lod2", "solids_lod3"})
+      if (record_["counts"].value(key, std::uint64_t{0}) != sums_[key])
+        log().add(Check::counts_differ, "build.json", std::string("counts.") + key,
+                  fmt::format("says {}, the areas say {}", record_["counts"].value(key, std::uint64_t{0}), sums_[key]));
+  }
+
+  const ValidateOptions& options_;
+  base::Progress& progress_;
+  Json record_;
+  Validation v_;
+  std::map<std::string, std::uint64_t> sums_;
+};
+
+}  // namespace
+
+bool is_in_areas(const std::string& folder) {
+  const Json record = json_of(folder + "/build.json");
+  return record.is_object() && record.contains("areas") && record["areas"].is_object() && record.contains("files") &&
+         record["files"].is_object();
+}
+
+Validation validate_areas(const ValidateOptions& options, base::Progress& progress) {
+  return AreasRun(options, progress).run();
+}
+
+}  // namespace blockrand::validate
