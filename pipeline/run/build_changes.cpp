@@ -14,6 +14,7 @@
 #include "pipeline/base/error.h"
 #include "pipeline/base/markup.h"
 #include "pipeline/base/text.h"
+#include "pipeline/outputs/area_folders.h"
 #include "pipeline/outputs/gzip.h"
 #include "pipeline/run/changes_map.h"
 
@@ -65,44 +66,37 @@ Told told_of(const Json& line, int asked) {
 
 using ToldById = std::map<std::string, Told>;
 
-/// The explanations of a build, tile by tile.
+/// The explanations of a build, tile by tile; of one in areas, those of some of its areas.
 class Explained {
  public:
+  /// \param but_for  areas that are left out
   /// \throws base::InputError  no build, or one without explanations
-  explicit Explained(std::string folder) : folder_(std::move(folder)) {
-    std::ifstream record_file(folder_ + "/build.json", std::ios::binary);
-    const Json record = Json::parse(record_file, nullptr, false);
-    if (!record.is_object() || !record.contains("configuration") || !record["configuration"].contains("lod"))
-      throw base::InputError(folder_ + "/build.json", "", "is no record of a build",
-                             "Put the build back, or roll back");
+  explicit Explained(std::string folder, const std::set<std::string>& but_for = {}) : folder_(std::move(folder)) {
+    const Json record = add_part("");
     asked_ = record["configuration"]["lod"].get<int>();
-    std::error_code error;
-    const bool empty = record.contains("counts") && record["counts"].value("models", 0) == 0;
-    if (!fs::is_directory(folder_ + "/explain", error) && !empty)
-      throw base::InputError(folder_, "", "was built without explanations, which builds are compared by",
-                             "Take explain = false out of region.toml");
-    for (fs::directory_iterator entry(folder_ + "/explain", error), end; !error && entry != end; entry.increment(error))
-      if (const std::string name = entry->path().filename().string(); name.ends_with(".jsonl.gz")) tiles_.insert(name);
-    if (record.contains("files") && record["files"].is_object())
-      for (const auto& [path, file] : record["files"].items()) files_[path] = member(file, "sha256");
+    for (const std::string& area : outputs::area_folders(folder_))
+      if (!but_for.contains(area)) add_part(area + "/");
   }
   /// Hashes by path, as build.json has them.
   const std::map<std::string, std::string>& files() const { return files_; }
-  const std::set<std::string>& tiles() const { return tiles_; }
+  /// By name, with the part of the build that they lie in.
+  const std::map<std::string, std::string>& tiles() const { return tiles_; }
 
   int asked() const { return asked_; }
 
   /// Of a tile's file, as build.json has it; empty where it does not say.
   std::string hash(const std::string& tile) const {
-    const auto found = files_.find("explain/" + tile);
+    const auto place = tiles_.find(tile);
+    const auto found = place == tiles_.end() ? files_.end() : files_.find(place->second + "explain/" + tile);
     return found == files_.end() ? std::string() : found->second;
   }
 
   /// Empty for a tile that it has not. \throws base::InputError  the file is damaged
   ToldById read(const std::string& tile) const {
     ToldById out;
-    if (!tiles_.contains(tile)) return out;
-    const std::string path = folder_ + "/explain/" + tile;
+    const auto place = tiles_.find(tile);
+    if (place == tiles_.end()) return out;
+    const std::string path = folder_ + "/" + place->second + "explain/" + tile;
     std::ifstream file(path, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
     const auto damaged = [&](const std::string& why) {
@@ -126,9 +120,27 @@ class Explained {
   }
 
  private:
+  Json add_part(const std::string& part) {
+    const std::string folder = folder_ + "/" + part;
+    std::ifstream record_file(folder + "build.json", std::ios::binary);
+    Json record = Json::parse(record_file, nullptr, false);
+    if (!record.is_object() || !record.contains("configuration") || !record["configuration"].contains("lod"))
+      throw base::InputError(folder + "build.json", "", "is no record of a build", "Put the build back, or roll back");
+    std::error_code error;
+    const bool empty = record.contains("counts") && record["counts"].value("models", 0) == 0;
+    if (!fs::is_directory(folder + "explain", error) && !empty && !record.contains("areas"))
+      throw base::InputError(folder_, "", "was built without explanations, which builds are compared by",
+                             "Take explain = false out of region.toml");
+    for (fs::directory_iterator entry(folder + "explain", error), end; !error && entry != end; entry.increment(error))
+      if (const std::string name = entry->path().filename().string(); name.ends_with(".jsonl.gz")) tiles_[name] = part;
+    if (record.contains("files") && record["files"].is_object())
+      for (const auto& [path, file] : record["files"].items()) files_[part + path] = member(file, "sha256");
+    return record;
+  }
+
   std::string folder_;
   int asked_ = 0;  ///< level of detail
-  std::set<std::string> tiles_;
+  std::map<std::string, std::string> tiles_;
   std::map<std::string, std::string> files_;
 };
 
@@ -153,6 +165,22 @@ struct TileSums {
   std::uint64_t all = 0, modelled = 0, simpler = 0, with_height = 0;
   double heights = 0;  ///< m
 };
+
+/// The areas that two builds have alike, with the hash of their records.
+std::map<std::string, std::string> areas_alike(const std::string& before, const std::string& after) {
+  std::map<std::string, std::string> alike;
+  if (before.empty()) return alike;
+  const auto areas_of = [](const std::string& folder) {
+    std::ifstream file(folder + "/build.json", std::ios::binary);
+    const Json record = Json::parse(file, nullptr, false);
+    return record.is_object() && record.contains("areas") && record["areas"].is_object() ? record["areas"] : Json::object();
+  };
+  const Json old = areas_of(before), now = areas_of(after);
+  for (const auto& [name, area] : now.items())
+    if (old.contains(name) && member(area, "build_sha256") == member(old[name], "build_sha256"))
+      alike["areas/" + name] = member(area, "build_sha256");
+  return alike;
+}
 
 TileSums sums_of(const ToldById& tile) {
   TileSums sums;
@@ -181,11 +209,37 @@ std::string rounded(const std::string& value) {
 
 BuildChanges compare_builds(const std::string& before, const std::string& after, const base::Memo* memo) {
   BuildChanges out;
-  const std::optional<Explained> old = before.empty() ? std::nullopt : std::optional<Explained>(before);
-  const Explained now(after);
-  std::set<std::string> tiles = now.tiles();
-  if (old) tiles.insert(old->tiles().begin(), old->tiles().end());
+  const std::map<std::string, std::string> alike = areas_alike(before, after);
+  std::set<std::string> but_for;
+  for (const auto& [area, hash] : alike) but_for.insert(area);
+  const std::optional<Explained> old =
+      before.empty() ? std::nullopt : std::optional<Explained>(std::in_place, before, but_for);
+  const Explained now(after, but_for);
+  std::set<std::string> tiles;
+  for (const auto& [tile, part] : now.tiles()) tiles.insert(tile);
+  if (old)
+    for (const auto& [tile, part] : old->tiles()) tiles.insert(tile);
   double heights_before = 0, heights_after = 0;
+  const auto add_alike = [&](const TileSums& sums) {
+    out.all_before += sums.all, out.all_after += sums.all;
+    out.before += sums.modelled, out.after += sums.modelled;
+    out.simpler_before += sums.simpler, out.simpler_after += sums.simpler;
+    heights_before += sums.heights, heights_after += sums.heights;
+    out.both += sums.with_height;
+  };
+  for (const auto& [area, hash] : alike)
+    add_alike(base::remembered<TileSums>(
+        memo, "told", [&, &record = hash](base::Packer& packer) { packer << std::string("area") << record; },
+        [&, &path = area] {
+          const Explained its(after + "/" + path);
+          TileSums all;
+          for (const auto& [tile, part] : its.tiles()) {
+            const TileSums one = sums_of(its.read(tile));
+            all.all += one.all, all.modelled += one.modelled, all.simpler += one.simpler;
+            all.with_height += one.with_height, all.heights += one.heights;
+          }
+          return all;
+        }));
   const auto meet = [&](const std::string& id, const Told& was, const Told& is) {
     if (!was.modelled || !is.modelled) {
       if (was.modelled) out.removed.push_back(id), out.footprints[id] = was.ring;
@@ -215,12 +269,7 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
           });
     };
     if (old && !hash.empty() && old->hash(tile) == hash && old->asked() == now.asked()) {
-      const TileSums sums = sums_now();
-      out.all_before += sums.all, out.all_after += sums.all;
-      out.before += sums.modelled, out.after += sums.modelled;
-      out.simpler_before += sums.simpler, out.simpler_after += sums.simpler;
-      heights_before += sums.heights, heights_after += sums.heights;
-      out.both += sums.with_height;
+      add_alike(sums_now());
       continue;
     }
     its = now.read(tile), read = true;

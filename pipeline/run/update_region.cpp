@@ -17,6 +17,7 @@
 #include "pipeline/base/error.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/text.h"
+#include "pipeline/outputs/area_folders.h"
 #include "pipeline/run/changes_map.h"
 #include "pipeline/run/region_folder.h"
 #include "pipeline/run/region_hook.h"
@@ -56,7 +57,18 @@ bool same_bytes(const std::string& a, const std::string& b) {
 }
 
 /// Files that both builds have become one on disk.
-void link_unchanged(const std::string& before, const std::string& after, UpdateSummary& summary) {
+void link_unchanged(const std::string& before, const std::string& after, const std::set<std::string>& taken_over,
+                    UpdateSummary& summary) {
+  for (const std::string& area : outputs::area_folders(after)) {
+    if (!taken_over.contains(area.substr(area.find('/') + 1))) {
+      link_unchanged(before + "/" + area, after + "/" + area, {}, summary);
+      continue;
+    }
+    const Json its = read_json(after + "/" + area + "/build.json");  // linked when it was taken over
+    if (its.contains("files"))
+      for (const auto& [path, entry] : its["files"].items())
+        ++summary.linked, summary.linked_bytes += entry.value("bytes", std::uint64_t{0});
+  }
   const Json old = read_json(before + "/build.json"), now = read_json(after + "/build.json");
   if (!old.contains("files") || !now.contains("files")) return;
   for (const auto& [path, entry] : now["files"].items()) {
@@ -131,6 +143,8 @@ BuildOptions build_options_for(const UpdateOptions& options, const RegionFolder&
   build.output = region.build(number);
   build.force = false;
   build.cache = region.cache();
+  build.settings = settings_sha256(options);
+  if (current) build.earlier = region.build(*current);
   // The first build chose; what comes in later must not choose anew.
   if (build.crs.empty() && current && before.crs_chosen) {
     const Json record = read_json(region.build(*current) + "/build.json");
@@ -364,6 +378,12 @@ class Updater {
     summary_.tiles_built = built.tiles_built, summary_.tiles_kept = built.tiles_kept;
     summary_.tiles_built_for = built.tiles_built_for;
     std::set<std::string> kept_work = built.kept_work;
+    kept_work.insert(built.kept_work_of_areas.begin(), built.kept_work_of_areas.end());
+    if (current)  // what areas used that were taken over stays of use
+      for (const std::string& entry : work_of(region_.cache(), RegionFolder::digits(*current)))
+        if (const std::size_t space = entry.find(' ');
+            space != std::string::npos && built.areas_taken_over.contains(entry.substr(0, space)))
+          kept_work.insert(entry);
     std::optional<WorkCache> cache;
     try {
       cache.emplace(region_.cache(), program_identity(), progress_);
@@ -382,7 +402,7 @@ class Updater {
       summary_.folder = region_.set_aside(number);
       return ended(UpdateState::refused);
     }
-    if (current) link_unchanged(region_.build(*current), region_.build(number), summary_);
+    if (current) link_unchanged(region_.build(*current), region_.build(number), built.areas_taken_over, summary_);
     write_whole(region_.settings_of(number), read_text(region_.settings()));
     if (!comparison_.empty()) write_whole(region_.comparison(number), comparison_);
     fresh.write(region_.state(number));

@@ -355,7 +355,9 @@ void keep_work_of(const std::string& folder, const std::string& build, const std
   for (const std::string& name : used) text += name + "\n";
   write_all(notes + "/" + build + ".new", text);
   fs::rename(notes + "/" + build + ".new", notes + "/" + build, error);
-  std::set<std::string> wanted = used;
+  const auto entry_of = [](const std::string& line) { return line.substr(line.find(' ') + 1); };
+  std::set<std::string> wanted;
+  for (const std::string& line : used) wanted.insert(entry_of(line));
   for (fs::directory_iterator note(notes, error), end; !error && note != end; note.increment(error)) {
     const std::string name = note->path().filename().string();
     if (!builds.contains(name)) {
@@ -363,13 +365,20 @@ void keep_work_of(const std::string& folder, const std::string& build, const std
       continue;
     }
     std::ifstream lines(note->path());
-    for (std::string line; std::getline(lines, line);) wanted.insert(line);
+    for (std::string line; std::getline(lines, line);) wanted.insert(entry_of(line));
   }
   std::vector<std::string> unused;
   for_each_entry(folder, [&](const std::string& kind, const std::string& key, const std::string& path) {
     if (!wanted.contains(kind + "/" + key)) unused.push_back(path);
   });
   for (const std::string& path : unused) remove(path);
+}
+
+std::set<std::string> work_of(const std::string& folder, const std::string& build) {
+  std::set<std::string> out;
+  std::ifstream lines(folder + "/" + std::string(kOf) + "/" + build);
+  for (std::string line; std::getline(lines, line);) out.insert(line);
+  return out;
 }
 
 // ---- questions of a user

@@ -101,6 +101,9 @@ base::Memo memo_in(WorkCache& cache, std::string shared);
 void keep_work_of(const std::string& folder, const std::string& build, const std::set<std::string>& used,
                   const std::set<std::string>& builds);
 
+/// What a build noted. An entry that an area used stands behind the area: "11/1093/805 tiles/…".
+std::set<std::string> work_of(const std::string& folder, const std::string& build);
+
 // ---- The folder as a user asks about it.
 
 struct CacheFigures {

@@ -12,6 +12,7 @@
 
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/side_files.h"
+#include "pipeline/base/text.h"
 
 namespace blockrand::validate {
 namespace {
@@ -27,6 +28,23 @@ Json json_of(const std::string& path) {
 bool is_area(const std::string& name) {
   return !name.empty() && name.find_first_not_of("0123456789/") == std::string::npos &&
          std::ranges::count(name, '/') == 2;
+}
+
+/// "bodies in 16 files" and "bodies in 8 files" are bodies in 24 files.
+std::string added(const std::string& a, const std::string& b) {
+  const auto number = [](const std::string& text, std::size_t& from, std::size_t& to) {
+    from = text.find_first_of("0123456789"), to = text.find_first_not_of("0123456789,", from);
+    std::uint64_t n = 0;
+    for (std::size_t i = from; i < std::min(to, text.size()); ++i)
+      if (text[i] != ',') n = 10 * n + static_cast<std::uint64_t>(text[i] - '0');
+    return n;
+  };
+  std::size_t from = 0, to = 0;
+  const std::uint64_t more = number(b, from, to);
+  if (from == std::string::npos) return a;
+  const std::uint64_t n = number(a, from, to);
+  if (from == std::string::npos) return a;
+  return a.substr(0, from) + base::with_thousands(n + more) + a.substr(std::min(to, a.size()));
 }
 
 class AreasRun {
@@ -80,12 +98,14 @@ class AreasRun {
     }
     log().append(std::move(prefixed));
     for (Checked& c : area.checked) {
-      const auto same = std::ranges::find_if(
-          v_.checked, [&](const Checked& k) { return k.what == c.what && k.how == c.how && k.unit == c.unit; });
-      if (same == v_.checked.end())
+      const auto same =
+          std::ranges::find_if(v_.checked, [&](const Checked& k) { return k.what == c.what && k.how == c.how; });
+      if (same == v_.checked.end()) {
         v_.checked.push_back(std::move(c));
-      else
+      } else {
         same->count += c.count;
+        same->unit = added(same->unit, c.unit);
+      }
     }
     for (std::string& note : area.notes)
       if (std::ranges::find(v_.notes, note) == v_.notes.end()) v_.notes.push_back(std::move(note));
