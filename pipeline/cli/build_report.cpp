@@ -108,9 +108,11 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
   text += code_rows(s, IssueClass::reported, "Not modelled, because");
   text += code_rows(s, IssueClass::fallback, "Simpler than asked");
   text += code_rows(s, IssueClass::notice, "Notices");
-  text += fmt::format("\n{}, {} buildings and parts/s, peak memory {} ({} store, the rest {} tiles in flight)\n",
-                      base::with_time_unit(s.seconds), with_thousands(static_cast<std::uint64_t>(rate(s))),
-                      with_byte_unit(s.peak_rss_bytes), with_byte_unit(s.store_bytes), s.tiles_in_flight);
+  text += fmt::format("\n{}, {} buildings and parts/s, peak memory {}", base::with_time_unit(s.seconds),
+                      with_thousands(static_cast<std::uint64_t>(rate(s))), with_byte_unit(s.peak_rss_bytes));
+  text += s.areas > 0
+              ? fmt::format(" of one area; the extract took {} on disk meanwhile\n", with_byte_unit(s.store_bytes))
+              : fmt::format(" ({} store, the rest {} tiles in flight)\n", with_byte_unit(s.store_bytes), s.tiles_in_flight);
   text += fmt::format("{} in {} files:\n", with_byte_unit(s.bytes), with_thousands(s.files));
   std::vector<std::pair<std::string, std::string>> places;
   const auto place = [&](std::string_view name, std::string_view what) {
@@ -118,7 +120,16 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
     places.emplace_back((std::filesystem::path(folder) / name).string(),
                         std::string(what) + (figures == s.figures.end() ? "" : ": " + figures->second));
   };
+  if (s.areas > 0) {
+    place("areas/", fmt::format("{} areas, each a build of its own: tiles, files, report", with_thousands(s.areas)));
+    if (std::filesystem::exists(folder + "/tileset.json"))
+      place("tileset.json", "3D Tiles of all areas, for CesiumJS, QGIS 3.34+, Unreal, ...");
+    if (std::filesystem::exists(folder + "/buildings.vrt"))
+      place("buildings.vrt", "footprints of all areas as one layer, for QGIS and GDAL");
+    if (options.outputs.report) place("report.html", "sums, and the way to each area's report");
+  }
   for (const outputs::OutputFormat& format : outputs::all_outputs()) {
+    if (s.areas > 0) break;
     if (!format.asked(options.outputs)) continue;
     for (const outputs::OutputPlace& p : format.places)
       if (!p.written || p.written(options.outputs, s.models)) place(p.path, p.about);

@@ -100,6 +100,9 @@ std::string update_report(const run::UpdateOptions& options, const run::UpdateSu
         out +=
             fmt::format("  {} tiles were built, {} are those of earlier runs{}\n", base::with_thousands(s.tiles_built),
                         base::with_thousands(s.tiles_kept), reasons(s.tiles_built_for));
+      if (s.areas > 0)
+        out += fmt::format("  {} of {} areas were worked on\n", base::with_thousands(s.areas - s.areas_kept),
+                           base::with_thousands(s.areas));
       if (s.linked > 0)
         out += fmt::format("  {} files ({}) are those of build {}: one on disk\n", base::with_thousands(s.linked),
                            base::with_byte_unit(s.linked_bytes), s.before.value_or(0));

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
@@ -32,6 +33,7 @@ DataState DataState::read(const std::string& path) {
   state.sha256 = text_in(j, "data_sha256"), state.settings = text_in(j, "settings_sha256");
   state.input = text_in(j, "input");
   if (j.contains("sequence") && j["sequence"].is_number_unsigned()) state.sequence = j["sequence"].get<std::uint64_t>();
+  if (j.contains("areas") && j["areas"].is_number_unsigned()) state.areas = std::min(j["areas"].get<int>(), 14);
   state.crs_chosen = j.contains("crs_chosen") && j["crs_chosen"] == true;
   if (j.contains("replaced") && j["replaced"].is_number_unsigned()) state.replaced = j["replaced"].get<int>();
   return state;
@@ -42,6 +44,7 @@ void DataState::write(const std::string& path) const {
                   {"settings_sha256", settings},
                   {"sequence", sequence ? Json(*sequence) : Json()},
                   {"input", input},
+                  {"areas", static_cast<unsigned>(areas)},
                   {"crs_chosen", crs_chosen},
                   {"replaced", replaced ? Json(static_cast<unsigned>(*replaced)) : Json()}};
   write_whole(path, dumped(j, 1));

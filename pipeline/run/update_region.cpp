@@ -116,6 +116,7 @@ Json run_line(const UpdateSummary& s) {
   if (s.sequence) j["sequence"] = *s.sequence;
   if (s.tiles_built + s.tiles_kept > 0)
     j["tiles"] = {{"built", s.tiles_built}, {"kept", s.tiles_kept}, {"built_for", s.tiles_built_for}};
+  if (s.areas > 0) j["areas"] = {{"all", s.areas}, {"taken_over", s.areas_kept}};
   j["osm_objects"] = {{"created", s.created}, {"modified", s.modified}, {"deleted", s.deleted}};
   j["buildings"] = {{"before", s.changes.before},
                     {"after", s.changes.after},
@@ -135,8 +136,24 @@ void write_changes(const RegionFolder& region, int number, const UpdateSummary& 
               changes_page(region.name() + ", run " + std::to_string(number), summary.changes, summary.gates));
 }
 
+/// Above this size of its data a region is built in areas, where its settings say nothing else. Bytes: about 100,000 buildings, which
+/// take 400 MB of memory at once.
+constexpr std::uint64_t kLargeRegion = 10'000'000;
+/// About 10 by 6 km at 51 degrees: at LoD3 an area of the middle of Berlin takes 600 MB.
+constexpr int kUsualAreas = 11;
+
+/// What the settings say, else what the region's first build chose: areas that change their size change every path.
+int areas_for(const UpdateOptions& options, const std::string& data, std::optional<int> current,
+              const DataState& before) {
+  if (options.build.areas > 0) return options.build.areas;
+  if (current) return before.areas;
+  std::error_code error;
+  const bool large = fs::file_size(data, error) > kLargeRegion && !error;
+  return large && options.build.imagery.images.empty() && !options.build.bbox ? kUsualAreas : 0;
+}
+
 BuildOptions build_options_for(const UpdateOptions& options, const RegionFolder& region, int number,
-                               std::optional<int> current, const DataState& before) {
+                               std::optional<int> current, const DataState& before, int areas) {
   BuildOptions build = options.build;
   build.name = region.name();
   build.input = region.data(number);
@@ -144,6 +161,7 @@ BuildOptions build_options_for(const UpdateOptions& options, const RegionFolder&
   build.force = false;
   build.cache = region.cache();
   build.settings = settings_sha256(options);
+  build.areas = areas;
   if (current) build.earlier = region.build(*current);
   // The first build chose; what comes in later must not choose anew.
   if (build.crs.empty() && current && before.crs_chosen) {
@@ -185,13 +203,14 @@ class Updater {
                      : region_.data(summary_.number) + ".part");
     const AppliedChanges applied = make_data(plan, current, data.path);
     fresh.sha256 = base::sha256_file(data.path);
+    fresh.areas = areas_for(options_, data.path, current, before_);
     const bool same_data = current && (fresh.sha256 == before_.sha256 || (plan.extract.empty() && !applied.any()));
     if (same_data && !new_settings) {
       if (!options_.dry_run && !plan.extract.empty()) restore_data(*current, data);
       return stay(*current, fresh);
     }
     if (options_.dry_run) {
-      look_ahead(current, data.path);
+      look_ahead(current, data.path, fresh.areas);
       return ended(UpdateState::planned);
     }
 
@@ -216,8 +235,8 @@ class Updater {
   }
 
   /// Which tiles a run would build, and how long it should take.
-  void look_ahead(std::optional<int> current, const std::string& data) {
-    BuildOptions build = build_options_for(options_, region_, summary_.number, current, before_);
+  void look_ahead(std::optional<int> current, const std::string& data, int areas) {
+    BuildOptions build = build_options_for(options_, region_, summary_.number, current, before_, areas);
     build.input = data;
     build.output = (fs::temp_directory_path() / fmt::format("blockrand-{}.plan", ::getpid())).string();
     build.plan = true;
@@ -373,10 +392,11 @@ class Updater {
   UpdateSummary build_and_publish(std::optional<int> current, const DataState& fresh) {
     const int number = summary_.number;
     const BuildSummary built =
-        blockrand::run::build(build_options_for(options_, region_, number, current, before_), progress_);
+        blockrand::run::build(build_options_for(options_, region_, number, current, before_, fresh.areas), progress_);
     summary_.folder = region_.build(number);
     summary_.tiles_built = built.tiles_built, summary_.tiles_kept = built.tiles_kept;
     summary_.tiles_built_for = built.tiles_built_for;
+    summary_.areas = built.areas, summary_.areas_kept = built.areas_kept;
     std::set<std::string> kept_work = built.kept_work;
     kept_work.insert(built.kept_work_of_areas.begin(), built.kept_work_of_areas.end());
     if (current)  // what areas used that were taken over stays of use

@@ -52,6 +52,7 @@ struct UpdateSummary {
   std::vector<Gate> gates;
   std::uint64_t tiles_built = 0, tiles_kept = 0;         ///< worked on; taken from earlier runs
   std::map<std::string, std::uint64_t> tiles_built_for;  ///< BuildSummary::tiles_built_for
+  std::uint64_t areas = 0, areas_kept = 0;               ///< of a region in areas: all, and those that stay as they are
   std::uint64_t linked = 0, linked_bytes = 0;            ///< files that are those of the build before
   double expected_seconds = 0;                           ///< that the run should take: of a dry run; 0: unknown
   double seconds = 0;

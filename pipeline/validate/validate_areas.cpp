@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "pipeline/base/error.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/side_files.h"
 #include "pipeline/base/text.h"
@@ -53,6 +54,7 @@ class AreasRun {
       : options_(options), progress_(progress), record_(json_of(full("build.json"))) {}
 
   Validation run() {
+    find_extract();
     for (const auto& [name, entry] : record_["areas"].items()) {
       if (!is_area(name)) {
         log().add(Check::build_json, "build.json", "areas." + name, "is no area");
@@ -72,6 +74,26 @@ class AreasRun {
   FindingLog& log() { return v_.findings; }
   std::string full(const std::string& path) const { return options_.folder + "/" + path; }
 
+  /// The file that the data came from: where it is what it was. An area that was taken over knows an older one.
+  void find_extract() {
+    const Json run = json_of(full("run.json"));
+    std::string path, sha256;
+    if (run.is_object() && run.contains("inputs") && run["inputs"].is_array())
+      for (const Json& input : run["inputs"])
+        if (input.is_object() && input.value("role", "") == "extract")
+          path = input.value("path", ""), sha256 = input.value("sha256", "");
+    std::error_code error;
+    if (!options_.extract.empty()) {
+      if (base::sha256_file(options_.extract) != sha256)
+        throw base::UsageError("--extract " + options_.extract +
+                               " is not the file that the build was made from: its SHA-256 differs.");
+      of_area_.extract = options_.extract;
+    } else if (!path.empty() && fs::is_regular_file(path, error) && base::sha256_file(path) == sha256) {
+      of_area_.extract = path;
+    }
+    of_area_.extract_is_known = !of_area_.extract.empty();
+  }
+
   void check_area(const std::string& name, const Json& entry) {
     const std::string path = "areas/" + name;
     std::error_code error;
@@ -81,9 +103,8 @@ class AreasRun {
     }
     if (base::sha256_file(full(path + "/build.json")) != entry.value("build_sha256", ""))
       log().add(Check::file_changed, path + "/build.json", "", "its SHA-256 differs from build.json");
-    ValidateOptions of_area = options_;
-    of_area.folder = full(path);
-    Validation area = validate(of_area, progress_);
+    of_area_.folder = full(path);
+    Validation area = validate(of_area_, progress_);
     FindingLog prefixed;
     for (const Finding& f : area.findings.kept()) {
       Finding named = f;
@@ -210,6 +231,7 @@ class AreasRun {
   }
 
   const ValidateOptions& options_;
+  ValidateOptions of_area_ = options_;
   base::Progress& progress_;
   Json record_;
   Validation v_;

@@ -185,7 +185,7 @@ class Run {
         path.clear();
       else if (base::sha256_file(path) != record_.extract_sha256)
         path.clear();
-    } else if (base::sha256_file(path) != record_.extract_sha256) {
+    } else if (!o_.extract_is_known && base::sha256_file(path) != record_.extract_sha256) {
       throw base::UsageError("--extract " + path +
                              " is not the file that the build was made from: its SHA-256 differs.");
     }

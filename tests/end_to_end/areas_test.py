@@ -1,0 +1,254 @@
+"""A build in areas: every tile is that of a build at once, whoever builds it and however often it was broken off."""
+import glob
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import time
+
+from blockrand_run import SAMPLE, BuildTest, Setup, blockrand, hashes, main, read_json, stray_siblings
+from osm_files import Node, Way, read_xml, town, write_xml
+from region_run import LIMITS_OFF, Map, RegionTest
+
+LEVEL = '14'
+QUICK = ('--jobs', '2', '--lod', '1', '--formats', 'gltf,cityjson', '--no-report')
+OF_TILES = ('tiles', 'citygml', 'cityjson', 'explain')
+
+
+def areas(folder):
+    return sorted(os.path.relpath(p, os.path.join(folder, 'areas')) for p in glob.glob(os.path.join(folder, 'areas', '*', '*', '*')))
+
+
+def tile_files(folder):
+    return {p: h for p, h in hashes(folder, *OF_TILES).items() if p != 'explain/index.txt'}
+
+
+def in_areas(folder):
+    """The files of tiles of all areas, each once."""
+    out = {}
+    for area in areas(folder):
+        for path, digest in tile_files(os.path.join(folder, 'areas', area)).items():
+            assert path not in out, path + ' is in two areas'
+            out[path] = digest
+    return out
+
+
+def without_runs(files):
+    return {p: h for p, h in files.items() if os.path.basename(p) != 'run.json'}
+
+
+class Areas(BuildTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.town = write_xml(os.path.join(cls.folder, 'town.osm'), town(1200))
+
+    def same_build(self, a, b):
+        first, second = (without_runs(hashes(f)) for f in (a, b))
+        self.assertTrue(first)
+        self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
+
+    def test_the_tiles_are_those_of_a_build_at_once(self):
+        for source, options in ((SAMPLE, ('--lod', '3')), (self.town, ('--lod', '2', '--gzip')), (SAMPLE, ('--compress', 'none', '--lod', '1'))):
+            with self.subTest(options):
+                at_once = self.build(source, 'once', *options, '--force', '--allow-shrink', '100')
+                divided = self.build(source, 'divided', *options, '--areas', LEVEL, '--force', '--allow-shrink', '100')
+                self.assertGreater(len(areas(divided)), 1)
+                whole, parts = tile_files(at_once), in_areas(divided)
+                self.assertEqual(whole, parts)
+                one, all_ = read_json(at_once, 'build.json'), read_json(divided, 'build.json')
+                for key in ('buildings_in', 'parts_in', 'models', 'represented', 'reported', 'bodies', 'windows', 'doors', 'missing_nodes'):
+                    self.assertEqual(one['counts'][key], all_['counts'][key], key)
+                self.assertEqual(one['issues'], all_['issues'])
+                self.assertEqual(one['data_time'], all_['data_time'])
+                self.assertEqual(one['crs']['code'], all_['crs']['code'])
+                self.assertEqual(one['region'], all_['region'])
+                sound = blockrand('validate', divided, '--extract', source)
+                self.assertEqual(sound.code, 0, sound)
+
+    def test_whoever_builds_an_area(self):
+        divided = self.build(self.town, 'all', *QUICK, '--areas', LEVEL)
+        for other in (('--jobs', '1'), ('--jobs', '2', '--memory-limit', '8000000000')):
+            again = self.build(self.town, 'again', *QUICK, '--areas', LEVEL, '--force', *other)
+            self.same_build(divided, again)
+        self.assertEqual(read_json(again, 'run.json')['areas']['at_once'], 2)
+        for n, area in enumerate(areas(divided)):
+            alone = self.build(self.town, f'alone{n}', *QUICK, '--area', area, '--pinned', os.path.join(divided, 'build.json'))
+            self.same_build(os.path.join(divided, 'areas', area), alone)
+
+    def test_objects_in_any_order(self):
+        objects = read_xml(self.town)
+        random.Random(4).shuffle(objects)
+        divided = self.build(self.town, 'sorted', *QUICK, '--areas', LEVEL)
+        os.makedirs(self.path('shuffled'))  # pages bear the name of the file
+        shuffled = self.build(write_xml(self.path('shuffled', 'town.osm'), objects), 'unsorted', *QUICK, '--areas', LEVEL)
+        self.same_build(divided, shuffled)
+
+    def test_nothing_is_lost_that_has_no_place(self):
+        objects = read_xml(self.town)
+        number = max(o.id for o in objects) + 1
+        objects.append(Way(number, [number + 5, number + 6, number + 7], {'building': 'yes'}))
+        source = write_xml(self.path('lost.osm'), objects)
+        at_once = self.build(source, 'lost_once', *QUICK)
+        divided = self.build(source, 'lost_divided', *QUICK, '--areas', LEVEL)
+        self.assertEqual(read_json(at_once, 'build.json')['issues'], read_json(divided, 'build.json')['issues'])
+        told = blockrand('explain', divided, f'w{number}')
+        self.assertEqual(told.code, 0, told)
+        self.assertIn('OPEN_WAY', told.out + told.err)
+
+    def test_explain_finds_every_house(self):
+        divided = self.build(self.town, 'explained', *QUICK, '--areas', LEVEL)
+        ids = []
+        for area in areas(divided):
+            with open(os.path.join(divided, 'areas', area, 'explain', 'index.txt'), encoding='utf-8') as f:
+                ids.append(f.readline().split()[0])
+        for id_ in ids:
+            self.assertEqual(blockrand('explain', divided, id_).code, 0)
+        self.assertNotEqual(blockrand('explain', divided, 'w999999999').code, 0)
+
+    def test_orders_that_match_nothing_are_told(self):
+        orders = self.place('orders.toml', '[w999999999]\nstoreys = 3\n')
+        divided = self.build(self.town, 'orders', *QUICK, '--areas', LEVEL, '--overrides', orders)
+        self.assertIn('w999999999', self.last.err)
+        self.assertEqual(len(read_json(divided, 'report.json')['overrides_unmatched']), 1)
+
+    def test_what_contradicts_is_refused(self):
+        divided = self.build(self.town, 'usage', *QUICK, '--areas', LEVEL)
+        target, pinned = self.path('none'), os.path.join(divided, 'build.json')
+        self.refused(blockrand('build', self.town, '-o', target, '--areas', '12', '--bbox', '1,1,2,2'), 1, '--bbox', target=target)
+        self.refused(blockrand('build', self.town, '-o', target, '--area', '14/1/1'), 1, '--pinned', target=target)
+        self.refused(blockrand('build', self.town, '-o', target, '--area', '14/1/1', '--pinned', pinned, *QUICK), 2, 'has no area', target=target)
+        self.refused(blockrand('build', self.town, '-o', target, '--area', 'here', '--pinned', pinned, *QUICK), 1, 'is no tile', target=target)
+        self.refused(blockrand('build', self.town, '-o', target, '--areas', '15'), 1, '--areas', target=target)
+
+    def test_files_of_others_stay(self):
+        divided = self.build(self.town, 'foreign', *QUICK, '--areas', LEVEL)
+        area = areas(divided)[0]
+        with open(os.path.join(divided, 'areas', area, 'notes.txt'), 'w', encoding='utf-8') as f:
+            f.write('mine')
+        again = blockrand('build', self.town, '-o', divided, *QUICK, '--areas', LEVEL, '--force')
+        self.assertEqual(again.code, 1, again)
+        self.assertIn('notes.txt', again.err)
+
+    def test_damage_is_found(self):
+        divided = self.build(self.town, 'damage', *QUICK, '--areas', LEVEL)
+        area = os.path.join(divided, 'areas', areas(divided)[-1])
+        with open(os.path.join(area, 'build.json'), 'a', encoding='utf-8') as f:
+            f.write(' ')
+        with open(os.path.join(divided, 'tileset.json'), encoding='utf-8') as f:
+            tileset = f.read()
+        with open(os.path.join(divided, 'tileset.json'), 'w', encoding='utf-8') as f:
+            f.write(tileset.replace('areas/', 'ares/', 1))
+        found = blockrand('validate', divided)
+        self.assertEqual(found.code, 2, found)
+        for code in ('FILE_CHANGED', 'TILE_MISSING', 'TILESET_RULE'):
+            self.assertIn(code, found.out)
+        shutil.rmtree(area)
+        self.assertIn('FILE_MISSING', blockrand('validate', divided).out)
+
+    def test_a_worker_that_is_killed(self):
+        """The last good build stays; what was done is kept."""
+        options = ('--jobs', '2', '--lod', '3', '--formats', 'gltf,cityjson', '--no-report', '--areas', LEVEL, '--cache', self.path('kept'))
+        plain = self.build(self.town, 'unkilled', *options[:-2])
+        target, rng, killed = self.path('killed'), random.Random(6), 0
+        for _ in range(4):
+            run = subprocess.Popen([Setup.program, 'build', self.town, '-o', target, '--quiet', *options], stderr=subprocess.PIPE, text=True)
+            time.sleep(rng.uniform(0.5, 4))
+            children = subprocess.run(['pgrep', '-P', str(run.pid)], capture_output=True, text=True, check=False).stdout.split()
+            for child in children:
+                try:
+                    os.kill(int(child), signal.SIGKILL)
+                except ProcessLookupError:
+                    pass
+            error = run.stderr.read()
+            code = run.wait()
+            if code:
+                killed += 1
+                self.assertEqual(code, 4, error)
+                self.assertIn('signal 9', error)
+                self.assertFalse(os.path.exists(target))
+                self.assertEqual(stray_siblings(target), [])
+            else:
+                shutil.rmtree(target)
+        self.assertGreater(killed, 0)
+        self.same_build(plain, self.build(self.town, 'killed', *options))
+
+    def test_a_run_that_is_killed_takes_its_workers_along(self):
+        target = self.path('gone')
+        run = subprocess.Popen([Setup.program, 'build', self.town, '-o', target, '--progress', 'none', '--areas', LEVEL, '--lod', '3'])
+        time.sleep(2)
+        run.kill()
+        run.wait()
+        time.sleep(1)
+        with subprocess.Popen(['ps', '-eo', 'args'], stdout=subprocess.PIPE, text=True) as ps:
+            self.assertEqual([line for line in ps.stdout if target in line and 'blockrand' in line], [])
+        self.assertFalse(os.path.exists(target))
+        self.build(self.town, 'gone', *QUICK, '--areas', LEVEL)  # removes what was left
+
+
+class RegionInAreas(RegionTest):
+    SETTINGS = LIMITS_OFF + f'[build]\nlod = 2\nareas = {LEVEL}\njobs = 2\n'
+
+    def test_nights(self):
+        map_, rng = Map(town(1200)), random.Random(9)
+        folder = self.region('province', self.SETTINGS)
+        self.update(folder, map_.write(self.path('province.osm')))
+        taken = 0
+        for night in range(1, 7):
+            map_.random_edits(rng, rng.choice([1, 2, 6]))
+            changes = map_.write_changes(self.path('night.osc'))
+            planned = blockrand('update', folder, changes, '--dry-run', '--progress', 'none')
+            self.assertEqual(planned.code, 0, planned)
+            self.update(folder, changes)
+            with open(os.path.join(folder, 'log', 'runs.jsonl'), encoding='utf-8') as f:
+                last = json.loads(f.readlines()[-1])
+            if last['state'] == 'unchanged':
+                continue
+            taken += last['areas']['taken_over']
+            self.assertIn(f'{last["tiles"]["built"]:,} tile', planned.out)
+            clean = self.clean(map_, folder, '--lod', '2', '--areas', LEVEL)
+            first, second = (without_runs(hashes(f)) for f in (self.current(folder), clean))
+            self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
+        sound = blockrand('validate', self.current(folder))
+        self.assertEqual(sound.code, 0, sound)
+        self.assertEqual(blockrand('rollback', folder).code, 0)
+        self.assertEqual(blockrand('status', folder).code, 0)
+
+    def test_far_areas_stay_as_they_are(self):
+        """Two towns 40 km apart: an edit in one touches nothing of the other."""
+        objects = town(400)
+        far = 10 ** 9
+        for o in list(objects):
+            if isinstance(o, Node):
+                objects.append(Node(o.id + far, o.lon + 0.5, o.lat, o.tags))
+            elif isinstance(o, Way):
+                objects.append(Way(o.id + far, [r + far for r in o.refs], o.tags))
+        map_ = Map(objects)
+        folder = self.region('two', self.SETTINGS.replace(LEVEL, '11'))
+        self.update(folder, map_.write(self.path('two.osm')))
+        before = self.current(folder)
+        house = next(w for w in map_.ways('building') if w.id < far)
+        map_.edit(house, tags=dict(house.tags, **{'building:levels': '7'}))
+        self.update(folder, map_.write_changes(self.path('two.osc')))
+        with open(os.path.join(folder, 'log', 'runs.jsonl'), encoding='utf-8') as f:
+            last = json.loads(f.readlines()[-1])
+        self.assertGreater(last['areas']['taken_over'], 0)
+        self.assertLess(last['areas']['taken_over'], last['areas']['all'])
+        linked = 0
+        for path in hashes(self.current(folder), 'areas'):
+            one, other = os.path.join(before, path), os.path.join(self.current(folder), path)
+            linked += os.path.exists(one) and os.path.samefile(one, other)
+        self.assertGreater(linked, 10)
+        # What a later night takes over must still find its kept work.
+        house = next(w for w in map_.ways('building') if w.id > far)
+        map_.edit(house, tags=dict(house.tags, **{'building:levels': '7'}))
+        self.update(folder, map_.write_changes(self.path('two.osc')))
+        clean = self.clean(map_, folder, '--lod', '2', '--areas', '11')
+        first, second = (without_runs(hashes(f)) for f in (self.current(folder), clean))
+        self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
+
+
+if __name__ == '__main__':
+    main()
