@@ -105,9 +105,10 @@ ChildResult result_of(const Child& child, const std::string& name) {
   if (WIFSIGNALED(status))
     throw OutputError(name + ": its process was ended by signal " + std::to_string(WTERMSIG(status)) + " (" +
                       ::strsignal(WTERMSIG(status)) + ")" +
-                      (WTERMSIG(status) == SIGKILL ? ". Perhaps the machine had too little memory: give --memory-limit, or "
-                                                     "fewer --jobs"
-                                                   : ". Run again; what is done is kept"));
+                      (WTERMSIG(status) == SIGKILL
+                           ? ". Perhaps the machine had too little memory: give --memory-limit, or "
+                             "fewer --jobs"
+                           : ". Run again; what is done is kept"));
   Message message;
   try {
     message = unpacked<Message>(child.bytes);
@@ -128,7 +129,9 @@ ChildResult result_of(const Child& child, const std::string& name) {
     case Ending::returned:
       break;
   }
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   return {std::move(message.text), std::move(message.warnings), static_cast<std::uint64_t>(usage.ru_maxrss) * 1024,
           seconds(usage.ru_utime) + seconds(usage.ru_stime)};
 }

@@ -28,8 +28,10 @@ using ChildWork = std::function<std::string(Progress& progress)>;
 /// what a child inherits is the calling thread alone.
 /// \throws UsageError, InputError, OutputError  what a child threw, in its words; the others are stopped
 /// \throws OutputError  a child was killed; says by which signal
-void run_in_children(std::size_t count, std::size_t at_once, const std::function<std::string(std::size_t, Progress&)>& work,
-                     const std::function<void(std::size_t, ChildResult)>& done, const std::function<std::string(std::size_t)>& name);
+void run_in_children(std::size_t count, std::size_t at_once,
+                     const std::function<std::string(std::size_t, Progress&)>& work,
+                     const std::function<void(std::size_t, ChildResult)>& done,
+                     const std::function<std::string(std::size_t)>& name);
 
 /// One piece of work in a child. \param name  for messages \throws as run_in_children
 ChildResult run_in_child(const std::string& name, const ChildWork& work);

@@ -110,9 +110,10 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
   text += code_rows(s, IssueClass::notice, "Notices");
   text += fmt::format("\n{}, {} buildings and parts/s, peak memory {}", base::with_time_unit(s.seconds),
                       with_thousands(static_cast<std::uint64_t>(rate(s))), with_byte_unit(s.peak_rss_bytes));
-  text += s.areas > 0
-              ? fmt::format(" of one area; the extract took {} on disk meanwhile\n", with_byte_unit(s.store_bytes))
-              : fmt::format(" ({} store, the rest {} tiles in flight)\n", with_byte_unit(s.store_bytes), s.tiles_in_flight);
+  text +=
+      s.areas > 0
+          ? fmt::format(" of one area; the extract took {} on disk meanwhile\n", with_byte_unit(s.store_bytes))
+          : fmt::format(" ({} store, the rest {} tiles in flight)\n", with_byte_unit(s.store_bytes), s.tiles_in_flight);
   text += fmt::format("{} in {} files:\n", with_byte_unit(s.bytes), with_thousands(s.files));
   std::vector<std::pair<std::string, std::string>> places;
   const auto place = [&](std::string_view name, std::string_view what) {

@@ -107,12 +107,13 @@ struct Overview::State {
                    {"content", {{"uri", area_path(e.tile) + "/tileset.json"}}}};
       level[e.tile] = {*e.volume, e.error, std::move(node)};
     }
-    const Json asset = {{"version", "1.1"},
-                        {"extras",
-                         {{"generator", outputs::generator()},
-                          {"crs", common.value("crs", Json::object()).value("code", "")},
-                          {"height_reference", common.value("crs", Json::object()).value("height_reference_of_tiles", "")},
-                          {"attribution", outputs::kAttribution}}}};
+    const Json asset = {
+        {"version", "1.1"},
+        {"extras",
+         {{"generator", outputs::generator()},
+          {"crs", common.value("crs", Json::object()).value("code", "")},
+          {"height_reference", common.value("crs", Json::object()).value("height_reference_of_tiles", "")},
+          {"attribution", outputs::kAttribution}}}};
     if (level.empty())
       return Json({{"asset", asset},
                    {"geometricError", 0},
@@ -144,8 +145,7 @@ struct Overview::State {
       }
       below = std::move(above);
     };
-    do
-      wrap(level);
+    do wrap(level);
     while (level.size() > 1 && level.begin()->first.level > 0);
     if (level.size() > 1) {  // on both sides of the prime meridian
       Made root;
@@ -177,8 +177,12 @@ struct Overview::State {
   Json area_list() const {
     Json list = Json::object();
     for (const Entry& e : entries)
-      list[text_of(e.tile)] = {{"build_sha256", e.record_sha256}, {"files", e.files},       {"bytes", e.bytes},
-                               {"objects", e.objects},            {"models", e.models},     {"reported", e.reported},
+      list[text_of(e.tile)] = {{"build_sha256", e.record_sha256},
+                               {"files", e.files},
+                               {"bytes", e.bytes},
+                               {"objects", e.objects},
+                               {"models", e.models},
+                               {"reported", e.reported},
                                {"simpler", e.simpler}};
     return list;
   }
@@ -212,7 +216,8 @@ struct Overview::State {
     const double size = std::clamp(900.0 / ((east - west) / first.width()), 8.0, 90.0);
     const double scale = size / first.width(), squash = 1.6;  // degrees of longitude are shorter than those of latitude
     std::string out = fmt::format(
-        "<figure>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" width=\"{:.0f}\" role=\"img\" "
+        "<figure>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" width=\"{:.0f}\" "
+        "role=\"img\" "
         "aria-label=\"Map of the areas: darker ones have more buildings\">\n",
         (east - west) * scale, (north - south) * scale * squash, (east - west) * scale);
     for (const Entry& e : entries) {
@@ -224,7 +229,9 @@ struct Overview::State {
           link_of(e), (b.west - west) * scale, (north - b.north) * scale * squash, size, size * squash,
           0.08 + 0.9 * std::sqrt(share), text_of(e.tile), base::with_thousands(e.models));
     }
-    return out + "</svg>\n<figcaption>The areas; darker ones have more models. Each leads to its report. North is up.</figcaption>\n</figure>\n";
+    return out +
+           "</svg>\n<figcaption>The areas; darker ones have more models. Each leads to its report. North is "
+           "up.</figcaption>\n</figure>\n";
   }
 
   std::string link_of(const Entry& e) const {
@@ -233,28 +240,28 @@ struct Overview::State {
 
   std::string page(const std::string& name, const std::vector<std::string>& unmatched) const {
     using base::escaped;
-    std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" "
-                      "content=\"width=device-width, initial-scale=1\"/>\n<title>" +
-                      escaped(name) + "</title>\n<style>" + std::string(base::kPageStyle) +
-                      "</style>\n</head>\n<body>\n<main>\n<h1>" + escaped(name) + "</h1>\n";
-    const auto count = [&](const char* key) {
-      return base::with_thousands(counts.value(key, std::uint64_t{0}));
-    };
-    out += fmt::format(
-        "<p>{} buildings and {} parts in {} areas; {} models, {} objects reported. Data as of {}.</p>\n",
-        count("buildings_in"), count("parts_in"), base::with_thousands(entries.size()), count("models"),
-        count("reported"), data.data_time.empty() ? "an unknown time" : escaped(data.data_time));
+    std::string out =
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" "
+        "content=\"width=device-width, initial-scale=1\"/>\n<title>" +
+        escaped(name) + "</title>\n<style>" + std::string(base::kPageStyle) +
+        "</style>\n</head>\n<body>\n<main>\n<h1>" + escaped(name) + "</h1>\n";
+    const auto count = [&](const char* key) { return base::with_thousands(counts.value(key, std::uint64_t{0})); };
+    out += fmt::format("<p>{} buildings and {} parts in {} areas; {} models, {} objects reported. Data as of {}.</p>\n",
+                       count("buildings_in"), count("parts_in"), base::with_thousands(entries.size()), count("models"),
+                       count("reported"), data.data_time.empty() ? "an unknown time" : escaped(data.data_time));
     out += "<h2>Areas</h2>\n" + map_svg();
-    out += "<table>\n<thead><tr><th scope=\"col\">area</th><th scope=\"col\">models</th><th scope=\"col\">simpler than "
-           "asked</th><th scope=\"col\">not modelled</th><th scope=\"col\">bytes</th></tr></thead>\n<tbody>\n";
+    out +=
+        "<table>\n<thead><tr><th scope=\"col\">area</th><th scope=\"col\">models</th><th scope=\"col\">simpler than "
+        "asked</th><th scope=\"col\">not modelled</th><th scope=\"col\">bytes</th></tr></thead>\n<tbody>\n";
     for (const Entry& e : entries)
       out += fmt::format("<tr><td><a href=\"{}\">{}</a></td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
                          link_of(e), text_of(e.tile), base::with_thousands(e.models), base::with_thousands(e.simpler),
                          base::with_thousands(e.reported), base::with_byte_unit(e.bytes));
     out += "</tbody>\n</table>\n";
     if (!issues.empty()) {
-      out += "<h2>What fell back or is missing, and why</h2>\n<table>\n<thead><tr><th scope=\"col\">code</th><th "
-             "scope=\"col\">objects</th><th scope=\"col\">meaning</th></tr></thead>\n<tbody>\n";
+      out +=
+          "<h2>What fell back or is missing, and why</h2>\n<table>\n<thead><tr><th scope=\"col\">code</th><th "
+          "scope=\"col\">objects</th><th scope=\"col\">meaning</th></tr></thead>\n<tbody>\n";
       std::vector<std::pair<std::string, std::uint64_t>> rows;
       for (const auto& [code, n] : issues.items()) rows.emplace_back(code, n.get<std::uint64_t>());
       std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.second > b.second; });

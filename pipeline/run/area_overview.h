@@ -19,7 +19,7 @@ std::string area_path(const model::TileId& area);
 /// A finished area, as its documents say.
 struct FinishedArea {
   model::TileId tile;
-  std::string record_sha256;          ///< of its build.json
+  std::string record_sha256;           ///< of its build.json
   std::uint64_t files = 0, bytes = 0;  ///< of all of it
 };
 

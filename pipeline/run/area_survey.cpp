@@ -24,10 +24,10 @@ namespace {
 
 /// What one area says.
 struct AreaFacts {
-  std::vector<model::Location> centres;         ///< of buildings with an outline
-  std::uint64_t objects = 0;                    ///< mapped objects
-  std::vector<attributes::PinnedArea> pins;     ///< large areas that rules ask for
-  std::vector<std::uint32_t> matched;           ///< orders: indices
+  std::vector<model::Location> centres;      ///< of buildings with an outline
+  std::uint64_t objects = 0;                 ///< mapped objects
+  std::vector<attributes::PinnedArea> pins;  ///< large areas that rules ask for
+  std::vector<std::uint32_t> matched;        ///< orders: indices
 };
 
 class Surveyor {
@@ -144,13 +144,11 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
   const std::optional<footprints::Area> area = footprints::area_of(centres);
   survey.has_outlines = area.has_value();
   if (area) survey.facts.box = area->box, survey.facts.centre = area->centre;
-  survey.facts.crs = options.crs.empty() || !area
-                         ? georef::choose_crs(survey.facts.centre.lon, survey.facts.centre.lat)
-                         : options.crs;
+  survey.facts.crs =
+      options.crs.empty() || !area ? georef::choose_crs(survey.facts.centre.lon, survey.facts.centre.lat) : options.crs;
   const georef::Crs crs = georef::open_crs(survey.facts.crs, survey.facts.box);
   survey.facts.coverage = context::coverage_of(projected(centres, georef::Projection(crs, survey.facts.box)));
-  if (!area)
-    progress.warn(options.input + ": no building with an outline; the outputs are valid but empty");
+  if (!area) progress.warn(options.input + ": no building with an outline; the outputs are valid but empty");
   return survey;
 }
 

@@ -186,10 +186,11 @@ struct Sums {
 // ---- work of earlier runs
 
 /// Null where none is kept.
-std::unique_ptr<WorkCache> open_cache(const BuildOptions& options, const std::optional<TileChoice>& tile,
-                                      bool part, base::Progress& progress) {
+std::unique_ptr<WorkCache> open_cache(const BuildOptions& options, const std::optional<TileChoice>& tile, bool part,
+                                      base::Progress& progress) {
   if (options.cache.empty()) return nullptr;
-  if (tile && !tile->is_area()) throw base::UsageError("--cache is of no use with --tile: a tile that is built alone keeps no work");
+  if (tile && !tile->is_area())
+    throw base::UsageError("--cache is of no use with --tile: a tile that is built alone keeps no work");
   try {
     return std::make_unique<WorkCache>(options.cache, program_identity(), progress,
                                        options.plan ? WorkCache::Mode::look
@@ -330,7 +331,6 @@ void publish(base::StagedFolder& folder, const BuildOptions& options, BuildSumma
   }
 }
 
-
 /// \param part  of a build in areas; null: everything, or what the options choose
 BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part, base::Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
@@ -392,7 +392,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
 
   // The tiles: every stage, then every output.
   const int workers = base::worker_count(options.jobs);
-  const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2;
+  const std::size_t in_flight = static_cast<std::size_t>(workers) * (record.area ? 1 : 2) + 2;
   Account account(extract, std::move(report.rows));
   outputs::OutputOptions output_options = options.outputs;
   output_options.imagery = imagery.observations() != nullptr;

@@ -27,10 +27,10 @@ struct BuildSummary : outputs::ObjectCounts {
   double planned_tile_seconds = 0;  ///< BuildOptions::plan: how long the tiles should take; 0: nobody knows
   /// Why tiles were worked on, counted by what differs from the run before: names of TilePart, "new", "not kept".
   std::map<std::string, std::uint64_t> tiles_built_for;
-  std::uint64_t areas = 0, areas_kept = 0;     ///< of a build in areas: all, and those of the earlier build
-  std::set<std::string> areas_taken_over;      ///< the latter by name
-  std::set<std::string> kept_work_of_areas;    ///< as kept_work, each behind the area that used it: "11/1093/805 tiles/…"
-  std::set<std::string> kept_work;  ///< what the run used or left in the cache (WorkCache::used)
+  std::uint64_t areas = 0, areas_kept = 0;  ///< of a build in areas: all, and those of the earlier build
+  std::set<std::string> areas_taken_over;   ///< the latter by name
+  std::set<std::string> kept_work_of_areas;  ///< as kept_work, each behind the area that used it: "11/1093/805 tiles/…"
+  std::set<std::string> kept_work;           ///< what the run used or left in the cache (WorkCache::used)
   std::map<std::string, std::string, std::less<>> figures;  ///< of single files, in words, by path
   bool below_quality = false;                               ///< a building is simpler than asked, or has no solid
   std::uint64_t images_misfit = 0;                          ///< aerial images that do not fit the map

@@ -1,6 +1,7 @@
 #include "pipeline/run/build_areas.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -55,20 +56,20 @@ struct AreaOutcome {
 };
 
 AreaOutcome outcome_of(BuildSummary&& s) {
-  return {s.tiles_built,      s.tiles_kept,          s.planned_tile_seconds,    std::move(s.tiles_built_for),
+  return {s.tiles_built,          s.tiles_kept,    s.planned_tile_seconds,   std::move(s.tiles_built_for),
           std::move(s.kept_work), s.below_quality, std::move(s.unaccounted), std::move(s.folder)};
 }
 
 void refuse_contradictions(const BuildOptions& options) {
-  const char* what = options.bbox                        ? "--bbox"
-                     : !options.tile.empty()             ? "--tile"
-                     : !options.imagery.images.empty()   ? "--imagery"
-                     : options.outputs.imagery           ? "--imagery"
-                                                         : nullptr;
+  const char* what = options.bbox                      ? "--bbox"
+                     : !options.tile.empty()           ? "--tile"
+                     : !options.imagery.images.empty() ? "--imagery"
+                     : options.outputs.imagery         ? "--imagery"
+                                                       : nullptr;
   if (options.areas > 0 && !options.area.empty()) throw base::UsageError("--area and --areas contradict each other");
   if (what)
-    throw base::UsageError(fmt::format("{} cannot be used with --{}: build without areas, or cut the extract first", what,
-                                       options.areas > 0 ? "areas" : "area"));
+    throw base::UsageError(fmt::format("{} cannot be used with --{}: build without areas, or cut the extract first",
+                                       what, options.areas > 0 ? "areas" : "area"));
 }
 
 /// The extract as a store, sorted first where it is not. In a process of its own, so that its buffers are gone afterwards.
@@ -79,7 +80,8 @@ void divide(const BuildOptions& options, int level, const std::string& work, bas
     const std::string store = work + "/store", sorted = work + "/sorted.osm.pbf";
     if (!importers::osm::write_store(options.input, store, level, kHalo)) {
       const importers::osm::AppliedChanges applied = importers::osm::apply_changes(options.input, {}, sorted);
-      if (applied.cleaned_texts) child.warn(options.input + ": NUL characters in its texts were replaced; reports do not repeat that");
+      if (applied.cleaned_texts)
+        child.warn(options.input + ": NUL characters in its texts were replaced; reports do not repeat that");
       if (!importers::osm::write_store(sorted, store, level, kHalo))
         throw std::logic_error("a sorted extract is not sorted");
       fs::remove(sorted, error);
@@ -122,6 +124,14 @@ void pack_facts(base::Packer& key, const TileChoice& choice, const georef::Proje
     const bool point = area.rings.size() == 1 && area.rings.front().size() == 1;
     if (point || (x0 <= unit(east) && x1 >= unit(west) && y0 <= unit(north) && y1 >= unit(south))) key << area;
   }
+}
+
+/// Of this process from here on: what is freed goes back to the system. 14 % less at the peak of Berlin's middle at LoD3, for 1 % more
+/// CPU time.
+void keep_memory_low() {
+  constexpr int kKept = 200'000;  // bytes at the end of the heap
+  ::mallopt(M_TRIM_THRESHOLD, kKept);
+  ::mallopt(M_MMAP_THRESHOLD, 128 * 1024);
 }
 
 class AreaBuild {
@@ -238,8 +248,7 @@ class AreaBuild {
     if (options_.earlier.empty() || options_.settings.empty()) return false;
     const std::string from = options_.earlier + "/" + area_path(parts_[i].choice.id);
     const Json run = json_of(from + "/run.json"), record = json_of(from + "/build.json");
-    if (!run.is_object() || run.value("made_from", "") != keys_[i] || !record.is_object() ||
-        !record.contains("files"))
+    if (!run.is_object() || run.value("made_from", "") != keys_[i] || !record.is_object() || !record.contains("files"))
       return false;
     std::vector<std::string> paths = {"build.json", "run.json"};
     for (const auto& [path, file] : record["files"].items()) {
@@ -284,6 +293,7 @@ class AreaBuild {
     base::run_in_children(
         todo.size(), at_once_,
         [&](std::size_t t, base::Progress& child) {
+          keep_memory_low();
           of_area.output = place_of(parts_[todo[t]].choice.id);
           return base::packed(outcome_of(build_area(of_area, parts_[todo[t]], child)));
         },
@@ -337,7 +347,7 @@ class AreaBuild {
     own_peak_ = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
     summary_.peak_rss_bytes = std::max(peak_, own_peak_);
     summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    summary_.tiles_in_flight = at_once_ * (static_cast<std::size_t>(jobs_) * 2 + 2);
+    summary_.tiles_in_flight = at_once_ * (static_cast<std::size_t>(jobs_) + 2);
     summary_.folder = options_.output;
     return summary_;
   }
@@ -352,9 +362,8 @@ class AreaBuild {
     j["peak_rss_bytes_of_the_first_process"] = own_peak_;
     j["store_bytes"] = summary_.store_bytes;
     j["areas"] = {{"all", parts_.size()}, {"taken_over", kept_}, {"at_once", at_once_}};
-    j["tiles"] = {{"built", summary_.tiles_built},
-                  {"kept", summary_.tiles_kept},
-                  {"built_for", summary_.tiles_built_for}};
+    j["tiles"] = {
+        {"built", summary_.tiles_built}, {"kept", summary_.tiles_kept}, {"built_for", summary_.tiles_built_for}};
     j["jobs"] = base::worker_count(options_.jobs);
     char host[256] = "";
     ::gethostname(host, sizeof host - 1);
@@ -424,6 +433,7 @@ BuildSummary build_one_area(const BuildOptions& options, base::Progress& progres
     throw base::InputError(options.pinned, "areas", "has no area " + options.area,
                            "Name one of those that it lists, and the record of a build with --areas");
   choice.placeless = store.has_placeless() && pinned["areas"].begin().key() == options.area;
+  keep_memory_low();
   return build_area(of_area, {store, choice}, progress);
 }
 

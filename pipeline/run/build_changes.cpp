@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,6 +14,7 @@
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/markup.h"
+#include "pipeline/base/sha256.h"
 #include "pipeline/base/text.h"
 #include "pipeline/outputs/area_folders.h"
 #include "pipeline/outputs/gzip.h"
@@ -173,13 +175,19 @@ std::map<std::string, std::string> areas_alike(const std::string& before, const 
   const auto areas_of = [](const std::string& folder) {
     std::ifstream file(folder + "/build.json", std::ios::binary);
     const Json record = Json::parse(file, nullptr, false);
-    return record.is_object() && record.contains("areas") && record["areas"].is_object() ? record["areas"] : Json::object();
+    return record.is_object() && record.contains("areas") && record["areas"].is_object() ? record["areas"]
+                                                                                         : Json::object();
   };
   const Json old = areas_of(before), now = areas_of(after);
   for (const auto& [name, area] : now.items())
     if (old.contains(name) && member(area, "build_sha256") == member(old[name], "build_sha256"))
       alike["areas/" + name] = member(area, "build_sha256");
   return alike;
+}
+
+void add(TileSums& sum, const TileSums& more) {
+  sum.all += more.all, sum.modelled += more.modelled, sum.simpler += more.simpler;
+  sum.with_height += more.with_height, sum.heights += more.heights;
 }
 
 TileSums sums_of(const ToldById& tile) {
@@ -227,19 +235,18 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
     heights_before += sums.heights, heights_after += sums.heights;
     out.both += sums.with_height;
   };
+  const auto sums_of_area = [&](const std::string& record, const std::function<TileSums()>& work) {
+    return base::remembered<TileSums>(
+        memo, "told", [&](base::Packer& packer) { packer << std::string("area") << record; }, work);
+  };
   for (const auto& [area, hash] : alike)
-    add_alike(base::remembered<TileSums>(
-        memo, "told", [&, &record = hash](base::Packer& packer) { packer << std::string("area") << record; },
-        [&, &path = area] {
-          const Explained its(after + "/" + path);
-          TileSums all;
-          for (const auto& [tile, part] : its.tiles()) {
-            const TileSums one = sums_of(its.read(tile));
-            all.all += one.all, all.modelled += one.modelled, all.simpler += one.simpler;
-            all.with_height += one.with_height, all.heights += one.heights;
-          }
-          return all;
-        }));
+    add_alike(sums_of_area(hash, [&, &path = area] {
+      const Explained its(after + "/" + path);
+      TileSums all;
+      for (const auto& [tile, part] : its.tiles()) add(all, sums_of(its.read(tile)));
+      return all;
+    }));
+  std::map<std::string, TileSums> of_parts;  // of the areas that differ, for the next night
   const auto meet = [&](const std::string& id, const Told& was, const Told& is) {
     if (!was.modelled || !is.modelled) {
       if (was.modelled) out.removed.push_back(id), out.footprints[id] = was.ring;
@@ -269,11 +276,14 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
           });
     };
     if (old && !hash.empty() && old->hash(tile) == hash && old->asked() == now.asked()) {
-      add_alike(sums_now());
+      const TileSums sums = sums_now();
+      add_alike(sums);
+      add(of_parts[now.tiles().at(tile)], sums);
       continue;
     }
     its = now.read(tile), read = true;
-    sums_now();  // for the next night
+    const TileSums sums = sums_now();  // for the next night
+    if (const auto part = now.tiles().find(tile); part != now.tiles().end()) add(of_parts[part->second], sums);
     ToldById mine = old ? old->read(tile) : ToldById();
     out.all_before += mine.size(), out.all_after += its.size();
     for (const auto& [id, told] : mine) out.before += told.modelled, out.simpler_before += told.simpler;
@@ -303,6 +313,9 @@ BuildChanges compare_builds(const std::string& before, const std::string& after,
       at = come.erase(at);
     }
   }
+  for (const auto& [part, sums] : of_parts)
+    if (!part.empty())
+      sums_of_area(base::sha256_file(after + "/" + part + "build.json"), [&sums = sums] { return sums; });
   for (const auto& [id, told] : gone)
     if (told.modelled) out.removed.push_back(id), out.footprints[id] = told.ring;
   for (const auto& [id, told] : come)

@@ -23,26 +23,26 @@ struct BuildOptions {
   std::optional<std::array<double, 4>> bbox;  ///< west, south, east, north in degrees
   std::string tile;                           ///< "15/35207/25941": build this tile alone; needs `pinned`
   std::string pinned;                         ///< build.json of an earlier build of the extract: its CRS, its coverage
-  int areas = 0;                              ///< level of the quadtree whose tiles are built one by one; 0: all at once
-  std::string area;                           ///< "11/1093/805": build this one of them alone; needs `pinned`
-  std::string earlier;                        ///< a build in areas whose unchanged ones are taken over, or empty
-  std::string settings;                       ///< says whether a build of `earlier` had the same; of `update`
-  std::int64_t memory_limit = 0;              ///< bytes for all areas in work; 0: one at a time
-  std::string crs;                            ///< "EPSG:…"; empty: chosen from the extent
-  int lod = 2;                                ///< highest level of detail, 0 to 3
-  bool force = false;                         ///< replace an existing build
-  bool allow_empty = false;                   ///< a build without models may replace one with some
-  double allow_shrink = 50;                   ///< percent fewer models than the build that is replaced
-  bool strict = false;                        ///< exit code 3 when a building is below the asked quality
-  int jobs = 0;                               ///< worker threads; 0: one per core
-  bool plan = false;                          ///< only look what there is to do: `output` is not written
-  std::string cache;                          ///< folder where the work on tiles is kept for later runs, or empty
-  std::uint64_t seed = 1;                     ///< of all random choices
-  std::string terrain;                        ///< raster with ground heights, or empty
-  std::string terrain_height_reference;       ///< "EPSG:7837", "sea-level", "ellipsoid"; empty: what the raster says
-  std::string districts;                ///< rule set by name or file; empty: chosen by place from configs/districts/
-  std::string overrides;                ///< overrides.toml, or empty
-  std::optional<double> ground_height;  ///< m above sea level for every base where there is no terrain
+  int areas = 0;                         ///< level of the quadtree whose tiles are built one by one; 0: all at once
+  std::string area;                      ///< "11/1093/805": build this one of them alone; needs `pinned`
+  std::string earlier;                   ///< a build in areas whose unchanged ones are taken over, or empty
+  std::string settings;                  ///< says whether a build of `earlier` had the same; of `update`
+  std::int64_t memory_limit = 0;         ///< bytes for all areas in work; 0: one at a time
+  std::string crs;                       ///< "EPSG:…"; empty: chosen from the extent
+  int lod = 2;                           ///< highest level of detail, 0 to 3
+  bool force = false;                    ///< replace an existing build
+  bool allow_empty = false;              ///< a build without models may replace one with some
+  double allow_shrink = 50;              ///< percent fewer models than the build that is replaced
+  bool strict = false;                   ///< exit code 3 when a building is below the asked quality
+  int jobs = 0;                          ///< worker threads; 0: one per core
+  bool plan = false;                     ///< only look what there is to do: `output` is not written
+  std::string cache;                     ///< folder where the work on tiles is kept for later runs, or empty
+  std::uint64_t seed = 1;                ///< of all random choices
+  std::string terrain;                   ///< raster with ground heights, or empty
+  std::string terrain_height_reference;  ///< "EPSG:7837", "sea-level", "ellipsoid"; empty: what the raster says
+  std::string districts;                 ///< rule set by name or file; empty: chosen by place from configs/districts/
+  std::string overrides;                 ///< overrides.toml, or empty
+  std::optional<double> ground_height;   ///< m above sea level for every base where there is no terrain
   observation::ImageryOptions imagery;
   outputs::OutputOptions outputs;
   repair::RepairOptions repair;

@@ -177,10 +177,11 @@ class AreasRun {
     }
     std::set<std::string> reached;
     const std::function<void(const Json&, double, const Json&)> visit = [&](const Json& node, double above,
-                                                                           const Json& around) {
+                                                                            const Json& around) {
       const double error = node.value("geometricError", -1.0);
       if (error < 0 || error > above)
-        log().add(Check::tileset_rule, "tileset.json", "", fmt::format("an error of {} m stands below one of {} m", error, above));
+        log().add(Check::tileset_rule, "tileset.json", "",
+                  fmt::format("an error of {} m stands below one of {} m", error, above));
       const Json volume = node.value("boundingVolume", Json::object()).value("region", Json());
       if (volume.is_array() && volume.size() == 6 && around.is_array() && around.size() == 6)
         for (std::size_t i = 0; i < 6; ++i) {
@@ -214,8 +215,8 @@ class AreasRun {
       if (is_area(name) && !reached.contains(uri) && !empty)
         log().add(Check::tileset_rule, "tileset.json", uri, "is not reached");
     }
-    v_.checked.push_back({"tileset.json of the whole", "volumes and errors of the areas' tilesets", reached.size(),
-                          "tilesets"});
+    v_.checked.push_back(
+        {"tileset.json of the whole", "volumes and errors of the areas' tilesets", reached.size(), "tilesets"});
   }
 
   void check_sums() {

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "pipeline/geometry/polygon_measures.h"
 #include "pipeline/georef/tiles.h"
 #include "pipeline/picture/image.h"
 
@@ -29,10 +31,17 @@ picture::PlanBox cropped(const picture::PlanBox& box, model::Point2 middle) {
 }
 
 bool meets(const picture::PlanBox& box, std::span<const model::Point2> points) {
-  picture::PlanBox of{box.max_x, box.max_y, box.min_x, box.min_y};
+  if (points.empty()) return false;
+  picture::PlanBox of{points[0].x, points[0].y, points[0].x, points[0].y};
   for (const model::Point2 p : points)
     of = {std::min(of.min_x, p.x), std::min(of.min_y, p.y), std::max(of.max_x, p.x), std::max(of.max_y, p.y)};
   return of.min_x <= box.max_x && of.max_x >= box.min_x && of.min_y <= box.max_y && of.max_y >= box.min_y;
+}
+
+/// What can reach into the box as it is drawn.
+picture::PlanBox reached(const picture::PlanBox& box) {
+  constexpr double kMargin = 30;  // m: half a street's width, and its ends
+  return {box.min_x - kMargin, box.min_y - kMargin, box.max_x + kMargin, box.max_y + kMargin};
 }
 
 /// m, drawn: wider for main streets. Not measured; a plan of edges needs streets to find one's way.
@@ -52,6 +61,47 @@ picture::PlanTile vicinity(const context::ContextExtract& context, const picture
   for (const context::ExtractCourtyard& yard : context.courtyards)
     if (meets(box, yard.courtyard.polygon.outer.points)) tile.courtyards.push_back(yard.courtyard.polygon);
   return tile;
+}
+
+/// What is drawn within the box, packed: long streets and blocks reach far beyond it, and change there.
+void pack_drawn(std::span<const picture::PlanTile> tiles, const picture::PlanBox& box, base::Packer& out) {
+  const picture::PlanBox near = reached(box);
+  // Where a ring begins, and the order of rings, may hang on what lies far away.
+  std::vector<std::array<double, 5>> lines;
+  const auto add_lines = [&](std::span<const model::Point2> points, bool closed, double width) {
+    for (std::size_t i = 0; i + (closed ? 0 : 1) < points.size(); ++i) {
+      const model::Point2 a = points[i], b = points[(i + 1) % points.size()];
+      if (meets(near, std::array{a, b})) lines.push_back({a.x, a.y, b.x, b.y, width});
+    }
+  };
+  const auto pack_lines = [&] {
+    std::ranges::sort(lines);
+    out << lines;
+    lines.clear();
+  };
+  const auto add_rings = [&](const model::Polygon& polygon) {
+    add_lines(polygon.outer.points, true, 0);
+    for (const model::Ring& hole : polygon.holes) add_lines(hole.points, true, 0);
+  };
+  out << box;
+  for (const picture::PlanTile& tile : tiles) {
+    for (const auto* polygons : {&tile.buildings, &tile.courtyards}) {
+      // What is filled follows from its sides here, and from one point that is within or not.
+      std::uint64_t within = 0;
+      for (const model::Polygon& polygon : *polygons)
+        if (meets(near, polygon.outer.points)) {
+          add_rings(polygon);
+          within += geometry::contains(polygon, {near.min_x, near.min_y});
+        }
+      out << within;
+      pack_lines();
+    }
+    for (const picture::PlanEdge& edge : tile.edges)
+      if (meets(near, std::array{edge.from, edge.to})) out << edge;
+    for (const model::Polygon& block : tile.blocks) add_rings(block);
+    for (const picture::PlanStreet& street : tile.streets) add_lines(street.line, false, street.width);
+    pack_lines();
+  }
 }
 
 picture::Image sheet(std::span<const picture::PlanTile> tiles, const picture::PlanBox& box, int pixels) {
@@ -83,9 +133,9 @@ PlanSheet draw_plan(std::vector<picture::PlanTile> tiles, const context::Context
   const picture::PlanBox all = picture::box_of(tiles);
   if (!(all.width() > 0 && all.height() > 0)) return {};
   const picture::PlanBox box = cropped(all, choice.middle);
-  tiles.push_back(vicinity(context, box));
+  tiles.push_back(vicinity(context, reached(box)));
   auto out = base::remembered<PlanSheet>(
-      memo, "plan", [&](base::Packer& packer) { packer << tiles << box; },
+      memo, "plan", [&](base::Packer& packer) { pack_drawn(tiles, box, packer); },
       [&] {
         PlanSheet drawn;
         drawn.png = picture::png(sheet(tiles, box, kFilePixels));
