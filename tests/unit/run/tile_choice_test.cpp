@@ -105,17 +105,48 @@ TEST(ForgetOthers, KeepsWhatWasBuiltHereAndWhatItStandsFor) {
   add(6, ObjectState::duplicate, 3);
   std::vector<model::ReportRow> rows = {{{model::OsmType::way, 2}, model::IssueCode::squared, ""},
                                         {{model::OsmType::way, 4}, model::IssueCode::squared, ""}};
-  const model::TileId here = georef::tile_of(*e.buildings[0].place, 15);
+  TileChoice here;
+  here.id = georef::tile_of(*e.buildings[0].place, 15);
   forget_others(e, here, rows);
   std::vector<std::int64_t> kept;
   for (const model::MappedBuilding& b : e.buildings) kept.push_back(b.id.number);
   EXPECT_THAT(kept, ::testing::ElementsAre(1, 2, 5, 6));
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].object.number, 2);
-  forget_others(e, {15, here.x + 1, here.y}, rows);
+  ++here.id.x;
+  forget_others(e, here, rows);
   kept.clear();
   for (const model::MappedBuilding& b : e.buildings) kept.push_back(b.id.number);
   EXPECT_THAT(kept, ::testing::ElementsAre(1, 2)) << "what was reported lies elsewhere";
+}
+
+TEST(ForgetOthers, WhatHasNoPlaceIsToldInOneArea) {
+  for (const bool told : {false, true}) {
+    model::Extract e;
+    model::MappedBuilding b;
+    b.id = {model::OsmType::way, 7};
+    b.state = model::ObjectState::reported;
+    e.buildings.push_back(b);
+    std::vector<model::ReportRow> rows;
+    TileChoice area = choose_area({11, 1093, 1500}, {});
+    EXPECT_TRUE(area.is_area());
+    area.placeless = told;
+    forget_others(e, area, rows);
+    EXPECT_EQ(e.buildings.size(), told ? 1u : 0u);
+  }
+}
+
+TEST(ChooseArea, IsTheSameWhateverStandsFarAway) {
+  RegionFacts facts;
+  facts.box = {13.0912, 52.3401, 13.7609, 52.6755}, facts.centre = {13.4, 52.5};
+  RegionFacts larger = facts;
+  larger.box.west -= 0.001, larger.centre.lon += 0.01;
+  const TileChoice a = choose_area({11, 2200, 1621}, facts), b = choose_area({11, 2200, 1621}, larger);
+  EXPECT_EQ(a.facts.box.west, b.facts.box.west);
+  EXPECT_EQ(a.facts.centre.lon, b.facts.centre.lon);
+  EXPECT_LE(a.facts.box.west, larger.box.west);
+  EXPECT_GE(a.facts.box.north, facts.box.north);
+  EXPECT_EQ(text_of(parse_tile("11/2200/1621", "--area")), "11/2200/1621");
 }
 
 }  // namespace

@@ -39,14 +39,16 @@ TEST(DeclaredOptions, EveryMemberOfABuildIsOne) {
   EXPECT_EQ(of_outputs + set_by_the_build, member_count<outputs::OutputOptions>());
   const std::size_t of_imagery = observation::imagery_options().size();
   EXPECT_EQ(of_imagery, member_count<observation::ImageryOptions>());
-  EXPECT_EQ(own - of_outputs - of_imagery + 2 + 2 + stages.size(), member_count<run::BuildOptions>())
+  EXPECT_EQ(own - of_outputs - of_imagery + 2 + 4 + stages.size(), member_count<run::BuildOptions>())
       << "the options of the outputs are one member, those of the images another, and so are those of each stage; a "
-         "build's name is its region's, and whether it only looks ahead its caller's";
+         "build's name is its region's, as are the earlier build and the settings that it had; whether it only looks "
+         "ahead is its caller's";
 }
 
 TEST(DeclaredOptions, EveryMemberOfValidationIsOne) {
   const std::size_t from_other_commands = 2;  // folder and jobs
-  EXPECT_EQ(validate::validate_options().size() + from_other_commands,
+  const std::size_t of_areas = 1;             // whether the extract was looked at
+  EXPECT_EQ(validate::validate_options().size() + from_other_commands + of_areas,
             member_count<blockrand::validate::ValidateOptions>());
 }
 
