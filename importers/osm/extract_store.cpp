@@ -17,6 +17,7 @@
 #include <osmium/osm/timestamp.hpp>
 #include <osmium/osm/way.hpp>
 #include <set>
+#include <span>
 
 #include "importers/osm/node_file.h"
 #include "importers/osm/osm_file.h"
@@ -84,7 +85,10 @@ struct Box {
     west = std::min(west, b.west), south = std::min(south, b.south);
     east = std::max(east, b.east), north = std::max(north, b.north);
   }
-  double span() const { return 1e-7 * static_cast<double>(std::max(east - west, north - south)); }
+  double span() const {
+    if (empty()) return 0;
+    return 1e-7 * static_cast<double>(std::max(east - west, north - south));
+  }
 };
 
 /// Which areas a box touches.
@@ -111,6 +115,23 @@ class Grid {
     for (std::uint32_t y = low.y; y <= high.y; ++y)
       for (std::uint32_t x = low.x; x <= high.x; ++x)
         if (touches(window({level_, x, y}), box)) out.insert({level_, x, y});
+  }
+
+  /// Those that a line comes near, which may lead around the globe.
+  void find_along(std::span<const model::Location> line, std::set<TileId>& out) {
+    constexpr double kStep = 0.1;  // degrees
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const model::Location a = line[i], b = line[std::min(i + 1, line.size() - 1)];
+      const double dx = static_cast<double>(b.lon) - a.lon, dy = static_cast<double>(b.lat) - a.lat;
+      const int pieces = 1 + static_cast<int>(1e-7 * std::max(std::abs(dx), std::abs(dy)) / kStep);
+      for (int k = 0; k < pieces; ++k) {
+        Box box;
+        for (const int end : {k, k + 1})
+          box.add(model::Location{static_cast<std::int32_t>(a.lon + dx * end / pieces),
+                                  static_cast<std::int32_t>(a.lat + dy * end / pieces)});
+        find(box, out);
+      }
+    }
   }
 
  private:
@@ -259,6 +280,11 @@ class StoreWriter {
     std::set<TileId> areas;
     Box box;
   };
+  struct KnownWay {
+    Box box;
+    bool there = false;
+    std::set<TileId> areas;  ///< of one that spans more than kWholeSpan
+  };
 
   /// Counts it, and whether the file is in order.
   bool visit(const OSMObject& object, std::uint64_t& count) {
@@ -320,8 +346,19 @@ class StoreWriter {
     files_.add(areas_, Kind::node, object);
   }
 
-  /// A copy with the places of its nodes.
+  /// Where a way is: everywhere in its box, or where a longer one leads.
+  void find_way(const Box& box, std::set<TileId>& areas) {
+    if (box.empty())
+      areas.insert(nowhere(level_));
+    else if (box.span() <= kWholeSpan)
+      grid_.find(box, areas);
+    else
+      grid_.find_along(line_, areas);
+  }
+
+  /// A copy with the places of its nodes, which are left in `line_`.
   const osmium::Way& located(const OSMObject& object, Box& box) {
+    line_.clear();
     copy_.clear();
     copy_.add_item(object);
     copy_.commit();
@@ -330,7 +367,9 @@ class StoreWriter {
       const model::Location at = nodes_.find(node.ref());
       node.set_location({at.lon, at.lat});
       if (at == kMissing) missing_nodes_.insert(node.ref());
-      if (is_known(at)) box.add(at);
+      if (!is_known(at)) continue;
+      box.add(at);
+      line_.push_back(at);
     }
     return way;
   }
@@ -342,13 +381,22 @@ class StoreWriter {
     if (!alive || (!is_kept(interest) && of_relation == boxes_.end())) return;
     Box box;
     const osmium::Way& way = located(object, box);
-    if (of_relation != boxes_.end()) of_relation->second.there = true, of_relation->second.box = box;
     areas_.clear();
-    if (box.empty())
-      areas_.insert(nowhere(level_));
-    else
-      grid_.find(box, areas_);
+    find_way(box, areas_);
+    if (of_relation != boxes_.end()) {
+      of_relation->second.there = true, of_relation->second.box = box;
+      if (box.span() > kWholeSpan) of_relation->second.areas = areas_;
+    }
     files_.add(areas_, Kind::way, way);
+  }
+
+  void areas_of(const KnownWay& way, std::set<TileId>& areas) {
+    if (way.box.empty())
+      areas.insert(nowhere(level_));
+    else if (way.box.span() <= kWholeSpan)
+      grid_.find(way.box, areas);
+    else
+      areas.insert(way.areas.begin(), way.areas.end());
   }
 
   void place_relations() {
@@ -363,7 +411,7 @@ class StoreWriter {
       } else if (box.span() <= kWholeSpan) {
         grid_.find(box, r.areas);
       } else {
-        for (const std::int64_t way : r.ways) grid_.find(boxes_[way].box, r.areas);
+        for (const std::int64_t way : r.ways) areas_of(boxes_[way], r.areas);
       }
     }
     // Members of relations that are relations: buildings of parts that are multipolygons.
@@ -373,13 +421,10 @@ class StoreWriter {
           found->second.areas.insert(r.areas.begin(), r.areas.end());
     for (const auto& [id, r] : relations_)
       for (const std::int64_t way : r.ways) {
-        const auto& [box, there] = boxes_[way];
-        if (!there) continue;
+        const KnownWay& known = boxes_[way];
+        if (!known.there) continue;
         areas_.clear();
-        if (box.empty())
-          areas_.insert(nowhere(level_));
-        else
-          grid_.find(box, areas_);
+        areas_of(known, areas_);
         std::set_difference(r.areas.begin(), r.areas.end(), areas_.begin(), areas_.end(),
                             std::inserter(late_[way], late_[way].end()));
       }
@@ -418,10 +463,6 @@ class StoreWriter {
     files_.finish(std::move(index_));
   }
 
-  struct KnownWay {
-    Box box;
-    bool there = false;
-  };
   OsmFile& file_;
   Grid grid_;
   NodeFile nodes_;
@@ -435,7 +476,8 @@ class StoreWriter {
   std::map<std::int64_t, KnownWay> boxes_;         ///< of ways that relations have
   std::map<std::int64_t, std::set<TileId>> late_;  ///< by way
   std::set<std::int64_t> missing_nodes_;
-  std::set<TileId> areas_;  ///< of the object at hand
+  std::vector<model::Location> line_;  ///< places of the nodes of the way at hand
+  std::set<TileId> areas_;             ///< of the object at hand
   osmium::memory::Buffer copy_{1 << 16, osmium::memory::Buffer::auto_grow::yes};
 };
 

@@ -32,8 +32,8 @@ struct StoredArea {
   std::uint64_t bytes = 0;  ///< on disk
 };
 
-/// Writes a store in one pass over the nodes and two over ways and relations. Of relations, only those are whole everywhere that
-/// span at most kWholeSpan; larger ones are in those areas alone that one of their ways touches.
+/// Writes a store in one pass over the nodes and two over ways and relations. What spans at most kWholeSpan is in every area that its
+/// box touches; a larger way in those that it leads through, a larger relation in those of its ways.
 ///
 /// Memory: relations with their members, the boxes of their ways, 64 MB of objects on their way to the disk and as much of nodes;
 /// nothing that grows with the buildings.
@@ -44,7 +44,7 @@ struct StoredArea {
 /// \throws base::OutputError  the store cannot be written
 bool write_store(const std::string& extract, const std::string& folder, int level, double halo);
 
-/// A relation that spans more cannot be what stands around one area. Degrees.
+/// What spans more cannot be what stands around one area: what holds the area as a whole is told to it (RegionFacts::areas). Degrees.
 inline constexpr double kWholeSpan = 1.0;
 
 /// A store that is read. Each piece is checked as it is read.

@@ -105,6 +105,18 @@ TEST(ExtractStore, WhatIsFarAwayIsNotRead) {
   }
 }
 
+TEST(ExtractStore, WhatLeadsAroundTheGlobeIsInFewAreas) {
+  const TempFolder folder;
+  OsmText text;
+  text.node(1, -179, -80).node(2, 179, 80).node(3, 179, -80);
+  text.square(1, 11, 0, 0, 1, {{"building", "yes"}});
+  text.way(2, {1, 2, 3, 1}, {{"natural", "water"}}).way(3, {1, 2}, {{"highway", "primary"}});
+  text.way(4, {2, 3, 1}).relation(5, {"w3 outer", "w4 outer"}, {{"type", "multipolygon"}, {"landuse", "forest"}});
+  ASSERT_TRUE(write_store(folder.write("a.osm", text.xml()), folder.path("store"), 11, kHalo));
+  const ExtractStore store(folder.path("store"));
+  EXPECT_LT(store.areas().size(), 100'000u);  // of 8 million
+}
+
 TEST(ExtractStore, ADamagedOneIsTold) {
   const TempFolder folder;
   OsmText text;
