@@ -243,7 +243,7 @@ class StoreFiles {
     check();
     written_ += area.pending.size();
     pending_ -= area.pending.size();
-    area.pending = {};
+    std::string().swap(area.pending);  // assigning an empty one would keep its room
   }
   void flush_all() {
     for (auto& [tile, area] : areas_) flush(area);
