@@ -40,7 +40,8 @@ using importers::osm::ExtractStore;
 using Json = nlohmann::ordered_json;
 using model::TileId;
 
-/// What an area needs, for --memory-limit: measured on Berlin at LoD3 with all formats (docs/internal/RESULTS.md). Bytes.
+/// What an area needs, for --memory-limit: an estimate on the safe side. The densest area that was measured (43 MB stored, LoD3, 3D
+/// Tiles, two jobs; docs/internal/RESULTS.md) took 541 MB of the 680 that this gives; with all formats none was measured. Bytes.
 constexpr std::uint64_t kAreaBase = 160'000'000;
 constexpr double kPerStoredByte = 12;
 
@@ -72,8 +73,8 @@ void refuse_contradictions(const BuildOptions& options) {
                                        what, options.areas > 0 ? "areas" : "area"));
 }
 
-/// Of this process from here on: what is freed goes back to the system. 14 % less at the peak of Berlin's middle at LoD3, for 1 % more
-/// CPU time.
+/// Of this process from here on: what is freed goes back to the system. 9 to 14 % less at the peak of a dense area at LoD3, for 1 %
+/// more CPU time.
 void keep_memory_low() {
   constexpr int kKept = 200'000;  // bytes at the end of the heap
   ::mallopt(M_TRIM_THRESHOLD, kKept);

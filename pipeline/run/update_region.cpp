@@ -139,7 +139,7 @@ void write_changes(const RegionFolder& region, int number, const UpdateSummary& 
 /// Above this size of its data a region is built in areas, where its settings say nothing else. Bytes: about 100,000 buildings, which
 /// take 400 MB of memory at once.
 constexpr std::uint64_t kLargeRegion = 10'000'000;
-/// About 6 by 10 km at 51 degrees: at LoD3 an area of the middle of Berlin takes 600 MB.
+/// About 6 by 10 km at 51 degrees: an area of the middle of a large city takes 540 MB at LoD3 (docs/internal/RESULTS.md).
 constexpr int kUsualAreas = 11;
 
 /// What the settings say, else what the region's first build chose: areas that change their size change every path.
