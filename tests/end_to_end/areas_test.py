@@ -39,6 +39,26 @@ def without_runs(files):
     return {p: h for p, h in files.items() if os.path.basename(p) != 'run.json'}
 
 
+def workers(run):
+    """The processes that RUN has started and that have not ended."""
+    found = []
+    for stat in glob.glob('/proc/[0-9]*/stat'):
+        try:
+            with open(stat, encoding='utf-8', errors='replace') as file:
+                state, parent = file.read().rpartition(')')[2].split()[:2]
+        except OSError:
+            continue
+        if int(parent) == run.pid and state not in 'ZX':
+            found.append(int(stat.split('/')[2]))
+    return found
+
+
+def wait_for_a_worker(run):
+    """Returns when RUN has a worker, or has ended."""
+    while not workers(run) and run.poll() is None:
+        time.sleep(0.01)
+
+
 class Areas(BuildTest):
     @classmethod
     def setUpClass(cls):
@@ -153,13 +173,13 @@ class Areas(BuildTest):
         options = ('--jobs', '2', '--lod', '3', '--formats', 'gltf,cityjson', '--no-report', '--areas', LEVEL, '--cache', self.path('kept'))
         plain = self.build(self.town, 'unkilled', *options[:-2])
         target, rng, killed = self.path('killed'), random.Random(6), 0
-        for _ in range(4):
+        for delay in (0, *(rng.uniform(0, 2) for _ in range(3))):
             run = subprocess.Popen([Setup.program, 'build', self.town, '-o', target, '--quiet', *options], stderr=subprocess.PIPE, text=True)
-            time.sleep(rng.uniform(0.5, 4))
-            children = subprocess.run(['pgrep', '-P', str(run.pid)], capture_output=True, text=True, check=False).stdout.split()
-            for child in children:
+            wait_for_a_worker(run)
+            time.sleep(delay)
+            for child in workers(run):
                 try:
-                    os.kill(int(child), signal.SIGKILL)
+                    os.kill(child, signal.SIGKILL)
                 except ProcessLookupError:
                     pass
             error = run.stderr.read()
@@ -170,7 +190,7 @@ class Areas(BuildTest):
                 self.assertIn('signal 9', error)
                 self.assertFalse(os.path.exists(target))
                 self.assertEqual(stray_siblings(target), [])
-            else:
+            else:  # the last worker had just ended
                 shutil.rmtree(target)
         self.assertGreater(killed, 0)
         self.same_build(plain, self.build(self.town, 'killed', *options))
@@ -178,7 +198,7 @@ class Areas(BuildTest):
     def test_a_run_that_is_killed_takes_its_workers_along(self):
         target = self.path('gone')
         run = subprocess.Popen([Setup.program, 'build', self.town, '-o', target, '--progress', 'none', '--areas', LEVEL, '--lod', '3'])
-        time.sleep(2)
+        wait_for_a_worker(run)
         run.kill()
         run.wait()
         time.sleep(1)
