@@ -106,7 +106,7 @@ struct DistrictAssigner::Impl {
   std::map<context::CellIndex, context::CellFigures> cells;
   std::vector<const context::CellFigures*> cell_figures;  // by building; empty where no rule asks
   std::vector<PinnedArea> pins;
-  std::vector<std::string> missing;
+  std::vector<NamedPlaceQuestion> named;
 
   std::set<std::uint32_t> sets_here;  // that hold for a building
 
@@ -136,8 +136,6 @@ struct DistrictAssigner::Impl {
     };
     std::sort(pins.begin(), pins.end(), before);
     pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
-    std::sort(missing.begin(), missing.end());
-    missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
   }
 
   Point2 project(Location p) const { return model::snap(in.projection.forward(p)); }
@@ -199,10 +197,13 @@ struct DistrictAssigner::Impl {
           out.near.add(p, p);
           if (q.distance > kLargeArea) pins.push_back({node_question, "", n.id, n.rings});
         }
-        if (areas.empty() && nodes.empty() && sets_here.contains(static_cast<std::uint32_t>(&set - book.sets.data())))
-          missing.push_back(fmt::format(
-              "{}:{}: nothing here is '{}'{}", set.file, q.line, q.name,
-              q.kind == Kind::place && q.distance == 0 ? " as a polygon; a place that is a node needs a radius" : ""));
+        named.push_back(
+            {static_cast<std::uint32_t>(&set - book.sets.data()),
+             fmt::format("{}:{}: nothing here is '{}'{}", set.file, q.line, q.name,
+                         q.kind == Kind::place && q.distance == 0
+                             ? " as a polygon; a place that is a node needs a radius"
+                             : ""),
+             !areas.empty() || !nodes.empty()});
         break;
       }
       case Kind::land_use:
@@ -390,8 +391,19 @@ districts::Assignment DistrictAssigner::assign(std::uint32_t building, model::Bu
 }
 
 std::vector<PinnedArea> DistrictAssigner::to_pin() const { return impl_->pins; }
-std::vector<std::string> DistrictAssigner::unanswered() const { return impl_->missing; }
+std::vector<std::string> DistrictAssigner::unanswered() const {
+  return attributes::unanswered(impl_->named, impl_->sets_here);
+}
+const std::vector<NamedPlaceQuestion>& DistrictAssigner::named_places() const { return impl_->named; }
 const RuleSets& DistrictAssigner::book() const { return impl_->book; }
+
+std::vector<std::string> unanswered(std::span<const NamedPlaceQuestion> questions,
+                                    const std::set<std::uint32_t>& asked) {
+  std::set<std::string> out;
+  for (const NamedPlaceQuestion& q : questions)
+    if (!q.found && asked.contains(q.set)) out.insert(q.unanswered);
+  return {out.begin(), out.end()};
+}
 
 void assign_region(model::Region& region, std::span<const std::uint32_t> numbers, const DistrictAssigner& assigner) {
   for (std::size_t i = 0; i < region.buildings.size(); ++i) {

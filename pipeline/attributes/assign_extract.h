@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,6 +40,13 @@ struct AssignInputs {
   std::uint64_t seed = 1;
 };
 
+/// What a rule asks about a place or boundary by its name.
+struct NamedPlaceQuestion {
+  std::uint32_t set = 0;  ///< of the RuleSets
+  std::string unanswered;  ///< what is said where nothing has that name
+  bool found = false;      ///< here
+};
+
 /// Answers for single buildings. Made before any tile: files of the rules are read, places and areas of the extract
 /// indexed. A pure function of the building's facts, so that the order of buildings, threads and tiles do not matter; a
 /// tile asks it as soon as it knows where in its block a building stands. Read-only, safe to share.
@@ -61,12 +69,18 @@ class DistrictAssigner {
   /// Questions that nothing in the extract can answer: a place or boundary with a name that is not there,
   /// of sets that hold for a building here.
   std::vector<std::string> unanswered() const;
+  /// All questions that ask for a name, whether or not their set holds here, in the order of sets and queries.
+  const std::vector<NamedPlaceQuestion>& named_places() const;
   const districts::RuleSets& book() const;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// What DistrictAssigner::unanswered says. \param asked  sets that hold for a building
+std::vector<std::string> unanswered(std::span<const NamedPlaceQuestion> questions,
+                                    const std::set<std::uint32_t>& asked);
 
 /// Fills `preset` and `preset_parameters` of the region's buildings (and `preset` of their parts, the same).
 /// \param numbers  of the buildings in the store, in their order; edges and situation are known

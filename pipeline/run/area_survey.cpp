@@ -28,6 +28,8 @@ struct AreaFacts {
   std::uint64_t objects = 0;                 ///< mapped objects
   std::vector<attributes::PinnedArea> pins;  ///< large areas that rules ask for
   std::vector<std::uint32_t> matched;        ///< orders: indices
+  std::set<std::uint32_t> rule_sets;         ///< that hold for a building
+  std::vector<attributes::NamedPlaceQuestion> named_places;
 };
 
 class Surveyor {
@@ -87,18 +89,20 @@ class Surveyor {
     const context::ContextExtract no_context;
     const evidence::StyleExtract no_styles;
     const context::TaggedNeighbours no_neighbours({}, options_.generate.neighbour_reach);
-    facts.pins = attributes::DistrictAssigner(rules_.book, {.extract = extract,
-                                                            .footprints = no_footprints,
-                                                            .context = no_context,
-                                                            .styles = no_styles,
-                                                            .projection = projection,
-                                                            .defaults = defaults_,
-                                                            .neighbours = no_neighbours,
-                                                            .neighbour_minimum = options_.generate.neighbour_minimum,
-                                                            .overrides = &overrides_,
-                                                            .pinned = {},
-                                                            .seed = options_.seed})
-                     .to_pin();
+    const attributes::DistrictAssigner assigner(rules_.book, {.extract = extract,
+                                                              .footprints = no_footprints,
+                                                              .context = no_context,
+                                                              .styles = no_styles,
+                                                              .projection = projection,
+                                                              .defaults = defaults_,
+                                                              .neighbours = no_neighbours,
+                                                              .neighbour_minimum = options_.generate.neighbour_minimum,
+                                                              .overrides = &overrides_,
+                                                              .pinned = {},
+                                                              .seed = options_.seed});
+    facts.pins = assigner.to_pin();
+    for (const model::Location centre : facts.centres) facts.rule_sets.insert(rules_.book.choose(centre));
+    facts.named_places = assigner.named_places();
     return facts;
   }
 
@@ -126,15 +130,23 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
   const Surveyor surveyor(store, options);
   RegionSurvey survey;
   std::vector<model::Location> centres;
-  std::set<std::uint32_t> matched;
+  std::set<std::uint32_t> matched, rule_sets;
+  std::vector<attributes::NamedPlaceQuestion> named_places;
   std::map<std::tuple<std::string, std::string, model::OsmId>, attributes::PinnedArea> pins;
   for (const importers::osm::StoredArea& area : store.areas()) {
     AreaFacts facts = surveyor.look(area, memo);
     if (facts.objects > 0) survey.objects[area.tile] = facts.objects;
     centres.insert(centres.end(), facts.centres.begin(), facts.centres.end());
     matched.insert(facts.matched.begin(), facts.matched.end());
+    rule_sets.insert(facts.rule_sets.begin(), facts.rule_sets.end());
+    if (named_places.empty())
+      named_places = std::move(facts.named_places);
+    else
+      for (std::size_t i = 0; i < named_places.size(); ++i)
+        named_places[i].found = named_places[i].found || facts.named_places[i].found;
     for (attributes::PinnedArea& pin : facts.pins) pins.try_emplace({pin.question, pin.value, pin.id}, std::move(pin));
   }
+  survey.unanswered = attributes::unanswered(named_places, rule_sets);
   for (auto& [what, pin] : pins) survey.facts.areas.push_back(std::move(pin));
   const attributes::Overrides& orders = surveyor.overrides();
   for (std::uint32_t i = 0; i < orders.entries.size(); ++i)

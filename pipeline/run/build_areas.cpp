@@ -208,6 +208,7 @@ class AreaBuild {
     auto [survey, used] = base::unpacked<std::pair<RegionSurvey, std::set<std::string>>>(result.bytes);
     survey_ = std::move(survey);
     for (const std::string& entry : used) summary_.kept_work.insert(entry);
+    for (const std::string& what : survey_.unanswered) progress_.warn(what);
     if (!survey_.unmatched.empty())
       progress_.warn(fmt::format("{}: {} entries match nothing in the extract, the first is {}; report.json lists them",
                                  options_.overrides, survey_.unmatched.size(), survey_.unmatched.front()));

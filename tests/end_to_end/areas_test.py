@@ -134,6 +134,21 @@ class Areas(BuildTest):
         self.assertIn('w999999999', self.last.err)
         self.assertEqual(len(read_json(divided, 'report.json')['overrides_unmatched']), 1)
 
+    def test_places_that_are_nowhere_are_told(self):
+        """A name that one area has is not asked for in vain, though others do not have it."""
+        objects = town(1200)
+        objects.insert(0, Node(7, objects[0].lon, objects[0].lat, {'place': 'suburb', 'name': 'Firstham'}))
+        source = write_xml(self.path('named.osm'), objects)
+        rule = '[[rule]]\nname = "{0}"\npriority = {1}\nwhere.place = "{0}"\nwhere.radius = 300\npreset = "slab"\n'
+        rules = self.place('places.toml', 'title = "Two"\n[[rule]]\nname = "all"\nlevel = "city"\npreset = "postwar"\n' +
+                           rule.format('Firstham', 2) + rule.format('Lastham', 3))
+        self.build(source, 'named_once', *QUICK, '--districts', rules)
+        told = [line for line in self.last.err.splitlines() if 'nothing here is' in line]
+        self.assertEqual(len(told), 1, told)
+        self.assertIn('Lastham', told[0])
+        self.build(source, 'named', *QUICK, '--districts', rules, '--areas', LEVEL)
+        self.assertEqual([line for line in self.last.err.splitlines() if 'nothing here is' in line], told)
+
     def test_what_contradicts_is_refused(self):
         divided = self.build(self.town, 'usage', *QUICK, '--areas', LEVEL)
         target, pinned = self.path('none'), os.path.join(divided, 'build.json')
