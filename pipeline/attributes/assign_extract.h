@@ -42,7 +42,7 @@ struct AssignInputs {
 
 /// What a rule asks about a place or boundary by its name.
 struct NamedPlaceQuestion {
-  std::uint32_t set = 0;  ///< of the RuleSets
+  std::uint32_t set = 0;   ///< of the RuleSets
   std::string unanswered;  ///< what is said where nothing has that name
   bool found = false;      ///< here
 };
