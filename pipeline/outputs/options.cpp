@@ -11,6 +11,7 @@ namespace {
 using base::choice;
 using base::custom;
 using base::flag;
+using base::integer;
 using base::OptionRecord;
 using base::OptionType;
 using base::RecordValue;
@@ -63,46 +64,57 @@ const base::Choices<CityGmlDetail> kDetails = {{"lean", CityGmlDetail::lean}, {"
 
 base::OptionTable<O> which_files() {
   static const std::string formats_help = "what is written, separated by commas: " + listed_formats();
-  return {custom<O>(
-              {.name = "formats",
-               .key = "formats",
-               .argument = "LIST",
-               .type = OptionType::list,
-               .help = formats_help,
-               .choices = format_names(),
-               .after = "output",
+  return {
+      custom<O>(
+          {.name = "formats",
+           .key = "formats",
+           .argument = "LIST",
+           .type = OptionType::list,
+           .help = formats_help,
+           .choices = format_names(),
+           .after = "output",
+           .record = OptionRecord::yes,
+           .record_place = 2},
+          set_formats, [](const O& o) { return base::joined(o.formats, ","); },
+          [](const O& o) { return RecordValue(o.formats); }),
+      choice({.name = "instancing",
+              .key = "instancing",
+              .argument = "HOW",
+              .help = "how GLBs of level 3 hold windows and ornaments: ext stores each once and places it "
+                      "(EXT_mesh_gpu_instancing), nodes makes a node of each place for programs without that, "
+                      "baked makes triangles of all",
+              .after = "lod",
+              .record = OptionRecord::yes,
+              .record_place = 7},
+             kInstancings, &O::instancing),
+      choice({.name = "compress",
+              .key = "compress",
+              .argument = "HOW",
+              .help = "how GLBs are compressed: none, or meshopt (EXT_meshopt_compression), a third of the size, "
+                      "for viewers that can decompress it",
+              .record = OptionRecord::yes,
+              .record_place = 8},
+             kCompressions, &O::compression),
+      integer({.name = "max-glb-bytes",
+               .key = "max_glb_bytes",
+               .argument = "BYTES",
+               .minimum = 0,
+               .maximum = 4'000'000'000,
+               .help = "a tile's GLB that would be larger is cut into quarters, and those again, each a file of its "
+                       "own; 0: none is cut",
                .record = OptionRecord::yes,
-               .record_place = 2},
-              set_formats, [](const O& o) { return base::joined(o.formats, ","); },
-              [](const O& o) { return RecordValue(o.formats); }),
-          choice({.name = "instancing",
-                  .key = "instancing",
-                  .argument = "HOW",
-                  .help = "how GLBs of level 3 hold windows and ornaments: ext stores each once and places it "
-                          "(EXT_mesh_gpu_instancing), nodes makes a node of each place for programs without that, "
-                          "baked makes triangles of all",
-                  .after = "lod",
-                  .record = OptionRecord::yes,
-                  .record_place = 7},
-                 kInstancings, &O::instancing),
-          choice({.name = "compress",
-                  .key = "compress",
-                  .argument = "HOW",
-                  .help = "how GLBs are compressed: none, or meshopt (EXT_meshopt_compression), a third of the size, "
-                          "for viewers that can decompress it",
-                  .record = OptionRecord::yes,
-                  .record_place = 8},
-                 kCompressions, &O::compression),
-          choice({.name = "citygml-detail",
-                  .key = "citygml_detail",
-                  .argument = "WHAT",
-                  .help = "what CityGML of level 3 holds: lean has windows and doors as surfaces in the plane of their "
-                          "walls, with the depth of reveals as an attribute, and ornaments without pieces under 0.5 m; "
-                          "full has reveals as faces and every window, door and ornament as the GLBs have it, three "
-                          "times the size",
-                  .record = OptionRecord::yes,
-                  .record_place = 15},
-                 kDetails, &O::citygml_detail)};
+               .record_place = 17},
+              &O::max_glb_bytes),
+      choice({.name = "citygml-detail",
+              .key = "citygml_detail",
+              .argument = "WHAT",
+              .help = "what CityGML of level 3 holds: lean has windows and doors as surfaces in the plane of their "
+                      "walls, with the depth of reveals as an attribute, and ornaments without pieces under 0.5 m; "
+                      "full has reveals as faces and every window, door and ornament as the GLBs have it, three "
+                      "times the size",
+              .record = OptionRecord::yes,
+              .record_place = 15},
+             kDetails, &O::citygml_detail)};
 }
 
 base::OptionTable<O> what_files_hold() {

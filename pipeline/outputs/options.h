@@ -28,6 +28,7 @@ struct OutputOptions {
   Instancing instancing = Instancing::ext;              ///< how GLBs hold what stands in facades
   Compression compression = Compression::none;          ///< of vertices, indices and places in GLBs
   AttributeProfile profile = AttributeProfile::people;  ///< what GLBs tell of a building
+  std::int64_t max_glb_bytes = 10'000'000;              ///< of a tile's GLB: a larger one is cut; 0: none is
   CityGmlDetail citygml_detail = CityGmlDetail::lean;   ///< of LoD3
   bool imagery = false;                                 ///< there are aerial images: imagery.json. Set by the build
   bool imagery_pictures = false;                        ///< and they can be shown: imagery.html. Set by the build

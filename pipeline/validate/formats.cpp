@@ -23,6 +23,15 @@ std::optional<int> cut_level(std::string& name) {
   return level;
 }
 
+/// "15_17600_12900_q21": whether it ends so, and the name without that.
+bool cut_piece(std::string& name) {
+  const std::size_t last = name.find_last_not_of("0123");
+  if (last == std::string::npos || last + 1 == name.size() || last == 0 || name[last] != 'q' || name[last - 1] != '_')
+    return false;
+  name.resize(last - 1);
+  return true;
+}
+
 }  // namespace
 
 bool is_format(std::string_view key) {
@@ -40,7 +49,8 @@ std::optional<TilePath> tile_path(std::string_view path) {
     if (bare.size() != path.size()) return std::nullopt;  // GLBs are never zipped
     std::replace(name.begin(), name.end(), '/', '_');
     const std::optional<int> level = cut_level(name);
-    return TilePath{std::move(name), format, level};
+    const bool piece = !level && cut_piece(name);
+    return TilePath{std::move(name), format, level, piece};
   }
   return std::nullopt;
 }

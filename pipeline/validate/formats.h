@@ -58,6 +58,7 @@ struct TilePath {
   std::string tile;  ///< "15_17600_12900"
   Format format = Format::gltf;
   std::optional<int> coarser;  ///< level of detail of a GLB beside the tile's finest
+  bool piece = false;          ///< a GLB with a part of the tile's buildings
 };
 
 /// \returns  nothing for files of the whole build

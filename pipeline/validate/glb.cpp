@@ -506,6 +506,23 @@ Glb read_glb(std::string_view bytes, const std::string& name) {
   return out;
 }
 
+void append(Glb& glb, Glb&& piece) {
+  const std::size_t elements = glb.elements.size(), rows = glb.contents.bodies.size();
+  for (GlbPlace& place : piece.places) place.element += elements, place.row += rows;
+  const auto move = [](auto& to, auto& from) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  };
+  move(glb.contents.buildings, piece.contents.buildings);
+  move(glb.contents.bodies, piece.contents.bodies);
+  glb.contents.elements.merge(piece.contents.elements);
+  move(glb.contents.findings, piece.contents.findings);
+  move(glb.triangles, piece.triangles);
+  move(glb.elements, piece.elements);
+  move(glb.places, piece.places);
+  move(glb.vertices, piece.vertices);
+  glb.position_step = std::max(glb.position_step, piece.position_step);
+}
+
 std::vector<double> drawn_areas(const Glb& glb) {
   const auto area = [](const Point3& a, const Point3& b, const Point3& c) { return length(cross(b - a, c - a)) / 2; };
   std::vector<double> out;

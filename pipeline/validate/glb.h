@@ -66,6 +66,9 @@ struct Glb {
 /// findings
 Glb read_glb(std::string_view bytes, const std::string& name);
 
+/// Adds what another GLB of the same frame holds: a tile in pieces.
+void append(Glb& glb, Glb&& piece);
+
 /// m², of what is drawn of each body: its triangles and those of its elements. Parallel to contents.bodies.
 std::vector<double> drawn_areas(const Glb& glb);
 

@@ -44,7 +44,6 @@ class Checker {
 
   TileResult run() {
     tile_ = read_tile(files_, context_, out_);
-    check_bounds();
     validate_solids();
     check_overlaps();
     compare();
@@ -92,23 +91,6 @@ class Checker {
 
   // ---- one format by itself
 
-  void check_bounds() {
-    if (tile_.entry) check_bounds(*tile_.glb, *tile_.entry, files_.path[kGltf]);
-  }
-
-  void check_bounds(const Glb& glb, const TilesetEntry& entry, const std::string& path) {
-    std::vector<Point3> points = glb.vertices;
-    const std::vector<Point3> corners = place_corners(glb);
-    points.insert(points.end(), corners.begin(), corners.end());
-    const Overhang over = overhang(entry, points);
-    if (over.own > kVolumeTolerance)
-      found(Check::tile_bounds, path, "",
-            fmt::format("its mesh lies up to {:.3f} m outside of the tile's bounding volume", over.own));
-    if (over.ancestor > kVolumeTolerance)
-      found(Check::tile_bounds, path, "",
-            fmt::format("its mesh lies up to {:.3f} m outside of an ancestor's bounding volume", over.ancestor));
-  }
-
   /// The same buildings in less detail: the same rows, in the same place, and meshes like the solids of their level.
   void check_levels() {
     if (!tile_.glb) return;
@@ -129,7 +111,7 @@ class Checker {
         if (entry == context_.tileset->entries.end())
           found(Check::tile_missing, path, "", "the tileset does not name it");
         else
-          check_bounds(glb, entry->second, path);
+          check_bounds(glb, entry->second, path, out_);
       }
       if (!glb.places.empty()) found(Check::glb_rule, path, "", "places elements, which no coarser level has");
       const Side level{glb.contents, path};

@@ -26,6 +26,7 @@ namespace blockrand::validate {
 struct TileFiles {
   std::string name;  ///< "15_17600_12900"
   std::string path[kTileFormats];
+  std::vector<std::string> pieces;    ///< GLBs that hold a part of the buildings each; the first is in `path`
   std::map<int, std::string> levels;  ///< GLBs of the same buildings in less detail, by LoD
   std::string explanations;           ///< "explain/15_17600_12900.jsonl.gz"
 };

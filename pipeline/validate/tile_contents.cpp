@@ -11,6 +11,7 @@
 
 #include "pipeline/validate/bytes_of_file.h"
 #include "pipeline/validate/cityjson_reader.h"
+#include "pipeline/validate/placed_elements.h"
 
 namespace blockrand::validate {
 namespace {
@@ -44,20 +45,38 @@ class Reader {
   }
 
   void read_glb_tile() {
-    const std::string& path = files_.path[kGltf];
-    if (path.empty()) return;
-    tile_.glb = read_glb_file(path, context_, result_);
-    if (!tile_.glb) return;
+    if (files_.path[kGltf].empty()) return;
+    std::vector<std::string> paths = files_.pieces;
+    if (paths.empty()) paths.push_back(files_.path[kGltf]);
+    for (const std::string& path : paths) {
+      std::optional<Glb> glb = read_glb_file(path, context_, result_);
+      if (!glb) {
+        tile_.glb.reset();
+        return;
+      }
+      read_entry(*glb, path);
+      if (!tile_.glb) {
+        tile_.glb = std::move(glb);
+        continue;
+      }
+      if (glb->georeference.local_to_ecef != tile_.glb->georeference.local_to_ecef)
+        found(Check::georeference, path, "its frame is not that of " + paths.front());
+      append(*tile_.glb, std::move(*glb));
+    }
+  }
+
+  /// Where the tileset has it.
+  void read_entry(const Glb& glb, const std::string& path) {
     Matrix& transform = tile_.transform;
-    transform = tile_.glb->georeference.local_to_ecef;
+    transform = glb.georeference.local_to_ecef;
     if (!context_.tileset || !context_.tileset->readable) return;
     const auto entry = context_.tileset->entries.find(path);
     if (entry == context_.tileset->entries.end())
       return found(Check::tile_missing, path, "the tileset does not name it");
-    tile_.entry = &entry->second;
-    transform = tile_.entry->transform;
-    if (!tile_.glb->georeference.present || transform == tile_.glb->georeference.local_to_ecef) return;
-    const Matrix& g = tile_.glb->georeference.local_to_ecef;
+    check_bounds(glb, entry->second, path, result_);
+    transform = entry->second.transform;
+    if (!glb.georeference.present || transform == glb.georeference.local_to_ecef) return;
+    const Matrix& g = glb.georeference.local_to_ecef;
     found(Check::georeference, path,
           fmt::format("its local_to_ecef is not the tileset's transform: origins {:.4f} m apart",
                       std::hypot(transform[12] - g[12], transform[13] - g[13], transform[14] - g[14])));
@@ -155,6 +174,21 @@ std::optional<Glb> read_glb_file(const std::string& path, const TileContext& con
                                fmt::format("says {}, build.json says {}", glb.georeference.crs, context.record.crs)});
   for (const auto& t : glb.triangles) result.triangles += t.size();
   return glb;
+}
+
+void check_bounds(const Glb& glb, const TilesetEntry& entry, const std::string& path, TileResult& result) {
+  std::vector<model::Point3> points = glb.vertices;
+  const std::vector<model::Point3> corners = place_corners(glb);
+  points.insert(points.end(), corners.begin(), corners.end());
+  const Overhang over = overhang(entry, points);
+  const auto found = [&](double metres, std::string_view whose) {
+    if (metres > kVolumeTolerance)
+      result.findings.push_back(
+          {Check::tile_bounds, path, "",
+           fmt::format("its mesh lies up to {:.3f} m outside of {} bounding volume", metres, whose)});
+  };
+  found(over.own, "the tile's");
+  found(over.ancestor, "an ancestor's");
 }
 
 TileContents read_tile(const TileFiles& files, const TileContext& context, TileResult& result) {

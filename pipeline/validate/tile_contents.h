@@ -22,7 +22,6 @@ inline constexpr auto kGltf = static_cast<std::size_t>(Format::gltf),
 struct TileContents {
   std::optional<Glb> glb;
   std::array<std::optional<Contents>, kTileFormats> models;  ///< by format; that of glTF is in `glb`
-  const TilesetEntry* entry = nullptr;                       ///< the tileset's, of the finest GLB
   Matrix transform = kIdentity;                              ///< from the tile's frame to ECEF
 
   /// A format's contents, or null.
@@ -38,6 +37,9 @@ std::optional<std::string> load_file(const std::string& path, const TileContext&
 
 /// A GLB against its own rules and the CRS of build.json.
 std::optional<Glb> read_glb_file(const std::string& path, const TileContext& context, TileResult& result);
+
+/// Whether the mesh lies in its tile's volume and those around it; else TILE_BOUNDS.
+void check_bounds(const Glb& glb, const TilesetEntry& entry, const std::string& path, TileResult& result);
 
 /// All files of a tile against the rules of their formats. Findings and incomplete counts go into `result`.
 TileContents read_tile(const TileFiles& files, const TileContext& context, TileResult& result);

@@ -5,12 +5,45 @@ are about hashes and lists.
 """
 import json
 import math
+import os
 import shutil
 import struct
 
-from blockrand_run import SAMPLE, main, read_json
+from blockrand_run import SAMPLE, blockrand, files_of, hashes, main, read_json
 from damage import Damaged, accessor, column_start, first_leaf, index_format, primitive_of, table_of
 from validate_run import Damages, Validated
+
+
+class Pieces(Validated):
+    """Tiles whose GLB is larger than asked are cut; they hold what the one file held."""
+    def test_pieces(self):
+        for options, part in ((('--lod', '3'), 5), (('--lod', '2', '--compress', 'meshopt', '--attributes', 'all'), 2)):
+            with self.subTest(options):
+                whole = self.build(SAMPLE, 'whole', *options, '--force', '--max-glb-bytes', '0')
+                most = max(os.path.getsize(os.path.join(whole, p)) for p in files_of(whole, '.glb')) // part
+                cut = self.build(SAMPLE, 'cut', *options, '--force', '--max-glb-bytes', str(most))
+                pieces = [p for p in files_of(cut, '.glb') if '_q' in p]
+                self.assertGreaterEqual(len(pieces), 3)
+                self.assertTrue(all(os.path.getsize(os.path.join(cut, p)) <= most for p in pieces))
+                if part > 4:
+                    self.assertTrue(any(len(p.rpartition('_q')[2]) > len('0.glb') for p in pieces), 'none is cut twice')
+                for build in (whole, cut):
+                    run = blockrand('validate', build)
+                    self.assertEqual(run.code, 0, run)
+                a, b = (read_json(f, 'build.json') for f in (whole, cut))
+                self.assertEqual(a['counts'], b['counts'])
+                same = ('citygml', 'cityjson')
+                self.assertEqual(hashes(whole, *same), hashes(cut, *same))
+                self.assertEqual(sorted(lod for p in files_of(whole, '.glb') for lod in ('1', '2') if f'_lod{lod}' in p),
+                                 sorted(lod for p in files_of(cut, '.glb') for lod in ('1', '2') if f'_lod{lod}' in p))
+
+    def test_a_piece_that_is_missing(self):
+        cut = self.build(SAMPLE, 'less', '--force', '--max-glb-bytes', '50000')
+        piece = [p for p in files_of(cut, '.glb') if '_q' in p][-1]
+        os.remove(os.path.join(cut, piece))
+        run = blockrand('validate', cut)
+        self.assertEqual(run.code, 2, run)
+        self.assertIn(piece, run.out)
 
 
 class Tileset(Damages):

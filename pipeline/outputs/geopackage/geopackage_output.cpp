@@ -45,11 +45,12 @@ GeoPackageTile tile_row(model::TileId id, const GeoPackageRows& rows, std::span<
   tile.id = id;
   tile.buildings = rows.buildings.rows();
   tile.parts = rows.parts.rows();
-  const std::string glb = tile_glb_path(id);
+  // Of a tile in pieces the first one, and the bytes of all.
+  const std::string glb = tile_glb_path(id), piece = glb.substr(0, glb.size() - std::string_view(".glb").size()) + "_q";
   for (const base::PublishedFile& file : files)
-    if (file.path == glb) {
-      tile.uri = glb;
-      tile.bytes = file.bytes;
+    if (file.path == glb || file.path.starts_with(piece)) {
+      if (tile.uri.empty()) tile.uri = file.path;
+      tile.bytes += file.bytes;
     }
   const georef::GeoBox box = georef::bounds(id);
   // Straight lines between the corners of a tile lie within millimetres of its meridians and parallels.

@@ -3,11 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "pipeline/base/error.h"
 #include "pipeline/base/text.h"
+#include "pipeline/footprints/shard.h"
 #include "pipeline/georef/frames.h"
 #include "pipeline/georef/tile_frame.h"
 #include "pipeline/georef/tiles.h"
@@ -122,6 +128,68 @@ double lowest_ground(const model::Region& region) {
   return lowest;
 }
 
+/// A tile's buildings by the quarters of the quadtree that their mapped middles lie in: SW, SE, NW, NE.
+std::array<std::vector<std::size_t>, 4> quarters_of(const model::Region& region, std::span<const std::size_t> buildings,
+                                                    int level) {
+  std::array<std::vector<std::size_t>, 4> out;
+  for (const std::size_t b : buildings) {
+    const model::MappedBuilding& mapped = region.extract->buildings[region.buildings[b].mapped_index];
+    const model::Location middle = mapped.rings.count > 0 ? footprints::box_centre(*region.extract, mapped)
+                                                          : mapped.place.value_or(model::Location{});
+    const model::TileId quarter = georef::tile_of(middle, level);
+    out[2 * (quarter.y & 1u) + (quarter.x & 1u)].push_back(b);
+  }
+  return out;
+}
+
+/// Writes a tile in pieces of at most `most` bytes, or of a single building.
+class PieceWriter {
+ public:
+  PieceWriter(FinishedTile& tile, const GlbOptions& options, std::string place, std::size_t most, TileEntry& entry,
+              base::StagedFolder& folder)
+      : tile_(tile), options_(options), place_(std::move(place)), most_(most), entry_(entry), folder_(folder) {}
+
+  void write() {
+    std::vector<std::size_t> all(tile_.region.buildings.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    divide(all, "_q", tile_.region.tile.level);
+  }
+
+ private:
+  /// Buildings that lie in one place to a few metres, in one file.
+  static constexpr int kDeepest = 24;
+
+  void divide(std::span<const std::size_t> buildings, const std::string& name, int level) {
+    const auto quarters = quarters_of(tile_.region, buildings, level + 1);
+    for (std::size_t q = 0; q < quarters.size(); ++q)
+      if (!quarters[q].empty()) piece(quarters[q], name + static_cast<char>('0' + q), level + 1);
+  }
+
+  void piece(std::span<const std::size_t> buildings, const std::string& name, int level) {
+    model::Region part;
+    part.tile = tile_.region.tile, part.extract = tile_.region.extract;
+    part.materials = tile_.region.materials, part.elements = tile_.region.elements;
+    part.evidence = tile_.region.evidence;
+    for (const std::size_t b : buildings) part.buildings.push_back(tile_.region.buildings[b]);
+    const Glb glb = write_glb(part, options_);
+    if (glb.bytes.size() > most_ && buildings.size() > 1 && level < kDeepest) return divide(buildings, name, level);
+    if (glb.rows == 0) return;
+    // Houses that show nothing are told of all the same, in the middle of the tile.
+    const Point3 middle{(entry_.min.x + entry_.max.x) / 2, (entry_.min.y + entry_.max.y) / 2,
+                        (entry_.min.z + entry_.max.z) / 2};
+    const bool shown = glb.triangles > 0;
+    entry_.pieces.push_back({place_ + name + ".glb", shown ? glb.min : middle, shown ? glb.max : middle});
+    tile_.files.push_back(folder_.write(entry_.pieces.back().uri, glb.bytes));
+  }
+
+  FinishedTile& tile_;
+  const GlbOptions& options_;
+  std::string place_;
+  std::size_t most_;
+  TileEntry& entry_;
+  base::StagedFolder& folder_;
+};
+
 /// Writes a tile's GLBs. \returns its entry in the tileset; none where its GLB would show nothing
 std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& context) {
   const model::Region& region = tile.region;
@@ -139,11 +207,17 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
   TileEntry entry;
   entry.id = id;
   entry.uri = tile_glb_path(id);
-  tile.files.push_back(context.folder.write(entry.uri, glb.bytes));
-  entry.enu_to_ecef = options.frame.enu_to_ecef;
   entry.min = glb.min;
   entry.max = glb.max;
   const std::string place = entry.uri.substr(0, entry.uri.size() - std::string_view(".glb").size());
+  const auto most = static_cast<std::size_t>(context.options.max_glb_bytes);
+  if (most > 0 && glb.bytes.size() > most) {
+    PieceWriter(tile, options, place, most, entry, context.folder).write();
+    entry.uri.clear();
+  } else {
+    tile.files.push_back(context.folder.write(entry.uri, glb.bytes));
+  }
+  entry.enu_to_ecef = options.frame.enu_to_ecef;
   if (context.lod >= 3) write_coarser_levels(region, options, place, entry, context.folder, tile.files);
   set_bounds(entry, frame.frame());
   return entry;

@@ -163,28 +163,55 @@ class Writer {
   /// The tile's levels, one inside the other in the same box; the outermost has the transform.
   void leaf(const TileEntry& tile) {
     assert(tile.id.level == leaves_.front().tile->id.level);
-    for (std::size_t i = 0; i <= tile.coarser.size(); ++i) {
-      const bool finest = i == tile.coarser.size();
-      out_ += '{';
-      box(tile);
-      if (i == 0) transform(tile);
-      out_ += ',';
-      geometric_error(finest ? 0 : tile.coarser[i].geometric_error);
-      if (!finest) out_ += ",\"refine\":\"REPLACE\"";
-      out_ += ",\"content\":{\"uri\":";
-      append_json(out_, finest ? tile.uri : tile.coarser[i].uri);
-      out_ += finest ? "}" : "},\"children\":[";
+    for (std::size_t i = 0; i < tile.coarser.size(); ++i) {
+      level(tile, i == 0, tile.coarser[i].geometric_error);
+      out_ += ",\"refine\":\"REPLACE\"";
+      content(tile.coarser[i].uri);
+      out_ += ",\"children\":[";
     }
-    for (std::size_t i = 0; i < tile.coarser.size(); ++i) out_ += "}]";
+    if (tile.pieces.empty()) {
+      level(tile, tile.coarser.empty(), 0);
+      content(tile.uri);
+      out_ += '}';
+    } else {
+      if (tile.coarser.empty()) {
+        level(tile, true, options_.parent_error);
+        out_ += ",\"children\":[";
+      }
+      for (const TilePiece& piece : tile.pieces) {
+        if (&piece != tile.pieces.data()) out_ += ',';
+        out_ += '{';
+        box(piece.min, piece.max);
+        out_ += ',';
+        geometric_error(0);
+        content(piece.uri);
+        out_ += '}';
+      }
+      if (tile.coarser.empty()) out_ += "]}";
+    }
+    for (std::size_t i = 0; i < tile.coarser.size(); ++i) out_ += "]}";
+  }
+
+  /// Begins a level of a tile.
+  void level(const TileEntry& tile, bool outermost, double error) {
+    out_ += '{';
+    box(tile.min, tile.max);
+    if (outermost) transform(tile);
+    out_ += ',';
+    geometric_error(error);
+  }
+
+  void content(const std::string& uri) {
+    out_ += ",\"content\":{\"uri\":";
+    append_json(out_, uri);
     out_ += '}';
   }
 
-  void box(const TileEntry& tile) {
+  void box(const model::Point3& min, const model::Point3& max) {
     out_ += "\"boundingVolume\":{\"box\":[";
-    const double centre[3] = {(tile.min.x + tile.max.x) / 2, (tile.min.y + tile.max.y) / 2,
-                              (tile.min.z + tile.max.z) / 2};
-    const double half[3] = {(tile.max.x - tile.min.x) / 2 + kBoxMargin, (tile.max.y - tile.min.y) / 2 + kBoxMargin,
-                            (tile.max.z - tile.min.z) / 2 + kBoxMargin};
+    const double centre[3] = {(min.x + max.x) / 2, (min.y + max.y) / 2, (min.z + max.z) / 2};
+    const double half[3] = {(max.x - min.x) / 2 + kBoxMargin, (max.y - min.y) / 2 + kBoxMargin,
+                            (max.z - min.z) / 2 + kBoxMargin};
     for (const double c : centre) {
       append_number(out_, c);
       out_ += ',';

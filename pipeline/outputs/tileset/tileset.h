@@ -21,10 +21,17 @@ struct CoarserLevel {
   double geometric_error = 0;  ///< m
 };
 
+/// A part of a tile's buildings, in the frame of the tile.
+struct TilePiece {
+  std::string uri;
+  model::Point3 min, max;  ///< as TileEntry has them
+};
+
 /// A tile with content.
 struct TileEntry {
   model::TileId id;
-  std::string uri;                                  ///< relative to the tileset: "tiles/15/x/y.glb"
+  std::string uri;                                  ///< relative to the tileset: "tiles/15/x/y.glb"; empty with pieces
+  std::vector<TilePiece> pieces;                    ///< instead of the one file
   std::vector<CoarserLevel> coarser;                ///< the coarsest first; errors fall
   std::array<double, 16> enu_to_ecef{};             ///< column-major
   model::Point3 min, max;                           ///< of all levels: m east, north, up of the tile's origin
@@ -45,7 +52,8 @@ struct TilesetOptions {
 /// A 3D Tiles 1.1 tileset.json: leaves with content in boxes (in the tile's frame, z up), above them their parents in
 /// the geodetic quadtree as regions without content, where a parent with a single child is left out but for the root.
 ///
-/// A tile with coarser levels is a chain of them, each replaced by the next (REPLACE), the finest last.
+/// A tile with coarser levels is a chain of them, each replaced by the next (REPLACE), the finest last. Pieces are the children of
+/// what would have been their parent; where there is no coarser level, of a tile without content.
 ///
 /// Regions are widened by what a box corner can lie outside the bounds of its vertices: 5 cm, and 10 r²/R horizontally
 /// and r²/R vertically for a mesh of radius r around its origin (R: the Earth's), from the convergence of meridians up

@@ -18,6 +18,7 @@ struct PathCase {
   std::string path, tile;
   Format format = Format::gltf;
   std::optional<int> coarser{};
+  bool piece = false;
 };
 
 TEST(Formats, FilesOfATile) {
@@ -25,6 +26,10 @@ TEST(Formats, FilesOfATile) {
                             {"tiles/15/17600/12900_lod1.glb", "15_17600_12900", Format::gltf, 1},
                             {"tiles/15/17600/12900_lod0.glb", "15_17600_12900", Format::gltf, 0},
                             {"tiles/15/17600/12900_lod3.glb", "15_17600_12900_lod3"},  // no coarser level
+                            {"tiles/15/17600/12900_q0.glb", "15_17600_12900", Format::gltf, {}, true},
+                            {"tiles/15/17600/12900_q213.glb", "15_17600_12900", Format::gltf, {}, true},
+                            {"tiles/15/17600/12900_q.glb", "15_17600_12900_q"},
+                            {"tiles/15/17600/12900_q4.glb", "15_17600_12900_q4"},
                             {"citygml/15_1_2.gml", "15_1_2", Format::citygml},
                             {"citygml/15_1_2.gml.gz", "15_1_2", Format::citygml},
                             {"cityjson/15_1_2.city.jsonl", "15_1_2", Format::cityjson},
@@ -36,6 +41,7 @@ TEST(Formats, FilesOfATile) {
     EXPECT_EQ(path->tile, c.tile);
     EXPECT_EQ(path->format, c.format);
     EXPECT_EQ(path->coarser, c.coarser);
+    EXPECT_EQ(path->piece, c.piece);
   }
 }
 

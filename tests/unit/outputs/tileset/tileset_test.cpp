@@ -84,6 +84,32 @@ TEST(Tileset, CoarserLevelsAreReplacedByFinerOnes) {
   EXPECT_EQ(uris, (std::vector<std::string>{t.coarser[0].uri, t.coarser[1].uri, t.uri}));
 }
 
+/// Each in its own box, all in the frame of the tile.
+TEST(Tileset, PiecesAreChildrenOfTheirTile) {
+  for (const bool coarser : {false, true}) {
+    SCOPED_TRACE(coarser);
+    TileEntry t = tile(17604, 12942);
+    t.uri.clear();
+    t.pieces = {{"a_q0.glb", {-200, -150, 0}, {0, 0, 20}}, {"a_q31.glb", {0, 0, 0}, {210, 160, 25.5}}};
+    if (coarser) t.coarser = {{"a_lod1.glb", kBlockError}, {"a_lod2.glb", kRoofError}};
+    const json document = json::parse(write_tileset(std::vector{t}, {}));
+    const json* node = &document["root"]["children"][0];
+    EXPECT_TRUE(node->contains("transform"));
+    EXPECT_EQ(node->contains("content"), coarser);
+    EXPECT_EQ(node->contains("refine"), coarser);
+    EXPECT_EQ((*node)["geometricError"], coarser ? kBlockError : 100) << "without content: refined as its parent is";
+    if (coarser) node = &(*node)["children"][0];
+    ASSERT_EQ((*node)["children"].size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const json& piece = (*node)["children"][i];
+      EXPECT_EQ(piece["content"]["uri"], t.pieces[i].uri);
+      EXPECT_EQ(piece["geometricError"], 0);
+      EXPECT_FALSE(piece.contains("transform"));
+      EXPECT_EQ(piece["boundingVolume"]["box"][0], (t.pieces[i].min.x + t.pieces[i].max.x) / 2);
+    }
+  }
+}
+
 TEST(Tileset, QuadtreeWithCollapsedChains) {
   std::vector<TileEntry> tiles;
   for (std::uint32_t x = 17600; x < 17610; ++x)
