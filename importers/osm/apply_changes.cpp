@@ -1,9 +1,12 @@
 #include "importers/osm/apply_changes.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <osmium/index/id_set.hpp>
 #include <osmium/io/gzip_compression.hpp>
 #include <osmium/io/pbf_input.hpp>
 #include <osmium/io/pbf_output.hpp>
@@ -12,11 +15,13 @@
 #include <osmium/io/xml_input.hpp>
 #include <osmium/osm/object_comparisons.hpp>
 #include <osmium/thread/pool.hpp>
+#include <unordered_set>
 #include <vector>
 
 #include "importers/osm/bzip2_stream.h"
 #include "importers/osm/osm_file.h"
 #include "pipeline/base/error.h"
+#include "pipeline/model/osm_keys.h"
 
 namespace blockrand::importers::osm {
 namespace {
@@ -130,23 +135,28 @@ base::OutputError cannot_write(const std::string& path, const std::exception& er
 /// Merges a sorted base with the changes, object by object.
 class Merge {
  public:
-  Merge(std::span<const Versioned> changes, osmium::io::Writer& out, const std::string& path)
-      : changes_(changes), out_(out), path_(path) {}
+  /// \param write  takes each object of the result, in order. \returns  whether it stays
+  /// \param clip   whether something may be outside: then what was never there is not noted as deleted
+  Merge(std::span<const Versioned> changes, std::function<bool(const OSMObject&)> write, bool clip)
+      : changes_(changes), write_(std::move(write)), clip_(clip) {}
 
   /// In the order of before(), each object once; one that is not visible was deleted before.
   void add(const OSMObject& object) {
     while (next_ < changes_.size() && before(*changes_[next_].object, object)) take_new(*changes_[next_++].object);
-    if (next_ >= changes_.size() || !same_object(*changes_[next_].object, object)) return write(object);
+    if (next_ >= changes_.size() || !same_object(*changes_[next_].object, object)) {
+      write_(object);
+      return;
+    }
     const OSMObject& change = *changes_[next_++].object;
     if (change.version() < object.version() || (change.version() == object.version() && same_content(change, object))) {
       ++applied_.known;
-      return write(object);
+      write_(object);
+      return;
     }
-    if (change.visible() != object.visible())
-      ++(change.visible() ? applied_.created : applied_.deleted);
-    else
-      ++(change.visible() ? applied_.modified : applied_.known);
-    write(change);
+    std::uint64_t& count = change.visible() != object.visible()
+                               ? (change.visible() ? applied_.created : applied_.deleted)
+                               : (change.visible() ? applied_.modified : applied_.known);
+    ++(write_(change) ? count : applied_.outside);
   }
   AppliedChanges finish() {
     while (next_ < changes_.size()) take_new(*changes_[next_++].object);
@@ -173,64 +183,161 @@ class Merge {
                       });
   }
   void take_new(const OSMObject& object) {
-    ++(object.visible() ? applied_.created : applied_.known);
-    write(object);
-  }
-  /// \throws base::OutputError  the reader that calls must not take it for an error of its own file
-  void write(const OSMObject& object) {
-    try {
-      out_(object);
-    } catch (const std::exception& error) {
-      throw cannot_write(path_, error);
+    if (clip_ && !object.visible()) {
+      ++applied_.outside;
+      return;
     }
+    ++(!write_(object) ? applied_.outside : object.visible() ? applied_.created : applied_.known);
   }
 
   std::span<const Versioned> changes_;
-  osmium::io::Writer& out_;
-  const std::string& path_;
+  std::function<bool(const OSMObject&)> write_;
+  bool clip_;
   std::size_t next_ = 0;
   AppliedChanges applied_;
 };
 
+/// A set of ids: those that OSM gives as bits, what a damaged file makes up apart.
+class IdSet {
+ public:
+  void add(std::int64_t id) {
+    if (is_usual(id))
+      usual_.set(number_of(id));
+    else
+      others_.insert(id);
+  }
+  bool contains(std::int64_t id) const { return is_usual(id) ? usual_.get(number_of(id)) : others_.contains(id); }
+  bool empty() const { return usual_.empty() && others_.empty(); }
+
+ private:
+  static constexpr std::int64_t kUsual = std::int64_t{1} << 36;  ///< five times what OSM has given in 20 years
+  static bool is_usual(std::int64_t id) { return id < kUsual && id >= -kUsual; }
+  /// Ids below zero, which editors give, between the others.
+  static std::uint64_t number_of(std::int64_t id) {
+    return id >= 0 ? 2 * static_cast<std::uint64_t>(id) : 2 * static_cast<std::uint64_t>(-(id + 1)) + 1;
+  }
+  osmium::index::IdSetDense<std::uint64_t> usual_;
+  std::unordered_set<std::int64_t> others_;
+};
+
+/// Which objects of sorted data a polygon keeps.
+class Clip {
+ public:
+  using ForEach = std::function<void(const std::function<void(const OSMObject&)>&)>;
+
+  Clip(const ClipPolygon& polygon, const ForEach& for_each) {
+    for_each([&](const OSMObject& object) {
+      if (object.visible()) look_at(polygon, object);
+    });
+    choose_relations();
+    if (!completed_.empty())
+      for_each([&](const OSMObject& object) {
+        if (object.type() != osmium::item_type::way || !object.visible() || !completed_.contains(object.id())) return;
+        keep_way(static_cast<const osmium::Way&>(object));
+      });
+  }
+
+  bool keeps(const OSMObject& object) const {
+    // What is deleted has no place. It was there: what never was is not noted.
+    if (!object.visible()) return true;
+    return kept_[index_of(object.type())].contains(object.id());
+  }
+
+ private:
+  struct Relation {
+    std::int64_t id = 0;
+    bool completed = false;  ///< all of its nodes and ways belong to it
+    std::vector<std::pair<osmium::item_type, std::int64_t>> members;
+  };
+
+  static std::size_t index_of(osmium::item_type type) {
+    return type == osmium::item_type::node ? 0 : type == osmium::item_type::way ? 1 : 2;
+  }
+
+  void look_at(const ClipPolygon& polygon, const OSMObject& object) {
+    if (object.type() == osmium::item_type::node) {
+      const osmium::Location at = static_cast<const osmium::Node&>(object).location();
+      if (at.valid() && polygon.contains({at.x(), at.y()})) inside_.add(object.id()), kept_[0].add(object.id());
+    } else if (object.type() == osmium::item_type::way) {
+      const auto& way = static_cast<const osmium::Way&>(object);
+      if (std::any_of(way.nodes().begin(), way.nodes().end(),
+                      [&](const osmium::NodeRef& n) { return inside_.contains(n.ref()); }))
+        keep_way(way);
+    } else {
+      Relation& relation = relations_.emplace_back();
+      relation.id = object.id();
+      for_each_tag(object, [&](std::string_view key, std::string_view value) {
+        if (key == model::osm_key::kType) relation.completed = value == "multipolygon" || value == "building";
+      });
+      for (const osmium::RelationMember& m : static_cast<const osmium::Relation&>(object).members())
+        relation.members.emplace_back(m.type(), m.ref());
+    }
+  }
+  void keep_way(const osmium::Way& way) {
+    kept_[1].add(way.id());
+    for (const osmium::NodeRef& n : way.nodes()) kept_[0].add(n.ref());
+  }
+  void choose_relations() {
+    for (bool more = true; more;) {
+      more = false;
+      for (const Relation& r : relations_) {
+        if (kept_[2].contains(r.id)) continue;
+        const bool chosen = std::any_of(r.members.begin(), r.members.end(), [&](const auto& m) {
+          // Nodes that only complete a way bring no relation along.
+          return (m.first == osmium::item_type::node ? inside_ : kept_[index_of(m.first)]).contains(m.second);
+        });
+        if (chosen) kept_[2].add(r.id), more = true;
+      }
+    }
+    for (const Relation& r : relations_)
+      if (r.completed && kept_[2].contains(r.id))
+        for (const auto& [type, id] : r.members) {
+          if (type == osmium::item_type::node) kept_[0].add(id);
+          if (type == osmium::item_type::way && !kept_[1].contains(id)) completed_.add(id);
+        }
+    relations_.clear();
+  }
+
+  IdSet inside_, completed_;  ///< nodes; ways
+  std::array<IdSet, 3> kept_;
+  std::vector<Relation> relations_;
+};
+
+/// Thrown by Base::for_each: read again after sort().
+struct NotSorted {};
+
 /// The objects of the base in order. Those of a file that is not sorted are held in memory and sorted.
 class Base {
  public:
-  explicit Base(const std::string& path) : file_(path) {
-    constexpr auto all = osmium::osm_entity_bits::nwr;
-    const auto scan = [&] {
-      bool sorted = true, first = true;
-      osmium::item_type type{};
-      osmium::object_id_type id = 0;
-      file_.for_each(all,
-                     [&](const OSMObject& object) {
-                       // Equal ids are several versions: those need sorting as well.
-                       sorted = sorted &&
-                                (first || std::make_tuple(type, id >= 0, std::abs(id)) <
-                                              std::make_tuple(object.type(), object.id() >= 0, std::abs(object.id())));
-                       first = false, type = object.type(), id = object.id();
-                       for_each_tag(object, [](std::string_view, std::string_view) {});
-                     },
-                     {});
-      return sorted;
-    };
-    try {
-      sorted_ = scan();
-    } catch (const NulInText&) {
-      file_.clean_strings();
-      cleaned_ = true;
-      sorted_ = scan();
-    }
-  }
+  explicit Base(const std::string& path) : path_(path), file_(path) {}
 
+  void sort() { sorted_ = false; }
+  /// After NulInText.
+  void clean() {
+    if (cleaned_)
+      throw base::InputError(path_, "", "tags cannot be read", "The file is damaged: fetch or write it again");
+    file_.clean_strings();
+    cleaned_ = true;
+  }
   bool cleaned() const { return cleaned_; }
 
+  /// \throws NotSorted  unless sort() was called \throws NulInText
   void for_each(const OsmFile::Visit& visit) {
     // What an editor marked as deleted was never sent anywhere: it has no version to keep.
     const auto alive = [&](const OSMObject& object) { return !file_.deleted_by_editor(object.type(), object.id()); };
     constexpr auto all = osmium::osm_entity_bits::nwr;
+    const auto check_texts = [](const OSMObject& object) {
+      for_each_tag(object, [](std::string_view, std::string_view) {});
+    };
     if (sorted_) {
+      std::optional<std::tuple<osmium::item_type, bool, std::int64_t>> last;
       file_.for_each(all,
                      [&](const OSMObject& object) {
+                       check_texts(object);
+                       const auto order = std::make_tuple(object.type(), object.id() >= 0, std::abs(object.id()));
+                       // Equal ids are several versions: those need sorting as well.
+                       if (last && !(*last < order)) throw NotSorted{};
+                       last = order;
                        if (alive(object)) visit(object);
                      },
                      {});
@@ -239,6 +346,7 @@ class Base {
     osmium::memory::Buffer kept(1 << 20, osmium::memory::Buffer::auto_grow::yes);
     file_.for_each(all,
                    [&](const OSMObject& object) {
+                     check_texts(object);
                      if (!alive(object)) return;
                      kept.add_item(object);
                      kept.commit();
@@ -259,6 +367,7 @@ class Base {
   }
 
  private:
+  std::string path_;
   OsmFile file_;
   bool sorted_ = true, cleaned_ = false;
 };
@@ -287,49 +396,73 @@ std::optional<std::uint64_t> replication_sequence(const std::string& path) {
   return std::nullopt;
 }
 
-AppliedChanges apply_changes(const std::string& base_path, std::span<const std::string> files, const std::string& out) {
+AppliedChanges apply_changes(const std::string& base_path, std::span<const std::string> files, const std::string& out,
+                             const ClipPolygon* polygon) {
   use_own_bzip2();
   osmium::thread::Pool pool(2);
   Base base(base_path);
   const Changes changes(files, pool);
+  const auto merged = [&](const std::function<bool(const OSMObject&)>& write) {
+    Merge merge(changes.newest(), write, polygon != nullptr);
+    base.for_each([&](const OSMObject& object) { merge.add(object); });
+    return merge.finish();
+  };
   osmium::io::Header header;
   header.set("generator", "blockrand");
   header.set("sorting", "Type_then_ID");
   header.set_has_multiple_object_versions(true);  // else nobody would read who was deleted
   osmium::io::File file(fs::absolute(out).string(), "pbf");
   file.set_has_multiple_object_versions(true);
-  AppliedChanges applied;
   std::optional<osmium::io::Writer> writer;
-  bool done = false;
   const auto write = [&] {
+    std::optional<Clip> clip;
+    if (polygon)
+      clip.emplace(*polygon, [&](const std::function<void(const OSMObject&)>& visit) {
+        merged([&](const OSMObject& object) {
+          visit(object);
+          return true;
+        });
+      });
     try {
       writer.emplace(file, header, osmium::io::overwrite::allow, osmium::io::fsync::yes, pool);
     } catch (const std::exception& error) {
       throw cannot_write(out, error);
     }
-    Merge merge(changes.newest(), *writer, out);
-    base.for_each([&](const OSMObject& object) { merge.add(object); });
-    applied = merge.finish();
+    AppliedChanges applied = merged([&](const OSMObject& object) {
+      if (clip && !clip->keeps(object)) return false;
+      try {
+        (*writer)(object);
+      } catch (const std::exception& error) {
+        // The reader that calls must not take it for an error of its own file.
+        throw cannot_write(out, error);
+      }
+      return true;
+    });
     applied.cleaned_texts = base.cleaned();
     try {
       writer->close();
     } catch (const std::exception& error) {
       throw cannot_write(out, error);
     }
-    done = true;
+    return applied;
   };
   const auto remove = [&] {
     std::error_code ignored;
     writer.reset();
-    if (!done) fs::remove(out, ignored);
+    fs::remove(out, ignored);
   };
-  try {
-    write();
-  } catch (...) {
-    remove();
-    throw;
-  }
-  return applied;
+  for (;;) try {
+      return write();
+    } catch (const NotSorted&) {
+      remove();
+      base.sort();
+    } catch (const NulInText&) {
+      remove();
+      base.clean();
+    } catch (...) {
+      remove();
+      throw;
+    }
 }
 
 }  // namespace blockrand::importers::osm

@@ -67,10 +67,11 @@ std::string reasons(const std::map<std::string, std::uint64_t>& counts) {
 std::string update_report(const run::UpdateOptions& options, const run::UpdateSummary& s) {
   std::string out;
   for (const std::string& why : s.why) out += "  " + why + "\n";
-  if (s.created + s.modified + s.deleted + s.known > 0)
-    out +=
-        fmt::format("  {} OSM objects new, {} changed, {} deleted, {} known already\n", base::with_thousands(s.created),
-                    base::with_thousands(s.modified), base::with_thousands(s.deleted), base::with_thousands(s.known));
+  if (s.created + s.modified + s.deleted + s.known + s.outside > 0)
+    out += fmt::format(
+        "  {} OSM objects new, {} changed, {} deleted, {} known already{}\n", base::with_thousands(s.created),
+        base::with_thousands(s.modified), base::with_thousands(s.deleted), base::with_thousands(s.known),
+        s.outside > 0 ? fmt::format(", {} outside of the polygon", base::with_thousands(s.outside)) : "");
   const run::BuildChanges& c = s.changes;
   const auto gates = [&] {
     for (const run::Gate& g : s.gates)

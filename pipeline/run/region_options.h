@@ -22,6 +22,7 @@ struct RegionOptions {
   double max_drift = 10;         ///< as the four above together, against the baseline; percent
   std::string reference;         ///< hand-built models that builds are compared with, or empty
   double max_worse = 5;          ///< by how much a measure of that comparison may be worse; percent
+  std::string polygon;           ///< file with the area that data are cut to, or empty
   std::string hook;              ///< command that is run when a run has ended, or empty
 };
 

@@ -34,7 +34,7 @@ std::string settings_sha256(const UpdateOptions& options) {
   std::sort(files.begin(), files.end());
   for (const fs::path& path : files)
     add(path.lexically_relative(options.build.configs).string()), add(base::sha256_file(path.string()));
-  for (const std::string& path : {options.build.overrides, options.build.districts})
+  for (const std::string& path : {options.build.overrides, options.build.districts, options.region.polygon})
     if (!path.empty() && fs::is_regular_file(path, error)) add(base::sha256_file(path));
   std::vector<std::string> rasters;
   if (!options.build.terrain.empty()) rasters.push_back(options.build.terrain);

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "importers/osm/apply_changes.h"
+#include "importers/polygons/read_polygons.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/sha256.h"
 #include "pipeline/base/text.h"
@@ -117,7 +118,7 @@ Json run_line(const UpdateSummary& s) {
   if (s.tiles_built + s.tiles_kept > 0)
     j["tiles"] = {{"built", s.tiles_built}, {"kept", s.tiles_kept}, {"built_for", s.tiles_built_for}};
   if (s.areas > 0) j["areas"] = {{"all", s.areas}, {"taken_over", s.areas_kept}};
-  j["osm_objects"] = {{"created", s.created}, {"modified", s.modified}, {"deleted", s.deleted}};
+  j["osm_objects"] = {{"created", s.created}, {"modified", s.modified}, {"deleted", s.deleted}, {"outside", s.outside}};
   j["buildings"] = {{"before", s.changes.before},
                     {"after", s.changes.after},
                     {"added", s.changes.added.size()},
@@ -169,6 +170,17 @@ BuildOptions build_options_for(const UpdateOptions& options, const RegionFolder&
     if (record.contains("crs")) build.crs = text_in(record["crs"], "code");
   }
   return build;
+}
+
+/// What the data are cut to. \throws base::InputError
+std::optional<importers::osm::ClipPolygon> polygon_of(const RegionOptions& options) {
+  const std::string& path = options.polygon;
+  if (path.empty()) return std::nullopt;
+  if (path.ends_with(".poly")) return importers::osm::ClipPolygon(importers::osm::read_poly_file(path));
+  std::vector<importers::osm::ClipPolygon::Rings> polygons;
+  for (importers::polygons::PolygonFeature& feature : importers::polygons::read_polygons(path))
+    std::ranges::move(feature.polygons, std::back_inserter(polygons));
+  return importers::osm::ClipPolygon(polygons);
 }
 
 class Updater {
@@ -267,11 +279,13 @@ class Updater {
                                "is missing or damaged: the published build is whole, but changes need its data",
                                "Update from a full extract: blockrand update " + region_.path() + " EXTRACT.osm.pbf");
     }
-    const AppliedChanges applied = importers::osm::apply_changes(base, plan.changes, path);
+    const std::optional<importers::osm::ClipPolygon> polygon = polygon_of(options_.region);
+    const AppliedChanges applied =
+        importers::osm::apply_changes(base, plan.changes, path, polygon ? &*polygon : nullptr);
     if (applied.cleaned_texts)
       progress_.warn(base + ": NUL characters in its texts were replaced; reports of builds do not repeat that");
     summary_.created = applied.created, summary_.modified = applied.modified, summary_.deleted = applied.deleted;
-    summary_.known = applied.known;
+    summary_.known = applied.known, summary_.outside = applied.outside;
     return applied;
   }
 

@@ -47,6 +47,7 @@ struct UpdateSummary {
   std::string folder;            ///< where the new build lies
   std::vector<std::string> why;  ///< for what a build is made, in words
   std::uint64_t created = 0, modified = 0, deleted = 0, known = 0;  ///< OSM objects, by change files
+  std::uint64_t outside = 0;                                        ///< of these files, beyond the region's polygon
   std::optional<std::uint64_t> sequence;                            ///< of the newest change file
   BuildChanges changes;
   std::vector<Gate> gates;

@@ -63,6 +63,20 @@ class Map:
     def write(self, path):
         return write_xml(path, [self.objects[k] for k in sorted(self.objects)])
 
+    def clipped(self, inside):
+        """The map of what lies in a polygon: nodes in it, ways that have one of these with all of their nodes, multipolygons of these whole."""
+        objects = {k: o for k, o in self.objects.items() if k[0] == 0 and inside(o.lon, o.lat)}
+        ways = {k for k, o in self.objects.items() if k[0] == 1 and any((0, r) in objects for r in o.refs)}
+        for k, o in self.objects.items():
+            members = {({'node': 0, 'way': 1, 'relation': 2}[m], i) for m, i, _ in o.members} if k[0] == 2 else set()
+            if members & (ways | objects.keys()):
+                objects[k] = o
+                ways |= {m for m in members if m[0] == 1 and m in self.objects}
+        for k in ways:
+            objects[k] = self.objects[k]
+            objects.update({(0, r): self.objects[(0, r)] for r in self.objects[k].refs if (0, r) in self.objects})
+        return Map(objects.values())
+
     def ways(self, tag):
         return [o for k, o in sorted(self.objects.items()) if k[0] == 1 and tag in o.tags]
 

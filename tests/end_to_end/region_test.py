@@ -302,6 +302,63 @@ class Care(RegionTest):
             self.update(folder, changes)
         self.same_files(self.current(folder), self.clean(map_, folder))
 
+    def test_a_polygon(self):
+        """Data are cut to the region's polygon as they come in: the builds are those of an extract that was cut alike."""
+        west, south, east, north = 11.0025, 51.4999, 11.0275, 51.5022  # through houses of the town
+        ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
+        self.place('area.geojson', json.dumps({'type': 'FeatureCollection', 'features': [
+            {'type': 'Feature', 'properties': {}, 'geometry': {'type': 'Polygon', 'coordinates': [ring]}}]}))
+        self.place('area.poly', 'area\n1\n' + ''.join(f'  {x:.7E}  {y:.7E}\n' for x, y in ring) + 'END\nEND\n')
+
+        def inside(lon, lat):
+            return west < lon < east and south < lat < north
+        def same(a, b):
+            first, second = ({p: h for p, h in hashes(f).items() if os.path.basename(p) != 'run.json'} for f in (a, b))
+            self.assertEqual(sorted(p for p in first | second if first.get(p) != second.get(p)), [])
+        for name, areas in (('area.geojson', ''), ('area.poly', 'areas = 14\n')):
+            with self.subTest(name):
+                whole, rng = Map(town(1200)), random.Random(11)
+                folder = self.region('cut', LIMITS_OFF + f'[region]\npolygon = "../{name}"\n[build]\nlod = 1\nreport = false\n{areas}')
+                self.update(folder, whole.write(self.path('whole.osm')))
+                options = ['--lod', '1', '--no-report', *(['--areas', '14'] if areas else [])]
+                same(self.current(folder), self.clean(whole.clipped(inside), folder, *options))
+                crs = ['--crs', read_json(self.current(folder), 'build.json')['crs']['code']]
+                for night in range(4):
+                    for house in rng.sample(whole.ways('building'), 40):
+                        corners = [whole.objects[(0, r)] for r in house.refs[:-1]]
+                        step = rng.choice((0, 2e-5, -8e-5, 1e-4))
+                        if rng.random() < 0.1:
+                            for o in (house, *corners):
+                                whole.delete(o)
+                            continue
+                        for n in corners:  # with the house itself: else one that enters would be unknown
+                            whole.edit(n, lon=n.lon + step, lat=n.lat - step)
+                        whole.edit(house, tags=dict(house.tags, height=str(rng.randrange(3, 20))))
+                    # Beyond the polygon, and over its border.
+                    far = next(o for o in whole.ways('building') if not inside(*[getattr(whole.objects[(0, o.refs[0])], c) for c in ('lon', 'lat')]))
+                    whole.edit(far, tags=dict(far.tags, **{'building:levels': str(3 + night)}))
+                    run = self.update(folder, whole.write_changes(self.path(f'p{night}.osc')))
+                    self.assertIn('outside of the polygon', run.out)
+                    same(self.current(folder), self.clean(whole.clipped(inside), folder, *options, *crs))
+
+                # A house grows into it by nodes that were outside, and that its change does not bring.
+                house = next(o for o in reversed(whole.ways('building')) if (0, o.refs[0]) in whole.objects
+                             and not inside(whole.objects[(0, o.refs[0])].lon, whole.objects[(0, o.refs[0])].lat))
+                node = whole.objects[(0, house.refs[1])]
+                whole.edit(node, lon=(west + east) / 2, lat=(south + north) / 2)
+                whole.edit(house, tags=dict(house.tags, name='late'))
+                self.update(folder, whole.write_changes(self.path('late.osc')))
+                explained = blockrand('explain', self.current(folder), f'w{house.id}')
+                self.assertIn('OUTLINE_INCOMPLETE', explained.out + explained.err)
+                self.update(folder, whole.write(self.path('whole.osm')))
+                same(self.current(folder), self.clean(whole.clipped(inside), folder, *options, *crs))
+        for text, word in (('a\n1\n 1 1\n', 'area.poly'), ('', 'area.poly')):
+            self.place('area.poly', text)
+            run = self.update(folder, self.path('whole.osm'), code=2)
+            self.assertIn(word, run.err)
+        os.remove(self.path('area.poly'))
+        self.assertIn('area.poly', self.update(folder, self.path('whole.osm'), code=2).err)
+
     def test_what_was_published_before_stays(self):
         folder, map_ = self.region('held', LIMITS_OFF + '[region]\nkeep = 2\n'), Map(read_xml(SAMPLE))
         self.update(folder, SAMPLE)

@@ -165,5 +165,86 @@ TEST(ApplyChanges, BadFilesAreRefusedAndNothingIsLeft) {
   EXPECT_THROW(apply_changes(base, {}, folder.path("no/such/folder/out.osm.pbf")), base::OutputError);
 }
 
+std::string plain_way(int id, std::vector<int> nodes, int version = 1) {
+  std::string out = "<way id=\"" + std::to_string(id) + "\" version=\"" + std::to_string(version) + "\">";
+  for (const int n : nodes) out += "<nd ref=\"" + std::to_string(n) + "\"/>";
+  return out + "</way>";
+}
+std::string relation(int id, const std::string& type, const std::vector<std::pair<std::string, int>>& members) {
+  std::string out = "<relation id=\"" + std::to_string(id) + "\" version=\"1\">";
+  for (const auto& [kind, member] : members)
+    out += "<member type=\"" + kind + "\" ref=\"" + std::to_string(member) + "\" role=\"\"/>";
+  return out + "<tag k=\"type\" v=\"" + type + "\"/></relation>";
+}
+
+/// Kinds and ids: "n1 n2 w7 r1 ".
+std::string ids(const std::string& path) {
+  std::string out;
+  osmium::io::Reader reader(path);
+  while (osmium::memory::Buffer buffer = reader.read())
+    for (const auto& o : buffer.select<osmium::OSMObject>())
+      out += std::string(o.visible() ? "" : "-") + osmium::item_type_to_char(o.type()) + std::to_string(o.id()) + " ";
+  reader.close();
+  return out;
+}
+
+/// Longitudes from 11 to 12.
+const ClipPolygon kEleven(std::vector<ClipPolygon::Rings>{{{{110'000'000, 500'000'000},
+                                                            {120'000'000, 500'000'000},
+                                                            {120'000'000, 520'000'000},
+                                                            {110'000'000, 520'000'000}}}});
+
+TEST(ClippedChanges, WaysAndMultipolygonsStayWhole) {
+  const TempFolder folder;
+  const std::string base = folder.write(
+      "base.osm",
+      osm(node(-3, 1, 11.5) + node(1, 1, 11.1) + node(2, 1, 12.1) + node(3, 1, 12.2) + node(4, 1, 12.3) +
+          node(5, 1, 12.4) + node(6, 1, 10) + plain_way(1, {1, 2}) + plain_way(2, {2, 3}) + plain_way(3, {4, 5, 4}) +
+          plain_way(4, {6, 2}) + relation(1, "multipolygon", {{"way", 1}, {"way", 3}, {"node", 6}}) +
+          relation(2, "route", {{"way", 1}, {"way", 2}}) + relation(3, "multipolygon", {{"way", 2}}) +
+          relation(4, "site", {{"relation", 2}}) + relation(5, "site", {{"node", 2}})));
+  apply_changes(base, {}, folder.path("out.osm.pbf"), &kEleven);
+  // Node 2 completes a way, which brings neither way 2 nor relation 5 along.
+  EXPECT_EQ(ids(folder.path("out.osm.pbf")), "n-3 n1 n2 n4 n5 n6 w1 w3 r1 r2 r4 ");
+  // Once more: the same bytes.
+  apply_changes(folder.path("out.osm.pbf"), {}, folder.path("again.osm.pbf"), &kEleven);
+  EXPECT_EQ(read_bytes(folder.path("out.osm.pbf")), read_bytes(folder.path("again.osm.pbf")));
+  // Not sorted, and ids that nobody gives.
+  const std::string odd = folder.write(
+      "odd.osm", osm(plain_way(1, {1, 2}) + node(2, 1, 12.1) + node(1, 1, 11.1) +
+                     "<way id=\"2\" version=\"1\"><nd ref=\"1\"/><nd ref=\"9000000000000000000\"/></way>"));
+  apply_changes(odd, {}, folder.path("odd.osm.pbf"), &kEleven);
+  EXPECT_EQ(ids(folder.path("odd.osm.pbf")), "n1 n2 w1 w2 ");
+}
+
+TEST(ClippedChanges, WhatLeavesAndEnters) {
+  const TempFolder folder;
+  const std::string base =
+      folder.write("base.osm", osm(node(1, 1, 11.1) + node(2, 1, 11.2) + node(3, 1, 12.5) + plain_way(1, {1, 2})));
+  apply_changes(base, {}, folder.path("0.osm.pbf"), &kEleven);
+  EXPECT_EQ(ids(folder.path("0.osm.pbf")), "n1 n2 w1 ");
+  const std::string change =
+      folder.write("1.osc", changes("<modify>" + node(1, 2, 13) + node(2, 2, 13) + node(3, 2, 12.6) +
+                                    "</modify><create>" + node(4, 1, 11.4) + node(5, 1, 14) + plain_way(2, {4, 3}) +
+                                    plain_way(3, {5}) + "</create><delete>" + node(8, 2, 13) + "</delete>"));
+  const AppliedChanges applied =
+      apply_changes(folder.path("0.osm.pbf"), std::vector{change}, folder.path("1.osm.pbf"), &kEleven);
+  // Way 1 left, with its nodes. Way 2 brought node 3 along. What was never here is not noted as deleted.
+  EXPECT_EQ(ids(folder.path("1.osm.pbf")), "n3 n4 w2 ");
+  EXPECT_EQ(applied.created, 3u) << "nodes 3 and 4, way 2";
+  EXPECT_EQ(applied.outside, 5u) << "nodes 1, 2, 5 and 8, way 3";
+  // Without node 3 in the change the way lacks it, until a full extract comes.
+  const std::string late =
+      folder.write("late.osc", changes("<create>" + node(4, 1, 11.4) + plain_way(2, {4, 3}) + "</create>"));
+  apply_changes(folder.path("0.osm.pbf"), std::vector{late}, folder.path("2.osm.pbf"), &kEleven);
+  EXPECT_EQ(ids(folder.path("2.osm.pbf")), "n1 n2 n4 w1 w2 ");
+  const std::string gone =
+      folder.write("3.osc", changes("<delete>" + plain_way(2, {}, 2) + node(4, 2, 11.4) + "</delete>"));
+  const AppliedChanges deleted =
+      apply_changes(folder.path("2.osm.pbf"), std::vector{gone}, folder.path("3.osm.pbf"), &kEleven);
+  EXPECT_EQ(deleted.deleted, 2u);
+  EXPECT_EQ(ids(folder.path("3.osm.pbf")), "n1 n2 -n4 w1 -w2 ");
+}
+
 }  // namespace
 }  // namespace blockrand::importers::osm
