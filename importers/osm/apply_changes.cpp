@@ -413,6 +413,10 @@ AppliedChanges apply_changes(const std::string& base_path, std::span<const std::
   header.set_has_multiple_object_versions(true);  // else nobody would read who was deleted
   osmium::io::File file(fs::absolute(out).string(), "pbf");
   file.set_has_multiple_object_versions(true);
+#ifdef OSMIUM_WITH_LZ4
+  // A fifth larger than with zlib, but written in a fifth and read in half of the time, every night.
+  file.set("pbf_compression", "lz4");
+#endif
   std::optional<osmium::io::Writer> writer;
   const auto write = [&] {
     std::optional<Clip> clip;
