@@ -343,7 +343,7 @@ std::vector<std::uint32_t> PlaceIndex::around(const geometry::PlanBox& box, doub
 FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& store,
                            std::span<const std::uint32_t> first, const context::ContextExtract& context,
                            const context::VicinityFinder& vicinity, int workers, base::Progress& progress,
-                           const base::Memo* memo) {
+                           const base::Memo* memo, const Needed& needed) {
   progress.begin("measure");
   const std::size_t count = store.size();
   FactsExtract facts;
@@ -355,6 +355,12 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
   const std::vector<std::size_t> starts = runs_of(store, first);
   const std::size_t in_flight = static_cast<std::size_t>(workers) * 2 + 2, runs = starts.size() - 1;
   std::vector<std::vector<Own>> slots(in_flight);
+  // Whole runs, so that what is remembered of one serves all who need a part of it.
+  const auto any_of_run = [&](std::size_t i, bool (Needed::*is_needed)(std::size_t) const) {
+    for (std::size_t b = starts[i]; b < starts[i + 1]; ++b)
+      if ((needed.*is_needed)(b)) return true;
+    return false;
+  };
   const auto measured = [&](const std::vector<std::uint32_t>& mine) {
     const model::Region region = labelled(extract, store, vicinity, mine);
     std::vector<Own> run;
@@ -371,6 +377,7 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
     return run;
   };
   const auto look = [&](std::size_t i) {
+    if (!any_of_run(i, &Needed::has_facts)) return;
     std::vector<std::uint32_t> mine;
     for (std::size_t b = starts[i]; b < starts[i + 1]; ++b) mine.push_back(static_cast<std::uint32_t>(b));
     slots[i % in_flight] = base::remembered<std::vector<Own>>(
@@ -413,6 +420,7 @@ FactsExtract facts_extract(const model::Extract& extract, const footprints::Foot
   std::vector<FeatureVector> out = facts.features;
   const AroundInputs inputs{facts, store, context, house_index, small_index};
   const auto around = [&](std::size_t i) {
+    if (!any_of_run(i, &Needed::has_style)) return;
     const auto run = base::remembered<std::vector<FeatureVector>>(
         memo, "around", [&](base::Packer& packer) { pack_around(inputs, starts[i], starts[i + 1], packer); },
         [&] { return measured_around(inputs, starts[i], starts[i + 1]); });

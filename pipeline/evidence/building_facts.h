@@ -58,13 +58,21 @@ class PlaceIndex {
   geometry::BoxIndex places_;  ///< by place in `chosen_`
 };
 
-/// Measures all buildings. Deterministic for any number of workers. What a building gets depends on data within
+/// Which buildings of an extract are looked at where only some are asked for; both by number. Empty: all.
+struct Needed {
+  std::vector<std::uint8_t> facts;   ///< measured
+  std::vector<std::uint8_t> styles;  ///< classified, for which what stands around is measured as well
+  bool has_facts(std::size_t building) const { return facts.empty() || facts[building] != 0; }
+  bool has_style(std::size_t building) const { return styles.empty() || styles[building] != 0; }
+};
+
+/// Measures all buildings, or those that are needed. Deterministic for any number of workers. What a building gets depends on data within
 /// BlockOptions::max_extent + kNearReach + kWallSegmentReach of it.
 /// \param first  per tile: the number of its first building, as RepairedExtract has it
 /// \param memo   where measurements of an earlier run are found again; null: none
 FactsExtract facts_extract(const model::Extract& extract, const footprints::FootprintStore& footprints,
                            std::span<const std::uint32_t> first, const context::ContextExtract& context,
                            const context::VicinityFinder& vicinity, int workers, base::Progress& progress,
-                           const base::Memo* memo = nullptr);
+                           const base::Memo* memo = nullptr, const Needed& needed = {});
 
 }  // namespace blockrand::evidence

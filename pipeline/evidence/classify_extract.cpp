@@ -130,12 +130,13 @@ struct Classifier {
   const classify::Tables& tables;
   const PriorOf& prior;
   const ClassifyOptions& options;
+  const Needed& needed;
   int workers = 1;
   std::size_t n = facts.features.size();
   StyleExtract out{};
   std::vector<std::array<float, kStyles>> alone_style{};  ///< log-odds of each building's style by itself
 
-  bool known(std::size_t b) const { return facts.features[b].has(Feature::area); }
+  bool known(std::size_t b) const { return needed.has_style(b) && facts.features[b].has(Feature::area); }
 
   void eras_and_styles();
   void quarters();
@@ -485,12 +486,46 @@ TagFacts tag_facts(const model::Extract& extract, const footprints::FootprintSto
   return out;
 }
 
+Needed needed_for(std::span<const std::uint32_t> asked, const footprints::FootprintStore& store,
+                  const context::ContextExtract& context, const classify::Tables& tables) {
+  // Of what lies beside a tile's buildings the class is asked as well (tile_key.cpp).
+  constexpr double kBeside = 5;  // m
+  Needed needed;
+  needed.facts.assign(store.size(), 0);
+  needed.styles.assign(store.size(), 0);
+  const geometry::BoxIndex index = footprints::index_of(store);
+  const auto grow = [&](std::vector<std::uint8_t>& set, std::span<const std::uint32_t> from, double distance) {
+    std::vector<std::uint32_t> added;
+    for (const std::uint32_t b : from)
+      if (!store[b].box.empty())
+        for (const std::uint32_t o : index.near(store[b].box, distance))
+          if (!set[o]) set[o] = 1, added.push_back(o);
+    return added;
+  };
+  // Middles lie in their boxes: what is near by its middle is near by its box, and so is what touches.
+  std::vector<std::uint32_t> edge = grow(needed.styles, asked, kBeside);
+  for (int round = 0; round < std::max(1, tables.smoothing.rounds); ++round) edge = grow(needed.styles, edge, kNearReach);
+  const double reach = std::max({kNearReach, tables.era_votes.reach, tables.storeys_votes.reach, tables.roof_votes.reach,
+                                 tables.non_houses.equal_radius});
+  std::vector<std::uint32_t> classified;
+  std::vector<std::uint8_t> blocks(context.blocks.size(), 0);
+  for (std::uint32_t b = 0; b < store.size(); ++b) {
+    if (!needed.styles[b]) continue;
+    classified.push_back(b);
+    if (context.block_of[b] != model::kNoIndex) blocks[context.block_of[b]] = 1;
+  }
+  grow(needed.facts, classified, reach);
+  for (std::uint32_t b = 0; b < store.size(); ++b)
+    if (context.block_of[b] != model::kNoIndex && blocks[context.block_of[b]]) needed.facts[b] = 1;
+  return needed;
+}
+
 StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, const classify::Tables& tables,
                               const PriorOf& prior, const ClassifyOptions& options, int workers,
-                              base::Progress& progress) {
+                              base::Progress& progress, const Needed& needed) {
   progress.begin("classify");
   Classifier classifier{
-      .facts = facts, .tags = tags, .tables = tables, .prior = prior, .options = options, .workers = workers};
+      .facts = facts, .tags = tags, .tables = tables, .prior = prior, .options = options, .needed = needed, .workers = workers};
   StyleExtract& out = classifier.out;
   out.styles.resize(classifier.n);
   out.storeys.resize(classifier.n);

@@ -77,10 +77,14 @@ struct ClassifyOptions {
 /// The prior of the region that a building lies in, or null.
 using PriorOf = std::function<const classify::RegionPrior*(std::uint32_t building)>;
 
+/// What must be measured and classified so that the answers for `asked` are those of a whole extract.
+Needed needed_for(std::span<const std::uint32_t> asked, const footprints::FootprintStore& footprints,
+                  const context::ContextExtract& context, const classify::Tables& tables);
+
 /// Deterministic for any number of workers. What a building gets depends on data within
 /// 150 m (votes) + rounds x (kNearReach + a house) of what facts_extract says of it.
 StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, const classify::Tables& tables,
                               const PriorOf& prior, const ClassifyOptions& options, int workers,
-                              base::Progress& progress);
+                              base::Progress& progress, const Needed& needed = {});
 
 }  // namespace blockrand::evidence

@@ -76,14 +76,21 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
   context::ContextExtract context = context::context_extract(extract, repaired.footprints, located.facts.coverage,
                                                              located.projection, workers, progress, use_of, memo);
   malloc_trim(0);
-  evidence::FactsExtract facts =
-      evidence::facts_extract(extract, repaired.footprints, repaired.first, context,
-                              context::VicinityFinder(extract, repaired.footprints, context), workers, progress, memo);
+  evidence::Needed needed;  // of a tile or an area: those around it matter as far as they are heard
+  if (tile) {
+    std::vector<std::uint32_t> asked;
+    for (const std::size_t shard : shards_to_build(shards, tile))
+      for (std::uint32_t i = 0; i < shards[shard].seeds.size(); ++i) asked.push_back(repaired.first[shard] + i);
+    needed = evidence::needed_for(asked, repaired.footprints, context, tables);
+  }
+  evidence::FactsExtract facts = evidence::facts_extract(
+      extract, repaired.footprints, repaired.first, context,
+      context::VicinityFinder(extract, repaired.footprints, context), workers, progress, memo, needed);
   evidence::TagFacts tags =
       evidence::tag_facts(extract, repaired.footprints, context, tables, located.projection, facts);
   malloc_trim(0);
   evidence::StyleExtract styles = evidence::classify_extract(
-      facts, tags, tables, evidence::prior_by_place(extract, repaired.footprints, book, tables), {}, workers, progress);
+      facts, tags, tables, evidence::prior_by_place(extract, repaired.footprints, book, tables), {}, workers, progress, needed);
   return {.shards = std::move(shards),
           .report = std::move(report),
           .kept = std::move(kept),
