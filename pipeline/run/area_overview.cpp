@@ -19,6 +19,7 @@
 #include "pipeline/georef/tiles.h"
 #include "pipeline/model/issue_codes.h"
 #include "pipeline/outputs/output.h"
+#include "pipeline/outputs/tileset/nested_tileset.h"
 #include "pipeline/run/configuration.h"
 #include "pipeline/run/documents.h"
 #include "pipeline/run/tile_choice.h"
@@ -56,24 +57,14 @@ Json read_document(const std::string& path) {
   return j;
 }
 
-/// West, south, east, north in radians, lowest and highest in metres: a region of 3D Tiles.
-using RegionVolume = std::array<double, 6>;
-
 struct Entry {
   TileId tile;
   std::string record_sha256;
   std::uint64_t files = 0, bytes = 0, objects = 0, models = 0, reported = 0, simpler = 0;
-  std::optional<RegionVolume> volume;  ///< of its tileset; empty: it has none, or an empty one
+  std::optional<outputs::RegionVolume> volume;  ///< of its tileset; empty: it has none, or an empty one
   double error = 0;                    ///< m, of its tileset's root
   bool has_geopackage = false;
 };
-
-RegionVolume joined(const RegionVolume& a, const RegionVolume& b) {
-  return {std::min(a[0], b[0]), std::min(a[1], b[1]), std::max(a[2], b[2]),
-          std::max(a[3], b[3]), std::min(a[4], b[4]), std::max(a[5], b[5])};
-}
-
-TileId parent_of(const TileId& t) { return {t.level - 1, t.x / 2, t.y / 2}; }
 
 }  // namespace
 
@@ -87,26 +78,11 @@ struct Overview::State {
   Json common;  ///< of the first record: what is the same in all
   Json counts = Json::object(), issues = Json::object(), statistics = Json::object();
 
-  std::string tileset() const {
-    struct Node {
-      RegionVolume volume{};
-      double error = 0;
-      std::map<TileId, std::string> children;
-    };
-    // Tiles of a level, each as the text of its node; the level above is made of them until one is left.
-    struct Made {
-      RegionVolume volume{};
-      double error = 0;
-      Json json;
-    };
-    std::map<TileId, Made> level;
-    for (const Entry& e : entries) {
-      if (!e.volume) continue;
-      Json node = {{"boundingVolume", {{"region", *e.volume}}},
-                   {"geometricError", e.error},
-                   {"content", {{"uri", area_path(e.tile) + "/tileset.json"}}}};
-      level[e.tile] = {*e.volume, e.error, std::move(node)};
-    }
+  /// By path.
+  std::map<std::string, std::string> tilesets() const {
+    std::vector<outputs::NestedTileset> nested;
+    for (const Entry& e : entries)
+      if (e.volume) nested.push_back({e.tile, area_path(e.tile) + "/tileset.json", *e.volume, e.error});
     const Json asset = {
         {"version", "1.1"},
         {"extras",
@@ -114,54 +90,7 @@ struct Overview::State {
           {"crs", common.value("crs", Json::object()).value("code", "")},
           {"height_reference", common.value("crs", Json::object()).value("height_reference_of_tiles", "")},
           {"attribution", outputs::kAttribution}}}};
-    if (level.empty())
-      return Json({{"asset", asset},
-                   {"geometricError", 0},
-                   {"root",
-                    {{"boundingVolume", {{"box", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}}}},
-                     {"geometricError", 0},
-                     {"refine", "ADD"}}}})
-                 .dump() +
-             "\n";
-    const auto wrap = [](std::map<TileId, Made>& below) {
-      std::map<TileId, std::vector<Made*>> families;
-      for (auto& [tile, made] : below) families[parent_of(tile)].push_back(&made);
-      std::map<TileId, Made> above;
-      for (auto& [tile, children] : families) {
-        Made& made = above[tile];
-        if (children.size() == 1 && below.size() > 1) {  // nothing to divide
-          made = std::move(*children.front());
-          continue;
-        }
-        made.volume = children.front()->volume;
-        Json list = Json::array();
-        for (Made* child : children) {
-          made.volume = joined(made.volume, child->volume), made.error = std::max(made.error, child->error);
-          list.push_back(std::move(child->json));
-        }
-        made.error *= 2;
-        made.json = {{"boundingVolume", {{"region", made.volume}}}, {"geometricError", made.error}};
-        made.json["children"] = std::move(list);
-      }
-      below = std::move(above);
-    };
-    do wrap(level);
-    while (level.size() > 1 && level.begin()->first.level > 0);
-    if (level.size() > 1) {  // on both sides of the prime meridian
-      Made root;
-      root.volume = level.begin()->second.volume;
-      Json list = Json::array();
-      for (auto& [tile, made] : level) {
-        root.volume = joined(root.volume, made.volume), root.error = std::max(root.error, 2 * made.error);
-        list.push_back(std::move(made.json));
-      }
-      root.json = {{"boundingVolume", {{"region", root.volume}}}, {"geometricError", root.error}};
-      root.json["children"] = std::move(list);
-      level = {{TileId{0, 0, 0}, std::move(root)}};
-    }
-    Made& root = level.begin()->second;
-    root.json["refine"] = "ADD";
-    return Json({{"asset", asset}, {"geometricError", 2 * root.error}, {"root", std::move(root.json)}}).dump() + "\n";
+    return outputs::nested_tilesets(nested, asset);
   }
 
   /// All footprints as one layer for GIS programs: GDAL's union of the areas' layers.
@@ -308,7 +237,7 @@ void Overview::add(const TileId& area, const std::string& folder) {
   if (std::error_code error; fs::exists(folder + "/tileset.json", error)) {
     const Json root = read_document(folder + "/tileset.json").at("root");
     if (root.at("boundingVolume").contains("region"))
-      entry.volume = root.at("boundingVolume").at("region").get<RegionVolume>();
+      entry.volume = root.at("boundingVolume").at("region").get<outputs::RegionVolume>();
     entry.error = root.value("geometricError", 0.0);
   }
   add_numbers(s.counts, counts);
@@ -347,7 +276,8 @@ void Overview::write(base::StagedFolder& folder, const std::vector<std::string>&
     tilesets = tilesets || fs::exists(folder.staging_path() + "/" + area_path(e.tile) + "/tileset.json", error);
     geopackages = geopackages || e.has_geopackage;
   }
-  if (tilesets) files.push_back(folder.write("tileset.json", s.tileset()));
+  if (tilesets)
+    for (const auto& [path, text] : s.tilesets()) files.push_back(folder.write(path, text));
   if (geopackages) files.push_back(folder.write("buildings.vrt", s.vrt()));
   files.push_back(folder.write("report.json", s.report_json(unmatched)));
   if (s.options.outputs.report) files.push_back(folder.write("report.html", s.page(s.options.name, unmatched)));

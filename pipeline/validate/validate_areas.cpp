@@ -176,37 +176,44 @@ class AreasRun {
       return;
     }
     std::set<std::string> reached;
-    const std::function<void(const Json&, double, const Json&)> visit = [&](const Json& node, double above,
-                                                                            const Json& around) {
-      const double error = node.value("geometricError", -1.0);
-      if (error < 0 || error > above)
-        log().add(Check::tileset_rule, "tileset.json", "",
-                  fmt::format("an error of {} m stands below one of {} m", error, above));
-      const Json volume = node.value("boundingVolume", Json::object()).value("region", Json());
-      if (volume.is_array() && volume.size() == 6 && around.is_array() && around.size() == 6)
-        for (std::size_t i = 0; i < 6; ++i) {
-          const double inner = volume[i].get<double>(), outer = around[i].get<double>();
-          const bool low = i == 0 || i == 1 || i == 4;
-          if (low ? inner < outer : inner > outer) {
-            log().add(Check::tileset_rule, "tileset.json", "", "a volume lies outside of the one above it");
-            break;
+    // `file` is where the node stands: what it names is relative to that.
+    const std::function<void(const std::string&, const Json&, double, const Json&)> visit =
+        [&](const std::string& file, const Json& node, double above, const Json& around) {
+          const auto found = [&](Check check, const std::string& object, std::string what) {
+            log().add(check, file, object, std::move(what));
+          };
+          const double error = node.value("geometricError", -1.0);
+          if (error < 0 || error > above)
+            found(Check::tileset_rule, "", fmt::format("an error of {} m stands below one of {} m", error, above));
+          const Json volume = node.value("boundingVolume", Json::object()).value("region", Json());
+          if (volume.is_array() && volume.size() == 6 && around.is_array() && around.size() == 6)
+            for (std::size_t i = 0; i < 6; ++i) {
+              const double inner = volume[i].get<double>(), outer = around[i].get<double>();
+              const bool low = i == 0 || i == 1 || i == 4;
+              if (low ? inner < outer : inner > outer) {
+                found(Check::tileset_rule, "", "a volume lies outside of the one above it");
+                break;
+              }
+            }
+          if (node.contains("content")) {
+            const std::string uri =
+                (fs::path(file).parent_path() / node["content"].value("uri", "")).lexically_normal().string();
+            const bool fresh = reached.insert(uri).second;
+            if (!fresh) found(Check::tileset_rule, uri, "is named twice");
+            const Json its = uri.starts_with("..") || uri.starts_with("/") ? Json() : json_of(full(uri));
+            if (!its.is_object() || !its.contains("root")) {
+              found(Check::tile_missing, uri, "named by the tileset, but no tileset is there");
+            } else if (its["root"].value("boundingVolume", Json::object()).value("region", Json()) != volume ||
+                       its["root"].value("geometricError", -1.0) != error) {
+              found(Check::tileset_rule, uri, "volume or error differ from those of its root");
+            } else if (fresh && uri.starts_with("tilesets/")) {
+              visit(uri, its["root"], error, volume);
+            }
           }
-        }
-      if (node.contains("content")) {
-        const std::string uri = node["content"].value("uri", "");
-        if (!reached.insert(uri).second) log().add(Check::tileset_rule, "tileset.json", uri, "is named twice");
-        const Json its = json_of(full(uri));
-        if (!its.is_object() || !its.contains("root")) {
-          log().add(Check::tile_missing, "tileset.json", uri, "named by the tileset, but no tileset is there");
-        } else if (its["root"].value("boundingVolume", Json::object()).value("region", Json()) != volume ||
-                   its["root"].value("geometricError", -1.0) != error) {
-          log().add(Check::tileset_rule, "tileset.json", uri, "volume or error differ from those of its root");
-        }
-      }
-      if (node.contains("children"))
-        for (const Json& child : node["children"]) visit(child, error, volume);
-    };
-    visit(tileset["root"], tileset.value("geometricError", 0.0), Json());
+          if (node.contains("children"))
+            for (const Json& child : node["children"]) visit(file, child, error, volume);
+        };
+    visit("tileset.json", tileset["root"], tileset.value("geometricError", 0.0), Json());
     for (const auto& [name, entry] : record_["areas"].items()) {
       const std::string uri = "areas/" + name + "/tileset.json";
       const Json its = json_of(full(uri));
