@@ -136,9 +136,11 @@ base::OutputError cannot_write(const std::string& path, const std::exception& er
 class Merge {
  public:
   /// \param write  takes each object of the result, in order. \returns  whether it stays
+  /// \param leave  takes what was there and does not stay as it is now
   /// \param clip   whether something may be outside: then what was never there is not noted as deleted
-  Merge(std::span<const Versioned> changes, std::function<bool(const OSMObject&)> write, bool clip)
-      : changes_(changes), write_(std::move(write)), clip_(clip) {}
+  Merge(std::span<const Versioned> changes, std::function<bool(const OSMObject&)> write,
+        std::function<void(const OSMObject&)> leave, bool clip)
+      : changes_(changes), write_(std::move(write)), leave_(std::move(leave)), clip_(clip) {}
 
   /// In the order of before(), each object once; one that is not visible was deleted before.
   void add(const OSMObject& object) {
@@ -156,7 +158,12 @@ class Merge {
     std::uint64_t& count = change.visible() != object.visible()
                                ? (change.visible() ? applied_.created : applied_.deleted)
                                : (change.visible() ? applied_.modified : applied_.known);
-    ++(write_(change) ? count : applied_.outside);
+    if (write_(change)) {
+      ++count;
+      return;
+    }
+    ++(object.visible() ? applied_.deleted : applied_.outside);
+    leave_(change);
   }
   AppliedChanges finish() {
     while (next_ < changes_.size()) take_new(*changes_[next_++].object);
@@ -192,6 +199,7 @@ class Merge {
 
   std::span<const Versioned> changes_;
   std::function<bool(const OSMObject&)> write_;
+  std::function<void(const OSMObject&)> leave_;
   bool clip_;
   std::size_t next_ = 0;
   AppliedChanges applied_;
@@ -202,22 +210,22 @@ class IdSet {
  public:
   void add(std::int64_t id) {
     if (is_usual(id))
-      usual_.set(number_of(id));
+      usual_.set(static_cast<std::uint64_t>(id));
     else
       others_.insert(id);
   }
-  bool contains(std::int64_t id) const { return is_usual(id) ? usual_.get(number_of(id)) : others_.contains(id); }
+  bool contains(std::int64_t id) const {
+    return is_usual(id) ? usual_.get(static_cast<std::uint64_t>(id)) : others_.contains(id);
+  }
   bool empty() const { return usual_.empty() && others_.empty(); }
 
  private:
   static constexpr std::int64_t kUsual = std::int64_t{1} << 36;  ///< five times what OSM has given in 20 years
-  static bool is_usual(std::int64_t id) { return id < kUsual && id >= -kUsual; }
-  /// Ids below zero, which editors give, between the others.
-  static std::uint64_t number_of(std::int64_t id) {
-    return id >= 0 ? 2 * static_cast<std::uint64_t>(id) : 2 * static_cast<std::uint64_t>(-(id + 1)) + 1;
-  }
-  osmium::index::IdSetDense<std::uint64_t> usual_;
-  std::unordered_set<std::int64_t> others_;
+  static bool is_usual(std::int64_t id) { return id >= 0 && id < kUsual; }
+  /// Of 2^this bytes: ids of a city lie all over the planet's.
+  static constexpr std::size_t kChunk = 9;
+  osmium::index::IdSetDense<std::uint64_t, kChunk> usual_;
+  std::unordered_set<std::int64_t> others_;  ///< those below zero, which editors give, as well
 };
 
 /// Which objects of sorted data a polygon keeps.
@@ -402,8 +410,10 @@ AppliedChanges apply_changes(const std::string& base_path, std::span<const std::
   osmium::thread::Pool pool(2);
   Base base(base_path);
   const Changes changes(files, pool);
-  const auto merged = [&](const std::function<bool(const OSMObject&)>& write) {
-    Merge merge(changes.newest(), write, polygon != nullptr);
+  const auto merged = [&](
+                          const std::function<bool(const OSMObject&)>& write,
+                          const std::function<void(const OSMObject&)>& leave = [](const OSMObject&) {}) {
+    Merge merge(changes.newest(), write, leave, polygon != nullptr);
     base.for_each([&](const OSMObject& object) { merge.add(object); });
     return merge.finish();
   };
@@ -432,16 +442,30 @@ AppliedChanges apply_changes(const std::string& base_path, std::span<const std::
     } catch (const std::exception& error) {
       throw cannot_write(out, error);
     }
-    AppliedChanges applied = merged([&](const OSMObject& object) {
-      if (clip && !clip->keeps(object)) return false;
+    const auto put = [&](const OSMObject& object) {
       try {
         (*writer)(object);
       } catch (const std::exception& error) {
         // The reader that calls must not take it for an error of its own file.
         throw cannot_write(out, error);
       }
-      return true;
-    });
+    };
+    osmium::memory::Buffer copy(1024, osmium::memory::Buffer::auto_grow::yes);
+    AppliedChanges applied = merged(
+        [&](const OSMObject& object) {
+          if (clip && !clip->keeps(object)) return false;
+          put(object);
+          return true;
+        },
+        [&](const OSMObject& object) {
+          // Noted as deleted, so that an older change that comes later does not bring it back.
+          copy.clear();
+          copy.add_item(object);
+          copy.commit();
+          auto& gone = copy.get<OSMObject>(0);
+          gone.set_visible(false);
+          put(gone);
+        });
     applied.cleaned_texts = base.cleaned();
     try {
       writer->close();

@@ -16,9 +16,10 @@ bool is_change_file(std::string_view path);
 
 /// What became of the objects of change files.
 struct AppliedChanges {
-  std::uint64_t created = 0, modified = 0, deleted = 0;
+  std::uint64_t created = 0, modified = 0;
+  std::uint64_t deleted = 0;   ///< or gone from the polygon
   std::uint64_t known = 0;     ///< that the data has in this version or a newer one already
-  std::uint64_t outside = 0;   ///< of change files: beyond the polygon
+  std::uint64_t outside = 0;   ///< of change files: beyond the polygon, as it was before
   bool cleaned_texts = false;  ///< NUL characters in texts of the base were replaced
   bool any() const { return created + modified + deleted > 0; }
 };

@@ -31,7 +31,14 @@ std::optional<double> number_in(std::string_view text) {
 
 }  // namespace
 
-ClipPolygon::ClipPolygon(std::span<const Rings> polygons) {
+ClipPolygon::ClipPolygon(std::span<const Rings> polygons, std::span<const Rings> holes) {
+  add(polygons, polygons_);
+  add(holes, holes_);
+}
+
+bool ClipPolygon::contains(model::Location place) const { return holds(polygons_, place) && !holds(holes_, place); }
+
+void ClipPolygon::add(std::span<const Rings> polygons, std::vector<Banded>& out) {
   for (const Rings& rings : polygons) {
     std::vector<Edge> edges;
     for (const std::vector<model::Location>& ring : rings)
@@ -41,7 +48,7 @@ ClipPolygon::ClipPolygon(std::span<const Rings> polygons) {
         if (a.lat > b.lat) edges.push_back({b, a});
       }
     if (edges.empty()) continue;
-    Banded& banded = polygons_.emplace_back();
+    Banded& banded = out.emplace_back();
     banded.south = edges.front().low.lat, banded.north = edges.front().high.lat;
     for (const Edge& e : edges) {
       banded.south = std::min<std::int64_t>(banded.south, e.low.lat);
@@ -57,8 +64,8 @@ ClipPolygon::ClipPolygon(std::span<const Rings> polygons) {
   }
 }
 
-bool ClipPolygon::contains(model::Location place) const {
-  return std::ranges::any_of(polygons_, [&](const Banded& polygon) {
+bool ClipPolygon::holds(const std::vector<Banded>& polygons, model::Location place) {
+  return std::ranges::any_of(polygons, [&](const Banded& polygon) {
     if (place.lat < polygon.south || place.lat > polygon.north) return false;
     bool inside = false;
     for (const Edge& e : polygon.bands[static_cast<std::size_t>((place.lat - polygon.south) / polygon.height)]) {
@@ -74,7 +81,7 @@ bool ClipPolygon::contains(model::Location place) const {
   });
 }
 
-std::vector<ClipPolygon::Rings> read_poly_file(const std::string& path) {
+ClipPolygon read_poly_file(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw base::InputError(path, "", "cannot be read", "Check the path");
   std::size_t number = 0;
@@ -82,7 +89,8 @@ std::vector<ClipPolygon::Rings> read_poly_file(const std::string& path) {
     return base::InputError(path, fmt::format("line {}", number), what,
                             "A .poly file has a name, sections of longitude and latitude that end with END, and END");
   };
-  ClipPolygon::Rings rings;
+  std::vector<ClipPolygon::Rings> outer, holes;
+  bool is_hole = false;
   std::string line;
   std::optional<std::vector<model::Location>> ring;
   bool named = false, ended = false;
@@ -97,11 +105,11 @@ std::vector<ClipPolygon::Rings> read_poly_file(const std::string& path) {
       if (text == "END")
         ended = true;
       else
-        ring.emplace();  // outer or a hole: even-odd says which
+        ring.emplace(), is_hole = text.starts_with('!');
     } else if (text == "END") {
       if (ring->size() > 1 && ring->front() == ring->back()) ring->pop_back();
       if (ring->size() < 3) throw wrong("a section has fewer than three points");
-      rings.push_back(std::move(*ring));
+      (is_hole ? holes : outer).push_back({std::move(*ring)});
       ring.reset();
     } else {
       std::istringstream words(text);
@@ -115,8 +123,8 @@ std::vector<ClipPolygon::Rings> read_poly_file(const std::string& path) {
     }
   }
   if (!ended) throw wrong("the file breaks off: the last END is missing");
-  if (rings.empty()) throw wrong("there is no section");
-  return {std::move(rings)};
+  if (outer.empty()) throw wrong("there is no section that is no hole");
+  return ClipPolygon(outer, holes);
 }
 
 }  // namespace blockrand::importers::osm

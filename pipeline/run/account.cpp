@@ -13,7 +13,7 @@ using model::MappedBuilding;
 using model::ObjectState;
 
 Account::Account(model::Extract& extract, std::vector<model::ReportRow> rows)
-    : extract_(extract), rows_(std::move(rows)) {
+    : extract_(extract), rows_(std::move(rows)), decided_(extract.buildings.size(), 0) {
   std::vector<model::ReportRow>& read = extract.report.rows;
   rows_.insert(rows_.end(), std::make_move_iterator(read.begin()), std::make_move_iterator(read.end()));
   for (const model::ReportRow& row : rows_)
@@ -42,6 +42,7 @@ void Account::take(const Outcomes& outcomes, std::vector<model::ReportRow> rows,
   for (const Outcome& o : outcomes.list) {
     MappedBuilding& object = extract_.buildings[o.index];
     const outputs::FinalState final_state = final_state_of(o);
+    decided_[o.index] = 1;
     object.state = final_state.state;
     object.code = final_state.code;
     object.related = final_state.related;
@@ -51,8 +52,30 @@ void Account::take(const Outcomes& outcomes, std::vector<model::ReportRow> rows,
   summary.below_quality = summary.below_quality || outcomes.below_quality;
 }
 
-void Account::close(const std::optional<TileChoice>& tile, BuildSummary& summary) {
-  if (tile) forget_others(extract_, *tile, rows_);
+void Account::close(const std::optional<TileChoice>& tile, std::span<const footprints::Shard> shards,
+                    std::span<const std::size_t> todo, BuildSummary& summary) {
+  if (tile) {
+    // Objects of a seed are decided with it: those of other tiles are not looked for here.
+    for (const footprints::Shard& shard : shards)
+      for (const footprints::Seed& seed : shard.seeds) {
+        const auto leave = [&](std::uint32_t index) {
+          if (extract_.buildings[index].state == ObjectState::pending) decided_[index] = 2;
+        };
+        if (seed.outline != model::kNoIndex) leave(seed.outline);
+        std::ranges::for_each(seed.parts, leave);
+      }
+    for (const std::size_t built : todo)
+      for (const footprints::Seed& seed : shards[built].seeds) {
+        const auto claim = [&](std::uint32_t index) { decided_[index] = 1; };
+        if (seed.outline != model::kNoIndex) claim(seed.outline);
+        std::ranges::for_each(seed.parts, claim);
+      }
+    const auto is_here = [&](const MappedBuilding& b) {
+      const std::uint8_t decided = decided_[static_cast<std::size_t>(&b - extract_.buildings.data())];
+      return decided == 0 ? lies_in(extract_, b, *tile) : decided == 1;
+    };
+    forget_others(extract_, *tile, is_here, rows_);
+  }
   for (MappedBuilding& b : extract_.buildings) {
     if (b.state == ObjectState::pending) {
       b.state = ObjectState::reported;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/footprints/shard.h"
 #include "pipeline/model/extract.h"
 #include "pipeline/outputs/explain/explanation.h"
 #include "pipeline/run/build.h"
@@ -29,8 +30,12 @@ class Account {
   /// Takes over what a tile decided, in tile order.
   void take(const Outcomes& outcomes, std::vector<model::ReportRow> rows, BuildSummary& summary);
   /// Counts states and rows. An object in no state is a bug of a stage: it is reported as UNACCOUNTED and named in the
-  /// summary. \param tile  built alone: objects of other tiles were read as surroundings only
-  void close(const std::optional<TileChoice>& tile, BuildSummary& summary);
+  /// summary.
+  /// \param tile    built alone: objects of other tiles were read as surroundings only. An object is told where the tile is that
+  ///               decided on it, else, where what came before the tiles did, in the tile of its own place
+  /// \param shards  all \param todo  those that were built
+  void close(const std::optional<TileChoice>& tile, std::span<const footprints::Shard> shards,
+             std::span<const std::size_t> todo, BuildSummary& summary);
 
   /// Of all objects; sorted once the account is closed.
   const std::vector<model::ReportRow>& rows() const { return rows_; }
@@ -40,6 +45,7 @@ class Account {
 
   model::Extract& extract_;
   std::vector<model::ReportRow> rows_, earlier_;
+  std::vector<std::uint8_t> decided_;  ///< by index: a tile did it
   std::set<model::OsmId> incomplete_;  ///< objects whose outline lacks members
 };
 

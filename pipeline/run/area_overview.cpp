@@ -62,7 +62,7 @@ struct Entry {
   std::string record_sha256;
   std::uint64_t files = 0, bytes = 0, objects = 0, models = 0, reported = 0, simpler = 0;
   std::optional<outputs::RegionVolume> volume;  ///< of its tileset; empty: it has none, or an empty one
-  double error = 0;                    ///< m, of its tileset's root
+  double error = 0;                             ///< m, of its tileset's root
   bool has_geopackage = false;
 };
 
@@ -76,6 +76,7 @@ struct Overview::State {
   const importers::osm::StoreFigures& data;
   std::vector<Entry> entries;
   Json common;  ///< of the first record: what is the same in all
+  std::vector<model::ReportRow> elsewhere;
   Json counts = Json::object(), issues = Json::object(), statistics = Json::object();
 
   /// By path.
@@ -93,12 +94,12 @@ struct Overview::State {
     return outputs::nested_tilesets(nested, asset);
   }
 
-  /// All footprints as one layer for GIS programs: GDAL's union of the areas' layers.
+  /// All buildings as one layer for GIS programs: GDAL's union of the areas' layers.
   std::string vrt() const {
-    std::string out = "<OGRVRTDataSource>\n  <OGRVRTUnionLayer name=\"footprints\">\n";
+    std::string out = "<OGRVRTDataSource>\n  <OGRVRTUnionLayer name=\"buildings\">\n";
     for (const Entry& e : entries)
       if (e.has_geopackage)
-        out += "    <OGRVRTLayer name=\"footprints\"><SrcDataSource relativeToVRT=\"1\">" + area_path(e.tile) +
+        out += "    <OGRVRTLayer name=\"buildings\"><SrcDataSource relativeToVRT=\"1\">" + area_path(e.tile) +
                "/buildings.gpkg</SrcDataSource></OGRVRTLayer>\n";
     return out + "  </OGRVRTUnionLayer>\n</OGRVRTDataSource>\n";
   }
@@ -127,6 +128,10 @@ struct Overview::State {
       for (const model::IssueInfo& info : model::kIssueInfo)
         if (info.text == code) j["codes"][code] = info.meaning;
     j["areas"] = area_list();
+    j["elsewhere"] = Json::array();
+    for (const model::ReportRow& row : elsewhere)
+      j["elsewhere"].push_back(
+          {{"object", row.object.text()}, {"code", model::info(row.code).text}, {"detail", row.detail}});
     return j.dump(1) + "\n";
   }
 
@@ -213,7 +218,7 @@ struct Overview::State {
 };
 
 Overview::Overview(const BuildOptions& options, const RegionFacts& facts, const importers::osm::StoreFigures& data)
-    : state_(new State{options, facts, data, {}, {}}) {}
+    : state_(new State{options, facts, data, {}, {}, {}}) {}
 Overview::~Overview() = default;
 
 void Overview::add(const TileId& area, const std::string& folder) {
@@ -250,6 +255,15 @@ void Overview::add(const TileId& area, const std::string& folder) {
   const auto after = std::upper_bound(s.entries.begin(), s.entries.end(), area,
                                       [](const TileId& t, const Entry& e) { return t < e.tile; });
   s.entries.insert(after, std::move(entry));
+}
+
+void Overview::add(std::vector<model::ReportRow> rows) {
+  std::ranges::sort(rows);
+  for (const model::ReportRow& row : rows) {
+    Json& count = state_->issues[std::string(model::info(row.code).text)];
+    count = (count.is_null() ? 0 : count.get<std::int64_t>()) + 1;
+  }
+  state_->elsewhere = std::move(rows);
 }
 
 void Overview::sum_up(BuildSummary& summary) const {
@@ -292,6 +306,8 @@ void Overview::write(base::StagedFolder& folder, const std::vector<std::string>&
   if (s.common.contains("terrain")) j["terrain"] = s.common["terrain"];
   j["region"] = region_json(s.facts);
   Json counts = s.counts;
+  // Of what lies around an area as well: no sums.
+  for (const char* of_windows : {"areas_with_holes", "old_style_multipolygons"}) counts.erase(of_windows);
   counts["missing_nodes"] = s.data.missing_nodes, counts["missing_ways"] = s.data.missing_ways;
   j["counts"] = std::move(counts);
   j["issues"] = s.issues;

@@ -34,6 +34,9 @@ class Overview {
   /// \param folder  of the area, whole \throws base::OutputError  its documents cannot be read
   void add(const model::TileId& area, const std::string& folder);
 
+  /// Rows of what lies in no area that is built.
+  void add(std::vector<model::ReportRow> rows);
+
   /// Counts and issues of all, files and bytes.
   void sum_up(BuildSummary& summary) const;
 

@@ -18,6 +18,7 @@
 #include "pipeline/georef/crs.h"
 #include "pipeline/georef/projection.h"
 #include "pipeline/georef/tiles.h"
+#include "pipeline/run/tile_choice.h"
 
 namespace blockrand::run {
 namespace {
@@ -30,6 +31,7 @@ struct AreaFacts {
   std::vector<std::uint32_t> matched;        ///< orders: indices
   std::set<std::uint32_t> rule_sets;         ///< that hold for a building
   std::vector<attributes::NamedPlaceQuestion> named_places;
+  std::vector<model::ReportRow> rows;  ///< where there are no objects
 };
 
 class Surveyor {
@@ -80,6 +82,13 @@ class Surveyor {
       if (!place || georef::tile_of(*place, tile.level) != tile) continue;
       ++facts.objects;
       if (b.rings.count > 0 && b.state == model::ObjectState::pending) facts.centres.push_back(*place);
+    }
+    if (facts.objects == 0) {
+      TileChoice area;
+      area.id = tile;
+      facts.rows = std::move(extract.report.rows);
+      forget_others(
+          extract, area, [](const model::MappedBuilding&) { return false; }, facts.rows);
     }
     // Which areas are large enough does not depend on the projection: any that fits will do.
     const georef::LonLat middle = box.centre();
@@ -138,6 +147,7 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
     if (facts.objects > 0) survey.objects[area.tile] = facts.objects;
     centres.insert(centres.end(), facts.centres.begin(), facts.centres.end());
     matched.insert(facts.matched.begin(), facts.matched.end());
+    survey.rows.insert(survey.rows.end(), facts.rows.begin(), facts.rows.end());
     rule_sets.insert(facts.rule_sets.begin(), facts.rule_sets.end());
     if (named_places.empty())
       named_places = std::move(facts.named_places);

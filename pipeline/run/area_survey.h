@@ -19,6 +19,7 @@ struct RegionSurvey {
   std::map<model::TileId, std::uint64_t> objects;  ///< mapped objects by area; areas without any are not here
   bool has_outlines = false;                       ///< a building has an outline
   std::vector<std::string> unmatched;              ///< orders of the overrides that match nothing in any area
+  std::vector<model::ReportRow> rows;              ///< of what lies in areas without buildings, which are not built
   std::vector<std::string> unanswered;             ///< DistrictAssigner::unanswered of all areas together
 };
 

@@ -489,7 +489,7 @@ BuildSummary build_all_or_part(const BuildOptions& options, const AreaPart* part
   base::ordered_parallel(todo.size(), workers, in_flight, work, consume);
   sums.settle(record);
   warn_of_terrain(inputs, progress);
-  account.close(tile, summary);
+  account.close(tile, shards, todo, summary);
   refuse_shrunk(options, summary, place.earlier);
 
   progress.begin("documents");
@@ -521,6 +521,8 @@ BuildSummary build_area(const BuildOptions& options, const AreaPart& part, base:
 
 BuildSummary build(const BuildOptions& options, base::Progress& progress) {
   if (options.areas > 0) return build_in_areas(options, progress);
+  if (options.memory_limit > 0 && options.settings.empty())  // a region's settings hold for builds of both kinds
+    throw base::UsageError("--memory-limit says how many areas are built at a time: it needs --areas");
   if (!options.area.empty()) return build_one_area(options, progress);
   return build_all_or_part(options, nullptr, progress);
 }

@@ -29,6 +29,7 @@
 #include "pipeline/run/area_survey.h"
 #include "pipeline/run/build_inputs.h"
 #include "pipeline/run/output_place.h"
+#include "pipeline/run/region_state.h"
 #include "pipeline/run/tile_key.h"
 #include "pipeline/run/work_cache.h"
 
@@ -44,6 +45,9 @@ using model::TileId;
 /// Tiles, two jobs; docs/internal/RESULTS.md) took 541 MB of the 680 that this gives; with all formats none was measured. Bytes.
 constexpr std::uint64_t kAreaBase = 160'000'000;
 constexpr double kPerStoredByte = 12;
+
+/// Above it what lies around an area is a multiple of what lies in it; --areas takes more, for who knows.
+constexpr int kMostDivided = 13;
 
 /// What an area's process sends back beside its files.
 struct AreaOutcome {
@@ -62,6 +66,11 @@ AreaOutcome outcome_of(BuildSummary&& s) {
 }
 
 void refuse_contradictions(const BuildOptions& options) {
+  if (options.outputs.single_glb || options.outputs.single_cityjson)
+    throw base::UsageError(
+        fmt::format("{} is a file of the whole model, which a build in areas never has in memory: build without {}",
+                    options.outputs.single_glb ? "--single-glb" : "--single-cityjson",
+                    options.areas > 0 ? "--areas (areas = 1 in region.toml)" : "--area"));
   const char* what = options.bbox                      ? "--bbox"
                      : !options.tile.empty()           ? "--tile"
                      : !options.imagery.images.empty() ? "--imagery"
@@ -69,8 +78,10 @@ void refuse_contradictions(const BuildOptions& options) {
                                                        : nullptr;
   if (options.areas > 0 && !options.area.empty()) throw base::UsageError("--area and --areas contradict each other");
   if (what)
-    throw base::UsageError(fmt::format("{} cannot be used with --{}: build without areas, or cut the extract first",
-                                       what, options.areas > 0 ? "areas" : "area"));
+    throw base::UsageError(
+        fmt::format("{} cannot be used with --{}: build without areas (areas = 1 in region.toml), or cut the "
+                    "extract first",
+                    what, options.areas > 0 ? "areas" : "area"));
 }
 
 /// Of this process from here on: what is freed goes back to the system. 9 to 14 % less at the peak of a dense area at LoD3, for 1 %
@@ -166,6 +177,7 @@ class AreaBuild {
     progress_.begin("documents");
     Overview overview(named_, survey_.facts, store.figures());
     for (const AreaPart& part : parts_) overview.add(part.choice.id, place_of(part.choice.id));
+    overview.add(survey_.rows);
     overview.sum_up(summary_);
     refuse_shrunk(options_, summary_, earlier_);
     overview.write(folder_, survey_.unmatched, summary_);
@@ -242,24 +254,29 @@ class AreaBuild {
       at_once_ = std::clamp<std::size_t>(static_cast<std::size_t>(options_.memory_limit) / each, 1,
                                          static_cast<std::size_t>(workers));
       if (static_cast<std::uint64_t>(options_.memory_limit) < each)
-        progress_.warn(fmt::format("--memory-limit: one area needs about {}. Choose smaller ones, --areas {}",
-                                   base::with_byte_unit(each), options_.areas + 1));
+        progress_.warn(fmt::format("--memory-limit: one area needs about {}. {}", base::with_byte_unit(each),
+                                   options_.areas < kMostDivided
+                                       ? fmt::format("Choose smaller ones, --areas {}", options_.areas + 1)
+                                       : std::string("There are no smaller ones")));
     }
     jobs_ = std::max(1, workers / static_cast<int>(at_once_));
   }
 
-  /// The same area of the earlier build, where it was made from the same.
+  /// The same area of the earlier build, where it was made from the same and is whole.
   bool take_over(std::size_t i) {
     if (options_.earlier.empty() || options_.settings.empty()) return false;
     const std::string from = options_.earlier + "/" + area_path(parts_[i].choice.id);
-    const Json run = json_of(from + "/run.json"), record = json_of(from + "/build.json");
-    if (!run.is_object() || run.value("made_from", "") != keys_[i] || !record.is_object() || !record.contains("files"))
-      return false;
+    const Json run = json_of(from + "/run.json");
+    if (!run.is_object() || text_in(run, "made_from") != keys_[i]) return false;
     std::vector<std::string> paths = {"build.json", "run.json"};
-    for (const auto& [path, file] : record["files"].items()) {
-      std::error_code error;
-      if (fs::file_size(from + "/" + path, error) != file.value("bytes", std::uint64_t{0}) || error) return false;
-      paths.push_back(path);
+    try {
+      if (!is_whole(i, from, paths)) {
+        progress_.warn(fmt::format("{} is damaged: the area is built anew", from));
+        return false;
+      }
+    } catch (const nlohmann::json::exception&) {
+      progress_.warn(fmt::format("{} is damaged: the area is built anew", from));
+      return false;
     }
     if (!options_.plan)
       for (const std::string& path : paths) {
@@ -267,11 +284,34 @@ class AreaBuild {
         file.path = area_path(parts_[i].choice.id) + "/" + path;
         folder_.link(file, from + "/" + path);
       }
-    const Json tiles = run.value("tiles", Json::object());
-    summary_.tiles_kept += tiles.value("built", std::uint64_t{0}) + tiles.value("kept", std::uint64_t{0});
-    summary_.below_quality = summary_.below_quality || run.value("below_quality", false);
+    const auto count = [&](const char* key) {
+      const Json tiles = run.value("tiles", Json::object());
+      return tiles.contains(key) && tiles[key].is_number_unsigned() ? tiles[key].get<std::uint64_t>() : 0;
+    };
+    summary_.tiles_kept += count("built") + count("kept");
+    summary_.below_quality = summary_.below_quality || run.value("below_quality", Json(false)) == true;
     summary_.areas_taken_over.insert(text_of(parts_[i].choice.id));
     ++kept_;
+    return true;
+  }
+  /// Whether the area's record is the one that the record of the whole names, and its files are what it lists: by their size, and
+  /// where they were touched after the run that wrote them by their content. \param paths  gets them
+  bool is_whole(std::size_t i, const std::string& from, std::vector<std::string>& paths) {
+    if (earlier_record_.is_null()) earlier_record_ = json_of(options_.earlier + "/build.json");
+    const std::string area = text_of(parts_[i].choice.id);
+    std::error_code error;
+    if (!fs::is_regular_file(from + "/build.json", error) ||
+        base::sha256_file(from + "/build.json") != earlier_record_.at("areas").at(area).at("build_sha256"))
+      return false;
+    const fs::file_time_type written = fs::last_write_time(from + "/run.json", error);
+    const Json record = json_of(from + "/build.json");
+    for (const auto& [path, entry] : record.at("files").items()) {
+      const std::string place = from + "/" + path;
+      if (fs::path(path).lexically_normal() != path || path.starts_with("..") || path.starts_with("/")) return false;
+      if (fs::file_size(place, error) != entry.at("bytes").get<std::uint64_t>() || error) return false;
+      if (fs::last_write_time(place, error) > written && base::sha256_file(place) != entry.at("sha256")) return false;
+      paths.push_back(path);
+    }
     return true;
   }
   static Json json_of(const std::string& path) {
@@ -403,6 +443,7 @@ class AreaBuild {
   std::uint64_t peak_ = 0, own_peak_ = 0;
   double cpu_seconds_ = 0;
   std::set<std::string> told_;
+  Json earlier_record_;
   BuildSummary summary_;
 
   static BuildOptions with_name(BuildOptions options) {
@@ -426,8 +467,9 @@ BuildSummary build_one_area(const BuildOptions& options, base::Progress& progres
   if (!options.crs.empty()) throw base::UsageError("--area takes the CRS of --pinned: leave out --crs");
   BuildOptions of_area = options;
   of_area.name = name_of(options);
-  of_area.areas = parse_tile(options.area, "--area").level;
-  TileChoice choice = choose_area(parse_tile(options.area, "--area"), read_region_facts(options.pinned, options));
+  of_area.areas = parse_tile(options.area, "--area", kLowestArea).level;
+  TileChoice choice =
+      choose_area(parse_tile(options.area, "--area", kLowestArea), read_region_facts(options.pinned, options));
   of_area.area.clear(), of_area.pinned.clear();
   base::StagedFolder place(options.output + ".store", false, {.name = "store", .marker = "index"});
   divide(options, choice.id.level, place.staging_path(), progress);

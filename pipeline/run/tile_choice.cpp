@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string>
 
 #include "pipeline/base/error.h"
@@ -17,9 +18,8 @@ namespace blockrand::run {
 namespace {
 
 using model::MappedBuilding;
-using model::ObjectState;
 
-constexpr int kMinLevel = 8, kMaxLevel = 20;  // 0.7 degrees to 19 m: smaller tiles are all halo
+constexpr int kMaxLevel = 20;  // 19 m: smaller tiles are all halo
 
 /// What the images showed of the whole, from the file beside the pinned build.json.
 std::optional<outputs::ReadImagery> read_imagery(const std::string& pinned, const std::string& sha256) {
@@ -39,7 +39,7 @@ std::optional<outputs::ReadImagery> read_imagery(const std::string& pinned, cons
 
 }  // namespace
 
-model::TileId parse_tile(const std::string& text, std::string_view option) {
+model::TileId parse_tile(const std::string& text, std::string_view option, int lowest) {
   std::int64_t numbers[3];
   const char* at = text.data();
   const char* const end = at + text.size();
@@ -49,13 +49,13 @@ model::TileId parse_tile(const std::string& text, std::string_view option) {
     ok = error == std::errc() && (i == 2 ? next == end : next != end && *next == '/');
     at = next + 1;
   }
-  ok = ok && numbers[0] >= kMinLevel && numbers[0] <= kMaxLevel && numbers[1] >= 0 &&
-       numbers[1] < (2LL << numbers[0]) && numbers[2] >= 0 && numbers[2] < (1LL << numbers[0]);
+  ok = ok && numbers[0] >= lowest && numbers[0] <= kMaxLevel && numbers[1] >= 0 && numbers[1] < (2LL << numbers[0]) &&
+       numbers[2] >= 0 && numbers[2] < (1LL << numbers[0]);
   if (!ok)
     throw base::UsageError(
         std::string(option) + " " + text +
         " is no tile. Write level/x/y as in the file names below tiles/, for example 15/35207/25941; level from " +
-        std::to_string(kMinLevel) + " to " + std::to_string(kMaxLevel));
+        std::to_string(lowest) + " to " + std::to_string(kMaxLevel));
   return {static_cast<int>(numbers[0]), static_cast<std::uint32_t>(numbers[1]), static_cast<std::uint32_t>(numbers[2])};
 }
 
@@ -111,31 +111,32 @@ std::vector<std::size_t> shards_to_build(std::span<const footprints::Shard> shar
   return out;
 }
 
-void forget_others(model::Extract& extract, const TileChoice& tile, std::vector<model::ReportRow>& rows) {
-  std::vector<model::OsmId> kept;
-  const auto find = [&](model::OsmId id) -> const MappedBuilding* {
-    const auto place = std::lower_bound(extract.buildings.begin(), extract.buildings.end(), id,
-                                        [](const MappedBuilding& b, model::OsmId wanted) { return b.id < wanted; });
-    return place != extract.buildings.end() && place->id == id ? &*place : nullptr;
-  };
-  const auto is_here = [&](const MappedBuilding& b) {
-    // Modelled objects were built with this tile; what stands for others stands where it was built.
-    if (b.state == ObjectState::modelled) return true;
-    if (b.state == ObjectState::pending) return false;
-    if (b.state == ObjectState::represented)
-      if (const MappedBuilding* by = find(b.related)) return by->state != ObjectState::pending;
-    const std::optional<model::Location> place = b.rings.count > 0 ? footprints::box_centre(extract, b) : b.place;
-    return place ? georef::tile_of(*place, tile.id.level) == tile.id : tile.placeless;
-  };
+bool lies_in(const model::Extract& extract, const MappedBuilding& object, const TileChoice& tile) {
+  const std::optional<model::Location> place =
+      object.rings.count > 0 ? footprints::box_centre(extract, object) : object.place;
+  return place ? georef::tile_of(*place, tile.id.level) == tile.id : tile.placeless;
+}
+
+void forget_others(model::Extract& extract, const TileChoice& tile,
+                   const std::function<bool(const MappedBuilding&)>& is_here, std::vector<model::ReportRow>& rows) {
+  std::set<model::OsmId> others, features;
   std::vector<MappedBuilding> buildings;
   for (const MappedBuilding& b : extract.buildings)
-    if (is_here(b)) {
+    if (is_here(b))
       buildings.push_back(b);
-      kept.push_back(b.id);
-    }
+    else
+      others.insert(b.id);
+  for (const model::Feature& f : extract.features) {
+    if (f.rings.count == 0 || extract.rings[f.rings.first].vertices.count == 0) continue;
+    const model::Location first = extract.vertices_of(extract.rings[f.rings.first]).front();
+    if (georef::tile_of(first, tile.id.level) == tile.id) features.insert(f.id);
+  }
+  std::erase_if(rows, [&](const model::ReportRow& row) {
+    if (others.contains(row.object)) return true;
+    const bool is_building = std::ranges::binary_search(buildings, row.object, {}, &MappedBuilding::id);
+    return !is_building && !features.contains(row.object);
+  });
   extract.buildings = std::move(buildings);
-  std::erase_if(rows,
-                [&](const model::ReportRow& row) { return !std::binary_search(kept.begin(), kept.end(), row.object); });
 }
 
 }  // namespace blockrand::run

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -40,7 +41,9 @@ TileChoice choose_area(const model::TileId& area, RegionFacts facts);
 std::string text_of(const model::TileId& tile);
 
 /// Reads it. \throws base::UsageError  \param option  for messages
-model::TileId parse_tile(const std::string& text, std::string_view option);
+/// \param lowest  level
+model::TileId parse_tile(const std::string& text, std::string_view option, int lowest = 8);
+inline constexpr int kLowestArea = 1;
 
 /// What the options ask for; empty for the whole extract.
 /// \throws base::UsageError  `tile` is not "level/x/y", or lacks `pinned`, or contradicts other options
@@ -51,7 +54,13 @@ std::optional<TileChoice> choose_tile(const BuildOptions& options);
 std::vector<std::size_t> shards_to_build(std::span<const footprints::Shard> shards,
                                          const std::optional<TileChoice>& tile);
 
-/// Removes the objects of other tiles from the extract, and their rows: they were read as surroundings only.
-void forget_others(model::Extract& extract, const TileChoice& tile, std::vector<model::ReportRow>& rows);
+/// Whether the middle of an object is in the tile; one without a place: whether the tile tells of such.
+bool lies_in(const model::Extract& extract, const model::MappedBuilding& object, const TileChoice& tile);
+
+/// Removes the objects of other tiles from the extract, and their rows: they were read as surroundings only. Rows of what is no
+/// building belong to the tile of its first vertex.
+void forget_others(model::Extract& extract, const TileChoice& tile,
+                   const std::function<bool(const model::MappedBuilding&)>& is_here,
+                   std::vector<model::ReportRow>& rows);
 
 }  // namespace blockrand::run

@@ -146,11 +146,14 @@ constexpr int kUsualAreas = 11;
 /// What the settings say, else what the region's first build chose: areas that change their size change every path.
 int areas_for(const UpdateOptions& options, const std::string& data, std::optional<int> current,
               const DataState& before) {
-  if (options.build.areas > 0) return options.build.areas;
+  constexpr int kAtOnce = 1;  // half of the globe as one area
+  if (options.build.areas > 0) return options.build.areas == kAtOnce ? 0 : options.build.areas;
   if (current) return before.areas;
   std::error_code error;
   const bool large = fs::file_size(data, error) > kLargeRegion && !error;
-  return large && options.build.imagery.images.empty() && !options.build.bbox ? kUsualAreas : 0;
+  const bool as_a_whole = options.build.outputs.single_glb || options.build.outputs.single_cityjson ||
+                          !options.build.imagery.images.empty() || options.build.bbox;
+  return large && !as_a_whole ? kUsualAreas : 0;
 }
 
 BuildOptions build_options_for(const UpdateOptions& options, const RegionFolder& region, int number,
@@ -176,7 +179,7 @@ BuildOptions build_options_for(const UpdateOptions& options, const RegionFolder&
 std::optional<importers::osm::ClipPolygon> polygon_of(const RegionOptions& options) {
   const std::string& path = options.polygon;
   if (path.empty()) return std::nullopt;
-  if (path.ends_with(".poly")) return importers::osm::ClipPolygon(importers::osm::read_poly_file(path));
+  if (path.ends_with(".poly")) return importers::osm::read_poly_file(path);
   std::vector<importers::osm::ClipPolygon::Rings> polygons;
   for (importers::polygons::PolygonFeature& feature : importers::polygons::read_polygons(path))
     std::ranges::move(feature.polygons, std::back_inserter(polygons));

@@ -21,9 +21,22 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+/// Nothing of ours is nested as deep.
+constexpr int kDeepest = 100;
+
+/// Null for what is no JSON, or nested so deep that a walk would not end well.
 Json json_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  return file ? Json::parse(file, nullptr, false) : Json();
+  if (!file) return {};
+  bool too_deep = false;
+  Json j = Json::parse(
+      file,
+      [&](int depth, Json::parse_event_t, Json&) {
+        too_deep = too_deep || depth > kDeepest;
+        return depth <= kDeepest;
+      },
+      false);
+  return too_deep || j.is_discarded() ? Json() : j;
 }
 
 bool is_area(const std::string& name) {
@@ -54,17 +67,17 @@ class AreasRun {
       : options_(options), progress_(progress), record_(json_of(full("build.json"))) {}
 
   Validation run() {
-    find_extract();
+    guarded("run.json", [&] { find_extract(); });
     for (const auto& [name, entry] : record_["areas"].items()) {
       if (!is_area(name)) {
         log().add(Check::build_json, "build.json", "areas." + name, "is no area");
         continue;
       }
-      check_area(name, entry);
+      guarded("build.json", [&] { check_area(name, entry); });
     }
-    check_files();
-    check_tileset();
-    check_sums();
+    guarded("build.json", [&] { check_files(); });
+    guarded("tileset.json", [&] { check_tileset(); });
+    guarded("build.json", [&] { check_sums(); });
     v_.checked.insert(v_.checked.begin(), {"areas", "each as a build of its own; hashes of their build.json, sums",
                                            record_["areas"].size(), "areas"});
     return std::move(v_);
@@ -72,6 +85,15 @@ class AreasRun {
 
  private:
   FindingLog& log() { return v_.findings; }
+  /// What has another type than it should is a finding.
+  template <class Check_>
+  void guarded(const char* file, Check_&& check) {
+    try {
+      check();
+    } catch (const nlohmann::json::exception& error) {
+      log().add(Check::file_unreadable, file, "", error.what());
+    }
+  }
   std::string full(const std::string& path) const { return options_.folder + "/" + path; }
 
   /// The file that the data came from: where it is what it was. An area that was taken over knows an older one.

@@ -1,15 +1,17 @@
 """A build in areas: every tile is that of a build at once, whoever builds it and however often it was broken off."""
 import glob
 import json
+import math
 import os
 import random
 import shutil
 import signal
 import subprocess
+import sys
 import time
 
-from blockrand_run import SAMPLE, BuildTest, Setup, blockrand, hashes, main, read_json, stray_siblings
-from osm_files import Node, Way, read_xml, town, write_xml
+from blockrand_run import SAMPLE, BuildTest, Setup, blockrand, extract, hashes, main, read_json, stray_siblings
+from osm_files import METRE, Node, Way, house, read_xml, ring, town, write_xml
 from region_run import LIMITS_OFF, Map, RegionTest
 
 LEVEL = '14'
@@ -88,6 +90,50 @@ class Areas(BuildTest):
                 sound = blockrand('validate', divided, '--extract', source)
                 self.assertEqual(sound.code, 0, sound)
 
+    def test_real_places(self):
+        """Blocks, rows and relations across the borders of areas: what is told of them is what a build at once tells."""
+        for name, level, lod in (('monaco-2021.osm.pbf', '12', '1'), ('limerick-2026.osm.gz', '14', '1')):
+            source = extract(name)
+            if source is None:
+                self.skipTest('the shared data is absent')
+            with self.subTest(name):
+                at_once = self.build(source, 'real_once', '--lod', lod, '--force', '--allow-shrink', '100')
+                divided = self.build(source, 'real_divided', '--lod', lod, '--force', '--allow-shrink', '100', '--areas', level)
+                self.assertGreater(len(areas(divided)), 1)
+                self.assertEqual(tile_files(at_once), in_areas(divided))
+                one, all_ = read_json(at_once, 'build.json'), read_json(divided, 'build.json')
+                self.assertEqual(one['issues'], all_['issues'])
+                for key, count in all_['counts'].items():
+                    self.assertEqual(one['counts'][key], count, key)
+                # A party wall between two areas is an outer wall of both (docs/nightly.md).
+                for key, value in one['statistics'].items():
+                    if isinstance(value, int) and 'party' not in key:
+                        self.assertEqual(all_['statistics'][key], value, key)
+                sound = blockrand('validate', divided, '--extract', source)
+                self.assertEqual(sound.code, 0, sound)
+                if shutil.which('ogrinfo'):
+                    layer = subprocess.run(['ogrinfo', '-so', '-ro', os.path.join(divided, 'buildings.vrt'), 'buildings'], capture_output=True, text=True, check=True)
+                    self.assertIn(f'Feature Count: {all_["counts"]["buildings"]}', layer.stdout)
+                    self.assertEqual(layer.stderr.count('ERROR'), 0, layer.stderr)
+
+    def test_an_object_that_another_area_stands_for(self):
+        """An outline that is covered by two houses, of which one lies in the next area."""
+        size = 180 / 2 ** int(LEVEL)
+        border, south = -180 + round((11 + 180) / size) * size, 51.5
+
+        def plan(number, west, east):
+            corners = [(border + x * METRE * 1.6, south + y * METRE) for x, y in ((west, 0), (east, 0), (east, 15), (west, 15))]
+            return ring(500000 + 100 * number, 7000 + number, corners, {'building': 'yes'})
+        objects = [o for i in range(10) for o in house(i, border + (i - 5) * 40 * METRE * 1.6, south + 60 * METRE, stretch=1.6)]
+        objects += plan(0, -20, 19.6) + plan(1, -5, 19.6) + plan(2, -20, -5)
+        source = write_xml(self.path('cover.osm'), sorted(objects, key=lambda o: (isinstance(o, Way), o.id)))
+        at_once = self.build(source, 'cover_once', *QUICK)
+        divided = self.build(source, 'cover_divided', *QUICK, '--areas', LEVEL)
+        one, all_ = read_json(at_once, 'build.json'), read_json(divided, 'build.json')
+        self.assertEqual((one['counts']['represented'], len(areas(divided))), (1, 2))
+        self.assertEqual({k: one['counts'][k] for k in all_['counts']}, all_['counts'])
+        self.assertEqual(one['issues'], all_['issues'])
+
     def test_whoever_builds_an_area(self):
         divided = self.build(self.town, 'all', *QUICK, '--areas', LEVEL)
         for other in (('--jobs', '1'), ('--jobs', '2', '--memory-limit', '8000000000')):
@@ -157,6 +203,8 @@ class Areas(BuildTest):
         self.refused(blockrand('build', self.town, '-o', target, '--area', '14/1/1', '--pinned', pinned, *QUICK), 2, 'has no area', target=target)
         self.refused(blockrand('build', self.town, '-o', target, '--area', 'here', '--pinned', pinned, *QUICK), 1, 'is no tile', target=target)
         self.refused(blockrand('build', self.town, '-o', target, '--areas', '15'), 1, '--areas', target=target)
+        self.refused(blockrand('build', self.town, '-o', target, '--areas', '12', '--single-glb'), 1, '--single-glb', target=target)
+        self.refused(blockrand('build', self.town, '-o', target, '--memory-limit', '1000'), 1, '--memory-limit', target=target)
 
     def test_files_of_others_stay(self):
         divided = self.build(self.town, 'foreign', *QUICK, '--areas', LEVEL)
@@ -182,6 +230,35 @@ class Areas(BuildTest):
             self.assertIn(code, found.out)
         shutil.rmtree(area)
         self.assertIn('FILE_MISSING', blockrand('validate', divided).out)
+
+    def test_documents_of_another_form(self):
+        """What has another type than it should, or is nested without end, is a finding."""
+        divided = self.build(self.town, 'form', *QUICK, '--areas', LEVEL)
+        area = areas(divided)[0]
+
+        def deep(j):
+            for _ in range(3000):
+                j = {'boundingVolume': j['boundingVolume'], 'geometricError': 1, 'children': [j]}
+            return j
+        cases = (('build.json', lambda j: j['areas'].update({area: 5})), ('build.json', lambda j: j['areas'][area].update(build_sha256=5)),
+                 ('build.json', lambda j: j.update(counts='many')), ('build.json', lambda j: j.update(files={'tileset.json': 7})),
+                 ('tileset.json', lambda j: j['root'].update(geometricError='x')), ('tileset.json', lambda j: j['root'].update(children=3)),
+                 ('tileset.json', lambda j: j['root']['boundingVolume'].update(region=list('abcdef'))),
+                 ('tileset.json', lambda j: j.update(root=deep(j['root']))), ('run.json', lambda j: j.update(inputs=[{'role': 4, 'path': 5}])))
+        for name, change in cases:
+            path = os.path.join(divided, name)
+            with open(path, encoding='utf-8') as f:
+                text = f.read()
+            document = json.loads(text)
+            change(document)
+            sys.setrecursionlimit(20000)
+            with open(path, 'w', encoding='utf-8') as f:
+                json.dump(document, f)
+            with self.subTest(name + json.dumps(document)[-60:]):
+                self.assertEqual(blockrand('validate', divided).code, 2)
+            with open(path, 'w', encoding='utf-8') as f:
+                f.write(text)
+        self.assertEqual(blockrand('validate', divided).code, 0)
 
     def test_a_worker_that_is_killed(self):
         """The last good build stays; what was done is kept."""
@@ -276,6 +353,25 @@ class RegionInAreas(RegionTest):
             one, other = os.path.join(before, path), os.path.join(self.current(folder), path)
             linked += os.path.exists(one) and os.path.samefile(one, other)
         self.assertGreater(linked, 10)
+        # A published file is damaged in an area where nothing differs, the record of another one: both are built anew, and the rest stays.
+        def same(path):
+            return os.path.samefile(os.path.join(before, path), os.path.join(self.current(folder), path))
+        taken = [p for p in hashes(self.current(folder), 'areas') if p.endswith('.glb') and same(p.split('/tiles/')[0] + '/run.json')]
+        with open(os.path.join(self.current(folder), taken[0]), 'r+b') as f:
+            f.seek(200)
+            f.write(b'!!')
+        map_.edit(house, tags=dict(house.tags, **{'building:levels': '3'}))
+        self.assertIn('is damaged', self.update(folder, map_.write_changes(self.path('two.osc'))).err)
+        self.assertEqual(blockrand('validate', self.current(folder)).code, 0)
+        record = os.path.join(self.current(folder), taken[0].split('/tiles/')[0], 'build.json')
+        with open(record, encoding='utf-8') as f:
+            text = f.read()
+        os.remove(record)  # not what it is linked to
+        with open(record, 'w', encoding='utf-8') as f:
+            f.write(text.replace('"models": ', '"models": 9', 1))
+        map_.edit(house, tags=dict(house.tags, **{'building:levels': '4'}))
+        self.assertIn('is damaged', self.update(folder, map_.write_changes(self.path('two.osc'))).err)
+        self.assertEqual(blockrand('validate', self.current(folder)).code, 0)
         # What a later night takes over must still find its kept work.
         house = next(w for w in map_.ways('building') if w.id > far)
         map_.edit(house, tags=dict(house.tags, **{'building:levels': '7'}))

@@ -341,6 +341,18 @@ class Care(RegionTest):
                     self.assertIn('outside of the polygon', run.out)
                     same(self.current(folder), self.clean(whole.clipped(inside), folder, *options, *crs))
 
+                # A night in which a house leaves and nothing else happens; an older change that comes late brings it not back.
+                house = next(o for o in whole.ways('building') if all(inside(whole.objects[(0, r)].lon, whole.objects[(0, r)].lat) for r in o.refs))
+                corners = [whole.objects[(0, r)] for r in house.refs[:-1]]
+                late = Map(whole.objects.values())
+                for n in corners:
+                    whole.edit(n, lon=n.lon + 1)
+                whole.edit(house, tags=house.tags)
+                self.assertIn('is published', self.update(folder, whole.write_changes(self.path('leaves.osc'))).out)
+                same(self.current(folder), self.clean(whole.clipped(inside), folder, *options, *crs))
+                late.changes = [('modify', o) for o in (house, *corners)]
+                self.assertIn('nothing to build', self.update(folder, late.write_changes(self.path('late.osc'))).out)
+
                 # A house grows into it by nodes that were outside, and that its change does not bring.
                 house = next(o for o in reversed(whole.ways('building')) if (0, o.refs[0]) in whole.objects
                              and not inside(whole.objects[(0, o.refs[0])].lon, whole.objects[(0, o.refs[0])].lat))

@@ -1,10 +1,12 @@
 #include "pipeline/outputs/geopackage/context_layers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
 #include "pipeline/geometry/polygon_measures.h"
+#include "pipeline/georef/tiles.h"
 #include "pipeline/outputs/buildings_here.h"
 
 namespace blockrand::outputs {
@@ -70,20 +72,30 @@ outputs::CellRow cell_row(const context::CellIndex& cell, const context::CellSum
 
 void write_context_layers(outputs::GeoPackageWriter& out, const context::ContextExtract& context,
                           const footprints::RepairedExtract& repaired, std::span<const footprints::Shard> shards,
-                          const std::optional<model::TileId>& tile) {
+                          const std::optional<model::TileId>& tile, const georef::Projection& projection) {
   const footprints::FootprintStore& store = repaired.footprints;
   const std::vector<bool> here = buildings_here(repaired, shards, tile);
   const auto any_here = [&](const std::vector<std::uint32_t>& buildings) {
     return !tile || std::any_of(buildings.begin(), buildings.end(), [&](std::uint32_t b) { return here[b]; });
   };
   std::map<std::uint32_t, std::int64_t> courtyards;
-  std::set<std::uint32_t> with_courtyard;  // blocks that rows of courtyards name
+  std::set<std::uint32_t> named;  // blocks, by rows of courtyards and buildings
+  for (std::uint32_t b = 0; b < store.size(); ++b)
+    if (here[b] && context.block_of[b] != model::kNoIndex) named.insert(context.block_of[b]);
   for (const context::ExtractCourtyard& yard : context.courtyards) {
     ++courtyards[yard.block];
-    if (any_here(yard.courtyard.buildings)) with_courtyard.insert(yard.block);
+    if (any_here(yard.courtyard.buildings)) named.insert(yard.block);
   }
+  const auto is_empty_and_here = [&](std::uint32_t b) {
+    if (!tile || !context.figures[b].buildings.empty()) return false;
+    const georef::LonLat corner = projection.inverse(context.blocks[b].polygon.outer.points.front());
+    constexpr double kUnits = 1e7;
+    return georef::tile_of({static_cast<std::int32_t>(std::lround(corner.lon * kUnits)),
+                            static_cast<std::int32_t>(std::lround(corner.lat * kUnits))},
+                           tile->level) == *tile;
+  };
   for (std::uint32_t b = 0; b < context.blocks.size(); ++b)
-    if (any_here(context.figures[b].buildings) || with_courtyard.contains(b))
+    if (any_here(context.figures[b].buildings) || named.contains(b) || is_empty_and_here(b))
       out.add_block(block_row(context.blocks[b], context.figures[b], context.lines, courtyards[b]));
   for (const context::ExtractCourtyard& yard : context.courtyards) {
     if (!any_here(yard.courtyard.buildings)) continue;

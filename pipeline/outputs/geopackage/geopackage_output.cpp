@@ -116,7 +116,8 @@ class GeoPackageOutput : public OutputOf<TileProduct> {
   }
   void finish(const FinishedBuild& build) override {
     add_reported(writer_, context_.extract, build.rows, context_.projection);
-    write_context_layers(writer_, context_.context, context_.repaired, context_.shards, context_.alone);
+    write_context_layers(writer_, context_.context, context_.repaired, context_.shards, context_.alone,
+                         context_.projection);
     if (context_.imagery)
       write_image_layer(writer_, *context_.imagery, context_.repaired, context_.shards, context_.alone);
     writer_.close();

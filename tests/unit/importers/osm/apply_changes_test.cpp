@@ -230,9 +230,17 @@ TEST(ClippedChanges, WhatLeavesAndEnters) {
   const AppliedChanges applied =
       apply_changes(folder.path("0.osm.pbf"), std::vector{change}, folder.path("1.osm.pbf"), &kEleven);
   // Way 1 left, with its nodes. Way 2 brought node 3 along. What was never here is not noted as deleted.
-  EXPECT_EQ(ids(folder.path("1.osm.pbf")), "n3 n4 w2 ");
+  // Nodes 1 and 2 are noted as gone.
+  EXPECT_EQ(ids(folder.path("1.osm.pbf")), "-n1 -n2 n3 n4 w2 ");
   EXPECT_EQ(applied.created, 3u) << "nodes 3 and 4, way 2";
-  EXPECT_EQ(applied.outside, 5u) << "nodes 1, 2, 5 and 8, way 3";
+  EXPECT_EQ(applied.deleted, 2u);
+  EXPECT_EQ(applied.outside, 3u) << "nodes 5 and 8, way 3";
+  // An older change that comes late brings them not back; a newer one, still outside, is nothing new.
+  const std::string old = folder.write("old.osc", changes("<modify>" + node(1, 1, 11.1) + "</modify>")),
+                    on = folder.write("on.osc", changes("<modify>" + node(1, 3, 14) + "</modify>"));
+  EXPECT_FALSE(apply_changes(folder.path("1.osm.pbf"), std::vector{old}, folder.path("1b.osm.pbf"), &kEleven).any());
+  EXPECT_EQ(ids(folder.path("1b.osm.pbf")), "-n1 -n2 n3 n4 w2 ");
+  EXPECT_FALSE(apply_changes(folder.path("1.osm.pbf"), std::vector{on}, folder.path("1c.osm.pbf"), &kEleven).any());
   // Without node 3 in the change the way lacks it, until a full extract comes.
   const std::string late =
       folder.write("late.osc", changes("<create>" + node(4, 1, 11.4) + plain_way(2, {4, 3}) + "</create>"));

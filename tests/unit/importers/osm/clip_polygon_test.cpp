@@ -87,20 +87,23 @@ TEST(PolyFile, SectionsAndHoles) {
   const std::string path = folder.write("a.poly",
                                         "place\r\n1\n  1.0E+01 5.0e1\n\t11 50\n 11.0 +51\n 10 51 \n 10 50\nEND\n!2\n "
                                         "10.4 50.4\n 10.6 50.4\n 10.5 50.6\nEND\nEND\n\n");
-  const std::vector<ClipPolygon::Rings> read = read_poly_file(path);
-  ASSERT_EQ(read.size(), 1u);
-  ASSERT_EQ(read[0].size(), 2u);
-  EXPECT_THAT(read[0][0], testing::ElementsAre(Location{100'000'000, 500'000'000}, Location{110'000'000, 500'000'000},
-                                               Location{110'000'000, 510'000'000}, Location{100'000'000, 510'000'000}));
-  const ClipPolygon area(read);
+  const ClipPolygon area = read_poly_file(path);
   EXPECT_TRUE(area.contains({101'000'000, 501'000'000}));
+  EXPECT_TRUE(area.contains({109'999'999, 509'999'999}));
+  EXPECT_FALSE(area.contains({110'000'001, 505'000'000}));
   EXPECT_FALSE(area.contains({105'000'000, 505'000'000}));
+  // What overlaps is no hole, and a hole outside of all is nothing.
+  const ClipPolygon two = read_poly_file(folder.write(
+      "b.poly", "x\n1\n 0 0\n 2 0\n 2 2\n 0 2\nEND\n2\n 1 0\n 3 0\n 3 2\n 1 2\nEND\n!3\n 8 8\n 9 8\n 9 9\nEND\nEND\n"));
+  EXPECT_TRUE(two.contains({15'000'000, 10'000'000}));
+  EXPECT_FALSE(two.contains({88'000'000, 85'000'000}));
 }
 
 TEST(PolyFile, WhatIsWrongIsToldWithItsLine) {
   const std::pair<const char*, const char*> cases[] = {{"", "breaks off"},
                                                        {"name\n", "breaks off"},
                                                        {"name\nEND\n", "no section"},
+                                                       {"name\n!1\n 1 1\n 2 1\n 2 2\nEND\nEND\n", "no section"},
                                                        {"name\n1\n 1 1\n 2 1\n 2 2\n", "breaks off"},
                                                        {"name\n1\n 1 1\n 2 1\n 2 2\nEND\n", "breaks off"},
                                                        {"name\n1\n 1 1\n 2 1\nEND\nEND\n", "line 5"},
