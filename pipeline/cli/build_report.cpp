@@ -126,7 +126,7 @@ std::string build_report(const run::BuildOptions& options, const run::BuildSumma
     if (std::filesystem::exists(folder + "/tileset.json"))
       place("tileset.json", "3D Tiles of all areas, for CesiumJS, QGIS 3.34+, Unreal, ...");
     if (std::filesystem::exists(folder + "/buildings.vrt"))
-      place("buildings.vrt", "footprints of all areas as one layer, for QGIS and GDAL");
+      place("buildings.vrt", "buildings of all areas as one layer, for QGIS and GDAL");
     if (options.outputs.report) place("report.html", "sums, and the way to each area's report");
   }
   for (const outputs::OutputFormat& format : outputs::all_outputs()) {

@@ -34,7 +34,16 @@ settings::CommandLine region_line(settings::Commands command, const std::vector<
   if (line.help) return line;
   const run::RegionFolder region(line.settings.region);
   std::error_code error;
-  if (!std::filesystem::exists(region.settings(), error)) return line;
+  // Data that are cut one night and not the next would be built whole again.
+  const auto refuse_polygon = [&](const settings::CommandLine& given, const std::string& in_file) {
+    if (given.settings.region_options.polygon != in_file)
+      throw base::UsageError(fmt::format("--polygon holds for all nights: write polygon = \"{}\" below [region] in {}",
+                                         given.settings.region_options.polygon, region.settings()));
+  };
+  if (!std::filesystem::exists(region.settings(), error)) {
+    refuse_polygon(line, "");
+    return line;
+  }
   settings::Settings file;
   sha256 = base::sha256_file(region.settings());
   settings::read_config(region.settings(), file, settings::kBuild | settings::kUpdate);
@@ -48,7 +57,10 @@ settings::CommandLine region_line(settings::Commands command, const std::vector<
   if (file.build.strict) refuse("strict", by_gates);
   if (file.build.allow_empty) refuse("allow_empty", by_gates);
   if (file.build.allow_shrink != fresh.allow_shrink) refuse("allow_shrink", by_gates);
-  return settings::read_command_line(command, arguments, std::move(file));
+  const std::string polygon = file.region_options.polygon;
+  settings::CommandLine whole = settings::read_command_line(command, arguments, std::move(file));
+  refuse_polygon(whole, polygon);
+  return whole;
 }
 
 std::string seconds_text(double seconds) {

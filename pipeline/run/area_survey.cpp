@@ -53,19 +53,23 @@ class Surveyor {
     shared_ = std::move(key.bytes);
   }
 
-  AreaFacts look(const importers::osm::StoredArea& area, const base::Memo* memo) const {
+  /// \param placeless  what has no place is looked at with it: orders for it match
+  AreaFacts look(const importers::osm::StoredArea& area, bool placeless, const base::Memo* memo) const {
     return base::remembered<AreaFacts>(
-        memo, "survey", [&](base::Packer& key) { key << area.tile << area.sha256 << shared_; },
-        [&] { return look_at(area.tile); });
+        memo, "survey",
+        [&](base::Packer& key) {
+          key << area.tile << area.sha256 << shared_ << (placeless ? store_.figures().sha256 : std::string());
+        },
+        [&] { return look_at(area.tile, placeless); });
   }
   const attributes::Overrides& overrides() const { return overrides_; }
 
  private:
-  AreaFacts look_at(const model::TileId& tile) const {
+  AreaFacts look_at(const model::TileId& tile, bool placeless) const {
     const georef::GeoBox box = georef::bounds(tile);
     importers::osm::ReadOptions read;
     read.bbox = {box.west, box.south, box.east, box.north};
-    model::Extract extract = store_.read(tile, read, false);
+    model::Extract extract = store_.read(tile, read, placeless);
     AreaFacts facts;
     std::set<std::uint32_t> matched;
     attributes::Overrides overrides = overrides_;
@@ -143,7 +147,7 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
   std::vector<attributes::NamedPlaceQuestion> named_places;
   std::map<std::tuple<std::string, std::string, model::OsmId>, attributes::PinnedArea> pins;
   for (const importers::osm::StoredArea& area : store.areas()) {
-    AreaFacts facts = surveyor.look(area, memo);
+    AreaFacts facts = surveyor.look(area, &area == store.areas().data() && store.has_placeless(), memo);
     if (facts.objects > 0) survey.objects[area.tile] = facts.objects;
     centres.insert(centres.end(), facts.centres.begin(), facts.centres.end());
     matched.insert(facts.matched.begin(), facts.matched.end());

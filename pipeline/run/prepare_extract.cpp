@@ -83,14 +83,15 @@ PreparedExtract prepare_extract(LocatedExtract& located, const BuildOptions& opt
       for (std::uint32_t i = 0; i < shards[shard].seeds.size(); ++i) asked.push_back(repaired.first[shard] + i);
     needed = evidence::needed_for(asked, repaired.footprints, context, tables);
   }
-  evidence::FactsExtract facts = evidence::facts_extract(
-      extract, repaired.footprints, repaired.first, context,
-      context::VicinityFinder(extract, repaired.footprints, context), workers, progress, memo, needed);
+  evidence::FactsExtract facts = evidence::facts_extract(extract, repaired.footprints, repaired.first, context,
+                                                         context::VicinityFinder(extract, repaired.footprints, context),
+                                                         workers, progress, memo, needed);
   evidence::TagFacts tags =
       evidence::tag_facts(extract, repaired.footprints, context, tables, located.projection, facts);
   malloc_trim(0);
   evidence::StyleExtract styles = evidence::classify_extract(
-      facts, tags, tables, evidence::prior_by_place(extract, repaired.footprints, book, tables), {}, workers, progress, needed);
+      facts, tags, tables, evidence::prior_by_place(extract, repaired.footprints, book, tables), {}, workers, progress,
+      needed);
   return {.shards = std::move(shards),
           .report = std::move(report),
           .kept = std::move(kept),

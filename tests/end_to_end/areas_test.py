@@ -163,6 +163,9 @@ class Areas(BuildTest):
         told = blockrand('explain', divided, f'w{number}')
         self.assertEqual(told.code, 0, told)
         self.assertIn('OPEN_WAY', told.out + told.err)
+        orders = self.place('lost.toml', f'[w{number}]\nstoreys = 3\n')
+        self.build(source, 'lost_ordered', *QUICK, '--areas', LEVEL, '--overrides', orders)
+        self.assertNotIn('match nothing', self.last.err)
 
     def test_explain_finds_every_house(self):
         divided = self.build(self.town, 'explained', *QUICK, '--areas', LEVEL)

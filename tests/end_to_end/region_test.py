@@ -368,6 +368,9 @@ class Care(RegionTest):
             self.place('area.poly', text)
             run = self.update(folder, self.path('whole.osm'), code=2)
             self.assertIn(word, run.err)
+        self.assertIn('below [region]', self.update(folder, '--polygon', self.path('area.geojson'), code=1).err)
+        self.assertIn('below [region]', self.update(self.path('none_yet'), self.path('whole.osm'), '--polygon', self.path('area.geojson'), code=1).err)
+        self.assertFalse(os.path.exists(self.path('none_yet')))
         os.remove(self.path('area.poly'))
         self.assertIn('area.poly', self.update(folder, self.path('whole.osm'), code=2).err)
 

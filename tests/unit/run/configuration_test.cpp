@@ -72,8 +72,8 @@ TEST(Configuration, KeepsItsOrder) {
   options.tile = "15/35207/25941";
   EXPECT_EQ(keys_of(configuration(options)),
             "lod formats report explain evidence gzip instancing compress single_glb single_cityjson seed tile bbox "
-            "objects citygml_detail attributes districts overrides terrain terrain_height_reference ground_height "
-            "repair generate "
+            "objects citygml_detail attributes max_glb_bytes districts overrides terrain terrain_height_reference "
+            "ground_height repair generate "
             "\nrepair: duplicate_distance spike_width min_piece_area ring_clearance parts_free_area parts_free_width "
             "simplify collinear_distance share_walls square fit_parts arcs settle_coverings resolve_overlaps "
             "max_ring_area_change snap_distance snap_reach snap_angle min_overlap max_shift max_area_change "

@@ -86,38 +86,30 @@ TEST_F(Pinned, MistakesAreNamed) {
   EXPECT_THAT(message<base::InputError>(options), HasSubstr("cannot be opened"));
 }
 
-TEST(ForgetOthers, KeepsWhatWasBuiltHereAndWhatItStandsFor) {
-  using model::ObjectState;
+/// Rows of what is no building belong to where it begins.
+TEST(ForgetOthers, RowsOfFeatures) {
   model::Extract e;
-  const auto add = [&](std::int64_t id, ObjectState state, std::int64_t related = 0) {
-    model::MappedBuilding b;
-    b.id = {model::OsmType::way, id};
-    b.state = state;
-    b.related = {model::OsmType::way, related};
-    b.place = model::Location{134'000'000, 525'000'000};
-    e.buildings.push_back(b);
-  };
-  add(1, ObjectState::modelled);
-  add(2, ObjectState::represented, 1);
-  add(3, ObjectState::pending);
-  add(4, ObjectState::represented, 3);  // by a building of another tile, though it lies here
-  add(5, ObjectState::reported);
-  add(6, ObjectState::duplicate, 3);
-  std::vector<model::ReportRow> rows = {{{model::OsmType::way, 2}, model::IssueCode::squared, ""},
-                                        {{model::OsmType::way, 4}, model::IssueCode::squared, ""}};
+  const model::OsmId near{model::OsmType::relation, 1}, far{model::OsmType::relation, 2},
+      unknown{model::OsmType::relation, 3};
+  for (const model::OsmId id : {near, far}) {
+    model::Feature f;
+    f.id = id;
+    f.rings = {static_cast<std::uint32_t>(e.rings.size()), 1};
+    model::MappedRing ring;
+    ring.vertices = {static_cast<std::uint32_t>(e.vertices.size()), 2};
+    e.rings.push_back(ring);
+    e.vertices.push_back({id == near ? 134'000'000 : 135'000'000, 525'000'000});
+    e.vertices.push_back({134'500'000, 525'000'000});
+    e.features.push_back(f);
+  }
+  std::vector<model::ReportRow> rows;
+  for (const model::OsmId id : {near, far, unknown}) rows.push_back({id, model::IssueCode::members_missing, ""});
   TileChoice here;
-  here.id = georef::tile_of(*e.buildings[0].place, 15);
-  forget_others(e, here, rows);
-  std::vector<std::int64_t> kept;
-  for (const model::MappedBuilding& b : e.buildings) kept.push_back(b.id.number);
-  EXPECT_THAT(kept, ::testing::ElementsAre(1, 2, 5, 6));
+  here.id = georef::tile_of(e.vertices.front(), 15);
+  forget_others(
+      e, here, [](const model::MappedBuilding&) { return true; }, rows);
   ASSERT_EQ(rows.size(), 1u);
-  EXPECT_EQ(rows[0].object.number, 2);
-  ++here.id.x;
-  forget_others(e, here, rows);
-  kept.clear();
-  for (const model::MappedBuilding& b : e.buildings) kept.push_back(b.id.number);
-  EXPECT_THAT(kept, ::testing::ElementsAre(1, 2)) << "what was reported lies elsewhere";
+  EXPECT_EQ(rows[0].object, near);
 }
 
 TEST(ForgetOthers, WhatHasNoPlaceIsToldInOneArea) {
@@ -131,7 +123,8 @@ TEST(ForgetOthers, WhatHasNoPlaceIsToldInOneArea) {
     TileChoice area = choose_area({11, 1093, 1500}, {});
     EXPECT_TRUE(area.is_area());
     area.placeless = told;
-    forget_others(e, area, rows);
+    forget_others(
+        e, area, [&](const model::MappedBuilding& object) { return lies_in(e, object, area); }, rows);
     EXPECT_EQ(e.buildings.size(), told ? 1u : 0u);
   }
 }
