@@ -504,9 +504,10 @@ Needed needed_for(std::span<const std::uint32_t> asked, const footprints::Footpr
   };
   // Middles lie in their boxes: what is near by its middle is near by its box, and so is what touches.
   std::vector<std::uint32_t> edge = grow(needed.styles, asked, kBeside);
-  for (int round = 0; round < std::max(1, tables.smoothing.rounds); ++round) edge = grow(needed.styles, edge, kNearReach);
-  const double reach = std::max({kNearReach, tables.era_votes.reach, tables.storeys_votes.reach, tables.roof_votes.reach,
-                                 tables.non_houses.equal_radius});
+  for (int round = 0; round < std::max(1, tables.smoothing.rounds); ++round)
+    edge = grow(needed.styles, edge, kNearReach);
+  const double reach = std::max({kNearReach, tables.era_votes.reach, tables.storeys_votes.reach,
+                                 tables.roof_votes.reach, tables.non_houses.equal_radius});
   std::vector<std::uint32_t> classified;
   std::vector<std::uint8_t> blocks(context.blocks.size(), 0);
   for (std::uint32_t b = 0; b < store.size(); ++b) {
@@ -524,8 +525,13 @@ StyleExtract classify_extract(const FactsExtract& facts, const TagFacts& tags, c
                               const PriorOf& prior, const ClassifyOptions& options, int workers,
                               base::Progress& progress, const Needed& needed) {
   progress.begin("classify");
-  Classifier classifier{
-      .facts = facts, .tags = tags, .tables = tables, .prior = prior, .options = options, .needed = needed, .workers = workers};
+  Classifier classifier{.facts = facts,
+                        .tags = tags,
+                        .tables = tables,
+                        .prior = prior,
+                        .options = options,
+                        .needed = needed,
+                        .workers = workers};
   StyleExtract& out = classifier.out;
   out.styles.resize(classifier.n);
   out.storeys.resize(classifier.n);

@@ -109,9 +109,8 @@ class Tree {
 std::map<std::string, std::string> nested_tilesets(const std::vector<NestedTileset>& tilesets, const Json& asset,
                                                    std::size_t most) {
   if (!tilesets.empty()) return Tree(asset, most).write(tilesets);
-  Json root = {{"boundingVolume", {{"box", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}}}},
-               {"geometricError", 0},
-               {"refine", "ADD"}};
+  Json root = {
+      {"boundingVolume", {{"box", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}}}}, {"geometricError", 0}, {"refine", "ADD"}};
   return {{"tileset.json", Json({{"asset", asset}, {"geometricError", 0}, {"root", std::move(root)}}).dump() + "\n"}};
 }
 
