@@ -141,17 +141,6 @@ attributes::AssignInputs assign_inputs(const BuildOptions& options, const BuildI
           .seed = options.seed};
 }
 
-/// \throws base::OutputError  too little space, with a reserve of a quarter
-void check_free_space(const BuildOptions& options, std::uint64_t buildings, const base::StagedFolder& folder) {
-  const double each = outputs::bytes_per_building(options.outputs, options.lod);
-  const std::uint64_t wanted = static_cast<std::uint64_t>(1.25 * each * static_cast<double>(buildings)) + 1'000'000;
-  const std::uint64_t free = folder.free_bytes();
-  if (wanted > free)
-    throw base::OutputError(fmt::format(
-        "{}: about {} needed, {} free. Free some space, choose another disk with -o, fewer --formats or --gzip",
-        options.output, base::with_byte_unit(wanted), base::with_byte_unit(free)));
-}
-
 // ---- the tiles
 
 /// What the tiles add up to, taken in their order.

@@ -332,6 +332,7 @@ class AreaBuild {
         done += objects->second;
     }
     progress_.advance_to(done);
+    if (!options_.plan) check_free_space(options_, all - done, folder_);  // now, not when half of the areas are done
     BuildOptions of_area = named_;
     of_area.force = false;
     of_area.jobs = jobs_;

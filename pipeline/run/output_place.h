@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/publish.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/options.h"
 
@@ -27,5 +28,8 @@ std::optional<std::uint64_t> earlier_models(const std::string& folder);
 /// \param earlier  models of the build that is to be replaced
 /// \throws base::InputError  the new build has no models, or fewer than BuildOptions::allow_shrink lets go
 void refuse_shrunk(const BuildOptions& options, const BuildSummary& summary, std::optional<std::uint64_t> earlier);
+
+/// \throws base::OutputError  too little space for so many buildings, with a reserve of a quarter
+void check_free_space(const BuildOptions& options, std::uint64_t buildings, const base::StagedFolder& folder);
 
 }  // namespace blockrand::run

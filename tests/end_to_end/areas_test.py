@@ -331,6 +331,22 @@ class RegionInAreas(RegionTest):
         self.assertEqual(blockrand('rollback', folder).code, 0)
         self.assertEqual(blockrand('status', folder).code, 0)
 
+    def test_in_areas_and_at_once_again(self):
+        """areas = 1 is a build at once; a region may change between the two."""
+        map_ = Map(town(300))
+        folder = self.region('both', self.SETTINGS)
+        self.update(folder, map_.write(self.path('both.osm')))
+        self.assertTrue(areas(self.current(folder)))
+        for setting, divided in (('1', False), (LEVEL, True), ('1', False)):
+            with open(os.path.join(folder, 'region.toml'), 'w', encoding='utf-8') as f:
+                f.write(self.SETTINGS.replace(f'areas = {LEVEL}', f'areas = {setting}'))
+            self.assertIn('0 new, 0 gone; 0 footprints and 0 values differ', self.update(folder).out)
+            self.assertEqual(bool(areas(self.current(folder))), divided)
+            options = ('--areas', LEVEL) if divided else ()
+            clean = self.clean(map_, folder, '--lod', '2', *options)
+            first, second = (without_runs(hashes(f)) for f in (self.current(folder), clean))
+            self.assertEqual(sorted(p for p in first.keys() | second.keys() if first.get(p) != second.get(p)), [])
+
     def test_far_areas_stay_as_they_are(self):
         """Two towns 40 km apart: an edit in one touches nothing of the other."""
         objects = town(400)
