@@ -257,7 +257,7 @@ class AreaBuild {
         progress_.warn(fmt::format("--memory-limit: one area needs about {}. {}", base::with_byte_unit(each),
                                    options_.areas < kMostDivided
                                        ? fmt::format("Choose smaller ones, --areas {}", options_.areas + 1)
-                                       : std::string("There are no smaller ones")));
+                                       : std::string("Smaller ones would hardly need less")));
     }
     jobs_ = std::max(1, workers / static_cast<int>(at_once_));
   }
