@@ -116,7 +116,7 @@ void add(Statistics& sum, const Statistics& s) {
   masses::add(sum.roofscape, s.roofscape);
 }
 
-void settle_party_walls(std::vector<PartySide> sides, Statistics& sum) {
+void settle_party_walls(std::vector<PartySide> sides, Statistics& sum, std::vector<PartySide>* alone) {
   std::sort(sides.begin(), sides.end(), [](const PartySide& a, const PartySide& b) {
     return a.wall != b.wall ? a.wall < b.wall : std::tie(a.top, a.base) < std::tie(b.top, b.base);
   });
@@ -126,6 +126,7 @@ void settle_party_walls(std::vector<PartySide> sides, Statistics& sum) {
     if (j - i < 2) {
       // The neighbour was not built: the wall stands free.
       sum.outer_wall_area += sides[i].length * (sides[i].top - sides[i].base);
+      if (alone) alone->push_back(sides[i]);
     } else {
       const PartySide& lower = sides[j - 2];  // the second highest meets the highest
       const PartySide& upper = sides[j - 1];

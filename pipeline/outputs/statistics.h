@@ -54,7 +54,7 @@ TileStatistics count_statistics(const model::Region& region);
 void add(Statistics& sum, const Statistics& tile);
 
 /// Pairs up the sides of shared walls: each shows what the other does not cover, above and, on a
-/// slope, below.
-void settle_party_walls(std::vector<PartySide> sides, Statistics& sum);
+/// slope, below. \param alone  gets the sides whose other is not among them, which count as outer walls; null: nobody asks
+void settle_party_walls(std::vector<PartySide> sides, Statistics& sum, std::vector<PartySide>* alone = nullptr);
 
 }  // namespace blockrand::outputs

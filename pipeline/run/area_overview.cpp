@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -264,6 +265,17 @@ void Overview::add(std::vector<model::ReportRow> rows) {
     count = (count.is_null() ? 0 : count.get<std::int64_t>()) + 1;
   }
   state_->elsewhere = std::move(rows);
+}
+
+void Overview::settle(std::vector<outputs::PartySide> open) {
+  outputs::Statistics found;
+  for (const outputs::PartySide& side : open) found.outer_wall_area -= side.length * (side.top - side.base);
+  outputs::settle_party_walls(std::move(open), found);
+  const auto hundredths = [](double v) { return std::nearbyint(v * 100) / 100; };
+  add_numbers(state_->statistics, {{"outer_wall_area_m2", hundredths(found.outer_wall_area)},
+                                   {"party_walls", found.party_walls},
+                                   {"party_wall_length_m", hundredths(found.party_wall_length)},
+                                   {"party_wall_area_m2", hundredths(found.party_wall_area)}});
 }
 
 void Overview::sum_up(BuildSummary& summary) const {

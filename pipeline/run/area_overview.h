@@ -8,6 +8,7 @@
 
 #include "importers/osm/extract_store.h"
 #include "pipeline/base/publish.h"
+#include "pipeline/outputs/statistics.h"
 #include "pipeline/run/build.h"
 #include "pipeline/run/region_facts.h"
 
@@ -36,6 +37,9 @@ class Overview {
 
   /// Rows of what lies in no area that is built.
   void add(std::vector<model::ReportRow> rows);
+
+  /// Party walls between buildings of two areas, which both counted as outer walls. \param open  of all areas
+  void settle(std::vector<outputs::PartySide> open);
 
   /// Counts and issues of all, files and bytes.
   void sum_up(BuildSummary& summary) const;

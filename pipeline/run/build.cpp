@@ -166,7 +166,8 @@ struct Sums {
     if (open.keeps_whole) append_region(whole, std::move(tile.region), options.outputs.evidence);
   }
   void settle(BuildRecord& record) {
-    outputs::settle_party_walls(std::move(party_sides), record.statistics);
+    outputs::settle_party_walls(std::move(party_sides), record.statistics,
+                                record.area ? &record.summary.open_walls : nullptr);
     masses::settle_slope_ends(slope_ends, record.statistics.roofscape);
     record.summary.roofscape = record.statistics.roofscape;
   }

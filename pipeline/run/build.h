@@ -10,6 +10,7 @@
 #include "pipeline/base/progress.h"
 #include "pipeline/masses/roofscape.h"
 #include "pipeline/outputs/object_counts.h"
+#include "pipeline/outputs/statistics.h"
 #include "pipeline/run/options.h"
 
 namespace blockrand::run {
@@ -30,6 +31,7 @@ struct BuildSummary : outputs::ObjectCounts {
   std::uint64_t areas = 0, areas_kept = 0;  ///< of a build in areas: all, and those of the earlier build
   std::set<std::string> areas_taken_over;   ///< the latter by name
   std::set<std::string> kept_work_of_areas;  ///< as kept_work, each behind the area that used it: "11/1093/805 tiles/…"
+  std::vector<outputs::PartySide> open_walls;  ///< of an area: party walls whose other side is not in it
   std::set<std::string> kept_work;           ///< what the run used or left in the cache (WorkCache::used)
   std::map<std::string, std::string, std::less<>> figures;  ///< of single files, in words, by path
   bool below_quality = false;                               ///< a building is simpler than asked, or has no solid

@@ -58,11 +58,13 @@ struct AreaOutcome {
   bool below_quality = false;
   std::vector<std::string> unaccounted;
   std::string folder;
+  std::vector<outputs::PartySide> open_walls;
 };
 
 AreaOutcome outcome_of(BuildSummary&& s) {
   return {s.tiles_built,          s.tiles_kept,    s.planned_tile_seconds,   std::move(s.tiles_built_for),
-          std::move(s.kept_work), s.below_quality, std::move(s.unaccounted), std::move(s.folder)};
+          std::move(s.kept_work), s.below_quality, std::move(s.unaccounted), std::move(s.folder),
+          std::move(s.open_walls)};
 }
 
 void refuse_contradictions(const BuildOptions& options) {
@@ -178,6 +180,7 @@ class AreaBuild {
     Overview overview(named_, survey_.facts, store.figures());
     for (const AreaPart& part : parts_) overview.add(part.choice.id, place_of(part.choice.id));
     overview.add(survey_.rows);
+    overview.settle(std::move(open_walls_));
     overview.sum_up(summary_);
     refuse_shrunk(options_, summary_, earlier_);
     overview.write(folder_, survey_.unmatched, summary_);
@@ -290,6 +293,12 @@ class AreaBuild {
     };
     summary_.tiles_kept += count("built") + count("kept");
     summary_.below_quality = summary_.below_quality || run.value("below_quality", Json(false)) == true;
+    if (const Json open = run.value("open_walls", Json()); open.is_array())
+      for (const Json& side : open)
+        if (side.is_array() && side.size() == 4 && side[0].is_number_unsigned() && side[1].is_number() &&
+            side[2].is_number() && side[3].is_number())
+          open_walls_.push_back(
+              {side[0].get<std::uint64_t>(), side[1].get<double>(), side[2].get<double>(), side[3].get<double>()});
     summary_.areas_taken_over.insert(text_of(parts_[i].choice.id));
     ++kept_;
     return true;
@@ -373,6 +382,10 @@ class AreaBuild {
     Json run = json_of(place + "/run.json");
     run["made_from"] = keys_[i];
     run["below_quality"] = outcome.below_quality;
+    run["open_walls"] = Json::array();
+    for (const outputs::PartySide& side : outcome.open_walls)
+      run["open_walls"].push_back({side.wall, side.length, side.base, side.top});
+    open_walls_.insert(open_walls_.end(), outcome.open_walls.begin(), outcome.open_walls.end());
     folder_.write(area_path(parts_[i].choice.id) + "/run.json.new", run.dump(1) + "\n");
     std::error_code error;
     fs::rename(place + "/run.json.new", place + "/run.json", error);
@@ -445,6 +458,7 @@ class AreaBuild {
   double cpu_seconds_ = 0;
   std::set<std::string> told_;
   Json earlier_record_;
+  std::vector<outputs::PartySide> open_walls_;  ///< of all areas
   BuildSummary summary_;
 
   static BuildOptions with_name(BuildOptions options) {
