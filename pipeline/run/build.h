@@ -32,7 +32,7 @@ struct BuildSummary : outputs::ObjectCounts {
   std::set<std::string> areas_taken_over;   ///< the latter by name
   std::set<std::string> kept_work_of_areas;  ///< as kept_work, each behind the area that used it: "11/1093/805 tiles/…"
   std::vector<outputs::PartySide> open_walls;  ///< of an area: party walls whose other side is not in it
-  std::set<std::string> kept_work;           ///< what the run used or left in the cache (WorkCache::used)
+  std::set<std::string> kept_work;             ///< what the run used or left in the cache (WorkCache::used)
   std::map<std::string, std::string, std::less<>> figures;  ///< of single files, in words, by path
   bool below_quality = false;                               ///< a building is simpler than asked, or has no solid
   std::uint64_t images_misfit = 0;                          ///< aerial images that do not fit the map
