@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "pipeline/attributes/assign_extract.h"
@@ -29,6 +30,7 @@ struct AreaFacts {
   std::uint64_t objects = 0;                 ///< mapped objects
   std::vector<attributes::PinnedArea> pins;  ///< large areas that rules ask for
   std::vector<std::uint32_t> matched;        ///< orders: indices
+  std::map<std::uint32_t, std::string> why;  ///< orders that find their object and cannot be followed
   std::set<std::uint32_t> rule_sets;         ///< that hold for a building
   std::vector<attributes::NamedPlaceQuestion> named_places;
   std::vector<model::ReportRow> rows;  ///< where there are no objects
@@ -78,7 +80,11 @@ class Surveyor {
     for (std::uint32_t i = 0; i < overrides.entries.size(); ++i) matched.insert(i);
     for (const model::ReportRow& row : report.rows)
       for (std::uint32_t i = 0; i < overrides.entries.size(); ++i)
-        if (overrides.entries[i].object == row.object) matched.erase(i);
+        if (overrides.entries[i].object == row.object) {
+          matched.erase(i);
+          if (std::ranges::binary_search(extract.buildings, row.object, {}, &model::MappedBuilding::id))
+            facts.why[i] = row.detail;
+        }
     facts.matched.assign(matched.begin(), matched.end());
     for (const model::MappedBuilding& b : extract.buildings) {
       const std::optional<model::Location> place =
@@ -144,6 +150,7 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
   RegionSurvey survey;
   std::vector<model::Location> centres;
   std::set<std::uint32_t> matched, rule_sets;
+  std::map<std::uint32_t, std::string> why;
   std::vector<attributes::NamedPlaceQuestion> named_places;
   std::map<std::tuple<std::string, std::string, model::OsmId>, attributes::PinnedArea> pins;
   for (const importers::osm::StoredArea& area : store.areas()) {
@@ -152,6 +159,7 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
     centres.insert(centres.end(), facts.centres.begin(), facts.centres.end());
     matched.insert(facts.matched.begin(), facts.matched.end());
     survey.rows.insert(survey.rows.end(), facts.rows.begin(), facts.rows.end());
+    why.merge(facts.why);
     rule_sets.insert(facts.rule_sets.begin(), facts.rule_sets.end());
     if (named_places.empty())
       named_places = std::move(facts.named_places);
@@ -165,8 +173,9 @@ RegionSurvey survey_region(const importers::osm::ExtractStore& store, const Buil
   const attributes::Overrides& orders = surveyor.overrides();
   for (std::uint32_t i = 0; i < orders.entries.size(); ++i)
     if (!matched.contains(i))
-      survey.unmatched.push_back(
-          fmt::format("{}:{}: {}", orders.name, orders.entries[i].line, orders.entries[i].object.text()));
+      survey.unmatched.push_back(why.contains(i) ? orders.entries[i].object.text() + ", " + why[i]
+                                                 : fmt::format("{}:{}: {}", orders.name, orders.entries[i].line,
+                                                               orders.entries[i].object.text()));
   const std::optional<footprints::Area> area = footprints::area_of(centres);
   survey.has_outlines = area.has_value();
   if (area) survey.facts.box = area->box, survey.facts.centre = area->centre;
