@@ -202,7 +202,7 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
     for (std::size_t i = 0; i < in.size(); ++i)
       out[i] = frame.to_local({in[i].x, in[i].y, in[i].z + plane(in[i].x, in[i].y)});
   };
-  const Glb glb = write_glb(region, options);
+  Glb glb = write_glb(region, options);
   if (glb.triangles == 0) return std::nullopt;
   TileEntry entry;
   entry.id = id;
@@ -212,6 +212,7 @@ std::optional<TileEntry> write_glbs(FinishedTile& tile, const OutputContext& con
   const std::string place = entry.uri.substr(0, entry.uri.size() - std::string_view(".glb").size());
   const auto most = static_cast<std::size_t>(context.options.max_glb_bytes);
   if (most > 0 && glb.bytes.size() > most) {
+    std::string().swap(glb.bytes);  // room for the pieces
     PieceWriter(tile, options, place, most, entry, context.folder).write();
     entry.uri.clear();
   } else {
