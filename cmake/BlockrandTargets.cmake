@@ -124,6 +124,25 @@ function(blockrand_library)
   set_property(GLOBAL APPEND PROPERTY blockrand_table "${ARG_FOLDER}|${ARG_LINKS};${ARG_PRIVATE_LINKS}")
 endfunction()
 
+# Files that are part of the program, such as style sheets and scripts: `asset("report/report.css")`, which HEADER declares.
+#   blockrand_assets(blockrand_outputs HEADER pipeline/outputs/assets.h NAMESPACE blockrand::outputs FILES report/report.css …)
+function(blockrand_assets target)
+  cmake_parse_arguments(ARG "" "HEADER;NAMESPACE;FOLDER" "FILES" ${ARGN})
+  if(NOT ARG_FOLDER)
+    set(ARG_FOLDER ${CMAKE_CURRENT_SOURCE_DIR})
+  endif()
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${target}_assets.cpp)
+  set(script ${CMAKE_SOURCE_DIR}/cmake/embed_assets.cmake)
+  set(paths ${ARG_FILES})
+  list(TRANSFORM paths PREPEND ${ARG_FOLDER}/)
+  list(JOIN ARG_FILES "," files)
+  add_custom_command(OUTPUT ${source} DEPENDS ${paths} ${script} VERBATIM
+    COMMAND ${CMAKE_COMMAND} -DSOURCE=${source} -DHEADER=${ARG_HEADER} -DNAMESPACE=${ARG_NAMESPACE} -DFOLDER=${ARG_FOLDER}
+            -DFILES=${files} -P ${script})
+  target_sources(${target} PRIVATE ${source})
+  set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 # Writes the table of targets, in the order of the build, as ARCHITECTURE.md has it: a test compares the two.
 function(blockrand_write_target_table file)
   get_property(rows GLOBAL PROPERTY blockrand_table)

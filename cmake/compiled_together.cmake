@@ -115,7 +115,7 @@ blockrand_compile_together(outputs  # pipeline/outputs
 blockrand_compile_together(outputs  # pipeline/outputs
   citygml/geometry_text.cpp cityjson/cityjson_output.cpp cityjson/object_text.cpp cityjson/vertex_table.cpp
   explain/explain_output.cpp explain/situation_text.cpp geopackage/context_columns.cpp geopackage/qgis_styles.cpp
-  gltf/meshopt.cpp gltf/property_table.cpp gltf/triangle_glb.cpp output.cpp report/page_assets.cpp
+  gltf/meshopt.cpp gltf/property_table.cpp gltf/triangle_glb.cpp output.cpp
   report/report_json_output.cpp report/report_output.cpp report/report_tile.cpp)
 blockrand_compile_together(outputs  # pipeline/outputs
   all_outputs.cpp citygml/appearance_text.cpp citygml/citygml_output.cpp cityjson/cityjson_writer.cpp
@@ -142,7 +142,7 @@ blockrand_compile_together(validate  # pipeline/validate
 blockrand_compile_together(validate  # pipeline/validate
   property_table_reader.cpp tile_contents.cpp)
 blockrand_compile_together(compare  # pipeline/compare
-  body.cpp facade_agreement.cpp face_triangles.cpp heat_mesh.cpp matching.cpp report_assets.cpp report_csv.cpp
+  body.cpp facade_agreement.cpp face_triangles.cpp heat_mesh.cpp matching.cpp report_csv.cpp
   report_elevation.cpp report_html.cpp report_json.cpp report_numbers.cpp report_pictures.cpp report_places.cpp
   report_svg.cpp roofs_from_above.cpp summary.cpp)
 blockrand_compile_together(compare  # pipeline/compare

@@ -1,4 +1,4 @@
-// Text and pictures inside of XML, HTML and JSON, and the look that all pages of this program share.
+// Text and pictures inside of XML, HTML and JSON.
 #pragma once
 
 #include <string>
@@ -23,9 +23,5 @@ std::string escaped(std::string_view text);
 
 /// For pictures that stand in the page itself (RFC 4648, section 4).
 void append_base64(std::string& out, std::string_view bytes);
-
-/// Style sheet of every page: colours of paper and ink (light and dark), headings, tables, figures. Holds neither < nor
-/// &, so that a page is XML as it stands.
-extern const std::string_view kPageStyle;
 
 }  // namespace blockrand::base

@@ -37,9 +37,4 @@ std::string foot_section(const OptionList& options);
 /// "m17": where a match stands in the page.
 std::string anchor_of(std::size_t match);
 
-/// Style sheet beside base::kPageStyle; neither < nor & in it.
-extern const std::string_view kCompareStyle;
-/// Sorts and filters the table of matches. The page says the same without it. Neither < nor & in it.
-extern const std::string_view kCompareScript;
-
 }  // namespace blockrand::compare

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "pipeline/base/assets.h"
 #include "pipeline/base/markup.h"
 #include "pipeline/base/parallel.h"
 #include "pipeline/base/version.h"
+#include "pipeline/compare/assets.h"
 #include "pipeline/compare/comparison_report.h"
 #include "pipeline/compare/comparison_sections.h"
 #include "pipeline/compare/report_numbers.h"
@@ -35,8 +37,8 @@ std::string comparison_html(const Comparison& comparison, const OptionList& opti
       base::escaped(base::kVersion) + "\"/>\n<link rel=\"icon\" href=\"data:,\"/>\n<title>" +
       base::escaped(comparison.model.name) + " against " + base::escaped(comparison.reference.name) +
       "</title>\n<style>";
-  out += base::kPageStyle;
-  out += kCompareStyle;
+  out += base::asset("page.css");
+  out += asset("report.css");
   out += "</style>\n</head>\n<body>\n";
   out += head_section(comparison);
   out += "<main>\n";
@@ -61,7 +63,7 @@ std::string comparison_html(const Comparison& comparison, const OptionList& opti
         });
   }
   out += "</main>\n" + foot_section(options) + "<script>";
-  out += kCompareScript;
+  out += asset("report.js");
   out += "</script>\n</body>\n</html>\n";
   return out;
 }

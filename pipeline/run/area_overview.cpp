@@ -12,6 +12,7 @@
 #include <numbers>
 #include <optional>
 
+#include "pipeline/base/assets.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/markup.h"
 #include "pipeline/base/sha256.h"
@@ -178,7 +179,7 @@ struct Overview::State {
     std::string out =
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" "
         "content=\"width=device-width, initial-scale=1\"/>\n<title>" +
-        escaped(name) + "</title>\n<style>" + std::string(base::kPageStyle) +
+        escaped(name) + "</title>\n<style>" + std::string(base::asset("page.css")) +
         "</style>\n</head>\n<body>\n<main>\n<h1>" + escaped(name) + "</h1>\n";
     const auto count = [&](const char* key) { return base::with_thousands(counts.value(key, std::uint64_t{0})); };
     out += fmt::format("<p>{} buildings and {} parts in {} areas; {} models, {} objects reported. Data as of {}.</p>\n",

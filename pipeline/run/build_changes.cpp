@@ -12,6 +12,7 @@
 #include <optional>
 #include <set>
 
+#include "pipeline/base/assets.h"
 #include "pipeline/base/error.h"
 #include "pipeline/base/markup.h"
 #include "pipeline/base/sha256.h"
@@ -394,8 +395,8 @@ std::string changes_json(const BuildChanges& c, const std::vector<Gate>& gates) 
 std::string changes_page(const std::string& title, const BuildChanges& c, const std::vector<Gate>& gates) {
   using base::escaped;
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<title>" + escaped(title) +
-                    "</title>\n<style>" + std::string(base::kPageStyle) + "</style>\n</head>\n<body>\n<main>\n<h1>" +
-                    escaped(title) + "</h1>\n";
+                    "</title>\n<style>" + std::string(base::asset("page.css")) +
+                    "</style>\n</head>\n<body>\n<main>\n<h1>" + escaped(title) + "</h1>\n";
   out += fmt::format(
       "<p>{} buildings before, {} now: {} new, {} gone; {} footprints and {} values of others differ.</p>\n",
       base::with_thousands(c.before), base::with_thousands(c.after), base::with_thousands(c.added.size()),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "pipeline/base/assets.h"
 #include "pipeline/base/markup.h"
 #include "pipeline/base/text.h"
 #include "pipeline/outputs/imagery/seen_outline.h"
@@ -181,7 +182,7 @@ std::string imagery_page(const OverlayInputs& in, const std::vector<std::string>
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<link rel=\"icon\" "
       "href=\"data:,\"/>\n"
       "<title>What the images changed</title>\n<style>";
-  out += base::kPageStyle;
+  out += base::asset("page.css");
   out += "</style>\n</head>\n<body>\n<main>\n<h1>What the images changed</h1>\n";
   out += in.seen.applied ? "<p>Rows of houses that an image surely shows elsewhere were moved there.</p>\n"
                          : "<p>Nothing was moved: that is to be asked for (--imagery-correct apply).</p>\n";

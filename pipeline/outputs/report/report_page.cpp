@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <iterator>
 
+#include "pipeline/base/assets.h"
+#include "pipeline/outputs/assets.h"
 #include "pipeline/outputs/report/html_text.h"
-#include "pipeline/outputs/report/page_assets.h"
 #include "pipeline/outputs/report/report_map.h"
 #include "pipeline/outputs/report/report_sections.h"
 
@@ -47,8 +48,8 @@ std::string ReportBuilder::html(const ReportFacts& facts, const ReportOptions& o
       escaped(facts.program_version) +
       "\"/>\n<link rel=\"icon\" href=\"data:,\"/>\n<title>Blockrand report: " + escaped(facts.name) +
       "</title>\n<style>";
-  out += base::kPageStyle;
-  out += kReportStyle;
+  out += base::asset("page.css");
+  out += asset("report/report.css");
   out += "</style>\n</head>\n<body>\n";
   out += head_section(facts, has_styles(styles_));
   out += "<main>\n";
@@ -63,7 +64,7 @@ std::string ReportBuilder::html(const ReportFacts& facts, const ReportOptions& o
   out += "</main>\n<footer>Map data <a href=\"https://www.openstreetmap.org/copyright\">" + escaped(facts.attribution) +
          "</a>, available under the Open Database License. Made by Blockrand " + escaped(facts.program_version) +
          "; this page loads nothing from elsewhere.</footer>\n<script>";
-  out += kPageScript;
+  out += asset("report/report.js");
   out += "</script>\n</body>\n</html>\n";
   return out;
 }
